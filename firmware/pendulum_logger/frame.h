@@ -18,7 +18,7 @@ constexpr uint16_t kFirmware = 0x0100;  // version 1.0
 constexpr uint32_t kTickHz = 2000000;   // Timer 1: 16 MHz / 8
 constexpr uint8_t kAdcBits = 10;
 constexpr uint8_t kMostBlock = 16;                      // samples in a frame
-constexpr uint8_t kMostOversample = 64;                 // conversions in a sample: their sum fits in 16 bits
+constexpr uint8_t kMaxOversample = 64;                 // conversions in a sample: their sum fits in 16 bits
 constexpr uint16_t kLeastPeriod = 250;                  // ticks between conversions; one takes 216
 constexpr uint16_t kMostPeriod = 62500;                 // ticks: a late interrupt must be distinguishable from an early
                                                         // one

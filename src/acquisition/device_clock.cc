@@ -15,11 +15,11 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kLeastArrivals = 150, kArrivalsInStretch = 15;
-constexpr std::size_t kLeastStretches = 10, kMostStretches = 32;
-constexpr std::size_t kLeastPoints = 6;
-constexpr double kLeastSeconds = 10;
-constexpr double kMostMemory = 0.9;
+constexpr std::size_t kMinArrivals = 150, kArrivalsPerPart = 15;
+constexpr std::size_t kMinParts = 10, kMaxParts = 32;
+constexpr std::size_t kMinPoints = 6;
+constexpr double kMinSeconds = 10;
+constexpr double kMaxAutocorrelation = 0.9;
 
 /// The line host = offset + scale (device - middle).
 struct Line {
@@ -56,20 +56,20 @@ Line LeastSquares(const std::vector<Arrival>& points) {
   }
   // Neighbours that are late together count as one point: the autocorrelation enlarges the error. The divisor count - 4
   // allows for Student's t, which for so few points is wider than a normal distribution.
-  const double memory = rss > 0 ? std::clamp(products / rss, 0.0, kMostMemory) : 0;
-  line.std_dev = std::sqrt(rss / (count - 4) / sxx * (1 + memory) / (1 - memory));
+  const double autocorrelation = rss > 0 ? std::clamp(products / rss, 0.0, kMaxAutocorrelation) : 0;
+  line.std_dev = std::sqrt(rss / (count - 4) / sxx * (1 + autocorrelation) / (1 - autocorrelation));
   return line;
 }
 
-/// The earliest arrival, relative to a line of slope `scale`, in each of `stretches` parts of equal duration.
-std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t stretches, double scale) {
+/// The earliest arrival, relative to a line of slope `scale`, in each of `parts` parts of equal duration.
+std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t parts, double scale) {
   const double begin = arrivals.front().device_time;
-  const double duration = (arrivals.back().device_time - begin) / static_cast<double>(stretches);
-  std::vector<std::optional<Arrival>> earliest(stretches);
+  const double duration = (arrivals.back().device_time - begin) / static_cast<double>(parts);
+  std::vector<std::optional<Arrival>> earliest(parts);
   const auto lateness = [scale](const Arrival& each) { return each.host_time - scale * each.device_time; };
   for (const Arrival& arrival : arrivals) {
     const auto at = static_cast<std::size_t>((arrival.device_time - begin) / duration);
-    std::optional<Arrival>& best = earliest[std::min(at, stretches - 1)];
+    std::optional<Arrival>& best = earliest[std::min(at, parts - 1)];
     if (!best || lateness(arrival) < lateness(*best)) best = arrival;
   }
   std::vector<Arrival> points;
@@ -80,7 +80,7 @@ std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t str
 }
 
 /// The points without those that are late by more than three standard deviations, estimated from the median.
-std::vector<Arrival> Punctual(const std::vector<Arrival>& points, const Line& line) {
+std::vector<Arrival> WithoutLateArrivals(const std::vector<Arrival>& points, const Line& line) {
   constexpr double kDeviations = 3, kStdDevOfMedian = 1.4826;
   std::vector<double> sizes(points.size());
   std::ranges::transform(points, sizes.begin(), [&](const Arrival& point) { return std::abs(line.Lateness(point)); });
@@ -92,16 +92,16 @@ std::vector<Arrival> Punctual(const std::vector<Arrival>& points, const Line& li
 }
 
 std::optional<Line> FitLine(std::span<const Arrival> arrivals) {
-  constexpr int kMostRounds = 20;
+  constexpr int kMaxRounds = 20;
   constexpr double kSettled = 1e-9;
-  const std::size_t stretches = std::clamp(arrivals.size() / kArrivalsInStretch, kLeastStretches, kMostStretches);
+  const std::size_t parts = std::clamp(arrivals.size() / kArrivalsPerPart, kMinParts, kMaxParts);
   Line line;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const double before = line.scale;
-    std::vector<Arrival> points = Earliest(arrivals, stretches, line.scale);
-    if (points.size() < kLeastPoints) return std::nullopt;
+    std::vector<Arrival> points = Earliest(arrivals, parts, line.scale);
+    if (points.size() < kMinPoints) return std::nullopt;
     line = LeastSquares(points);
-    if (std::vector<Arrival> punctual = Punctual(points, line); punctual.size() >= kLeastPoints) {
+    if (std::vector<Arrival> punctual = WithoutLateArrivals(points, line); punctual.size() >= kMinPoints) {
       line = LeastSquares(punctual);
     }
     if (std::abs(line.scale - before) < kSettled) break;
@@ -113,14 +113,14 @@ std::optional<Line> FitLine(std::span<const Arrival> arrivals) {
 
 DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, double host_std_dev) {
   DeviceClock clock;
-  if (arrivals.size() < kLeastArrivals) return clock;
-  if (arrivals.back().device_time - arrivals.front().device_time < kLeastSeconds) return clock;
+  if (arrivals.size() < kMinArrivals) return clock;
+  if (arrivals.back().device_time - arrivals.front().device_time < kMinSeconds) return clock;
   const std::optional<Line> line = FitLine(arrivals);
   if (!line) return clock;
   const double seconds = arrivals.back().device_time - arrivals.front().device_time;
   const double rounding = polling / std::sqrt(6.0) / seconds;  // Rounding of both ends, each uniformly distributed.
   const double std_dev = std::hypot(line->std_dev, rounding, host_std_dev * line->scale);
-  clock.is_implausible = !(std::abs(line->scale - 1) - 3 * std_dev <= kMostDeviation);
+  clock.is_implausible = !(std::abs(line->scale - 1) - 3 * std_dev <= kMaxDeviation);
   if (clock.is_implausible || !(std_dev < kResonatorStdDev)) return clock;
   clock.scale = line->scale;
   clock.std_dev = std_dev;

@@ -86,7 +86,7 @@ auto Logger::Exchange(const std::vector<std::uint8_t>& commands, int tries, cons
   return Answer(std::nullopt);
 }
 
-Result<wire::Info> Logger::Connect(double patience_seconds) {
+Result<wire::Info> Logger::Connect(double timeout_seconds) {
   std::vector<std::uint8_t> commands = CommandBytes(wire::Command<wire::kStop>{});
   const std::vector<std::uint8_t> ask = CommandBytes(wire::Command<wire::kAskInfo>{});
   commands.insert(commands.end(), ask.begin(), ask.end());
@@ -95,9 +95,9 @@ Result<wire::Info> Logger::Connect(double patience_seconds) {
     const auto* info = std::get_if<wire::Info>(&received.message);
     return info != nullptr && info->is_running == 0 ? std::optional(Checked(*info)) : std::nullopt;
   };
-  const auto answer = Exchange(commands, static_cast<int>(std::ceil(patience_seconds / kRepeatSeconds)), pick);
+  const auto answer = Exchange(commands, static_cast<int>(std::ceil(timeout_seconds / kRepeatSeconds)), pick);
   if (!answer) return tl::unexpected(answer.error());
-  if (!*answer) return NoAnswer(patience_seconds);
+  if (!*answer) return NoAnswer(timeout_seconds);
   return **answer;
 }
 

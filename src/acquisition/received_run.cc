@@ -17,14 +17,14 @@ constexpr std::uint32_t kLongestGap = std::uint32_t{1} << 31;
 
 /// How far a logger's clock may get ahead of the host's from one frame to the next, s. The host may have read the
 /// previous frame late.
-constexpr double kMostAhead = 30;
+constexpr double kMaxAhead = 30;
 
 constexpr std::uint16_t kSaturated = 65535;  // largest value of the counters in a frame
 
 }  // namespace
 
 std::optional<SamplingRate> NearestRate(double hz, int oversample) {
-  if (oversample < 1 || oversample > wire::kMostOversample || !(hz > 0)) return std::nullopt;
+  if (oversample < 1 || oversample > wire::kMaxOversample || !(hz > 0)) return std::nullopt;
   const double period = std::round(wire::kTickHz / (hz * oversample));
   if (!(period >= wire::kLeastPeriod && period <= wire::kMostPeriod)) return std::nullopt;
   return SamplingRate{static_cast<std::uint16_t>(period), static_cast<std::uint8_t>(oversample)};
@@ -35,7 +35,7 @@ bool ReceivedRun::Fits(const wire::Data& frame, double host_time) const {
   if (ticks_.empty()) return true;
   const std::uint32_t step = frame.tick - last_tick_;
   const double ahead = static_cast<double>(step) / wire::kTickHz - (host_time - arrivals_.back().host_time);
-  return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0 && ahead < kMostAhead;
+  return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0 && ahead < kMaxAhead;
 }
 
 /// Records the samples missing before an accepted frame. Before the first frame whole frames count, later the ticks. If

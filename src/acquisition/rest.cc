@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBlockSeconds = 0.1, kLongestBlockSeconds = 0.25;
 constexpr int kBlockSamples = 8;  // fewer if these take longer than kLongestBlockSeconds
-constexpr double kLeastTurn = 5;  // counts: smaller reversals are noise
+constexpr double kMinTurn = 5;    // counts: smaller reversals are noise
 
 }  // namespace
 
@@ -33,22 +33,22 @@ void RestDetector::Take(double time, double counts) {
 }
 
 void RestDetector::Close() {
-  FollowTurns(open_.Mean());
+  TrackTurningPoints(open_.Mean());
   blocks_.push_back(open_);
   while (open_.time - blocks_.front().time > kRestSeconds) blocks_.pop_front();
   open_ = Block();
 }
 
-void RestDetector::FollowTurns(double mean) {
+void RestDetector::TrackTurningPoints(double mean) {
   if (!is_begun_) extreme_ = mean;
   is_begun_ = true;
   if (direction_ == 0) {
-    if (std::abs(mean - extreme_) < kLeastTurn) return;
+    if (std::abs(mean - extreme_) < kMinTurn) return;
     direction_ = mean > extreme_ ? 1 : -1;
   }
   if (direction_ * (mean - extreme_) >= 0) {
     extreme_ = mean;
-  } else if (direction_ * (extreme_ - mean) >= kLeastTurn) {
+  } else if (direction_ * (extreme_ - mean) >= kMinTurn) {
     turns_.push_back(extreme_);
     if (turns_.size() > kTurns) turns_.pop_front();
     direction_ = -direction_;

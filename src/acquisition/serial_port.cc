@@ -86,7 +86,7 @@ Result<SerialPort> SerialPort::Open(const std::string& path, unsigned baud) {
     const std::string remedy = error == EACCES ? "; ports belong to the group dialout: sudo adduser $USER dialout, and "
                                                  "log in again"
                                                : "";
-    return Error(StatusCode::kDataLoss, "cannot open " + path + ": " + SystemWords(error) + remedy);
+    return Error(StatusCode::kDataLoss, "cannot open " + path + ": " + SystemErrorText(error) + remedy);
   }
   SerialPort port(descriptor, path);
   if (auto configured = port.Configure(baud); !configured) return tl::unexpected(configured.error());
@@ -119,7 +119,7 @@ Result<void> SerialPort::Configure(unsigned baud) {
   settings.c_cc[VTIME] = 0;
   if (::ioctl(descriptor_, TCSETS2, &settings) != 0) {
     return Error(StatusCode::kDataLoss,
-                 path_ + " cannot be set to " + std::to_string(baud) + " baud: " + SystemWords(errno));
+                 path_ + " cannot be set to " + std::to_string(baud) + " baud: " + SystemErrorText(errno));
   }
   return {};
 }
@@ -132,7 +132,7 @@ Result<std::vector<std::uint8_t>> SerialPort::Read(double seconds) {
   std::vector<std::uint8_t> bytes(kRoom);
   const ssize_t count = ::read(descriptor_, bytes.data(), bytes.size());
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::vector<std::uint8_t>();
-  if (count < 0) return Lost(path_, SystemWords(errno));
+  if (count < 0) return Lost(path_, SystemErrorText(errno));
   if (count == 0) return Lost(path_, "end of file");
   bytes.resize(static_cast<std::size_t>(count));
   return bytes;
@@ -147,7 +147,7 @@ Result<void> SerialPort::Write(std::span<const std::uint8_t> bytes) {
       return Error(StatusCode::kDataLoss, path_ + " takes no bytes; unplug the board and plug it in again");
     const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (count < 0) return Lost(path_, SystemWords(errno));
+    if (count < 0) return Lost(path_, SystemErrorText(errno));
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
   return {};

@@ -104,8 +104,8 @@ Line LineOf(const std::vector<RunAlone>& runs, const SharedParameter& parameter,
 /// Least-squares fits of a line and of a constant alone.
 struct LineFit {
   double slope = 0, slope_variance = 0;
-  VectorXd left;                // residuals of the line
-  double left_by_constant = 0;  // sum of squared residuals of the constant
+  VectorXd left;                    // residuals of the line
+  double residual_of_constant = 0;  // sum of squared residuals of the constant
 };
 
 LineFit Solve(const Line& line) {
@@ -114,8 +114,8 @@ LineFit Solve(const Line& line) {
   const Eigen::Matrix2d inverse = (columns.transpose() * columns).inverse();
   const Vector2d fit = inverse * (columns.transpose() * values);
   const VectorXd constant = columns.col(0);
-  const VectorXd left_by_constant = values - constant * (constant.dot(values) / constant.squaredNorm());
-  return {fit[1], inverse(1, 1), values - columns * fit, left_by_constant.squaredNorm()};
+  const VectorXd residual_of_constant = values - constant * (constant.dot(values) / constant.squaredNorm());
+  return {fit[1], inverse(1, 1), values - columns * fit, residual_of_constant.squaredNorm()};
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<Run
   AmplitudeDependence dependence{parameter.name, parameter.unit};
   dependence.slope = fit.slope;
   dependence.slope_std_error = std::sqrt(fit.slope_variance * excess);
-  const double f = std::max(fit.left_by_constant - rest, 0.0) / excess;
+  const double f = std::max(fit.residual_of_constant - rest, 0.0) / excess;
   dependence.p = FisherTail(f, 1, freedom);
   dependence.span = fit.slope * (squares.highest - squares.lowest) / parameter.mean;
   const double between = fit.left.head(static_cast<Index>(line.estimates)).squaredNorm();

@@ -19,8 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostWindows = 8;
-constexpr std::size_t kFewestWindows = 3;
+constexpr std::size_t kMaxWindows = 8;
+constexpr std::size_t kMinWindows = 3;
 
 /// The friction parameter with the smallest relative standard error; nullptr: no friction has a standard error.
 const ParameterEstimate* BestFriction(const FitReport& fit) {
@@ -40,7 +40,7 @@ struct Windows {
   std::vector<LinearFit> linear;
   std::vector<Index> tested;  // T parameters that each window estimates separately
   NoiseModel noise;
-  Autocorrelation memory;
+  Autocorrelation autocorrelation;
   ReadingTerms terms;  // score and information of all used readings
 
   ReadingTerms TermsIn(const PartFit& part) const {
@@ -64,8 +64,8 @@ double PooledSigma(const std::vector<PartFit>& parts) {
 
 /// Autocorrelation of the windows' residuals. The residuals of the whole fit would include the autocorrelation of its
 /// misfit.
-Autocorrelation PooledMemory(const Recording& used, const Windows& windows, const VectorXd& readings,
-                             const std::stop_token& stop) {
+Autocorrelation PooledAutocorrelation(const Recording& used, const Windows& windows, const VectorXd& readings,
+                                      const std::stop_token& stop) {
   const Index first = windows.parts.front().first;
   const Index count = windows.parts.back().first + windows.parts.back().part.size() - first;
   Index columns = 0;
@@ -131,8 +131,9 @@ double WindowInflation(const Recording& used, const Windows& windows) {
   Index free = 0, samples = 0;
   for (std::size_t w = 0; w < windows.parts.size(); ++w) {
     const LinearFit& linear = windows.linear[w];
-    const MatrixXd covariance = ScoreCovariance(windows.noise, windows.memory, windows.TermsIn(windows.parts[w]),
-                                                used.clock_scale * windows.parts[w].part.time, linear.influence);
+    const MatrixXd covariance =
+        ScoreCovariance(windows.noise, windows.autocorrelation, windows.TermsIn(windows.parts[w]),
+                        used.clock_scale * windows.parts[w].part.time, linear.influence);
     lost += linear.inverse.ldlt().solve(covariance).trace();
     free += linear.influence.cols();
     samples += windows.parts[w].part.size();
@@ -165,10 +166,10 @@ std::string FitWindows(const Parts& parts, const std::vector<double>& ends, cons
     if (std::ranges::find(windows.tested, static_cast<Index>(i)) == windows.tested.end())
       held.push_back(fit.parameters[i].info.name);
   }
-  const std::size_t count = std::min((ends.size() - 1) / kFewestHalfSwings, kMostWindows);
+  const std::size_t count = std::min((ends.size() - 1) / kMinHalfSwings, kMaxWindows);
   const std::vector<std::size_t> cuts = CutEvenly(ends, count, parts);
   for (std::size_t w = 0; w < count; ++w) {
-    const double from = w == 0 ? ends.front() : After(ends[cuts[w]]);
+    const double from = w == 0 ? ends.front() : NextDoubleAfter(ends[cuts[w]]);
     PartFit part = parts.Fit(from, ends[cuts[w + 1]], held);
     if (!part.converged())
       return "the fit to window " + std::to_string(w + 1) + " of " + std::to_string(count) +
@@ -192,7 +193,7 @@ bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOpti
     if (!linear) return false;
     windows.linear.push_back(*std::move(linear));
   }
-  windows.memory = PooledMemory(used, windows, readings, options.stop);
+  windows.autocorrelation = PooledAutocorrelation(used, windows, readings, options.stop);
   return true;
 }
 
@@ -233,7 +234,7 @@ void AddTrends(const Recording& used, const FitReport& fit, const LinearFit& who
   const double inflation = WindowInflation(used, windows);
   for (const Index k : windows.tested) {
     const MatrixXd covariance =
-        inflation * ScoreCovariance(windows.noise, windows.memory, windows.terms, used.clock_scale * used.time,
+        inflation * ScoreCovariance(windows.noise, windows.autocorrelation, windows.terms, used.clock_scale * used.time,
                                     InfluenceOn(k, used, fit, whole, windows));
     const VectorXd value = EstimatesOf(k, windows);
     for (Index w = 0; w < value.size(); ++w) {
@@ -249,8 +250,8 @@ void AddTrends(const Recording& used, const FitReport& fit, const LinearFit& who
 
 std::string CompareWindows(const Recording& used, const Parts& parts, const std::vector<double>& ends,
                            const FitReport& fit, const FitOptions& options, Constancy& result) {
-  if (ends.size() - 1 < kFewestWindows * kFewestHalfSwings)
-    return TooShort(ends, "windows of three periods", kFewestWindows * kFewestHalfSwings);
+  if (ends.size() - 1 < kMinWindows * kMinHalfSwings)
+    return TooFewHalfSwings(ends, "windows of three periods", kMinWindows * kMinHalfSwings);
   Windows windows;
   if (!fit.parameters[0].fixed) windows.tested.push_back(0);
   const ParameterEstimate* const friction = BestFriction(fit);

@@ -147,10 +147,10 @@ class FitSide {
   /// Standard deviation of (closed form - fit), if noise of this size and autocorrelation changes both. `influence` (N)
   /// and `weights` (P) are in the report's units.
   std::optional<double> DifferenceDeviation(const VectorXd& influence, const VectorXd& weights, double noise,
-                                            const Autocorrelation& memory) {
+                                            const Autocorrelation& autocorrelation) {
     if (!Linearize()) return std::nullopt;
     const VectorXd difference = influence - solver_.transpose() * weights;
-    const double sum = CorrelatedSum(memory, motion_.instants(), difference)(0, 0);
+    const double sum = CorrelatedSum(autocorrelation, motion_.instants(), difference)(0, 0);
     return noise * std::sqrt(std::max(sum, 0.0));
   }
 
@@ -197,7 +197,7 @@ class FitSide {
 };
 
 /// Sets z and the verdict if the difference has a standard deviation.
-void Judge(double deviation, ClosedFormRow& row) {
+void SetAgreement(double deviation, ClosedFormRow& row) {
   if (!(deviation > 0)) return;
   row.z = (row.closed_form - row.fit) / deviation;
   row.agrees = std::abs(*row.z) < kAgrees;
@@ -228,7 +228,7 @@ class Checker {
                         ""};
       const std::optional<double> deviation = Deviation(row, *fitted, group.gradient.row(k));
       if (!deviation) row.why = "the fit has no standard error" + (fitted->reason.empty() ? "" : ": " + fitted->reason);
-      if (deviation) Judge(*deviation, row);
+      if (deviation) SetAgreement(*deviation, row);
       if (row.agrees == false && !std::exchange(tried, true)) {
         stages = ApplyInStages(motion_, used_, fit_.model.gravity, group.apply);
       }
@@ -250,14 +250,15 @@ class Checker {
     if (!fitted.std_error) return std::nullopt;
     const double own = *row.std_error * *row.std_error;
     const double hausman = own - *fitted.std_error * *fitted.std_error;
-    const bool white = fit_.noise.memory.kind == Autocorrelation::Kind::kWhite;
+    const bool white = fit_.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite;
     if (white && forms_.wrong_law.empty() && hausman > kSmallDifference * own) return std::sqrt(hausman);
     const VectorXd influence = fitted.scale * InfluenceOf(forms_.table, gradient.transpose(), used_.size());
     if (!forms_.wrong_law.empty()) {
       const auto noise = side_.DifferenceDeviation(influence, fitted.weights, forms_.table.noise, {});
       return std::max(noise.value_or(0), *row.std_error);
     }
-    return side_.DifferenceDeviation(influence, fitted.weights, fit_.statistics.rms_residual, fit_.noise.memory);
+    return side_.DifferenceDeviation(influence, fitted.weights, fit_.statistics.rms_residual,
+                                     fit_.noise.autocorrelation);
   }
 
   CauseNames NamesOf(const FormulaGroup& group, const FormulaRow& formula) const {
@@ -308,7 +309,7 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
     if (!inertia.std_error || !fit_error) {
       row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to judge that by";
     } else {
-      Judge(std::hypot(inertia.difference_std_error, *fit_error, clock_error), row);
+      SetAgreement(std::hypot(inertia.difference_std_error, *fit_error, clock_error), row);
       if (row.agrees == false) row.why = percent + ", more than the rig's errors allow";
     }
     rows.push_back(std::move(row));
@@ -319,10 +320,10 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
 std::string DescribePointMass(const std::vector<ClosedFormRow>& rows) {
   const auto row = std::ranges::find(rows, "inertia_point_mass", &ClosedFormRow::quantity);
   if (row == rows.end()) return "";
-  constexpr double kWouldDo = 0.01;  // used if the rig gives no standard errors
+  constexpr double kMaxDifference = 0.01;  // used if the rig gives no standard errors
   const double ratio = row->closed_form / row->fit;
-  const bool would_do = row->agrees.value_or(std::abs(ratio - 1) < kWouldDo);
-  return std::string("; a point mass would ") + (would_do ? "do" : "not do") + ": its inertia is " + Percent(ratio) +
+  const bool is_adequate = row->agrees.value_or(std::abs(ratio - 1) < kMaxDifference);
+  return std::string("; a point mass would ") + (is_adequate ? "do" : "not do") + ": its inertia is " + Percent(ratio) +
          " than the fit's";
 }
 

@@ -17,12 +17,12 @@ using Eigen::Index;
 constexpr double kSmallestSigma = 0.5;
 
 /// A parameter at the bound 0 leaves a simpler law and is not counted; a parameter at another bound is counted.
-bool Counts(const ParameterEstimate& parameter) {
+bool IsCounted(const ParameterEstimate& parameter) {
   return !parameter.fixed && !(parameter.at_bound && parameter.estimate == 0);
 }
 
 /// Range of steps from a parameter's estimate within its bounds and the user's.
-std::pair<double, double> Room(const ParameterEstimate& parameter, const FitOptions& options) {
+std::pair<double, double> AllowedSteps(const ParameterEstimate& parameter, const FitOptions& options) {
   double lower = parameter.info.lower;
   double upper = parameter.info.upper;
   if (const auto own = options.bounds.find(parameter.info.name); own != options.bounds.end()) {
@@ -39,7 +39,7 @@ bool IsNormal(const FitReport& best) {
   return best.noise.family == NoiseFamily::kGaussian || best.noise.family == NoiseFamily::kQuantized;
 }
 
-std::string WhyNone(const FitReport& best, const std::string& memory) {
+std::string NoLikelihoodReason(const FitReport& best, const std::string& autocorrelation) {
   const std::string residuals =
       "the residuals of " + std::string(best.model.name) + ", the model nearest to the readings, ";
   if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
@@ -47,7 +47,7 @@ std::string WhyNone(const FitReport& best, const std::string& memory) {
                           : IsNormal(best)                           ? "noise below half a count"
                           : best.noise.family == NoiseFamily::kEdges ? "rows at uneven times"
                                                                      : "a robust loss";
-  return residuals + "remember (" + memory + "), and no likelihood is known for that with " + why;
+  return residuals + "remember (" + autocorrelation + "), and no likelihood is known for that with " + why;
 }
 
 }  // namespace
@@ -58,11 +58,11 @@ ComparisonRow DescribeFit(const FitReport& fit) {
   row.judged = fit.termination == Termination::kConverged;
   if (!row.judged) row.reason = std::string(TerminationName(fit.termination)) + ": " + fit.reason;
   if (fit.termination == Termination::kFailed) return row;
-  row.parameters = static_cast<int>(std::ranges::count_if(fit.parameters, Counts)) + 1;
+  row.parameters = static_cast<int>(std::ranges::count_if(fit.parameters, IsCounted)) + 1;
   row.rms = fit.statistics.rms_residual;
   row.lag1_correlation = fit.noise.lag1_correlation;
   row.ljung_box_p = fit.statistics.ljung_box_p;
-  row.lack_of_fit = fit.Warns("lack_of_fit");
+  row.lack_of_fit = fit.HasWarning("lack_of_fit");
   return row;
 }
 
@@ -86,7 +86,7 @@ std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitR
   std::vector<double> lowest, highest;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     if (fit.parameters[i].fixed || (fit.parameters[i].at_bound && !with_bounded)) continue;
-    const auto [low, high] = Room(fit.parameters[i], options);
+    const auto [low, high] = AllowedSteps(fit.parameters[i], options);
     columns.push_back(static_cast<Index>(i));
     lowest.push_back(low);
     highest.push_back(high);
@@ -103,31 +103,32 @@ double PerCount(const Recording& used) {
   return used.resolution > 0 ? static_cast<double>(used.size()) * std::log(used.resolution) : 0.0;
 }
 
-Autocorrelation SharedMemory(const FitReport& best) {
-  constexpr std::size_t kMostOrder = 8;
-  Autocorrelation memory = best.noise.memory;
-  if (memory.autoregressive.size() > kMostOrder) memory.autoregressive.assign(kMostOrder, 0.0);
-  return memory;
+Autocorrelation SharedAutocorrelation(const FitReport& best) {
+  constexpr std::size_t kMaxSharedOrder = 8;
+  Autocorrelation autocorrelation = best.noise.autocorrelation;
+  if (autocorrelation.autoregressive.size() > kMaxSharedOrder)
+    autocorrelation.autoregressive.assign(kMaxSharedOrder, 0.0);
+  return autocorrelation;
 }
 
 std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best) {
-  const std::string memory = SharedMemory(best).Name();
+  const std::string autocorrelation = SharedAutocorrelation(best).Name();
   switch (likelihood) {
     case Likelihood::kIndependent:
       return "likelihood of independent " + std::string(NoiseFamilyName(best.noise.family)) + " residuals";
     case Likelihood::kCorrelated:
-      return "Gaussian likelihood of residuals that remember, " + memory + " as those of " +
+      return "Gaussian likelihood of residuals that remember, " + autocorrelation + " as those of " +
              std::string(best.model.name) + ", with the variance of rounding added";
-    case Likelihood::kNone: return "none: " + WhyNone(best, memory);
+    case Likelihood::kNone: return "none: " + NoLikelihoodReason(best, autocorrelation);
   }
   return "";
 }
 
 Likelihood ChooseLikelihood(const FitReport& best, double resolution) {
   if (IsRounding(best)) return Likelihood::kNone;
-  if (best.noise.memory.kind == Autocorrelation::Kind::kWhite) return Likelihood::kIndependent;
-  const bool is_loud = best.noise.sigma >= kSmallestSigma * resolution;
-  return IsNormal(best) && is_loud && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kNone;
+  if (best.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) return Likelihood::kIndependent;
+  const bool exceeds_rounding = best.noise.sigma >= kSmallestSigma * resolution;
+  return IsNormal(best) && exceeds_rounding && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kNone;
 }
 
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row) {

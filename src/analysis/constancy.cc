@@ -71,11 +71,11 @@ void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& s
 /// Returns why there is no test; empty if there is one.
 std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
                           const FitOptions& options, Constancy& result) {
-  if (ends.size() - 1 < 2 * kFewestHalfSwings) return TooShort(ends, "halves", 2 * kFewestHalfSwings);
+  if (ends.size() - 1 < 2 * kMinHalfSwings) return TooFewHalfSwings(ends, "halves", 2 * kMinHalfSwings);
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
   std::vector<UnboundedEstimate> estimates;
   for (const auto& [name, from, to] :
-       {std::tuple("first", ends.front(), cut), std::tuple("second", After(cut), ends.back())}) {
+       {std::tuple("first", ends.front(), cut), std::tuple("second", NextDoubleAfter(cut), ends.back())}) {
     const PartFit half = parts.Fit(from, to, {});
     if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
     std::optional<UnboundedEstimate> estimate =

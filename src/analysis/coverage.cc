@@ -162,7 +162,7 @@ void Summarize(const std::vector<RunOutcome>& outcomes, std::size_t i, CoverageR
   if (error && *error > 0) row.std_error_over_error = *std_error.value() / *error;
 }
 
-void Judge(const CoverageScenario& scenario, int recordings, CoverageRow& row) {
+void ApplyRule(const CoverageScenario& scenario, int recordings, CoverageRow& row) {
   const CoverageRule& rule = row.at_bound ? kAtBoundRule : scenario.rule;
   const BinomialInterval interval = BinomialInterval95(row.covered, recordings);
   row.coverage = static_cast<double>(row.covered) / recordings;
@@ -183,7 +183,7 @@ CoverageRow MakeRow(const CoverageScenario& scenario, const std::vector<RunOutco
   }
   row.at_bound = truth == info.lower || truth == info.upper;
   Summarize(outcomes, i, row);
-  Judge(scenario, static_cast<int>(outcomes.size()), row);
+  ApplyRule(scenario, static_cast<int>(outcomes.size()), row);
   return row;
 }
 

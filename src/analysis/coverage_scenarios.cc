@@ -40,7 +40,7 @@ CoverageScenario OnCounts(std::string name, std::string description, double nois
 }
 
 /// The same with a sensor without counts.
-CoverageScenario Fine(std::string name, std::string description, double noise) {
+CoverageScenario WithoutCounts(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.run.resolution = 0;
   return scenario;
@@ -114,7 +114,7 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
 }
 
 /// The same encoder with play: its counts change after their edges.
-CoverageScenario Lagging(CoverageScenario scenario) {
+CoverageScenario WithLag(CoverageScenario scenario) {
   scenario.run.edge_lag = 0.35 * scenario.run.resolution;
   return scenario;
 }
@@ -127,7 +127,7 @@ CoverageScenario WithoutLag(CoverageScenario scenario) {
 
 /// The same encoder sampled at even times. An error lasts as long as a count, so this scenario is for comparison and
 /// not for its intervals.
-CoverageScenario Sampled(CoverageScenario scenario) {
+CoverageScenario SampledEvenly(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenOfEvents;
   scenario.run.time_noise = 0;
   scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior with so many samples takes seconds
@@ -138,8 +138,8 @@ CoverageScenario Sampled(CoverageScenario scenario) {
 
 /// A moving start, measured by another sensor with noise `noise`. ScenarioRun draws the sensor's parameters for each
 /// recording, within their prior uncertainty.
-CoverageScenario Seen(std::string name, std::string description, Quantity quantity, SensorKind kind,
-                      std::vector<double> parameters, double noise) {
+CoverageScenario WithOtherSensor(std::string name, std::string description, Quantity quantity, SensorKind kind,
+                                 std::vector<double> parameters, double noise) {
   CoverageScenario scenario = Moving();
   scenario.name = std::move(name);
   scenario.description = std::move(description);
@@ -176,8 +176,8 @@ CoverageScenario Correlated(CoverageScenario scenario, double correlation, doubl
 }
 
 CoverageScenario HeavyTails() {
-  CoverageScenario scenario =
-      Fine("student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
+  CoverageScenario scenario = WithoutCounts(
+      "student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
   scenario.run.noise_freedom = 3;
   scenario.fit.noise = NoiseFamily::kStudent;
   return scenario;
@@ -207,31 +207,35 @@ std::vector<CoverageScenario> CoverageScenarios() {
       SmallSwing(),
       Moving(),
       Saturated(),
-      Correlated(Fine("ar_0.5", "AR(1) noise of 0.5 count, correlation 0.5, fine", 0.5), 0.5, CoverageRule{}.lowest),
-      Correlated(Fine("ar_0.9", "AR(1) noise of 0.5 count, correlation 0.9, fine", 0.5), 0.9, kStrongLowest),
+      Correlated(WithoutCounts("ar_0.5", "AR(1) noise of 0.5 count, correlation 0.5, fine", 0.5), 0.5,
+                 CoverageRule{}.lowest),
+      Correlated(WithoutCounts("ar_0.9", "AR(1) noise of 0.5 count, correlation 0.9, fine", 0.5), 0.9, kStrongLowest),
       Correlated(OnCounts("ar_0.9_counts", "AR(1) noise of 0.5 count, correlation 0.9, on counts", 0.5), 0.9,
                  kStrongLowest),
       HeavyTails(),
       Without(1, "no_viscous", "b = 0, at its bound; white noise of 0.5 count on counts"),
       Without(2, "no_coulomb", "tau_c = 0, at its bound; white noise of 0.5 count on counts"),
-      Seen("gyro_volts", "a gyro of 0.115 V s/rad with noise of 2 mV, of unknown scale", Quantity::kRate,
-           SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
-      Seen("acceleration_across", "an accelerometer across the rod, 0.25 m from the pivot; noise of 0.05 m/s^2",
-           Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.25}, 0.05),
-      Seen("acceleration_along", "the same along the rod", Quantity::kAcceleration, SensorKind::kAcceleration,
-           {0, 1, kPi / 2, 0.25}, 0.05),
+      WithOtherSensor("gyro_volts", "a gyro of 0.115 V s/rad with noise of 2 mV, of unknown scale", Quantity::kRate,
+                      SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
+      WithOtherSensor("acceleration_across",
+                      "an accelerometer across the rod, 0.25 m from the pivot; noise of 0.05 m/s^2",
+                      Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.25}, 0.05),
+      WithOtherSensor("acceleration_along", "the same along the rod", Quantity::kAcceleration,
+                      SensorKind::kAcceleration, {0, 1, kPi / 2, 0.25}, 0.05),
       // In metres, the unit of simulated lengths.
-      Seen("pixels_x", "the horizontal coordinate of a point, 400 pixels of 1 mm from the pivot; noise of 0.5 pixel",
-           Quantity::kPosition, SensorKind::kCoordinate, {0, 0.64, 0.4}, 0.0005),
-      Seen("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc, {0, 0.64, 0.12, 0.4},
-           0.0005),
+      WithOtherSensor("pixels_x",
+                      "the horizontal coordinate of a point, 400 pixels of 1 mm from the pivot; noise of 0.5 pixel",
+                      Quantity::kPosition, SensorKind::kCoordinate, {0, 0.64, 0.4}, 0.0005),
+      WithOtherSensor("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc,
+                      {0, 0.64, 0.12, 0.4}, 0.0005),
       OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
       OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
-      Lagging(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
+      WithLag(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
       WithoutLag(OnTicks("prompt_ticks", "the encoder of ticks, known to have no lag")),
       WithoutLag(OnFewTicks("few_prompt_ticks", "that of few_ticks, likewise")),
-      Sampled(OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
-      Sampled(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
+      SampledEvenly(
+          OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
+      SampledEvenly(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
   };
 }
 

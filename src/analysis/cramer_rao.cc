@@ -113,18 +113,18 @@ std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const 
 /// removed first, so the others keep their bounds.
 std::vector<std::optional<double>> BoundsOf(const Eigen::MatrixXd& information) {
   std::vector<std::optional<double>> bounds(static_cast<std::size_t>(information.rows()));
-  std::vector<Index> told;
+  std::vector<Index> determined;
   for (Index i = 0; i < information.rows(); ++i) {
-    if (information(i, i) > 0) told.push_back(i);
+    if (information(i, i) > 0) determined.push_back(i);
   }
-  const Eigen::MatrixXd part = information(told, told);
+  const Eigen::MatrixXd part = information(determined, determined);
   const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * part * scale.asDiagonal());
   if (factor.info() != Eigen::Success) return bounds;
   const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
-  for (std::size_t k = 0; k < told.size(); ++k) {
+  for (std::size_t k = 0; k < determined.size(); ++k) {
     const auto row = static_cast<Index>(k);
-    bounds[static_cast<std::size_t>(told[k])] = scale[row] * std::sqrt(inverse(row, row));
+    bounds[static_cast<std::size_t>(determined[k])] = scale[row] * std::sqrt(inverse(row, row));
   }
   return bounds;
 }

@@ -47,11 +47,11 @@ std::string Signed(double value, const std::string& unit) {
 std::optional<FormulaStages> ApplyInStages(const FittedMotion& motion, const Recording& used, Gravity gravity,
                                            const FormulaValues& formulas) {
   constexpr double kPerPeriod = 200;
-  constexpr double kMostSamples = 200'000;
+  constexpr double kMaxSamples = 200'000;
   const VectorXd& own = motion.instants();
   const double end = own[own.size() - 1];
   const double wanted = kPerPeriod * end / motion.small_angle_period();
-  const auto count = static_cast<Index>(std::clamp(wanted, 100.0, kMostSamples));
+  const auto count = static_cast<Index>(std::clamp(wanted, 100.0, kMaxSamples));
   const VectorXd fine = VectorXd::LinSpaced(count, 0, end);
   const FittedMotion linear = motion.WithGravity(Gravity::kLinear);
   const auto small = linear.WithoutDrift().Readings(fine);
@@ -86,7 +86,7 @@ DifferenceCauses SplitDifference(const FormulaStages& stages, Index k, double sc
 std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const std::string& unit,
                            const CauseNames& names) {
   constexpr double kNoise = 3;
-  constexpr double kWorthSaying = 0.2;
+  constexpr double kMinShare = 0.2;
   const bool noise = std::abs(causes.recording) < kNoise * std_dev;
   std::vector<std::pair<double, std::string>> parts = {
       {causes.formula, names.formula},
@@ -99,7 +99,7 @@ std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const
   const double total = causes.total();
   std::string text;
   for (const auto& [part, cause] : parts) {
-    if (std::abs(part) < kWorthSaying * std::abs(total)) continue;
+    if (std::abs(part) < kMinShare * std::abs(total)) continue;
     text.append(text.empty() ? ": " : "; ").append(Signed(part, "1")).append(" by ").append(cause);
   }
   return "differs by " + Signed(total, unit) + text;

@@ -31,7 +31,7 @@ std::size_t Richest(const std::vector<std::string>& models) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
     if (!model || model->gravity != Gravity::kSine) continue;
     // A model with a parameter that may have no meaning is the last choice.
-    const std::size_t size = OrderOf(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
+    const std::size_t size = FindOrderedPair(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
     if (size <= most) continue;
     most = size;
     richest = i;
@@ -51,7 +51,7 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
 }
 
 /// Two warnings hold for every model: the recording is not a pendulum's swing, or its zero jumps.
-void ShareVerdict(const FitReport& lead, FitReport& fit) {
+void CopySharedWarnings(const FitReport& lead, FitReport& fit) {
   const auto said = std::ranges::find_if(lead.warnings, [](const Warning& warning) {
     return warning.code == "not_a_pendulum" || warning.code == "zero_jumps";
   });
@@ -82,7 +82,7 @@ class SharedFits {
     auto [options, ignored] = ForModel(options_, models_[i], models_);
     Result<FitReport> fit = FitRecording(result_.used, options);
     result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], lead, fit.error());
-    ShareVerdict(lead, result_.fits[i]);
+    CopySharedWarnings(lead, result_.fits[i]);
   }
 
   /// Likelihoods can be compared only within one noise family: that of the fit with the smallest residuals.

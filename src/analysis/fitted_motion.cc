@@ -15,7 +15,7 @@ FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const st
                            std::stop_token stop)
     : model_(fit.model), start_(fit.start), quantity_(fit.quantity), sensor_(fit.sensor), stop_(std::move(stop)) {
   instants_ = used.clock_scale * (used.time.array() - used.time[0]);
-  if (fit.Find(kEdgeLag.name) != nullptr) against_ = Moves(used, instants_, ZeroMotion::kLags);
+  if (fit.Find(kEdgeLag.name) != nullptr) against_ = ZeroMotionFactors(used, instants_, ZeroMotion::kLags);
   const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   for (const ParameterEstimate& parameter : fit.parameters) {
     const std::string_view name = parameter.info.name;
@@ -57,13 +57,13 @@ FittedMotion FittedMotion::WithViscous(double inertia, double viscous) const {
 bool FittedMotion::SetLags(TrajectoryData& data) const {
   const bool recorded = data.times().size() == instants_.size() && data.times() == instants_;
   if (recorded) {
-    data.moves = against_;
+    data.zero_motion_factors = against_;
     return true;
   }
   MotionStates states;
   if (!MakeTrajectoryCost(model_, start_, data)->Motion(parameters_, false, &states)) return false;
   const Eigen::VectorXd against = -states.value[1].array().sign();
-  data.moves.assign(against.begin(), against.end());
+  data.zero_motion_factors.assign(against.begin(), against.end());
   return true;
 }
 
@@ -76,7 +76,7 @@ std::optional<Eigen::VectorXd> FittedMotion::Readings(const Eigen::VectorXd& ins
   data.value.assign(data.time.size(), 0.0);
   data.natural_frequency = 1 / std::sqrt(parameters_[0]);
   data.latest_release = instants[instants.size() - 1];
-  if (drifts()) data.moves = data.time;
+  if (drifts()) data.zero_motion_factors = data.time;
   data.stop = stop_;
   if (zero_motion_ == ZeroMotion::kLags && !SetLags(data)) return std::nullopt;
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model_, start_, data);

@@ -9,7 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/amplitude_dependence.h"
-#include "pendulum/analysis/homogeneity_words.h"
+#include "pendulum/analysis/homogeneity_text.h"
 #include "pendulum/analysis/linear_fit.h"
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/base/distributions.h"
@@ -29,7 +29,7 @@ double Tail(double statistic, double dof) {
 // ---- Estimates of each recording alone ------------------------------------------------------------------------------
 
 /// Estimates of S parameters from one recording.
-struct Told {
+struct SeparateEstimates {
   std::size_t run = 0;
   std::vector<std::string> names;  // S
   VectorXd value;                  // S
@@ -38,26 +38,26 @@ struct Told {
 
 /// How far a 95 % interval reaches compared with a normal distribution. Autocorrelated residuals have few effective
 /// samples and rough errors, therefore Student's t. A parameter at its bound gets the largest value of the others.
-VectorXd ReachOf(const FitReport& fit, const std::vector<std::string>& names) {
+VectorXd IntervalFactors(const FitReport& fit, const std::vector<std::string>& names) {
   constexpr double kNormal = 1.959963984540054;
   double largest = kNormal;
   for (const std::string& name : names) largest = std::max(largest, fit.Find(name)->t95.value_or(kNormal));
-  VectorXd reach(static_cast<Index>(names.size()));
+  VectorXd factors(static_cast<Index>(names.size()));
   for (std::size_t j = 0; j < names.size(); ++j) {
-    reach[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal, 1.0);
+    factors[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal, 1.0);
   }
-  return reach;
+  return factors;
 }
 
 /// Removes the priors, which all recordings share, from the estimates and their covariance. Returns false if no
 /// information remains.
-bool RemovePriors(const ParameterPriors& priors, Told& told) {
+bool RemovePriors(const ParameterPriors& priors, SeparateEstimates& estimates) {
   if (priors.empty()) return true;
-  const Index size = told.value.size();
-  MatrixXd precision = told.covariance.ldlt().solve(MatrixXd::Identity(size, size));
-  VectorXd pull = precision * told.value;
+  const Index size = estimates.value.size();
+  MatrixXd precision = estimates.covariance.ldlt().solve(MatrixXd::Identity(size, size));
+  VectorXd pull = precision * estimates.value;
   for (Index i = 0; i < size; ++i) {
-    const auto prior = priors.find(told.names[static_cast<std::size_t>(i)]);
+    const auto prior = priors.find(estimates.names[static_cast<std::size_t>(i)]);
     if (prior == priors.end()) continue;
     const double weight = 1 / (prior->second.std_dev * prior->second.std_dev);
     precision(i, i) -= weight;
@@ -66,8 +66,8 @@ bool RemovePriors(const ParameterPriors& priors, Told& told) {
   const VectorXd scale = precision.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * precision * scale.asDiagonal());
   if (!scale.allFinite() || factor.info() != Eigen::Success) return false;
-  told.covariance = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
-  told.value = told.covariance * pull;
+  estimates.covariance = scale.asDiagonal() * factor.solve(MatrixXd(scale.asDiagonal()));
+  estimates.value = estimates.covariance * pull;
   return true;
 }
 
@@ -107,27 +107,30 @@ MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names
 }
 
 /// All free parameters of a recording as reported by its fit; std::nullopt if a parameter is at a bound.
-std::optional<Told> TellAllFree(const RunAlone& run) {
+std::optional<SeparateEstimates> EstimateAllFree(const RunAlone& run) {
   const FitReport& fit = run.fit;
   if (std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; })) {
     const auto unbounded =
         EstimateUnbounded(run.used, fit, NoiseOfFit(run.used, fit, run.options), run.options.rig, run.options.stop);
     if (!unbounded) return std::nullopt;
-    return Told{0, {unbounded->names.begin(), unbounded->names.end()}, unbounded->value, unbounded->covariance};
+    return SeparateEstimates{
+        0, {unbounded->names.begin(), unbounded->names.end()}, unbounded->value, unbounded->covariance};
   }
-  Told told{0, fit.covariance_names, VectorXd(static_cast<Index>(fit.covariance_names.size())), fit.covariance};
-  for (Index i = 0; i < told.value.size(); ++i) {
-    told.value[i] = fit.Find(told.names[static_cast<std::size_t>(i)])->estimate;
+  SeparateEstimates estimates{0, fit.covariance_names, VectorXd(static_cast<Index>(fit.covariance_names.size())),
+                              fit.covariance};
+  for (Index i = 0; i < estimates.value.size(); ++i) {
+    estimates.value[i] = fit.Find(estimates.names[static_cast<std::size_t>(i)])->estimate;
   }
-  return RemovePriors(run.options.priors, told) ? std::optional(told) : std::nullopt;
+  return RemovePriors(run.options.priors, estimates) ? std::optional(estimates) : std::nullopt;
 }
 
 /// The named parameters with all errors that can make recordings differ.
-std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>& names, bool own_sources) {
+std::optional<SeparateEstimates> EstimateNamed(const RunAlone& run, const std::vector<std::string>& names,
+                                               bool own_sources) {
   const FitReport& fit = run.fit;
   // With another local minimum of similar quality the estimate is not normally distributed.
-  if (fit.termination != Termination::kConverged || fit.Warns("another_minimum")) return std::nullopt;
-  const std::optional<Told> all = TellAllFree(run);
+  if (fit.termination != Termination::kConverged || fit.HasWarning("another_minimum")) return std::nullopt;
+  const std::optional<SeparateEstimates> all = EstimateAllFree(run);
   if (!all) return std::nullopt;
   std::vector<Index> rows;
   for (const std::string& name : names) {
@@ -135,25 +138,28 @@ std::optional<Told> TellOne(const RunAlone& run, const std::vector<std::string>&
     if (found == all->names.end()) return std::nullopt;
     rows.push_back(found - all->names.begin());
   }
-  const VectorXd wider = ReachOf(fit, names);
-  Told told{0, names, all->value(rows), wider.asDiagonal() * all->covariance(rows, rows) * wider.asDiagonal()};
-  if (own_sources) told.covariance += SystematicOf(run, names);
-  const bool sound = told.value.allFinite() && told.covariance.allFinite() && told.covariance.diagonal().minCoeff() > 0;
-  return sound ? std::optional(told) : std::nullopt;
+  const VectorXd wider = IntervalFactors(fit, names);
+  SeparateEstimates estimates{0, names, all->value(rows),
+                              wider.asDiagonal() * all->covariance(rows, rows) * wider.asDiagonal()};
+  if (own_sources) estimates.covariance += SystematicOf(run, names);
+  const bool is_valid =
+      estimates.value.allFinite() && estimates.covariance.allFinite() && estimates.covariance.diagonal().minCoeff() > 0;
+  return is_valid ? std::optional(estimates) : std::nullopt;
 }
 
 /// The recordings that determine all of the named parameters alone.
-std::vector<Told> TellAlone(const std::vector<RunAlone>& runs, const std::vector<std::string>& names) {
-  std::vector<Told> told;
-  if (names.empty()) return told;
+std::vector<SeparateEstimates> EstimateSeparately(const std::vector<RunAlone>& runs,
+                                                  const std::vector<std::string>& names) {
+  std::vector<SeparateEstimates> estimates;
+  if (names.empty()) return estimates;
   const bool own_sources = HaveOwnSources(runs);
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    std::optional<Told> one = TellOne(runs[k], names, own_sources);
+    std::optional<SeparateEstimates> one = EstimateNamed(runs[k], names, own_sources);
     if (!one) continue;
     one->run = k;
-    told.push_back(*std::move(one));
+    estimates.push_back(*std::move(one));
   }
-  return told;
+  return estimates;
 }
 
 // ---- Agreement ------------------------------------------------------------------------------------------------------
@@ -165,48 +171,52 @@ struct Pool {
   double statistic = 0;
 };
 
-Pool PoolOf(const std::vector<Told>& told, const std::vector<std::size_t>& members, const VectorXd& scale) {
+Pool PoolOf(const std::vector<SeparateEstimates>& estimates, const std::vector<std::size_t>& members,
+            const VectorXd& scale) {
   const Index size = scale.size();
   Pool pool{MatrixXd::Zero(size, size), VectorXd::Zero(size), 0};
   std::vector<MatrixXd> precisions;
   VectorXd sum = VectorXd::Zero(size);
   for (const std::size_t k : members) {
-    const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * told[k].covariance * scale.cwiseInverse().asDiagonal();
+    const MatrixXd scaled =
+        scale.cwiseInverse().asDiagonal() * estimates[k].covariance * scale.cwiseInverse().asDiagonal();
     precisions.emplace_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
     pool.precision += precisions.back();
-    sum += precisions.back() * told[k].value.cwiseQuotient(scale);
+    sum += precisions.back() * estimates[k].value.cwiseQuotient(scale);
   }
   pool.mean = pool.precision.ldlt().solve(sum);
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const VectorXd distance = told[members[i]].value.cwiseQuotient(scale) - pool.mean;
+    const VectorXd distance = estimates[members[i]].value.cwiseQuotient(scale) - pool.mean;
     pool.statistic += distance.dot(precisions[i] * distance);
   }
   return pool;
 }
 
 /// The mean standard error of each parameter.
-VectorXd ScaleOf(const std::vector<Told>& told) {
-  VectorXd scale = VectorXd::Zero(told.front().value.size());
-  for (const Told& one : told) scale += one.covariance.diagonal().cwiseSqrt() / static_cast<double>(told.size());
+VectorXd ScaleOf(const std::vector<SeparateEstimates>& estimates) {
+  VectorXd scale = VectorXd::Zero(estimates.front().value.size());
+  for (const SeparateEstimates& one : estimates)
+    scale += one.covariance.diagonal().cwiseSqrt() / static_cast<double>(estimates.size());
   return scale;
 }
 
 /// Removes recordings one by one until the others agree; each time the one whose removal leaves the smallest statistic.
 /// A majority must remain; without a majority no recording can be called wrong.
-std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd& scale) {
-  std::vector<std::size_t> members(told.size());
+std::vector<std::size_t> FindDeviatingRecordings(const std::vector<SeparateEstimates>& estimates,
+                                                 const VectorXd& scale) {
+  std::vector<std::size_t> members(estimates.size());
   std::iota(members.begin(), members.end(), 0);
   std::vector<std::size_t> out;
   const auto dof = [&](std::size_t count) {
     return static_cast<double>(scale.size()) * static_cast<double>(count - 1);
   };
-  while (2 * (out.size() + 1) < told.size()) {
+  while (2 * (out.size() + 1) < estimates.size()) {
     std::size_t best = 0;
     double least = kUnbounded;
     for (std::size_t i = 0; i < members.size(); ++i) {
       std::vector<std::size_t> rest = members;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      const double statistic = PoolOf(told, rest, scale).statistic;
+      const double statistic = PoolOf(estimates, rest, scale).statistic;
       if (statistic >= least) continue;
       least = statistic;
       best = i;
@@ -219,31 +229,32 @@ std::vector<std::size_t> LeaveOut(const std::vector<Told>& told, const VectorXd&
 }
 
 /// p of the distance of one recording's parameter j from the others, judged by the scatter of these others.
-double DistanceFromScatter(const std::vector<Told>& told, std::size_t k, Index j) {
-  VectorXd value(static_cast<Index>(told.size()) - 1), error(value.size());
+double DistanceFromScatter(const std::vector<SeparateEstimates>& estimates, std::size_t k, Index j) {
+  VectorXd value(static_cast<Index>(estimates.size()) - 1), error(value.size());
   for (Index i = 0; i < value.size(); ++i) {
-    const Told& other = told[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
+    const SeparateEstimates& other =
+        estimates[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
     value[i] = other.value[j];
     error[i] = std::sqrt(other.covariance(j, j));
   }
   const RandomEffects others = SummarizeScatter(value, error);
   const double variance =
-      told[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
-  const double t = std::abs(told[k].value[j] - others.mean) / std::sqrt(variance);
+      estimates[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
+  const double t = std::abs(estimates[k].value[j] - others.mean) / std::sqrt(variance);
   return 2 * StudentTail(t, static_cast<double>(value.size() - 1));
 }
 
 /// Without an agreeing majority: recordings that are far from the others compared with the others' own scatter. This
-/// needs at least kFewest recordings.
-std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
-  constexpr std::size_t kFewest = 4;
+/// needs at least kMin recordings.
+std::vector<std::size_t> FarFromScatter(const std::vector<SeparateEstimates>& estimates) {
+  constexpr std::size_t kMin = 4;
   std::vector<std::size_t> far;
-  if (told.size() < kFewest) return far;
-  const Index size = told.front().value.size();
-  const double trials = static_cast<double>(told.size()) * static_cast<double>(size);
-  for (std::size_t k = 0; k < told.size(); ++k) {
+  if (estimates.size() < kMin) return far;
+  const Index size = estimates.front().value.size();
+  const double trials = static_cast<double>(estimates.size()) * static_cast<double>(size);
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
     for (Index j = 0; j < size; ++j) {
-      if (DistanceFromScatter(told, k, j) * trials >= Homogeneity::kDisagree) continue;
+      if (DistanceFromScatter(estimates, k, j) * trials >= Homogeneity::kDisagree) continue;
       far.push_back(k);
       break;
     }
@@ -252,12 +263,12 @@ std::vector<std::size_t> FarFromScatter(const std::vector<Told>& told) {
 }
 
 /// The recordings that disagree with the others or are far from their scatter, in order; often none.
-std::vector<int> Disagreeing(const std::vector<Told>& told, const VectorXd& scale) {
-  std::vector<std::size_t> out = LeaveOut(told, scale);
-  if (out.empty()) out = FarFromScatter(told);
+std::vector<int> Disagreeing(const std::vector<SeparateEstimates>& estimates, const VectorXd& scale) {
+  std::vector<std::size_t> out = FindDeviatingRecordings(estimates, scale);
+  if (out.empty()) out = FarFromScatter(estimates);
   std::vector<int> runs;
   runs.reserve(out.size());
-  for (const std::size_t k : out) runs.push_back(static_cast<int>(told[k].run));
+  for (const std::size_t k : out) runs.push_back(static_cast<int>(estimates[k].run));
   std::ranges::sort(runs);
   return runs;
 }
@@ -276,16 +287,16 @@ void SetDistances(SharedParameter& parameter) {
   }
 }
 
-SharedParameter DescribeParameter(const ParameterEstimate& info, const std::vector<Told>& told, Index j,
-                                  std::size_t runs) {
+SharedParameter DescribeParameter(const ParameterEstimate& info, const std::vector<SeparateEstimates>& estimates,
+                                  Index j, std::size_t runs) {
   SharedParameter parameter;
   parameter.name = info.info.name;
   parameter.unit = info.unit;
   parameter.runs.resize(runs);
-  const auto count = static_cast<Index>(told.size());
+  const auto count = static_cast<Index>(estimates.size());
   VectorXd value(count), error(count);
   for (Index i = 0; i < count; ++i) {
-    const Told& one = told[static_cast<std::size_t>(i)];
+    const SeparateEstimates& one = estimates[static_cast<std::size_t>(i)];
     value[i] = one.value[j];
     error[i] = std::sqrt(one.covariance(j, j));
     parameter.runs[one.run] = {value[i], error[i], {}};
@@ -315,8 +326,8 @@ const FitReport& FirstWithParameters(const std::vector<RunAlone>& runs) {
   return (found == runs.end() ? runs.front() : *found).fit;
 }
 
-std::string WhyNotTested(const FitReport& example, const std::vector<std::string>& shared,
-                         const std::vector<std::string>& free) {
+std::string NotTestedReason(const FitReport& example, const std::vector<std::string>& shared,
+                            const std::vector<std::string>& free) {
   if (std::ranges::none_of(shared, [&](const std::string& name) { return example.Find(name) != nullptr; })) {
     return "the model has none of what is shared";
   }
@@ -325,11 +336,11 @@ std::string WhyNotTested(const FitReport& example, const std::vector<std::string
 }
 
 /// Tests all shared parameters together.
-void TestTogether(const std::vector<Told>& told, const VectorXd& scale, Homogeneity& result) {
-  std::vector<std::size_t> all(told.size());
+void TestTogether(const std::vector<SeparateEstimates>& estimates, const VectorXd& scale, Homogeneity& result) {
+  std::vector<std::size_t> all(estimates.size());
   std::iota(all.begin(), all.end(), 0);
-  result.statistic = PoolOf(told, all, scale).statistic;
-  result.dof = static_cast<int>(scale.size()) * static_cast<int>(told.size() - 1);
+  result.statistic = PoolOf(estimates, all, scale).statistic;
+  result.dof = static_cast<int>(scale.size()) * static_cast<int>(estimates.size() - 1);
   if (std::isfinite(result.statistic)) {
     result.p = Tail(result.statistic, result.dof);
   } else {
@@ -357,21 +368,22 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
   for (const RunAlone& run : runs) result.amplitudes.push_back(MeanAmplitude(run.used, run.fit, run.options));
   const FitReport& example = FirstWithParameters(runs);
   const std::vector<std::string> names = FreeNames(example, shared);
-  const std::vector<Told> told = TellAlone(runs, names);
-  if (told.size() < 2) {
-    result.reason = WhyNotTested(example, shared, names);
+  const std::vector<SeparateEstimates> estimates = EstimateSeparately(runs, names);
+  if (estimates.size() < 2) {
+    result.reason = NotTestedReason(example, shared, names);
     result.verdict = "not tested: " + result.reason;
     return result;
   }
-  const VectorXd scale = ScaleOf(told);
-  TestTogether(told, scale, result);
+  const VectorXd scale = ScaleOf(estimates);
+  TestTogether(estimates, scale, result);
   for (std::size_t j = 0; j < names.size(); ++j) {
-    result.parameters.push_back(DescribeParameter(*example.Find(names[j]), told, static_cast<Index>(j), runs.size()));
+    result.parameters.push_back(
+        DescribeParameter(*example.Find(names[j]), estimates, static_cast<Index>(j), runs.size()));
     if (auto dependence = TestAmplitudeDependence(runs, result.parameters.back(), result.amplitudes)) {
       result.amplitude_dependence.push_back(*std::move(dependence));
     }
   }
-  if (!result.agrees() && !result.is_amplitude()) result.disagreeing = Disagreeing(told, scale);
+  if (!result.agrees() && !result.is_amplitude()) result.disagreeing = Disagreeing(estimates, scale);
   result.verdict = result.p ? DescribeHomogeneity(result, runs) : "not tested: " + result.reason;
   return result;
 }

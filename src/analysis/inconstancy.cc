@@ -63,7 +63,7 @@ void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit)
 
 }  // namespace
 
-void CountInconstancy(const Constancy& constancy, FitReport& fit) {
+void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
   std::string scatter;
   for (const Estimates& estimates : EstimatesOfParts(constancy)) {
     const auto parameter = std::ranges::find(fit.parameters, estimates.name,

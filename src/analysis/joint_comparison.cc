@@ -13,7 +13,7 @@
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
 #include "pendulum/fitting/joint/fit_jointly.h"
-#include "pendulum/fitting/residuals/box_least_squares.h"
+#include "pendulum/fitting/residuals/bounded_least_squares.h"
 
 namespace pendulum {
 namespace {
@@ -21,22 +21,22 @@ namespace {
 using Eigen::Index;
 
 /// The compared fits: joint fits, or separate fits if the recordings do not share their parameters.
-struct Compared {
+struct ComparedFits {
   const JointModels& joint;
-  bool apart = false;
-  std::vector<FitReport> wholes = {};  // M, without samples
-  std::vector<int> parameters = {};    // M
+  bool is_separate = false;
+  std::vector<FitReport> combined = {};  // M, without samples
+  std::vector<int> parameters = {};      // M
 
   const FitReport& Fit(std::size_t k, std::size_t m) const {
-    return apart ? joint.runs[k].alone.fits[m] : joint.FitOf(k, m);
+    return is_separate ? joint.runs[k].alone.fits[m] : joint.FitOf(k, m);
   }
   std::vector<std::string> SharedBy(std::size_t m) const {
-    return apart ? std::vector<std::string>{} : joint.joint[m].shared;
+    return is_separate ? std::vector<std::string>{} : joint.joint[m].shared;
   }
 };
 
 /// Combines the separate fits to all recordings into one report.
-FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters) {
+FitReport CombineSeparateFits(const JointModels& joint, std::size_t m, int& parameters) {
   FitReport whole;
   whole.model = joint.joint[m].whole.model;
   whole.termination = Termination::kConverged;
@@ -49,25 +49,26 @@ FitReport TogetherAlone(const JointModels& joint, std::size_t m, int& parameters
     }
     fits.push_back(&fit);
     parameters += DescribeFit(fit).parameters;
-    if (whole.noise.memory.kind == Autocorrelation::Kind::kWhite) whole.noise.memory = fit.noise.memory;
+    if (whole.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite)
+      whole.noise.autocorrelation = fit.noise.autocorrelation;
   }
   whole.statistics = SumStatistics(fits, parameters);
   return whole;
 }
 
-Compared FitsAlone(const JointModels& joint) {
-  Compared compared{joint, true};
+ComparedFits SeparateFits(const JointModels& joint) {
+  ComparedFits compared{joint, true};
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     compared.parameters.push_back(0);
-    compared.wholes.push_back(TogetherAlone(joint, m, compared.parameters.back()));
+    compared.combined.push_back(CombineSeparateFits(joint, m, compared.parameters.back()));
   }
   return compared;
 }
 
-Compared JointFits(const JointModels& joint) {
-  Compared compared{joint, false};
+ComparedFits JointFits(const JointModels& joint) {
+  ComparedFits compared{joint, false};
   for (const JointFit& fit : joint.joint) {
-    compared.wholes.push_back(fit.whole);
+    compared.combined.push_back(fit.whole);
     compared.parameters.push_back(fit.parameters);
   }
   return compared;
@@ -75,11 +76,11 @@ Compared JointFits(const JointModels& joint) {
 
 /// Chooses separate fits if the recordings disagree under the law that describes each of them best. A joint fit then
 /// lacks more than a law.
-Compared WhatToCompare(const JointModels& joint) {
-  Compared alone = FitsAlone(joint);
-  const FitReport* const best = BestFit(alone.wholes);
+ComparedFits ChooseFitsToCompare(const JointModels& joint) {
+  ComparedFits alone = SeparateFits(joint);
+  const FitReport* const best = BestFit(alone.combined);
   const bool disagree =
-      best != nullptr && !joint.homogeneity[static_cast<std::size_t>(best - alone.wholes.data())].agrees();
+      best != nullptr && !joint.homogeneity[static_cast<std::size_t>(best - alone.combined.data())].agrees();
   return disagree ? alone : JointFits(joint);
 }
 
@@ -94,13 +95,13 @@ double UnitOf(const JointModels& joint, std::size_t k) {
   return least;
 }
 
-ComparisonRow DescribeRow(const Compared& compared, std::size_t m) {
-  const FitReport& whole = compared.wholes[m];
+ComparisonRow DescribeRow(const ComparedFits& compared, std::size_t m) {
+  const FitReport& whole = compared.combined[m];
   ComparisonRow row = DescribeFit(whole);
   row.parameters = compared.parameters[m];
   for (std::size_t k = 0; k < compared.joint.runs.size() && whole.termination != Termination::kFailed; ++k) {
     const FitReport& run = compared.Fit(k, m);
-    row.lack_of_fit = row.lack_of_fit || run.Warns("lack_of_fit");
+    row.lack_of_fit = row.lack_of_fit || run.HasWarning("lack_of_fit");
     if (std::abs(run.noise.lag1_correlation) > std::abs(row.lag1_correlation))
       row.lag1_correlation = run.noise.lag1_correlation;
     row.ljung_box_p = std::min(row.ljung_box_p, run.statistics.ljung_box_p);
@@ -109,7 +110,7 @@ ComparisonRow DescribeRow(const Compared& compared, std::size_t m) {
 }
 
 /// The strictest likelihood that any recording requires.
-Likelihood ChooseJointly(const Compared& compared, std::size_t best) {
+Likelihood ChooseJointLikelihood(const ComparedFits& compared, std::size_t best) {
   Likelihood chosen = Likelihood::kIndependent;
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     chosen = std::max(chosen, ChooseLikelihood(compared.Fit(k, best), compared.joint.runs[k].alone.used.resolution));
@@ -118,7 +119,7 @@ Likelihood ChooseJointly(const Compared& compared, std::size_t best) {
 }
 
 /// A recording whose residuals require that likelihood, for the sentence.
-const FitReport& Speaker(const Compared& compared, std::size_t best, Likelihood likelihood) {
+const FitReport& RepresentativeRecording(const ComparedFits& compared, std::size_t best, Likelihood likelihood) {
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     const FitReport& fit = compared.Fit(k, best);
     if (ChooseLikelihood(fit, compared.joint.runs[k].alone.used.resolution) == likelihood) return fit;
@@ -172,8 +173,8 @@ class SharedShift {
       first += count;
     }
     const Eigen::VectorXd shift =
-        BoxLeastSquares(matrix, wanted, Eigen::Map<const Eigen::VectorXd>(lowest_.data(), columns),
-                        Eigen::Map<const Eigen::VectorXd>(highest_.data(), columns));
+        BoundedLeastSquares(matrix, wanted, Eigen::Map<const Eigen::VectorXd>(lowest_.data(), columns),
+                            Eigen::Map<const Eigen::VectorXd>(highest_.data(), columns));
     return 0.5 * (wanted - matrix * shift).squaredNorm();
   }
 
@@ -191,7 +192,7 @@ class SharedShift {
 
 /// The likelihood of a recording, linearized about its estimates. The autocorrelation has the kind and order of the
 /// residuals of the best model. Its information about the parameters is added to `together`.
-std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std::size_t k, std::size_t m,
+std::optional<CorrelatedLikelihood> AddLikelihood(const ComparedFits& compared, std::size_t k, std::size_t m,
                                                   std::size_t best, const FitOptions& options, SharedShift& together) {
   const FitReport& fit = compared.Fit(k, m);
   std::optional<CorrelatedResiduals> data = ResidualsOf(compared.joint.runs[k].alone.used, fit, options, false);
@@ -199,7 +200,7 @@ std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std:
   const Eigen::VectorXd lowest = data->lowest, highest = data->highest;
   data->lowest.setConstant(-kUnbounded);
   data->highest.setConstant(kUnbounded);
-  auto likelihood = MaximizeCorrelatedLikelihood(*data, SharedMemory(compared.Fit(k, best)), options.stop);
+  auto likelihood = MaximizeCorrelatedLikelihood(*data, SharedAutocorrelation(compared.Fit(k, best)), options.stop);
   if (!likelihood) return std::nullopt;
   std::vector<std::string> names;
   for (const ParameterEstimate& parameter : fit.parameters) {
@@ -209,7 +210,7 @@ std::optional<CorrelatedLikelihood> AddLikelihood(const Compared& compared, std:
   return likelihood;
 }
 
-void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_t best, const FitOptions& options,
+void SetCorrelatedLikelihood(const ComparedFits& compared, std::size_t m, std::size_t best, const FitOptions& options,
                              ComparisonRow& row) {
   SharedShift together;
   double sum = 0;
@@ -227,7 +228,7 @@ void SetCorrelatedLikelihood(const Compared& compared, std::size_t m, std::size_
   row.log_likelihood = sum - together.Loss();
 }
 
-void SetLikelihoods(const Compared& compared, std::size_t best, const FitOptions& options, Comparison& comparison) {
+void SetLikelihoods(const ComparedFits& compared, std::size_t best, const FitOptions& options, Comparison& comparison) {
   const JointModels& joint = compared.joint;
   double samples = 0;
   for (const RunModels& run : joint.runs) samples += static_cast<double>(run.alone.used.size());
@@ -235,7 +236,7 @@ void SetLikelihoods(const Compared& compared, std::size_t best, const FitOptions
     ComparisonRow& row = comparison.rows[m];
     if (!row.judged || comparison.likelihood == Likelihood::kNone) continue;
     if (comparison.likelihood == Likelihood::kIndependent) {
-      row.log_likelihood = compared.wholes[m].statistics.log_likelihood;
+      row.log_likelihood = compared.combined[m].statistics.log_likelihood;
     } else {
       SetCorrelatedLikelihood(compared, m, best, ForModel(options, joint.models[m], joint.models).options, row);
     }
@@ -274,10 +275,10 @@ class PooledPrediction {
   double squares_ = 0, standardized_ = 0;
 };
 
-void SetPredictions(const Compared& compared, const FitOptions& options, Comparison& comparison) {
+void SetPredictions(const ComparedFits& compared, const FitOptions& options, Comparison& comparison) {
   const JointModels& joint = compared.joint;
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
-    if (compared.wholes[m].termination != Termination::kConverged) continue;
+    if (compared.combined[m].termination != Termination::kConverged) continue;
     const FitOptions own = ForModel(options, joint.models[m], joint.models).options;
     PooledPrediction blocks, forward;
     for (std::size_t k = 0; k < joint.runs.size(); ++k) {
@@ -293,7 +294,7 @@ void SetPredictions(const Compared& compared, const FitOptions& options, Compari
 }
 
 /// Sets the rms of residuals over their σ if units differ.
-void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
+void SetUnitlessRms(const ComparedFits& compared, Comparison& comparison) {
   const JointModels& joint = compared.joint;
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     double squares = 0, samples = 0;
@@ -307,14 +308,14 @@ void SetUnitlessRms(const Compared& compared, Comparison& comparison) {
   }
 }
 
-ComparedRuns RunsOf(const Compared& compared) {
+ComparedRuns RunsOf(const ComparedFits& compared) {
   ComparedRuns runs;
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     ComparedRun run{compared.joint.runs[k].alone.used, {}};
-    for (std::size_t m = 0; m < compared.wholes.size(); ++m) run.fits.push_back(&compared.Fit(k, m));
+    for (std::size_t m = 0; m < compared.combined.size(); ++m) run.fits.push_back(&compared.Fit(k, m));
     runs.runs.push_back(std::move(run));
   }
-  for (std::size_t m = 0; m < compared.wholes.size(); ++m) {
+  for (std::size_t m = 0; m < compared.combined.size(); ++m) {
     for (const std::string& name : compared.SharedBy(m)) {
       if (std::ranges::find(runs.shared, name) == runs.shared.end()) runs.shared.push_back(name);
     }
@@ -326,26 +327,27 @@ ComparedRuns RunsOf(const Compared& compared) {
 
 Comparison CompareJointModels(const JointModels& joint, const FitOptions& options, const CompareOptions& how) {
   Comparison comparison;
-  const Compared compared = WhatToCompare(joint);
+  const ComparedFits compared = ChooseFitsToCompare(joint);
   for (std::size_t m = 0; m < joint.models.size(); ++m) comparison.rows.push_back(DescribeRow(compared, m));
   if (!joint.HaveOneUnit()) SetUnitlessRms(compared, comparison);
-  const FitReport* const best = BestFit(compared.wholes);
+  const FitReport* const best = BestFit(compared.combined);
   if (best == nullptr) {
     comparison.likelihood = Likelihood::kNone;
     comparison.criterion = "none: no fit converged";
     comparison.reason = "no model converged, so none is recommended";
     return comparison;
   }
-  const auto index = static_cast<std::size_t>(best - compared.wholes.data());
-  comparison.likelihood = ChooseJointly(compared, index);
+  const auto index = static_cast<std::size_t>(best - compared.combined.data());
+  comparison.likelihood = ChooseJointLikelihood(compared, index);
   comparison.effective_samples = std::max(best->statistics.effective_samples, std::exp(2.0));
-  comparison.criterion = DescribeLikelihood(comparison.likelihood, Speaker(compared, index, comparison.likelihood)) +
-                         (compared.apart ? ", each recording with parameters of its own, for they do not share them"
-                                         : ", of all recordings");
+  comparison.criterion =
+      DescribeLikelihood(comparison.likelihood, RepresentativeRecording(compared, index, comparison.likelihood)) +
+      (compared.is_separate ? ", each recording with parameters of its own, for they do not share them"
+                            : ", of all recordings");
   SetLikelihoods(compared, index, options, comparison);
   if (how.predict) SetPredictions(compared, options, comparison);
   comparison.tests = TestNested(RunsOf(compared), comparison.rows, options, comparison.likelihood);
-  Recommend(compared.wholes, comparison);
+  Recommend(compared.combined, comparison);
   return comparison;
 }
 

@@ -30,11 +30,11 @@ ReadingTerms TermsOf(const NoiseModel& noise, const VectorXd& value, const Vecto
   return terms;
 }
 
-MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
+MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& autocorrelation, const ReadingTerms& terms,
                          const VectorXd& time, const MatrixXd& weights) {
   if (noise.family == NoiseFamily::kEdges)
-    return CorrelatedSum(memory, time, terms.information.cwiseSqrt().asDiagonal() * weights);
-  const MatrixXd correlated = CorrelatedSum(memory, time, weights);
+    return CorrelatedSum(autocorrelation, time, terms.information.cwiseSqrt().asDiagonal() * weights);
+  const MatrixXd correlated = CorrelatedSum(autocorrelation, time, weights);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(time.size()) * correlated;
   const double variance = noise.sigma * noise.sigma;
   const VectorXd lost = 1 - variance * terms.information.array();
@@ -91,7 +91,7 @@ Autocorrelation AutocorrelationOf(const NoiseModel& noise, const VectorXd& time,
 
 double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {
   const auto count = static_cast<double>(samples);
-  const double known = noise.IsPlain() ? static_cast<double>(free) : 0;  // already corrected in σ
+  const double known = noise.IsUncensoredGaussian() ? static_cast<double>(free) : 0;  // already corrected in σ
   return (count - known) / std::max(count - lost, 1.0);
 }
 
@@ -102,10 +102,10 @@ MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearF
                       const ReadingTerms& terms, const std::stop_token& stop) {
   const VectorXd time = part.clock_scale * part.time;
   const bool converged = fit.termination == Termination::kConverged;
-  const Autocorrelation memory = converged ? fit.noise.memory
-                                           : AutocorrelationOf(noise, time, part.value, fit.fitted,
-                                                               linear.jacobian(Eigen::all, linear.free), stop);
-  const MatrixXd covariance = ScoreCovariance(noise, memory, terms, time, linear.influence);
+  const Autocorrelation autocorrelation = converged ? fit.noise.autocorrelation
+                                                    : AutocorrelationOf(noise, time, part.value, fit.fitted,
+                                                                        linear.jacobian(Eigen::all, linear.free), stop);
+  const MatrixXd covariance = ScoreCovariance(noise, autocorrelation, terms, time, linear.influence);
   const double lost = linear.inverse.ldlt().solve(covariance).trace();
   return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
 }

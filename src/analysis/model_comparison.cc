@@ -36,7 +36,7 @@ void SetLikelihoods(const FittedModels& fitted, const FitReport& best, const Fit
     if (comparison.likelihood == Likelihood::kIndependent) {
       row.log_likelihood = fit.statistics.log_likelihood;
     } else {
-      SetCorrelatedLikelihood(fitted, fit, SharedMemory(best), options, row);
+      SetCorrelatedLikelihood(fitted, fit, SharedAutocorrelation(best), options, row);
     }
     SetCriteria(static_cast<double>(fitted.used.size()), comparison.effective_samples, row);
   }

@@ -26,7 +26,7 @@ using Eigen::Index;
 constexpr double kRounding = 1e-3;
 
 /// Residual of the columns after a least-squares fit of `explained`.
-Eigen::MatrixXd LeftBy(const Eigen::MatrixXd& explained, const Eigen::MatrixXd& columns) {
+Eigen::MatrixXd ResidualAfter(const Eigen::MatrixXd& explained, const Eigen::MatrixXd& columns) {
   if (explained.cols() == 0) return columns;
   Eigen::MatrixXd basis = explained;
   for (Index k = 0; k < basis.cols(); ++k) basis.col(k) /= std::max(basis.col(k).norm(), 1e-300);
@@ -64,7 +64,7 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
         rows.push_back(static_cast<Index>(common.size()));
       (IsIn(compared.shared, name) ? common : own).push_back(static_cast<Index>(i));
     }
-    Append(LeftBy(jacobian(Eigen::all, own), jacobian(Eigen::all, common)) / SigmaOf(fit), shared);
+    Append(ResidualAfter(jacobian(Eigen::all, own), jacobian(Eigen::all, common)) / SigmaOf(fit), shared);
   }
   if (rows.size() != 2) return 0;
   shared.colwise().normalize();
@@ -76,7 +76,7 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
 
 /// The richer law set to the simpler one, with the given value of the parameter that has no meaning there.
 FitReport AtNull(const FitReport& simpler, FitReport richer, std::string_view unidentified, double value) {
-  const OrderedPair order = OrderOf(richer.model);
+  const OrderedPair order = FindOrderedPair(richer.model);
   for (ParameterEstimate& parameter : richer.parameters) {
     const ParameterEstimate* const known = simpler.Find(parameter.info.name);
     parameter.estimate = known != nullptr ? known->estimate : parameter.info.name == unidentified ? value : 0;
@@ -108,7 +108,7 @@ std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vect
   const FittedMotion motion(run.used, null, options.rig, options.stop);
   Eigen::MatrixXd jacobian;
   if (!motion.Readings(motion.instants(), &jacobian)) return std::nullopt;
-  const OrderedPair order = OrderOf(null.model);
+  const OrderedPair order = FindOrderedPair(null.model);
   if (order.larger >= 0) jacobian.col(order.smaller) += jacobian.col(order.larger);  // they move together
   NullColumns columns;
   std::vector<Index> common, own;
@@ -149,8 +149,8 @@ void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::si
       }
       own_shapes.col(g) = columns->term;
     }
-    Append(LeftBy(columns->own, columns->shared) / SigmaOf(simple), nuisance);
-    Append(LeftBy(columns->own, own_shapes) / SigmaOf(simple), shapes);
+    Append(ResidualAfter(columns->own, columns->shared) / SigmaOf(simple), nuisance);
+    Append(ResidualAfter(columns->own, own_shapes) / SigmaOf(simple), shapes);
   }
   test.p = SupremumTail(nuisance, shapes, test.statistic, options.seed);
   test.null = "simulated, for " + test.simpler + " has no " + std::string(rate);
@@ -201,7 +201,7 @@ std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vect
       const std::optional<Nesting> nesting = FindNesting(simpler, richer);
       if (!nesting) continue;
       // Two added terms, one of which is tested alone, have no known distribution and would take long to simulate.
-      if (!nesting->unidentified.empty() && RichestWithin(richer)->name != simpler.name) continue;
+      if (!nesting->unidentified.empty() && LargestNestedModel(richer)->name != simpler.name) continue;
       NestedTest test;
       test.simpler = rows[s].model;
       test.richer = rows[r].model;

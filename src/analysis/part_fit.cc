@@ -31,7 +31,7 @@ bool IsZero(std::string_view name) { return name == kZeroAngle.name || name == k
 
 /// A part starts at the whole fit's estimates and needs tens of trajectories. More would be spent only on parts that
 /// are not a free swing.
-constexpr int kMostTraces = 200;
+constexpr int kMaxTraces = 200;
 
 /// The options of the whole fit, without those of its start and without values that both halves would share.
 FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
@@ -44,19 +44,19 @@ FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   std::erase_if(options.bounds, [](const auto& entry) { return IsStart(entry.first); });
   options.interval = IntervalMethod::kCovariance;
   options.progress = nullptr;
-  options.search.max_traces = std::min(options.search.max_traces, kMostTraces);
+  options.search.max_traces = std::min(options.search.max_traces, kMaxTraces);
   return options;
 }
 
 /// Whether a fit without convergence ended within a standard error of the optimum, so that one linearized step is
 /// enough. Friction that moves on and off its bound causes such fits.
 bool IsNear(const PartFit& part, const NoiseModel& noise, const FitOptions& options) {
-  constexpr double kMostUnexplained = 0.12;
+  constexpr double kMaxUnexplained = 0.12;
   constexpr double kNear = 1;
   if (part.fit.termination != Termination::kNotConverged) return false;
   const VectorXd& value = part.part.value;
   const double variance = (value.array() - value.mean()).matrix().squaredNorm();
-  if (part.fit.residual.squaredNorm() > kMostUnexplained * variance) return false;
+  if (part.fit.residual.squaredNorm() > kMaxUnexplained * variance) return false;
   const ReadingTerms terms = TermsOf(noise, value, part.fit.fitted);
   const std::optional<LinearFit> linear = LinearizeFit(part.part, part.fit, options.rig, terms, {}, true, options.stop);
   if (!linear) return false;
@@ -125,26 +125,27 @@ double Parts::Amplitude(double time) const {
 }
 
 std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits) {
-  std::vector<double> told = {0};
+  std::vector<double> cumulative = {0};
   for (std::size_t i = 1; i < ends.size(); ++i)
-    told.push_back(told.back() + std::pow(fits.Amplitude(0.5 * (ends[i - 1] + ends[i])), 2.0 / 3.0));
+    cumulative.push_back(cumulative.back() + std::pow(fits.Amplitude(0.5 * (ends[i - 1] + ends[i])), 2.0 / 3.0));
   std::vector<std::size_t> cuts = {0};
   for (std::size_t k = 1; k < parts; ++k) {
-    const double wanted = told.back() * static_cast<double>(k) / static_cast<double>(parts);
-    const auto above = static_cast<std::size_t>(std::ranges::lower_bound(told, wanted) - told.begin());
-    const std::size_t nearest = above > 0 && wanted - told[above - 1] < told[above] - wanted ? above - 1 : above;
-    const std::size_t last = ends.size() - 1 - kFewestHalfSwings * (parts - k);
-    cuts.push_back(std::clamp(nearest, cuts.back() + kFewestHalfSwings, last));
+    const double target = cumulative.back() * static_cast<double>(k) / static_cast<double>(parts);
+    const auto above = static_cast<std::size_t>(std::ranges::lower_bound(cumulative, target) - cumulative.begin());
+    const std::size_t nearest =
+        above > 0 && target - cumulative[above - 1] < cumulative[above] - target ? above - 1 : above;
+    const std::size_t last = ends.size() - 1 - kMinHalfSwings * (parts - k);
+    cuts.push_back(std::clamp(nearest, cuts.back() + kMinHalfSwings, last));
   }
   cuts.push_back(ends.size() - 1);
   return cuts;
 }
 
-std::string TooShort(const std::vector<double>& ends, const std::string& what, std::size_t needed) {
+std::string TooFewHalfSwings(const std::vector<double>& ends, const std::string& what, std::size_t needed) {
   return std::to_string(ends.size() - 1) + " half swings are too few for " + what + "; " + std::to_string(needed) +
          " are needed";
 }
 
-double After(double time) { return std::nextafter(time, std::numeric_limits<double>::infinity()); }
+double NextDoubleAfter(double time) { return std::nextafter(time, std::numeric_limits<double>::infinity()); }
 
 }  // namespace pendulum

@@ -79,9 +79,9 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
   const double begin = release < 0 ? 0.0 : options.search.start_values->parameters[static_cast<std::size_t>(release)];
   const double end = motion.instants()[used.size() - 1];
   const double period = motion.small_angle_period();
-  if (!(end - begin >= kFewestPeriods * period)) {
+  if (!(end - begin >= kMinPeriods * period)) {
     return Error(StatusCode::kFailedPrecondition, "the recording swings for " + NumberText((end - begin) / period, 2) +
-                                                      " periods; at least " + NumberText(kFewestPeriods) +
+                                                      " periods; at least " + NumberText(kMinPeriods) +
                                                       " are needed to leave some of them out");
   }
   return Task{used, std::move(options), motion.instants(), begin, end, period, problem->noise};
@@ -163,15 +163,15 @@ Result<void> PredictPart(const Task& task, const Part& part, Sums& sums) {
   return {};
 }
 
-Prediction Nothing(const std::string& reason) {
+Prediction NoPrediction(const std::string& reason) {
   Prediction prediction;
   prediction.reason = reason;
   return prediction;
 }
 
 Prediction PredictionOf(const Sums& sums) {
-  if (sums.samples < kMinimumSamples) return Nothing("too few readings are there to be predicted");
-  if (!std::isfinite(sums.squares)) return Nothing("a fit to the rest runs away");
+  if (sums.samples < kMinimumSamples) return NoPrediction("too few readings are there to be predicted");
+  if (!std::isfinite(sums.squares)) return NoPrediction("a fit to the rest runs away");
   Prediction prediction;
   const auto samples = static_cast<double>(sums.samples);
   prediction.rms = std::sqrt(sums.squares / samples);
@@ -191,7 +191,7 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
   Sums sums;
   for (const Part& part : parts) {
     const Result<void> done = PredictPart(task, part, sums);
-    if (!done) return Nothing("a fit to the rest cannot be made: " + done.error().message);
+    if (!done) return NoPrediction("a fit to the rest cannot be made: " + done.error().message);
   }
   return PredictionOf(sums);
 }
@@ -204,7 +204,7 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
 /// the noise of `fit`, and begin at its estimates.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
-  if (!task) return Nothing(task.error().message);
+  if (!task) return NoPrediction(task.error().message);
   const double first = task->begin + task->period;
   const double length = (task->end - first) / kBlocks;
   std::vector<Part> parts;
@@ -219,7 +219,7 @@ Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitO
 /// in cross-validation, where blocks lie between fitted ones.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
-  if (!task) return Nothing(task.error().message);
+  if (!task) return NoPrediction(task.error().message);
   const double from = task->begin + kFirstPart * (task->end - task->begin);
   return PredictParts(*task, {PartBetween(*task, from, task->end)});
 }

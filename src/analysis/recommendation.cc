@@ -16,9 +16,9 @@ namespace {
 constexpr double kSame = 1e-3;
 
 /// The rows of one comparison, addressed by index.
-class Judge {
+class RankedRows {
  public:
-  Judge(const std::vector<FitReport>& fits, const Comparison& comparison) : fits_(fits), rows_(comparison.rows) {}
+  RankedRows(const std::vector<FitReport>& fits, const Comparison& comparison) : fits_(fits), rows_(comparison.rows) {}
 
   /// If more than noise is left, a smaller BIC may only hide what is missing. A law that predicts worse than it fits
   /// must predict better than every law with fewer terms.
@@ -57,7 +57,7 @@ class Judge {
   }
 
   /// Models with a smaller BIC that do not predict better.
-  std::vector<std::string> Refuted(std::size_t chosen) const {
+  std::vector<std::string> RefutedModels(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (!rows_[i].bic || !IsRefuted(i) || *rows_[i].bic > *rows_[chosen].bic - kSame) continue;
@@ -95,7 +95,7 @@ class Judge {
   }
 
   /// Models whose BIC is as near as that of the chosen one.
-  std::vector<std::string> Undecided(std::size_t chosen) const {
+  std::vector<std::string> UndecidedModels(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       // A law whose added terms came out as 0 is the same as the chosen one.
@@ -127,20 +127,20 @@ std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& oth
 }
 
 /// Describes doubts of the fit about its own law.
-std::string Doubts(const ComparisonRow& row, const FitReport& fit) {
+std::string DescribeDoubts(const ComparisonRow& row, const FitReport& fit) {
   if (row.lack_of_fit) {
     return "; but more than noise is left (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
            "): something else is missing";
   }
-  if (fit.noise.memory.kind == Autocorrelation::Kind::kWhite) return "";
-  return "; its residuals remember (" + fit.noise.memory.Name() + "), which the criterion takes into account";
+  if (fit.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) return "";
+  return "; its residuals remember (" + fit.noise.autocorrelation.Name() + "), which the criterion takes into account";
 }
 
 }  // namespace
 
 void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
-  const Judge judge(fits, comparison);
-  const std::size_t chosen = judge.Simplest();
+  const RankedRows ranked(fits, comparison);
+  const std::size_t chosen = ranked.Simplest();
   if (chosen == comparison.rows.size()) {
     comparison.reason = "none is recommended: there is no criterion";
     return;
@@ -148,8 +148,8 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   const ComparisonRow& row = comparison.rows[chosen];
   comparison.recommended = row.model;
   comparison.reason = row.model + ": ";
-  const std::size_t next = judge.RunnerUp();
-  const std::vector<std::string> undecided = judge.Undecided(chosen);
+  const std::size_t next = ranked.RunnerUp();
+  const std::vector<std::string> undecided = ranked.UndecidedModels(chosen);
   if (!undecided.empty()) {
     comparison.reason += "the simplest of those that the readings do not tell apart (" + NameList(undecided) +
                          ", too, within " + NumberText(kWithinBic) + " of the smallest BIC)";
@@ -162,13 +162,13 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
     const auto judged = std::ranges::count_if(comparison.rows, &ComparisonRow::judged);
     comparison.reason += judged == 1 ? "the only one that converged" : "no other is better";
   }
-  if (const std::vector<std::string> refuted = judge.Refuted(chosen); !refuted.empty()) {
+  if (const std::vector<std::string> refuted = ranked.RefutedModels(chosen); !refuted.empty()) {
     comparison.reason +=
         "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +
         " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better, or not at all";
   }
-  if (const std::string other = judge.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
-  comparison.reason += Doubts(row, fits[chosen]);
+  if (const std::string other = ranked.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
+  comparison.reason += DescribeDoubts(row, fits[chosen]);
 }
 
 }  // namespace pendulum

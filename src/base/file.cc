@@ -59,24 +59,24 @@ Result<std::size_t> InputFile::Read(std::span<char> room) {
   return used;
 }
 
-Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t most_bytes) {
+Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t max_bytes) {
   constexpr std::uintmax_t kBlock = 65536;
   Result<InputFile> file = InputFile::Open(path, kind);
   if (!file) return tl::unexpected(file.error());
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  std::string bytes(std::min(unknown ? kBlock : size, most_bytes) + 1, '\0');  // The extra byte detects the end of the
-                                                                               // file.
+  std::string bytes(std::min(unknown ? kBlock : size, max_bytes) + 1, '\0');  // The extra byte detects the end of the
+                                                                              // file.
   std::size_t used = 0;
   while (true) {
     const Result<std::size_t> got = file->Read(std::span(bytes).subspan(used));
     if (!got) return tl::unexpected(got.error());
     used += *got;
-    if (used < bytes.size() || used > most_bytes) break;
-    bytes.resize(std::min<std::uintmax_t>(2 * used, most_bytes + 1));
+    if (used < bytes.size() || used > max_bytes) break;
+    bytes.resize(std::min<std::uintmax_t>(2 * used, max_bytes + 1));
   }
-  if (used > most_bytes) {
-    return Fault(path.string(), "the file has more than " + std::to_string(most_bytes) + " bytes, too many for a " +
+  if (used > max_bytes) {
+    return Fault(path.string(), "the file has more than " + std::to_string(max_bytes) + " bytes, too many for a " +
                                     std::string(kind) + " file; name another, or split it");
   }
   bytes.resize(used);

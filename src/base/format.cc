@@ -36,7 +36,7 @@ std::string ProbabilityText(double p) {
   return p < kSmallest ? "< 1e-99" : NumberText(p, 2);
 }
 
-std::string FreedomText(int degrees) {
+std::string DegreesOfFreedomText(int degrees) {
   return std::to_string(degrees) + (degrees == 1 ? " degree of freedom" : " degrees of freedom");
 }
 

@@ -14,19 +14,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Watches the parser. It records the key of the outermost object that is being read, a repeated key, and whether the
-/// object exceeds kMostJsonDepth or kMostJsonKeys.
-class KeyWatch {
+/// object exceeds kMaxJsonDepth or kMaxJsonKeys.
+class JsonKeyChecker {
  public:
   /// Whether the parser should keep the value.
-  bool See(int depth, Json::parse_event_t event, const Json& parsed) {
-    if (depth > kMostJsonDepth || seen_ > kMostJsonKeys) is_too_much_ = true;
-    if (!is_too_much_) Note(depth, event, parsed);
-    return !is_too_much_;
+  bool ShouldKeep(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (depth > kMaxJsonDepth || seen_ > kMaxJsonKeys) exceeds_limits_ = true;
+    if (!exceeds_limits_) Note(depth, event, parsed);
+    return !exceeds_limits_;
   }
 
   std::string outermost_key() const { return keys_.empty() || keys_[0].empty() ? "" : keys_[0].back(); }
   const std::optional<std::string>& repeated() const { return repeated_; }
-  bool is_too_much() const { return is_too_much_; }
+  bool exceeds_limits() const { return exceeds_limits_; }
 
  private:
   void Note(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -45,7 +45,7 @@ class KeyWatch {
   std::vector<std::vector<std::string>> keys_;  // For each depth, the keys of the open object.
   std::optional<std::string> repeated_;
   int seen_ = 0;  // Number of keys.
-  bool is_too_much_ = false;
+  bool exceeds_limits_ = false;
 };
 
 /// Converts the parser's byte offset into line and column.
@@ -64,24 +64,25 @@ tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, c
 }  // namespace
 
 Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std::string_view kind,
-                             std::string_view form, std::size_t most_bytes) {
+                             std::string_view form, std::size_t max_bytes) {
   const std::string what(kind);
-  if (text.size() > most_bytes) {
-    return Fault(name, "this is longer than " + std::to_string(most_bytes / 1024) + " KiB, so it is not a " + what +
+  if (text.size() > max_bytes) {
+    return Fault(name, "this is longer than " + std::to_string(max_bytes / 1024) + " KiB, so it is not a " + what +
                            "; name a " + what + " file");
   }
-  KeyWatch watch;
+  JsonKeyChecker watch;
   const auto see = [&watch](int depth, Json::parse_event_t event, const Json& parsed) {
-    return watch.See(depth, event, parsed);
+    return watch.ShouldKeep(depth, event, parsed);
   };
   try {
     Json json = Json::parse(text, see);
-    if (watch.is_too_much()) {
-      return Fault(name, "this has more than " + std::to_string(kMostJsonKeys) + " keys, or more than " +
-                             std::to_string(kMostJsonDepth) + " brackets within one another, so it is not a " + what);
+    if (watch.exceeds_limits()) {
+      return Fault(name, "this has more than " + std::to_string(kMaxJsonKeys) + " keys, or more than " +
+                             std::to_string(kMaxJsonDepth) + " brackets within one another, so it is not a " + what);
     }
     if (!json.is_object()) {
-      return Fault(name, "the " + what + " is " + ShownJson(json) + "; it must be an object: " + std::string(form));
+      return Fault(name,
+                   "the " + what + " is " + JsonForMessage(json) + "; it must be an object: " + std::string(form));
     }
     if (watch.repeated()) {
       return Fault(name, "the key " + Quoted(*watch.repeated()) + " is given twice; keep one of them");
@@ -94,7 +95,7 @@ Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std
   }
 }
 
-std::string ShownJson(const Json& value) {
+std::string JsonForMessage(const Json& value) {
   if (value.is_string()) return Quoted(value.get_ref<const std::string&>());
   if (value.is_structured()) return value.is_array() ? "an array" : "an object";
   return value.dump();

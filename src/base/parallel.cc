@@ -16,8 +16,8 @@ int ThreadsOrCores(int threads) {
 }
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
-  constexpr int kMostThreads = 256;
-  const int used = std::min({ThreadsOrCores(threads), count, kMostThreads});
+  constexpr int kMaxThreads = 256;
+  const int used = std::min({ThreadsOrCores(threads), count, kMaxThreads});
   std::atomic<int> next = 0;
   const auto take = [&] {
     for (int i = next++; i < count; i = next++) work(i);

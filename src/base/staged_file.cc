@@ -15,16 +15,16 @@ namespace pendulum {
 
 namespace fs = std::filesystem;
 
-std::string SystemWords(int error) { return std::generic_category().message(error); }
+std::string SystemErrorText(int error) { return std::generic_category().message(error); }
 
 tl::unexpected<Status> CannotWrite(const std::string& path, const std::string& why) {
   return Error(StatusCode::kCannotWrite, "cannot write " + path + ": " + why);
 }
 
 fs::path FollowLinks(fs::path path) {
-  constexpr int kMostLinks = 40;  // The kernel has the same limit.
+  constexpr int kMaxLinks = 40;  // The kernel has the same limit.
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
     path = path.parent_path() / target;  // If the target is absolute, `/` returns the target alone.
@@ -72,26 +72,26 @@ Result<void> StagedFile::Open() {
       break;
     }
   }
-  if (descriptor_ < 0) return CannotWrite(path_, SystemWords(errno));
+  if (descriptor_ < 0) return CannotWrite(path_, SystemErrorText(errno));
   KeepPermissions();
   return {};
 }
 
 Result<void> StagedFile::Write(std::string_view text) {
-  if (!WriteAll(descriptor_, text)) return CannotWrite(path_, SystemWords(errno));
+  if (!WriteAll(descriptor_, text)) return CannotWrite(path_, SystemErrorText(errno));
   return {};
 }
 
 Result<void> StagedFile::Finish() {
   if (durability_ == Durability::kSynchronised && ::fsync(descriptor_) != 0) {
-    return CannotWrite(path_, SystemWords(errno));
+    return CannotWrite(path_, SystemErrorText(errno));
   }
-  if (::close(std::exchange(descriptor_, -1)) != 0) return CannotWrite(path_, SystemWords(errno));
+  if (::close(std::exchange(descriptor_, -1)) != 0) return CannotWrite(path_, SystemErrorText(errno));
   return {};
 }
 
 Result<void> StagedFile::Commit() {
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return CannotWrite(path_, SystemWords(errno));
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return CannotWrite(path_, SystemErrorText(errno));
   temporary_.clear();
   if (durability_ == Durability::kDeferred) return {};
   // Synchronise the folder so that the name survives a loss of power. Failure is ignored: some folders cannot be opened

@@ -17,7 +17,7 @@ SELECT id, mine.model, mine.status, theirs.status
   JOIN other.fits AS theirs ON theirs.run = their_runs.run AND theirs.model = mine.model
   ORDER BY main.runs.position, id, mine.model)sql";
 
-constexpr const char* kGone = R"sql(
+constexpr const char* kRemovedFits = R"sql(
 SELECT id, model FROM main.runs JOIN main.fits USING(run)
   WHERE NOT EXISTS (SELECT * FROM other.runs AS their_runs JOIN other.fits AS theirs USING(run)
                       WHERE their_runs.id = main.runs.id AND theirs.model = main.fits.model)
@@ -45,13 +45,13 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
     ++comparison.fits;
     ChangedStatus status{sqlite::Text(fits, 0), sqlite::Text(fits, 1), sqlite::Text(fits, 2), sqlite::Text(fits, 3)};
     if (status.before == status.after) continue;
-    if (comparison.changed_status++ < StoreComparison::kMostListed) comparison.status_changes.push_back(status);
+    if (comparison.changed_status++ < StoreComparison::kMaxListed) comparison.status_changes.push_back(status);
   }
   comparison.only_before = CountOf(database, "main") - comparison.fits;
   comparison.only_after = CountOf(database, "other") - comparison.fits;
-  SQLite::Statement gone(database, kGone);
-  sqlite::Bind(gone, StoreComparison::kMostListed);
-  while (gone.executeStep()) comparison.gone.push_back({sqlite::Text(gone, 0), sqlite::Text(gone, 1)});
+  SQLite::Statement removed(database, kRemovedFits);
+  sqlite::Bind(removed, StoreComparison::kMaxListed);
+  while (removed.executeStep()) comparison.removed.push_back({sqlite::Text(removed, 0), sqlite::Text(removed, 1)});
   comparison.other_data = database
                               .execAndGet(
                                   "SELECT count(*) FROM main.runs AS a JOIN other.runs AS b USING(id) "
@@ -64,7 +64,7 @@ void Keep(MovedParameter moved, std::vector<MovedParameter>& most) {
   const auto more = [](const MovedParameter& a, const MovedParameter& b) { return a.errors > b.errors; };
   most.push_back(std::move(moved));
   std::ranges::push_heap(most, more);
-  if (most.size() <= static_cast<std::size_t>(StoreComparison::kMostListed)) return;
+  if (most.size() <= static_cast<std::size_t>(StoreComparison::kMaxListed)) return;
   std::ranges::pop_heap(most, more);
   most.pop_back();
 }

@@ -97,7 +97,7 @@ class CsvTable {
   }
 
   /// Writes one row per fit.
-  Result<void> Rows(const TakeText& take) {
+  Result<void> Rows(const TextSink& take) {
     std::string query = "SELECT fits.run, id, path, rig, calibration, columns, fits.model, recommended = fits.model";
     for (const char* name : kStatistics) query += std::string(", fits.") + name;
     SQLite::Statement fits(database_, query + " FROM runs JOIN fits USING(run) ORDER BY position, id, fits.model");
@@ -162,7 +162,7 @@ std::string CsvField(std::string_view text) {
   return field;
 }
 
-Result<void> ExportJsonLines(Store& store, const TakeText& take) {
+Result<void> ExportJsonLines(Store& store, const TextSink& take) {
   return sqlite::Guard(store.name(), [&]() -> Result<void> {
     SQLite::Statement runs(store.database(), kRuns);
     while (runs.executeStep()) {
@@ -172,7 +172,7 @@ Result<void> ExportJsonLines(Store& store, const TakeText& take) {
   });
 }
 
-Result<void> ExportCsv(Store& store, const TakeText& take) {
+Result<void> ExportCsv(Store& store, const TextSink& take) {
   return sqlite::Guard(store.name(), [&]() -> Result<void> {
     CsvTable table(store.database());
     if (auto taken = take(table.Header()); !taken) return taken;

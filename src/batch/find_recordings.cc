@@ -20,7 +20,7 @@ constexpr const char* kAnyFolders = "**";
 
 bool IsPattern(const std::string& part) { return part.find_first_of("*?[") != std::string::npos; }
 
-bool IsLike(const std::string& name, const std::string& part) {
+bool MatchesPattern(const std::string& name, const std::string& part) {
   return ::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0;
 }
 
@@ -49,7 +49,7 @@ Result<void> Find(const fs::path& folder, std::span<const std::string> parts, st
   for (const fs::directory_entry& entry : *entries) {
     const std::string name = entry.path().filename().string();
     const bool any = parts.front() == kAnyFolders;
-    if (any ? name.starts_with('.') : !IsLike(name, parts.front())) continue;
+    if (any ? name.starts_with('.') : !MatchesPattern(name, parts.front())) continue;
     const bool last = parts.size() == 1;
     if (last && !any) {
       if (!entry.is_directory(error)) found.push_back((folder / name).string());

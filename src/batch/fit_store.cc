@@ -26,7 +26,7 @@ using fit_store::kBatches;
 using fit_store::kListedColumns;
 
 /// Largest number of runs read for one list.
-constexpr int kMostListed = 1000;
+constexpr int kMaxListed = 1000;
 
 /// How long an answer is kept for repeated requests.
 constexpr const char* kForgetAnswers =
@@ -112,15 +112,15 @@ Result<void> FitStore::State::Write(const Work& work) {
 
 /// The first waiting thread commits for all threads whose work is done by then.
 Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& held) {
-  const std::shared_ptr<Round> mine = round;
+  const std::shared_ptr<Round> own_round = round;
   auto next = std::make_shared<Round>();  // allocated while no thread waits for it
-  if (!std::exchange(mine->has_committer, true)) {
-    constexpr std::chrono::microseconds kGathering{300};  // short compared with a commit and with a fit
-    over.wait_for(held, kGathering, [&] { return mine->is_over; });
-    if (!mine->is_over) EndRound(TryCommit(), std::move(next));
+  if (!std::exchange(own_round->has_committer, true)) {
+    constexpr std::chrono::microseconds kCommitDelay{300};  // short compared with a commit and with a fit
+    over.wait_for(held, kCommitDelay, [&] { return own_round->is_over; });
+    if (!own_round->is_over) EndRound(TryCommit(), std::move(next));
   }
-  over.wait(held, [&] { return mine->is_over; });
-  return mine->done;
+  over.wait(held, [&] { return own_round->is_over; });
+  return own_round->done;
 }
 
 /// Waiting threads get the error even after an exception.
@@ -287,7 +287,7 @@ Result<std::vector<ListedFit>> FitStore::List(const FitFilter& filter) {
   return state_->Read([&](SQLite::Database& database) -> Result<std::vector<ListedFit>> {
     SQLite::Statement rows(database,
                            kListedColumns + fit_store::ConditionsOf(filter) + " ORDER BY run DESC LIMIT :limit");
-    rows.bind(":limit", std::min(filter.limit, kMostListed));
+    rows.bind(":limit", std::min(filter.limit, kMaxListed));
     if (filter.before) rows.bind(":before", *filter.before);
     for (const auto& [name, value] : fit_store::TextConditions(filter)) rows.bind(name, value);
     std::vector<ListedFit> fits;
@@ -312,7 +312,7 @@ Result<std::vector<ListedBatch>> FitStore::ListBatches(int limit, const std::opt
     SQLite::Statement rows(database, std::string(kBatches) +
                                          "WHERE batches.batch < coalesce(?, batches.batch + 1) "
                                          "GROUP BY batches.batch ORDER BY batches.batch DESC LIMIT ?");
-    sqlite::Bind(rows, before, std::min(limit, kMostListed));
+    sqlite::Bind(rows, before, std::min(limit, kMaxListed));
     std::vector<ListedBatch> batches;
     while (rows.executeStep()) batches.push_back(BatchOf(rows));
     return batches;

@@ -220,7 +220,7 @@ class Header {
 
 }  // namespace
 
-Result<void> ReadManifest(const std::filesystem::path& path, const TakeEntry& take) {
+Result<void> ReadManifest(const std::filesystem::path& path, const EntrySink& take) {
   Result<InputFile> file = path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "manifest");
   if (!file) return tl::unexpected(file.error());
   CsvRows rows(*std::move(file));

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMostExamples = 10;
+constexpr int kMaxExamples = 10;
 
 Json ModelsJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
@@ -88,7 +88,7 @@ SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN 
     const std::string model = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
     if (std::ranges::find(failures.models, model) == failures.models.end()) failures.models.push_back(model);
     const bool known = std::ranges::find(failures.examples, id) != failures.examples.end();
-    if (!known && failures.examples.size() < kMostExamples) failures.examples.push_back(id);
+    if (!known && failures.examples.size() < kMaxExamples) failures.examples.push_back(id);
   }
   std::vector<Json> list;
   for (const auto& [kind, failures] : kinds) {

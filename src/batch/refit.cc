@@ -254,7 +254,7 @@ RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const Refi
 }
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
-  store.HurryOn(options.stop);
+  store.ShortenWaitsOnStop(options.stop);
   const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
   if (!meta) return tl::unexpected(meta.error());
   RefitCounts counts;

@@ -34,13 +34,13 @@ double MedianOf(std::vector<double> values) {
 }
 
 void Count(const std::vector<double>& sorted, Distribution& distribution) {
-  constexpr double kMostBins = 60;
+  constexpr double kMaxBins = 60;
   const double range = distribution.upper_quartile - distribution.lower_quartile;
   distribution.from = std::max(distribution.minimum, distribution.lower_quartile - 3 * range);
   distribution.to = std::min(distribution.maximum, distribution.upper_quartile + 3 * range);
   const double span = distribution.to - distribution.from;
   const double width = 2 * range / std::cbrt(static_cast<double>(sorted.size()));
-  const double bins = width > 0 && span > 0 ? std::clamp(std::ceil(span / width), 1.0, kMostBins) : 1;
+  const double bins = width > 0 && span > 0 ? std::clamp(std::ceil(span / width), 1.0, kMaxBins) : 1;
   distribution.counts.assign(static_cast<std::size_t>(bins), 0);
   for (const double value : sorted) {
     if (value < distribution.from) {
@@ -126,14 +126,14 @@ Distribution Describe(const std::vector<double>& values) {
 }
 
 std::vector<Outlier> FindOutliers(const RunValues& values) {
-  constexpr std::size_t kFewest = 5;
+  constexpr std::size_t kMin = 5;
   constexpr double kFalseAlarms = 0.05;
   std::vector<Outlier> outliers;
-  if (values.size() < kFewest) return outliers;
+  if (values.size() < kMin) return outliers;
   const double each = -std::expm1(std::log1p(-kFalseAlarms) / static_cast<double>(values.size()));
   const double limit = -NormalQuantile(each / 2);
   for (const auto& [group, runs] : Groups(values)) {
-    if (runs.size() >= kFewest) AddOutliersOf(values, runs, limit, outliers);
+    if (runs.size() >= kMin) AddOutliersOf(values, runs, limit, outliers);
   }
   std::ranges::sort(outliers, std::greater(), &Outlier::z);
   return outliers;
@@ -143,7 +143,7 @@ double GroupRepeatability::ScatterRatio() const { return std::sqrt(chi2 / static
 double GroupRepeatability::P() const { return UpperP(chi2, runs - 1); }
 double Repeatability::ScatterRatio() const { return std::sqrt(chi2 / static_cast<double>(dof)); }
 
-std::optional<Repeatability> Repeat(const RunValues& values, const std::vector<Outlier>& outliers) {
+std::optional<Repeatability> AnalyzeRepeatability(const RunValues& values, const std::vector<Outlier>& outliers) {
   const std::vector<bool> left_out = IsOutlier(values.size(), outliers);
   Repeatability all;
   double between_squares = 0;
@@ -230,7 +230,7 @@ std::optional<double> DaysOfTime(const std::string& time) {
 
 }  // namespace
 
-std::optional<double> OrderOf(const std::string& text, bool& is_date) {
+std::optional<double> ParseOrderValue(const std::string& text, bool& is_date) {
   is_date = false;
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The bytes of a regular file in a folder, by its path in the entry.
-Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
+Result<std::string> ReadFileInFolder(const fs::path& folder, const std::string& path) {
   const fs::path file = folder / path;
   std::error_code unknown;
   const fs::file_type type = fs::status(file, unknown).type();
@@ -42,7 +42,7 @@ Result<std::string> ReadBelow(const fs::path& folder, const std::string& path) {
   if (type != fs::file_type::regular && type != fs::file_type::none) {
     return Fault(path, "this is a pipe or a device; a batch reads files");
   }
-  auto bytes = ReadFile(file, "CSV", kMostRecordingBytes);
+  auto bytes = ReadFile(file, "CSV", kMaxRecordingBytes);
   if (bytes) return bytes;
   const std::string prefix = file.string() + ":";
   std::string message = bytes.error().message;
@@ -86,7 +86,7 @@ class PackedFile {
                             std::to_string(kPackVersion) + "; pack it anew");
   }
 
-  Result<void> ForEach(const TakeEntry& take) {
+  Result<void> ForEach(const EntrySink& take) {
     SQLite::Statement rows(database_,
                            "SELECT position, id, path, rig, calibration, from_s, to_s, models, columns FROM entries "
                            "ORDER BY position");
@@ -139,7 +139,7 @@ Result<Source> OpenPack(const fs::path& path) {
     const auto pack = std::make_shared<PackedFile>(path);
     if (const auto checked = pack->Check(); !checked) return tl::unexpected(checked.error());
     return Source{
-        name, [pack, name](const TakeEntry& take) { return sqlite::Guard(name, [&] { return pack->ForEach(take); }); },
+        name, [pack, name](const EntrySink& take) { return sqlite::Guard(name, [&] { return pack->ForEach(take); }); },
         [pack, name](const std::string& file) { return sqlite::Guard(name, [&] { return pack->Read(file); }); }};
   });
 }
@@ -220,8 +220,8 @@ Result<Source> OpenSource(const fs::path& path) {
     if (const auto opened = InputFile::Open(path, "manifest"); !opened) return tl::unexpected(opened.error());
   }
   const fs::path folder = path == "-" ? fs::path() : path.parent_path();
-  return Source{path.string(), [path](const TakeEntry& take) { return ReadManifest(path, take); },
-                [folder](const std::string& file) { return ReadBelow(folder, file); }};
+  return Source{path.string(), [path](const EntrySink& take) { return ReadManifest(path, take); },
+                [folder](const std::string& file) { return ReadFileInFolder(folder, file); }};
 }
 
 Result<Source> FindSource(const std::vector<std::string>& patterns) {
@@ -234,7 +234,7 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
       if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
     }
   }
-  const auto for_each = [paths = std::move(paths)](const TakeEntry& take) -> Result<void> {
+  const auto for_each = [paths = std::move(paths)](const EntrySink& take) -> Result<void> {
     ManifestEntry entry;
     for (const std::string& path : paths) {
       entry.path = path;
@@ -244,7 +244,7 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
     }
     return {};
   };
-  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadBelow({}, file); }};
+  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadFileInFolder({}, file); }};
 }
 
 Result<PackCounts> Pack(const Source& source, const fs::path& path) {
@@ -263,7 +263,7 @@ Result<PackCounts> Pack(const Source& source, const fs::path& path) {
   if (!packed) return packed;
   std::error_code error;
   fs::rename(unfinished.path(), FollowLinks(path), error);
-  if (error) return CannotWrite(path.string(), SystemWords(error.value()));
+  if (error) return CannotWrite(path.string(), SystemErrorText(error.value()));
   return packed;
 }
 

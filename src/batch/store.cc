@@ -81,16 +81,16 @@ struct Store::State {
       : name(path),
         database(sqlite::FileName(path),
                  mode == Mode::kRead ? SQLite::OPEN_READWRITE : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
-                 kReaderPatienceMs) {
+                 kReaderTimeoutMs) {
     if (mode == Mode::kWrite) ::sqlite3_busy_handler(database.getHandle(), Wait, this);
-    if (mode == Mode::kServe) database.setBusyTimeout(kServerPatienceMs);
+    if (mode == Mode::kServe) database.setBusyTimeout(kServerTimeoutMs);
   }
 
   /// Called by SQLite when readers block a writer for the `times`-th time; returns whether to keep waiting.
   static int Wait(void* self, int times) {
     const std::atomic<bool>* stop = static_cast<const State*>(self)->stop;
-    const int patience = stop != nullptr && stop->load() ? kStoppedPatienceMs : kWriterPatienceMs;
-    return times * ::sqlite3_sleep(kStepMs) < patience ? 1 : 0;
+    const int timeout = stop != nullptr && stop->load() ? kStoppedTimeoutMs : kWriterTimeoutMs;
+    return times * ::sqlite3_sleep(kStepMs) < timeout ? 1 : 0;
   }
 
   /// Prepares a statement at its first use.
@@ -125,8 +125,8 @@ struct Store::State {
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const RunOutcome& outcome, std::int64_t run);
 
-  static constexpr int kReaderPatienceMs = 10000, kWriterPatienceMs = 600000, kStoppedPatienceMs = 2000,
-                       kServerPatienceMs = 2000, kStepMs = 20;
+  static constexpr int kReaderTimeoutMs = 10000, kWriterTimeoutMs = 600000, kStoppedTimeoutMs = 2000,
+                       kServerTimeoutMs = 2000, kStepMs = 20;
 
   std::string name;
   SQLite::Database database;
@@ -380,7 +380,7 @@ Result<void> Store::Check() {
   });
 }
 
-void Store::HurryOn(const std::atomic<bool>* stop) { state_->stop = stop; }
+void Store::ShortenWaitsOnStop(const std::atomic<bool>* stop) { state_->stop = stop; }
 
 const std::string& Store::name() const { return state_->name; }
 

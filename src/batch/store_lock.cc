@@ -39,7 +39,7 @@ Result<StoreLock> StoreLock::Take(const std::filesystem::path& store) {
   const std::string path = FollowLinks(store).string() + ".lock";
   while (true) {
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor < 0) return CannotWrite(store.string(), SystemWords(errno) + " (" + path + ")");
+    if (descriptor < 0) return CannotWrite(store.string(), SystemErrorText(errno) + " (" + path + ")");
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       ::close(descriptor);
       return Error(StatusCode::kTryAgain,

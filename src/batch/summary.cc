@@ -23,8 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kSchemaVersion = 1;
-constexpr int kMostOutliers = 50;
-constexpr std::size_t kMostPoints = 2000;
+constexpr int kMaxOutliers = 50;
+constexpr std::size_t kMaxPoints = 2000;
 
 Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
   SQLite::Database& database = store.database();
@@ -83,7 +83,7 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
     std::optional<double> order;
     if (const double position = rows.getColumn(1).getDouble(); position >= 0) order = position;
     bool is_date = false;
-    if (!options.trend_by.empty()) order = OrderOf(sqlite::Text(rows, 5), is_date);
+    if (!options.trend_by.empty()) order = ParseOrderValue(sqlite::Text(rows, 5), is_date);
     runs.dates = runs.dates || is_date;
     runs.values.order.push_back(order.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
@@ -141,7 +141,7 @@ Json RepeatabilityJson(const QuantityRuns& runs, const SummaryOptions& options, 
 Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const std::vector<Outlier>& outliers) {
   Json list = Json::array();
   for (const Outlier& outlier : outliers) {
-    if (list.size() == kMostOutliers) break;
+    if (list.size() == kMaxOutliers) break;
     list.push_back({{"id", runs.ids[outlier.run]},
                     {"group", GroupName(runs, options, runs.values.group[outlier.run])},
                     {"estimate", runs.values.estimate[outlier.run]},
@@ -151,10 +151,10 @@ Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const
   return list;
 }
 
-/// Every n-th point, so that at most kMostPoints remain.
+/// Every n-th point, so that at most kMaxPoints remain.
 Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
   Json points = Json::array();
-  const std::size_t step = (runs.values.size() + kMostPoints - 1) / kMostPoints;
+  const std::size_t step = (runs.values.size() + kMaxPoints - 1) / kMaxPoints;
   for (std::size_t i = 0; i < runs.values.size(); i += step) {
     if (!std::isfinite(runs.values.order[i])) continue;
     points.push_back({{"x", runs.values.order[i]},
@@ -226,7 +226,7 @@ Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const Su
   if (runs.values.size() == 0) return nullptr;
   const bool of_the_rig = IsOfTheRig(quantity);
   const std::vector<Outlier> outliers = of_the_rig ? FindOutliers(runs.values) : std::vector<Outlier>();
-  const auto repeatability = of_the_rig ? Repeat(runs.values, outliers) : std::nullopt;
+  const auto repeatability = of_the_rig ? AnalyzeRepeatability(runs.values, outliers) : std::nullopt;
   Json json = DistributionJson(quantity, runs.values);
   json["repeatability"] =
       repeatability ? RepeatabilityJson(runs, options, *repeatability, quantity.unit, outliers.size()) : Json(nullptr);
@@ -271,7 +271,7 @@ std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, co
   while (rows.executeStep()) {
     bool is_date = false;
     const std::string value = sqlite::Text(rows, 0);
-    if (OrderOf(value, is_date)) continue;
+    if (ParseOrderValue(value, is_date)) continue;
     if (found.first++ == 0) found.second = value;
   }
   return found;

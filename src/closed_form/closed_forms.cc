@@ -7,7 +7,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
-#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -22,9 +22,9 @@ std::string Describe(const EnvelopeLaw& law) {
 
 /// A sentence: which law the amplitudes follow.
 std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
-  constexpr double kUntold = 10;
+  constexpr double kMaxDescribedChi2 = 10;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
-  if (richest > kUntold) {
+  if (richest > kMaxDescribedChi2) {
     return "not told: with viscous, dry and quadratic friction together chi2/dof of the turning points is still " +
            NumberText(richest, 3);
   }
@@ -40,16 +40,16 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
 /// Describes how the fitted law fails although all friction terms together fit. Uses the F test, which allows for
 /// turning points that scatter more than their errors.
 std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeComparison& laws) {
-  constexpr double kSurely = 1e-4;
-  constexpr double kMost = 0.5;  // other terms must explain at least half of what the law leaves
+  constexpr double kMaxP = 1e-4;
+  constexpr double kMaxRemainingShare = 0.5;  // other terms must explain at least half of what the law leaves
   const int more = decrement.freedom - laws.richest_freedom;
   if (more < 1 || decrement.Probability() >= kRejected) return "";
   const double own = decrement.chi_square / decrement.freedom;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
-  if (richest > kMost * own) return "";
+  if (richest > kMaxRemainingShare * own) return "";
   const double f = std::max(0.0, decrement.chi_square - laws.richest_chi_square) / more / richest;
   if (!std::isfinite(f)) return "";
-  if (FisherTail(f, more, laws.richest_freedom) >= kSurely) return "";
+  if (FisherTail(f, more, laws.richest_freedom) >= kMaxP) return "";
   return "chi2/dof of the turning points is " + NumberText(own, 3) + " with " + std::string(decrement.model.friction) +
          " friction and " + NumberText(richest, 3) + " with viscous, dry and quadratic";
 }
@@ -76,7 +76,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
                      "angles");
   }
   const double origin = recording.time[0];
-  const Recording timed = InTrueTime(TurnsView(recording));
+  const Recording timed = InTrueSeconds(TurningPointView(recording));
   ClosedForms forms;
   forms.gravity = model.gravity;
   Result<Decrement> decrement = FitDecrement(timed, model, stop);

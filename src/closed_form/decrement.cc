@@ -184,7 +184,7 @@ class DecrementProblem {
       if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
       if (!is_rate && i + 1 == runs_[r].count) break;
       const double direction = is_rate ? table_.Side(peak) : -table_.Side(peak);
-      const auto end = SwingThrough(model_, friction_parameters, amplitude, x[1], direction, is_rate);
+      const auto end = ComputeHalfSwing(model_, friction_parameters, amplitude, x[1], direction, is_rate);
       if (!end) return false;
       if (is_rate) Add(peak, time + end->peak_delay, x[0] + table_.Side(peak) * end->peak_rate, row, residuals);
       amplitude = end->amplitude;
@@ -219,13 +219,13 @@ struct LeastSquares {
 /// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is a hundredth of the standard
 /// errors, scaled by the size of the residuals.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
-  constexpr int kMostSteps = 100;
+  constexpr int kMaxSteps = 100;
   constexpr double kSmallStep = 1e-4;  // squared, in standard errors
-  constexpr double kMostDamping = 1e12;
+  constexpr double kMaxDamping = 1e12;
   std::optional<VectorXd> residuals = problem.Residuals(x);
   if (!residuals) return std::nullopt;
   double damping = 1e-3;
-  for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+  for (int step = 0; step < kMaxSteps && damping < kMaxDamping; ++step) {
     const MatrixXd jacobian = problem.Jacobian(x, *residuals, free);
     const MatrixXd normal = jacobian.transpose() * jacobian;
     const VectorXd gradient = jacobian.transpose() * *residuals;
@@ -235,7 +235,7 @@ std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, c
     const double scatter = sum / std::max(static_cast<double>(jacobian.rows() - jacobian.cols()), 1.0);
     if (std::abs(left) < kSmallStep * std::max(scatter, 1.0)) return LeastSquares{x, inverse, jacobian, sum};
     bool better = false;
-    while (!better && damping < kMostDamping) {
+    while (!better && damping < kMaxDamping) {
       MatrixXd damped = normal;
       damped.diagonal() *= 1 + damping;
       VectorXd trial = x;

@@ -96,7 +96,7 @@ EnergyBalance BalanceAt(const HalfSwingTable& table, double natural_frequency, d
 }
 
 /// The share of the losses that the best friction explains.
-double Gain(const EnergyBalance& balance) {
+double ExplainedShare(const EnergyBalance& balance) {
   const std::vector<double> friction = FrictionFrom(balance);
   double gain = 0;  // excludes the reference rate, whose equation is not solved
   for (std::size_t k = 0; k + 1 < friction.size(); ++k)
@@ -126,7 +126,7 @@ std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const HalfSwi
       for (const double scale : F::kRateScales) {
         balances.push_back(BalanceAt<F>(table, natural_frequency, scale * largest));
       }
-      std::ranges::stable_sort(balances, std::ranges::greater(), Gain);
+      std::ranges::stable_sort(balances, std::ranges::greater(), ExplainedShare);
     } else {
       balances.push_back(BalanceAt<F>(table, natural_frequency, 0));
     }

@@ -93,7 +93,7 @@ double TurningThreshold(const Recording& recording, double noise) {
   return std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
 }
 
-std::vector<Extremum> FindTurns(const Recording& recording, double threshold) {
+std::vector<Extremum> FindTurningPoints(const Recording& recording, double threshold) {
   const std::vector<Index> points = TurningPoints(recording.value, threshold);
   if (points.size() < 2) return {};
   const double half_width = 0.15 * TypicalSpacing(recording.time, points);
@@ -107,7 +107,7 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   const double noise = SuccessiveDifferenceNoise(recording);
   const double threshold = TurningThreshold(recording, noise);
-  std::vector<Extremum> extrema = FindTurns(recording, threshold);
+  std::vector<Extremum> extrema = FindTurningPoints(recording, threshold);
   if (!extrema.empty()) {
     // The first candidate may be the start of the recording or lie in its hold. Then all earlier readings are equal to
     // it, or differ only by noise.
@@ -115,8 +115,8 @@ Result<std::vector<Extremum>> FindExtrema(const Recording& recording) {
     const auto before = recording.value.head(first + 1).array();
     const double spread = std::sqrt((before - before.mean()).square().mean());
     const double farthest = (before - recording.value[first]).abs().maxCoeff();
-    constexpr Index kFewestHeld = 8;  // fewer samples cannot distinguish noise from a slope
-    const bool is_noise = before.size() >= kFewestHeld && spread < 2 * noise;
+    constexpr Index kMinHeld = 8;  // fewer samples cannot distinguish noise from a slope
+    const bool is_noise = before.size() >= kMinHeld && spread < 2 * noise;
     const bool turned = farthest > std::min(threshold, 0.1 * range) && !is_noise;
     if (!turned) extrema.erase(extrema.begin());
   }

@@ -12,8 +12,8 @@
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/extrema.h"
-#include "pendulum/closed_form/turns.h"
-#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/closed_form/turning_point_view.h"
+#include "pendulum/closed_form/turning_points.h"
 
 namespace pendulum {
 namespace {
@@ -26,12 +26,12 @@ struct Run {
   std::size_t last;
 };
 
-std::vector<Run> FreeRuns(const TurnTable& table, const std::vector<Verdict>& verdicts) {
-  constexpr std::size_t kFewest = 2;
+std::vector<Run> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
+  constexpr std::size_t kMin = 2;
   std::vector<Run> runs;
   std::size_t first = 0;
   const auto close = [&](std::size_t last) {
-    if (last >= first + kFewest) runs.push_back({first, last});
+    if (last >= first + kMin) runs.push_back({first, last});
   };
   for (std::size_t i = 0; i < table.half_swings(); ++i) {
     const bool free = verdicts[i] == Verdict::kFree || (verdicts[i] == Verdict::kFreeAfterHold);
@@ -62,12 +62,12 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
 struct Beginning {
   Index sample;
   WindowBegin why;
-  Index behind_hold = sample;
+  Index after_hold = sample;
 };
 
 /// Whether samples [first, last] show one value: drift below three standard deviations of the noise, and scatter below
 /// twice the noise.
-bool IsSteady(const TurnTable& table, Index first, Index last) {
+bool IsSteady(const TurningPointTable& table, Index first, Index last) {
   const Recording& recording = table.recording;
   const Index count = last - first + 1;
   Eigen::MatrixX2d basis(count, 2);
@@ -81,18 +81,18 @@ bool IsSteady(const TurnTable& table, Index first, Index last) {
 
 /// Begins in the steady part at the end of a hold, or where the hold ends if it is not steady: a moving hand does not
 /// hold.
-Beginning SteadyPart(const TurnTable& table, Index first, Index last) {
-  constexpr Index kFewest = 8;
+Beginning SteadyPart(const TurningPointTable& table, Index first, Index last) {
+  constexpr Index kMin = 8;
   // The release also lies somewhere within the band.
   const Index held = first + 7 * (last - first) / 10;
-  for (Index begin = first; held - begin >= kFewest; begin += (held - begin + 1) / 2) {
+  for (Index begin = first; held - begin >= kMin; begin += (held - begin + 1) / 2) {
     if (IsSteady(table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
   }
   return {last, {WindowBegin::Reason::kUnsteadyHold}};
 }
 
 /// The hold that contains the first turning point of a run, if the reading stays near it for longer than in a swing.
-std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
+std::optional<Beginning> HoldBefore(const TurningPointTable& table, std::size_t turn) {
   const Recording& recording = table.recording;
   const bool rate = recording.quantity == Quantity::kRate;
   // For a rate the hold is at its zero, a quarter period before its first turning point.
@@ -112,7 +112,7 @@ std::optional<Beginning> HoldBefore(const TurnTable& table, std::size_t turn) {
 
 /// Begins at the next turning point after a fall from near the upright, which contains no information on the release,
 /// or after turns over the top.
-std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) {
+std::optional<Beginning> BeginAfterFall(const TurningPointTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   constexpr double kOverTheTop = 185 * kRadFromDeg;
   const Recording& recording = table.recording;
@@ -123,9 +123,9 @@ std::optional<Beginning> AfterTheFall(const TurnTable& table, std::size_t turn) 
   return Beginning{next, {WindowBegin::Reason::kAfterFall, table.amplitude[turn] / kRadFromDeg}};
 }
 
-Beginning Begin(const TurnTable& table, const Run& run) {
+Beginning FindBeginning(const TurningPointTable& table, const Run& run) {
   const Recording& recording = table.recording;
-  if (auto fallen = AfterTheFall(table, run.first)) return *fallen;
+  if (auto after_fall = BeginAfterFall(table, run.first)) return *after_fall;
   if (auto hold = HoldBefore(table, run.first)) return *hold;
   const double before = table.turns[run.first].time - recording.time[0];
   const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
@@ -137,7 +137,7 @@ Beginning Begin(const TurnTable& table, const Run& run) {
 
 /// Fits an oscillation with the period of small swings to samples [first, first + count). Returns its amplitude divided
 /// by its standard error.
-double AmplitudeOverError(const TurnTable& table, Index first, Index count) {
+double AmplitudeOverError(const TurningPointTable& table, Index first, Index count) {
   const Recording& recording = table.recording;
   const Eigen::ArrayXd phase =
       kPi / table.half_period * (recording.time.segment(first, count).array() - recording.time[first]);
@@ -150,15 +150,15 @@ double AmplitudeOverError(const TurnTable& table, Index first, Index count) {
 }
 
 /// The last sample at which the reading moves; checks one period at a time from `sample` to `limit`.
-Index EndOfMotion(const TurnTable& table, Index sample, Index limit) {
+Index EndOfMotion(const TurningPointTable& table, Index sample, Index limit) {
   constexpr double kMoves = 5;
-  constexpr Index kFewest = 6;
+  constexpr Index kMin = 6;
   const Recording& recording = table.recording;
   Index end = sample;
   while (sample < limit) {
     Index next = sample;
     while (next < limit && recording.time[next] - recording.time[sample] < 2 * table.half_period) ++next;
-    if (next - sample < kFewest || AmplitudeOverError(table, sample, next - sample) > kMoves) end = next;
+    if (next - sample < kMin || AmplitudeOverError(table, sample, next - sample) > kMoves) end = next;
     sample = next;
   }
   return end;
@@ -166,7 +166,7 @@ Index EndOfMotion(const TurnTable& table, Index sample, Index limit) {
 
 /// Whether the pendulum was stopped after turning point `last`: the next turning point is missing although there was
 /// time for two, and it would have been visible.
-bool IsStopped(const TurnTable& table, std::size_t last, Index limit) {
+bool IsStopped(const TurningPointTable& table, std::size_t last, Index limit) {
   if (last == 0) return false;
   const double time_left = table.recording.time[limit] - table.turns[last].time;
   const double next = table.amplitude[last] - 1.5 * (table.amplitude[last - 1] - table.amplitude[last]);
@@ -179,7 +179,7 @@ struct Ending {
   WindowEnd why;
 };
 
-Ending End(const TurnTable& table, const Run& run) {
+Ending FindEnding(const TurningPointTable& table, const Run& run) {
   const Recording& recording = table.recording;
   const Index turn = table.turns[run.last].sample;
   // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
@@ -194,13 +194,13 @@ Ending End(const TurnTable& table, const Run& run) {
   return {sample, {WindowEnd::Reason::kAtRest, recording.time[end]}};
 }
 
-FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
+FreeSwing MakeSwing(const TurningPointTable& table, const Run& run) {
   FreeSwing swing;
-  const Beginning beginning = Begin(table, run);
-  const Ending ending = End(table, run);
+  const Beginning beginning = FindBeginning(table, run);
+  const Ending ending = FindEnding(table, run);
   swing.from = table.recording.time[beginning.sample];
   swing.to = table.recording.time[ending.sample];
-  swing.behind_hold = table.recording.time[std::min(beginning.behind_hold, table.recording.size() - 1)];
+  swing.after_hold = table.recording.time[std::min(beginning.after_hold, table.recording.size() - 1)];
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
@@ -213,10 +213,10 @@ FreeSwing MakeSwing(const TurnTable& table, const Run& run) {
 
 /// An acceleration jumps at the release, and no sample gives the instant of the release. The hold is therefore left
 /// out.
-void LeaveHoldsOut(std::vector<FreeSwing>& swings) {
+void RemoveHolds(std::vector<FreeSwing>& swings) {
   for (FreeSwing& swing : swings) {
     if (swing.begins.reason != WindowBegin::Reason::kHeld) continue;
-    swing.from = swing.behind_hold;
+    swing.from = swing.after_hold;
     swing.begins = {WindowBegin::Reason::kAccelerationJump};
   }
 }
@@ -231,19 +231,19 @@ double MedianOf(const std::vector<double>& values, std::size_t first, std::size_
 }
 
 /// Median amplitude of the last third of turning points [first, last], divided by that of the first third.
-double Decay(const TurnTable& table, std::size_t first, std::size_t last) {
+double Decay(const TurningPointTable& table, std::size_t first, std::size_t last) {
   const std::size_t third = std::max<std::size_t>((last - first + 1) / 3, 1);
   return MedianOf(table.amplitude, last + 1 - third, third) / MedianOf(table.amplitude, first, third);
 }
 
 /// Whether the amplitude decreases over turning points [first, last], either clearly or by three standard errors. The
 /// start of the recording is not a turning point.
-bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
+bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last) {
   first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
-  constexpr Index kFewest = 6;
+  constexpr Index kMin = 6;
   const auto count = static_cast<Index>(last - first + 1);
-  if (count < kFewest || Decay(table, first, last) < kClearly) return true;
+  if (count < kMin || Decay(table, first, last) < kClearly) return true;
   const Eigen::VectorXd amplitude = Eigen::Map<const Eigen::VectorXd>(table.amplitude.data() + first, count);
   Eigen::MatrixX3d basis(count, 3);
   const Eigen::ArrayXd index = Eigen::ArrayXd::LinSpaced(count, -1, 1);
@@ -257,14 +257,14 @@ bool Decays(const TurnTable& table, std::size_t first, std::size_t last) {
 
 /// Share of the half swings in which the amplitude climbs by at least a tenth over three or more half swings. The start
 /// of the recording is not a turning point.
-double ShareOfClimbs(const TurnTable& table) {
-  constexpr std::size_t kFewest = 3;
+double RisingShare(const TurningPointTable& table) {
+  constexpr std::size_t kMin = 3;
   std::size_t climbing = 0;
   std::size_t low = 1;
   std::size_t high = 1;
   const auto close = [&] {
     const bool climbs = table.amplitude[high] > 1.1 * table.amplitude[low] + table.Tolerance(low);
-    if (climbs && high >= low + kFewest) climbing += high - low;
+    if (climbs && high >= low + kMin) climbing += high - low;
   };
   for (std::size_t i = 2; i < table.turns.size(); ++i) {
     if (table.amplitude[i] >= table.amplitude[high]) {
@@ -279,14 +279,14 @@ double ShareOfClimbs(const TurnTable& table) {
 }
 
 /// Handles repeated turning points that are not a free swing: an error, or a swing that beats.
-Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vector<Run>& runs) {
-  constexpr double kMostClimbs = 0.2;
+Result<std::optional<FreeSwing>> ClassifyOtherMotion(const TurningPointTable& table, const std::vector<Run>& runs) {
+  constexpr double kMaxRisingShare = 0.2;
   constexpr double kDecayed = 0.7;
-  constexpr std::size_t kFewest = 6;
+  constexpr std::size_t kMin = 6;
   const std::size_t turns = table.turns.size();
   const auto longest = std::ranges::max_element(runs, {}, [](const Run& run) { return run.last - run.first; });
   const std::size_t free = longest == runs.end() ? 0 : longest->last - longest->first + 1;
-  const bool climbs = ShareOfClimbs(table) > kMostClimbs;
+  const bool climbs = RisingShare(table) > kMaxRisingShare;
   if (!climbs && 2 * free >= turns) {
     if (Decays(table, longest->first, longest->last)) return std::nullopt;
     return Error(StatusCode::kFailedPrecondition,
@@ -295,7 +295,7 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
                      "--from and --to is fitted as it is");
   }
   const double largest = *std::ranges::max_element(table.amplitude);
-  const bool scattered = 3 * free < turns && (free < kFewest || table.amplitude[longest->first] < 0.5 * largest);
+  const bool scattered = 3 * free < turns && (free < kMin || table.amplitude[longest->first] < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
   // A motion that begins at rest and climbs was not released.
   const bool from_rest = climbs && table.amplitude[1] < 0.35 * largest;
@@ -306,12 +306,12 @@ Result<std::optional<FreeSwing>> Unfree(const TurnTable& table, const std::vecto
                    "less amplitude: the pendulum was moved by hand or motor, or held at one angle after another");
   }
   FreeSwing swing = MakeSwing(table, {0, turns - 1});
-  swing.beats = true;
+  swing.has_beats = true;
   return swing;
 }
 
 /// The largest amplitude of turning points outside all runs. Runs are in time order.
-double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
+double LargestOutside(const TurningPointTable& table, const std::vector<Run>& runs) {
   double largest = 0;
   auto run = runs.begin();
   for (std::size_t i = 1; i < table.turns.size(); ++i) {
@@ -323,11 +323,11 @@ double LargestOutside(const TurnTable& table, const std::vector<Run>& runs) {
 }
 
 /// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
-Result<void> CheckUnit(const TurnTable& table) {
-  constexpr double kMost = 3.3;  // rad
+Result<void> CheckUnit(const TurningPointTable& table) {
+  constexpr double kMax = 3.3;  // rad
   const bool angle = table.recording.quantity == Quantity::kAngle && table.recording.is_calibrated();
   const double typical = Median(table.amplitude);
-  if (!angle || typical < kMost) return {};
+  if (!angle || typical < kMax) return {};
   return Error(
       StatusCode::kFailedPrecondition,
       "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
@@ -338,22 +338,22 @@ Result<void> CheckUnit(const TurnTable& table) {
 }  // namespace
 
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
-  if (HasOtherView(recording)) {
-    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurnsView(recording));
-    if (swings && recording.quantity == Quantity::kAcceleration) LeaveHoldsOut(*swings);
+  if (HasTurningPointView(recording)) {
+    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording));
+    if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
     return swings;
   }
-  const TurnTable table = TabulateTurns(recording);
+  const TurningPointTable table = TabulateTurningPoints(recording);
   if (table.turns.size() < 3) {
     const Result<std::vector<Extremum>> extrema = FindExtrema(recording);
     return tl::unexpected(extrema ? Status{StatusCode::kFailedPrecondition, "no turning points"} : extrema.error());
   }
   if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
-  const std::vector<Verdict> verdicts = JudgeHalfSwings(table);
+  const std::vector<Verdict> verdicts = ClassifyHalfSwings(table);
   const std::vector<Run> runs = FreeRuns(table, verdicts);
-  const Result<std::optional<FreeSwing>> unfree = Unfree(table, runs);
-  if (!unfree) return tl::unexpected(unfree.error());
-  if (*unfree) return std::vector<FreeSwing>{**unfree};
+  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(table, runs);
+  if (!other_motion) return tl::unexpected(other_motion.error());
+  if (*other_motion) return std::vector<FreeSwing>{**other_motion};
   std::vector<FreeSwing> swings;
   const double outside = LargestOutside(table, runs);
   for (const Run& run : runs) {

@@ -71,9 +71,9 @@ double AngleWith(Gravity gravity, double potential) {
 /// The path from -before to after as θ = m + h sin(π x / 2). Along it the energy and rate / cos(π x / 2) are smooth,
 /// including at the turning points.
 template <FrictionModel F>
-class HalfSwingWay {
+class HalfSwingPath {
  public:
-  HalfSwingWay(Gravity gravity, const double* friction, double before, double natural_frequency, double direction)
+  HalfSwingPath(Gravity gravity, const double* friction, double before, double natural_frequency, double direction)
       : gravity_(gravity),
         friction_(friction),
         before_(before),
@@ -83,12 +83,12 @@ class HalfSwingWay {
   /// Solves dE/dθ = -T(ω0 sqrt(2 (E - V))) by Picard iteration on the energies at the nodes. `after` follows from the
   /// final energy.
   std::optional<HalfSwingEnd> Solve(bool wants_peak) {
-    constexpr int kMostRounds = 200;
+    constexpr int kMaxRounds = 200;
     constexpr double kSame = 4e-15;
     const double energy_before = PotentialAt(gravity_, before_);
     Nodes energy = Nodes::Constant(energy_before);
     double after = before_;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const Nodes loss = Loss(energy, after);
       energy = energy_before - (Rule().integrate * loss.matrix()).array();
       const double energy_after = energy_before - (Rule().weight * loss).sum();
@@ -132,14 +132,14 @@ class HalfSwingWay {
 
   /// The rate is largest where g(θ) = -T(ω). A few rounds suffice, because T hardly changes there.
   void FindPeak(const Nodes& loss, double after, HalfSwingEnd& end) const {
-    constexpr int kMostRounds = 50;
+    constexpr int kMaxRounds = 50;
     constexpr double kSame = 1e-13;
     const double middle = 0.5 * (after - before_);
     const double half = 0.5 * (before_ + after);
     double angle = 0;
     double x = 0;
     double rate = 0;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       x = 2 / kPi * std::asin(std::clamp((angle - middle) / half, -1.0, 1.0));
       rate = RateAt(PotentialAt(gravity_, before_) - Rule().WeightsTo(x).dot(loss.matrix()), angle);
       const double torque = std::clamp(Torque(rate), -1.0, 1.0);
@@ -158,11 +158,12 @@ class HalfSwingWay {
 
 }  // namespace
 
-std::optional<HalfSwingEnd> SwingThrough(const MotionModel& model, std::span<const double> friction, double amplitude,
-                                         double natural_frequency, double direction, bool wants_peak) {
+std::optional<HalfSwingEnd> ComputeHalfSwing(const MotionModel& model, std::span<const double> friction,
+                                             double amplitude, double natural_frequency, double direction,
+                                             bool wants_peak) {
   std::optional<HalfSwingEnd> end;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    end = HalfSwingWay<F>(model.gravity, friction.data(), amplitude, natural_frequency, direction).Solve(wants_peak);
+    end = HalfSwingPath<F>(model.gravity, friction.data(), amplitude, natural_frequency, direction).Solve(wants_peak);
   });
   return end;
 }

@@ -27,7 +27,7 @@ std::vector<std::size_t> RunStarts(const PeakTable& table) {
 }
 
 /// The n periods to which the formulas are applied.
-struct Stretch {
+struct PeriodSpan {
   const PeakTable& table;
   Gravity gravity;
   std::size_t first;
@@ -55,46 +55,45 @@ Outputs Formulas(const Inputs& inputs, int periods) {
 }
 
 /// The mean period ratio and its derivatives (M) by the values of the turning points.
-double MeanPeriodRatio(const Stretch& stretch, VectorXd& gradient) {
-  gradient = VectorXd::Zero(static_cast<Index>(stretch.table.peaks.size()));
-  if (stretch.gravity == Gravity::kLinear) return 1;
+double MeanPeriodRatio(const PeriodSpan& span, VectorXd& gradient) {
+  gradient = VectorXd::Zero(static_cast<Index>(span.table.peaks.size()));
+  if (span.gravity == Gravity::kLinear) return 1;
   constexpr double kStep = 1e-4;  // of the amplitude
-  const double share = 1 / (2.0 * stretch.periods);
-  const double frequency = kPi / stretch.table.half_period;
+  const double share = 1 / (2.0 * span.periods);
+  const double frequency = kPi / span.table.half_period;
   const auto ratio_at = [&](double amplitude) {
-    return PeriodRatio(AngleAmplitude(stretch.table.quantity, amplitude, frequency));
+    return PeriodRatio(AngleAmplitude(span.table.quantity, amplitude, frequency));
   };
   double sum = 0;
-  for (std::size_t i = stretch.first; i < stretch.last(); ++i) {
-    const double amplitude = 0.5 * (stretch.table.Amplitude(i) + stretch.table.Amplitude(i + 1));
+  for (std::size_t i = span.first; i < span.last(); ++i) {
+    const double amplitude = 0.5 * (span.table.Amplitude(i) + span.table.Amplitude(i + 1));
     sum += share * ratio_at(amplitude);
     const double step = kStep * amplitude;
     const double slope = (ratio_at(amplitude + step) - ratio_at(amplitude - step)) / (2 * step);
     for (const std::size_t k : {i, i + 1}) {
-      gradient[static_cast<Index>(k)] += 0.5 * share * slope * stretch.table.Side(k);
+      gradient[static_cast<Index>(k)] += 0.5 * share * slope * span.table.Side(k);
     }
   }
   return sum;
 }
 
 /// Derivatives (kFormulas x 2 M) by the turning points. The zero also depends on their values.
-MatrixXd Gradient(const Stretch& stretch, const Inputs& inputs, const VectorXd& ratio_gradient) {
+MatrixXd Gradient(const PeriodSpan& span, const Inputs& inputs, const VectorXd& ratio_gradient) {
   constexpr double kStep = 1e-6;
   Eigen::Matrix<double, kFormulas, 5> slopes;
   for (Index k = 0; k < 5; ++k) {
     const double step = kStep * (k < 2 ? inputs[1] - inputs[0] : inputs[k]);
     const Inputs change = step * Inputs::Unit(k);
-    slopes.col(k) =
-        (Formulas(inputs + change, stretch.periods) - Formulas(inputs - change, stretch.periods)) / (2 * step);
+    slopes.col(k) = (Formulas(inputs + change, span.periods) - Formulas(inputs - change, span.periods)) / (2 * step);
   }
   const Index count = ratio_gradient.size();
   MatrixXd by_value = slopes.col(4) * ratio_gradient.transpose();
-  by_value -= (slopes.col(2) + slopes.col(3)) * stretch.table.ZeroWeights().transpose();
-  by_value.col(static_cast<Index>(stretch.first)) += slopes.col(2);
-  by_value.col(static_cast<Index>(stretch.last())) += slopes.col(3);
+  by_value -= (slopes.col(2) + slopes.col(3)) * span.table.ZeroWeights().transpose();
+  by_value.col(static_cast<Index>(span.first)) += slopes.col(2);
+  by_value.col(static_cast<Index>(span.last())) += slopes.col(3);
   MatrixXd gradient = MatrixXd::Zero(kFormulas, 2 * count);
-  gradient.col(2 * static_cast<Index>(stretch.first)) = slopes.col(0);
-  gradient.col(2 * static_cast<Index>(stretch.last())) = slopes.col(1);
+  gradient.col(2 * static_cast<Index>(span.first)) = slopes.col(0);
+  gradient.col(2 * static_cast<Index>(span.last())) = slopes.col(1);
   for (Index i = 0; i < count; ++i) gradient.col(2 * i + 1) = by_value.col(i);
   return gradient;
 }
@@ -134,14 +133,14 @@ std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zer
 
 std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods) {
   if (!Reaches(table, first, periods)) return std::nullopt;
-  const Stretch stretch{table, gravity, first, periods};
+  const PeriodSpan span{table, gravity, first, periods};
   VectorXd ratio_gradient;
-  const double ratio = MeanPeriodRatio(stretch, ratio_gradient);
+  const double ratio = MeanPeriodRatio(span, ratio_gradient);
   const double zero = table.zero.value;
   Inputs inputs;
-  inputs << stretch.from().time, stretch.to().time, stretch.from().value - zero, stretch.to().value - zero, ratio;
+  inputs << span.from().time, span.to().time, span.from().value - zero, span.to().value - zero, ratio;
   const Outputs value = Formulas(inputs, periods);
-  const MatrixXd gradient = Gradient(stretch, inputs, ratio_gradient);
+  const MatrixXd gradient = Gradient(span, inputs, ratio_gradient);
   const VectorXd error = CovarianceOf(table, gradient).diagonal().cwiseSqrt();
   if (!value.allFinite() || !error.allFinite()) return std::nullopt;
   const auto estimate = [&](Index k) { return Estimate{value[k], error[k]}; };

@@ -83,7 +83,7 @@ class PeakFitter {
 
  private:
   /// The part of the readings that is not a polynomial: higher terms of the swing, and the kink of an angle.
-  ArrayXd Known(const ArrayXd& delay, double distance) const {
+  ArrayXd NonPolynomialPart(const ArrayXd& delay, double distance) const {
     ArrayXd known = distance * CosineBeyond(shape_.degree, kPi / half_period_ * delay);
     if (recording_.quantity == Quantity::kAngle && kink_.sticking_angle != 0) {
       const double side = distance > 0 ? 1 : -1;
@@ -107,7 +107,7 @@ class PeakFitter {
     const bool inside = centre - shape_.half_width >= time[0] && centre + shape_.half_width <= time[time.size() - 1];
     if (!inside || fit.freedom < 1 || Saturates(recording_.value.segment(first, count))) return false;
     const ArrayXd delay = time.segment(first, count).array() - centre;
-    const VectorXd rest = recording_.value.segment(first, count) - Known(delay, value - zero_).matrix();
+    const VectorXd rest = recording_.value.segment(first, count) - NonPolynomialPart(delay, value - zero_).matrix();
     MatrixXd powers(count, shape_.degree + 1);
     powers.col(0).setOnes();
     for (int k = 1; k <= shape_.degree; ++k) powers.col(k) = powers.col(k - 1).array() * delay / shape_.half_width;
@@ -124,10 +124,10 @@ class PeakFitter {
 
   /// Finds the extremum of the polynomial nearest to the centre.
   bool FindVertex(const VectorXd& c, double centre, Peak& peak, MatrixXd& gradient) const {
-    constexpr int kMostSteps = 20;
+    constexpr int kMaxSteps = 20;
     double x = 0;
     VectorXd at(c.size()), slope(c.size()), curvature(c.size());
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
       at[0] = 1, slope[0] = 0, curvature[0] = 0;
       for (Index k = 1; k < c.size(); ++k) {
         at[k] = at[k - 1] * x;

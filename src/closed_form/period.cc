@@ -83,9 +83,9 @@ double NaturalFrequency(const HalfSwingTable& table) {
   const auto excess = [&](double frequency) { return FrequencyAtAmplitudesOf(table, frequency) - frequency; };
   if (!(excess(smallest) > 0)) return smallest;
   if (!(excess(largest) < 0)) return largest;
-  std::uintmax_t most_evaluations = 100;
+  std::uintmax_t max_evaluations = 100;
   const boost::math::tools::eps_tolerance<double> precise(40);
-  const auto [low, high] = boost::math::tools::toms748_solve(excess, smallest, largest, precise, most_evaluations);
+  const auto [low, high] = boost::math::tools::toms748_solve(excess, smallest, largest, precise, max_evaluations);
   return 0.5 * (low + high);
 }
 

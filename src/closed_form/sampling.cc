@@ -16,14 +16,14 @@ using Eigen::Index;
 
 /// With fewer samples per period a turning point, a parabola through three of them, is wrong by more than 1 % of the
 /// amplitude.
-constexpr double kFewestPerPeriod = 8;
+constexpr double kMinPerPeriod = 8;
 
 /// The recommended number; turning points are then accurate to a thousandth.
 constexpr double kGoodPerPeriod = 20;
 
 /// With fewer levels peak to peak the amplitude is accurate only to some percent, regardless of the noise. Near rest
 /// every swing has few levels.
-constexpr double kFewestCounts = 8;
+constexpr double kMinCounts = 8;
 
 /// An interval longer than this many typical ones contains missing readings.
 constexpr double kGap = 3;
@@ -47,11 +47,11 @@ void DescribeIntervals(const Eigen::VectorXd& time, Sampling& sampling) {
 }
 
 void DescribeCounts(const Recording& used, Sampling& sampling) {
-  constexpr Index kFewest = 8;
+  constexpr Index kMin = 8;
   const double q = used.resolution;
   const auto peak_to_peak = [](const auto& values) { return values.maxCoeff() - values.minCoeff(); };
   const auto in_period = static_cast<Index>(std::ceil(std::min(sampling.samples_per_period, 1e9)));
-  const Index last = std::min(std::max(in_period, kFewest), used.size());
+  const Index last = std::min(std::max(in_period, kMin), used.size());
   if (q > 0) sampling.start_counts = std::round(peak_to_peak(used.value) / q);
   if (q > 0) sampling.end_counts = std::round(peak_to_peak(used.value.tail(last)) / q);
   if (!used.range) return;
@@ -94,7 +94,7 @@ void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warni
                                               " and was sampled at " + Hz(sampling.rate_hz) +
                                               ", hardly more than twice a swing; " + Advice(expected)});
   }
-  if (!HoldsMirror(low, high, sampling.rate_hz)) return;
+  if (!CanAliasWithinRange(low, high, sampling.rate_hz)) return;
   const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);
   warnings.push_back({"once_a_cycle", "sampled at " + Hz(sampling.rate_hz) + " frequencies to both sides of " +
                                           Hz(mirror) + " look the same, and the pendulum's, expected at " +
@@ -121,7 +121,7 @@ void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {
 }
 
 void WarnOfCounts(const Sampling& sampling, std::vector<Warning>& warnings) {
-  if (!(sampling.start_counts > 0 && sampling.start_counts < kFewestCounts)) return;
+  if (!(sampling.start_counts > 0 && sampling.start_counts < kMinCounts)) return;
   warnings.push_back({"few_counts", "the swing spans " + NumberText(sampling.start_counts) +
                                         " levels of the sensor at first and " + NumberText(sampling.end_counts) +
                                         " at the end: turning points of so few are coarse; release from further out "
@@ -134,7 +134,7 @@ double ApparentFrequency(double frequency_hz, double rate_hz) {
   return std::abs(frequency_hz - rate_hz * std::round(frequency_hz / rate_hz));
 }
 
-bool HoldsMirror(double low_hz, double high_hz, double rate_hz) {
+bool CanAliasWithinRange(double low_hz, double high_hz, double rate_hz) {
   return std::floor(2 * high_hz / rate_hz) >= std::max(std::ceil(2 * low_hz / rate_hz), 1.0);
 }
 
@@ -160,7 +160,7 @@ std::vector<Warning> SamplingWarnings(const Sampling& sampling) {
   std::vector<Warning> warnings;
   if (sampling.expected_frequency_hz) WarnOfAliasing(sampling, *sampling.expected_frequency_hz, warnings);
   const bool aliases = !warnings.empty();
-  if (!aliases && sampling.frequency_hz > 0 && sampling.samples_per_period < kFewestPerPeriod) {
+  if (!aliases && sampling.frequency_hz > 0 && sampling.samples_per_period < kMinPerPeriod) {
     warnings.push_back({"slow_sampling", NumberText(sampling.samples_per_period, 2) +
                                              " samples a period: measured turning points and closed-form estimates "
                                              "are coarse, the fit is not; " +

@@ -6,19 +6,19 @@
 namespace pendulum {
 namespace {
 
-bool IsSaid(const std::vector<Warning>& warnings, const Warning& warning) {
+bool ContainsWarning(const std::vector<Warning>& warnings, const Warning& warning) {
   return std::ranges::any_of(
       warnings, [&](const Warning& other) { return other.code == warning.code && other.message == warning.message; });
 }
 
 void AddOnce(const std::vector<Warning>& warnings, std::vector<Warning>& all) {
   for (const Warning& warning : warnings) {
-    if (!IsSaid(all, warning)) all.push_back(warning);
+    if (!ContainsWarning(all, warning)) all.push_back(warning);
   }
 }
 
-bool SaidByAll(const std::vector<FitReport>& fits, const Warning& warning) {
-  return std::ranges::all_of(fits, [&](const FitReport& fit) { return IsSaid(fit.warnings, warning); });
+bool IsWarningOfAll(const std::vector<FitReport>& fits, const Warning& warning) {
+  return std::ranges::all_of(fits, [&](const FitReport& fit) { return ContainsWarning(fit.warnings, warning); });
 }
 
 /// The warnings of a joint fit's recordings. Each names its recording, or says that it applies to all.
@@ -28,7 +28,7 @@ std::vector<Warning> WarningsOfRuns(const Identification& report) {
   std::vector<Warning> all;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     for (Warning warning : runs[k]) {
-      const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return IsSaid(run, warning); });
+      const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return ContainsWarning(run, warning); });
       warning.message = (of_each ? std::string("each recording") : RecordingLabel(report, k)) + ": " + warning.message;
       AddOnce({warning}, all);
     }
@@ -61,8 +61,8 @@ std::vector<const Identification*> Identification::Parts() const {
 }
 
 std::size_t Identification::MainFit() const {
-  const auto index_of = [&](const auto& is_it) {
-    return static_cast<std::size_t>(std::ranges::find_if(fits, is_it) - fits.begin());
+  const auto index_of = [&](const auto& is_match) {
+    return static_cast<std::size_t>(std::ranges::find_if(fits, is_match) - fits.begin());
   };
   if (comparison && !comparison->recommended.empty()) {
     const std::size_t recommended =
@@ -80,7 +80,7 @@ std::vector<Warning> AllWarnings(const Identification& report) {
   for (const FitReport& fit : report.fits) {
     std::vector<Warning> named = fit.warnings;
     for (Warning& warning : named) {
-      if (!SaidByAll(report.fits, warning)) warning.message = std::string(fit.model.name) + ": " + warning.message;
+      if (!IsWarningOfAll(report.fits, warning)) warning.message = std::string(fit.model.name) + ": " + warning.message;
     }
     AddOnce(named, all);
   }
@@ -90,8 +90,8 @@ std::vector<Warning> AllWarnings(const Identification& report) {
 
 bool IsOneOfSeveral(const Identification& report, std::size_t run) {
   const DataSummary& data = report.runs[run].data;
-  const auto is_it = [&](const Identification& other) { return other.data.path == data.path; };
-  return data.release > 0 && std::ranges::count_if(report.runs, is_it) > 1;
+  const auto is_match = [&](const Identification& other) { return other.data.path == data.path; };
+  return data.release > 0 && std::ranges::count_if(report.runs, is_match) > 1;
 }
 
 std::string RecordingLabel(const Identification& report, std::size_t run) {

@@ -36,7 +36,7 @@ struct Swing {
 
 /// Takes the swing of that number (from 1) out of a prepared recording. The last chosen one takes the samples, for a
 /// copy of a long recording is large.
-Swing Take(PreparedRecording& from, int release) {
+Swing TakeSwing(PreparedRecording& from, int release) {
   const bool last = release == from.swings.chosen.back();
   Swing swing;
   swing.path = from.recording.path;
@@ -91,7 +91,7 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one)
 
 /// Completes what is known of a swing by its samples, fits and constancy, and by what is concluded from these. Closed
 /// forms have the friction of the model of fit `main`.
-void Conclude(const IdentifyOptions& options, RunModels run, std::size_t main, Identification& one) {
+void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::size_t main, Identification& one) {
   SummarizeUsed(run.alone.used, run.alone.swing, one.data);
   one.used = std::move(run.alone.used);
   one.constancy = std::move(run.constancy);
@@ -108,8 +108,8 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
   Identification one = std::move(swing.known);
   if (run->alone.fits.size() > 1) one.comparison = CompareModels(run->alone, fit_options);
   one.fits = std::move(run->alone.fits);
-  for (std::size_t m = 0; m < one.fits.size(); ++m) CountInconstancy(run->constancy[m], one.fits[m]);
-  Conclude(options, *std::move(run), one.MainFit(), one);
+  for (std::size_t m = 0; m < one.fits.size(); ++m) AddInconstancyError(run->constancy[m], one.fits[m]);
+  CompleteIdentification(options, *std::move(run), one.MainFit(), one);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !one.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, one.no_closed_forms);
@@ -120,10 +120,10 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
 // ---- Several recordings of one pendulum
 // ------------------------------------------------------------------------------
 
-Result<std::vector<Swing>> TakeAll(std::vector<PreparedRecording> recordings) {
+Result<std::vector<Swing>> TakeAllSwings(std::vector<PreparedRecording> recordings) {
   std::vector<Swing> swings;
   for (PreparedRecording& recording : recordings) {
-    for (const int release : recording.swings.chosen) swings.push_back(Take(recording, release));
+    for (const int release : recording.swings.chosen) swings.push_back(TakeSwing(recording, release));
   }
   if (swings.size() > 1) return swings;
   return Error(StatusCode::kInvalidArgument,
@@ -203,7 +203,7 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   });
   std::vector<RunModels> runs;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
-    if (!fitted[k]) return ErrorAmong(fitted[k].error(), swings[k].path, swings[k].release);
+    if (!fitted[k]) return ErrorOfRun(fitted[k].error(), swings[k].path, swings[k].release);
     runs.push_back(*std::move(fitted[k]));
   }
   return runs;
@@ -216,7 +216,7 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identificati
                                                          "at_bound",     "stop_is_a_kink"};
   for (const Warning& warning : alone.warnings) {
     const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
-    if (!of_the_fit && !joint.Warns(warning.code)) one.warnings.push_back(warning);
+    if (!of_the_fit && !joint.HasWarning(warning.code)) one.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
   one.warnings.push_back(
@@ -234,7 +234,7 @@ JointPart PartOf(const JointModels& joint, std::size_t m) {
 }
 
 /// What holds for all recordings together.
-Identification WholeOf(const JointModels& joint, const FitOptions& options) {
+Identification CombineRecordings(const JointModels& joint, const FitOptions& options) {
   Identification whole;
   whole.rig = options.rig;
   whole.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
@@ -253,16 +253,16 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
   const std::vector<int> chosen = recording.swings.chosen;
   const std::string path = recording.recording.path;
   for (const int release : chosen) {
-    auto one = IdentifyOne(options, Take(recording, release));
+    auto one = IdentifyOne(options, TakeSwing(recording, release));
     if (!one && options.fit.stop.stop_requested()) one = FitStopped();  // whatever the stop made of it
-    if (!one && chosen.size() > 1) one = ErrorAmong(one.error(), path, release);
+    if (!one && chosen.size() > 1) one = ErrorOfRun(one.error(), path, release);
     all.push_back(std::move(one));
   }
   return all;
 }
 
 Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings) {
-  auto swings = TakeAll(std::move(recordings));
+  auto swings = TakeAllSwings(std::move(recordings));
   if (!swings) return tl::unexpected(swings.error());
   if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckResolution(options, *swings); !checked) return tl::unexpected(checked.error());
@@ -273,14 +273,14 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vect
   auto alone = FitEachAlone(options, fit_options, *swings);
   if (!alone) return tl::unexpected(alone.error());
   JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
-  Identification whole = WholeOf(joint, fit_options);
+  Identification whole = CombineRecordings(joint, fit_options);
   const std::size_t main = whole.MainFit();
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
     Identification one = std::move((*swings)[k].known);
     one.rig = *rig;
     for (std::size_t m = 0; m < joint.models.size(); ++m) one.fits.push_back(joint.FitOf(k, m));
     AddOwnWarnings(joint.runs[k].alone.fits[main], one.fits[main], one);
-    Conclude(options, std::move(joint.runs[k]), main, one);
+    CompleteIdentification(options, std::move(joint.runs[k]), main, one);
     whole.runs.push_back(std::move(one));
   }
   if (options.fit.stop.stop_requested()) return FitStopped();

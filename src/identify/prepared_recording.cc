@@ -40,7 +40,7 @@ Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOpt
   return PrepareRecording(*std::move(read), options, std::move(rig));
 }
 
-tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release) {
+tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release) {
   const std::string name = path == "-" ? "standard input" : path;
   if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
   const std::string where = name + ": ";

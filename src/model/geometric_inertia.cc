@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 /// A rig file's value, a number or {"value", "std_dev"}.
 double ValueOf(const Json& entry) { return entry.is_object() ? entry.at("value").get<double>() : entry.get<double>(); }
 
-double DeviationOf(const Json& entry) { return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0; }
+double StdDevOf(const Json& entry) { return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0; }
 
 /// The quantities that follow from a rig's description.
 struct Inertias {
@@ -36,7 +36,7 @@ std::optional<Inertias> InertiasOf(const Json& description) {
 
 /// The description with one value increased by its standard deviation.
 Json Varied(Json description, const std::string& key) {
-  const double value = ValueOf(description.at(key)) + DeviationOf(description.at(key));
+  const double value = ValueOf(description.at(key)) + StdDevOf(description.at(key));
   description[key] = value;
   return description;
 }
@@ -57,7 +57,7 @@ std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted) {
     double variance = 0;
     double difference_variance = 0;
     for (const auto& item : rig.source.items()) {
-      if (DeviationOf(item.value()) == 0) continue;
+      if (StdDevOf(item.value()) == 0) continue;
       const std::optional<Inertias> varied = InertiasOf(Varied(rig.source, item.key()));
       if (!varied) continue;
       const double change = (inertia.is_point_mass ? *varied->point_mass : varied->own) - inertia.value;

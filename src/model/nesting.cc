@@ -31,7 +31,7 @@ std::array<double, kFrictionParameters<F>> NullOf(const std::vector<ParameterInf
 
 /// Whether the torque changes with parameter k at any of a few rates, in either direction.
 template <FrictionModel F>
-bool Matters(std::array<double, kFrictionParameters<F>> p, std::size_t k) {
+bool AffectsTorque(std::array<double, kFrictionParameters<F>> p, std::size_t k) {
   const auto torques = [&] {
     std::array<double, 6> at{};
     std::size_t i = 0;
@@ -59,7 +59,7 @@ std::optional<Nesting> FindNesting(const MotionModel& simpler, const MotionModel
       const ParameterInfo& info = F::kParameters[k];
       if (Has(few, info.name)) continue;
       nesting.added.push_back(info);
-      if (!Matters<F>(null, k)) {
+      if (!AffectsTorque<F>(null, k)) {
         nesting.unidentified.push_back(info.name);
       } else {
         ++(info.lower < 0 ? nesting.free : nesting.bounded);
@@ -69,7 +69,7 @@ std::optional<Nesting> FindNesting(const MotionModel& simpler, const MotionModel
   return nesting;
 }
 
-std::optional<MotionModel> RichestWithin(const MotionModel& model) {
+std::optional<MotionModel> LargestNestedModel(const MotionModel& model) {
   std::optional<MotionModel> richest;
   for (const MotionModel& other : MotionModels()) {
     if (!FindNesting(other, model)) continue;
@@ -78,7 +78,7 @@ std::optional<MotionModel> RichestWithin(const MotionModel& model) {
   return richest;
 }
 
-OrderedPair OrderOf(const MotionModel& model) {
+OrderedPair FindOrderedPair(const MotionModel& model) {
   OrderedPair pair;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     if constexpr (HasOrder<F>) pair = {F::kOrdered.larger + 1, F::kOrdered.smaller + 1};

@@ -91,7 +91,7 @@ bool Has(const Form& form, std::string_view key) { return std::ranges::find(form
 /// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.
 Result<Form> FindForm(const Json& rig, const std::string& name) {
   std::optional<Form> form;
-  std::string telling_key;
+  std::string identifying_key;
   for (const auto& item : rig.items()) {
     const std::string& key = item.key();
     const auto* const found = std::ranges::find_if(kForms, [&](const Form& each) { return Has(each, key); });
@@ -102,25 +102,26 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
     // Two kinds of description have "gravity", so this key does not identify the kind.
     if (form || found == kForms.end() || key == "gravity") continue;
     form = *found;
-    telling_key = key;
+    identifying_key = key;
   }
   if (!form) return Fault(name, "the rig does not say what it is; it must be " + std::string(kFormsText));
   for (const auto& item : rig.items()) {
     if (item.key() == kInertia.name || Has(*form, item.key())) continue;
-    return Fault(name, Quoted(telling_key) + " and " + Quoted(item.key()) +
+    return Fault(name, Quoted(identifying_key) + " and " + Quoted(item.key()) +
                            " belong to different descriptions of a rig, which cannot be mixed; it is " +
                            std::string(kFormsText));
   }
   for (const std::string_view key : form->keys) {
-    if (!rig.contains(key)) return Fault(name, Quoted(key) + " is missing beside " + Quoted(telling_key) + "; add it");
+    if (!rig.contains(key))
+      return Fault(name, Quoted(key) + " is missing beside " + Quoted(identifying_key) + "; add it");
   }
   return *form;
 }
 
 Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_zero, const std::string& name) {
   if (!json.is_number()) {
-    return Fault(name,
-                 key + " is " + ShownJson(json) + R"(; it must be a number or {"value": number, "std_dev": number})");
+    return Fault(
+        name, key + " is " + JsonForMessage(json) + R"(; it must be a number or {"value": number, "std_dev": number})");
   }
   const auto number = json.get<double>();
   if (number > 0 || (number == 0 && may_be_zero)) return number;
@@ -186,7 +187,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
 }
 
 Result<Rig> ReadRig(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "rig", kMostJsonBytes);
+  const Result<std::string> text = ReadFile(path, "rig", kMaxJsonBytes);
   if (!text) return tl::unexpected(text.error());
   return ParseRig(*text, path.string());
 }

@@ -49,13 +49,13 @@ tl::unexpected<Status> NoArc(const std::string& why, const std::string& otherwis
 
 /// Checks that the direction from the centre to the middle of the points is down. It is undetermined if the points lie
 /// all round the centre: a swing beyond the horizontal has as many points above. In units of the radius.
-Result<void> CheckDown(const VectorXd& y, const Circle& circle) {
-  constexpr double kLeast = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii below the centre
+Result<void> CheckDownDirection(const VectorXd& y, const Circle& circle) {
+  constexpr double kMin = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii below the centre
   const double middle = -circle[1] / circle[2];
   const VectorXd height = (y.array() - circle[1]) / (middle < 0 ? -circle[2] : circle[2]);
-  if (std::abs(middle) >= kLeast && height.maxCoeff() >= -height.minCoeff()) return {};
+  if (std::abs(middle) >= kMin && height.maxCoeff() >= -height.minCoeff()) return {};
   return NoArc("their middle is " + NumberText(std::abs(middle), 2) + " radii from its centre, and with less than " +
-                   NumberText(kLeast, 2) + ", or points farther on the other side, they do not tell which way is down",
+                   NumberText(kMin, 2) + ", or points farther on the other side, they do not tell which way is down",
                ", or leave out where it turns over");
 }
 
@@ -64,7 +64,7 @@ Result<void> CheckDown(const VectorXd& y, const Circle& circle) {
 double Arc::Angle(double point_x, double point_y) const { return std::atan2(point_x - x, down * (point_y - y)); }
 
 Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
-  constexpr int kMostSteps = 50;
+  constexpr int kMaxSteps = 50;
   constexpr double kConverged = 1e-12;
   constexpr double kLargestError = 0.2;  // of the radius; with a larger error no angle can be trusted
   const double x_mean = x.mean();
@@ -77,7 +77,7 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   Eigen::MatrixX3d jacobian;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   bool has_settled = false;
-  for (int step = 0; step < kMostSteps && circle.allFinite() && !has_settled; ++step) {
+  for (int step = 0; step < kMaxSteps && circle.allFinite() && !has_settled; ++step) {
     const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
     information = jacobian.transpose() * jacobian;
     const Eigen::Vector3d change = information.ldlt().solve(jacobian.transpose() * distance);
@@ -93,7 +93,7 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   if (!(error < kLargestError)) {
     return NoArc("its radius would be uncertain by " + NumberText(100 * error, 2) + " %");
   }
-  if (auto checked = CheckDown(at_y, circle); !checked) return tl::unexpected(checked.error());
+  if (auto checked = CheckDownDirection(at_y, circle); !checked) return tl::unexpected(checked.error());
   Arc arc;
   arc.x = x_mean + scale * circle[0];
   arc.y = y_mean + scale * circle[1];

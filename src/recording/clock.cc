@@ -62,12 +62,12 @@ class ClockRepair {
   void Unwrap();
   std::optional<double> Grid() const;
   bool IsNotDecreasing() const;
-  Index OddSteps(double grid) const;
-  Index FirstOfSharedStamp() const;
-  Index SharedRows(std::vector<bool>& keep) const;
+  Index CountUnusualSteps(double grid) const;
+  Index FirstSharedRow() const;
+  Index CountSharedRows(std::vector<bool>& keep) const;
   bool MakeUniform(double grid);
-  Check LeaveOutShared();
-  Check LeaveOutBackward();
+  Check RemoveRowsWithSharedStamps();
+  Check RemoveBackwardRows();
   void Keep(const std::vector<bool>& keep);
   void WarnOfScatter();
 
@@ -174,12 +174,12 @@ bool IsMultiple(double number, double grid) {
 /// least a tenth of the mean sampling interval.
 std::optional<double> ClockRepair::Grid() const {
   constexpr std::array kMantissas = {5.0, 2.0, 1.0};
-  constexpr int kMostDecades = 12;
+  constexpr int kMaxDecades = 12;
   const double span = time().maxCoeff() - time().minCoeff();
   const double mean = span / static_cast<double>(size() - 1);
   if (!(mean > 0) || !std::isfinite(span)) return std::nullopt;
   int exponent = static_cast<int>(std::floor(std::log10(span)));
-  for (int decade = 0; decade < kMostDecades; ++decade, --exponent) {
+  for (int decade = 0; decade < kMaxDecades; ++decade, --exponent) {
     for (const double mantissa : kMantissas) {
       const double grid = exponent < 0 ? mantissa / std::pow(10, -exponent) : mantissa * std::pow(10, exponent);
       if (grid < 0.1 * mean) return std::nullopt;
@@ -191,7 +191,7 @@ std::optional<double> ClockRepair::Grid() const {
 }
 
 /// The number of steps that differ from the median step by at least one step of the grid.
-Index ClockRepair::OddSteps(double grid) const {
+Index ClockRepair::CountUnusualSteps(double grid) const {
   std::vector<double> steps;
   for (Index i = 1; i < size(); ++i) steps.push_back(std::round((time()[i] - time()[i - 1]) / grid));
   const double usual = Median(steps);
@@ -224,9 +224,9 @@ bool ClockRepair::MakeUniform(double grid) {
 
 /// Warns of stamps that increase although rounded. With regular sampling and gaps, nearly all steps would be equal.
 void ClockRepair::WarnOfScatter() {
-  constexpr double kOddShare = 0.1;
+  constexpr double kMinUnusualShare = 0.1;
   const std::optional<double> grid = Grid();
-  if (!grid || static_cast<double>(OddSteps(*grid)) <= kOddShare * static_cast<double>(size())) return;
+  if (!grid || static_cast<double>(CountUnusualSteps(*grid)) <= kMinUnusualShare * static_cast<double>(size())) return;
   Warn("time_rounded", 0,
        "the times are rounded to " + TimeText(*grid) + ", coarse against the sampling interval, and no uniform clock " +
            "agrees with them; they were kept, and rounding scatters them by " + NumberText(*grid / std::sqrt(12.0), 2) +
@@ -236,7 +236,7 @@ void ClockRepair::WarnOfScatter() {
 // ---- Repeated stamps ---------------------------------------------------------------------------------------------
 
 /// The first row whose stamp the next row repeats, or the number of rows.
-Index ClockRepair::FirstOfSharedStamp() const {
+Index ClockRepair::FirstSharedRow() const {
   Index row = 0;
   while (row + 1 < size() && time()[row + 1] != time()[row]) ++row;
   return row + 1 < size() ? row : size();
@@ -244,9 +244,9 @@ Index ClockRepair::FirstOfSharedStamp() const {
 
 /// The number of rows to leave out. Of successive rows with the same stamp, one is kept if their values are equal, and
 /// none otherwise.
-Index ClockRepair::SharedRows(std::vector<bool>& keep) const {
+Index ClockRepair::CountSharedRows(std::vector<bool>& keep) const {
   keep.assign(size(), true);
-  Index gone = 0;
+  Index removed = 0;
   for (Index begin = 0, end = 0; begin < size(); begin = end) {
     bool is_equal = true;
     for (end = begin + 1; end < size() && time()[end] == time()[begin]; ++end) {
@@ -255,19 +255,19 @@ Index ClockRepair::SharedRows(std::vector<bool>& keep) const {
     }
     if (end - begin == 1) continue;
     std::fill(keep.begin() + begin + (is_equal ? 1 : 0), keep.begin() + end, false);
-    gone += end - begin - (is_equal ? 1 : 0);
+    removed += end - begin - (is_equal ? 1 : 0);
   }
-  return gone;
+  return removed;
 }
 
-Check ClockRepair::LeaveOutShared() {
-  constexpr double kMostShare = 0.2;
-  const Index first = FirstOfSharedStamp();
+Check ClockRepair::RemoveRowsWithSharedStamps() {
+  constexpr double kMaxShare = 0.2;
+  const Index first = FirstSharedRow();
   if (first == size()) return {};
   std::vector<bool> keep;
-  const Index gone = SharedRows(keep);
-  const std::string many = std::to_string(gone) + " of " + std::to_string(size()) + " rows";
-  if (static_cast<double>(gone) > kMostShare * static_cast<double>(size())) {
+  const Index removed = CountSharedRows(keep);
+  const std::string many = std::to_string(removed) + " of " + std::to_string(size()) + " rows";
+  if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) {
     return Fault(first + 1, "time " + TimeText(time()[first]) + " stands on line " +
                                 std::to_string(samples_.lines.LineOf(first)) + " too, and " + many +
                                 " share a time in this way; no uniform clock agrees with all times: record them to "
@@ -299,11 +299,11 @@ void ClockRepair::Keep(const std::vector<bool>& keep) {
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
 
-Check ClockRepair::LeaveOutBackward() {
-  constexpr double kMostShare = 0.05;
-  const double reach = kMostStepsBack * MedianStep();
+Check ClockRepair::RemoveBackwardRows() {
+  constexpr double kMaxShare = 0.05;
+  const double reach = kMaxStepsBack * MedianStep();
   std::vector<bool> keep(size(), true);
-  Index gone = 0, first = 0;
+  Index removed = 0, first = 0;
   double latest = time()[0];
   for (Index i = 1; i < size(); ++i) {
     if (latest - time()[i] > reach) {
@@ -314,12 +314,12 @@ Check ClockRepair::LeaveOutBackward() {
     if (first == 0 && time()[i] <= latest) first = i;
     latest = std::max(latest, time()[i]);
   }
-  for (const UnorderedRows& rows : FindUnorderedRows(time())) gone += DropFewest(time(), rows, keep);
-  if (gone == 0) return {};
+  for (const UnorderedRows& rows : FindUnorderedRows(time())) removed += DropOutOfOrderRows(time(), rows, keep);
+  if (removed == 0) return {};
   const std::string sentence = "time " + TimeText(time()[first]) + " does not follow " + TimeText(time()[first - 1]) +
                                " of line " + std::to_string(samples_.lines.LineOf(first - 1));
-  const std::string many = std::to_string(gone) + " of " + std::to_string(size()) + " rows";
-  if (static_cast<double>(gone) > kMostShare * static_cast<double>(size())) {
+  const std::string many = std::to_string(removed) + " of " + std::to_string(size()) + " rows";
+  if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) {
     return Fault(first,
                  sentence + ", and " + many + " would have to go for times to increase; correct or sort the rows");
   }
@@ -331,19 +331,20 @@ Check ClockRepair::LeaveOutBackward() {
 Result<RawSamples> ClockRepair::Repair() {
   if (IsUniform()) return std::move(samples_);
   Unwrap();
-  constexpr Index kTellingSteps = 8;  // So many lost rows are not spread evenly by chance (8!/8^8 = 0.2 %).
+  constexpr Index kMinUnusualSteps = 8;  // So many lost rows are not spread evenly by chance (8!/8^8 = 0.2 %).
   if (IsNotDecreasing()) {
     const std::optional<double> grid = Grid();
     std::vector<bool> keep;
-    const bool is_telling = grid && (OddSteps(*grid) >= kTellingSteps || 5 * SharedRows(keep) > size());
-    if (is_telling && MakeUniform(*grid)) return std::move(samples_);
+    const bool suggests_uniform_clock =
+        grid && (CountUnusualSteps(*grid) >= kMinUnusualSteps || 5 * CountSharedRows(keep) > size());
+    if (suggests_uniform_clock && MakeUniform(*grid)) return std::move(samples_);
   }
   if (Increases()) {
     WarnOfScatter();
     return std::move(samples_);
   }
-  if (Check done = LeaveOutShared(); !done) return tl::unexpected(done.error());
-  if (Check done = LeaveOutBackward(); !done) return tl::unexpected(done.error());
+  if (Check done = RemoveRowsWithSharedStamps(); !done) return tl::unexpected(done.error());
+  if (Check done = RemoveBackwardRows(); !done) return tl::unexpected(done.error());
   return std::move(samples_);
 }
 

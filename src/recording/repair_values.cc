@@ -51,7 +51,7 @@ void Unwrap(Recording& recording) {
 }
 
 /// Keeps only the marked samples.
-void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
+void KeepMarkedSamples(const std::vector<bool>& kept, Recording& recording) {
   Index count = 0;
   for (Index i = 0; i < recording.size(); ++i) {
     if (!kept[static_cast<std::size_t>(i)]) continue;
@@ -64,7 +64,7 @@ void KeepOnly(const std::vector<bool>& kept, Recording& recording) {
 }
 
 /// The smallest step between readings: their resolution, or the quantile `share` of the changes.
-double LeastStep(const Recording& recording, double share) {
+double SmallestStep(const Recording& recording, double share) {
   std::vector<double> steps;
   steps.reserve(static_cast<std::size_t>(recording.size()));
   for (Index i = 1; i < recording.size(); ++i) {
@@ -79,8 +79,8 @@ double LeastStep(const Recording& recording, double share) {
 
 /// Counts runs of at least three readings equal to the extreme of all readings that are entered and left in large
 /// steps: clipped tops of a swing.
-Index FlatTops(const Eigen::VectorXd& value, double extreme, double least_step) {
-  constexpr Index kFewest = 3;
+Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smallest_step) {
+  constexpr Index kMin = 3;
   constexpr double kAtSpeed = 3;
   Index tops = 0;
   for (Index i = 1; i + 1 < value.size(); ++i) {
@@ -89,27 +89,27 @@ Index FlatTops(const Eigen::VectorXd& value, double extreme, double least_step) 
     while (end < value.size() && value[end] == extreme) ++end;
     if (end == value.size()) break;
     const double steps = std::abs(value[i - 1] - extreme) + std::abs(value[end] - extreme);
-    if (end - i >= kFewest && steps > 2 * kAtSpeed * least_step) ++tops;
+    if (end - i >= kMin && steps > 2 * kAtSpeed * smallest_step) ++tops;
     i = end;
   }
   return tops;
 }
 
 /// If the file gives no range, takes an extreme at which swings are clipped as an end of the sensor's range.
-void NoticeSaturation(double least_step, Recording& recording) {
-  constexpr Index kFewest = 3;
+void DetectSaturation(double smallest_step, Recording& recording) {
+  constexpr Index kMin = 3;
   if (recording.range) return;
   const double high = recording.value.maxCoeff();
   const double low = recording.value.minCoeff();
-  const bool at_high = FlatTops(recording.value, high, least_step) >= kFewest;
-  const bool at_low = FlatTops(recording.value, low, least_step) >= kFewest;
+  const bool at_high = CountFlatTops(recording.value, high, smallest_step) >= kMin;
+  const bool at_low = CountFlatTops(recording.value, low, smallest_step) >= kMin;
   if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
 }
 
 /// Warns if there are rows only where the value changes: steps of one size, never zero, at uneven times.
-void NoticeEvents(double least_step, Recording& recording) {
+void WarnOfEventRows(double smallest_step, Recording& recording) {
   constexpr double kSame = 1e-3;
-  constexpr double kMostly = 0.3;
+  constexpr double kMinSingleShare = 0.3;
   constexpr double kNever = 0.002;
   constexpr double kUneven = 1.5;
   double single = 0;
@@ -118,14 +118,14 @@ void NoticeEvents(double least_step, Recording& recording) {
   intervals.reserve(static_cast<std::size_t>(recording.size()));
   for (Index i = 1; i < recording.size(); ++i) {
     const double step = std::abs(recording.value[i] - recording.value[i - 1]);
-    single += std::abs(step - least_step) < kSame * least_step ? 1 : 0;
+    single += std::abs(step - smallest_step) < kSame * smallest_step ? 1 : 0;
     none += step == 0 ? 1 : 0;
     intervals.push_back(recording.time[i] - recording.time[i - 1]);
   }
   const auto steps = static_cast<double>(intervals.size());
   std::ranges::sort(intervals);
   const bool uneven = intervals[intervals.size() * 9 / 10] > kUneven * intervals[intervals.size() / 10];
-  if (!uneven || single < kMostly * steps || none > kNever * steps) return;
+  if (!uneven || single < kMinSingleShare * steps || none > kNever * steps) return;
   recording.warnings.push_back(
       {"event_driven",
        "a row stands only where the value changes: the angle then is at the edge of its count, not in the middle, half "
@@ -144,7 +144,7 @@ struct Repeats {
   Index repeated = 0;
 };
 
-Repeats FindRepeats(double least_step, const Recording& recording) {
+Repeats FindRepeats(double smallest_step, const Recording& recording) {
   constexpr double kChange = 12;  // least steps overall
   constexpr double kMotion = 3;   // least steps from one sample to the next
   const Eigen::VectorXd& value = recording.value;
@@ -155,8 +155,8 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
     const Index from = std::max<Index>(i - kStaleReach, 0);
     const Index to = std::min(i + kStaleReach, last);
     const auto near = value.segment(from, to - from + 1);
-    const bool changes = near.maxCoeff() - near.minCoeff() > kChange * least_step;
-    const bool moves = std::abs(value[to] - value[from]) > kMotion * least_step * static_cast<double>(to - from);
+    const bool changes = near.maxCoeff() - near.minCoeff() > kChange * smallest_step;
+    const bool moves = std::abs(value[to] - value[from]) > kMotion * smallest_step * static_cast<double>(to - from);
     const auto& range = recording.range;
     const bool cut_off = range && (value[i] <= range->low || value[i] >= range->high);
     const bool same = value[i] == value[i - 1] && !cut_off;
@@ -170,19 +170,19 @@ Repeats FindRepeats(double least_step, const Recording& recording) {
 
 /// Whether readings change both before sample `first` and after sample `last`. They do not at the end of a hold, nor
 /// where a pendulum stops.
-bool MovesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double least_step) {
+bool ChangesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double smallest_step) {
   constexpr double kChange = 3;  // least steps
   const double before = value[first - 1] - value[std::max<Index>(first - 1 - kStaleReach, 0)];
   const double after = value[std::min(last + kStaleReach, value.size() - 1)] - value[last];
-  return std::min(std::abs(before), std::abs(after)) > kChange * least_step;
+  return std::min(std::abs(before), std::abs(after)) > kChange * smallest_step;
 }
 
 /// Leaves out stale readings: all of them if a tracker repeats many values, otherwise only three or more in a row
 /// during motion.
-void LeaveOutStale(double least_step, Recording& recording) {
+void RemoveStaleReadings(double smallest_step, Recording& recording) {
   constexpr double kMany = 0.25;
-  constexpr std::size_t kFewestInARow = 3;
-  const Repeats repeats = FindRepeats(least_step, recording);
+  constexpr std::size_t kMinConsecutive = 3;
+  const Repeats repeats = FindRepeats(smallest_step, recording);
   const bool many = static_cast<double>(repeats.repeated) > kMany * static_cast<double>(repeats.changing);
   const std::vector<bool>& stale = many ? repeats.amid_change : repeats.amid_motion;
   std::vector<bool> kept(stale.size(), true);
@@ -191,14 +191,15 @@ void LeaveOutStale(double least_step, Recording& recording) {
     std::size_t end = i;
     while (end < stale.size() && stale[end]) ++end;
     const auto first = static_cast<Index>(i), last = static_cast<Index>(end) - 1;
-    if (many ? end > i : end - i >= kFewestInARow && MovesOnBothSides(recording.value, first, last, least_step)) {
+    if (many ? end > i
+             : end - i >= kMinConsecutive && ChangesOnBothSides(recording.value, first, last, smallest_step)) {
       std::fill(kept.begin() + static_cast<std::ptrdiff_t>(i), kept.begin() + static_cast<std::ptrdiff_t>(end), false);
       left_out += static_cast<Index>(end - i);
     }
     i = std::max(end, i + 1);
   }
   if (left_out == 0 || recording.size() - left_out < kMinimumSamples) return;
-  KeepOnly(kept, recording);
+  KeepMarkedSamples(kept, recording);
   recording.warnings.push_back({"stale_values", std::to_string(left_out) +
                                                     " readings only repeat the one before while the pendulum moves on; "
                                                     "they are left out"});
@@ -246,7 +247,7 @@ struct Spikes {
   Index count = 0;
 };
 
-Spikes FindSpikes(double least_step, const Recording& recording) {
+Spikes FindSpikes(double smallest_step, const Recording& recording) {
   constexpr double kSigmaPerMedian = 1.21;  // for the distance of Gaussian noise to the line through its neighbours
   constexpr double kSteps = 2.5;
   const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 0.5;
@@ -256,7 +257,7 @@ Spikes FindSpikes(double least_step, const Recording& recording) {
   std::vector<bool> kept(static_cast<std::size_t>(recording.size()), true);
   Index left_out = 0;
   for (Index i = 2; i + 2 < recording.size(); ++i) {
-    const double far = far_in_medians * scale.At(i) + kSteps * least_step;
+    const double far = far_in_medians * scale.At(i) + kSteps * smallest_step;
     const auto is_far = [&](double predicted) { return std::abs(value[i] - predicted) > far; };
     if (!is_far(Extrapolated(recording, i - 2, i - 1, i)) || !is_far(Extrapolated(recording, i + 2, i + 1, i)))
       continue;
@@ -266,20 +267,20 @@ Spikes FindSpikes(double least_step, const Recording& recording) {
   return {std::move(kept), left_out};
 }
 
-void LeaveOutSpikes(double least_step, Recording& recording) {
-  constexpr int kMostPasses = 4;  // neighbours of a spike are judged again without it
-  constexpr Index kMostOf = 10;
-  Spikes spikes = FindSpikes(least_step, recording);
+void RemoveSpikes(double smallest_step, Recording& recording) {
+  constexpr int kMaxPasses = 4;  // neighbours of a spike are judged again without it
+  constexpr Index kMinSamplesPerRemoved = 10;
+  Spikes spikes = FindSpikes(smallest_step, recording);
   if (spikes.count == 0) return;
   Recording without = recording;
   Index left_out = 0;
-  for (int pass = 0; pass < kMostPasses && spikes.count > 0; ++pass) {
+  for (int pass = 0; pass < kMaxPasses && spikes.count > 0; ++pass) {
     if (without.size() - spikes.count < kMinimumSamples) break;
-    KeepOnly(spikes.kept, without);
+    KeepMarkedSamples(spikes.kept, without);
     left_out += spikes.count;
-    spikes = FindSpikes(least_step, without);
+    spikes = FindSpikes(smallest_step, without);
   }
-  if (left_out * kMostOf > recording.size()) {
+  if (left_out * kMinSamplesPerRemoved > recording.size()) {
     recording.warnings.push_back({"many_spikes", std::to_string(left_out) + " readings stand far from their "
                                                                             "neighbours, too many to leave out"});
     return;
@@ -295,10 +296,10 @@ void LeaveOutSpikes(double least_step, Recording& recording) {
 
 Recording RepairValues(Recording recording) {
   Unwrap(recording);
-  NoticeSaturation(LeastStep(recording, 0.01), recording);
-  NoticeEvents(LeastStep(recording, 0.1), recording);
-  LeaveOutStale(LeastStep(recording, 0.01), recording);
-  LeaveOutSpikes(LeastStep(recording, 0.1), recording);
+  DetectSaturation(SmallestStep(recording, 0.01), recording);
+  WarnOfEventRows(SmallestStep(recording, 0.1), recording);
+  RemoveStaleReadings(SmallestStep(recording, 0.01), recording);
+  RemoveSpikes(SmallestStep(recording, 0.1), recording);
   return recording;
 }
 

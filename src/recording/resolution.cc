@@ -17,12 +17,12 @@ namespace {
 using Eigen::Index;
 using Levels = std::vector<double>;  // distinct readings, increasing
 
-constexpr std::size_t kFewestLevels = 5;
+constexpr std::size_t kMinLevels = 5;
 constexpr double kLargestSpread = 0.12;  // rms distance to the levels, in steps; random readings have 0.29
 
 Levels SortedSample(const Eigen::VectorXd& value) {
-  constexpr Index kMost = 20000;
-  const Index count = std::min(value.size(), kMost);
+  constexpr Index kMax = 20000;
+  const Index count = std::min(value.size(), kMax);
   Levels sample;
   for (Index i = 0; i < count; ++i) sample.push_back(value[i * value.size() / count]);
   std::ranges::sort(sample);
@@ -66,9 +66,9 @@ Levels Candidates(const Levels& levels) {
 }
 
 /// Improves a step using the distances between levels within `reach`; std::nullopt if these are not multiples of it.
-std::optional<double> Improved(const Levels& levels, double step, double reach) {
+std::optional<double> ImprovedStep(const Levels& levels, double step, double reach) {
   constexpr double kNear = 0.25;
-  constexpr double kMostFar = 0.3;  // share of the pairs; half for random readings
+  constexpr double kMaxFarShare = 0.3;  // share of the pairs; half for random readings
   constexpr double kOutliers = 2;
   // Omits the last levels, which may be outliers and would otherwise be paired with all levels below.
   const double highest = levels[levels.size() - 1 - levels.size() / 50];
@@ -93,12 +93,12 @@ std::optional<double> Improved(const Levels& levels, double step, double reach) 
     moment += whole * (levels[j] - levels[i]);
     inertia += whole * whole;
   }
-  if (inertia == 0 || far > kMostFar * pairs + kOutliers) return std::nullopt;
+  if (inertia == 0 || far > kMaxFarShare * pairs + kOutliers) return std::nullopt;
   return moment / inertia;
 }
 
 /// Step and offset from least squares, and the rms distance of all levels to this grid.
-struct Comb {
+struct LevelGrid {
   double step = 0;
   double spread = 0;  ///< In steps.
 };
@@ -111,56 +111,56 @@ double CommonOffset(const Levels& levels, double step) {
   return middle + step * std::arg(sum) / (2 * kPi);
 }
 
-Comb FitComb(const Levels& levels, double step) {
+LevelGrid FitLevelGrid(const Levels& levels, double step) {
   constexpr double kNear = 0.25;
   double offset = CommonOffset(levels, step);
-  Comb comb{step, 0};
+  LevelGrid grid{step, 0};
   for (int pass = 0; pass < 3; ++pass) {
     double count = 0, k = 0, v = 0, kk = 0, kv = 0, square = 0;
     for (const double level : levels) {
-      const double steps = (level - offset) / comb.step;
+      const double steps = (level - offset) / grid.step;
       const double whole = std::round(steps);
       square += std::pow(steps - whole, 2);
       if (std::abs(steps - whole) > kNear) continue;
       const double distance = level - offset;
       count += 1, k += whole, v += distance, kk += whole * whole, kv += whole * distance;
     }
-    comb.spread = std::sqrt(square / static_cast<double>(levels.size()));
+    grid.spread = std::sqrt(square / static_cast<double>(levels.size()));
     const double determinant = count * kk - k * k;
     if (determinant <= 0 || pass == 2) break;
     const double slope = (count * kv - k * v) / determinant;
     offset += (v - slope * k) / count;
-    comb.step = slope;
+    grid.step = slope;
   }
-  return comb;
+  return grid;
 }
 
 /// Improves a step over distances that double each time, so that adjacent multiples remain distinguishable.
-std::optional<Comb> Refined(const Levels& levels, double step) {
+std::optional<LevelGrid> RefinedGrid(const Levels& levels, double step) {
   const double span = levels.back() - levels.front();
   for (double reach = 1.5 * step; reach < 0.6 * span; reach *= 2) {
-    const std::optional<double> improved = Improved(levels, step, reach);
+    const std::optional<double> improved = ImprovedStep(levels, step, reach);
     if (!improved) return std::nullopt;
     step = *improved;
   }
-  return FitComb(levels, step);
+  return FitLevelGrid(levels, step);
 }
 
 /// Whether the levels fit the grid beyond chance: the likelihood ratio of a normal density of their distances to a
 /// uniform one exceeds e^16.
-bool IsBeyondChance(const Levels& levels, const Comb& comb) {
+bool IsSignificant(const Levels& levels, const LevelGrid& grid) {
   constexpr double kUniform = 0.2420;  // 1/sqrt(2 pi e): spread of a normal density with the entropy of a uniform one
-  constexpr double kLeastSpread = 1e-3;
+  constexpr double kMinSpread = 1e-3;
   constexpr double kEvidence = 16;
   const double fitted = 2;  // step and offset
-  const double gain = std::log(kUniform / std::max(comb.spread, kLeastSpread));
-  return comb.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
+  const double gain = std::log(kUniform / std::max(grid.spread, kMinSpread));
+  return grid.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
 }
 
 /// Even spacing without gaps or repeats: a ramp, not levels.
-bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
+bool IsRamp(const Levels& levels, const LevelGrid& grid, std::size_t readings) {
   constexpr double kNearlyAll = 0.9;
-  const double possible = (levels.back() - levels.front()) / comb.step + 1;
+  const double possible = (levels.back() - levels.front()) / grid.step + 1;
   const auto met = static_cast<double>(levels.size());
   return met > kNearlyAll * static_cast<double>(readings) && met > kNearlyAll * possible;
 }
@@ -171,16 +171,16 @@ bool IsRamp(const Levels& levels, const Comb& comb, std::size_t readings) {
 /// finer spacing, otherwise the sensor's own.
 double FindResolution(const Eigen::VectorXd& value) {
   constexpr double kFinest = 1e-6;
-  if (value.size() < static_cast<Index>(kFewestLevels)) return 0;
+  if (value.size() < static_cast<Index>(kMinLevels)) return 0;
   const Levels sorted = SortedSample(value);
   const Levels levels = DistinctReadings(sorted);
-  if (levels.size() < kFewestLevels) return 0;
+  if (levels.size() < kMinLevels) return 0;
   const double span = levels.back() - levels.front();
   for (const double candidate : Candidates(levels)) {
     if (candidate < kFinest * span) break;
-    const std::optional<Comb> comb = Refined(levels, candidate);
-    if (!comb || !IsBeyondChance(levels, *comb)) continue;
-    return IsRamp(levels, *comb, sorted.size()) ? 0 : comb->step;
+    const std::optional<LevelGrid> grid = RefinedGrid(levels, candidate);
+    if (!grid || !IsSignificant(levels, *grid)) continue;
+    return IsRamp(levels, *grid, sorted.size()) ? 0 : grid->step;
   }
   return 0;
 }

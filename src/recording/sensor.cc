@@ -23,7 +23,7 @@ constexpr std::string_view kForm =
     R"("covariance", "residual_std_dev" and "input_range")";
 
 /// No sensor's curve needs more coefficients, and higher powers of a count overflow.
-constexpr std::size_t kMostCoefficients = 16;
+constexpr std::size_t kMaxCoefficients = 16;
 
 /// Reads one calibration key by key. Every member function names the key in its error.
 class CalibrationReader {
@@ -38,7 +38,7 @@ class CalibrationReader {
   }
 
   tl::unexpected<Status> Wrong(std::string_view key, const Json& value, const std::string& rule) const {
-    return Fault(key, "is " + ShownJson(value) + "; it must be " + rule);
+    return Fault(key, "is " + JsonForMessage(value) + "; it must be " + rule);
   }
 
   /// The value of an optional key, or nullptr.
@@ -90,7 +90,7 @@ Check CalibrationReader::ReadWord(std::string_view key, std::string_view one, st
 Check CalibrationReader::ReadNumbers(std::string_view key, const Json& json, std::vector<double>& numbers) const {
   if (!json.is_array()) return Wrong(key, json, "an array of numbers");
   for (const Json& number : json) {
-    if (!number.is_number()) return Fault(key, "holds " + ShownJson(number) + "; it must hold numbers");
+    if (!number.is_number()) return Fault(key, "holds " + JsonForMessage(number) + "; it must hold numbers");
     numbers.push_back(number.get<double>());
   }
   return {};
@@ -100,9 +100,9 @@ Check CalibrationReader::ReadCoefficients() {
   std::vector<double>& coefficients = calibration_.coefficients;
   if (Check read = ReadNumbers("coefficients", *json_.find("coefficients"), coefficients); !read) return read;
   if (coefficients.empty()) return Fault("coefficients", "is empty; it must hold at least an offset and a slope");
-  if (coefficients.size() > kMostCoefficients) {
+  if (coefficients.size() > kMaxCoefficients) {
     return Fault("coefficients", "has " + std::to_string(coefficients.size()) + " numbers; there may be at most " +
-                                     std::to_string(kMostCoefficients));
+                                     std::to_string(kMaxCoefficients));
   }
   if (std::all_of(coefficients.begin() + 1, coefficients.end(), [](double each) { return each == 0; })) {
     return Fault("coefficients", "has no slope, so that every reading would be the same angle; give [offset, slope]");
@@ -202,10 +202,10 @@ double Calibration::Slope(double reading) const {
 }
 
 double Calibration::Reading(double angle, double near) const {
-  constexpr int kMostSteps = 50;
+  constexpr int kMaxSteps = 50;
   constexpr double kSmallStep = 1e-12;
   double reading = near;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double change = (angle - Angle(reading)) / Slope(reading);
     if (!std::isfinite(change)) return near;
     reading += change;
@@ -223,7 +223,7 @@ Result<Calibration> ParseCalibration(std::string_view text, const std::string& n
 }
 
 Result<Calibration> ReadCalibration(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "calibration", kMostJsonBytes);
+  const Result<std::string> text = ReadFile(path, "calibration", kMaxJsonBytes);
   if (!text) return tl::unexpected(text.error());
   return ParseCalibration(*text, path.string());
 }

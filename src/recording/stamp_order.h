@@ -33,7 +33,7 @@ inline std::vector<UnorderedRows> FindUnorderedRows(const Eigen::VectorXd& time)
 }
 
 /// Keeps a longest increasing sequence of the rows (patience sorting, O(n log n)). Returns how many rows it drops.
-inline Eigen::Index DropFewest(const Eigen::VectorXd& time, UnorderedRows rows, std::vector<bool>& keep) {
+inline Eigen::Index DropOutOfOrderRows(const Eigen::VectorXd& time, UnorderedRows rows, std::vector<bool>& keep) {
   std::vector<Eigen::Index> tails;  // For sequences of each length, the smallest last row.
   std::vector<Eigen::Index> before(rows.end - rows.begin,
                                    Eigen::Index{-1});  // The previous row in each row's sequence.

@@ -82,7 +82,7 @@ Recording Thinned(const Recording& recording, Eigen::Index most) {
   return thinned;
 }
 
-Recording InTrueTime(Recording recording) {
+Recording InTrueSeconds(Recording recording) {
   const double first = recording.time[0];
   recording.time = first + recording.clock_scale * (recording.time.array() - first);
   return recording;

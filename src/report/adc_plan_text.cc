@@ -14,7 +14,7 @@ namespace {
 std::string FourDigits(double value) { return NumberText(value, 4); }
 
 /// Describes the swing about the middle of the travel that the counts cover.
-std::string AboutTheMiddle(const AdcSensor& sensor) {
+std::string CoveredRangeText(const AdcSensor& sensor) {
   const SensorRange usable = sensor.UsableAnglesDeg();
   const double swing = std::min(-usable.low, usable.high);
   return swing > 0 ? "± " + FourDigits(swing) : "none";
@@ -27,7 +27,7 @@ std::vector<std::string> SensorRow(const AdcSensor& sensor) {
           FourDigits(sensor.DegPerCount()),
           FourDigits(sensor.CountsPerDeg()),
           FourDigits(usable.low) + " to " + FourDigits(usable.high),
-          AboutTheMiddle(sensor),
+          CoveredRangeText(sensor),
           NumberText(counts.low) + " to " + NumberText(counts.high)};
 }
 

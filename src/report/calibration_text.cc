@@ -210,7 +210,7 @@ std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit
   const double low = table.reading.minCoeff(), high = table.reading.maxCoeff();
   std::string text = "Outside " + Span(low, high, table.input) + " the curve is extrapolated.";
   const std::optional<SensorRange>& range = fit.calibration.input_range;
-  const auto turn = range ? TurningReading(fit.calibration, range->low, range->high) : std::nullopt;
+  const auto turn = range ? FindTurningReading(fit.calibration, range->low, range->high) : std::nullopt;
   if (turn) {
     text += " In the sensor's range it turns at about " + NumberText(*turn, 4) + " " + table.input +
             ": readings from there on would be taken for wrong angles.";

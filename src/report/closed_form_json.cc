@@ -71,7 +71,7 @@ Json RowJson(const ClosedFormRow& row) {
 }
 
 /// std::nullopt for 0, which means unknown.
-std::optional<double> Known(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
+std::optional<double> NonzeroOrNull(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
 
 }  // namespace
 
@@ -84,13 +84,13 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling) {
       .Set("jitter_s", sampling->jitter)
       .Set("gaps", Json(sampling->gaps))
       .Set("longest_gap_s", sampling->longest_gap)
-      .Set("frequency_hz", Known(sampling->frequency_hz), no_frequency)
+      .Set("frequency_hz", NonzeroOrNull(sampling->frequency_hz), no_frequency)
       .Set("seen_frequency_hz", NumberOrNull(sampling->seen_frequency_hz))
       .Set("expected_frequency_hz", NumberOrNull(sampling->expected_frequency_hz))
-      .Set("samples_per_period", Known(sampling->samples_per_period), no_frequency)
-      .Set("nyquist_margin", Known(sampling->nyquist_margin), no_frequency)
-      .Set("start_counts", Known(sampling->start_counts), no_counts)
-      .Set("end_counts", Known(sampling->end_counts), no_counts)
+      .Set("samples_per_period", NonzeroOrNull(sampling->samples_per_period), no_frequency)
+      .Set("nyquist_margin", NonzeroOrNull(sampling->nyquist_margin), no_frequency)
+      .Set("start_counts", NonzeroOrNull(sampling->start_counts), no_counts)
+      .Set("end_counts", NonzeroOrNull(sampling->end_counts), no_counts)
       .Set("saturated_samples", Json(sampling->saturated))
       .Done();
 }
@@ -108,9 +108,9 @@ nlohmann::ordered_json ClosedFormsJson(const Identification& report) {
   NumberObject json;
   json.Set("model", Json(report.closed_forms_model));
   json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, report.rig) : Json(nullptr));
-  if (!forms.linear) json.Because("linear: no two turning points a whole period apart follow each other");
+  if (!forms.linear) json.AddReason("linear: no two turning points a whole period apart follow each other");
   json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, report) : Json(nullptr));
-  if (!forms.decrement) json.Because("decrement: " + forms.no_decrement);
+  if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);
   return json.Set("envelopes", EnvelopesJson(forms.envelopes))
       .Set("envelope", TextOrNull(forms.envelope))
       .Set("turning_points", Json(forms.table.peaks.size()))

@@ -68,47 +68,47 @@ Table EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degr
 
 void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section& section) {
   if (!forms.linear) {
-    section.Say("No two turning points a whole period apart follow each other: no log decrement.");
+    section.AddText("No two turning points a whole period apart follow each other: no log decrement.");
     return;
   }
   const int periods = forms.linear->periods;
   const bool is_sine = forms.gravity == Gravity::kSine;
-  section.Say("Formulas of the linear pendulum, over " + std::to_string(periods) +
-              (periods == 1 ? " period" : " periods") + " from turning point " +
-              std::to_string(forms.linear->first + 1) + " on" +
-              (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : "."));
+  section.AddText("Formulas of the linear pendulum, over " + std::to_string(periods) +
+                  (periods == 1 ? " period" : " periods") + " from turning point " +
+                  std::to_string(forms.linear->first + 1) + " on" +
+                  (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : "."));
   section.Add(EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false));
 }
 
 /// Warns about negative friction, which would add energy.
-void SayNegative(const Decrement& decrement, Section& section) {
+void WarnOfNegativeFriction(const Decrement& decrement, Section& section) {
   constexpr double kSurely = 3;
   const std::vector<ParameterInfo> infos = PhysicalParameters(decrement.model);
   for (std::size_t k = 0; k < decrement.friction.size(); ++k) {
     const auto [value, error] = decrement.friction[k];
     if (value >= -kSurely * error) continue;
-    section.Say(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
-                    " standard errors, which no friction is: the turning points follow another law.",
-                Emphasis::kCaution);
+    section.AddText(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
+                        " standard errors, which no friction is: the turning points follow another law.",
+                    Emphasis::kCaution);
   }
 }
 
 void AddDecrement(const Identification& report, Section& section) {
   const ClosedForms& forms = *report.closed_forms;
   if (!forms.decrement) {
-    section.Say("No law was fitted to the turning points: " + forms.no_decrement + ".");
+    section.AddText("No law was fitted to the turning points: " + forms.no_decrement + ".");
     return;
   }
   const Decrement& decrement = *forms.decrement;
   std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
-  section.Say("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
-              (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
-              ", with the friction of model " + report.closed_forms_model + ": chi-square " +
-              NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
-              " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");
+  section.AddText("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
+                  (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
+                  ", with the friction of model " + report.closed_forms_model + ": chi-square " +
+                  NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
+                  " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");
   section.Add(EstimateTable(estimates, true));
-  SayNegative(decrement, section);
+  WarnOfNegativeFriction(decrement, section);
 }
 
 // --- the check -------------------------------------------------------------------------------------------------------
@@ -134,9 +134,10 @@ Section CheckSection(const ClosedFormCheck& check, const std::string& of) {
   table.caution = kDiffers;
   for (const ClosedFormRow& row : check.rows) table.rows.push_back(CheckCells(row));
   section.Add(std::move(table));
-  for (const ClosedFormRow& row : check.rows) section.Say(row.why.empty() ? "" : row.quantity + ": " + row.why + ".");
+  for (const ClosedFormRow& row : check.rows)
+    section.AddText(row.why.empty() ? "" : row.quantity + ": " + row.why + ".");
   for (const std::string& summary : {check.overlay.summary, check.summary}) {
-    section.Say(summary.empty() ? "" : summary + ".");
+    section.AddText(summary.empty() ? "" : summary + ".");
   }
   return section;
 }
@@ -222,7 +223,7 @@ Sections ClosedFormSections(const Identification& report) {
   Section forms{"Closed forms"};
   if (!report.closed_forms) {
     if (report.no_closed_forms.empty()) return {};
-    return {forms.Say("There are none: " + report.no_closed_forms + ".")};
+    return {forms.AddText("There are none: " + report.no_closed_forms + ".")};
   }
   AddLinear(*report.closed_forms, report.rig, forms);
   AddDecrement(report, forms);

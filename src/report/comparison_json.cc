@@ -23,7 +23,7 @@ std::string_view LikelihoodName(Likelihood likelihood) {
 /// null without a prediction; the row then gives the reason.
 Json PredictionJson(const std::string& what, const Prediction& prediction, const std::string& unit, NumberObject& row) {
   if (prediction.samples == 0) {
-    row.Because(what + ": " + (prediction.reason.empty() ? "not made" : prediction.reason));
+    row.AddReason(what + ": " + (prediction.reason.empty() ? "not made" : prediction.reason));
     return nullptr;
   }
   return NumberObject()
@@ -35,7 +35,7 @@ Json PredictionJson(const std::string& what, const Prediction& prediction, const
 
 Json RowJson(const ComparisonRow& row, const std::string& unit) {
   NumberObject object;
-  if (!row.judged) object.Because(row.reason.empty() ? "not judged" : row.reason);
+  if (!row.judged) object.AddReason(row.reason.empty() ? "not judged" : row.reason);
   object.Set("model", Json(row.model))
       .Set("judged", Json(row.judged))
       .Set("parameters", Json(row.parameters))
@@ -147,7 +147,7 @@ nlohmann::ordered_json ConstancyJson(const Constancy* constancy) {
       .Set("halves", HalvesJson(*constancy))
       .Set("amplitude", Json{{"windows", ArrayOf(constancy->windows, WindowJson)},
                              {"trends", ArrayOf(constancy->trends, TrendJson)}});
-  if (!constancy->reason.empty()) json.Because(constancy->reason);
+  if (!constancy->reason.empty()) json.AddReason(constancy->reason);
   return json.Done();
 }
 

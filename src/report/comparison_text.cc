@@ -84,23 +84,24 @@ Table PredictionTable(const Comparison& comparison, const Conversion& shown) {
   return table;
 }
 
-bool PredictsSomething(const Comparison& comparison) {
+bool HasPredictions(const Comparison& comparison) {
   return std::ranges::any_of(comparison.rows, [](const ComparisonRow& row) {
     return row.cross_validation.samples > 0 || row.forward.samples > 0;
   });
 }
 
 /// Adds explanations that the rows' numbers do not give.
-void SayReasons(const Comparison& comparison, Section& section) {
+void AddReasons(const Comparison& comparison, Section& section) {
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
-      section.Say(row.model + " is not judged: " + Sentence(row.reason));
+      section.AddText(row.model + " is not judged: " + Sentence(row.reason));
       continue;
     }
     const std::string& first = row.cross_validation.reason;
     const std::string& second = row.forward.reason;
-    if (!first.empty()) section.Say(row.model + ", left-out blocks: " + Sentence(first));
-    if (!second.empty()) section.Say(row.model + ", last part: " + (second == first ? "the same." : Sentence(second)));
+    if (!first.empty()) section.AddText(row.model + ", left-out blocks: " + Sentence(first));
+    if (!second.empty())
+      section.AddText(row.model + ", last part: " + (second == first ? "the same." : Sentence(second)));
   }
 }
 
@@ -116,25 +117,25 @@ Table TestTable(const Comparison& comparison) {
 Section ComparisonSection(const Comparison& comparison, const Conversion& shown) {
   const bool recommends = !comparison.recommended.empty();
   Section section{"Comparison"};
-  section.Say(recommends ? "Recommended: " + comparison.recommended + "." : "No model is recommended.",
-              recommends ? Emphasis::kNone : Emphasis::kCaution);
-  section.Say(Sentence(comparison.reason)).Add(CriteriaTable(comparison, shown));
-  section.Say(Sentence(comparison.criterion));
-  if (PredictsSomething(comparison)) {
-    section.Say(
+  section.AddText(recommends ? "Recommended: " + comparison.recommended + "." : "No model is recommended.",
+                  recommends ? Emphasis::kNone : Emphasis::kCaution);
+  section.AddText(Sentence(comparison.reason)).Add(CriteriaTable(comparison, shown));
+  section.AddText(Sentence(comparison.criterion));
+  if (HasPredictions(comparison)) {
+    section.AddText(
         "Prediction of samples that were left out of the fit, block by block, and of the last part from the "
         "first: rms of measured - predicted, and of the same over its predicted standard deviation, which is 1 "
         "where model and errors are right.");
     section.Add(PredictionTable(comparison, shown));
   }
-  SayReasons(comparison, section);
+  AddReasons(comparison, section);
   return section;
 }
 
 Section TestSection(const Comparison& comparison) {
   Section section{"Likelihood-ratio tests", "small p: the simpler law lacks what is added", {TestTable(comparison)}};
   for (const NestedTest& test : comparison.tests) {
-    if (!test.p) section.Say(test.richer + " over " + test.simpler + ": no p: " + Sentence(test.reason));
+    if (!test.p) section.AddText(test.richer + " over " + test.simpler + ": no p: " + Sentence(test.reason));
   }
   return section;
 }
@@ -193,7 +194,7 @@ bool HasTrend(const Constancy& constancy) {
   return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
 }
 
-bool SaysHalves(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
+bool HaveHalvesDiffered(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
 
 /// Whether a table shows friction below 0, which is outside the fit's own bound.
 bool HasNegativeFriction(const Constancy& constancy) {
@@ -201,7 +202,7 @@ bool HasNegativeFriction(const Constancy& constancy) {
     return row.name != kAsymmetry.name && (row.first < 0 || row.second < 0);
   };
   const auto in_window = [](const AmplitudeRow& row) { return row.friction < 0; };
-  return (SaysHalves(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
+  return (HaveHalvesDiffered(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
          (HasTrend(constancy) && std::ranges::any_of(constancy.windows, in_window));
 }
 
@@ -218,14 +219,14 @@ Sections ConstancySections(const Identification& report, std::size_t fit) {
   const Constancy* constancy = report.ConstancyOf(fit);
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
-  section.Say(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
-  if (SaysHalves(*constancy)) section.Add(HalvesTable(*constancy));
+  section.AddText(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
+  if (HaveHalvesDiffered(*constancy)) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
   if (HasNegativeFriction(*constancy)) {
-    section.Say("Parts are fitted without bounds: a part by itself may show friction below 0.");
+    section.AddText("Parts are fitted without bounds: a part by itself may show friction below 0.");
   }
   const bool said = constancy->verdict.find(constancy->reason) != std::string::npos;
-  if (!said) section.Say("Not tested: " + Sentence(constancy->reason));
+  if (!said) section.AddText("Not tested: " + Sentence(constancy->reason));
   return {std::move(section)};
 }
 

@@ -15,7 +15,7 @@ namespace {
 Json ParameterJson(const ParameterEstimate& parameter) {
   NumberObject object;
   if (parameter.open_interval != OpenInterval::kClosed) {
-    object.Because("the interval is open: " + std::string(Sentence(parameter.open_interval)));
+    object.AddReason("the interval is open: " + std::string(Sentence(parameter.open_interval)));
   }
   return object.Set("estimate", parameter.estimate)
       .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
@@ -94,7 +94,7 @@ Json NoiseJson(const FitReport& fit, const DataSummary& data) {
       .Set(KeyWithUnit("resolution", fit.reading_unit), ResolutionJson(data))
       .Set("saturated_samples", Json(noise.censored))
       .Set("lag1_correlation", noise.lag1_correlation)
-      .Set("correlation", Json(noise.memory.Name()));
+      .Set("correlation", Json(noise.autocorrelation.Name()));
   if (noise.family == NoiseFamily::kEdges) object.Set("time_sigma_s", noise.stamp_ratio * noise.sigma);
   return object.Done();
 }

@@ -17,7 +17,7 @@
 namespace pendulum {
 namespace {
 
-constexpr double kLeastCorrelation = 0.1;  // smaller ones are not listed
+constexpr double kMinCorrelation = 0.1;  // smaller ones are not listed
 
 using Row = std::vector<std::string>;
 
@@ -33,7 +33,7 @@ Section ModelSection(const FitReport& fit) {
       fit.start == StartKind::kRelease ? "held at an angle, then released" : "in motion at the first used sample";
   return {"Fit",
           "",
-          {Facts{{"model", std::string(fit.model.name) + ":  " + TermsTogether(SymbolicEquation(fit.model))},
+          {Facts{{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))},
                  {"start", start},
                  {"status", std::string(TerminationName(fit.termination)) + ": " + fit.reason,
                   IsConverged(fit) ? Emphasis::kNone : Emphasis::kAlarm}}}};
@@ -90,7 +90,7 @@ Table FurtherTable(const FitReport& fit, const ClosedFormCheck* check) {
 }
 
 /// Explains missing standard errors; each reason occurs once.
-void SayMissingErrors(const FitReport& fit, Section& section) {
+void ExplainMissingErrors(const FitReport& fit, Section& section) {
   std::vector<std::pair<std::string, std::string>> names_by_reason;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.std_error || parameter.fixed || parameter.reason.empty()) continue;
@@ -103,7 +103,7 @@ void SayMissingErrors(const FitReport& fit, Section& section) {
     }
   }
   for (const auto& [reason, names] : names_by_reason) {
-    section.Say(std::string("No standard error of ").append(names).append(": ").append(reason).append("."));
+    section.AddText(std::string("No standard error of ").append(names).append(": ").append(reason).append("."));
   }
 }
 
@@ -118,7 +118,7 @@ std::string OpenIntervals(const FitReport& fit) {
 }
 
 /// Names parameters that the recording hardly determines, and recordings that would.
-void SayIdentifiability(const FitReport& fit, Section& section) {
+void DescribeIdentifiability(const FitReport& fit, Section& section) {
   for (const Identifiability& known : fit.identifiability) {
     if (known.verdict == Identifiability::Verdict::kIdentifiable) continue;
     std::string traded;
@@ -126,8 +126,8 @@ void SayIdentifiability(const FitReport& fit, Section& section) {
       if (name != known.parameter) traded += (traded.empty() ? " (traded for " : ", ") + name;
     }
     if (!traded.empty()) traded += ")";
-    section.Say(known.parameter + " is " + std::string(VerdictName(known.verdict)) + traded + ": " + known.advice +
-                ".");
+    section.AddText(known.parameter + " is " + std::string(VerdictName(known.verdict)) + traded + ": " + known.advice +
+                    ".");
   }
 }
 
@@ -158,7 +158,7 @@ constexpr const char* kNoEstimates = "These are no estimates: nothing was fitted
 // --- derived quantities ----------------------------------------------------------------------------------------------
 
 /// An error larger than the value carries no information: it belongs to a quotient whose divisor may be 0.
-bool SaysNothing(const DerivedQuantity& quantity) {
+bool IsUninformative(const DerivedQuantity& quantity) {
   return quantity.std_error.value_or(0) >= std::abs(quantity.estimate);
 }
 
@@ -167,14 +167,14 @@ std::string DerivedInterval(const DerivedQuantity& quantity) {
   const auto number = [&](const std::optional<double>& end) -> std::string {
     if (!end) return "?";
     const double error = quantity.std_error.value_or(0);
-    if (!(error > 0) || SaysNothing(quantity)) return NumberText(*end, kDigitsWithoutError);
+    if (!(error > 0) || IsUninformative(quantity)) return NumberText(*end, kDigitsWithoutError);
     return RoundedText(*end, PdgRounding(quantity.estimate, error));
   };
   return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
 }
 
 /// σ in other units: "(0.0512 deg, 0.26 resolutions)".
-std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
+std::string OtherUnitsText(const NoiseEstimate& noise, const std::string& unit) {
   constexpr int kReadingDigits = 3;
   std::string also;
   if (const auto degrees = Degrees(unit)) {
@@ -190,19 +190,19 @@ std::string AlsoText(const NoiseEstimate& noise, const std::string& unit) {
 
 Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
   Section section{"Parameters"};
-  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
+  if (fit.termination == Termination::kFailed) section.AddText(kNoEstimates, Emphasis::kAlarm);
   section.Add(EstimateTable(fit)).Add(FurtherTable(fit, check));
-  SayMissingErrors(fit, section);
-  if (!fit.std_error_method.empty()) section.Say("Standard errors: " + fit.std_error_method + ".");
-  if (!fit.interval_method.empty()) section.Say("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  SayIdentifiability(fit, section);
-  return section.Say(check != nullptr ? "" : InertiaText(fit, rig));
+  ExplainMissingErrors(fit, section);
+  if (!fit.std_error_method.empty()) section.AddText("Standard errors: " + fit.std_error_method + ".");
+  if (!fit.interval_method.empty()) section.AddText("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
+  DescribeIdentifiability(fit, section);
+  return section.AddText(check != nullptr ? "" : InertiaText(fit, rig));
 }
 
 Section DerivedSection(const FitReport& fit) {
   Table table{{{""}, {"", true}, {"", false, 1}, {""}, {""}}};
   for (const DerivedQuantity& quantity : fit.derived) {
-    const bool nothing = SaysNothing(quantity);
+    const bool nothing = IsUninformative(quantity);
     ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
     if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
     table.rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
@@ -217,7 +217,7 @@ Section CorrelationSection(const FitReport& fit) {
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = i + 1; j < size; ++j) {
       const double correlation = Correlation(fit, i, j);
-      if (!(std::abs(correlation) >= kLeastCorrelation)) continue;
+      if (!(std::abs(correlation) >= kMinCorrelation)) continue;
       pairs.emplace_back(correlation, fit.covariance_names[i] + ", " + fit.covariance_names[j]);
     }
   }
@@ -235,7 +235,7 @@ std::string NoiseText(const FitReport& fit) {
   const ValueAndError sigma = PdgText(noise.sigma, noise.sigma_std_error.value_or(0));
   text +=
       noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
-  text += " " + fit.reading_unit + AlsoText(noise, fit.reading_unit);
+  text += " " + fit.reading_unit + OtherUnitsText(noise, fit.reading_unit);
   if (noise.family != NoiseFamily::kEdges) return text;
   text += " of an edge";
   if (noise.stamp_ratio == 0) return text;
@@ -243,15 +243,15 @@ std::string NoiseText(const FitReport& fit) {
 }
 
 Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
-  Section section{"Equation of motion", "", {Formula{TermsTogether(FittedEquation(fit, rig))}}};
-  if (rig) return section.Say("th in rad from hanging straight down, torques in N m.");
-  return section.Say(
+  Section section{"Equation of motion", "", {Formula{WithUnbrokenTerms(FittedEquation(fit, rig))}}};
+  if (rig) return section.AddText("th in rad from hanging straight down, torques in N m.");
+  return section.AddText(
       "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
       "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
       "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
 }
 
-std::string TermsTogether(const std::string& equation) {
+std::string WithUnbrokenTerms(const std::string& equation) {
   std::string text;
   const auto is_sign = [&](std::size_t i) {
     return i < equation.size() && std::string_view("+-=").find(equation[i]) < 3;
@@ -280,7 +280,7 @@ Section StatisticsSection(const FitReport& fit) {
           {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
           {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
           {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-          {"memory", fit.noise.memory.Name() + "; of a constant the samples tell as much as " +
+          {"memory", fit.noise.autocorrelation.Name() + "; of a constant the samples tell as much as " +
                          NumberText(std::round(statistics.effective_samples)) + " independent ones"},
           {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
           {"AIC, AICc, BIC",
@@ -294,9 +294,9 @@ Section StatisticsSection(const FitReport& fit) {
 Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
   Section section{TitleOf("Parameters", fit, is_one_of_several)};
   if (!IsConverged(fit)) {
-    section.Say(std::string(TerminationName(fit.termination)) + ": " + fit.reason + ".", Emphasis::kAlarm);
+    section.AddText(std::string(TerminationName(fit.termination)) + ": " + fit.reason + ".", Emphasis::kAlarm);
   }
-  if (fit.termination == Termination::kFailed) section.Say(kNoEstimates, Emphasis::kAlarm);
+  if (fit.termination == Termination::kFailed) section.AddText(kNoEstimates, Emphasis::kAlarm);
   return section.Add(EstimateTable(fit));
 }
 

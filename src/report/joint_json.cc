@@ -70,7 +70,7 @@ Json HomogeneityJson(const Homogeneity& homogeneity) {
   Json amplitude = Json::array();
   for (const AmplitudeDependence& one : homogeneity.amplitude_dependence) amplitude.push_back(AmplitudeJson(one));
   NumberObject json;
-  if (!homogeneity.p && !homogeneity.reason.empty()) json.Because(homogeneity.reason);
+  if (!homogeneity.p && !homogeneity.reason.empty()) json.AddReason(homogeneity.reason);
   json.Set("statistic", homogeneity.p ? Json(homogeneity.statistic) : Json(nullptr))
       .Set("dof", Json(homogeneity.dof))
       .Set("p", NumberOrNull(homogeneity.p))

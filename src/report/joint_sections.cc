@@ -45,7 +45,7 @@ Section RecordingSection(const Identification& report) {
                           std::isfinite(amplitudes[k]) ? NumberText(amplitudes[k] * Degrees("rad")->factor, 3) : "-"});
   }
   Section section{"Recordings", "", {std::move(files), std::move(table)}};
-  return section.Say("Amplitudes are root mean squares over the motion.");
+  return section.AddText("Amplitudes are root mean squares over the motion.");
 }
 
 Section FitSection(const Identification& report, std::size_t index) {
@@ -54,7 +54,7 @@ Section FitSection(const Identification& report, std::size_t index) {
   const std::string count = std::to_string(report.runs.size());
   return {"Fit",
           "",
-          {Facts{{"model", std::string(fit.model.name) + ":  " + TermsTogether(SymbolicEquation(fit.model))},
+          {Facts{{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))},
                  {"shared", NameList(report.joint[index].shared) + ", by " + count +
                                 " recordings; start, zero and noise are each recording's own"},
                  {"status", std::string(TerminationName(fit.termination)) + ": " + Printable(fit.reason),
@@ -145,10 +145,10 @@ std::string ScatterText(const SharedParameter& parameter) {
   const RandomEffects& scatter = parameter.scatter;
   const QuantityNumbers mean(scatter.mean, scatter.std_error);
   const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
-  return "Agreement: chi-square " + NumberText(parameter.statistic, 3) + ", " + FreedomText(parameter.dof) + ", p " +
-         ProbabilityText(parameter.p) + ". Random effects: mean in " + mean.Interval(scatter.lower95, scatter.upper95) +
-         " (95 %); between recordings a standard deviation of " + NumberText(scatter.between, 2) + unit + ", in [" +
-         NumberText(scatter.between_lower95, 2) + ", " +
+  return "Agreement: chi-square " + NumberText(parameter.statistic, 3) + ", " + DegreesOfFreedomText(parameter.dof) +
+         ", p " + ProbabilityText(parameter.p) + ". Random effects: mean in " +
+         mean.Interval(scatter.lower95, scatter.upper95) + " (95 %); between recordings a standard deviation of " +
+         NumberText(scatter.between, 2) + unit + ", in [" + NumberText(scatter.between_lower95, 2) + ", " +
          (std::isfinite(scatter.between_upper95) ? NumberText(scatter.between_upper95, 2) : "?") + "].";
 }
 
@@ -179,11 +179,11 @@ Section NoiseSection(const Identification& report, std::size_t index) {
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     const FitReport& fit = report.runs[k].fits[index];
     if (fit.termination == Termination::kFailed) continue;
-    const bool lacks = fit.Warns("lack_of_fit");
+    const bool lacks = fit.HasWarning("lack_of_fit");
     facts.push_back({"recording " + std::to_string(k + 1),
                      NoiseText(fit) + "; rms residual " + ReadingText(fit.statistics.rms_residual, fit.reading_unit) +
                          ", lag-1 correlation " + FixedText(fit.noise.lag1_correlation, 3) + ", " +
-                         fit.noise.memory.Name() + (lacks ? "; lack of fit" : "") +
+                         fit.noise.autocorrelation.Name() + (lacks ? "; lack of fit" : "") +
                          "; alone: " + report.joint[index].alone[k],
                      lacks ? Emphasis::kCaution : Emphasis::kNone});
   }
@@ -198,8 +198,8 @@ void AddMainFit(const Identification& report, std::size_t index, Sections& secti
   sections.push_back(FitSection(report, index));
   sections.push_back(AllOfParameters(fit, report.rig, nullptr));
   if (fit.termination == Termination::kConverged && !report.joint[index].homogeneity.agrees()) {
-    sections.back().Say("The recordings do not agree, and these errors take for granted that they do: see below.",
-                        Emphasis::kCaution);
+    sections.back().AddText("The recordings do not agree, and these errors take for granted that they do: see below.",
+                            Emphasis::kCaution);
   }
   sections.push_back(AgreementSection(report, index));
   if (fit.termination == Termination::kFailed) return;
@@ -219,11 +219,11 @@ Section AgreementSection(const Identification& report, std::size_t fit) {
   const Homogeneity& homogeneity = report.joint[fit].homogeneity;
   Section section{"Do the recordings agree?"};
   const bool agrees = homogeneity.agrees();
-  section.Say("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
+  section.AddText("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
   for (const SharedParameter& parameter : homogeneity.parameters) {
-    section.Add(ForestTable(parameter, report.fits[fit])).Say(ScatterText(parameter));
+    section.Add(ForestTable(parameter, report.fits[fit])).AddText(ScatterText(parameter));
   }
-  if (!homogeneity.parameters.empty()) section.Say(kWhatAloneIs);
+  if (!homogeneity.parameters.empty()) section.AddText(kWhatAloneIs);
   return section;
 }
 

@@ -97,7 +97,7 @@ Json OfRecordings(const Identification& report, const Part& part) {
   return all;
 }
 
-std::string WhyNoClosedForms(const Identification& report) {
+std::string NoClosedFormsReason(const Identification& report) {
   std::string why = report.closed_forms || report.is_joint() ? "" : report.no_closed_forms;
   for (std::size_t k = 0; k < report.runs.size(); ++k) {
     if (report.runs[k].closed_forms) continue;
@@ -123,8 +123,8 @@ nlohmann::ordered_json ToJson(const Identification& report) {
       .Set("comparison", ComparisonJson(report))
       .Set("closed_forms", OfRecordings(report, ClosedFormsJson))
       .Set("warnings", WarningsJson(report));
-  const std::string why = WhyNoClosedForms(report);
-  if (!why.empty()) json.Because(why);
+  const std::string why = NoClosedFormsReason(report);
+  if (!why.empty()) json.AddReason(why);
   return json.Done();
 }
 

@@ -17,17 +17,17 @@ NumberObject& NumberObject::Set(const std::string& key, Json value) {
 
 NumberObject& NumberObject::Set(const std::string& key, double value) {
   if (std::isfinite(value)) return Set(key, Json(value));
-  Because(key + " is not a finite number");
+  AddReason(key + " is not a finite number");
   return Set(key, Json(nullptr));
 }
 
 NumberObject& NumberObject::Set(const std::string& key, const std::optional<double>& value, const std::string& reason) {
   if (value) return Set(key, *value);
-  Because(reason);
+  AddReason(reason);
   return Set(key, Json(nullptr));
 }
 
-void NumberObject::Because(const std::string& reason) {
+void NumberObject::AddReason(const std::string& reason) {
   if (reason_.find(reason) == std::string::npos) reason_ += (reason_.empty() ? "" : "; ") + reason;
 }
 

@@ -19,7 +19,7 @@ namespace {
 bool IsWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & '\x80') != 0; }
 
 /// Whether Markdown would interpret the character at i.
-bool IsActive(std::string_view text, std::size_t i) {
+bool IsMarkup(std::string_view text, std::size_t i) {
   const char before = i > 0 ? text[i - 1] : ' ';
   const char after = i + 1 < text.size() ? text[i + 1] : ' ';
   switch (text[i]) {
@@ -30,7 +30,7 @@ bool IsActive(std::string_view text, std::size_t i) {
 }
 
 /// Whether a text would begin a heading, a list, a quotation or a rule.
-bool BeginsActively(std::string_view text) {
+bool BeginsWithMarkup(std::string_view text) {
   if (text.empty()) return false;
   const std::size_t digits = text.find_first_not_of("0123456789");
   const bool is_number =
@@ -42,7 +42,7 @@ bool BeginsActively(std::string_view text) {
 /// A paragraph or an item; its beginning is escaped, too.
 std::string LineText(std::string_view text) {
   std::string escaped = MarkdownText(text);
-  if (!BeginsActively(escaped)) return escaped;
+  if (!BeginsWithMarkup(escaped)) return escaped;
   const std::size_t digits = std::min(escaped.find_first_not_of("0123456789"), escaped.size());
   return escaped.substr(0, digits) + "\\" + escaped.substr(digits);
 }
@@ -152,11 +152,11 @@ Sections VerdictSections(const Identification& report) {
   Section verdict{"Verdict"};
   Sections sections;
   if (report.fits.empty()) {
-    verdict.Say("No fit was asked for: closed forms only.");
+    verdict.AddText("No fit was asked for: closed forms only.");
   } else {
     const std::size_t main = report.MainFit();
     if (report.fits[main].termination != Termination::kConverged) {
-      verdict.Say("The fit did not converge: its numbers are no result.", Emphasis::kAlarm);
+      verdict.AddText("The fit did not converge: its numbers are no result.", Emphasis::kAlarm);
     }
     verdict.blocks.emplace_back(VerdictItems(report, main));
     sections.push_back(ParameterSection(report.fits[main], report.fits.size() > 1));
@@ -172,7 +172,7 @@ std::string MarkdownText(std::string_view text) {
   const std::string printable = Printable(text);
   std::string escaped;
   for (std::size_t i = 0; i < printable.size(); ++i) {
-    if (IsActive(printable, i)) escaped += '\\';
+    if (IsMarkup(printable, i)) escaped += '\\';
     escaped += printable[i];
   }
   return escaped;

@@ -111,7 +111,7 @@ std::string FactorTable(const Plan& plan, const Units& units) {
   return "\n[[One thing changed at a time]] (* the recording as it is)\n" + AlignedTable(columns, rows, kTextIndent);
 }
 
-bool LacksSomething(const PlanRow& row) {
+bool HasMissingValues(const PlanRow& row) {
   return !row.linear_bias || std::ranges::any_of(row.std_errors, [](const auto& error) { return !error; });
 }
 
@@ -122,7 +122,7 @@ std::string MissingText(const Plan& plan) {
   for (const PlanRow& row : plan.rows) {
     const std::string name = std::string(row.factor) + " " + ValueText(row.value, row.unit);
     if (!row.reason.empty()) text += Paragraph(name + ": " + row.reason + ".", "    - ", kTextWidth);
-    others = others || (row.reason.empty() && LacksSomething(row));
+    others = others || (row.reason.empty() && HasMissingValues(row));
   }
   if (!others) return text;
   return text + Paragraph(
@@ -160,7 +160,7 @@ std::string SlowText(const Plan& plan) {
          ", once or twice a swing, it stays ambiguous even then. ";
 }
 
-std::string HowToRead(const Plan& plan, const std::optional<Rig>& rig) {
+std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
   std::string text =
       std::string(
           "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how "
@@ -186,7 +186,7 @@ std::string PlanText(const Plan& plan, const std::optional<Rig>& rig) {
   const std::string missing = MissingText(plan);
   return BaseText(plan, units, *base) + FactorTable(plan, units) + (missing.empty() ? "" : "\n" + missing) +
          "\n[[How to read it]]\n" + Prose(BiasText(plan, base->std_errors.front().has_value())) +
-         Prose(HowToRead(plan, rig));
+         Prose(ReadingGuide(plan, rig));
 }
 
 }  // namespace pendulum

@@ -13,8 +13,8 @@
 namespace pendulum {
 namespace {
 
-constexpr int kMostDigits = 12;       // significant digits of a value: more are of no use to a reader
-constexpr int kLeastExponent = -4;    // smaller numbers are shown with a power of ten, as with %g
+constexpr int kMaxDigits = 12;        // significant digits of a value: more are of no use to a reader
+constexpr int kMinExponent = -4;      // smaller numbers are shown with a power of ten, as with %g
 constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
 
 /// The three leading decimal digits (100 to 999) of x != 0, and the power of ten of the first one.
@@ -60,8 +60,8 @@ RoundedError RoundError(double error) {
 
 /// The format of numbers with the first digit at 10^first and the last at 10^last.
 Rounding RoundingTo(int first, int last) {
-  last = std::max(last, first - kMostDigits + 1);
-  if (first < kLeastExponent || last > 0) return {std::max(0, first - last), first};
+  last = std::max(last, first - kMaxDigits + 1);
+  if (first < kMinExponent || last > 0) return {std::max(0, first - last), first};
   return {-last, 0};
 }
 
@@ -98,10 +98,10 @@ int SignificantDigits(double x, const Rounding& rounding) {
 }
 
 ValueAndError PdgText(double value, double error) {
-  if (!(error > 0)) return {NumberText(value, kMostDigits), NumberText(error, 2)};
+  if (!(error > 0)) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const RoundedError rounded = RoundError(error);
   const int first = FirstDigit(value, error);
-  if (first - rounded.last >= kMostDigits) return {NumberText(value, kMostDigits), NumberText(error, 2)};
+  if (first - rounded.last >= kMaxDigits) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const Rounding rounding = RoundingTo(first, rounded.last);
   const std::string exponent = ExponentText(rounding.exponent);
   if (exponent.empty()) return {Mantissa(value, rounding), Mantissa(rounded.error, rounding)};

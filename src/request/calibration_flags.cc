@@ -42,8 +42,8 @@ Result<void> ChooseRange(const CalibrationFlags& flags, CalibrationOptions& opti
 }  // namespace
 
 Result<void> CheckBits(int bits) {
-  constexpr int kMostBits = 32;
-  return bits == 0 ? Result<void>() : CheckWhole("--bits", bits, kMostBits);
+  constexpr int kMaxBits = 32;
+  return bits == 0 ? Result<void>() : CheckWhole("--bits", bits, kMaxBits);
 }
 
 Result<CalibrationOptions> MakeCalibrationOptions(const CalibrationFlags& flags) {

@@ -90,11 +90,11 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   double threads = options.threads;
   if (auto parsed = ParseWhole("--seed", flags.seed, 0, seed); !parsed) return parsed;
   if (auto parsed = ParseWhole("--threads", flags.threads, 0, threads); !parsed) return parsed;
-  constexpr double kMostThreads = 1024;
+  constexpr double kMaxThreads = 1024;
   options.noise = *loss ? *loss : *noise;
   options.interval = *interval;
   options.seed = static_cast<std::uint64_t>(seed);
-  options.threads = static_cast<int>(std::min(threads, kMostThreads));
+  options.threads = static_cast<int>(std::min(threads, kMaxThreads));
   return {};
 }
 
@@ -240,14 +240,14 @@ Result<void> CheckClosedFormOnly(const RunFlags& flags) {
                                                                        {"--seed", flags.seed != none.seed},
                                                                        {"--threads", flags.threads != none.threads}}};
   for (const auto& [flag, given] : of_a_fit) {
-    if (given) return NeedsAFit(flag);
+    if (given) return NeedsFitError(flag);
   }
   return {};
 }
 
 }  // namespace
 
-tl::unexpected<Status> NeedsAFit(std::string_view flag) {
+tl::unexpected<Status> NeedsFitError(std::string_view flag) {
   return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
 }
 

@@ -169,7 +169,7 @@ Result<std::optional<SensorRange>> ParseRange(const std::string& text) {
 struct NumberFlag {
   std::string_view name;
   double value;
-  bool may_be_0;
+  bool allows_zero;
 };
 
 Result<void> CheckNoiseLaw(const SimulationFlags& flags) {
@@ -189,9 +189,9 @@ Result<void> CheckNumbers(const SimulationFlags& flags) {
       NumberFlag{"--resolution", flags.resolution, true}, NumberFlag{"--time_noise", flags.time_noise, true},
   };
   for (const NumberFlag& number : numbers) {
-    if (std::isfinite(number.value) && (number.value > 0 || (number.may_be_0 && number.value == 0))) continue;
+    if (std::isfinite(number.value) && (number.value > 0 || (number.allows_zero && number.value == 0))) continue;
     return BadFlag(std::string(number.name) + " is " + NumberText(number.value) + "; it must be " +
-                   (number.may_be_0 ? "0 or more" : "positive"));
+                   (number.allows_zero ? "0 or more" : "positive"));
   }
   return CheckNoiseLaw(flags);
 }
@@ -212,7 +212,7 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
     return BadFlag("--resolution is " + NumberText(flags.resolution) + " " + flags.unit +
                    "; with --event_driven it must be at least 1e-05 rad");
   }
-  if (flags.noise <= kMostEventNoise * flags.resolution) return {};
+  if (flags.noise <= kMaxEventNoise * flags.resolution) return {};
   return BadFlag("--noise is " + NumberText(flags.noise) +
                  "; with --event_driven it must be at most a fifth of --resolution");
 }
@@ -245,7 +245,7 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
 
 /// Parses --lose.
 Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
-  constexpr double kMost = 1e6;
+  constexpr double kMax = 1e6;
   std::vector<LostCounts> lost;
   for (const std::string& part : Split(flags.lose, ',')) {
     const std::vector<std::string> words = Split(part, ':');
@@ -254,7 +254,7 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
     const Result<double> counts = ParseNumber("--lose", words[1], "a whole number of counts");
     if (!time) return tl::unexpected(time.error());
     if (!counts) return tl::unexpected(counts.error());
-    if (*counts != std::round(*counts) || std::abs(*counts) > kMost) {
+    if (*counts != std::round(*counts) || std::abs(*counts) > kMax) {
       return BadFlag("--lose: " + NumberText(*counts) +
                      " counts; it must be a whole number of them, at most a million");
     }
@@ -298,7 +298,7 @@ Result<Simulation> SimulationOfRecording(const Simulation& all, int index) {
   synthetic.seed += static_cast<std::uint64_t>(index);
   if (simulation.scattered.empty()) return simulation;
   // The true values begin with the model's parameters, in order.
-  const auto values = ScatterParameters(simulation.scattered, OrderOf(synthetic.model), synthetic.seed);
+  const auto values = ScatterParameters(simulation.scattered, FindOrderedPair(synthetic.model), synthetic.seed);
   if (!values) return BadFlag("--spread: " + values.error().message);
   for (std::size_t i = 0; i < values->size(); ++i) simulation.truth[i].second = (*values)[i];
   SetMotion({simulation.truth.begin(), simulation.truth.end()}, simulation.gravity_torque, synthetic);

@@ -25,11 +25,11 @@ int Decimals(double value) {
 
 /// The double nearest to `value` rounded to `decimals` (at most 22), so its shortest text has no more decimals.
 double RoundedTo(int decimals, double value) {
-  constexpr double kMostExact = 9007199254740992;  // 2^53: larger doubles are farther apart than these decimals
-  double power = 1;                                // exact like the numerator, so the quotient is the nearest double
+  constexpr double kMaxExact = 9007199254740992;  // 2^53: larger doubles are farther apart than these decimals
+  double power = 1;                               // exact like the numerator, so the quotient is the nearest double
   for (int i = 0; i < decimals; ++i) power *= 10;
   const double numerator = std::round(value * power);
-  return std::abs(numerator) < kMostExact ? numerator / power + 0.0 : value;  // avoids -0
+  return std::abs(numerator) < kMaxExact ? numerator / power + 0.0 : value;  // avoids -0
 }
 
 /// Converts readings from SI to the file's unit.
@@ -49,13 +49,13 @@ class FileUnit {
 
  private:
   /// With at most this many decimals a sum of two decimals can be rounded correctly to the last one.
-  static constexpr int kMostDecimals = 10;
+  static constexpr int kMaxDecimals = 10;
 
   double Level(double si) const {
     const double step = simulation_.resolution;
     const double level = std::round((si / simulation_.unit.si - low_) / step);
     const double value = low_ + step * level;
-    return decimals_ <= kMostDecimals ? RoundedTo(decimals_, value) : value;
+    return decimals_ <= kMaxDecimals ? RoundedTo(decimals_, value) : value;
   }
 
   const Simulation& simulation_;

@@ -14,7 +14,7 @@
 namespace pendulum::wire {
 namespace {
 
-bool IsOurs(const std::string& name) {
+bool IsServerField(const std::string& name) {
   constexpr std::array<const char*, 4> kOurs = {"Connection", "Content-Length", "Date", "Transfer-Encoding"};
   return std::ranges::any_of(kOurs, [&](const char* ours) { return IsSameWord(ours, name); });
 }
@@ -49,7 +49,7 @@ std::string HttpDate(std::time_t time) {
 std::string AnswerHead(const HttpResponse& response, const Framing& framing, std::time_t now) {
   std::string head = "HTTP/1.1 " + std::to_string(response.status) + " " + Reason(response.status) + "\r\n";
   for (const HttpField& field : response.fields) {
-    if (IsToken(field.name) && !IsOurs(field.name)) head += field.name + ": " + Printable(field.value) + "\r\n";
+    if (IsToken(field.name) && !IsServerField(field.name)) head += field.name + ": " + Printable(field.value) + "\r\n";
   }
   head += "Date: " + HttpDate(now) + "\r\n";
   if (framing.length) head += "Content-Length: " + std::to_string(*framing.length) + "\r\n";

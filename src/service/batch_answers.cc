@@ -13,7 +13,7 @@
 #include "pendulum/base/utc_time.h"
 #include "pendulum/service/fit_request.h"
 #include "service/answers.h"
-#include "service/asked_again.h"
+#include "service/repeated_request.h"
 
 namespace pendulum {
 namespace {
@@ -57,13 +57,13 @@ class BatchEvents {
   }
 
   EventText Next() {
-    constexpr int kMostAtOnce = 500;
+    constexpr int kMaxAtOnce = 500;
     EventText events;
     if (progress_->is_deleted()) return {"", true};
-    for (int i = 0; i < kMostAtOnce && place_ < progress_->places(); ++i) {
+    for (int i = 0; i < kMaxAtOnce && place_ < progress_->places(); ++i) {
       const auto run = Advance();
       if (!run) return events;
-      if (!run->is_gone) events.text += FitEvent(*run);
+      if (!run->is_removed) events.text += FitEvent(*run);
     }
     if (place_ < progress_->places()) return events;
     events.text += "event: done\ndata: " + JsonText({{"runs", done_}, {"done", done_}, {"failed", failed_}}) + "\n\n";
@@ -77,7 +77,7 @@ class BatchEvents {
     auto run = progress_->DoneAt(place_);
     if (!run) return run;
     ++place_;
-    if (run->is_gone) return run;
+    if (run->is_removed) return run;
     ++done_;
     if (!run->reason.empty()) ++failed_;
     return run;

@@ -16,7 +16,7 @@ namespace pendulum {
 namespace {
 
 /// On Linux this changes only the calling thread.
-void BeNice() {
+void LowerThreadPriority() {
   constexpr int kNiceness = 5;
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
 }
@@ -51,19 +51,19 @@ void BatchProgress::Done(const std::string& id, int exit_code, const std::string
   run->reason = reason;
 }
 
-void BatchProgress::Gone(const std::string& id) {
+void BatchProgress::MarkRemoved(const std::string& id) {
   const std::scoped_lock lock(mutex_);
-  if (Run* run = Find(id); run != nullptr) run->is_gone = true;
+  if (Run* run = Find(id); run != nullptr) run->is_removed = true;
 }
 
 std::size_t BatchProgress::runs() const {
   const std::scoped_lock lock(mutex_);
-  return static_cast<std::size_t>(std::ranges::count(runs_, false, &Run::is_gone));
+  return static_cast<std::size_t>(std::ranges::count(runs_, false, &Run::is_removed));
 }
 
 std::optional<BatchProgress::Run> BatchProgress::DoneAt(std::size_t place) const {
   const std::scoped_lock lock(mutex_);
-  while (done_ < runs_.size() && (runs_[done_].exit_code || runs_[done_].is_gone)) ++done_;
+  while (done_ < runs_.size() && (runs_[done_].exit_code || runs_[done_].is_removed)) ++done_;
   return place < done_ ? std::optional(runs_[place]) : std::nullopt;
 }
 
@@ -163,7 +163,7 @@ void BatchQueue::Stop() {
 }
 
 void BatchQueue::Work() {
-  BeNice();
+  LowerThreadPriority();
   constexpr std::chrono::seconds kShortest{1}, kLongest{60};
   std::chrono::seconds pause = kShortest;
   while (const auto run = Take()) {
@@ -204,7 +204,7 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
   auto kept = store_.Find(run.id);
   if (!kept) {
     if (kept.error().code != StatusCode::kNotFound) return tl::unexpected(kept.error());
-    Settle(run, [&](BatchProgress& progress) { progress.Gone(run.id); });
+    FinishRun(run, [&](BatchProgress& progress) { progress.MarkRemoved(run.id); });
     return {};
   }
   FittedRun fitted;
@@ -225,11 +225,11 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
 
 Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
   auto stored = store_.Put(run.id, outcome);
-  const bool is_gone = !stored && stored.error().code == StatusCode::kNotFound;
-  if (!stored && !is_gone) return stored;
-  Settle(run, [&](BatchProgress& progress) {
-    if (is_gone) {
-      progress.Gone(run.id);
+  const bool is_removed = !stored && stored.error().code == StatusCode::kNotFound;
+  if (!stored && !is_removed) return stored;
+  FinishRun(run, [&](BatchProgress& progress) {
+    if (is_removed) {
+      progress.MarkRemoved(run.id);
     } else {
       progress.Done(run.id, outcome.exit_code, outcome.reason);
     }
@@ -237,7 +237,7 @@ Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& ou
   return {};
 }
 
-void BatchQueue::SayWhy(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
+void BatchQueue::ReportReason(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   try {
     metrics_.CountRetry();
     if (!say_) return;
@@ -252,17 +252,17 @@ void BatchQueue::SayWhy(const FitStore::Waiting& run, const Status& why, std::ch
 void BatchQueue::PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause) {
   std::unique_lock lock(mutex_);
   if (!batches_.contains(run.batch)) return;
-  SayWhy(run, why, pause);
+  ReportReason(run, why, pause);
   waiting_.push_front(run);
   changed_.wait_for(lock, pause, [&] { return is_stopping_; });
 }
 
-template <typename Tell>
-void BatchQueue::Settle(const FitStore::Waiting& run, const Tell& tell) {
+template <typename Notify>
+void BatchQueue::FinishRun(const FitStore::Waiting& run, const Notify& notify) {
   const std::scoped_lock lock(mutex_);
   const auto found = batches_.find(run.batch);
   if (found == batches_.end()) return;
-  tell(*found->second.progress);
+  notify(*found->second.progress);
   if (--found->second.left == 0) batches_.erase(found);
 }
 

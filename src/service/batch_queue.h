@@ -28,7 +28,7 @@ class BatchProgress {
     std::string id, name;
     std::optional<int> exit_code;  ///< std::nullopt: it waits.
     std::string reason;
-    bool is_gone = false;  ///< It was deleted before it was fitted.
+    bool is_removed = false;  ///< It was deleted before it was fitted.
   };
 
   explicit BatchProgress(std::vector<Run> runs);
@@ -37,7 +37,7 @@ class BatchProgress {
   explicit BatchProgress(std::vector<ListedFit> fits);
 
   void Done(const std::string& id, int exit_code, const std::string& reason);
-  void Gone(const std::string& id);
+  void MarkRemoved(const std::string& id);
 
   /// The run at a place, if it and all runs before it are done or deleted; otherwise std::nullopt.
   std::optional<Run> DoneAt(std::size_t place) const;
@@ -102,10 +102,10 @@ class BatchQueue {
   Result<void> TryOne(const FitStore::Waiting& run);
   Result<void> FitOne(const FitStore::Waiting& run);
   Result<void> Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
-  void SayWhy(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
+  void ReportReason(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   void PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
-  template <typename Tell>
-  void Settle(const FitStore::Waiting& run, const Tell& tell);
+  template <typename Notify>
+  void FinishRun(const FitStore::Waiting& run, const Notify& notify);
 
   FitStore& store_;
   Fitter& fitter_;

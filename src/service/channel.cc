@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{256} << 10;
 
 constexpr std::chrono::seconds kLingerTime{2};
-constexpr std::size_t kMaxReadAway = std::size_t{1} << 20;
+constexpr std::size_t kMaxDiscarded = std::size_t{1} << 20;
 
 std::string PeerOf(const asio::ip::tcp::socket& socket) {
   Code code;
@@ -76,7 +76,7 @@ void Channel::Read(asio::mutable_buffer buffer, Done done) {
 void Channel::Send(std::string head, std::string body, std::chrono::milliseconds time, Done done) {
   head_ = std::move(head);
   body_ = std::move(body);
-  sent_of_all_ = 0;
+  sent_of_answer_ = 0;
   SendPiece(time, std::move(done));
 }
 
@@ -85,20 +85,20 @@ void Channel::SendPiece(std::chrono::milliseconds time, Done done) {
     const std::size_t begin = std::min(from, text.size());
     return asio::const_buffer(text.data() + begin, std::min(most, text.size() - begin));
   };
-  const std::size_t of_body = sent_of_all_ - std::min(sent_of_all_, head_.size());
-  const std::array<asio::const_buffer, 2> pieces = {rest_of(head_, sent_of_all_, head_.size()),
+  const std::size_t of_body = sent_of_answer_ - std::min(sent_of_answer_, head_.size());
+  const std::array<asio::const_buffer, 2> pieces = {rest_of(head_, sent_of_answer_, head_.size()),
                                                     rest_of(body_, of_body, kPiece)};
   Limit(time);
   asio::async_write(socket_, pieces,
                     [this, self = shared_from_this(), time, done = std::move(done)](const Code& code, std::size_t n) {
                       sent_ += n;
-                      sent_of_all_ += n;
+                      sent_of_answer_ += n;
                       const Code reason = ReasonOf(code);
-                      if (!reason && sent_of_all_ < head_.size() + body_.size()) return SendPiece(time, done);
+                      if (!reason && sent_of_answer_ < head_.size() + body_.size()) return SendPiece(time, done);
                       head_.clear();
                       std::string().swap(body_);
                       if (!reason) Unlimit();
-                      done(reason, sent_of_all_);
+                      done(reason, sent_of_answer_);
                     });
 }
 
@@ -106,16 +106,17 @@ void Channel::Linger(std::function<void()> done) {
   Code ignored;
   socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
   Limit(kLingerTime);
-  ReadAway(std::move(done));
+  DiscardInput(std::move(done));
 }
 
-void Channel::ReadAway(std::function<void()> done) {
-  Read(asio::buffer(away_), [this, self = shared_from_this(), done = std::move(done)](const Code& code, std::size_t n) {
-    read_away_ += n;
-    if (!code && read_away_ < kMaxReadAway) return ReadAway(done);
-    Close();
-    done();
-  });
+void Channel::DiscardInput(std::function<void()> done) {
+  Read(asio::buffer(discard_buffer_),
+       [this, self = shared_from_this(), done = std::move(done)](const Code& code, std::size_t n) {
+         discarded_ += n;
+         if (!code && discarded_ < kMaxDiscarded) return DiscardInput(done);
+         Close();
+         done();
+       });
 }
 
 void Channel::Close() {

@@ -58,7 +58,7 @@ class Channel : public std::enable_shared_from_this<Channel> {
 
  private:
   void SendPiece(std::chrono::milliseconds time, Done done);
-  void ReadAway(std::function<void()> done);
+  void DiscardInput(std::function<void()> done);
   Code ReasonOf(const Code& code) const;
 
   asio::ip::tcp::socket socket_;
@@ -66,10 +66,10 @@ class Channel : public std::enable_shared_from_this<Channel> {
   asio::steady_timer::time_point end_ = asio::steady_timer::time_point::max();
   bool is_late_ = false;
   std::string peer_;
-  std::string head_, body_;      ///< Data being sent.
-  std::size_t sent_of_all_ = 0;  ///< Sent bytes of both.
-  std::size_t sent_ = 0, read_away_ = 0;
-  std::array<char, 4096> away_ = {};
+  std::string head_, body_;         ///< Data being sent.
+  std::size_t sent_of_answer_ = 0;  ///< Sent bytes of both.
+  std::size_t sent_ = 0, discarded_ = 0;
+  std::array<char, 4096> discard_buffer_ = {};
 };
 
 }  // namespace pendulum::wire

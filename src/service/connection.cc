@@ -37,7 +37,7 @@ Connection::Connection(asio::ip::tcp::socket socket, Serving& serving)
 
 void Connection::Start() { NextRequest(); }
 
-void Connection::TurnAway(int status, const std::string& detail) {
+void Connection::RejectConnection(int status, const std::string& detail) {
   began_ = std::chrono::steady_clock::now();
   Refuse({status, detail});
 }
@@ -178,11 +178,11 @@ void Connection::Dispatch() {
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
   WorkQueue& queue = lane == Lane::kFit ? serving_.fits : serving_.quick;
-  const bool is_taken = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
+  const bool is_reserved = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
     auto response = std::make_shared<HttpResponse>(self->Handle(offered));
     asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
   });
-  if (!is_taken) Refuse({429, "too many requests are waiting; try again later"});
+  if (!is_reserved) Refuse({429, "too many requests are waiting; try again later"});
 }
 
 /// Runs on a thread of a lane, which owns the request meanwhile.

@@ -45,7 +45,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void Start();
 
   /// Answers without reading a request, and closes.
-  void TurnAway(int status, const std::string& detail);
+  void RejectConnection(int status, const std::string& detail);
 
   /// Accepts no further request: closes an idle connection, ends a stream.
   void Finish();

@@ -7,10 +7,10 @@
 namespace pendulum::wire {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenQuestions{100};
+constexpr std::chrono::milliseconds kPollInterval{100};
 
 /// Time for a client to receive the remaining data when the stream ends.
-constexpr std::chrono::milliseconds kForTheRest{1000};
+constexpr std::chrono::milliseconds kFinishTime{1000};
 
 std::string ChunkOf(const std::string& text) {
   std::array<char, 16> size = {};
@@ -31,24 +31,24 @@ EventStream::EventStream(std::shared_ptr<Channel> channel, NextEvents next, bool
 
 void EventStream::Start(std::string head) {
   Watch();
-  spoke_ = std::chrono::steady_clock::now();
+  last_sent_ = std::chrono::steady_clock::now();
   channel_->Send(std::move(head), "", options_.request_time,
                  [self = shared_from_this()](const Code& code, std::size_t) {
                    if (code) return self->Finish(false);
-                   self->Ask();
+                   self->PollEvents();
                  });
 }
 
 void EventStream::End() {
   next_ = [] { return EventText{"", true}; };
-  channel_->EndWithin(kForTheRest);
+  channel_->EndWithin(kFinishTime);
   if (is_waiting_) timer_.cancel();
 }
 
 /// Detects that the client closes the connection. Unexpected input is ignored; afterwards a closed connection is
 /// detected when data is sent.
 void EventStream::Watch() {
-  channel_->Read(asio::buffer(unasked_), [self = shared_from_this()](const Code& code, std::size_t) {
+  channel_->Read(asio::buffer(unexpected_input_), [self = shared_from_this()](const Code& code, std::size_t) {
     if (code) self->channel_->Close();
     if (code && self->is_waiting_) self->timer_.cancel();
   });
@@ -56,15 +56,15 @@ void EventStream::Watch() {
 
 void EventStream::Wait() {
   is_waiting_ = true;
-  timer_.expires_after(kBetweenQuestions);
+  timer_.expires_after(kPollInterval);
   timer_.async_wait([self = shared_from_this()](const Code&) {
     self->is_waiting_ = false;
     if (!self->channel_->is_open()) return self->Finish(false);
-    self->Ask();
+    self->PollEvents();
   });
 }
 
-void EventStream::Ask() {
+void EventStream::PollEvents() {
   EventText events;
   try {
     events = next_();
@@ -73,12 +73,12 @@ void EventStream::Ask() {
   }
   is_last_ = is_last_ || events.is_last;
   if (!events.text.empty() || is_last_) return Send(std::move(events.text));
-  if (std::chrono::steady_clock::now() - spoke_ >= options_.max_silence) return Send(":\n\n");
+  if (std::chrono::steady_clock::now() - last_sent_ >= options_.max_silence) return Send(":\n\n");
   Wait();
 }
 
 void EventStream::Send(std::string text) {
-  spoke_ = std::chrono::steady_clock::now();
+  last_sent_ = std::chrono::steady_clock::now();
   std::string all = is_chunked_ && !text.empty() ? ChunkOf(text) : std::move(text);
   if (is_chunked_ && is_last_) all += "0\r\n\r\n";
   channel_->Send("", std::move(all), options_.request_time, [self = shared_from_this()](const Code& code, std::size_t) {

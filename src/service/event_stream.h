@@ -30,7 +30,7 @@ class EventStream : public std::enable_shared_from_this<EventStream> {
  private:
   void Watch();
   void Wait();
-  void Ask();
+  void PollEvents();
   void Send(std::string text);
   void Finish(bool is_whole);
 
@@ -40,10 +40,10 @@ class EventStream : public std::enable_shared_from_this<EventStream> {
   const ServerOptions& options_;
   std::function<void(bool)> done_;
   asio::steady_timer timer_;
-  std::chrono::steady_clock::time_point spoke_;
+  std::chrono::steady_clock::time_point last_sent_;
   bool is_last_ = false;
   bool is_waiting_ = false;  ///< It waits for the timer; nothing is being sent.
-  std::array<char, 512> unasked_ = {};
+  std::array<char, 512> unexpected_input_ = {};
 };
 
 }  // namespace pendulum::wire

@@ -21,7 +21,7 @@
 #include "pendulum/service/thinning.h"
 #include "pendulum/web/report_page.h"
 #include "service/answers.h"
-#include "service/asked_again.h"
+#include "service/repeated_request.h"
 
 namespace pendulum {
 namespace {
@@ -106,9 +106,9 @@ Json FileJson(const SharedFile& file) {
 
 /// The samples of a recording as read, thinned for a plot.
 Json SamplesJson(const Recording& recording) {
-  constexpr Eigen::Index kMostShown = 4000;
+  constexpr Eigen::Index kMaxShown = 4000;
   const auto size = static_cast<std::size_t>(recording.size());
-  const auto shown = Thin({recording.time.data(), size}, {recording.value.data(), size}, kMostShown);
+  const auto shown = Thin({recording.time.data(), size}, {recording.value.data(), size}, kMaxShown);
   Json time = Json::array(), measured = Json::array();
   for (const Eigen::Index i : shown) {
     time.push_back(recording.time[i]);

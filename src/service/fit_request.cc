@@ -24,8 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestName = 200, kMostOptionBytes = 8192;
-constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 27;  // Limit for a body that is a zip or a MAT-file.
+constexpr std::size_t kLongestName = 200, kMaxOptionBytes = 8192;
+constexpr std::size_t kMaxUnpackedBytes = std::size_t{1} << 27;  // Limit for a body that is a zip or a MAT-file.
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
 /// The client's name of a file, without folders (old browsers send them) and without control characters.
@@ -116,19 +116,19 @@ class FormReader {
 
  private:
   static Result<void> TakeFile(const FormPart& part, SharedFile& file) {
-    if (file) return Twice(part.name);
+    if (file) return RepeatedPartError(part.name);
     file = Share({part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)});
     return {};
   }
 
   Result<void> TakeOptions(const FormPart& part) {
-    if (std::exchange(has_options_, true)) return Twice(part.name);
+    if (std::exchange(has_options_, true)) return RepeatedPartError(part.name);
     const auto object = ParseJsonObject(part.content, "options", "set of options", R"({"model": "coulomb"})");
     if (!object) return Error(StatusCode::kInvalidArgument, object.error().message);
     return AddOptions(*object, request_.flags);
   }
 
-  static Result<void> Twice(const std::string& name) {
+  static Result<void> RepeatedPartError(const std::string& name) {
     return Error(StatusCode::kInvalidArgument, "the form has two parts " + name + "; leave one of them out");
   }
 
@@ -151,7 +151,8 @@ Result<void> ReadObject(const std::string& name, const Json& value, SharedFile& 
   file.reset();
   if (value.is_null()) return {};
   if (!value.is_object()) {
-    return Error(StatusCode::kInvalidArgument, name + " is " + ShownJson(value) + "; it must be an object or null");
+    return Error(StatusCode::kInvalidArgument,
+                 name + " is " + JsonForMessage(value) + "; it must be an object or null");
   }
   file = Share({name, JsonText(value)});
   return {};
@@ -162,7 +163,7 @@ Result<void> ReadMember(const std::string& name, const Json& value, FitRequest& 
   if (name == "calibration") return ReadObject(name, value, request.calibration);
   if (name == "options" && value.is_object()) return AddOptions(value, request.flags);
   if ((name == "data" || name == "name") && value.is_string()) return {};
-  return Error(StatusCode::kInvalidArgument, Quoted(name) + " is " + ShownJson(value) +
+  return Error(StatusCode::kInvalidArgument, Quoted(name) + " is " + JsonForMessage(value) +
                                                  "; the body may have data and name (texts), rig, " +
                                                  "calibration and options (objects)");
 }
@@ -219,31 +220,31 @@ std::string TypeOf(const HttpRequest& request) {
   return type ? type->type : std::string(*field);
 }
 
-OrProblem<void> CheckCoding(const HttpRequest& request) {
+ResultOrProblem<void> CheckCoding(const HttpRequest& request) {
   const auto coding = request.Field("Content-Encoding");
   if (!coding || LowerCase(WithoutBlanks(*coding)) == "identity") return {};
   return Refused(ProblemKind::kUnsupportedMediaType,
                  "the body has Content-Encoding " + Quoted(*coding) + "; send it as it is, without one");
 }
 
-OrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
+ResultOrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
   const auto lines = static_cast<std::size_t>(std::ranges::count(data.bytes, '\n'));
-  if (lines <= limits.max_samples && data.bytes.size() <= kMostRecordingBytes) return {};
+  if (lines <= limits.max_samples && data.bytes.size() <= kMaxRecordingBytes) return {};
   return Refused(ProblemKind::kTooLarge, data.name + ": the recording has " + std::to_string(lines) +
                                              " lines, and this service takes " + std::to_string(limits.max_samples) +
                                              " samples at most; send a part of it, or use fit_pendulum");
 }
 
 /// Limits the options, because each run of a batch stores them.
-OrProblem<void> CheckOptions(const FlagTexts& flags) {
+ResultOrProblem<void> CheckOptions(const FlagTexts& flags) {
   const std::size_t bytes = JsonText(JsonOf(flags)).size();
-  if (bytes <= kMostOptionBytes) return {};
+  if (bytes <= kMaxOptionBytes) return {};
   return Refused(ProblemKind::kTooLarge, "the options have " + std::to_string(bytes) + " bytes, and may have " +
-                                             std::to_string(kMostOptionBytes) + "; leave some out");
+                                             std::to_string(kMaxOptionBytes) + "; leave some out");
 }
 
 /// Makes the options and checks the limits.
-OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
+ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
   if (auto checked = CheckOptions(request.flags); !checked) return tl::unexpected(checked.error());
   auto options = RunOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
@@ -261,7 +262,7 @@ OrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
   return request;
 }
 
-OrProblem<FitRequest> Begin(const HttpRequest& http, const RequestTarget& target, std::string& name) {
+ResultOrProblem<FitRequest> Begin(const HttpRequest& http, const RequestTarget& target, std::string& name) {
   if (auto checked = CheckCoding(http); !checked) return tl::unexpected(checked.error());
   auto query = QueryOf(target);
   if (!query) return Refused(query.error());
@@ -278,7 +279,7 @@ Result<FlagTexts> FlagTextsOf(const Json& object) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_structured() || value.is_null()) {
       return Error(StatusCode::kInvalidArgument,
-                   "--" + name + " is " + ShownJson(value) + "; it must be a text, a number, true or false");
+                   "--" + name + " is " + JsonForMessage(value) + "; it must be a text, a number, true or false");
     }
     flags.emplace(name, value.is_string() ? value.get<std::string>() : value.dump());
   }
@@ -301,7 +302,7 @@ Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& c
     return Error(StatusCode::kInvalidArgument,
                  "--release all makes several results of a recording; a request has one, so give the number of one");
   }
-  options->read.most_unpacked_bytes = kMostUnpackedBytes;
+  options->read.most_unpacked_bytes = kMaxUnpackedBytes;
   options->fit.threads = 1;  // parallelism comes from concurrent requests
   return options;
 }
@@ -318,15 +319,15 @@ Result<IdentifyOptions> OptionsOf(const FitOrder& order) {
   return RunOptionsOf(*flags, order.files.calibration);
 }
 
-OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types) {
+ResultOrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types) {
   if (auto checked = CheckCoding(request); !checked) return checked;
   const std::string type = TypeOf(request);
   if (std::ranges::find(types, type) != types.end()) return {};
   return WrongKind(type, NameList(types));
 }
 
-OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
-                                      const RequestLimits& limits) {
+ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
+                                            const RequestLimits& limits) {
   std::string name;
   auto request = Begin(http, target, name);
   if (!request) return request;
@@ -351,8 +352,8 @@ OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarg
   return Finish(*std::move(request), limits);
 }
 
-OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
-                                        const RequestLimits& limits) {
+ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
+                                              const RequestLimits& limits) {
   std::string name;
   auto request = Begin(http, target, name);
   if (!request) return request;
@@ -369,8 +370,8 @@ OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTa
   return Finish(*std::move(request), limits);
 }
 
-OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
-                                        RunFiles files) {
+ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
+                                              RunFiles files) {
   std::string name;
   auto changes = Begin(http, target, name);
   if (!changes) return changes;

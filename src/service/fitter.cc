@@ -81,8 +81,8 @@ void Fitter::Remember(const std::string& id, std::shared_ptr<const Identificatio
   std::erase_if(remembered_, [&](const Remembered& other) { return other.id == id; });
   remembered_.push_front({id, std::move(run), samples});
   Eigen::Index total = 0;
-  const auto too_many = std::ranges::find_if(
-      remembered_, [&](const Remembered& one) { return (total += one.samples) > kMostRemembered; });
+  const auto too_many =
+      std::ranges::find_if(remembered_, [&](const Remembered& one) { return (total += one.samples) > kMaxRemembered; });
   remembered_.erase(too_many, remembered_.end());
 }
 

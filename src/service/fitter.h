@@ -46,7 +46,7 @@ class Fitter {
 
  private:
   /// A fit needs about a kilobyte per sample if several models are compared.
-  static constexpr Eigen::Index kMostRemembered = 100'000;  // samples
+  static constexpr Eigen::Index kMaxRemembered = 100'000;  // samples
 
   struct Remembered {
     std::string id;

@@ -104,10 +104,10 @@ struct PartReader {
   Result<std::pair<std::string_view, std::string_view>> Split(std::string_view part) const {
     constexpr std::string_view kBlankLine = "\r\n\r\n";
     if (part.starts_with(kLineEnd)) return std::pair(part.substr(0, 0), part.substr(kLineEnd.size()));
-    const std::size_t head = part.substr(0, kMostPartHeadBytes + kBlankLine.size()).find(kBlankLine);
+    const std::size_t head = part.substr(0, kMaxPartHeadBytes + kBlankLine.size()).find(kBlankLine);
     if (head != std::string_view::npos) return std::pair(part.substr(0, head), part.substr(head + kBlankLine.size()));
-    if (part.size() > kMostPartHeadBytes) {
-      return Wrong("has a head of more than " + std::to_string(kMostPartHeadBytes) +
+    if (part.size() > kMaxPartHeadBytes) {
+      return Wrong("has a head of more than " + std::to_string(kMaxPartHeadBytes) +
                    " bytes, or no blank line below it; shorten its names");
     }
     // A part with a head only: its blank line may be the line end before the boundary.
@@ -234,8 +234,8 @@ Result<std::vector<FormPart>> ParseFormData(std::string_view content_type, std::
     const PartReader reader{"part " + std::to_string(parts.size() + 1)};
     const auto next = lines.Behind(*line);
     if (!next) return reader.Wrong("has no boundary behind it; end the form in " + Quoted("--" + *boundary + "--"));
-    if (parts.size() == kMostFormParts) {
-      return WrongForm("has more than " + std::to_string(kMostFormParts) + " parts; send it in several");
+    if (parts.size() == kMaxFormParts) {
+      return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send it in several");
     }
     auto part = reader.Read(body.substr(line->end, std::max(next->begin, line->end) - line->end));
     if (!part) return tl::unexpected(part.error());

@@ -51,8 +51,8 @@ Result<GuideFile> ReadGuideFile(const std::string& folder, std::string_view path
     return Error(StatusCode::kNotFound,
                  "the user guide has no file '" + std::string(path) + "'; /docs/index.html lists its pages");
   }
-  constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20U;
-  auto bytes = ReadFile(file, "guide", kMostBytes);
+  constexpr std::uintmax_t kMaxBytes = std::uintmax_t{16} << 20U;
+  auto bytes = ReadFile(file, "guide", kMaxBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   return GuideFile{TypeOf(file), *std::move(bytes)};
 }

@@ -34,23 +34,23 @@ struct LiveExtremes {
   LivePoint least, largest;
 };
 
-/// A whole run of any length in at most kMostPoints points: the first, the last, and the extremes of blocks of samples.
+/// A whole run of any length in at most kMaxPoints points: the first, the last, and the extremes of blocks of samples.
 /// The block size grows with the run.
 class WholeRun {
  public:
-  static constexpr std::size_t kMostPoints = 4000;
+  static constexpr std::size_t kMaxPoints = 4000;
 
   void Take(LivePoint point) {
     if (!first_) first_ = point;
     last_ = point;
-    if (!blocks_.empty() && in_last_ < block_size_) {
+    if (!blocks_.empty() && in_last_block_ < block_size_) {
       blocks_.back().Take(LiveExtremes(point));
-      ++in_last_;
+      ++in_last_block_;
       return;
     }
-    if (blocks_.size() == kMostBlocks) Merge();
+    if (blocks_.size() == kMaxBlocks) Merge();
     blocks_.emplace_back(point);
-    in_last_ = 1;
+    in_last_block_ = 1;
   }
 
   std::vector<LivePoint> Points() const {
@@ -63,19 +63,19 @@ class WholeRun {
   }
 
  private:
-  static constexpr std::size_t kMostBlocks = kMostPoints / 2 - 2;  // even, with room for the ends
+  static constexpr std::size_t kMaxBlocks = kMaxPoints / 2 - 2;  // even, with room for the ends
 
   void Merge() {
     for (std::size_t i = 0; i < blocks_.size(); i += 2) {
       blocks_[i].Take(blocks_[i + 1]);
       blocks_[i / 2] = blocks_[i];
     }
-    blocks_.erase(blocks_.begin() + kMostBlocks / 2, blocks_.end());
+    blocks_.erase(blocks_.begin() + kMaxBlocks / 2, blocks_.end());
     block_size_ *= 2;
   }
 
   std::vector<LiveExtremes> blocks_;
-  std::size_t block_size_ = 2, in_last_ = 0;  // samples; a block of two keeps both
+  std::size_t block_size_ = 2, in_last_block_ = 0;  // samples; a block of two keeps both
   std::optional<LivePoint> first_;
   LivePoint last_{};
 };
@@ -86,12 +86,12 @@ class SparsePoints {
  public:
   /// Takes a sample and appends the finished points.
   void Take(LivePoint point, std::vector<LivePoint>& points) {
-    if (block_ && point.time >= paid_until_ + 2 * kPrice) Flush(points);
+    if (block_ && point.time >= next_point_time_ + 2 * kPointInterval) Flush(points);
     if (block_) {
       block_->Take(LiveExtremes(point));
-    } else if (!has_begun_ || point.time >= paid_until_) {
+    } else if (!has_begun_ || point.time >= next_point_time_) {
       points.push_back(point);
-      paid_until_ = point.time + kPrice;
+      next_point_time_ = point.time + kPointInterval;
       has_begun_ = true;
     } else {
       block_.emplace(point);
@@ -102,15 +102,15 @@ class SparsePoints {
   void Flush(std::vector<LivePoint>& points) {
     if (!block_) return;
     block_->AppendTo(points);
-    paid_until_ += 2 * kPrice;
+    next_point_time_ += 2 * kPointInterval;
     block_.reset();
   }
 
  private:
-  static constexpr double kPrice = 0.02;  // s
+  static constexpr double kPointInterval = 0.02;  // s
 
-  std::optional<LiveExtremes> block_;  // starts at paid_until_ and lasts for the time of two points
-  double paid_until_ = 0;              // s
+  std::optional<LiveExtremes> block_;  // starts at next_point_time_ and lasts for the time of two points
+  double next_point_time_ = 0;         // s
   bool has_begun_ = false;
 };
 

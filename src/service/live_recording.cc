@@ -23,7 +23,7 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kMostLiveBytes = std::size_t{64} << 20;  // an answer is held in memory
+constexpr std::size_t kMaxLiveBytes = std::size_t{64} << 20;  // an answer is held in memory
 constexpr std::chrono::milliseconds kLivePollInterval{50};
 
 std::string LiveStatusJson(const LiveStatus& status) {
@@ -58,7 +58,7 @@ Result<std::string> WholeLinesOf(int descriptor, const std::string& name) {
   const bool is_known = ::fstat(descriptor, &status) == 0;
   std::size_t room = (is_known ? static_cast<std::size_t>(status.st_size) : 0) + 1, size = 0;
   std::string bytes;
-  while (room <= kMostLiveBytes + 1) {
+  while (room <= kMaxLiveBytes + 1) {
     bytes.resize(room);
     const ssize_t added = ::read(descriptor, bytes.data() + size, room - size);
     if (added <= 0) {
@@ -115,9 +115,9 @@ class LiveRecording::Reader {
     EventText events;
     if (cursor.has_samples && (cursor.run != number_ || cursor.next < run_.latest_begin)) {
       cursor = LiveCursor();
-      Say(LiveStatus{LiveState::kWaiting, name_, 0, "", {}}, cursor, events.text);
+      AppendStatus(LiveStatus{LiveState::kWaiting, name_, 0, "", {}}, cursor, events.text);
     }
-    Say(StatusLocked(), cursor, events.text);
+    AppendStatus(StatusLocked(), cursor, events.text);
     if (!has_more_ && run_.samples > 0) AppendSamples(cursor, events.text);
     return events;
   }
@@ -133,7 +133,7 @@ class LiveRecording::Reader {
     }
     run_.Take(news.lines);
     has_more_ = news.has_more;
-    if (!tail_.is_growing() && !has_more_) run_.Settle();
+    if (!tail_.is_growing() && !has_more_) run_.FlushPoints();
     polled_ = std::chrono::steady_clock::now();
   }
 
@@ -148,7 +148,7 @@ class LiveRecording::Reader {
     return status;
   }
 
-  static void Say(const LiveStatus& status, LiveCursor& cursor, std::string& text) {
+  static void AppendStatus(const LiveStatus& status, LiveCursor& cursor, std::string& text) {
     std::string json = LiveStatusJson(status);
     if (json == cursor.said) return;
     text += LiveEvent("state", json);

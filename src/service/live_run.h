@@ -15,7 +15,7 @@ namespace pendulum {
 
 /// The part of a run that was read so far.
 struct LiveRun {
-  static constexpr std::size_t kMostLatest = 4000;  // 80 s of points; a listener that is further behind starts again
+  static constexpr std::size_t kMaxLatest = 4000;  // 80 s of points; a listener that is further behind starts again
 
   LiveRows rows;
   WholeRun whole;
@@ -28,7 +28,7 @@ struct LiveRun {
 
   void Keep(const std::vector<LivePoint>& points) {
     latest.insert(latest.end(), points.begin(), points.end());
-    for (; latest.size() > kMostLatest; ++latest_begin) latest.pop_front();
+    for (; latest.size() > kMaxLatest; ++latest_begin) latest.pop_front();
   }
 
   void Take(std::string_view lines) {
@@ -46,7 +46,7 @@ struct LiveRun {
   }
 
   /// Appends points that wait for more samples of their block, if none arrive.
-  void Settle() {
+  void FlushPoints() {
     std::vector<LivePoint> settled;
     sparse.Flush(settled);
     Keep(settled);

@@ -60,7 +60,7 @@ Result<SimulationRequest> ParseSimulationRequest(const Call& call) {
   return request;
 }
 
-OrProblem<void> CheckSimulatedSamples(const SimulationFlags& flags, const RequestLimits& limits) {
+ResultOrProblem<void> CheckSimulatedSamples(const SimulationFlags& flags, const RequestLimits& limits) {
   const double samples = flags.duration * flags.rate;
   if (!(samples > static_cast<double>(limits.max_samples))) return {};
   return Refused(ProblemKind::kTooLarge, "--duration times --rate makes more samples than this service takes, " +
@@ -128,7 +128,7 @@ HttpResponse NoLive() {
                         "record_pendulum --out run.csv writes"});
 }
 
-std::string TagOf(std::string_view content) { return "\"" + Sha256(content).value_or("").substr(0, 32) + "\""; }
+std::string EntityTagOf(std::string_view content) { return "\"" + Sha256(content).value_or("").substr(0, 32) + "\""; }
 
 /// A file of the page; a browser loads it again only after a change.
 HttpResponse PageFile(const Call& call, std::string_view type, std::string_view content, const std::string& tag) {
@@ -145,7 +145,7 @@ HttpResponse PageFile(const Call& call, std::string_view type, std::string_view 
 HttpResponse PostSimulation(ServiceState& state, const Call& call) {
   if (auto checked = CheckQuery(call.target, SimulationFlagNames()); !checked) return ProblemAnswer(checked.error());
   constexpr std::array<std::string_view, 1> kTypes = {"application/json"};
-  if (auto checked = call.http.body.empty() ? OrProblem<void>() : CheckKind(call.http, kTypes); !checked) {
+  if (auto checked = call.http.body.empty() ? ResultOrProblem<void>() : CheckKind(call.http, kTypes); !checked) {
     return ProblemResponse(checked.error());
   }
   const auto request = ParseSimulationRequest(call);
@@ -243,17 +243,17 @@ HttpResponse GetOpenApi(ServiceState& /*state*/, const Call& /*call*/) {
 }
 
 HttpResponse GetPage(ServiceState& /*state*/, const Call& call) {
-  static const std::string tag = TagOf(ServicePage());
+  static const std::string tag = EntityTagOf(ServicePage());
   return PageFile(call, "text/html; charset=utf-8", ServicePage(), tag);
 }
 
 HttpResponse GetScript(ServiceState& /*state*/, const Call& call) {
-  static const std::string tag = TagOf(ServiceScript());
+  static const std::string tag = EntityTagOf(ServiceScript());
   return PageFile(call, "text/javascript; charset=utf-8", ServiceScript(), tag);
 }
 
 HttpResponse GetStyle(ServiceState& /*state*/, const Call& call) {
-  static const std::string tag = TagOf(ServiceStyle());
+  static const std::string tag = EntityTagOf(ServiceStyle());
   return PageFile(call, "text/css; charset=utf-8", ServiceStyle(), tag);
 }
 
@@ -267,7 +267,7 @@ HttpResponse GetGuide(ServiceState& /*state*/, const Call& /*call*/) {
 HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
   const auto file = ReadGuideFile(state.options.docs, call.id);
   if (!file) return ProblemAnswer(file.error());
-  return PageFile(call, file->type, file->bytes, TagOf(file->bytes));
+  return PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));
 }
 
 }  // namespace pendulum

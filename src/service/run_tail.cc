@@ -39,16 +39,16 @@ RunTail::RunTail(const std::filesystem::path& run) : run_(run), part_(run.string
 
 RunTail::~RunTail() { Forget(); }
 
-std::optional<RunTail::Sight> RunTail::SightOf(const struct stat& status) {
+std::optional<RunTail::FileIdentity> RunTail::IdentityOf(const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return std::nullopt;
   const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-  return Sight{status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size),
-               now.count() - static_cast<double>(status.st_mtim.tv_sec)};
+  return FileIdentity{status.st_dev, status.st_ino, static_cast<std::uintmax_t>(status.st_size),
+                      now.count() - static_cast<double>(status.st_mtim.tv_sec)};
 }
 
-std::optional<RunTail::Sight> RunTail::Find(const std::filesystem::path& path) {
+std::optional<RunTail::FileIdentity> RunTail::Find(const std::filesystem::path& path) {
   struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 ? SightOf(status) : std::nullopt;
+  return ::stat(path.c_str(), &status) == 0 ? IdentityOf(status) : std::nullopt;
 }
 
 /// Returns whether there was anything to forget.
@@ -61,7 +61,7 @@ bool RunTail::Forget() {
 }
 
 /// Whether the file continues the data read so far. A new run in the same file is shorter or has another beginning.
-bool RunTail::IsFollowed(const Sight& file) const {
+bool RunTail::IsSameFile(const FileIdentity& file) const {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) return false;
   if (status.st_dev != file.device || status.st_ino != file.node || file.size < offset_) return false;
@@ -74,7 +74,7 @@ RunTail::News RunTail::Look() {
   const auto part = Find(part_), run = Find(run_);
   const auto& there = part ? part : run;
   is_growing_ = part && part->age < kRunTailSilence;
-  if (!there || !IsFollowed(*there)) {
+  if (!there || !IsSameFile(*there)) {
     news.is_another = Forget();
     if (there) descriptor_ = OpenRegularFile(part ? part_ : run_);
   }

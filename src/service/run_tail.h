@@ -39,15 +39,15 @@ class RunTail {
 
  private:
   /// Attributes of a file in its directory.
-  struct Sight {
+  struct FileIdentity {
     std::uintmax_t device, node;
     std::uintmax_t size;  // bytes
     double age;           // s since it was last written
   };
 
-  static std::optional<Sight> SightOf(const struct stat& status);
-  static std::optional<Sight> Find(const std::filesystem::path& path);
-  bool IsFollowed(const Sight& file) const;
+  static std::optional<FileIdentity> IdentityOf(const struct stat& status);
+  static std::optional<FileIdentity> Find(const std::filesystem::path& path);
+  bool IsSameFile(const FileIdentity& file) const;
   bool Forget();
   void ReadOn(News& news);
   void TakeBytes(std::string_view bytes, std::string& lines);

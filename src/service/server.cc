@@ -30,7 +30,7 @@ using ErrorCode = boost::system::error_code;
 constexpr std::chrono::milliseconds kAfterFailedAccept{100};
 
 /// Rejected connections that get an answer at the same time; further ones are closed without one.
-constexpr std::size_t kMaxTurnedAway = 64;
+constexpr std::size_t kMaxRejected = 64;
 
 std::size_t ThreadsOf(int threads) {
   return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
@@ -52,7 +52,7 @@ struct Server::State {
 
   Result<void> Bind();
   void Accept();
-  void MakeRoom();
+  void CloseLongestIdle();
   void Take(tcp::socket socket);
   void Forget(const std::shared_ptr<wire::Connection>& connection);
   void BeginStop();
@@ -66,7 +66,7 @@ struct Server::State {
   tcp::acceptor acceptor;
   asio::steady_timer pause, stop_timer;
   std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
-  std::set<std::shared_ptr<wire::Connection>> connections, turned_away;
+  std::set<std::shared_ptr<wire::Connection>> connections, rejected;
   std::atomic<std::size_t> open = 0;
   std::atomic<std::uint64_t> accepted = 0;
   std::uint16_t port = 0;
@@ -108,29 +108,29 @@ void Server::State::Accept() {
 }
 
 /// Closes the connection that has been idle longest, so idle connections cannot block new clients.
-void Server::State::MakeRoom() {
-  const auto patience = [](const auto& connection) { return connection->waited(); };
-  const auto longest = std::ranges::max_element(connections, {}, patience);
-  if (longest == connections.end() || patience(*longest) <= options.yield_time) return;
-  const auto taken_out = connections.extract(longest);  // keeps it alive while it reports its end
-  taken_out.value()->Close();
+void Server::State::CloseLongestIdle() {
+  const auto waiting_time = [](const auto& connection) { return connection->waited(); };
+  const auto longest = std::ranges::max_element(connections, {}, waiting_time);
+  if (longest == connections.end() || waiting_time(*longest) <= options.yield_time) return;
+  const auto longest_idle = connections.extract(longest);  // keeps it alive while it reports its end
+  longest_idle.value()->Close();
 }
 
 void Server::State::Take(tcp::socket socket) {
   ++accepted;
-  if (connections.size() >= options.max_connections) MakeRoom();
-  const bool is_one_too_many = connections.size() >= options.max_connections;
-  if (is_one_too_many && turned_away.size() >= kMaxTurnedAway) return;
+  if (connections.size() >= options.max_connections) CloseLongestIdle();
+  const bool exceeds_limit = connections.size() >= options.max_connections;
+  if (exceeds_limit && rejected.size() >= kMaxRejected) return;
   const auto connection = std::make_shared<wire::Connection>(std::move(socket), serving);
-  (is_one_too_many ? turned_away : connections).insert(connection);
+  (exceeds_limit ? rejected : connections).insert(connection);
   open = connections.size();
-  if (!is_one_too_many) return connection->Start();
-  connection->TurnAway(503, "too many connections are open; try again later");
+  if (!exceeds_limit) return connection->Start();
+  connection->RejectConnection(503, "too many connections are open; try again later");
 }
 
 void Server::State::Forget(const std::shared_ptr<wire::Connection>& connection) {
   connections.erase(connection);
-  turned_away.erase(connection);
+  rejected.erase(connection);
   open = connections.size();
   EndStop();
 }
@@ -156,7 +156,7 @@ void Server::State::EndStop() {
 
 void Server::State::DropAll() {
   auto all = connections;
-  all.merge(turned_away);
+  all.merge(rejected);
   for (const auto& connection : all) connection->Close();
   io.stop();
 }

@@ -21,7 +21,7 @@
 namespace pendulum {
 
 /// Keys of requests in progress.
-class KeysUnderWay {
+class KeysInProgress {
  public:
   /// False: another request with this key is in progress.
   bool Begin(const std::string& key) {
@@ -45,19 +45,19 @@ struct ServiceState {
       : options(std::move(given)),
         store(std::move(kept)),
         fitter(options.fit_time),
-        batch_fitter(kBatchPatience * options.fit_time),
+        batch_fitter(kBatchTimeFactor * options.fit_time),
         queue(*store, batch_fitter, metrics, options.say) {
     if (!options.live.empty()) live.emplace(options.live);
   }
 
   /// Runs of batches have a lower priority, so they may take longer.
-  static constexpr int kBatchPatience = 4;
+  static constexpr int kBatchTimeFactor = 4;
 
   ServiceOptions options;
   std::unique_ptr<FitStore> store;
   ServiceMetrics metrics;
   Fitter fitter, batch_fitter;
-  KeysUnderWay keys;
+  KeysInProgress keys;
   std::optional<LiveRecording> live;
   std::atomic<bool> is_stopping = false;
   BatchQueue queue;  // last member: its threads use the members above

@@ -53,11 +53,11 @@ Result<void> CheckTask(const CalibrateSensorFlags& flags) {
 }
 
 Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
-  constexpr double kMostVolts = 1000, kMostDeg = 36000;
-  if (auto checked = CheckQuantity("--supply_voltage", flags.supply_voltage, kMostVolts); !checked) {
+  constexpr double kMaxVolts = 1000, kMaxDeg = 36000;
+  if (auto checked = CheckQuantity("--supply_voltage", flags.supply_voltage, kMaxVolts); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (auto checked = CheckQuantity("--potentiometer_range_deg", flags.potentiometer_range_deg, kMostDeg); !checked) {
+  if (auto checked = CheckQuantity("--potentiometer_range_deg", flags.potentiometer_range_deg, kMaxDeg); !checked) {
     return tl::unexpected(checked.error());
   }
   if (auto checked = CheckQuantity("--divider", flags.divider, 1); !checked) return tl::unexpected(checked.error());
@@ -67,7 +67,7 @@ Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
   for (const std::string& text : Split(list, ',')) {
     const auto volts = ParseNumber("--reference_voltage", text, "a number of volts, or several between commas");
     if (!volts) return tl::unexpected(volts.error());
-    if (auto checked = CheckQuantity("--reference_voltage", *volts, kMostVolts); !checked) {
+    if (auto checked = CheckQuantity("--reference_voltage", *volts, kMaxVolts); !checked) {
       return tl::unexpected(checked.error());
     }
     plan.push_back({flags.bits == 0 ? kUsualBits : flags.bits, *volts, flags.supply_voltage,

@@ -105,13 +105,13 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
   return positional;
 }
 
-std::vector<std::string> WithModelForModels(std::vector<std::string> arguments) {
+std::vector<std::string> ReplaceModelsAlias(std::vector<std::string> arguments) {
   for (std::string& argument : arguments) {
     if (argument == "--") break;
     const std::size_t dashes = argument.starts_with("--") ? 2 : 1;
     const std::string_view name = std::string_view(argument).substr(std::min(dashes, argument.size()));
-    const bool is_it = argument.starts_with('-') && (name == "models" || name.starts_with("models="));
-    if (is_it) argument.erase(dashes + std::string_view("model").size(), 1);
+    const bool is_match = argument.starts_with('-') && (name == "models" || name.starts_with("models="));
+    if (is_match) argument.erase(dashes + std::string_view("model").size(), 1);
   }
   return arguments;
 }

@@ -28,7 +28,7 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
                                                      std::span<const FlagInfo> flags);
 
 /// The arguments with --models replaced by --model; both names mean the same flag.
-std::vector<std::string> WithModelForModels(std::vector<std::string> arguments);
+std::vector<std::string> ReplaceModelsAlias(std::vector<std::string> arguments);
 
 /// The output of --help: the usage, then the own flags.
 std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);

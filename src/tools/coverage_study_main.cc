@@ -63,8 +63,8 @@ class Progress {
     const bool at_part = done * kParts / count_ != (done - 1) * kParts / count_;
     if (!at_part) return;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    Say(kName, scenario_ + ": " + std::to_string(done) + " of " + std::to_string(count_) + " " + what_ + ", " +
-                   FixedText(elapsed.count(), 1) + " s");
+    PrintMessage(kName, scenario_ + ": " + std::to_string(done) + " of " + std::to_string(count_) + " " + what_ + ", " +
+                            FixedText(elapsed.count(), 1) + " s");
   }
 
  private:

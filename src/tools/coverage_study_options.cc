@@ -8,9 +8,9 @@
 namespace pendulum {
 namespace {
 
-constexpr int kMostRecordings = 1'000'000;
-constexpr int kMostThreads = 1024;
-constexpr int kMostRuns = 100;
+constexpr int kMaxRecordings = 1'000'000;
+constexpr int kMaxThreads = 1024;
+constexpr int kMaxRuns = 100;
 
 Result<void> CheckWhole(const std::string& flag, int value, int least, int most) {
   if (value >= least && value <= most) return {};
@@ -32,11 +32,11 @@ std::vector<NamedFile> CoverageStudyOptions::Outputs() const {
 
 Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
-  if (auto checked = CheckWhole("--count", flags.count, 1, kMostRecordings); !checked) {
+  if (auto checked = CheckWhole("--count", flags.count, 1, kMaxRecordings); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (auto checked = CheckWhole("--runs", flags.runs, 1, kMostRuns); !checked) return tl::unexpected(checked.error());
-  if (auto checked = CheckWhole("--threads", flags.threads, 0, kMostThreads); !checked) {
+  if (auto checked = CheckWhole("--runs", flags.runs, 1, kMaxRuns); !checked) return tl::unexpected(checked.error());
+  if (auto checked = CheckWhole("--threads", flags.threads, 0, kMaxThreads); !checked) {
     return tl::unexpected(checked.error());
   }
   CoverageStudyOptions options;

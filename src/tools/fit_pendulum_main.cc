@@ -141,7 +141,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   for (int i = 0; i < count; ++i) {
     const Result<Identification>& run = runs[static_cast<std::size_t>(i)];
     if (!run) {
-      Say(kName, run.error().message);
+      PrintMessage(kName, run.error().message);
       continue;
     }
     RenderFiles(options, *run, i, count, outputs);
@@ -149,12 +149,12 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     if (!part) return tl::unexpected(part.error());
     text += (text.empty() ? "" : "\n") + *part;
     if (data_on_stdout) {
-      for (const Warning& warning : AllWarnings(*run)) Say(kName, "warning: " + warning.message);
+      for (const Warning& warning : AllWarnings(*run)) PrintMessage(kName, "warning: " + warning.message);
     }
     for (const FitReport& fit : run->fits) {
       if (fit.termination == Termination::kConverged) continue;
       const std::string model = options.models.size() > 1 ? std::string(fit.model.name) + ": " : "";
-      Say(kName, model + std::string(TerminationName(fit.termination)) + ": " + fit.reason);
+      PrintMessage(kName, model + std::string(TerminationName(fit.termination)) + ": " + fit.reason);
     }
   }
   if (!data_on_stdout && !text.empty()) outputs.push_back({"-", text});
@@ -162,14 +162,14 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
 }
 
 /// Reports the progress of the bootstrap from time to time.
-void SayProgress(int done, int total) {
-  Say(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
+void ShowProgress(int done, int total) {
+  PrintMessage(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
 }
 
 Result<int> Work(const std::vector<std::string>& positional) {
   auto options = MakeFitPendulumOptions(CurrentFlags(positional));
   if (!options) return tl::unexpected(options.error());
-  options->fit.progress = SayProgress;
+  options->fit.progress = ShowProgress;
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
   if (const auto plots = options->terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {

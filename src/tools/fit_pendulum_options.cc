@@ -36,9 +36,9 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
 /// Refuses outputs that closed forms alone cannot provide.
 Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
-  if (!flags.shared.empty() && flags.shared != "none") return NeedsAFit("--shared");
-  if (!flags.residuals.empty()) return NeedsAFit("--residuals");
-  if (flags.terminal_plot) return NeedsAFit("--terminal_plot");
+  if (!flags.shared.empty() && flags.shared != "none") return NeedsFitError("--shared");
+  if (!flags.residuals.empty()) return NeedsFitError("--residuals");
+  if (flags.terminal_plot) return NeedsFitError("--terminal_plot");
   return {};
 }
 

@@ -63,7 +63,7 @@ Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup
   std::size_t count = 0;
   for (const std::string& path : setup.paths) {
     auto one = PrepareFile(path, options, setup.rig);
-    if (!one) return ErrorAmong(one.error(), path, 0);
+    if (!one) return ErrorOfRun(one.error(), path, 0);
     count += one->swings.chosen.size();
     recordings.push_back(*std::move(one));
   }
@@ -88,7 +88,7 @@ Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& opt
   for (const std::string& path : setup.paths) {
     auto one = PrepareFile(path, options, setup.rig);
     if (!one) {
-      runs.emplace_back(files > 1 ? ErrorAmong(one.error(), path, 0) : tl::unexpected(one.error()));
+      runs.emplace_back(files > 1 ? ErrorOfRun(one.error(), path, 0) : tl::unexpected(one.error()));
       continue;
     }
     if (const std::size_t more = one->swings.chosen.size() - 1; more > 0) {
@@ -98,7 +98,7 @@ Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& opt
       }
     }
     for (Result<Identification>& run : IdentifyEach(options, *std::move(one))) {
-      if (!run && files > 1) run = ErrorAmong(run.error(), path, 0);
+      if (!run && files > 1) run = ErrorOfRun(run.error(), path, 0);
       runs.push_back(std::move(run));
     }
   }

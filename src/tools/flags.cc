@@ -48,7 +48,7 @@ Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file
   const std::vector<FlagInfo> flags = RegisteredFlags(main_file);
   const bool has_model = std::ranges::find(flags, "model", &FlagInfo::name) != flags.end();
   static std::vector<std::string> arguments;  // gflags keeps pointers
-  arguments = has_model ? WithModelForModels({argv + 1, argv + argc}) : std::vector<std::string>(argv + 1, argv + argc);
+  arguments = has_model ? ReplaceModelsAlias({argv + 1, argv + argc}) : std::vector<std::string>(argv + 1, argv + argc);
   for (int i = 1; i < argc; ++i) argv[i] = arguments[static_cast<std::size_t>(i - 1)].data();
   auto positional = PositionalArguments(arguments, flags);
   if (!positional) return tl::unexpected(positional.error());

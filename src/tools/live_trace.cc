@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-constexpr std::size_t kMostColumns = 66, kLabel = 9;  // columns of the plot, and of the numbers next to it
+constexpr std::size_t kMaxColumns = 66, kLabel = 9;  // columns of the plot, and of the numbers next to it
 constexpr std::size_t kPictureRows = LiveTrace::kRows - 1;
 
 std::string RightAligned(const std::string& text, std::size_t width) {
@@ -45,7 +45,7 @@ std::vector<std::string> LiveTrace::Plot(std::size_t width) const {
   constexpr std::size_t kBesides = kLabel + 3;  // label, blank, frame, and one in reserve
   std::vector<std::string> rows(kRows);
   if (points_.empty() || width < kBesides + 2) return rows;
-  const std::size_t columns = std::min(kMostColumns, width - kBesides);
+  const std::size_t columns = std::min(kMaxColumns, width - kBesides);
   std::vector<Span> spans(columns);
   const auto last = static_cast<double>(columns - 1);
   double low = points_.front().value, high = low;

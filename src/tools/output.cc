@@ -81,7 +81,7 @@ Result<void> CheckWritable(const std::string& path, std::set<fs::path>& proven) 
   if (!fs::exists(status) && error && error != std::errc::no_such_file_or_directory) {
     return CannotWrite(path, error.message());
   }
-  if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0) return CannotWrite(path, SystemWords(errno));
+  if (fs::exists(status) && ::access(path.c_str(), W_OK) != 0) return CannotWrite(path, SystemErrorText(errno));
   if (IsStream(path)) return {};
   const fs::path folder = FolderOf(FollowLinks(path));
   if (proven.contains(folder)) return {};
@@ -102,21 +102,21 @@ std::vector<std::string> FlagsOfTheSame(std::span<const NamedFile> outputs, std:
 }
 
 /// Writes pieces to a stream as they arrive.
-Result<void> WriteStream(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run) {
+Result<void> WriteStream(const std::string& path, const std::function<Result<void>(const PieceSink&)>& run) {
   const bool standard = IsStandardOutput(path);
   const std::string name = standard ? "standard output" : path;
   const int descriptor = standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) return CannotWrite(name, SystemWords(errno));
+  if (descriptor < 0) return CannotWrite(name, SystemErrorText(errno));
   Result<void> written = run([&](std::string_view text) -> Result<void> {
     if (WriteAll(descriptor, text)) return {};
-    return CannotWrite(name, SystemWords(errno));
+    return CannotWrite(name, SystemErrorText(errno));
   });
-  if (!standard && ::close(descriptor) != 0 && written) written = CannotWrite(name, SystemWords(errno));
+  if (!standard && ::close(descriptor) != 0 && written) written = CannotWrite(name, SystemErrorText(errno));
   return written;
 }
 
 Result<void> WriteStream(const Output& output) {
-  return WriteStream(output.path, [&](const TakePiece& take) { return take(output.text); });
+  return WriteStream(output.path, [&](const PieceSink& take) { return take(output.text); });
 }
 
 bool IsStreamed(const std::string& path) { return IsStandardOutput(path) || IsStream(path); }
@@ -197,7 +197,7 @@ Result<void> WriteStreamOfPieces(const std::string& path, int count,
 
 }  // namespace
 
-Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run) {
+Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const PieceSink&)>& run) {
   if (IsStreamed(path)) return WriteStream(path, run);
   StagedFile file(path);
   if (auto opened = file.Open(); !opened) return opened;
@@ -208,7 +208,7 @@ Result<void> WriteStreamed(const std::string& path, const std::function<Result<v
 
 Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece) {
   if (IsStreamed(path)) return WriteStreamOfPieces(path, count, piece);
-  return WriteStreamed(path, [&](const TakePiece& take) -> Result<void> {
+  return WriteStreamed(path, [&](const PieceSink& take) -> Result<void> {
     for (int i = 0; i < count; ++i) {
       const Result<std::string> text = piece(i);
       if (!text) return tl::unexpected(text.error());
@@ -228,7 +228,7 @@ Result<void> SynchroniseFileSystem(const std::string& path) {
   const bool synchronised = ::syncfs(descriptor) == 0;
   const int error = errno;
   ::close(descriptor);
-  if (!synchronised) return CannotWrite(path, SystemWords(error));
+  if (!synchronised) return CannotWrite(path, SystemErrorText(error));
   return {};
 }
 

@@ -49,11 +49,11 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
 Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece);
 
 /// Takes one piece of a text; an error ends the writing.
-using TakePiece = std::function<Result<void>(std::string_view)>;
+using PieceSink = std::function<Result<void>(std::string_view)>;
 
 /// Writes the pieces that `run` passes to its argument. A file appears when it is complete; a stream gets each piece at
 /// once. kCannotWrite; errors of `run`.
-Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const TakePiece&)>& run);
+Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const PieceSink&)>& run);
 
 /// Synchronises the file system of the file `path`, so that all writes survive a loss of power. kCannotWrite.
 Result<void> SynchroniseFileSystem(const std::string& path);

@@ -40,18 +40,18 @@ bool PartFile::Exists() const {
 Result<void> PartFile::Open() {
   if (path_.empty()) return {};
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadAndWrite);
-  if (descriptor_ < 0) return CannotWrite(path_, SystemWords(errno));
+  if (descriptor_ < 0) return CannotWrite(path_, SystemErrorText(errno));
   return {};
 }
 
 Result<void> PartFile::Append(std::string_view text) {
   if (descriptor_ < 0 || WriteAll(descriptor_, text)) return {};
-  return CannotWrite(path_, SystemWords(errno));
+  return CannotWrite(path_, SystemErrorText(errno));
 }
 
 Result<void> PartFile::Synchronise() {
   if (descriptor_ < 0 || ::fdatasync(descriptor_) == 0) return {};
-  return CannotWrite(path_, SystemWords(errno));
+  return CannotWrite(path_, SystemErrorText(errno));
 }
 
 void PartFile::Remove() {

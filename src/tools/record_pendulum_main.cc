@@ -140,7 +140,7 @@ Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOpti
 }
 
 /// 1 if data is missing; 130 if a recording of given length was stopped early.
-int CodeOf(const RecordPendulumOptions& options, const RecordedRun& recorded) {
+int ExitCodeOf(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   if (!IsComplete(recorded)) return kIncomplete;
   const bool has_end = options.seconds.has_value() || options.until_rest;
   return has_end && recorded.end == RunEnd::kStopped ? kInterrupted : 0;
@@ -162,11 +162,11 @@ Result<int> Fit(FitPendulumOptions options) {
 std::string PartRemark(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   const PartFile part(options.out);
   if (!part.Exists()) return "";
-  return recorded.part_trouble.empty() ? "; it is in " + part.path() : "; its beginning is in " + part.path();
+  return recorded.part_file_error.empty() ? "; it is in " + part.path() : "; its beginning is in " + part.path();
 }
 
 /// Writes the recording, removes its part file, and prints a summary.
-Result<void> Keep(const RecordPendulumOptions& options, const RecordedRun& recorded) {
+Result<void> SaveRecording(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   if (auto written = WriteOutputs(std::vector<Output>{{options.out, recorded.Csv()}}); !written) {
     return Error(written.error().code, written.error().message + PartRemark(options, recorded));
   }
@@ -191,9 +191,10 @@ Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::op
 void WarnOfSlowLine(const RecordPendulumOptions& options) {
   const double capacity = LineCapacityHz(options.rate, options.baud);
   if (options.rate.Hz() <= capacity) return;
-  Say(kRecordToolName, "warning: " + NumberText(options.rate.Hz(), 4) + " samples a second are more than the " +
-                           NumberText(capacity, 4) + " that a line of " + std::to_string(options.baud) +
-                           " baud carries; the rest will be lost");
+  PrintMessage(kRecordToolName, "warning: " + NumberText(options.rate.Hz(), 4) +
+                                    " samples a second are more than the " + NumberText(capacity, 4) +
+                                    " that a line of " + std::to_string(options.baud) +
+                                    " baud carries; the rest will be lost");
 }
 
 Result<int> Record(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
@@ -203,8 +204,8 @@ Result<int> Record(const RecordPendulumOptions& options, const std::optional<Cal
   if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
   const auto recorded = RecordRun(options, info, given ? given : StoredCalibration(info), stop, logger);
   if (!recorded) return tl::unexpected(recorded.error());
-  if (auto kept = Keep(options, *recorded); !kept) return tl::unexpected(kept.error());
-  const int code = CodeOf(options, *recorded);
+  if (auto kept = SaveRecording(options, *recorded); !kept) return tl::unexpected(kept.error());
+  const int code = ExitCodeOf(options, *recorded);
   if (!options.fit) return code;
   OnSignals(SIG_DFL);
   return Fit(*options.fit).map([code](int fit) { return fit != 0 ? fit : code; });
@@ -216,9 +217,9 @@ Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_log
   if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
   const auto recorded = RecordRun(options, info, std::nullopt, stop, logger);
   if (!recorded) return tl::unexpected(recorded.error());
-  if (const int code = CodeOf(options, *recorded); code != 0) {
-    Say(kRecordToolName,
-        stop ? "interrupted before the second was over" : "samples of the second are missing; try again");
+  if (const int code = ExitCodeOf(options, *recorded); code != 0) {
+    PrintMessage(kRecordToolName,
+                 stop ? "interrupted before the second was over" : "samples of the second are missing; try again");
     return code;
   }
   double sum = 0;
@@ -228,8 +229,8 @@ Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_log
 }
 
 /// Runs the task with a connected logger.
-Result<int> WorkWith(const RecordPendulumOptions& options, const std::string& port,
-                     const std::optional<Calibration>& given, Logger& logger) {
+Result<int> RunTask(const RecordPendulumOptions& options, const std::string& port,
+                    const std::optional<Calibration>& given, Logger& logger) {
   auto info = logger.Connect();
   if (!info) return tl::unexpected(info.error());
   if (options.task == RecordTask::kRecord) return Record(options, given, *info, logger);
@@ -262,9 +263,9 @@ Result<int> Work(const std::vector<std::string>& positional) {
   auto opened = SerialPort::Open(*port, options->baud);
   if (!opened) return tl::unexpected(opened.error());
   Logger logger(*std::move(opened), stop);
-  auto code = WorkWith(*options, *port, *given, logger);
+  auto code = RunTask(*options, *port, *given, logger);
   if (!code && code.error().code == StatusCode::kTryAgain && stop) {
-    Say(kRecordToolName, code.error().message);
+    PrintMessage(kRecordToolName, code.error().message);
     return kInterrupted;
   }
   return code;

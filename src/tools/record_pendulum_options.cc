@@ -17,13 +17,13 @@ constexpr double kLongestRun = 1e6;   // s, eleven days
 constexpr double kCountsSeconds = 1;  // averaged by --counts
 
 Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
-  using Asked = std::pair<bool, RecordTask>;
-  const std::array<Asked, 5> asked = {{{!flags.out.empty(), RecordTask::kRecord},
-                                       {flags.counts, RecordTask::kCounts},
-                                       {!flags.store_calibration.empty(), RecordTask::kStoreCalibration},
-                                       {flags.info, RecordTask::kInfo},
-                                       {flags.list, RecordTask::kList}}};
-  const auto count = std::ranges::count(asked, true, &Asked::first);
+  using RequestedTask = std::pair<bool, RecordTask>;
+  const std::array<RequestedTask, 5> asked = {{{!flags.out.empty(), RecordTask::kRecord},
+                                               {flags.counts, RecordTask::kCounts},
+                                               {!flags.store_calibration.empty(), RecordTask::kStoreCalibration},
+                                               {flags.info, RecordTask::kInfo},
+                                               {flags.list, RecordTask::kList}}};
+  const auto count = std::ranges::count(asked, true, &RequestedTask::first);
   if (count == 0) {
     return BadFlag(
         "--out is missing: where the recording goes; --counts, --store_calibration, --info and --list need "
@@ -32,7 +32,7 @@ Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
   if (count > 1) {
     return BadFlag("of --out, --counts, --store_calibration, --info and --list only one can be done at a time");
   }
-  return std::ranges::find(asked, true, &Asked::first)->second;
+  return std::ranges::find(asked, true, &RequestedTask::first)->second;
 }
 
 /// Refuses flags of a recording for other tasks.
@@ -54,9 +54,9 @@ Result<void> CheckBelongs(const RecordPendulumFlags& flags) {
 }
 
 Result<SamplingRate> ChooseRate(const RecordPendulumFlags& flags) {
-  if (flags.oversample < 1 || flags.oversample > wire::kMostOversample) {
+  if (flags.oversample < 1 || flags.oversample > wire::kMaxOversample) {
     return BadFlag("--oversample is " + std::to_string(flags.oversample) + "; it must be 1 to " +
-                   std::to_string(wire::kMostOversample));
+                   std::to_string(wire::kMaxOversample));
   }
   if (const auto rate = NearestRate(flags.rate_hz, flags.oversample)) return *rate;
   const auto ends = [&](std::uint16_t period) {

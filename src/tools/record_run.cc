@@ -27,15 +27,15 @@ constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // the longer of both
 constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
 
 /// Whether standard output is a pipe whose reader has closed it.
-bool IsReaderGone() {
+bool IsOutputClosed() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
 /// Whether so many seconds have passed since it was last due.
-class Every {
+class PeriodicTimer {
  public:
-  explicit Every(double seconds) : seconds_(seconds) {}
+  explicit PeriodicTimer(double seconds) : seconds_(seconds) {}
 
   void Restart(double now) { last_ = now; }
 
@@ -68,10 +68,10 @@ class RunInProgress {
  private:
   Result<void> Begin();
   void Trim();
-  void Go();
+  void ReceiveUntilOver();
   void Take(const TimedMessage& received);
   void TakeData(const wire::Data& data, double host_time);
-  void Lose(const std::string& why);
+  void EndAsLost(const std::string& why);
   double LongestSilence() const;
   void StopWhenDue(double now);
   void KeepPart(double now);
@@ -88,7 +88,7 @@ class RunInProgress {
   bool is_live_;
   RestDetector rest_;
   std::size_t rest_samples_ = 0;  // number of samples until rest; 0: not at rest, or not requested
-  Every draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
+  PeriodicTimer draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
   std::size_t kept_ = 0;                // samples in the part file
   double silence_ = 0, last_look_ = 0;  // s: time without data while we looked; time of the last look
   double stop_asked_ = 0;
@@ -97,7 +97,7 @@ class RunInProgress {
 
 Result<void> RunInProgress::Record() {
   if (auto begun = Begin(); !begun) return begun;
-  Go();
+  ReceiveUntilOver();
   Trim();
   recorded_.description.losses = recorded_.run.Losses();
   recorded_.damaged_frames = logger_.RejectedFrames();
@@ -107,7 +107,7 @@ Result<void> RunInProgress::Record() {
   if (recorded_.end == RunEnd::kStopped) {
     return Error(StatusCode::kTryAgain, "interrupted before anything was recorded");
   }
-  return Error(StatusCode::kDataLoss, "nothing was recorded: " + recorded_.why_lost);
+  return Error(StatusCode::kDataLoss, "nothing was recorded: " + recorded_.loss_reason);
 }
 
 /// Removes samples after the requested end.
@@ -126,11 +126,11 @@ Result<void> RunInProgress::Begin() {
   last_look_ = HostTime();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
-  if (!opened) recorded_.part_trouble = opened.error().message;
+  if (!opened) recorded_.part_file_error = opened.error().message;
   return {};
 }
 
-void RunInProgress::Go() {
+void RunInProgress::ReceiveUntilOver() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = HostTime();
@@ -138,7 +138,7 @@ void RunInProgress::Go() {
                                                                // silent
     last_look_ = now;
     if (!received) {
-      Lose(received.error().message);
+      EndAsLost(received.error().message);
     } else if (*received) {
       Take(**received);
     }
@@ -153,10 +153,10 @@ void RunInProgress::Take(const TimedMessage& received) {
     TakeData(*data, received.host_time);
   } else if (const auto* end = std::get_if<wire::End>(&received.message)) {
     recorded_.run.TakeEnd(*end);
-    if (!is_stopping_) Lose("the logger ended the run by itself");
+    if (!is_stopping_) EndAsLost("the logger ended the run by itself");
     is_over_ = true;
   } else if (std::holds_alternative<wire::Info>(received.message)) {
-    Lose("the logger started again: was its power or reset line touched?");
+    EndAsLost("the logger started again: was its power or reset line touched?");
   }
 }
 
@@ -176,11 +176,11 @@ void RunInProgress::TakeData(const wire::Data& data, double host_time) {
   }
 }
 
-void RunInProgress::Lose(const std::string& why) {
+void RunInProgress::EndAsLost(const std::string& why) {
   is_over_ = true;
   if (is_stopping_) return;  // the recording had already ended
   recorded_.end = RunEnd::kLost;
-  recorded_.why_lost = why;
+  recorded_.loss_reason = why;
 }
 
 double RunInProgress::LongestSilence() const {
@@ -194,8 +194,8 @@ void RunInProgress::StopWhenDue(double now) {
     const ReceivedRun& run = recorded_.run;
     const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
     const bool is_at_rest = rest_samples_ > 0;
-    if (silence_ > LongestSilence()) return Lose("the logger has fallen silent");
-    if (IsStandardOutput(options_.out) && IsReaderGone()) return Lose("nobody reads standard output any more");
+    if (silence_ > LongestSilence()) return EndAsLost("the logger has fallen silent");
+    if (IsStandardOutput(options_.out) && IsOutputClosed()) return EndAsLost("nobody reads standard output any more");
     if (!stop_ && !is_long_enough && !is_at_rest) return;
     recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;
     is_stopping_ = true;
@@ -207,25 +207,26 @@ void RunInProgress::StopWhenDue(double now) {
   } else if (!repeat_.IsDue(now)) {
     return;
   }
-  if (auto sent = logger_.RequestStop(); !sent) Lose(sent.error().message);
+  if (auto sent = logger_.RequestStop(); !sent) EndAsLost(sent.error().message);
 }
 
 /// Appends the new samples as rows.
 void RunInProgress::KeepPart(double now) {
-  if (!recorded_.part_trouble.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
+  if (!recorded_.part_file_error.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
   std::string rows;
   for (; kept_ < recorded_.run.size(); ++kept_) rows += RunRow(recorded_.run, kept_);
   auto kept = part_.Append(rows);
   if (kept) kept = part_.Synchronise();
   if (kept) return;
-  recorded_.part_trouble = kept.error().message;
-  if (!is_live_) Say(kRecordToolName, "warning: " + recorded_.part_trouble + "; the recording goes on in memory only");
+  recorded_.part_file_error = kept.error().message;
+  if (!is_live_)
+    PrintMessage(kRecordToolName, "warning: " + recorded_.part_file_error + "; the recording goes on in memory only");
 }
 
 std::string RunInProgress::LossText() const {
   const RunLosses losses = recorded_.run.Losses();
   const std::string lost = losses.samples == 0 ? "none lost" : std::to_string(losses.samples) + " LOST";
-  return recorded_.part_trouble.empty() ? lost : lost + ", NOT ON DISK";
+  return recorded_.part_file_error.empty() ? lost : lost + ", NOT ON DISK";
 }
 
 void RunInProgress::Show(double now) {
@@ -237,8 +238,8 @@ void RunInProgress::Show(double now) {
     lines.push_back(trace_.StatusLine(LossText()));
     lines_.Draw(lines, size.columns);
   } else if (!is_live_ && say_.IsDue(now) && run.size() > 0) {
-    Say(kRecordToolName,
-        NumberText(run.Time(run.size() - 1), 4) + " s, " + std::to_string(run.size()) + " samples, " + LossText());
+    PrintMessage(kRecordToolName, NumberText(run.Time(run.size() - 1), 4) + " s, " + std::to_string(run.size()) +
+                                      " samples, " + LossText());
   }
 }
 

@@ -29,9 +29,9 @@ struct RecordedRun {
   RunDescription description;
   ReceivedRun run;  ///< Samples up to the requested length.
   RunEnd end = RunEnd::kStopped;
-  std::string why_lost;      ///< A sentence for kLost.
-  int damaged_frames = 0;    ///< Received pieces that were not valid frames.
-  std::string part_trouble;  ///< Why there is no copy on the disk; empty if there is one.
+  std::string loss_reason;      ///< A sentence for kLost.
+  int damaged_frames = 0;       ///< Received pieces that were not valid frames.
+  std::string part_file_error;  ///< Why there is no copy on the disk; empty if there is one.
 
   /// The file's text.
   std::string Csv() const;

@@ -73,7 +73,7 @@ std::string EndText(const RecordedRun& recorded) {
     case RunEnd::kSeconds: return "after the time asked for";
     case RunEnd::kRest: return "at rest";
     case RunEnd::kStopped: return "by hand";
-    case RunEnd::kLost: return "too early: " + recorded.why_lost;
+    case RunEnd::kLost: return "too early: " + recorded.loss_reason;
   }
   return "";
 }
@@ -106,7 +106,7 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
   const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   std::vector<Warning> warnings;
   if (recorded.end == RunEnd::kLost)
-    warnings.push_back({"cut_short", recorded.why_lost + "; what came before is kept"});
+    warnings.push_back({"cut_short", recorded.loss_reason + "; what came before is kept"});
   if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses, recorded.damaged_frames)});
   if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
     warnings.push_back({"no_end",
@@ -128,8 +128,8 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
                         "the logger's clock and this computer's differ by more than any resonator does, so the times' "
                         "scale was not measured; is one of them stopped at times, as in a virtual machine?"});
   }
-  if (!recorded.part_trouble.empty()) {
-    warnings.push_back({"no_part", recorded.part_trouble + "; while it lasted, the recording was in memory only"});
+  if (!recorded.part_file_error.empty()) {
+    warnings.push_back({"no_part", recorded.part_file_error + "; while it lasted, the recording was in memory only"});
   }
   return warnings;
 }

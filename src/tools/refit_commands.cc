@@ -59,13 +59,13 @@ Result<Source> SourceOf(const RefitPendulumsOptions& options) {
 /// Reads rig and calibration of the whole batch. They must be valid, because otherwise every run would fail.
 Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refit) {
   if (!options.rig.empty()) {
-    auto text = ReadFile(options.rig, "rig", kMostJsonBytes);
+    auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
     if (const auto rig = ParseRig(*text, options.rig); !rig) return tl::unexpected(rig.error());
     refit.rig = *std::move(text);
   }
   if (options.calibration.empty()) return {};
-  auto text = ReadFile(options.calibration, "calibration", kMostJsonBytes);
+  auto text = ReadFile(options.calibration, "calibration", kMaxJsonBytes);
   if (!text) return tl::unexpected(text.error());
   if (const auto calibration = ParseCalibration(*text, options.calibration); !calibration) {
     return tl::unexpected(calibration.error());
@@ -112,15 +112,16 @@ Result<int> ShowStatus(const std::string& path) {
 }
 
 /// Prints the summary of a refit and returns its exit code.
-Result<int> Conclude(const RefitCounts& counts, const std::string& store, bool force) {
+Result<int> FinishRefit(const RefitCounts& counts, const std::string& store, bool force) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
   if (!counts.stopped) {
-    Say(kRefitToolName, text);
+    PrintMessage(kRefitToolName, text);
     return ShowStatus(store);
   }
-  Say(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
-                          " are left: the same command goes on from here" + (force ? ", without --force" : ""));
+  PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
+                                   " are left: the same command goes on from here" +
+                                   (force ? ", without --force" : ""));
   return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
 }
 
@@ -139,11 +140,11 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   const auto counts = refit.shard ? RefitShard(*source, shard, refit) : RefitInPlace(*source, store, refit);
   progress.Finish();
   if (!counts) return tl::unexpected(counts.error());
-  return Conclude(*counts, store, refit.force);
+  return FinishRefit(*counts, store, refit.force);
 }
 
 /// Opens the store for reading, after a check that --out can be written and is not the store.
-Result<Store> OpenToWriteOut(const RefitPendulumsOptions& options) {
+Result<Store> OpenForOutput(const RefitPendulumsOptions& options) {
   const std::string& store = options.stores.front();
   const std::vector<NamedFile> outputs = {{"--out", options.out}}, inputs = {{"--store", store}};
   if (const auto checked = CheckOutputs(outputs, inputs); !checked) return tl::unexpected(checked.error());
@@ -158,10 +159,10 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
                                                    ": its name ends with .csv for a table, with .jsonl for "
                                                    "JSON lines; - is the table on standard output");
   }
-  auto store = OpenToWriteOut(options);
+  auto store = OpenForOutput(options);
   if (!store) return tl::unexpected(store.error());
   const auto written = WriteStreamed(
-      out, [&](const TakeText& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
+      out, [&](const TextSink& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
   if (!written) return tl::unexpected(written.error());
   return 0;
 }
@@ -173,7 +174,7 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
                                                    ": its name ends with .html for a page, with .json for what it "
                                                    "shows; - is the page on standard output");
   }
-  auto store = OpenToWriteOut(options);
+  auto store = OpenForOutput(options);
   if (!store) return tl::unexpected(store.error());
   const auto summary = Summarize(*store, options.summary);
   if (!summary) return tl::unexpected(summary.error());
@@ -207,9 +208,9 @@ Result<int> RunPack(const RefitPendulumsOptions& options) {
   const auto packed = Pack(*source, options.out);
   if (!packed) return tl::unexpected(packed.error());
   if (packed->unreadable > 0) {
-    Say(kRefitToolName,
-        std::to_string(packed->unreadable) + " of " + std::to_string(packed->files) +
-            " files could not be read, which the pack will say of them; the first: " + packed->first_reason);
+    PrintMessage(kRefitToolName,
+                 std::to_string(packed->unreadable) + " of " + std::to_string(packed->files) +
+                     " files could not be read, which the pack will say of them; the first: " + packed->first_reason);
   }
   return 0;
 }
@@ -224,8 +225,8 @@ Result<int> RunMissing(const RefitPendulumsOptions& options) {
 Result<int> RunMerge(const RefitPendulumsOptions& options) {
   const auto runs = MergeShards(options.shard_dir, options.shard_count, options.stores.front());
   if (!runs) return tl::unexpected(runs.error());
-  Say(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
-                          " shards merged into " + options.stores.front());
+  PrintMessage(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
+                                   " shards merged into " + options.stores.front());
   return 0;
 }
 

@@ -39,7 +39,7 @@ const std::vector<CommandFlags>& Commands() {
 bool Contains(const auto& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
 /// Flags that a refit does not have.
-constexpr std::array<std::string_view, 5> kNotOfARefit = {"out", "shard_dir", "shard_count", "group_by", "trend_by"};
+constexpr std::array<std::string_view, 5> kNotForRefit = {"out", "shard_dir", "shard_count", "group_by", "trend_by"};
 
 Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) {
   for (const std::string_view name : command.needed) {
@@ -55,14 +55,14 @@ Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) 
 }
 
 Result<Shard> ParseShard(const std::string& text) {
-  constexpr std::int64_t kMostShards = 1000000000;
+  constexpr std::int64_t kMaxShards = 1000000000;
   Shard shard;
   const char* end = text.data() + text.size();
   const auto [slash, error] = std::from_chars(text.data(), end, shard.index);
   if (error == std::errc() && slash != end && *slash == '/') {
     const auto [rest, wrong] = std::from_chars(slash + 1, end, shard.count);
     if (wrong == std::errc() && rest == end && shard.index >= 0 && shard.index < shard.count &&
-        shard.count <= kMostShards) {
+        shard.count <= kMaxShards) {
       return shard;
     }
   }
@@ -107,7 +107,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
     return BadFlag("'" + flags.positional.front() + "' is no command; the commands are " + NameList(names) +
                    ", and none refits");
   }
-  for (const std::string_view name : kNotOfARefit) {
+  for (const std::string_view name : kNotForRefit) {
     if (Contains(flags.given, name))
       return BadFlag("--" + std::string(name) + " is not a flag of a refit; leave it out");
   }

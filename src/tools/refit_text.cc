@@ -76,10 +76,10 @@ std::string ChangedText(const StoreComparison& comparison) {
   return Heading("Ended otherwise") + AlignedTable({{"run"}, {"model"}, {"before"}, {"after"}}, rows, kTextIndent);
 }
 
-std::string GoneText(const StoreComparison& comparison) {
-  if (comparison.gone.empty()) return "";
+std::string RemovedFitsText(const StoreComparison& comparison) {
+  if (comparison.removed.empty()) return "";
   std::vector<Cells> rows;
-  for (const GoneFit& fit : comparison.gone) rows.push_back({Printable(fit.id), fit.model});
+  for (const RemovedFit& fit : comparison.removed) rows.push_back({Printable(fit.id), fit.model});
   return Heading("Gone") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
 }
 
@@ -111,7 +111,7 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
     text += Heading("Types of CPU") + Prose(before + ": " + NameList(comparison.cpus_before)) +
             Prose(after + ": " + NameList(comparison.cpus_after));
   }
-  return text + MovedText(comparison) + ChangedText(comparison) + GoneText(comparison);
+  return text + MovedText(comparison) + ChangedText(comparison) + RemovedFitsText(comparison);
 }
 
 }  // namespace pendulum

@@ -25,7 +25,7 @@ Result<int> Run(const Tool& tool, int argc, char** argv) {
 
 }  // namespace
 
-void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
+void PrintMessage(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
 
 int RunTool(const Tool& tool, int argc, char** argv) {
   FLAGS_logtostderr = true;
@@ -35,10 +35,10 @@ int RunTool(const Tool& tool, int argc, char** argv) {
   try {
     const Result<int> code = Run(tool, argc, argv);
     if (code) return *code;
-    Say(tool.name, code.error().message);
+    PrintMessage(tool.name, code.error().message);
     return ExitCode(code.error().code);
   } catch (const std::exception& error) {
-    Say(tool.name, std::string("internal error: ") + error.what());
+    PrintMessage(tool.name, std::string("internal error: ") + error.what());
     return ExitCode(StatusCode::kInternal);
   }
 }

@@ -23,7 +23,7 @@ struct Tool {
 inline constexpr int kInterrupted = 130;
 
 /// Prints "name: sentence" on standard error.
-void Say(std::string_view name, std::string_view sentence);
+void PrintMessage(std::string_view name, std::string_view sentence);
 
 /// Runs a tool: parses flags, handles --help and --version, prints errors and maps them to exit codes. An exception is
 /// a bug, 70.

@@ -92,7 +92,7 @@ ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
 }
 
 /// Prints one line on standard error in a single write, so lines of several threads do not mix.
-void SayAtTime(const std::string& words) { (void)WriteAll(STDERR_FILENO, UtcTimeText() + " " + words + "\n"); }
+void LogWithTime(const std::string& words) { (void)WriteAll(STDERR_FILENO, UtcTimeText() + " " + words + "\n"); }
 
 sigset_t EndingSignals() {
   sigset_t signals;
@@ -125,7 +125,7 @@ class SignalWatch {
     int signal = 0;
     ::sigwait(&signals, &signal);
     if (is_over_) return;
-    SayAtTime("stopping");
+    LogWithTime("stopping");
     service.Stop();
     server.Stop();
     const timespec patience{stop_seconds, 0};
@@ -142,12 +142,12 @@ class SignalWatch {
 
 /// Logs one line per answer, without the request's query and body.
 void Log(const Answered& answered) {
-  constexpr std::size_t kMostShown = 200;
-  std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMostShown));
+  constexpr std::size_t kMaxShown = 200;
+  std::string path = answered.target.substr(0, std::min(answered.target.find('?'), kMaxShown));
   std::ranges::replace_if(
       path, [](char c) { return c <= ' ' || c > '~'; }, '?');  // control characters could control a terminal
-  SayAtTime(answered.peer + " " + answered.method + " " + path + " " + std::to_string(answered.status) + " " +
-            std::to_string(answered.bytes) + " B " + std::to_string(answered.time.count() / 1000) + " ms");
+  LogWithTime(answered.peer + " " + answered.method + " " + path + " " + std::to_string(answered.status) + " " +
+              std::to_string(answered.bytes) + " B " + std::to_string(answered.time.count() / 1000) + " ms");
 }
 
 std::string AddressText(const ServerOptions& options, std::uint16_t port) {
@@ -161,7 +161,7 @@ Result<int> Work(const std::vector<std::string>& positional) {
   if (!token) return tl::unexpected(token.error());
   auto options = MakeServePendulumOptions(flags, *token);
   if (!options) return tl::unexpected(options.error());
-  options->service.say = SayAtTime;
+  options->service.say = LogWithTime;
   if (options->service.docs.empty()) {
     std::error_code fault;
     options->service.docs = InstalledGuide(std::filesystem::read_symlink("/proc/self/exe", fault));

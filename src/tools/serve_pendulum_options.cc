@@ -115,8 +115,8 @@ Result<std::string> ReadToken(const std::string& token_file, const char* from_en
   std::string token = from_environment == nullptr ? "" : from_environment;
   std::string where = "PENDULUM_TOKEN";
   if (!token_file.empty()) {
-    constexpr std::uintmax_t kMostBytes = 4096;
-    auto text = ReadFile(token_file, "token", kMostBytes);
+    constexpr std::uintmax_t kMaxBytes = 4096;
+    auto text = ReadFile(token_file, "token", kMaxBytes);
     if (!text) return text;
     token = text->substr(0, text->find_first_of("\r\n"));
     where = token_file;

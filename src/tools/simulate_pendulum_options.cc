@@ -10,12 +10,12 @@ namespace {
 
 /// A plan goes to standard output and covers one recording, which is not made.
 Result<void> CheckPlan(const SimulateFlags& flags) {
-  const std::string makes_none = " contradicts --plan, which makes no recording; leave out one of them";
-  if (!flags.out.empty()) return BadFlag("--out" + makes_none);
-  if (!flags.truth.empty()) return BadFlag("--truth" + makes_none);
-  if (flags.count != 1) return BadFlag("--count" + makes_none);
-  if (!flags.spread.empty()) return BadFlag("--spread" + makes_none);
-  if (!flags.manifest.empty()) return BadFlag("--manifest" + makes_none);
+  const std::string contradiction = " contradicts --plan, which makes no recording; leave out one of them";
+  if (!flags.out.empty()) return BadFlag("--out" + contradiction);
+  if (!flags.truth.empty()) return BadFlag("--truth" + contradiction);
+  if (flags.count != 1) return BadFlag("--count" + contradiction);
+  if (!flags.spread.empty()) return BadFlag("--spread" + contradiction);
+  if (!flags.manifest.empty()) return BadFlag("--manifest" + contradiction);
   if (flags.noise != 0 || flags.resolution != 0) return {};
   return BadFlag("--plan needs --noise or --resolution: without either nothing limits what a recording tells");
 }
@@ -35,9 +35,9 @@ Result<void> CheckFiles(const SimulateFlags& flags) {
 }
 
 Result<void> CheckThreads(const SimulateFlags& flags) {
-  constexpr int kMost = 1024;
-  if (flags.threads >= 0 && flags.threads <= kMost) return {};
-  return BadFlag("--threads is " + std::to_string(flags.threads) + "; it must be 0 to " + std::to_string(kMost));
+  constexpr int kMax = 1024;
+  if (flags.threads >= 0 && flags.threads <= kMax) return {};
+  return BadFlag("--threads is " + std::to_string(flags.threads) + "; it must be 0 to " + std::to_string(kMax));
 }
 
 void CopyFiles(const SimulateFlags& flags, SimulateOptions& options) {

@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-constexpr int kMostDraws = 1000;
+constexpr int kMaxDraws = 1000;
 
 /// mt19937_64 seeded through std::seed_seq, whose algorithm the standard specifies. SimulateRecording seeds with the
 /// number itself, so its draws differ.
@@ -49,14 +49,14 @@ Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter
   boost::random::normal_distribution<double> draw;
   std::vector<double> values(parameters.size());
   std::string offence;
-  for (int i = 0; i < kMostDraws; ++i) {
+  for (int i = 0; i < kMaxDraws; ++i) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       values[k] = parameters[k].mean + parameters[k].std_dev * draw(generator);
     }
     offence = Offence(parameters, order, values);
     if (offence.empty()) return values;
   }
-  return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMostDraws) + " draws of seed " +
+  return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMaxDraws) + " draws of seed " +
                                                  std::to_string(seed) + " none is within the bounds: in the last, " +
                                                  offence + "; let the parameters scatter less");
 }

@@ -23,7 +23,7 @@ namespace pendulum {
 namespace {
 
 constexpr double kTraceError = 1e-12;  // rad
-constexpr int kMostSamples = 20'000'000;
+constexpr int kMaxSamples = 20'000'000;
 
 tl::unexpected<Status> BadOption(std::string_view name, double value, std::string_view rule) {
   return Error(StatusCode::kInvalidArgument,
@@ -93,7 +93,7 @@ Result<void> CheckModel(const SyntheticOptions& options) {
     if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
     if (rule.value > infos[i].upper) return BadOption(rule.name, rule.value, "at most " + NumberText(infos[i].upper));
   }
-  if (const auto [larger, smaller] = OrderOf(options.model); larger >= 0) {
+  if (const auto [larger, smaller] = FindOrderedPair(options.model); larger >= 0) {
     const double least = options.parameters[static_cast<std::size_t>(smaller)];
     const auto at = static_cast<std::size_t>(larger);
     if (options.parameters[at] < least) {
@@ -116,7 +116,7 @@ Result<void> CheckLostCounts(const SyntheticOptions& options) {
 }
 
 /// The amount by which counts lost before `time` raise the readings.
-double LostBefore(const SyntheticOptions& options, double time) {
+double LostOffsetBefore(const SyntheticOptions& options, double time) {
   double counts = 0;
   for (const LostCounts& lost : options.lost_counts) counts += time >= lost.time ? lost.counts : 0;
   return counts * options.resolution;
@@ -159,17 +159,17 @@ Result<void> CheckEvents(const SyntheticOptions& options) {
   }
   if (!(options.resolution >= kFinestEvents))
     return BadOption("resolution", options.resolution, "at least 1e-05 rad where rows are events");
-  if (options.noise > kMostEventNoise * options.resolution)
+  if (options.noise > kMaxEventNoise * options.resolution)
     return BadOption("noise", options.noise, "at most a fifth of the resolution where rows are events");
   return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
 }
 
 Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
   const double count = std::round(options.duration * options.sample_rate);
-  if (!(count <= kMostSamples)) {
+  if (!(count <= kMaxSamples)) {
     return Error(StatusCode::kInvalidArgument,
                  NumberText(options.duration) + " s at " + NumberText(options.sample_rate) + " Hz are more than " +
-                     std::to_string(kMostSamples) + " samples; shorten it or sample more slowly");
+                     std::to_string(kMaxSamples) + " samples; shorten it or sample more slowly");
   }
   if (count < kMinimumSamples) {
     return Error(StatusCode::kFailedPrecondition,
@@ -357,14 +357,15 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   if (options.rows != RowTiming::kEven) {
     const Eigen::VectorXd instants = recording.time;
     ReadEncoder(*trajectory, options, instants, recording);
-    for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] += LostBefore(options, recording.time[i]);
+    for (Eigen::Index i = 0; i < recording.size(); ++i)
+      recording.value[i] += LostOffsetBefore(options, recording.time[i]);
     return MakeRecording(std::move(recording));
   }
   recording.value.resize(*count);
   for (Eigen::Index i = 0; i < *count; ++i) {
     const double truth = TrueReading(options, *trajectory, recording.time[i]);
     recording.value[i] = SensorReading(truth + noise[i], options.resolution, options.range);
-    recording.value[i] += LostBefore(options, recording.time[i]);
+    recording.value[i] += LostOffsetBefore(options, recording.time[i]);
   }
   if (!recording.value.allFinite()) {
     return Error(StatusCode::kFailedPrecondition,

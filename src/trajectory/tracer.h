@@ -33,13 +33,13 @@ class Tracer {
     if (options_.instruction_set == InstructionSet::kAvx512) return RunAvx512(start);
     if (options_.instruction_set == InstructionSet::kAvx2) return RunAvx2(start);
 #endif
-    return RunAnywhere(start);
+    return RunGeneric(start);
   }
 
  private:
 #ifdef PENDULUM_HAS_AVX
-  [[PENDULUM_AVX2, gnu::flatten]] TraceSummary RunAvx2(const Start<T>& start) { return RunAnywhere(start); }
-  [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunAnywhere(start); }
+  [[PENDULUM_AVX2, gnu::flatten]] TraceSummary RunAvx2(const Start<T>& start) { return RunGeneric(start); }
+  [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunGeneric(start); }
 #endif
 
   /// The series of a swing except those that visitors see. They are on the stack, so the compiler knows that nothing
@@ -51,7 +51,7 @@ class Tracer {
     Expander(const Pendulum<F, T>& pendulum, Segment<T>& segment) : expansion(pendulum, segment, rate) {}
   };
 
-  TraceSummary RunAnywhere(const Start<T>& start) {
+  TraceSummary RunGeneric(const Start<T>& start) {
     Expander expander(pendulum_, segment_);
     State<T> state{T(start.time), start.angle, start.rate};
     if (start.kind == StartKind::kRelease && start.time > options_.begin)
@@ -106,7 +106,7 @@ class Tracer {
     const double gravity = GravityTorque(values_.gravity, Value(state.angle));
     const double torque = gravity + F::Torque(0.0, direction, values_.friction.data());
     state = StateAtReversal(state, -torque / values_.inertia);
-    NoteReversal(gravity);
+    RecordReversal(gravity);
   }
 
   void VisitSwing(const T& start, double length) {
@@ -118,7 +118,7 @@ class Tracer {
 
   /// Counts a reversal. The margin is the difference between gravity and the friction that could hold the pendulum
   /// there.
-  void NoteReversal(double gravity) {
+  void RecordReversal(double gravity) {
     ++summary_.reversals;
     const double direction = gravity > 0 ? -1.0 : 1.0;
     const double holding = direction * F::Torque(0.0, direction, values_.friction.data());

@@ -64,7 +64,7 @@ Coverage CoverageOf(double seconds, const Delay& delay) {
   return coverage;
 }
 
-TEST(FitDeviceClock, FindsAScaleExactlyWhereNothingIsLate) {
+TEST(FitDeviceClock, IsExactWithoutDelays) {
   Random random(1);
   const std::vector<Arrival> arrivals = Arrivals(
       60, [](Random&) { return 0.004; }, random);
@@ -75,7 +75,7 @@ TEST(FitDeviceClock, FindsAScaleExactlyWhereNothingIsLate) {
 }
 
 /// The stated error agrees with the true one, over two hundred seeded runs for each kind of delay.
-TEST(FitDeviceClock, ErrorIsTrue) {
+TEST(FitDeviceClock, HasTheRightError) {
   const std::vector<std::pair<std::string, Delay>> delays = {{"wakeup", Wakeup}, {"usb", UsbBridge}, {"busy", Busy}};
   for (const auto& [name, delay] : delays) {
     for (const double seconds : {20.0, 60.0, 600.0}) {
@@ -91,7 +91,7 @@ TEST(FitDeviceClock, ErrorIsTrue) {
 
 /// USB polls on a grid of the host's clock. A run too short for the frames to drift across the grid has a systematic
 /// error of the clock.
-TEST(FitDeviceClock, ErrorIsTrueOnAGrid) {
+TEST(FitDeviceClock, HasTheRightErrorOnAGrid) {
   constexpr int kRuns = 200;
   for (const double seconds : {10.0, 30.0, 60.0}) {
     int covered = 0;
@@ -112,7 +112,7 @@ TEST(FitDeviceClock, ErrorIsTrueOnAGrid) {
 }
 
 /// In the middle of the minute the host's clock, or a bridge, falls behind by some milliseconds permanently.
-TEST(FitDeviceClock, ErrorGrowsWithAStep) {
+TEST(FitDeviceClock, HasALargerErrorAfterAStep) {
   for (const double step : {1e-3, 5e-3, 20e-3}) {
     Random random(7);
     std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
@@ -122,7 +122,7 @@ TEST(FitDeviceClock, ErrorGrowsWithAStep) {
   }
 }
 
-TEST(FitDeviceClock, BeatsAStraightLineThroughAllArrivals) {
+TEST(FitDeviceClock, IsBetterThanALineThroughAllArrivals) {
   Random random(3);
   const std::vector<Arrival> arrivals = Arrivals(60, UsbBridge, random);
   const DeviceClock clock = FitDeviceClock(arrivals, 0, 0);
@@ -132,7 +132,7 @@ TEST(FitDeviceClock, BeatsAStraightLineThroughAllArrivals) {
 }
 
 /// The port is not read for four seconds, so all frames of more than one part of the run are late.
-TEST(FitDeviceClock, LeavesAStallOut) {
+TEST(FitDeviceClock, IgnoresAStall) {
   Random random(4);
   std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
   for (Arrival& each : arrivals) {
@@ -144,7 +144,7 @@ TEST(FitDeviceClock, LeavesAStallOut) {
   EXPECT_LT(clock.std_dev, 5e-6);
 }
 
-TEST(FitDeviceClock, DoesNotMeasureWhatItCannot) {
+TEST(FitDeviceClock, MeasuresNothingFromShortOrJitteredArrivals) {
   Random random(5);
   for (const double seconds : {0.0, 1.0, 4.0}) {
     const DeviceClock clock = FitDeviceClock(Arrivals(seconds, Wakeup, random), 0, 0);
@@ -157,7 +157,7 @@ TEST(FitDeviceClock, DoesNotMeasureWhatItCannot) {
   EXPECT_FALSE(FitDeviceClock(Arrivals(6, jitter, random), 0, 0).is_measured);
 }
 
-TEST(FitDeviceClock, RefusesAClockThatNoResonatorHas) {
+TEST(FitDeviceClock, RefusesAnImplausibleClock) {
   Random random(6);
   std::vector<Arrival> arrivals = Arrivals(60, Wakeup, random);
   for (Arrival& each : arrivals) each.host_time /= 20;  // as if replayed twenty times as fast
@@ -167,13 +167,13 @@ TEST(FitDeviceClock, RefusesAClockThatNoResonatorHas) {
   EXPECT_EQ(clock.scale, 1);
 }
 
-TEST(FitDeviceClock, TakesArrivalsAtOneInstant) {
+TEST(FitDeviceClock, AcceptsArrivalsAtOneInstant) {
   std::vector<Arrival> arrivals;
   for (int i = 0; i < 1000; ++i) arrivals.push_back({0.04 * i, 5.0});  // all read at the same time at the end
   EXPECT_FALSE(FitDeviceClock(arrivals, 0, 0).is_measured);
 }
 
-TEST(HostClockStdDev, IsThatOfAQuartzOrBetter) {
+TEST(HostClockStdDev, IsAtMostThatOfAQuartz) {
   EXPECT_GT(HostClockStdDev(), 0);
   EXPECT_LE(HostClockStdDev(), 30e-6);
 }

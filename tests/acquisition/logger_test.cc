@@ -56,7 +56,7 @@ std::string FaultOf(const Result<T>& result) {
 
 // ---- Connect -----------------------------------------------------------------------------------------------------
 
-TEST(Logger, ConnectsWithOneThatAnswersAtOnce) {
+TEST(Logger, ConnectsToALoggerThatAnswersAtOnce) {
   LoggerScript script;
   script.info.firmware = 0x0102;
   script.info.has_calibration = 1;
@@ -72,7 +72,7 @@ TEST(Logger, ConnectsWithOneThatAnswersAtOnce) {
   EXPECT_EQ(connection.board.Heard(), "XI");
 }
 
-TEST(Logger, ConnectsBehindGarbage) {
+TEST(Logger, ConnectsAfterInvalidData) {
   LoggerScript script;
   script.greeting = Bytes("\xFF\x80 half a fra");
   const std::string_view hello("me\r\npendulum_logger: send ? for a reading\r\n\0", 44);
@@ -102,7 +102,7 @@ TEST(Logger, StopsARunOfAnEarlierProgram) {
   EXPECT_EQ(info->is_running, 0);
 }
 
-TEST(Logger, TakesNoneThatGoesOnRunning) {
+TEST(Logger, RejectsALoggerThatKeepsRunning) {
   LoggerScript script;
   script.begins_running = true;
   script.refused = {{'X', wire::kUnknown}};
@@ -110,7 +110,7 @@ TEST(Logger, TakesNoneThatGoesOnRunning) {
   FaultOf(connection.logger.Connect(0.6));
 }
 
-TEST(Logger, AsksAgainWhereTheAnswerIsLost) {
+TEST(Logger, RepeatsACommandIfTheAnswerIsLost) {
   LoggerScript script;
   script.lost_answers['I'] = 1;
   Connection connection(script);
@@ -118,7 +118,7 @@ TEST(Logger, AsksAgainWhereTheAnswerIsLost) {
   EXPECT_EQ(connection.board.Heard(), "XIXI");
 }
 
-TEST(Logger, TellsAnotherProtocol) {
+TEST(Logger, ReportsAnotherProtocol) {
   LoggerScript script;
   script.info.protocol = 3;
   Connection connection(script);
@@ -127,7 +127,7 @@ TEST(Logger, TellsAnotherProtocol) {
 }
 
 // Times and counts rely on the ticks and bits of protocol 1.
-TEST(Logger, TellsAnotherClockOrConverter) {
+TEST(Logger, ReportsAnotherClockOrConverter) {
   LoggerScript other_clock, other_converter;
   other_clock.info.tick_hz = 1000000;
   other_converter.info.adc_bits = 12;
@@ -136,7 +136,7 @@ TEST(Logger, TellsAnotherClockOrConverter) {
   EXPECT_THAT(FaultOf(second.logger.Connect(2)), AllOf(HasSubstr("12 bits"), HasSubstr("10")));
 }
 
-TEST(Logger, TellsSilence) {
+TEST(Logger, ReportsSilence) {
   LoggerScript script;
   script.is_mute = true;
   Connection connection(script);
@@ -146,7 +146,7 @@ TEST(Logger, TellsSilence) {
   EXPECT_LT(HostTime() - begin, 2);
 }
 
-TEST(Logger, TellsSomethingElse) {
+TEST(Logger, ReportsADeviceThatIsNotALogger) {
   LoggerScript script;
   script.is_mute = true;
   script.chatter = Bytes("$GPGGA,123519,4807.038,N,01131.000,E,1,08*47\r\n");
@@ -192,7 +192,7 @@ TEST(Logger, RepeatsACommandWhoseAnswerIsLost) {
 }
 
 // For example an answer to a command of an earlier program.
-TEST(Logger, TakesNoAnswerToAnotherCommand) {
+TEST(Logger, IgnoresAnswersToOtherCommands) {
   LoggerScript script;
   script.greeting.resize(wire::kMostEncoded + 1);
   script.greeting.resize(wire::MakeFrame(wire::Ack{'X', wire::kUnknown}, script.greeting.data()));
@@ -201,14 +201,14 @@ TEST(Logger, TakesNoAnswerToAnotherCommand) {
   EXPECT_TRUE(set) << set.error().message;
 }
 
-TEST(Logger, TellsWhereACommandIsNotAnswered) {
+TEST(Logger, ReportsAnUnansweredCommand) {
   LoggerScript script;
   script.is_mute = true;
   Connection connection(script);
   EXPECT_THAT(FaultOf(connection.logger.SetRate({10000, 1})), HasSubstr("now does not answer 'R'"));
 }
 
-TEST(Logger, TellsRefusals) {
+TEST(Logger, ReportsRefusals) {
   LoggerScript script;
   script.refused = {{'R', wire::kOutOfRange}, {'W', wire::kRunning}, {'S', wire::kUnknown}};
   Connection connection(script);
@@ -229,7 +229,7 @@ TEST(Logger, StoresACalibrationAndReadsItBack) {
   EXPECT_EQ(info->calibration.slope_variance, 1.25e-7F);
 }
 
-TEST(Logger, TellsAnEepromThatKeepsNothing) {
+TEST(Logger, ReportsAnEepromThatKeepsNothing) {
   LoggerScript script;
   script.forgets_calibration = true;
   Connection empty(script);
@@ -255,7 +255,7 @@ std::optional<Message> Next(Logger& logger) {
   return std::nullopt;
 }
 
-TEST(Logger, GivesTheDataOfARunInTheirOrder) {
+TEST(Logger, ReturnsTheDataOfARunInOrder) {
   LoggerScript script;
   script.counts = [](double time) { return 100 + static_cast<int>(time * 200 + 0.5); };
   Connection connection(script);
@@ -273,7 +273,7 @@ TEST(Logger, GivesTheDataOfARunInTheirOrder) {
   EXPECT_EQ(connection.logger.RejectedFrames(), 0);
 }
 
-TEST(Logger, TellsWhenAMessageCame) {
+TEST(Logger, ReportsTheArrivalTimeOfAMessage) {
   Connection connection;
   const double begin = HostTime();
   ASSERT_TRUE(connection.logger.Start());
@@ -284,7 +284,7 @@ TEST(Logger, TellsWhenAMessageCame) {
 }
 
 // Arriving samples show that the logger has started.
-TEST(Logger, StartsThoughTheFirstAnswerIsLost) {
+TEST(Logger, StartsIfTheFirstAnswerIsLost) {
   LoggerScript script;
   script.lost_answers['S'] = 1;
   Connection connection(script);
@@ -294,7 +294,7 @@ TEST(Logger, StartsThoughTheFirstAnswerIsLost) {
   EXPECT_EQ(connection.board.Heard(), "S");  // the samples also count as an answer
 }
 
-TEST(Logger, CountsDamageOfTheRunAlone) {
+TEST(Logger, CountsOnlyTheRunsInvalidFrames) {
   LoggerScript script;
   script.greeting = Bytes(std::string_view("no frame\0nor this\0", 18));
   Connection connection(script);
@@ -304,7 +304,7 @@ TEST(Logger, CountsDamageOfTheRunAlone) {
   EXPECT_EQ(connection.logger.RejectedFrames(), 0);
 }
 
-TEST(Logger, GivesNothingWhereNothingCame) {
+TEST(Logger, ReturnsNothingIfNothingArrived) {
   Connection connection;
   const double begin = HostTime();
   const auto received = connection.logger.Receive(0.1);
@@ -313,7 +313,7 @@ TEST(Logger, GivesNothingWhereNothingCame) {
   EXPECT_GE(HostTime() - begin, 0.09);
 }
 
-TEST(Logger, TellsThatThePortIsGone) {
+TEST(Logger, ReportsALostPort) {
   LoggerScript script;
   script.frames = 3;
   script.then = LoggerScript::Then::kUnplugged;

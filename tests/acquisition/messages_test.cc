@@ -78,7 +78,7 @@ Bytes AllFrames() { return Hex(kInfoFrame) + Hex(kDataFrame) + Hex(kAckFrame) + 
 
 // The check value of CRC-16/IBM-3740 (also CCITT-FALSE) in Greg Cook's catalogue. Without bytes it is the initial
 // value.
-TEST(Crc16, HasTheCheckValueOfTheCatalogue) {
+TEST(Crc16, MatchesTheCatalogueCheckValue) {
   const Bytes digits = Text("123456789");
   EXPECT_EQ(wire::Crc16(digits.data(), digits.size()), 0x29B1);
   EXPECT_EQ(wire::Crc16(digits.data(), 0), 0xFFFF);
@@ -99,7 +99,7 @@ const std::vector<CobsExample> kCobsExamples = {
     {"45 00 00 2C 4C 79 00 00 40 06 4F 37", "02 45 01 04 2C 4C 79 01 05 40 06 4F 37"},
 };
 
-TEST(Cobs, EncodesTheExamplesOfItsAuthors) {
+TEST(Cobs, EncodesTheAuthorsExamples) {
   for (const CobsExample& example : kCobsExamples) {
     const Bytes plain = Hex(example.plain);
     Bytes encoded(plain.size() + 1);
@@ -108,7 +108,7 @@ TEST(Cobs, EncodesTheExamplesOfItsAuthors) {
   }
 }
 
-TEST(Cobs, DecodesTheExamplesOfItsAuthors) {
+TEST(Cobs, DecodesTheAuthorsExamples) {
   for (const CobsExample& example : kCobsExamples) {
     Bytes bytes = Hex(example.encoded);
     bytes.resize(wire::CobsDecode(bytes.data(), bytes.size()));
@@ -116,14 +116,14 @@ TEST(Cobs, DecodesTheExamplesOfItsAuthors) {
   }
 }
 
-TEST(Cobs, DecodesNothingThatItDoesNotEncode) {
+TEST(Cobs, DecodesOnlyWhatItEncodes) {
   for (const char* encoded : {"", "05 11", "03 11", "02 11 05 22", "FF", "01 00", "02 00 02 33 44"}) {
     Bytes bytes = Hex(encoded);
     EXPECT_EQ(wire::CobsDecode(bytes.data(), bytes.size()), 0) << encoded;
   }
 }
 
-TEST(MakeFrame, GivesTheBytesOfTheProtocol) {
+TEST(MakeFrame, ProducesTheBytesOfTheProtocol) {
   EXPECT_EQ(FrameOf(kInfo), Hex(kInfoFrame));
   EXPECT_EQ(FrameOf(kData), Hex(kDataFrame));
   EXPECT_EQ(FrameOf(kAck), Hex(kAckFrame));
@@ -139,7 +139,7 @@ TEST(CommandBytes, AreAZeroAndTheFrame) {
             Hex("00 02 57 01 03 07 C3 01 03 80 3E 01 01 02 3F 01 03 80 BA 01 05 80 35 06 A7 00"));
 }
 
-TEST(DataFrameSize, IsThatOfAFrame) {
+TEST(DataFrameSize, IsTheSizeOfAFrame) {
   for (const int count : {1, 3, 16}) {
     wire::Data data = kData;
     data.count = static_cast<std::uint8_t>(count);
@@ -204,7 +204,7 @@ void ExpectAll(const std::vector<LoggerMessage>& messages) {
   ExpectAckAndEnd(messages[2], messages[3]);
 }
 
-TEST(MessageDecoder, ReadsWhatALoggerSends) {
+TEST(MessageDecoder, ReadsEveryLoggerMessage) {
   MessageDecoder decoder;
   ExpectAll(decoder.Take(AllFrames()));
   EXPECT_EQ(decoder.rejected(), 0);
@@ -232,7 +232,7 @@ TEST(MessageDecoder, ReadsTheLargestBlock) {
   EXPECT_THAT(read.sums, ElementsAreArray(data.sums));
 }
 
-TEST(MessageDecoder, TellsAnotherProtocolAndNothingElseOfIt) {
+TEST(MessageDecoder, ReportsOnlyTheVersionOfAnotherProtocol) {
   MessageDecoder decoder;
   // An Info of protocol 2 with two additional unknown bytes, from the Python implementation above.
   const auto messages = decoder.Take(Hex("07 49 02 07 08 D4 6F 00"));
@@ -274,7 +274,7 @@ TEST(MessageDecoder, FindsTheFrameBehindOneThatIsTooLong) {
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(49, 'Z'))), 1);
 }
 
-TEST(MessageDecoder, RejectsWhatIsCutAtEitherEnd) {
+TEST(MessageDecoder, RejectsTruncatedFrames) {
   const Bytes frame = Hex(kDataFrame);
   for (std::size_t cut = 1; cut + 1 < frame.size(); ++cut) {
     const Bytes head(frame.begin(), frame.end() - 1 - static_cast<std::ptrdiff_t>(cut));
@@ -317,7 +317,7 @@ TEST(MessageDecoder, RejectsPayloadsOfTheWrongLength) {
   }
 }
 
-TEST(MessageDecoder, RejectsRightFramesThatNoLoggerSends) {
+TEST(MessageDecoder, RejectsValidFramesOfOtherSenders) {
   EXPECT_EQ(RejectedOf(FrameOfPayload(Text("S"))), 1);      // a command
   EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I"))), 1);      // also a command, not an Info
   EXPECT_EQ(RejectedOf(FrameOfPayload(Text("I\x01"))), 1);  // an Info that ends after its protocol
@@ -332,7 +332,7 @@ Bytes DataPayload(std::uint8_t count, std::size_t sums) {
   return payload;
 }
 
-TEST(MessageDecoder, RejectsDataWithoutTheSamplesTheySay) {
+TEST(MessageDecoder, RejectsDataWithoutTheStatedSamples) {
   MessageDecoder decoder;
   EXPECT_THAT(decoder.Take(FrameOfPayload(DataPayload(4, 4))), SizeIs(1));
   EXPECT_EQ(RejectedOf(FrameOfPayload(DataPayload(4, 3))), 1);
@@ -364,7 +364,7 @@ wire::Info Of(std::uint8_t board, std::uint8_t reference) {
   return info;
 }
 
-TEST(BoardName, IsThatOnTheBox) {
+TEST(BoardName, IsTheNameOnTheBox) {
   EXPECT_EQ(BoardName(Of(1, 1)), "Arduino Uno");
   EXPECT_EQ(BoardName(Of(2, 1)), "Arduino Mega 2560");
   EXPECT_EQ(BoardName(Of(9, 1)), "board 9");

@@ -40,7 +40,7 @@ using Numbers = std::vector<double>;
 
 // ---- NearestRate -------------------------------------------------------------------------------------------------
 
-TEST(NearestRate, IsExactWhereTicksDivide) {
+TEST(NearestRate, IsExactIfTicksDivide) {
   const auto rate = NearestRate(200, 1);
   ASSERT_TRUE(rate);
   EXPECT_EQ(rate->period, 10000);
@@ -67,7 +67,7 @@ TEST(NearestRate, CountsConversionsWithTheSamples) {
 }
 
 // 250 to 62 500 ticks between conversions mean 8000 to 32 conversions per second.
-TEST(NearestRate, ReachesBothEndsAndNoFurther) {
+TEST(NearestRate, CoversExactlyThePossibleRates) {
   EXPECT_EQ(NearestRate(8000, 1)->period, 250);
   EXPECT_EQ(NearestRate(32, 1)->period, 62500);
   EXPECT_EQ(NearestRate(125, 64)->period, 250);
@@ -78,7 +78,7 @@ TEST(NearestRate, ReachesBothEndsAndNoFurther) {
   EXPECT_FALSE(NearestRate(0.49, 64));
 }
 
-TEST(NearestRate, RefusesWhatIsNoRate) {
+TEST(NearestRate, RefusesAnInvalidRate) {
   EXPECT_FALSE(NearestRate(200, 0));
   EXPECT_FALSE(NearestRate(200, -1));
   EXPECT_FALSE(NearestRate(100, 65));
@@ -90,7 +90,7 @@ TEST(NearestRate, RefusesWhatIsNoRate) {
 
 // ---- Samples -----------------------------------------------------------------------------------------------------
 
-TEST(ReceivedRun, BeginsEmpty) {
+TEST(ReceivedRun, IsEmptyAtFirst) {
   const ReceivedRun run(kRate);
   EXPECT_EQ(run.size(), 0);
   EXPECT_TRUE(run.arrivals().empty());
@@ -98,7 +98,7 @@ TEST(ReceivedRun, BeginsEmpty) {
   EXPECT_FALSE(run.Losses().is_end_known);
 }
 
-TEST(ReceivedRun, CountsTimeFromTheFirstSample) {
+TEST(ReceivedRun, MeasuresTimeFromTheFirstSample) {
   ReceivedRun run(kRate);
   EXPECT_TRUE(run.Take(Frame(0, 123456, {500, 501, 1023}), 10));
   EXPECT_TRUE(run.Take(Frame(1, 153456, {0, 512}), 10.02));
@@ -107,7 +107,7 @@ TEST(ReceivedRun, CountsTimeFromTheFirstSample) {
   EXPECT_EQ(run.Losses().samples, 0);
 }
 
-TEST(ReceivedRun, TellsWhenFramesCame) {
+TEST(ReceivedRun, ReportsTheArrivalTimesOfFrames) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1, 2, 3}), 7.25);
   run.Take(Frame(1, 30000, {4}), 7.5);
@@ -119,7 +119,7 @@ TEST(ReceivedRun, TellsWhenFramesCame) {
 }
 
 // 2^32 ticks are 2147.483648 s.
-TEST(ReceivedRun, GoesOnWhereTheTicksBeginAgain) {
+TEST(ReceivedRun, ContinuesAcrossTheTickOverflow) {
   for (const std::uint32_t before : {5000U, 10000U, 20000U, 25000U}) {
     ReceivedRun run(kRate);
     const std::uint32_t first = 0U - before;
@@ -139,14 +139,14 @@ TEST(ReceivedRun, CountsHoursOfTicks) {
   EXPECT_EQ(run.Losses().samples, 7 * 199999);
 }
 
-TEST(ReceivedRun, GivesTheMeanOfConversions) {
+TEST(ReceivedRun, AveragesConversions) {
   ReceivedRun run({1250, 16});
   run.Take(Frame(0, 0, {16 * 512, 16 * 512 + 1, 16 * 1023, 8}), 0);
   EXPECT_EQ(CountsOf(run), Numbers({512, 512.0625, 1023, 0.5}));
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.010, 0.020, 0.030}));
 }
 
-TEST(ReceivedRun, TellsSaturation) {
+TEST(ReceivedRun, ReportsSaturation) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {0, 1, 1022, 1023}), 0);
   EXPECT_TRUE(run.IsSaturated(0));
@@ -157,7 +157,7 @@ TEST(ReceivedRun, TellsSaturation) {
 
 // If four conversions of at most 1023 counts add up to 4091, three are 1023 and one is 1022. If they add up to 1, three
 // are 0.
-TEST(ReceivedRun, TellsSaturationOfSomeConversions) {
+TEST(ReceivedRun, ReportsSaturationOfSomeConversions) {
   ReceivedRun run({2500, 4});
   run.Take(Frame(0, 0, {4 * 1023, 4 * 1023 - 1, 4 * 512, 1, 0}), 0);
   EXPECT_TRUE(run.IsSaturated(0));
@@ -169,7 +169,7 @@ TEST(ReceivedRun, TellsSaturationOfSomeConversions) {
 
 // ---- Losses ------------------------------------------------------------------------------------------------------
 
-TEST(ReceivedRun, LeavesAGapWhereSamplesAreLost) {
+TEST(ReceivedRun, LeavesAGapForLostSamples) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1, 2}), 0);
   EXPECT_TRUE(run.Take(Frame(1, 50000, {6}), 0));  // samples 3, 4 and 5 are missing
@@ -181,7 +181,7 @@ TEST(ReceivedRun, LeavesAGapWhereSamplesAreLost) {
   EXPECT_FALSE(losses.is_end_known);
 }
 
-TEST(ReceivedRun, TellsTheLossesOfTheLoggerFromThoseOfTheLine) {
+TEST(ReceivedRun, SeparatesLossesOfTheLoggerAndTheLine) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1, 2}), 0);
   wire::Data late = Frame(2, 70000, {8});  // five are missing: three dropped, two in a damaged frame
@@ -201,7 +201,7 @@ TEST(ReceivedRun, TellsTheLossesOfTheLoggerFromThoseOfTheLine) {
 }
 
 // At 200 Hz a frame has 8 samples, so there are 25 frames per second.
-TEST(ReceivedRun, KnowsWhatIsMissingAtEitherEnd) {
+TEST(ReceivedRun, FindsMissingSamplesAtBothEnds) {
   ReceivedRun run(kRate);
   run.Take(Frame(2, 40000, {5, 6}), 0);
   EXPECT_EQ(run.Losses().samples, 16);  // frames 0 and 1
@@ -213,7 +213,7 @@ TEST(ReceivedRun, KnowsWhatIsMissingAtEitherEnd) {
 
 // Each frame reports how many samples were dropped before it was sent. Here two were dropped after the samples of frame
 // 0, which still had room. Then frame 1 with its eight samples is lost on the line.
-TEST(ReceivedRun, TellsDropsThatAFrameBeforeTheGapHasToldAlready) {
+TEST(ReceivedRun, DoesNotCountReportedDropsAsLostOnTheLine) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), third = Frame(2, 120000, {13});
   first.dropped = third.dropped = 2;
@@ -225,7 +225,7 @@ TEST(ReceivedRun, TellsDropsThatAFrameBeforeTheGapHasToldAlready) {
   EXPECT_EQ(losses.dropped, 2);
 }
 
-TEST(ReceivedRun, LosesNoFrameWhereTheirNumbersBeginAgain) {
+TEST(ReceivedRun, LosesNoFrameAtTheNumberOverflow) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 0;
   for (int i = 0; i < 65540; ++i, tick += 10000) ASSERT_TRUE(run.Take(Frame(i, tick, {i % 1000}), 0));
@@ -233,7 +233,7 @@ TEST(ReceivedRun, LosesNoFrameWhereTheirNumbersBeginAgain) {
   EXPECT_EQ(run.Losses().on_line, 0);
 }
 
-TEST(ReceivedRun, LosesNothingOfAWholeRun) {
+TEST(ReceivedRun, LosesNothingOfACompleteRun) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 40000, {5, 6}), 0);
   run.TakeEnd({2, 0, 0});
@@ -244,7 +244,7 @@ TEST(ReceivedRun, LosesNothingOfAWholeRun) {
 }
 
 // The counters in a frame stop at 65 535; those in End do not.
-TEST(ReceivedRun, BelievesTheEndWhereFramesCountNoFurther) {
+TEST(ReceivedRun, UsesTheEndIfFrameCountersSaturate) {
   ReceivedRun run(kRate);
   wire::Data full = Frame(0, 0, {1});
   full.dropped = full.late = 65535;
@@ -257,7 +257,7 @@ TEST(ReceivedRun, BelievesTheEndWhereFramesCountNoFurther) {
 }
 
 // The logger has already dropped two samples when it sends the first frame. The next frame shows where.
-TEST(ReceivedRun, CountsOnceWhatTheLoggerDropped) {
+TEST(ReceivedRun, CountsLoggerDropsOnce) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), second = Frame(1, 40000, {5});
   first.dropped = second.dropped = 2;
@@ -271,7 +271,7 @@ TEST(ReceivedRun, CountsOnceWhatTheLoggerDropped) {
 
 // A late conversion spoils its sample. The next sample starts at the next conversion, so the gap is not a whole number
 // of samples.
-TEST(ReceivedRun, TakesASampleThatBeginsBetweenTwoOthers) {
+TEST(ReceivedRun, AcceptsASampleBetweenTwoOthers) {
   ReceivedRun run({2500, 4});
   EXPECT_TRUE(run.Take(Frame(0, 0, {100}), 0));
   EXPECT_TRUE(run.Take(Frame(1, 17500, {104}), 0));  // 7 conversions: 4 of the first sample, 3 of a spoiled one
@@ -310,7 +310,7 @@ TEST(ReceivedRun, KeepsTheFirstSamplesAndTheirLosses) {
   EXPECT_EQ(run.Losses().dropped, 0);
 }
 
-TEST(ReceivedRun, KeepsAGapBeforeTheLastSampleThatIsKept) {
+TEST(ReceivedRun, KeepsAGapBeforeTheLastKeptSample) {
   ReceivedRun run = RunWithGaps();
   run.KeepFirst(5);
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.005, 0.010, 0.020, 0.035}));
@@ -319,7 +319,7 @@ TEST(ReceivedRun, KeepsAGapBeforeTheLastSampleThatIsKept) {
   EXPECT_EQ(run.Losses().dropped, 1);
 }
 
-TEST(ReceivedRun, KeepsAllWhereThereAreNoMore) {
+TEST(ReceivedRun, KeepsAllIfThereAreNoMore) {
   ReceivedRun run = RunWithGaps();
   run.TakeEnd({10, 1, 0});  // 6 samples arrived, so 4 were lost on the line
   for (const std::size_t samples : {std::size_t{1000}, run.size()}) {
@@ -340,7 +340,7 @@ void ExpectContradicts(ReceivedRun& run, const wire::Data& frame) {
   EXPECT_EQ(run.Losses().contradicting_frames, before + 1);
 }
 
-TEST(ReceivedRun, LeavesOutAFrameThatIsNotLater) {
+TEST(ReceivedRun, IgnoresAFrameThatIsNotLater) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 100000, {1, 2, 3}), 0);
   ExpectContradicts(run, Frame(1, 100000, {1, 2, 3}));  // the same frame twice
@@ -351,7 +351,7 @@ TEST(ReceivedRun, LeavesOutAFrameThatIsNotLater) {
   EXPECT_EQ(run.Losses().samples, 0);
 }
 
-TEST(ReceivedRun, LeavesOutAFrameOffTheGrid) {
+TEST(ReceivedRun, IgnoresAFrameOffTheGrid) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 10001, {2}));
@@ -360,14 +360,14 @@ TEST(ReceivedRun, LeavesOutAFrameOffTheGrid) {
   EXPECT_TRUE(run.Take(Frame(1, 10000, {2}), 1));
 }
 
-TEST(ReceivedRun, LeavesOutTheNextSampleBeforeThisOneHasEnded) {
+TEST(ReceivedRun, IgnoresASampleThatOverlapsThePreviousOne) {
   ReceivedRun run({2500, 4});
   run.Take(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 7500, {2}));
   EXPECT_TRUE(run.Take(Frame(1, 10000, {2}), 1));
 }
 
-TEST(ReceivedRun, LeavesOutMoreThanTheConverterGives) {
+TEST(ReceivedRun, IgnoresSumsBeyondTheConverter) {
   ReceivedRun run(kRate);
   ExpectContradicts(run, Frame(0, 0, {1, 1024}));
   EXPECT_TRUE(run.Take(Frame(0, 0, {1, 1023}), 0));
@@ -378,7 +378,7 @@ TEST(ReceivedRun, LeavesOutMoreThanTheConverterGives) {
 }
 
 // A frame that is half the counter's range later might equally be earlier.
-TEST(ReceivedRun, TakesNoGapOfEighteenMinutes) {
+TEST(ReceivedRun, RejectsAGapOfEighteenMinutes) {
   ReceivedRun run({250, 1});
   run.Take(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 2147483750U, {2}));  // a multiple of 250, beyond 2^31
@@ -386,7 +386,7 @@ TEST(ReceivedRun, TakesNoGapOfEighteenMinutes) {
   EXPECT_EQ(run.Time(1), 1073.74175);
 }
 
-TEST(ReceivedRun, CountsWhatItLeftOutAsLost) {
+TEST(ReceivedRun, CountsIgnoredFramesAsLost) {
   ReceivedRun run(kRate);
   run.Take(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 10000, {2000}));

@@ -72,7 +72,7 @@ double WhenAmplitudeIs(double counts, double amplitude, double tau) { return tau
 // ---- Rest is detected --------------------------------------------------------------------------------------------
 
 // An amplitude of half a count is within rounding. Detection takes five seconds more.
-TEST(RestDetector, TellsTheRestOfADecayingSwing) {
+TEST(RestDetector, DetectsTheRestOfADecayingSwing) {
   for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
       const auto rest = RestOf(Decaying(300, 6), 120, {200, noise, seed});
@@ -82,7 +82,7 @@ TEST(RestDetector, TellsTheRestOfADecayingSwing) {
   }
 }
 
-TEST(RestDetector, TellsTheRestOfDryFriction) {
+TEST(RestDetector, DetectsRestByDryFriction) {
   for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at different places within the band
     const auto rest = RestOf(DryFriction(amplitude, 10), 60);
     ASSERT_TRUE(rest) << amplitude;
@@ -93,7 +93,7 @@ TEST(RestDetector, TellsTheRestOfDryFriction) {
   }
 }
 
-TEST(RestDetector, TellsItAtOtherRates) {
+TEST(RestDetector, DetectsRestAtOtherRates) {
   for (const double rate : {50.0, 100.0, 1000.0, 3700.0}) {
     const auto rest = RestOf(Decaying(300, 6), 120, {rate, 0.5, 5});
     ASSERT_TRUE(rest) << rate;
@@ -101,7 +101,7 @@ TEST(RestDetector, TellsItAtOtherRates) {
   }
 }
 
-TEST(RestDetector, TellsItAfterAGapInTheSamples) {
+TEST(RestDetector, DetectsRestAfterAGapInTheSamples) {
   RestDetector detector;
   const Motion swing = Decaying(300, 3);
   for (int i = 0; i < 200 * 60; ++i) {
@@ -111,7 +111,7 @@ TEST(RestDetector, TellsItAfterAGapInTheSamples) {
   EXPECT_TRUE(detector.IsAtRest());
 }
 
-TEST(RestDetector, TellsThatItHasSwung) {
+TEST(RestDetector, ReportsThatItHasSwung) {
   RestDetector detector;
   const Motion swing = Decaying(300, 60);
   EXPECT_FALSE(detector.HasSwung());
@@ -120,7 +120,7 @@ TEST(RestDetector, TellsThatItHasSwung) {
   EXPECT_FALSE(detector.IsAtRest());
 }
 
-TEST(RestDetector, TakesItBackWhenItIsPushedAgain) {
+TEST(RestDetector, IsFalseAgainAfterAnotherPush) {
   RestDetector detector;
   const Motion swing = Decaying(300, 3);
   for (int i = 0; i < 200 * 40; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0)));
@@ -131,7 +131,7 @@ TEST(RestDetector, TakesItBackWhenItIsPushedAgain) {
 
 // ---- Rest is not detected too early ------------------------------------------------------------------------------
 
-TEST(RestDetector, KeepsQuietBeforeTheAmplitudeIsTwoCounts) {
+TEST(RestDetector, IsFalseBeforeAnAmplitudeOfTwoCounts) {
   for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
       const auto rest = RestOf(Decaying(100, 40), WhenAmplitudeIs(2, 100, 40), {200, noise, seed});
@@ -141,7 +141,7 @@ TEST(RestDetector, KeepsQuietBeforeTheAmplitudeIsTwoCounts) {
 }
 
 // Almost no friction: a minute with an amplitude of 2 counts after a larger swing.
-TEST(RestDetector, KeepsQuietWhileASmallSwingGoesOn) {
+TEST(RestDetector, IsFalseDuringASmallSwing) {
   const Motion swing = [](double time) { return kMiddle + (time < 20 ? 100 : 2) * std::cos(kRadPerSecond * time); };
   for (const double noise : {0.0, 0.5, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -151,7 +151,7 @@ TEST(RestDetector, KeepsQuietWhileASmallSwingGoesOn) {
   }
 }
 
-TEST(RestDetector, KeepsQuietWhileItIsHeldBeforeTheRelease) {
+TEST(RestDetector, IsFalseDuringTheHoldBeforeTheRelease) {
   for (const double rate : {50.0, 200.0, 1000.0}) {
     for (const double noise : {0.0, 0.5, 2.0}) {
       const auto rest = RestOf(HeldUntil(20, Decaying(300, 60)), 40, {rate, noise, 3});
@@ -161,7 +161,7 @@ TEST(RestDetector, KeepsQuietWhileItIsHeldBeforeTheRelease) {
 }
 
 // At the slowest rate of a logger without oversampling, 32 Hz, a tenth of a second has three or four samples.
-TEST(RestDetector, TakesNoNoiseForASwing) {
+TEST(RestDetector, DoesNotTreatNoiseAsASwing) {
   for (const double rate : {32.0, 40.0}) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
       const auto rest = RestOf([](double) { return kMiddle; }, 60, {rate, 2, seed});
@@ -170,13 +170,13 @@ TEST(RestDetector, TakesNoNoiseForASwing) {
   }
 }
 
-TEST(RestDetector, KeepsQuietWhereNothingEverMoves) {
+TEST(RestDetector, IsFalseIfNothingEverMoves) {
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 0, 1}));
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 2, 1}));
 }
 
 // A hand moves it to and fro while looking for the release angle, and holds it there.
-TEST(RestDetector, KeepsQuietWhileAHandMovesIt) {
+TEST(RestDetector, IsFalseWhileAHandMovesIt) {
   const Motion hand = [](double time) {
     const double there = std::clamp((time - 10) / 2, 0.0, 1.0), back = std::clamp((time - 20) / 3, 0.0, 1.0);
     return kMiddle + 280 * there - 60 * back;
@@ -185,7 +185,7 @@ TEST(RestDetector, KeepsQuietWhileAHandMovesIt) {
 }
 
 // A hand stops a swing on the way, beyond its last turning point: it did not come to rest by itself.
-TEST(RestDetector, KeepsQuietWhereASwingIsCaughtAndHeld) {
+TEST(RestDetector, IsFalseIfASwingIsCaughtAndHeld) {
   const Motion caught = [](double time) { return time < 15.2 ? Decaying(100, 60)(time) : kMiddle + 200; };
   EXPECT_FALSE(RestOf(caught, 60));
 }

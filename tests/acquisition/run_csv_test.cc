@@ -73,7 +73,7 @@ Calibration Line(double offset_deg, double deg_per_count) {
 // ---- The file ----------------------------------------------------------------------------------------------------
 
 // The metadata are those that read_recording.h documents; everything else is a comment.
-TEST(RunHead, TellsLoggerRunAndSensor) {
+TEST(RunHead, DescribesLoggerRunAndSensor) {
   const std::string head = RunHead(Description(), kRate);
   for (const char* line : {"# sample_rate_hz: 200\n", "# resolution: 1\n", "# range: 0,1023\n", "# clock_scale: 1\n",
                            "# clock_scale_std_dev: 0.003\n", "# lost_samples: 0\n"}) {
@@ -86,7 +86,7 @@ TEST(RunHead, TellsLoggerRunAndSensor) {
   EXPECT_THAT(head, Not(AnyOf(HasSubstr("calibration"), HasSubstr("mean of"), HasSubstr("did not arrive"))));
 }
 
-TEST(RunHead, TellsWhatIsOutOfTheOrdinary) {
+TEST(RunHead, ReportsUnusualConditions) {
   RunDescription description = Description();
   description.losses->is_end_known = false;
   description.losses->samples = 3;
@@ -119,7 +119,7 @@ TEST(RunCsv, IsReadBackSampleForSample) {
   EXPECT_TRUE(recording.warnings.empty()) << recording.warnings.front().message;
 }
 
-TEST(RunCsv, TellsResolutionAndRange) {
+TEST(RunCsv, ContainsResolutionAndRange) {
   const Recording recording = ReadBack(Description());
   EXPECT_EQ(recording.resolution, 1);
   EXPECT_EQ(recording.resolution_source, "file");
@@ -130,7 +130,7 @@ TEST(RunCsv, TellsResolutionAndRange) {
   EXPECT_EQ(ReadBack(Description(), Sawtooth({2500, 3})).resolution, 1.0 / 3);
 }
 
-TEST(RunCsv, TellsTheClockAndDoesNotApplyIt) {
+TEST(RunCsv, ReportsTheClockWithoutApplyingIt) {
   RunDescription description = Description();
   description.clock = {.scale = 1.00123457, .std_dev = 1.2e-5, .is_measured = true};
   const Recording recording = ReadBack(description);
@@ -139,14 +139,14 @@ TEST(RunCsv, TellsTheClockAndDoesNotApplyIt) {
   EXPECT_DOUBLE_EQ(recording.time[19], 0.095);
 }
 
-TEST(RunCsv, TellsThatTheClockIsUnknown) {
+TEST(RunCsv, ReportsAnUnknownClock) {
   const Recording recording = ReadBack(Description());
   EXPECT_EQ(recording.clock_scale, 1);
   EXPECT_EQ(recording.clock_scale_std_dev, 0.003);
 }
 
 // -135 deg + 0.25 deg per count: 500 counts are -10 deg.
-TEST(RunCsv, CarriesTheCalibration) {
+TEST(RunCsv, ContainsTheCalibration) {
   RunDescription description = Description();
   description.calibration = Line(-135, 0.25);
   description.calibration->covariance.resize(2, 2);
@@ -164,7 +164,7 @@ TEST(RunCsv, CarriesTheCalibration) {
 
 // With time stamps, lost samples leave a gap and do not shift later samples. Without time stamps, all times after the
 // loss are wrong and the reader gets a warning.
-TEST(RunCsv, TellsLostSamples) {
+TEST(RunCsv, ReportsLostSamples) {
   RunDescription description = Description();
   description.losses->samples = 4;
   EXPECT_TRUE(ReadBack(description).warnings.empty());
@@ -179,7 +179,7 @@ TEST(RunCsv, TellsLostSamples) {
   EXPECT_THAT(recording->warnings[0].message, HasSubstr("4"));
 }
 
-TEST(RunCsv, KeepsTheTimesBehindAGap) {
+TEST(RunCsv, KeepsTheTimesAfterAGap) {
   ReceivedRun run(kRate);
   for (const int i : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 14, 15, 16, 17, 18, 19, 20}) {
     wire::Data frame{};
@@ -214,13 +214,13 @@ wire::Info Stored(const wire::StraightLine& line) {
   return info;
 }
 
-TEST(StoredCalibration, IsNoneWhereThereIsNone) {
+TEST(StoredCalibration, IsMissingIfNoneIsStored) {
   wire::Info info = Stored({-135, 0.25F, 0, 0, 0});
   info.has_calibration = 0;
   EXPECT_FALSE(StoredCalibration(info));
 }
 
-TEST(StoredCalibration, IsOfCountsAndDegrees) {
+TEST(StoredCalibration, ConvertsCountsToDegrees) {
   const auto calibration = StoredCalibration(Stored({-135, 0.25F, 0, 0, 0}));
   ASSERT_TRUE(calibration);
   EXPECT_EQ(calibration->input, "counts");
@@ -234,7 +234,7 @@ TEST(StoredCalibration, IsOfCountsAndDegrees) {
 }
 
 // The float nearest to 0.2637 is 0.263700008392333984375.
-TEST(StoredCalibration, HasTheDigitsThatWereMeant) {
+TEST(StoredCalibration, HasTheIntendedDigits) {
   const auto calibration = StoredCalibration(Stored({-135.1F, 0.2637F, 0.04F, -6e-5F, 1.25e-7F}));
   ASSERT_TRUE(calibration);
   EXPECT_EQ(calibration->coefficients, (std::vector<double>{-135.1, 0.2637}));
@@ -245,7 +245,7 @@ TEST(StoredCalibration, HasTheDigitsThatWereMeant) {
   EXPECT_EQ(calibration->covariance(1, 1), 1.25e-7);
 }
 
-TEST(StoredCalibration, GoesIntoAFileAndIsReadBack) {
+TEST(StoredCalibration, IsWrittenToAFileAndReadBack) {
   RunDescription description = Description();
   description.calibration = StoredCalibration(Stored({-135, 0.25F, 0.04F, -6e-5F, 1.25e-7F}));
   const Recording recording = ReadBack(description);
@@ -266,7 +266,7 @@ TEST(StraightLineOf, KeepsDegrees) {
 }
 
 // pi/4 rad is 45 deg, and a variance of 1 rad^2 is (180/pi)^2 = 3282.806 deg^2.
-TEST(StraightLineOf, TurnsRadiansIntoDegrees) {
+TEST(StraightLineOf, ConvertsRadiansToDegrees) {
   Calibration calibration = Line(-kPi / 4, kPi / 720);
   calibration.angle_unit = "rad";
   calibration.covariance.resize(2, 2);
@@ -280,7 +280,7 @@ TEST(StraightLineOf, TurnsRadiansIntoDegrees) {
   EXPECT_FLOAT_EQ(line->slope_variance, 2 * 0.003282806F);
 }
 
-TEST(StraightLineOf, ComesBackAsItWas) {
+TEST(StraightLineOf, IsReproducedExactly) {
   Calibration calibration = Line(-135.1, 0.2637);
   calibration.covariance.resize(2, 2);
   calibration.covariance << 0.0412, -6.01e-5, -6.01e-5, 1.25e-7;
@@ -292,7 +292,7 @@ TEST(StraightLineOf, ComesBackAsItWas) {
   EXPECT_EQ(again->covariance, calibration.covariance);
 }
 
-TEST(StraightLineOf, RefusesWhatALoggerCannotKeep) {
+TEST(StraightLineOf, RefusesCalibrationsALoggerCannotStore) {
   Calibration of_volts = Line(-135, 54);
   of_volts.input = "volts";
   Calibration curve = Line(-135, 0.25);

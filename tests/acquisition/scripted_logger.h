@@ -91,8 +91,8 @@ class ScriptedLogger {
  private:
   /// Waits until everything written has been read, because unread data are lost with the terminal.
   void Unplug() {
-    constexpr int kMostWaits = 2000;
-    for (int waits = 0, unread = 1; unread > 0 && waits < kMostWaits; ++waits) {
+    constexpr int kMaxWaits = 2000;
+    for (int waits = 0, unread = 1; unread > 0 && waits < kMaxWaits; ++waits) {
       if (::ioctl(terminal_, FIONREAD, &unread) != 0) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

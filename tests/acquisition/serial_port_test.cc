@@ -106,7 +106,7 @@ Bytes EveryByte() {
 
 // ---- Read and write ----------------------------------------------------------------------------------------------
 
-TEST(SerialPort, ReadsWhatIsThere) {
+TEST(SerialPort, ReadsAvailableBytes) {
   const Cable cable;
   SerialPort port = Opened(cable);
   EXPECT_EQ(port.path(), cable.path());
@@ -125,14 +125,14 @@ TEST(SerialPort, ReadsWithoutALineEnd) {
   EXPECT_LT(SecondsSince(begin), 2);  // does not wait for more
 }
 
-TEST(SerialPort, TranslatesNothingThatIsRead) {
+TEST(SerialPort, ReadsBytesUntranslated) {
   const Cable cable;
   SerialPort port = Opened(cable);
   cable.Send(EveryByte());
   EXPECT_EQ(ReadAll(port, 256), EveryByte());
 }
 
-TEST(SerialPort, TranslatesNothingThatIsWritten) {
+TEST(SerialPort, WritesBytesUntranslated) {
   const Cable cable;
   SerialPort port = Opened(cable);
   ASSERT_TRUE(port.Write(EveryByte()));
@@ -148,7 +148,7 @@ TEST(SerialPort, EchoesNothing) {
   EXPECT_EQ(cable.Received(1), Bytes({'z'}));
 }
 
-TEST(SerialPort, ReadsMoreThanAnyBufferHolds) {
+TEST(SerialPort, ReadsMoreThanOneBuffer) {
   const Cable cable;
   SerialPort port = Opened(cable);
   Bytes many;
@@ -161,7 +161,7 @@ TEST(SerialPort, ReadsMoreThanAnyBufferHolds) {
   board.join();
 }
 
-TEST(SerialPort, WritesMoreThanAnyBufferHolds) {
+TEST(SerialPort, WritesMoreThanOneBuffer) {
   const Cable cable;
   SerialPort port = Opened(cable);
   const Bytes many(100000, 0x55);
@@ -173,7 +173,7 @@ TEST(SerialPort, WritesMoreThanAnyBufferHolds) {
   EXPECT_TRUE(received == many);
 }
 
-TEST(SerialPort, WaitsNoLongerThanItIsTold) {
+TEST(SerialPort, RespectsTheTimeout) {
   const Cable cable;
   SerialPort port = Opened(cable);
   const auto begin = Clock::now();
@@ -186,7 +186,7 @@ TEST(SerialPort, WaitsNoLongerThanItIsTold) {
   ASSERT_TRUE(port.Read(-1));  // the time has already passed
 }
 
-TEST(SerialPort, CanBeMoved) {
+TEST(SerialPort, IsMovable) {
   const Cable cable;
   SerialPort first = Opened(cable);
   SerialPort port(std::move(first));
@@ -196,7 +196,7 @@ TEST(SerialPort, CanBeMoved) {
 
 // ---- Errors ------------------------------------------------------------------------------------------------------
 
-TEST(SerialPort, TellsWhenTheCableIsPulled) {
+TEST(SerialPort, ReportsAPulledCable) {
   Cable cable;
   SerialPort port = Opened(cable);
   cable.Pull();
@@ -209,7 +209,7 @@ TEST(SerialPort, TellsWhenTheCableIsPulled) {
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
 }
 
-TEST(SerialPort, TellsWhenTheCableIsPulledWhileItWaits) {
+TEST(SerialPort, ReportsACablePulledWhileWaiting) {
   Cable cable;
   SerialPort port = Opened(cable);
   std::thread board([&] {
@@ -224,7 +224,7 @@ TEST(SerialPort, TellsWhenTheCableIsPulledWhileItWaits) {
   EXPECT_LT(SecondsSince(begin), 5);
 }
 
-TEST(SerialPort, GivesUpWhereNobodyTakesTheBytes) {
+TEST(SerialPort, TimesOutIfNobodyReads) {
   const Cable cable;
   SerialPort port = Opened(cable);
   const auto begin = Clock::now();
@@ -241,7 +241,7 @@ Status OpenError(const std::string& path) {
   return port ? Status{StatusCode::kInternal, ""} : port.error();
 }
 
-TEST(SerialPort, IsForOneAtATime) {
+TEST(SerialPort, IsExclusive) {
   const Cable cable;
   const SerialPort port = Opened(cable);
   const Status error = OpenError(cable.path());
@@ -249,13 +249,13 @@ TEST(SerialPort, IsForOneAtATime) {
   EXPECT_THAT(error.message, HasSubstr(cable.path() + " is in use by another"));
 }
 
-TEST(SerialPort, TellsWhenItIsNotThere) {
+TEST(SerialPort, ReportsAMissingPort) {
   const Status error = OpenError("/dev/no_such_port");
   EXPECT_EQ(error.code, StatusCode::kNotFound);
   EXPECT_THAT(error.message, HasSubstr("/dev/no_such_port"));
 }
 
-TEST(SerialPort, TellsWhatIsNoPort) {
+TEST(SerialPort, RejectsAFileThatIsNotAPort) {
   const Status error = OpenError("/dev/null");
   EXPECT_EQ(error.code, StatusCode::kDataLoss);
   EXPECT_THAT(error.message, HasSubstr("/dev/null is no serial port"));
@@ -320,7 +320,7 @@ TEST(ListSerialPorts, DescribesAnUno) {
 }
 
 // With a bridge, usb-serial adds a level of its own: 1-3:1.0/ttyUSB0. A CH340 reports no manufacturer.
-TEST(ListSerialPorts, DescribesACloneBehindABridge) {
+TEST(ListSerialPorts, DescribesACloneByItsBridge) {
   const FileSystem files;
   files.AddPort("ttyUSB0", "pci0/usb1/1-3/1-3:1.0/ttyUSB0");
   files.Create("sys/devices/pci0/usb1/1-3/idVendor", "1a86");
@@ -332,7 +332,7 @@ TEST(ListSerialPorts, DescribesACloneBehindABridge) {
   EXPECT_TRUE(ports[0].is_arduino);
 }
 
-TEST(ListSerialPorts, KnowsOthersFromBoards) {
+TEST(ListSerialPorts, DistinguishesBoardsFromOtherDevices) {
   const FileSystem files;
   files.AddPort("ttyACM0", "usb1/1-4/1-4:1.0");
   files.Create("sys/devices/usb1/1-4/idVendor", "12d1");
@@ -343,7 +343,7 @@ TEST(ListSerialPorts, KnowsOthersFromBoards) {
   EXPECT_FALSE(ports[0].is_arduino);
 }
 
-TEST(ListSerialPorts, GivesUsbPortsAloneInTheirOrder) {
+TEST(ListSerialPorts, ListsOnlyUsbPortsInOrder) {
   const FileSystem files;
   for (const char* name : {"ttyUSB1", "ttyS0", "tty1", "ttyACM1", "console", "ttyUSB0", "ttyACM0", "ptmx"}) {
     files.AddPort(name, std::string("usb1/") + name + "/interface");
@@ -352,7 +352,7 @@ TEST(ListSerialPorts, GivesUsbPortsAloneInTheirOrder) {
               ElementsAre("/dev/ttyACM0", "/dev/ttyACM1", "/dev/ttyUSB0", "/dev/ttyUSB1"));
 }
 
-TEST(ListSerialPorts, NamesOneOfWhichNothingIsKnown) {
+TEST(ListSerialPorts, ListsAPortWithoutAnyDescription) {
   const FileSystem files;
   fs::create_directories(files.root() / "sys/class/tty/ttyACM3");  // just unplugged: there is no device
   const auto ports = ListSerialPorts(files.root());
@@ -362,7 +362,7 @@ TEST(ListSerialPorts, NamesOneOfWhichNothingIsKnown) {
   EXPECT_FALSE(ports[0].is_arduino);
 }
 
-TEST(ListSerialPorts, GivesNoneWhereThereIsNone) {
+TEST(ListSerialPorts, IsEmptyWithoutPorts) {
   const FileSystem files;
   EXPECT_THAT(ListSerialPorts(files.root()), IsEmpty());
   EXPECT_THAT(ListSerialPorts(files.root() / "elsewhere"), IsEmpty());

@@ -30,7 +30,7 @@ ReceivedRun RunOf(int last, int first_lost, int last_lost) {
   return run;
 }
 
-TEST(KeepUntil, KeepsWhatWasSampledBefore) {
+TEST(KeepUntil, KeepsEarlierSamples) {
   ReceivedRun run = RunOf(60, 99, 99);
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 400U);
@@ -53,7 +53,7 @@ TEST(KeepUntil, CountsALossJustBeforeTheEnd) {
   EXPECT_EQ(run.Losses().samples, 8);
 }
 
-TEST(KeepUntil, ForgetsALossBehindTheEnd) {
+TEST(KeepUntil, IgnoresALossAfterTheEnd) {
   ReceivedRun run = RunOf(60, 50, 55);
   run.TakeEnd({61 * kBlock, 0, 0});
   run.KeepUntil(2);
@@ -62,7 +62,7 @@ TEST(KeepUntil, ForgetsALossBehindTheEnd) {
   EXPECT_TRUE(run.Losses().is_end_known);
 }
 
-TEST(KeepUntil, LeavesAShorterRunAlone) {
+TEST(KeepUntil, KeepsAShorterRunUnchanged) {
   ReceivedRun run = RunOf(10, 99, 99);
   run.TakeEnd({12 * kBlock, 0, 0});
   run.KeepUntil(2);
@@ -71,7 +71,7 @@ TEST(KeepUntil, LeavesAShorterRunAlone) {
 }
 
 /// Three conversions were late, so their samples are missing. Then a whole frame is lost after the last one received.
-TEST(Losses, OfSeveralKindsAddUp) {
+TEST(Losses, AreSummedOverSeveralKinds) {
   ReceivedRun run(kRate);
   run.Take(Frame(0), 0);
   pendulum_logger::Data late = Frame(1);
@@ -84,7 +84,7 @@ TEST(Losses, OfSeveralKindsAddUp) {
 }
 
 /// A logger whose counter stops at 65535 dropped three times as many samples, as its ticks show.
-TEST(Losses, AreNotCountedTwiceWhereAFrameCountsNoFurther) {
+TEST(Losses, AreNotCountedTwiceForASaturatedFrameCounter) {
   ReceivedRun run(kRate);
   run.Take(Frame(0), 0);
   pendulum_logger::Data after = Frame(1);
@@ -97,7 +97,7 @@ TEST(Losses, AreNotCountedTwiceWhereAFrameCountsNoFurther) {
 }
 
 /// The CRC of the frame is right by chance. The host's clock shows that so much time has not passed.
-TEST(ReceivedRun, LeavesOutAFrameFromTheFuture) {
+TEST(ReceivedRun, IgnoresAFrameFromTheFuture) {
   ReceivedRun run = RunOf(2, 99, 99);
   pendulum_logger::Data stray = Frame(3);
   stray.tick += static_cast<std::uint32_t>(20000 * kRate.Ticks());  // 100 s

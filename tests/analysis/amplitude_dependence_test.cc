@@ -59,7 +59,7 @@ const AmplitudeDependence* DependenceOf(const Homogeneity& result, const std::st
 // The period of a sine torque is P(A) times that of small swings (MODEL.md eq. (6.1)). To get the period of G θ its
 // inertia must be I / P(A)². P = 1 + A²/16 + ..., so the slope is -I/8; A⁴ changes it by less than 1 % below half a
 // radian.
-TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
+TEST(AmplitudeDependence, FollowsThePeriodForALinearTorque) {
   for (const std::uint64_t seed : {1, 11, 21}) {
     FittedAlone fits(LinearRuns(seed), RigOptions());
     fits.TestConstancies();
@@ -78,7 +78,7 @@ TEST(AmplitudeDependence, IsThatOfThePeriodWhereTheTorqueIsLinear) {
 
 // The span between recordings follows eq. (6.1) at the mean amplitudes of the motion. The estimates weight early swings
 // more than these means do, hence the tolerance of a tenth.
-TEST(AmplitudeDependence, SpansThePeriodsOfSmallestAndLargestSwings) {
+TEST(AmplitudeDependence, ReportsPeriodsOfSmallestAndLargestSwings) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
@@ -87,7 +87,7 @@ TEST(AmplitudeDependence, SpansThePeriodsOfSmallestAndLargestSwings) {
   EXPECT_THAT(DependenceOf(result, "inertia")->span / expected, DoubleNear(1, 0.1));
 }
 
-TEST(AmplitudeDependence, IsTheSameBetweenRecordingsAlone) {
+TEST(AmplitudeDependence, AgreesForComparisonsBetweenRecordingsOnly) {
   const FittedAlone fits(LinearRuns(1), RigOptions());  // the trends within recordings are unknown
   const Homogeneity result = TestHomogeneity(fits.Runs(), {"inertia"});
   const AmplitudeDependence* const inertia = DependenceOf(result, "inertia");
@@ -96,7 +96,7 @@ TEST(AmplitudeDependence, IsTheSameBetweenRecordingsAlone) {
   EXPECT_THAT(inertia->p, Lt(0.01));
 }
 
-TEST(AmplitudeDependence, IsSaidWhereNoRecordingIsOnItsOwn) {
+TEST(AmplitudeDependence, IsReportedIfNoRecordingIsAnOutlier) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
@@ -109,7 +109,7 @@ TEST(AmplitudeDependence, IsSaidWhereNoRecordingIsOnItsOwn) {
 
 // With less noise the errors of the three larger swings cover the differences that the sine causes, so these three
 // agree. The two small swings do not. Amplitude explains all five, so no recording is to be left out.
-TEST(AmplitudeDependence, IsSaidWhereItExplainsThoseThatDisagree) {
+TEST(AmplitudeDependence, IsReportedIfItExplainsTheDisagreement) {
   FittedAlone fits(FiveRuns(1, 0.002, Gravity::kLinear), RigOptions());
   fits.TestConstancies();
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
@@ -200,14 +200,14 @@ TEST(AmplitudeDependence, IsNotTestedOnTwoNumbersOrOneAmplitude) {
 // ---- Amplitude of a motion -----------------------------------------------------------------------------------------
 
 // Linear torque and viscous friction: A e^(-γ t), γ = b / 2 I, from the release at 1.9 s to the last sample at 19.99 s.
-TEST(MeanAmplitude, IsTheRootMeanSquareOfADecayingSwing) {
+TEST(MeanAmplitude, IsTheRmsOfADecayingSwing) {
   const FittedAlone fits({ReleasedRun("linear", 0.3, 1)}, RigOptions("linear"));
   const double decay = 2 * (0.003 / (2 * kInertiaTruth)) * (19.99 - 1.9);
   const double expected = 0.3 * std::sqrt((1 - std::exp(-decay)) / decay);
   EXPECT_THAT(MeanAmplitude(fits.RecordingOf(0), fits.Fit(0), fits.options()) / expected, DoubleNear(1, 5e-3));
 }
 
-TEST(MeanAmplitude, IsNoNumberWithoutAFit) {
+TEST(MeanAmplitude, IsNaNWithoutAFit) {
   FittedAlone fits({ReleasedRun("linear", 0.3, 1)}, RigOptions("linear"));
   fits.Fit(0).termination = Termination::kFailed;
   EXPECT_TRUE(std::isnan(MeanAmplitude(fits.RecordingOf(0), fits.Fit(0), fits.options())));

@@ -74,7 +74,7 @@ TEST(CompareWindows, FindsNoTrendForTheRightLaw) {
 
 // T = T_0 (1 + A²/16 + 11 A⁴/3072 + ...). Linear gravity can give this period only with a larger inertia, I (1 + A²/8 +
 // ...).
-TEST(CompareWindows, FindsInertiaGrowWithAmplitudeWhereGravityIsTakenForLinear) {
+TEST(CompareWindows, FindsInertiaRisingIfGravityIsTakenAsLinear) {
   FitOptions options = ModelOptions("viscous");
   options.gravity = Gravity::kLinear;
   const Trends trends = TrendsOf(RunOf("viscous", 2e-4), options);
@@ -92,7 +92,7 @@ TEST(CompareWindows, FindsInertiaGrowWithAmplitudeWhereGravityIsTakenForLinear) 
 }
 
 // Sine gravity fitted to a linear swing needs a smaller inertia.
-TEST(CompareWindows, FindsInertiaFallWithAmplitudeWhereGravityIsLinear) {
+TEST(CompareWindows, FindsInertiaFallingWithAmplitudeForLinearGravity) {
   FitOptions options = ModelOptions("linear");
   options.gravity = Gravity::kSine;
   const Trends trends = TrendsOf(RunOf("linear", 2e-4), options);
@@ -102,7 +102,7 @@ TEST(CompareWindows, FindsInertiaFallWithAmplitudeWhereGravityIsLinear) {
 
 // Drag c ω² takes 8/3 c ω³ A³ per swing, viscous friction π b ω A². A viscous fit therefore finds b + 8 / (3π) c ω A
 // (in this swing ω falls by about 1 % below its small-angle value).
-TEST(CompareWindows, FindsViscousFrictionGrowWithAmplitudeWhereThereIsDrag) {
+TEST(CompareWindows, FindsViscousFrictionRisingWithAmplitudeForDrag) {
   const double drag = 0.0005 / kTextbookTorque;
   SyntheticOptions run = RunOf("drag", 1e-4);
   ASSERT_THAT(run.parameters, SizeIs(4));
@@ -121,7 +121,7 @@ TEST(CompareWindows, FindsViscousFrictionGrowWithAmplitudeWhereThereIsDrag) {
 // One of two frictions is held at the whole fit's estimate, and all windows share its error. Slopes over their standard
 // errors must have a variance of 1: for 40 runs 0.52 to 1.67 in 99 of 100 cases (χ² of 40). Of 80 tests at p < 0.05,
 // more than 10 alarms happen once in 500 times (binomial).
-TEST(CompareWindows, HasTheErrorsThatItsSlopesShow) {
+TEST(CompareWindows, HasErrorsThatMatchTheScatterOfSlopes) {
   std::vector<double> variance = {0, 0};
   int alarms = 0;
   SyntheticOptions run = RunOf("coulomb", 0.002);
@@ -140,7 +140,7 @@ TEST(CompareWindows, HasTheErrorsThatItsSlopesShow) {
 
 // Friction near 0: many windows' estimates are at the bound 0. The estimates without bounds average to the true value
 // over 20 recordings.
-TEST(CompareWindows, LooksBehindTheBoundOfFriction) {
+TEST(CompareWindows, IgnoresTheBoundOfFriction) {
   SyntheticOptions run = RunOf("viscous", 0.002);
   run.parameters[1] = 1e-5;
   std::vector<double> friction;
@@ -156,7 +156,7 @@ TEST(CompareWindows, LooksBehindTheBoundOfFriction) {
               DoubleNear(0, 0.4));  // 3.5 / sqrt(80)
 }
 
-TEST(CompareWindows, TakesThreePeriodsForEachWindow) {
+TEST(CompareWindows, UsesThreePeriodsPerWindow) {
   const FittedRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
   EXPECT_THAT(TrendsOf(run, ModelOptions("viscous"), 18).found.windows, SizeIs(3));
   EXPECT_THAT(TrendsOf(run, ModelOptions("viscous"), 25).found.windows, SizeIs(4));
@@ -165,7 +165,7 @@ TEST(CompareWindows, TakesThreePeriodsForEachWindow) {
   EXPECT_THAT(none.found.windows, IsEmpty());
 }
 
-TEST(CompareWindows, TakesNoMoreThanEightWindows) {
+TEST(CompareWindows, UsesAtMostEightWindows) {
   SyntheticOptions run = RunOf("viscous", 0.002);
   run.duration = 50;
   run.sample_rate = 50;
@@ -176,7 +176,7 @@ TEST(CompareWindows, TakesNoMoreThanEightWindows) {
     EXPECT_THAT(trends.found.windows[w].from, DoubleNear(trends.found.windows[w - 1].to + 0.02, 1e-9));
 }
 
-TEST(CompareWindows, FollowsOnlyWhatIsFree) {
+TEST(CompareWindows, TestsFreeParametersOnly) {
   const Recording recording = Must(SimulateRecording(RunOf("viscous", 0.002)));
   FitOptions options = ModelOptions("viscous");
   options.fixed = {{"viscous", kViscous0}};
@@ -189,7 +189,7 @@ TEST(CompareWindows, FollowsOnlyWhatIsFree) {
 
 // The zero moves by 0.02 rad. Windows that all started at a zero of 0.012 rad would give other values of inertia and
 // friction.
-TEST(CompareWindows, TakesADriftingZeroAlong) {
+TEST(CompareWindows, IncludesADriftingZero) {
   Recording recording = Must(SimulateRecording(RunOf("viscous", 0.002)));
   recording.value += 0.001 * recording.time;
   FitOptions options = ModelOptions("viscous");
@@ -203,7 +203,7 @@ TEST(CompareWindows, TakesADriftingZeroAlong) {
 }
 
 // The reading stays constant for four half swings of the second window.
-TEST(CompareWindows, SaysWhichWindowHasNoFit) {
+TEST(CompareWindows, NamesTheWindowWithoutAFit) {
   FittedRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
   const std::vector<double> ends = FirstEnds(run.recording, 24);
   Recording spoiled = run.recording;

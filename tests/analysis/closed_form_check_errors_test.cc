@@ -68,18 +68,18 @@ void ExpectScatterOfOne(const SyntheticOptions& run) {
   }
 }
 
-TEST(ClosedFormRow, HasAZThatScattersByOneInWhiteNoise) {
+TEST(ClosedFormRow, HasZOfUnitScatterForWhiteNoise) {
   for (const char* model : {"viscous", "coulomb", "drag"}) ExpectScatterOfOne(ShortStrongRun(model));
 }
 
-TEST(ClosedFormRow, HasAZThatScattersByOneOnCounts) {
+TEST(ClosedFormRow, HasZOfUnitScatterOnCounts) {
   SyntheticOptions run = ShortStrongRun("coulomb");
   run.resolution = kCount;  // noise of 0.6 counts
   ExpectScatterOfOne(run);
 }
 
 // Samples 10 ms apart, autocorrelated over 0.1 s, which is less than the span of a turning point.
-TEST(ClosedFormRow, HasAZThatScattersByOneInNoiseThatRemembers) {
+TEST(ClosedFormRow, HasZOfUnitScatterForAutocorrelatedNoise) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.noise_correlation = 0.9;
   ExpectScatterOfOne(run);
@@ -89,9 +89,9 @@ TEST(ClosedFormRow, HasAZThatScattersByOneInNoiseThatRemembers) {
 
 // For an efficient estimate and another estimate from the same data, the variance of the difference is the difference
 // of the variances (Hausman 1978).
-TEST(ClosedFormRow, HasTheDifferenceOfTheVariancesInWhiteNoise) {
+TEST(ClosedFormRow, UsesTheDifferenceOfVariancesForWhiteNoise) {
   const CheckedRun checked = CheckRun(ShortStrongRun("viscous"), "viscous");
-  ASSERT_EQ(checked.run.fit.noise.memory.Name(), "white");
+  ASSERT_EQ(checked.run.fit.noise.autocorrelation.Name(), "white");
   for (const char* parameter : {"zero_angle", "inertia", "viscous"}) {
     const ClosedFormRow& row = checked.Row(std::string(parameter) + "_turning_points");
     const double own = *row.std_error;
@@ -104,14 +104,14 @@ TEST(ClosedFormRow, HasTheDifferenceOfTheVariancesInWhiteNoise) {
 
 // z computed from each reading's influence on both estimates, with an autocorrelation of zero, must be the same. That
 // method uses neither standard error. The noise of turning points and the noise of all samples differ by some percent.
-TEST(ClosedFormRow, HasTheSameZByTheInfluenceOfEachReading) {
+TEST(ClosedFormRow, HasTheSameZFromReadingInfluences) {
   for (const char* model : {"viscous", "drag"}) {
     for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
       const CheckedRun checked = CheckRun(ShortStrongRun(model), model, rig);
       FittedRun remembering = checked.run;
-      remembering.fit.noise.memory.kind = Autocorrelation::Kind::kAutoregressive;
-      remembering.fit.noise.memory.autoregressive = {1e-9};
-      remembering.fit.noise.memory.interval = 0.02;
+      remembering.fit.noise.autocorrelation.kind = Autocorrelation::Kind::kAutoregressive;
+      remembering.fit.noise.autocorrelation.autoregressive = {1e-9};
+      remembering.fit.noise.autocorrelation.interval = 0.02;
       const CheckedRun there = CheckFit(remembering);
       for (const ClosedFormRow& row : checked.check.rows) {
         if (!row.quantity.ends_with("_turning_points")) continue;
@@ -121,7 +121,7 @@ TEST(ClosedFormRow, HasTheSameZByTheInfluenceOfEachReading) {
   }
 }
 
-TEST(ClosedFormRow, AgreesWithinThree) {
+TEST(ClosedFormRow, AgreesWithinThreeStandardDeviations) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb", TextbookRig());
   int agree = 0, differ = 0;
   for (const ClosedFormRow& row : checked.check.rows) {
@@ -136,7 +136,7 @@ TEST(ClosedFormRow, AgreesWithinThree) {
 }
 
 // A fixed parameter has no error: the deviation is the closed form's alone.
-TEST(ClosedFormRow, ComparesWithAFixedParameterAsItStands) {
+TEST(ClosedFormRow, ComparesWithTheValueOfAFixedParameter) {
   FitOptions options = ModelOptions("viscous");
   options.fixed["viscous"] = 0.003 / kTextbookTorque;
   const CheckedRun checked = CheckFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options));
@@ -147,7 +147,7 @@ TEST(ClosedFormRow, ComparesWithAFixedParameterAsItStands) {
 }
 
 // Without friction the fit stops at 0; the estimate from the turning points may be negative.
-TEST(ClosedFormRow, ComparesWithABoundAsItStands) {
+TEST(ClosedFormRow, ComparesWithTheValueAtABound) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.parameters[1] = 0;
   std::optional<CheckedRun> checked;
@@ -170,7 +170,7 @@ CheckedRun CheckRodAndBob(const std::string& description) {
   return CheckRun(run, "viscous", rig);
 }
 
-TEST(ClosedFormRow, SaysThatAPointMassWouldNotDoForAHeavyRod) {
+TEST(ClosedFormRow, RejectsAPointMassForAHeavyRod) {
   const CheckedRun checked = CheckRodAndBob(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
   const double inertia = 0.43 * 0.43 * (0.38 + 0.095 / 3);
@@ -189,14 +189,14 @@ TEST(ClosedFormRow, SaysThatAPointMassWouldNotDoForAHeavyRod) {
   EXPECT_THAT(checked.check.summary, HasSubstr("a point mass would not do"));
 }
 
-TEST(ClosedFormRow, AgreesWithAPointMassWhereTheRodWeighsNothing) {
+TEST(ClosedFormRow, AgreesWithAPointMassForAMasslessRod) {
   const CheckedRun checked = CheckRodAndBob(
       R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
   EXPECT_EQ(checked.Row("inertia_point_mass").agrees, true);
 }
 
-TEST(ClosedFormRow, HasNoZWhereTheRigGivesNoErrors) {
+TEST(ClosedFormRow, HasNoZIfTheRigHasNoErrors) {
   const CheckedRun checked =
       CheckRodAndBob(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
   for (const char* quantity : {"inertia_geometry", "inertia_point_mass"}) {
@@ -209,7 +209,7 @@ TEST(ClosedFormRow, HasNoZWhereTheRigGivesNoErrors) {
   EXPECT_THAT(checked.Row("inertia_point_mass").why, testing::StartsWith("15 % larger than the fit's"));
 }
 
-TEST(ClosedFormRow, IsThereForAnInertiaThatTheRigNames) {
+TEST(ClosedFormRow, ComparesAnInertiaGivenByTheRig) {
   const CheckedRun checked =
       CheckRodAndBob(R"({"gravity_torque": 1.8, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
   EXPECT_EQ(checked.Row("inertia_geometry").closed_form, 0.08);
@@ -217,7 +217,7 @@ TEST(ClosedFormRow, IsThereForAnInertiaThatTheRigNames) {
   EXPECT_FALSE(checked.Has("inertia_point_mass"));
 }
 
-TEST(ClosedFormRow, IsNotThereForAnInertiaThatTheRigDoesNotGive) {
+TEST(ClosedFormRow, IsMissingWithoutAnInertiaFromTheRig) {
   const Rig rig = Must(ParseRig(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.01}})", "rig"));
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", rig);
   EXPECT_FALSE(checked.Has("inertia_geometry"));
@@ -225,7 +225,7 @@ TEST(ClosedFormRow, IsNotThereForAnInertiaThatTheRigDoesNotGive) {
 }
 
 // The clock is 1 % fast, with an uncertainty of that size: the fit's inertia is 2 % off and still agrees.
-TEST(ClosedFormRow, AllowsForTheClocksErrorBesideTheGeometry) {
+TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": 9.81})",
       "rig"));
@@ -241,7 +241,7 @@ TEST(ClosedFormRow, AllowsForTheClocksErrorBesideTheGeometry) {
 }
 
 // The text must mention the point mass in both cases: sufficient and insufficient.
-TEST(ClosedFormRow, SaysWhetherAPointMassWouldDoWhereItWould) {
+TEST(ClosedFormRow, ReportsWhetherAPointMassIsAdequate) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
       "rig"));
@@ -252,7 +252,7 @@ TEST(ClosedFormRow, SaysWhetherAPointMassWouldDoWhereItWould) {
 }
 
 // A fixed inertia has no error; the rig's error is enough for a verdict.
-TEST(ClosedFormRow, ComparesAFixedInertiaWithTheGeometryByTheRigsErrors) {
+TEST(ClosedFormRow, ComparesAFixedInertiaUsingTheRigsErrors) {
   FitOptions options = ModelOptions("viscous");
   options.rig = TextbookRig();
   options.fixed["inertia"] = 0.079;
@@ -273,7 +273,7 @@ FitReport NotConverged(FitReport fit) {
   return fit;
 }
 
-TEST(ClosedFormRow, HasNoZWhereTheFitDidNotConverge) {
+TEST(ClosedFormRow, HasNoZIfTheFitDidNotConverge) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
   const ClosedFormCheck check =
       CheckClosedForms(checked.run.recording, checked.forms, NotConverged(checked.run.fit), checked.run.rig);
@@ -290,7 +290,7 @@ TEST(ClosedFormRow, HasNoZWhereTheFitDidNotConverge) {
   EXPECT_THAT(check.summary, testing::StartsWith("there are no errors to judge the closed forms by"));
 }
 
-TEST(ClosedFormRow, IsNotThereForAFitThatFailed) {
+TEST(ClosedFormRow, IsMissingForAFailedFit) {
   CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous");
   checked.run.fit.termination = Termination::kFailed;
   const ClosedFormCheck check = CheckClosedForms(checked.run.recording, checked.forms, checked.run.fit, {});

@@ -50,7 +50,7 @@ int HalfSwingsBefore(const CheckedRun& checked) {
 
 // The formula attributes the longer period of large swings to inertia: I0 times the squared mean of T(A) / T(0). A is
 // computed from the release angle.
-TEST(CheckClosedForms, TracesTheInertiaOfLargeSwingsToFiniteAmplitude) {
+TEST(CheckClosedForms, AttributesTheInertiaOfLargeSwingsToFiniteAmplitude) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
   const double decay = std::exp(-kPi * 0.003 / (2 * std::sqrt(0.079 * kTextbookTorque)));
   const int half_swings = 2 * checked.forms.linear->periods;
@@ -70,7 +70,7 @@ TEST(CheckClosedForms, TracesTheInertiaOfLargeSwingsToFiniteAmplitude) {
   EXPECT_EQ(checked.Row("inertia_turning_points").agrees, true);
 }
 
-TEST(CheckClosedForms, AgreesInAllAtSmallAngles) {
+TEST(CheckClosedForms, AgreesCompletelyAtSmallAngles) {
   SyntheticOptions run = TextbookRun("viscous");
   run.release_angle = 0.05;
   run.noise = 0.0002;
@@ -85,7 +85,7 @@ TEST(CheckClosedForms, AgreesInAllAtSmallAngles) {
 
 // Small swings with both frictions change by A -> (A - τ) e^(-π ζ) - τ per half swing (Feeny & Liang 1996). The log
 // decrement attributes all of the loss to viscous friction.
-TEST(CheckClosedForms, TracesTheLogDecrementOfDryFrictionToTheFormulasFriction) {
+TEST(CheckClosedForms, AttributesDryFrictionsDecrementToTheFormula) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb");
   const double sticking = 0.004 / kTextbookTorque;
   const double damping = 0.003 / (2 * std::sqrt(0.079 * kTextbookTorque));
@@ -107,7 +107,7 @@ TEST(CheckClosedForms, TracesTheLogDecrementOfDryFrictionToTheFormulasFriction) 
   EXPECT_THAT(checked.check.summary, Not(HasSubstr("wrong friction law")));
 }
 
-TEST(CheckClosedForms, NamesTheFrictionLawWhereItIsWrong) {
+TEST(CheckClosedForms, NamesAWrongFrictionLaw) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "viscous");
   for (const char* quantity : {"viscous_log_decrement", "damping_ratio_log_decrement"}) {
     const ClosedFormRow& row = checked.Row(quantity);
@@ -132,7 +132,7 @@ TEST(CheckClosedForms, CoarseLevelsWidenTheErrors) {
 }
 
 // 12 samples per small-angle period: a polynomial over a third of a period cannot follow a swing of 1.5 rad.
-TEST(CheckClosedForms, TracesTheInertiaFromSparseSamplesToTheSampling) {
+TEST(CheckClosedForms, AttributesTheInertiaFromSparseSamplesToSampling) {
   SyntheticOptions run = TextbookRun("viscous");
   run.release_angle = 1.5;
   run.noise = 0.0001;
@@ -144,7 +144,7 @@ TEST(CheckClosedForms, TracesTheInertiaFromSparseSamplesToTheSampling) {
   EXPECT_THAT(row.why, AllOf(Not(HasSubstr(kResolution)), Not(HasSubstr(kFiniteAmplitude))));
 }
 
-TEST(CheckClosedForms, LeavesToTheRecordingWhatAFixedParameterKeepsFromTheFit) {
+TEST(CheckClosedForms, AttributesTheEffectOfAFixedParameterToTheRecording) {
   FitOptions options = ModelOptions("viscous");
   options.fixed["viscous"] = 1.1 * 0.003 / kTextbookTorque;
   const CheckedRun checked = CheckFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options));
@@ -154,7 +154,7 @@ TEST(CheckClosedForms, LeavesToTheRecordingWhatAFixedParameterKeepsFromTheFit) {
 }
 
 // Noise autocorrelated over 0.2 s, 8 s at 50 Hz: the law is right, but its turning points are not independent.
-TEST(CheckClosedForms, DoesNotExcludeTheRightLawInNoiseThatRemembers) {
+TEST(CheckClosedForms, KeepsTheRightLawForAutocorrelatedNoise) {
   constexpr int kCount = 40;
   int excluded = 0, far = 0;
   SyntheticOptions run = TextbookRun("viscous");
@@ -174,7 +174,7 @@ TEST(CheckClosedForms, DoesNotExcludeTheRightLawInNoiseThatRemembers) {
 }
 
 // The zero drifts by 10 mrad in 20 s and the fit includes the drift; only viscous friction acts.
-TEST(CheckClosedForms, DoesNotBlameTheFrictionForAZeroThatDrifts) {
+TEST(CheckClosedForms, DoesNotAttributeADriftingZeroToFriction) {
   Recording recording = Must(SimulateRecording(NoisyTextbookRun("viscous")));
   recording.value.array() += 0.0005 * recording.time.array();
   FitOptions options = ModelOptions("viscous");
@@ -188,7 +188,7 @@ TEST(CheckClosedForms, DoesNotBlameTheFrictionForAZeroThatDrifts) {
 
 // From 2.6 rad on the corrected formula has an error of 0.05 %. Small angles are not the cause: the formula uses the
 // amplitude in the middle of a half swing for all of it.
-TEST(CheckClosedForms, DoesNotSayThatTheEllipticIntegralTakesSmallAngles) {
+TEST(CheckClosedForms, DoesNotClaimSmallAnglesForTheEllipticIntegral) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.release_angle = 2.6;
   const CheckedRun checked = CheckRun(run, "viscous");
@@ -233,7 +233,7 @@ TEST(CheckClosedForms, ComparesTheDampingRatioOfTheFit) {
               DoubleNear(viscous / (2 * std::sqrt(inertia * kTextbookTorque)), 1e-9));
 }
 
-TEST(CheckClosedForms, TakesARateForWhatItIs) {
+TEST(CheckClosedForms, TreatsARateAsARate) {
   SyntheticOptions run = TextbookRun("viscous");
   run.quantity = Quantity::kRate;
   run.zero = 0.02;
@@ -301,7 +301,7 @@ Eigen::VectorXd TextbookSwing(const CheckedRun& checked, Gravity gravity) {
   return Must(SimulateRecording(run)).value;
 }
 
-TEST(TextbookOverlay, SwingsWithTheLinearFormulasNumbersFromTheFitsStart) {
+TEST(TextbookOverlay, UsesTheLinearFormulasFromTheFitsStart) {
   for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
     const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb", rig);
     const TextbookOverlay& overlay = checked.check.overlay;
@@ -312,7 +312,7 @@ TEST(TextbookOverlay, SwingsWithTheLinearFormulasNumbersFromTheFitsStart) {
 }
 
 // With parameters from small-angle formulas, the small-angle model fits better.
-TEST(TextbookOverlay, ExplainsWhyTheLinearModelLooksBetterAtLargeAngles) {
+TEST(TextbookOverlay, ExplainsTheLinearModelsAdvantageAtLargeAngles) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous");
   const TextbookOverlay& overlay = checked.check.overlay;
   EXPECT_LT(overlay.linear_rms, 0.25 * overlay.nonlinear_rms);
@@ -324,7 +324,7 @@ TEST(TextbookOverlay, ExplainsWhyTheLinearModelLooksBetterAtLargeAngles) {
   EXPECT_THAT(overlay.summary, HasSubstr(" rad rms"));
 }
 
-TEST(TextbookOverlay, HasNothingToExplainAtSmallAngles) {
+TEST(TextbookOverlay, HasNoExplanationAtSmallAngles) {
   SyntheticOptions run = TextbookRun("viscous");
   run.release_angle = 0.05;
   run.noise = 0.0002;

@@ -24,7 +24,7 @@ ComparisonRow RowOf(int parameters, std::optional<double> log_likelihood) {
 }
 
 // log L = -10, k = 3, N = 10, n = e²: AIC = 6 + 20, AICc adds 2 · 3 · 4 / 6, BIC = 3 · 2 + 20.
-TEST(SetCriteria, FollowsAkaikeHurvichAndSchwarz) {
+TEST(SetCriteria, MatchesAkaikeHurvichAndSchwarz) {
   ComparisonRow row = RowOf(3, -10);
   SetCriteria(10, std::exp(2.0), row);
   EXPECT_DOUBLE_EQ(row.aic.value(), 26);
@@ -32,14 +32,14 @@ TEST(SetCriteria, FollowsAkaikeHurvichAndSchwarz) {
   EXPECT_DOUBLE_EQ(row.bic.value(), 26);
 }
 
-TEST(SetCriteria, HasNoneWithoutALikelihood) {
+TEST(SetCriteria, IsEmptyWithoutALikelihood) {
   ComparisonRow row = RowOf(3, std::nullopt);
   SetCriteria(10, 10, row);
   EXPECT_FALSE(row.aic || row.aicc || row.bic);
 }
 
 // exp(0) and exp(-1) over their sum: e / (1 + e) and 1 / (1 + e).
-TEST(SetDifferences, AreToTheSmallestAndWeightsSumToOne) {
+TEST(SetDifferences, AreRelativeToTheSmallestAndWeightsSumToOne) {
   std::vector<ComparisonRow> rows(3);
   rows[0].aicc = 102;
   rows[0].bic = 105;
@@ -53,7 +53,7 @@ TEST(SetDifferences, AreToTheSmallestAndWeightsSumToOne) {
   EXPECT_FALSE(rows[1].delta_bic || rows[1].akaike_weight);
 }
 
-TEST(BestFit, IsTheConvergedOneOfTheSmallestAicc) {
+TEST(BestFit, IsTheConvergedFitWithTheSmallestAicc) {
   std::vector<FitReport> fits(4);
   const double aicc[] = {5, 3, 1, std::numeric_limits<double>::quiet_NaN()};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -65,7 +65,7 @@ TEST(BestFit, IsTheConvergedOneOfTheSmallestAicc) {
 }
 
 // Four parameters: free, fixed, at the bound 0 of a simpler law, and at another bound. Two of them and σ count.
-TEST(DescribeFit, CountsWhatIsFreeAndTheNoise) {
+TEST(DescribeFit, CountsFreeParametersAndNoise) {
   FitReport fit;
   fit.termination = Termination::kConverged;
   fit.parameters.resize(4);
@@ -85,26 +85,26 @@ TEST(DescribeFit, CountsWhatIsFreeAndTheNoise) {
 // ---- Likelihood ----------------------------------------------------------------------------------------------------
 
 /// Autocorrelated residuals of 1 mrad.
-FitReport Remembering() {
+FitReport Autocorrelated() {
   FitReport fit;
   fit.model = {"coulomb", "coulomb", Gravity::kSine};
   fit.statistics.rms_residual = 1e-3;
   fit.trace_error = 1e-9;
   fit.noise.sigma = 1e-3;
-  fit.noise.memory = {Autocorrelation::Kind::kAutoregressive, {0.5}};
+  fit.noise.autocorrelation = {Autocorrelation::Kind::kAutoregressive, {0.5}};
   return fit;
 }
 
-TEST(ChooseLikelihood, IsThatOfTheFitsWithoutMemory) {
-  FitReport fit = Remembering();
-  fit.noise.memory = {};
+TEST(ChooseLikelihood, IsIndependentWithoutAutocorrelation) {
+  FitReport fit = Autocorrelated();
+  fit.noise.autocorrelation = {};
   fit.noise.family = NoiseFamily::kHuber;
   EXPECT_EQ(ChooseLikelihood(fit, 0), Likelihood::kIndependent);
   EXPECT_EQ(DescribeLikelihood(Likelihood::kIndependent, fit), "likelihood of independent huber residuals");
 }
 
-TEST(ChooseLikelihood, RemembersWhereNoiseIsNormalAndAboveHalfACount) {
-  const FitReport fit = Remembering();
+TEST(ChooseLikelihood, IsCorrelatedForNormalNoiseAboveHalfACount) {
+  const FitReport fit = Autocorrelated();
   EXPECT_EQ(ChooseLikelihood(fit, 0), Likelihood::kCorrelated);
   EXPECT_EQ(ChooseLikelihood(fit, 1.9e-3), Likelihood::kCorrelated);
   EXPECT_EQ(ChooseLikelihood(fit, 2.1e-3), Likelihood::kNone);
@@ -112,29 +112,29 @@ TEST(ChooseLikelihood, RemembersWhereNoiseIsNormalAndAboveHalfACount) {
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, fit), HasSubstr("noise below half a count"));
 }
 
-TEST(ChooseLikelihood, IsNoneWhereNoLikelihoodIsKnown) {
-  FitReport censored = Remembering();
+TEST(ChooseLikelihood, IsNoneIfNoLikelihoodIsKnown) {
+  FitReport censored = Autocorrelated();
   censored.noise.censored = 1;
   EXPECT_EQ(ChooseLikelihood(censored, 0), Likelihood::kNone);
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, censored), HasSubstr("an end of the sensor's range"));
-  FitReport robust = Remembering();
+  FitReport robust = Autocorrelated();
   robust.noise.family = NoiseFamily::kStudent;
   EXPECT_EQ(ChooseLikelihood(robust, 0), Likelihood::kNone);
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, robust), HasSubstr("a robust loss"));
-  FitReport rounding = Remembering();
+  FitReport rounding = Autocorrelated();
   rounding.statistics.rms_residual = rounding.trace_error;
   EXPECT_EQ(ChooseLikelihood(rounding, 0), Likelihood::kNone);
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, rounding), HasSubstr("error of its computed trajectory"));
 }
 
-TEST(SharedMemory, IsOfEighthOrderAtMost) {
-  FitReport fit = Remembering();
-  EXPECT_EQ(SharedMemory(fit).Name(), "AR(1)");
-  fit.noise.memory.autoregressive.assign(20, 0.01);
-  EXPECT_EQ(SharedMemory(fit).Name(), "AR(8)");
+TEST(SharedAutocorrelation, HasOrderEightAtMost) {
+  FitReport fit = Autocorrelated();
+  EXPECT_EQ(SharedAutocorrelation(fit).Name(), "AR(1)");
+  fit.noise.autocorrelation.autoregressive.assign(20, 0.01);
+  EXPECT_EQ(SharedAutocorrelation(fit).Name(), "AR(8)");
 }
 
-TEST(PerCount, TurnsDensitiesIntoProbabilitiesOfLevels) {
+TEST(PerCount, ConvertsDensitiesToProbabilitiesOfLevels) {
   Recording recording;
   recording.time = Eigen::VectorXd::LinSpaced(10, 0, 9);
   EXPECT_EQ(PerCount(recording), 0);

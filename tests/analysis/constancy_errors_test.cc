@@ -59,13 +59,13 @@ SyntheticOptions RunOnCounts(std::string_view model, double noise) {
   return run;
 }
 
-TEST(ConstancyErrors, AreRightOnCountsThatDrownInNoise) {
+TEST(ConstancyErrors, AreRightOnCountsBelowTheNoise) {
   for (const char* model : {"viscous", "coulomb", "drag"}) ExpectFewAlarms(RunOnCounts(model, 2.5));
 }
 
 TEST(ConstancyErrors, AreRightOnCoarseCounts) { ExpectFewAlarms(RunOnCounts("viscous", 0.25)); }
 
-TEST(ConstancyErrors, AreRightInNoiseThatRemembers) {
+TEST(ConstancyErrors, AreRightForAutocorrelatedNoise) {
   SyntheticOptions run = RunOnCounts("viscous", 0.5);
   run.resolution = 0;
   run.noise_correlation = 0.9;

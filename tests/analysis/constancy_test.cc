@@ -63,7 +63,7 @@ Recording JoinedAt(double second_inertia) {
   return joined;
 }
 
-TEST(Constancy, IsFoundWhereTheLawHolds) {
+TEST(Constancy, IsConfirmedForTheRightLaw) {
   for (const char* model : {"linear", "viscous", "coulomb", "drag"}) {
     const Constancy constancy = TestRun(NoisyTextbookRun(model), model, TextbookRig());
     EXPECT_TRUE(constancy.constant()) << model << constancy.verdict;
@@ -94,13 +94,13 @@ TEST(Constancy, HasRowsInTheUnitsOfTheFit) {
 
 // Equal information: the errors of the halves' inertia differ by less than a factor of 1.5 although the amplitude
 // falls.
-TEST(Constancy, HasHalvesThatTellEquallyMuch) {
+TEST(Constancy, HasHalvesOfEqualInformation) {
   const Constancy constancy = TestRun(NoisyTextbookRun("viscous"), "viscous");
   const HalvesRow& inertia = constancy.halves.at(0);
   EXPECT_THAT(std::abs(std::log(inertia.first_std_error / inertia.second_std_error)), Lt(std::log(1.5)));
 }
 
-TEST(Constancy, MissesAnInertiaThatChangesHalfWay) {
+TEST(Constancy, RejectsAnInertiaThatChangesHalfway) {
   const Recording joined = JoinedAt(1.01);
   const Constancy constancy = TestFit(FitTo(joined, ModelOptions("viscous")), ModelOptions("viscous"));
   EXPECT_FALSE(constancy.constant()) << constancy.verdict << constancy.reason;
@@ -109,7 +109,7 @@ TEST(Constancy, MissesAnInertiaThatChangesHalfWay) {
 }
 
 // A viscous fit to dry friction finds τ_c 4 / (π A ω), which is larger for smaller swings.
-TEST(Constancy, MissesFrictionOfAnotherLaw) {
+TEST(Constancy, RejectsFrictionOfAnotherLaw) {
   const Constancy constancy = TestRun(NoisyTextbookRun("coulomb"), "viscous");
   ASSERT_THAT(constancy.trends, SizeIs(2));
   EXPECT_THAT(constancy.trends[1].slope, Lt(0));
@@ -118,7 +118,7 @@ TEST(Constancy, MissesFrictionOfAnotherLaw) {
 }
 
 // Linear gravity's period does not grow with amplitude by 1 + A²/16. Its inertia must grow by A²/8 instead.
-TEST(Constancy, MissesAPeriodThatDependsOnAmplitude) {
+TEST(Constancy, RejectsAPeriodThatDependsOnAmplitude) {
   FitOptions options = ModelOptions("viscous");
   options.gravity = Gravity::kLinear;
   const Constancy constancy = TestFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options), options);
@@ -137,7 +137,7 @@ TEST(Constancy, IsTestedOnARateSensor) {
   EXPECT_THAT(constancy.reason, IsEmpty());
 }
 
-TEST(Constancy, LeavesOutWhatIsFixed) {
+TEST(Constancy, SkipsFixedParameters) {
   const Recording recording = Must(SimulateRecording(NoisyTextbookRun("coulomb")));
   FitOptions options = ModelOptions("coulomb");
   options.fixed = {{"viscous", 0.003 / kTextbookTorque}, {"coulomb", 0.004 / kTextbookTorque}};
@@ -152,7 +152,7 @@ TEST(Constancy, LeavesOutWhatIsFixed) {
 }
 
 // A fixed release applies to the whole recording, not to its parts.
-TEST(Constancy, KnowsAFixedRelease) {
+TEST(Constancy, AcceptsAFixedRelease) {
   FitOptions options = ModelOptions("viscous");
   options.fixed = {{"release_angle", 0.423}};
   const Constancy constancy = TestFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options), options);
@@ -160,7 +160,7 @@ TEST(Constancy, KnowsAFixedRelease) {
   EXPECT_THAT(constancy.reason, IsEmpty());
 }
 
-TEST(Constancy, SaysWhatIsTooShort) {
+TEST(Constancy, ReportsTooShortParts) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.duration = 12;
   const Constancy halves_only = TestRun(run, "viscous");
@@ -174,13 +174,13 @@ TEST(Constancy, SaysWhatIsTooShort) {
   EXPECT_THAT(nothing.verdict, HasSubstr("not tested"));
 }
 
-TEST(Constancy, IsNotTestedWhereTheFitDidNotConverge) {
+TEST(Constancy, IsNotTestedWithoutConvergence) {
   FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
   run.fit.termination = Termination::kNotConverged;
   EXPECT_THAT(TestFit(run, ModelOptions("viscous")).reason, HasSubstr("did not converge"));
 }
 
-TEST(Constancy, IsNotTestedWhereTurningPointsCannotBeSeen) {
+TEST(Constancy, IsNotTestedWithoutTurningPoints) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   FittedRun fitted = FitTo(run, "viscous", {});
   run.sample_rate = 3;  // 4 samples per period
@@ -189,7 +189,7 @@ TEST(Constancy, IsNotTestedWhereTurningPointsCannotBeSeen) {
 }
 
 // The pendulum stops at about 41 s; all half swings are before that.
-TEST(Constancy, IsTestedOnTheMotionBeforeTheRest) {
+TEST(Constancy, IsTestedBeforeTheRest) {
   SyntheticOptions run = NoisyTextbookRun("coulomb");
   run.duration = 60;
   run.sample_rate = 50;

@@ -40,7 +40,7 @@ Eigen::VectorXd Motion(SyntheticOptions run) {
   return recording->value;
 }
 
-TEST(CoverageScenarios, HaveNamesOfTheirOwnAndCanBeSimulated) {
+TEST(CoverageScenarios, HaveUniqueNamesAndCanBeSimulated) {
   std::set<std::string> names;
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     EXPECT_TRUE(names.insert(scenario.name).second) << scenario.name;
@@ -52,7 +52,7 @@ TEST(CoverageScenarios, HaveNamesOfTheirOwnAndCanBeSimulated) {
   EXPECT_THAT(names.size(), Ge(15));
 }
 
-TEST(CoverageScenarios, AreOfTheRigInTheDatasets) {
+TEST(CoverageScenarios, UseTheRigOfTheDatasets) {
   const Result<Rig> rig = ReadRig("datasets/textbook_rig.json");
   ASSERT_TRUE(rig) << rig.error().message;
   for (const CoverageScenario& scenario : CoverageScenarios()) {
@@ -62,7 +62,7 @@ TEST(CoverageScenarios, AreOfTheRigInTheDatasets) {
   }
 }
 
-TEST(CoverageScenarios, ComeToRestOnlyWhereTheySaySo) {
+TEST(CoverageScenarios, ReachRestOnlyIfTheySaySo) {
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     const Eigen::VectorXd motion = Motion(scenario.run);
     const bool rests = motion.tail(50).maxCoeff() - motion.tail(50).minCoeff() < 1e-9;  // half a second
@@ -70,12 +70,12 @@ TEST(CoverageScenarios, ComeToRestOnlyWhereTheySaySo) {
   }
 }
 
-TEST(CoverageScenarios, ToRestIsInMotionForMostOfTheRecording) {
+TEST(CoverageScenarios, ToRestMovesForMostOfTheRecording) {
   const Eigen::VectorXd motion = Motion(Scenario("to_rest").run);
   EXPECT_GT(motion.segment(3500, 200).maxCoeff() - motion.segment(3500, 200).minCoeff(), kDegree);
 }
 
-TEST(CoverageScenarios, SaturatedCutsPeaksAndNeitherHoldNorLastSwings) {
+TEST(CoverageScenarios, SaturatedCutsPeaksButNotHoldOrLastSwings) {
   const CoverageScenario scenario = Scenario("saturated");
   const Result<Recording> recording = SimulateRecording(ScenarioRun(scenario, 1));
   ASSERT_TRUE(recording) << recording.error().message;
@@ -91,7 +91,7 @@ TEST(CoverageScenarios, SaturatedCutsPeaksAndNeitherHoldNorLastSwings) {
   EXPECT_THAT(at_the_end(200, 800), AllOf(Ge(60), Le(250)));
 }
 
-TEST(CoverageScenarios, AreLaxerOnlyWhereThatIsMeant) {
+TEST(CoverageScenarios, HaveLaxerRulesOnlyAsIntended) {
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     const bool strong = scenario.name.starts_with("ar_0.9");
     const bool compared = scenario.name.ends_with("_1khz");
@@ -103,7 +103,7 @@ TEST(CoverageScenarios, AreLaxerOnlyWhereThatIsMeant) {
   }
 }
 
-TEST(FindCoverageScenarios, GivesThoseNamedInTheirOrderOrAll) {
+TEST(FindCoverageScenarios, GivesTheNamedScenariosInOrderOrAll) {
   const auto found = FindCoverageScenarios("to_rest,white_0.5");
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_EQ(found->size(), 2);
@@ -122,7 +122,7 @@ TEST(FindCoverageScenarios, RefusesUnknownAndRepeatedNames) {
   EXPECT_EQ(FindCoverageScenarios("moving,moving").error().message, "scenario moving is named twice");
 }
 
-TEST(ScenarioRun, DrawsZeroAndReleaseEvenlyWithinACountAndASample) {
+TEST(ScenarioRun, DrawsZeroAndReleaseUniformly) {
   const CoverageScenario scenario = Scenario("white_0.25");
   constexpr int kRuns = 1000;
   double zero = 0, zero_square = 0, release = 0, release_square = 0;
@@ -146,7 +146,7 @@ TEST(ScenarioRun, DrawsZeroAndReleaseEvenlyWithinACountAndASample) {
   EXPECT_THAT(release_square, DoubleNear(1.0 / 12, 5 / std::sqrt(180.0 * kRuns)));
 }
 
-TEST(ScenarioRun, RepeatsItselfForASeed) {
+TEST(ScenarioRun, IsReproducibleForASeed) {
   const CoverageScenario scenario = Scenario("moving");
   EXPECT_EQ(ScenarioRun(scenario, 7).zero, ScenarioRun(scenario, 7).zero);
   EXPECT_NE(ScenarioRun(scenario, 7).zero, ScenarioRun(scenario, 8).zero);

@@ -53,7 +53,7 @@ TEST(BinomialInterval95, HasClosedFormsForNoneAndAll) {
 }
 
 // At each end p of the interval the observed or more extreme counts have a probability of 2.5 %, summed by hand.
-TEST(BinomialInterval95, LeavesTwoAndAHalfPercentOnEitherSide) {
+TEST(BinomialInterval95, ExcludesTwoAndAHalfPercentOnEachSide) {
   constexpr int kTrials = 10, kSuccesses = 7;
   const auto at_least = [](int successes, double p) {
     double sum = 0;
@@ -71,7 +71,7 @@ TEST(BinomialInterval95, LeavesTwoAndAHalfPercentOnEitherSide) {
 // ---- Studies -------------------------------------------------------------------------------------------------------
 
 // Least squares reach the bound in white noise of 2.5 counts, and their intervals have the right coverage.
-TEST(StudyCoverage, FindsNothingAmissInWhiteNoise) {
+TEST(StudyCoverage, PassesForWhiteNoise) {
   constexpr int kCount = 200;
   const CoverageStudy study = Study(Scenario("white_2.5"), Options(kCount));
   EXPECT_EQ(study.recordings, kCount);
@@ -135,7 +135,7 @@ TEST(StudyCoverage, GivesRecordingISeedPlusI) {
               DoubleNear(1, 1e-9));
 }
 
-TEST(StudyCoverage, CountsRecordingsAsTheyAreDone) {
+TEST(StudyCoverage, CountsRecordingsWhenDone) {
   CoverageOptions options = Options(5);
   std::vector<int> done;
   options.progress = [&](int count) { done.push_back(count); };
@@ -143,7 +143,7 @@ TEST(StudyCoverage, CountsRecordingsAsTheyAreDone) {
   EXPECT_THAT(done, testing::ElementsAre(1, 2, 3, 4, 5));
 }
 
-TEST(StudyCoverage, DoesNotCompareErrorsWithABoundWhereTheTruthIsAtItsOwn) {
+TEST(StudyCoverage, MakesNoErrorComparisonForATruthAtItsBound) {
   const CoverageStudy study = Study(Scenario("no_viscous"), Options(5));
   EXPECT_TRUE(Row(study, "viscous").at_bound);
   EXPECT_FALSE(Row(study, "viscous").error_over_bound);
@@ -152,7 +152,7 @@ TEST(StudyCoverage, DoesNotCompareErrorsWithABoundWhereTheTruthIsAtItsOwn) {
 }
 
 // Another start has other parameters: the report lacks those of the true start.
-TEST(StudyCoverage, TakesAParameterThatIsNotReportedForNotCovered) {
+TEST(StudyCoverage, CountsAMissingParameterAsNotCovered) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.release_time = 0;
   scenario.fit.start = StartKind::kMoving;
@@ -166,7 +166,7 @@ TEST(StudyCoverage, TakesAParameterThatIsNotReportedForNotCovered) {
 }
 
 // With noise of ten times the swing no fit converges.
-TEST(StudyCoverage, CountsFitsThatDoNotConvergeAndGoesOn) {
+TEST(StudyCoverage, CountsFitsWithoutConvergenceAndContinues) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.duration = 4;
   scenario.run.noise = 4;
@@ -175,7 +175,7 @@ TEST(StudyCoverage, CountsFitsThatDoNotConvergeAndGoesOn) {
   for (const CoverageRow& row : study.rows) EXPECT_EQ(row.without_interval, 2);
 }
 
-TEST(StudyCoverage, CountsFitsThatCannotBeMade) {
+TEST(StudyCoverage, CountsImpossibleFits) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.fit.fixed["nonsense"] = 1;
   EXPECT_EQ(Study(scenario, Options(3)).failed, 3);
@@ -183,7 +183,7 @@ TEST(StudyCoverage, CountsFitsThatCannotBeMade) {
 
 // The times of count changes contain at least as much information as counts every millisecond. Over 300 recordings with
 // shared edge errors, the ratio of rms errors is known to about 5 %.
-TEST(StudyCoverage, KnowsTheSwingByEventsAtLeastAsWellAsByReadingsAt1KHz) {
+TEST(StudyCoverage, FindsEventsAtLeastAsInformativeAs1KHzReadings) {
   constexpr int kCount = 300;
   constexpr double kChance = 1.1;
   for (const auto& [events, readings] :
@@ -197,7 +197,7 @@ TEST(StudyCoverage, KnowsTheSwingByEventsAtLeastAsWellAsByReadingsAt1KHz) {
   }
 }
 
-TEST(StudyCoverage, RefusesWhatCannotBeSimulated) {
+TEST(StudyCoverage, RefusesImpossibleSimulations) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.noise = -1;
   const auto study = StudyCoverage(scenario, Options(3));

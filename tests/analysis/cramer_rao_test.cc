@@ -98,14 +98,14 @@ std::vector<double> Ratios(const std::vector<double>& bounds, const std::vector<
 // Differences with a step of 1e-5 are accurate to about 1e-4 where a reversal passes a sample.
 constexpr double kDifferences = 1e-3;
 
-TEST(CramerRaoBounds, AreTheInverseOfTheInformationOfWhiteNoise) {
+TEST(CramerRaoBounds, AreTheInverseInformationForWhiteNoise) {
   for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) {
     const SyntheticOptions run = ShortRun(start);
     EXPECT_THAT(Ratios(Bounds(run), BoundsFromCovariance(run, Covariance(run, 0))), Each(DoubleNear(1, kDifferences)));
   }
 }
 
-TEST(CramerRaoBounds, AreThoseOfTheWholeCovarianceForCorrelatedNoise) {
+TEST(CramerRaoBounds, MatchTheFullCovarianceForCorrelatedNoise) {
   for (const double correlation : {0.9, 0.5, -0.5}) {
     SyntheticOptions run = ShortRun();
     run.noise_correlation = correlation;
@@ -117,7 +117,7 @@ TEST(CramerRaoBounds, AreThoseOfTheWholeCovarianceForCorrelatedNoise) {
 }
 
 // With noise of 1.5 counts or more, counts act as white noise of variance q²/12.
-TEST(CramerRaoBounds, GrowWithCountsByTheirTwelfth) {
+TEST(CramerRaoBounds, GrowByATwelfthOfASquaredCount) {
   SyntheticOptions run = ShortRun();
   run.noise = 1.5 * kCount;
   const std::vector<double> fine = Bounds(run);
@@ -126,7 +126,7 @@ TEST(CramerRaoBounds, GrowWithCountsByTheirTwelfth) {
 }
 
 // Each sample has the ReadingInformation of (its mean, log σ), and its mean is that of the trajectory.
-TEST(CramerRaoBounds, CountTheNoisesSizeAmongTheUnknowns) {
+TEST(CramerRaoBounds, TreatTheNoiseSizeAsUnknown) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.15 * kCount;
   run.zero = 0.2 * kCount - run.release_angle;  // a hold away from the middle of its count, where x and σ are
@@ -151,7 +151,7 @@ TEST(CramerRaoBounds, CountTheNoisesSizeAmongTheUnknowns) {
 }
 
 // A hold in the middle of a count shows only that count: the held angle is known only from the swing.
-TEST(CramerRaoBounds, TakeNothingFromAHoldInTheMiddleOfACount) {
+TEST(CramerRaoBounds, GetNothingFromAHoldInTheMiddleOfACount) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.1 * kCount;
   run.zero = 0.01;
@@ -167,7 +167,7 @@ TEST(CramerRaoBounds, TakeNothingFromAHoldInTheMiddleOfACount) {
 }
 
 // Readings that are cut off on one side contain less information, but still some.
-TEST(CramerRaoBounds, GrowWhenARangeCutsThePeaksOff) {
+TEST(CramerRaoBounds, GrowIfTheRangeCutsPeaks) {
   SyntheticOptions run = ShortRun();
   run.resolution = kCount;
   const std::vector<double> whole = Bounds(run);
@@ -177,7 +177,7 @@ TEST(CramerRaoBounds, GrowWhenARangeCutsThePeaksOff) {
   EXPECT_GT(ratios[0], 1.05);
 }
 
-TEST(CramerRaoBounds, ShrinkWithHeavyTailsOfTheSameScaleAsTheirInformation) {
+TEST(CramerRaoBounds, ShrinkWithHeavyTailsOfTheSameScale) {
   SyntheticOptions run = ShortRun();
   const std::vector<double> gaussian = Bounds(run);
   run.noise_freedom = 3;
@@ -185,7 +185,7 @@ TEST(CramerRaoBounds, ShrinkWithHeavyTailsOfTheSameScaleAsTheirInformation) {
   EXPECT_THAT(Ratios(Bounds(run), gaussian), Each(DoubleNear(std::sqrt(6.0 / 4.0), 1e-11)));
 }
 
-TEST(CramerRaoBounds, AreAbsentWhereTheyAreNotKnown) {
+TEST(CramerRaoBounds, AreMissingWithoutAClosedForm) {
   const std::vector<std::function<void(SyntheticOptions&)>> spoilers = {
       [](SyntheticOptions& run) { run.noise = 0; },
       [](SyntheticOptions& run) {
@@ -206,7 +206,7 @@ TEST(CramerRaoBounds, AreAbsentWhereTheyAreNotKnown) {
   }
 }
 
-TEST(CramerRaoBounds, AreAbsentWhenTheMotionCannotBeTraced) {
+TEST(CramerRaoBounds, AreMissingIfTheMotionCannotBeTraced) {
   SyntheticOptions run = ShortRun();
   const Eigen::VectorXd time = Times(run);
   run.parameters[2] = 1;  // friction holds the pendulum

@@ -31,7 +31,7 @@ FormulaStages Stages(double small_angles, double drifting, double own_gravity, d
 
 // Each part is a stage minus the previous stage. The first part subtracts the fit; the last part is the recording minus
 // the last stage.
-TEST(SplitDifference, GivesEachStageItsPart) {
+TEST(SplitDifference, AssignsEachStageItsPart) {
   const DifferenceCauses causes = SplitDifference(Stages(11, 7, 10, 9, 14), 1, 1, 16, 9);
   EXPECT_EQ(causes.formula, 2);
   EXPECT_EQ(causes.drift, -4);
@@ -81,14 +81,14 @@ TEST(DescribeCauses, NamesTheDriftOfTheZero) {
             "differs by -2 s: -2 by the drift of the zero, which the formula does not know");
 }
 
-TEST(DescribeCauses, PutsTheLargestPartFirstWhateverItsSign) {
+TEST(DescribeCauses, ListsTheLargestPartFirst) {
   EXPECT_EQ(Described({0, 1, 0, -3, 4}, 1e-3, "1"),
             "differs by +2: +4 by a shadow; -3 by the sensor's resolution; "
             "+1 by a slope");
 }
 
 // A fifth of 10 is 2.
-TEST(DescribeCauses, LeavesOutPartsOfLessThanAFifth) {
+TEST(DescribeCauses, OmitsPartsBelowAFifth) {
   EXPECT_THAT(Described({0, 8.1, 0, 1.9, 0}), Not(HasSubstr("resolution")));
   EXPECT_THAT(Described({0, 7.9, 0, 2.1, 0}), HasSubstr("; +2.1 by the sensor's resolution"));
   EXPECT_THAT(Described({0, 13, 0, -1.5, -1.5}), Not(HasSubstr("resolution")));
@@ -96,7 +96,7 @@ TEST(DescribeCauses, LeavesOutPartsOfLessThanAFifth) {
 }
 
 // A difference of up to three standard deviations of noise, of either sign, is called noise.
-TEST(DescribeCauses, SaysNoiseWhereTheRecordingsPartIsWithinThreeDeviations) {
+TEST(DescribeCauses, CallsASmallRemainderNoise) {
   for (const double sign : {1.0, -1.0}) {
     EXPECT_THAT(Described({0, 0, 0, 0, sign * 2.9}, 1), HasSubstr("by noise"));
     EXPECT_THAT(Described({0, 0, 0, 0, sign * 2.9}, 1), Not(HasSubstr("shadow")));
@@ -151,7 +151,7 @@ SyntheticOptions WideSwing() {
   return options;
 }
 
-TEST(ApplyInStages, TakesLinearGravityOnlyForSmallAngles) {
+TEST(ApplyInStages, UsesLinearGravityOnlyForSmallAngles) {
   const std::vector<Applied> seen = StagedRun(WideSwing()).Seen();
   std::vector<Gravity> gravities;
   for (const Applied& applied : seen) gravities.push_back(applied.gravity);
@@ -159,7 +159,7 @@ TEST(ApplyInStages, TakesLinearGravityOnlyForSmallAngles) {
 }
 
 // 1.3152 s at small angles: 200 samples of 6.6 ms; the recording's own samples are 10 ms apart.
-TEST(ApplyInStages, TakesFineInstantsFirstAndThenTheRecordings) {
+TEST(ApplyInStages, UsesFineInstantsBeforeTheRecordings) {
   const StagedRun run(WideSwing());
   const std::vector<Applied> seen = run.Seen();
   ASSERT_EQ(seen.size(), 4);
@@ -176,7 +176,7 @@ TEST(ApplyInStages, TakesFineInstantsFirstAndThenTheRecordings) {
 }
 
 // Levels include the recording's own readings, which are not multiples of the resolution.
-TEST(ApplyInStages, PutsReadingsOnTheSensorsLevelsWithinItsRange) {
+TEST(ApplyInStages, RoundsReadingsToLevelsWithinTheRange) {
   SyntheticOptions options = WideSwing();
   options.resolution = 0.05;
   options.range = SensorRange{-0.83, 1.17};
@@ -196,7 +196,7 @@ TEST(ApplyInStages, PutsReadingsOnTheSensorsLevelsWithinItsRange) {
 }
 
 // Error of a sparse recording at a trough of angle A: at most A (1 - cos(ω Δt / 2)).
-TEST(ApplyInStages, FindsWhatSparseSamplesMiss) {
+TEST(ApplyInStages, FindsTheEffectOfSparseSamples) {
   SyntheticOptions options = WideSwing();
   options.sample_rate = 8;
   options.start_time = 0.03;
@@ -210,7 +210,7 @@ TEST(ApplyInStages, FindsWhatSparseSamplesMiss) {
   EXPECT_EQ(causes.resolution, 0);
 }
 
-TEST(ApplyInStages, FindsWhatLevelsMake) {
+TEST(ApplyInStages, FindsTheEffectOfLevels) {
   SyntheticOptions options = WideSwing();
   options.resolution = 0.3;
   options.noise = 0.1;  // so that the fit averages over the levels
@@ -232,7 +232,7 @@ std::optional<Eigen::VectorXd> SmallAngleInertia(const Recording& recording, Gra
 
 // Over n periods the formula finds I0 times the squared mean of T(A) / T(0); here that mean is computed over half
 // swings of the decay.
-TEST(ApplyInStages, FindsTheFiniteAmplitudesPartOfTheInertia) {
+TEST(ApplyInStages, FindsTheFiniteAmplitudeEffectOnInertia) {
   const StagedRun run(WideSwing());
   const double inertia = run.run.fit.Find("inertia")->estimate;
   const double decay = std::exp(-kPi * run.run.fit.Find("viscous")->estimate / (2 * std::sqrt(inertia)));
@@ -252,7 +252,7 @@ TEST(ApplyInStages, FindsNoFiniteAmplitudeInALinearModel) {
   EXPECT_EQ(causes.amplitude, 0);
 }
 
-TEST(ApplyInStages, GivesNothingWhereAFormulaCannotBeApplied) {
+TEST(ApplyInStages, IsEmptyIfAFormulaCannotBeApplied) {
   const StagedRun run(WideSwing());
   for (std::size_t failing = 0; failing < 4; ++failing) {
     std::size_t stage = 0;
@@ -263,7 +263,7 @@ TEST(ApplyInStages, GivesNothingWhereAFormulaCannotBeApplied) {
   }
 }
 
-TEST(ApplyInStages, GivesNothingWhereTheMotionCannotBeTraced) {
+TEST(ApplyInStages, IsEmptyIfTheMotionCannotBeTraced) {
   FittedRun run = FitTo(NoisyRun("coulomb"), "coulomb", {});
   run.fit.parameters[2].estimate = 1;  // friction holds the pendulum
   EXPECT_FALSE(ApplyInStages(FittedMotion(run.recording, run.fit, {}), run.recording, Gravity::kSine, Lowest));

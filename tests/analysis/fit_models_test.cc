@@ -27,7 +27,7 @@ FittedModels FitAll(const Recording& recording, const std::vector<std::string>& 
   return Must(FitModels(recording, Whole(recording), options, models));
 }
 
-TEST(FitModels, KeepsTheOrderAskedFor) {
+TEST(FitModels, KeepsTheRequestedOrder) {
   const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"drag", "viscous", "coulomb"});
   ASSERT_THAT(fitted.fits, SizeIs(3));
   EXPECT_EQ(fitted.fits[0].model.name, "drag");
@@ -35,7 +35,7 @@ TEST(FitModels, KeepsTheOrderAskedFor) {
   EXPECT_EQ(fitted.fits[2].model.name, "coulomb");
 }
 
-TEST(FitModels, OfOneModelIsFitRecording) {
+TEST(FitModels, EqualsFitRecordingForOneModel) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitReport alone = Fit(recording, ModelOptions("coulomb"));
   const FittedModels fitted = FitAll(recording, {"coulomb"});
@@ -56,7 +56,7 @@ TEST(FitModels, GivesAllTheNoiseFamilyOfTheSmallestResiduals) {
   for (const FitReport& fit : fitted.fits) EXPECT_EQ(fit.noise.family, NoiseFamily::kQuantized) << fit.model.name;
 }
 
-TEST(FitModels, BeginsAllAlike) {
+TEST(FitModels, UsesTheSameStartForAllModels) {
   const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb", "drag"});
   for (const FitReport& fit : fitted.fits) {
     EXPECT_EQ(fit.start, StartKind::kRelease) << fit.model.name;
@@ -65,7 +65,7 @@ TEST(FitModels, BeginsAllAlike) {
 }
 
 // Sampled once per second at 0.76 Hz: every model must search the aliased frequency itself.
-TEST(FitModels, OfAnUndersampledSwingFindTheSameFrequency) {
+TEST(FitModels, FindsOneFrequencyForAnUndersampledSwing) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.sample_rate = 1;
   run.duration = 60;
@@ -91,7 +91,7 @@ TEST(FitModels, OfAnUndersampledSwingFindTheSameFrequency) {
   EXPECT_NEAR(inertia.estimate, truth, 4 * inertia.std_error.value_or(0));
 }
 
-TEST(FitModels, LeavesOutWhatOnlyOthersHaveAndSaysSo) {
+TEST(FitModels, DropsAndReportsParametersOfOtherModels) {
   FitOptions options;
   options.fixed = {{"coulomb", 0.002}};
   const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
@@ -103,7 +103,7 @@ TEST(FitModels, LeavesOutWhatOnlyOthersHaveAndSaysSo) {
   EXPECT_TRUE(fitted.fits[1].Find("coulomb")->fixed);
 }
 
-TEST(FitModels, RefusesANameThatNoModelHas) {
+TEST(FitModels, RefusesAnUnknownModel) {
   FitOptions options;
   options.fixed = {{"lubrication", 1}};
   const Recording recording = Must(SimulateRecording(NoisyRun()));
@@ -113,7 +113,7 @@ TEST(FitModels, RefusesANameThatNoModelHas) {
   EXPECT_THAT(fitted.error().message, HasSubstr("lubrication"));
 }
 
-TEST(ForModel, KeepsWhatTheModelHas) {
+TEST(ForModel, KeepsOptionsTheModelHas) {
   FitOptions options;
   options.fixed = {{"drag", 0}, {"viscous", 0.1}};
   options.priors = {{"coulomb", {1, 2}}};

@@ -72,7 +72,7 @@ void ExpectJacobianOfDifferences(const FittedRun& run) {
   }
 }
 
-TEST(FittedMotion, GivesTheFitsOwnReadingsAtTheRecordingsInstants) {
+TEST(FittedMotion, ReproducesTheFitsReadings) {
   for (const char* model : {"linear", "viscous", "coulomb", "drag"}) {
     for (const SyntheticOptions& options : {NoisyRun(model), MovingRun(model)}) {
       const FittedRun run = FitTo(options, model, TextbookRig());
@@ -92,7 +92,7 @@ TEST(FittedMotion, FollowsARateWithItsBias) {
 }
 
 // The file's clock starts at 1000 s and is 2 % slow.
-TEST(FittedMotion, CountsInstantsInTrueSecondsFromTheFirstSample) {
+TEST(FittedMotion, MeasuresInstantsInTrueSecondsFromTheFirstSample) {
   SyntheticOptions options = NoisyRun();
   options.start_time = 1000;
   options.release_time += 1000;
@@ -106,7 +106,7 @@ TEST(FittedMotion, CountsInstantsInTrueSecondsFromTheFirstSample) {
   ExpectJacobianOfDifferences(run);
 }
 
-TEST(FittedMotion, HasTheJacobianOfDifferencesInTheReportsUnits) {
+TEST(FittedMotion, MatchesDifferencesInTheReportsUnits) {
   for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
     for (const char* model : {"viscous", "drag"}) {
       SCOPED_TRACE(std::string(model) + (rig ? ", rig" : ", no rig"));
@@ -116,7 +116,7 @@ TEST(FittedMotion, HasTheJacobianOfDifferencesInTheReportsUnits) {
   }
 }
 
-TEST(FittedMotion, KeepsAZeroThatDrifts) {
+TEST(FittedMotion, KeepsADriftingZero) {
   SyntheticOptions options = NoisyRun();
   Recording recording = Must(SimulateRecording(options));
   recording.value.array() += 0.001 * recording.time.array();
@@ -129,7 +129,7 @@ TEST(FittedMotion, KeepsAZeroThatDrifts) {
   ExpectJacobianOfDifferences(run);
 }
 
-TEST(FittedMotion, IsFollowedAtInstantsThatAreNotTheRecordings) {
+TEST(FittedMotion, CanBeEvaluatedAtOtherInstants) {
   SyntheticOptions options = TextbookRun("coulomb");
   const FitReport fit = TrueReport(options);
   const FittedMotion motion(Must(SimulateRecording(options)), fit, {});
@@ -149,7 +149,7 @@ TEST(FittedMotion, HasTheSmallAnglePeriodOfItsInertia) {
 }
 
 // With linear gravity the same start and zero give a motion in closed form.
-TEST(FittedMotion, SwingsAsTheDampedCosineWithLinearGravity) {
+TEST(FittedMotion, FollowsTheDampedCosineForLinearGravity) {
   const SyntheticOptions options = TextbookRun("viscous");
   const FittedMotion motion(Must(SimulateRecording(options)), TrueReport(options), {});
   const FittedMotion linear = motion.WithGravity(Gravity::kLinear);
@@ -162,7 +162,7 @@ TEST(FittedMotion, SwingsAsTheDampedCosineWithLinearGravity) {
 }
 
 // Coulomb and quadratic friction are removed; start and zero stay; the report's units do not matter.
-TEST(FittedMotion, SwingsWithTheInertiaAndTheViscousFrictionItIsGiven) {
+TEST(FittedMotion, UsesTheGivenInertiaAndViscousFriction) {
   const SyntheticOptions options = TextbookRun("drag");
   const Recording recording = Must(SimulateRecording(options));
   FitReport fit = TrueReport(options);
@@ -194,7 +194,7 @@ TEST(FittedMotion, KeepsSineGravityWithOtherFriction) {
   EXPECT_THAT(readings[3] - options.zero, DoubleNear(1.5, 1e-6));
 }
 
-TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
+TEST(FittedMotion, IsEmptyIfTheMotionCannotBeTraced) {
   const SyntheticOptions options = TextbookRun("coulomb");
   const Recording recording = Must(SimulateRecording(options));
   FitReport fit = TrueReport(options);
@@ -203,7 +203,7 @@ TEST(FittedMotion, GivesNothingWhereTheMotionCannotBeTraced) {
   EXPECT_FALSE(motion.Readings(motion.instants()));
 }
 
-TEST(FittedMotion, IsTracedOverTheRecordingAsItsReadingsAre) {
+TEST(FittedMotion, TracesTheWholeRecording) {
   for (const SyntheticOptions& run : {TextbookRun("drag"), MovingRun("drag")}) {
     const Recording recording = Must(SimulateRecording(run));
     const FittedMotion motion(recording, TrueReport(run), std::nullopt);

@@ -160,7 +160,7 @@ TEST(HomogeneityErrors, AreRightInWhiteNoise) {
 
 // Of 100 trials at 1 %, more than 5 hits happen once in 2000 times. At a correlation of 0.9 intervals of single
 // recordings cover 91 % or more (coverage_scenarios.h): of 100, fewer than 82 happen once in 400 times.
-TEST(HomogeneityErrors, AreRightInNoiseThatRemembers) {
+TEST(HomogeneityErrors, AreRightForAutocorrelatedNoise) {
   const Tally tally = TallySets("ar_0.9", 100);
   EXPECT_EQ(tally.converged, 100);
   EXPECT_THAT(tally.disagree, Le(5));
@@ -182,7 +182,7 @@ Set MakeMixedSet(int number) {
 }
 
 // Deviations over errors have an rms of 1 ± 7 % for 100 sets; the tolerance is three times that.
-TEST(HomogeneityErrors, AreHonestWhereSomeRecordingsRemember) {
+TEST(HomogeneityErrors, AreRightIfSomeRecordingsAreAutocorrelated) {
   constexpr int kSets = 100;
   std::vector<double> squares(kSets, 0.0);
   ParallelFor(kSets, 0, [&](int i) {
@@ -195,7 +195,7 @@ TEST(HomogeneityErrors, AreHonestWhereSomeRecordingsRemember) {
   EXPECT_THAT(rms, DoubleNear(1, 0.21));
 }
 
-TEST(HomogeneityErrors, FindTheOneOfOtherInertia) {
+TEST(HomogeneityErrors, FindTheRecordingWithAnotherInertia) {
   EXPECT_THAT(CountNamed("white_2.5", 100), Ge(95));
   EXPECT_THAT(CountNamed("ar_0.9", 100), Ge(95));
 }

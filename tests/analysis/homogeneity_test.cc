@@ -47,7 +47,7 @@ std::vector<SyntheticOptions> WithOther(int count, std::uint64_t seed, std::size
 
 // ---- Runs of one rig -----------------------------------------------------------------------------------------------
 
-TEST(Homogeneity, IsFoundInRunsOfOneRig) {
+TEST(Homogeneity, IsConfirmedForRunsOfOneRig) {
   const Homogeneity result = TestRuns(SeveralRuns(5, 1));
   EXPECT_TRUE(result.agrees()) << result.verdict;
   ASSERT_TRUE(result.p);
@@ -109,7 +109,7 @@ double DistanceFromOthers(const std::vector<double>& value, const std::vector<do
   return (value[k] - sum / weights) / std::sqrt(error[k] * error[k] + 1 / weights);
 }
 
-TEST(Homogeneity, HasEachRunsDistanceFromTheMeanOfTheOthers) {
+TEST(Homogeneity, HasEachRunsDistanceFromTheOthers) {
   const FittedAlone fits(SeveralRuns(5, 11), RigOptions());
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   ASSERT_THAT(result.parameters, SizeIs(3));
@@ -148,7 +148,7 @@ TEST(Homogeneity, DescribesEachParameter) {
 
 // ---- Runs of different rigs ----------------------------------------------------------------------------------------
 
-TEST(Homogeneity, NamesTheOneOfOtherInertia) {
+TEST(Homogeneity, NamesTheRecordingWithAnotherInertia) {
   for (const std::size_t other : {0, 2, 4}) {
     const Homogeneity result = TestRuns(WithOther(5, 31 + other, other, 1.03));
     EXPECT_FALSE(result.agrees());
@@ -160,7 +160,7 @@ TEST(Homogeneity, NamesTheOneOfOtherInertia) {
   }
 }
 
-TEST(Homogeneity, NamesTwoOfFive) {
+TEST(Homogeneity, NamesTwoOutliersOfFive) {
   std::vector<SyntheticOptions> runs = WithOther(5, 41, 1, 1.03);
   runs[3].parameters[0] *= 0.96;
   const Homogeneity result = TestRuns(runs);
@@ -177,7 +177,7 @@ TEST(Homogeneity, NamesNeitherOfTwoThatDiffer) {
 }
 
 // Each run has a different inertia, with a scatter of 3 % far above the errors. There is no majority.
-TEST(Homogeneity, NamesNobodyWhereAllScatter) {
+TEST(Homogeneity, NamesNoOutlierIfAllScatter) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 61);
   const double factors[] = {1.00, 0.96, 1.03, 0.985, 1.05};
   for (std::size_t k = 0; k < 5; ++k) runs[k].parameters[0] *= factors[k];
@@ -191,7 +191,7 @@ TEST(Homogeneity, NamesNobodyWhereAllScatter) {
 }
 
 // Four runs scatter by a thousandth, many times their errors; one is thirty times as far away.
-TEST(Homogeneity, NamesTheOneFarFromTheScatterOfTheOthers) {
+TEST(Homogeneity, NamesARecordingFarFromTheOthersScatter) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 65);
   const double factors[] = {1.001, 0.9995, 1.03, 0.9985, 1.0005};
   for (std::size_t k = 0; k < 5; ++k) runs[k].parameters[0] *= factors[k];
@@ -208,7 +208,7 @@ std::vector<SyntheticOptions> WithoutViscous(int count, std::uint64_t seed) {
   return runs;
 }
 
-TEST(Homogeneity, ComparesWhatIsAtABoundAsIfThereWereNone) {
+TEST(Homogeneity, IgnoresBoundsInTheComparison) {
   const FittedAlone fits(WithoutViscous(8, 71), RigOptions());
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   EXPECT_TRUE(result.agrees()) << result.verdict;
@@ -227,7 +227,7 @@ TEST(Homogeneity, ComparesWhatIsAtABoundAsIfThereWereNone) {
   EXPECT_THAT(viscous.mean, DoubleNear(0, 3.5 * viscous.std_error));
 }
 
-TEST(Homogeneity, IsNotTestedWhereAllThatIsSharedIsFixed) {
+TEST(Homogeneity, IsNotTestedIfAllSharedParametersAreFixed) {
   FitOptions options = RigOptions();
   options.fixed = {{"inertia", 0.079}};
   const FittedAlone fits(SeveralRuns(2, 81), options);
@@ -239,7 +239,7 @@ TEST(Homogeneity, IsNotTestedWhereAllThatIsSharedIsFixed) {
   EXPECT_EQ(result.verdict, "not tested: all that is shared is fixed: there is nothing to compare");
 }
 
-TEST(Homogeneity, LeavesOutWhatIsFixed) {
+TEST(Homogeneity, SkipsFixedParameters) {
   FitOptions options = RigOptions();
   options.fixed = {{"viscous", 0.003}};
   const FittedAlone fits(SeveralRuns(3, 81), options);
@@ -249,7 +249,7 @@ TEST(Homogeneity, LeavesOutWhatIsFixed) {
                                              testing::Field(&SharedParameter::name, "coulomb")));
 }
 
-TEST(Homogeneity, IsNotTestedWhereOneRecordingAloneTells) {
+TEST(Homogeneity, IsNotTestedWithOneInformativeRecording) {
   FittedAlone fits(SeveralRuns(2, 91), RigOptions());
   fits.Fit(0).termination = Termination::kNotConverged;
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
@@ -257,7 +257,7 @@ TEST(Homogeneity, IsNotTestedWhereOneRecordingAloneTells) {
   EXPECT_EQ(result.reason, "fewer than two recordings tell all shared parameters alone");
 }
 
-TEST(Homogeneity, IsTestedOnThoseThatTell) {
+TEST(Homogeneity, UsesInformativeRecordingsOnly) {
   FittedAlone fits(WithOther(4, 95, 3, 1.03), RigOptions());
   fits.Fit(0).termination = Termination::kNotConverged;
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);

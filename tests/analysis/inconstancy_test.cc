@@ -35,7 +35,7 @@ FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
 /// The fit, with inconstancy added to its errors.
 FittedRun Counted(const SyntheticOptions& simulated, const FitOptions& options) {
   FittedRun run = FitTo(Must(SimulateRecording(simulated)), options);
-  CountInconstancy(TestConstancy(run.recording, run.fit, options), run.fit);
+  AddInconstancyError(TestConstancy(run.recording, run.fit, options), run.fit);
   return run;
 }
 
@@ -43,15 +43,15 @@ double SystematicError(const FitReport& fit, std::string_view name) {
   return fit.Find(name)->systematic_std_error.value_or(0);
 }
 
-TEST(Inconstancy, IsNothingWhereTheLawHolds) {
+TEST(Inconstancy, IsZeroForTheRightLaw) {
   const FittedRun run = Counted(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
-  EXPECT_FALSE(run.fit.Warns("not_constant"));
+  EXPECT_FALSE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.systematic_names, IsEmpty());
   EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
 }
 
 // Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A.
-TEST(Inconstancy, IsTheStandardDeviationOfTheWindowsAboutTheWhole) {
+TEST(Inconstancy, IsTheScatterOfWindowsAboutTheWhole) {
   const FitOptions options = WithLinearGravity({});
   FittedRun run = FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options);
   const ParameterEstimate whole = *run.fit.Find("inertia");
@@ -62,7 +62,7 @@ TEST(Inconstancy, IsTheStandardDeviationOfTheWindowsAboutTheWhole) {
     sum_of_squares += std::pow(inertia - whole.estimate, 2);
   }
   const double expected = std::sqrt(sum_of_squares / static_cast<double>(constancy.windows.size() - 1));
-  CountInconstancy(constancy, run.fit);
+  AddInconstancyError(constancy, run.fit);
   EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
   EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // Otherwise the windows would contradict the whole fit.
   EXPECT_EQ(run.fit.Find("inertia")->std_error, whole.std_error);
@@ -70,7 +70,7 @@ TEST(Inconstancy, IsTheStandardDeviationOfTheWindowsAboutTheWhole) {
 
 // The purpose: a run of smaller swings, fitted with the same wrong law, differs by many standard errors. The difference
 // must be within the combined total errors.
-TEST(Inconstancy, ExplainsHowRunsOfOtherAmplitudesDiffer) {
+TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
   const FitOptions options = WithLinearGravity({});
   const ParameterEstimate first = *Counted(NoisyTextbookRun("viscous"), options).fit.Find("inertia");
   for (const double amplitude : {0.6, 0.8, 1.2}) {
@@ -85,14 +85,14 @@ TEST(Inconstancy, ExplainsHowRunsOfOtherAmplitudesDiffer) {
   }
 }
 
-TEST(Inconstancy, IsSaidWithItsSize) {
+TEST(Inconstancy, IsReportedWithItsSize) {
   const FittedRun run = Counted(NoisyTextbookRun("viscous"), WithLinearGravity({}));
-  ASSERT_TRUE(run.fit.Warns("not_constant"));
+  ASSERT_TRUE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("beyond the errors: inertia by 0.000"));
 }
 
 // The rig's error is a factor common to all torques; the inconstancy belongs to inertia alone.
-TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
+TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", TextbookRig()).fit;
   const double of_rig = *fit.Find("inertia")->systematic_std_error;
   const Eigen::MatrixXd before = fit.systematic_covariance;
@@ -103,7 +103,7 @@ TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
                        {10, 15, 0.2, 0.080, 1e-5, 0.003, 1e-5}};
   constancy.trends = {{"inertia", "kg m^2", 1, 0.1, 0.02, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
   const double whole = fit.Find("inertia")->estimate;
-  CountInconstancy(constancy, fit);
+  AddInconstancyError(constancy, fit);
   // Three values with the same error of 1e-5.
   const double expected =
       (std::pow(0.078 - whole, 2) + std::pow(0.079 - whole, 2) + std::pow(0.080 - whole, 2)) / 2 - 1e-10;
@@ -113,14 +113,14 @@ TEST(Inconstancy, ComesInSquaresToWhatTheRigLeavesOpen) {
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
 }
 
-TEST(Inconstancy, IsThatOfTheHalvesWhereThereAreNoWindows) {
+TEST(Inconstancy, UsesTheHalvesWithoutWindows) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   Constancy constancy;
   // Friction differs by two of its errors, which may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   constancy.halves_p = 0;
   const double whole = fit.Find("inertia")->estimate;
-  CountInconstancy(constancy, fit);
+  AddInconstancyError(constancy, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
   EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves; another run"));
@@ -137,7 +137,7 @@ TEST(Inconstancy, NeedsNoTrend) {
   constancy.halves = {{"inertia", "s^2", 0.0438, 0.0438, 1e-5, 1e-5, 0},
                       {"viscous", "s", 0.001, 0.003, 0.0001, 0.0001, 14},
                       {"coulomb", "1", 0.001, 0.003, 1e-5, 1e-5, 140}};
-  CountInconstancy(constancy, fit);
+  AddInconstancyError(constancy, fit);
   EXPECT_THAT(fit.systematic_names, ElementsAre("coulomb", "viscous"));
   // coulomb has the windows' scatter, 1e-4 from the middle one; viscous has the halves' scatter.
   EXPECT_THAT(SystematicError(fit, "coulomb"), AllOf(Gt(5e-5), Lt(2e-4)));

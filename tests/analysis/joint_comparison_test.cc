@@ -63,7 +63,7 @@ TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
 }
 
 // The same recording used twice has the same optimum and twice the log-likelihood.
-TEST(CompareJointModels, OfARecordingTwiceHasTwiceItsLogLikelihood) {
+TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedRecording) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const auto [joint, comparison] = Compare({recording, recording}, kThreeLaws);
   const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), kThreeLaws));
@@ -95,7 +95,7 @@ TEST(CompareJointModels, RecommendsTheTrueLaw) {
   }
 }
 
-TEST(CompareJointModels, RecommendsNothingWhereNothingConverged) {
+TEST(CompareJointModels, RecommendsNothingIfNothingConverged) {
   JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
   for (JointFit& fit : joint.joint) fit.whole.termination = Termination::kNotConverged;
   const Comparison none = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
@@ -104,7 +104,7 @@ TEST(CompareJointModels, RecommendsNothingWhereNothingConverged) {
   EXPECT_EQ(none.reason, "no model converged, so none is recommended");
 }
 
-TEST(CompareJointModels, JudgesOnlyWhatConverged) {
+TEST(CompareJointModels, ComparesConvergedFitsOnly) {
   JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
   joint.joint[1].whole.termination = Termination::kNotConverged;
   joint.joint[1].whole.reason = "made so";
@@ -138,7 +138,7 @@ TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
 
 // Three recordings with too little information each determine the common term together. Statistics of independent
 // recordings of one rig add up, except for a part from their disagreement, with expectation 2 and rarely above 20.
-TEST(CompareJointModels, AddsUpWhatRecordingsTellOfATerm) {
+TEST(CompareJointModels, AddsTheInformationOfRecordingsOnATerm) {
   std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 41);
   for (SyntheticOptions& run : runs) run.noise = 0.006;
   const auto recordings = Simulate(runs);
@@ -151,7 +151,7 @@ TEST(CompareJointModels, AddsUpWhatRecordingsTellOfATerm) {
   EXPECT_LT(comparison.tests.at(0).p.value_or(1), 1e-6);
 }
 
-TEST(CompareJointModels, TestsNothingThatEachRecordingAddsForItself) {
+TEST(CompareJointModels, SkipsTermsThatEachRecordingAddsItself) {
   const std::vector<std::string> models = {"viscous", "coulomb"};
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
   const JointModels joint =
@@ -166,7 +166,7 @@ TEST(CompareJointModels, TestsNothingThatEachRecordingAddsForItself) {
 // ---- Autocorrelated noise ------------------------------------------------------------------------------------------
 
 /// Recordings of dry friction with AR(1) noise of correlation 0.9 and 4 mrad, without other noise.
-std::vector<Recording> RememberingRecordings(int count, std::uint64_t seed) {
+std::vector<Recording> AutocorrelatedRecordings(int count, std::uint64_t seed) {
   std::vector<SyntheticOptions> runs = ShortRuns(count, "coulomb", seed);
   for (SyntheticOptions& run : runs) {
     run.noise = 0;
@@ -181,8 +181,8 @@ std::vector<Recording> RememberingRecordings(int count, std::uint64_t seed) {
 
 // Innovations of an AR(1) with 0.9 are sqrt(1 - 0.81) of its standard deviation. ln L of all N samples together is
 // larger by -N/2 ln 0.19. Each recording has a separate autocorrelation of one or more parameters.
-TEST(CompareJointModels, TakesTheMemoryOfEachRecordingIntoAccount) {
-  const auto [joint, comparison] = Compare(RememberingRecordings(3, 5), kThreeLaws);
+TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
+  const auto [joint, comparison] = Compare(AutocorrelatedRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   EXPECT_THAT(comparison.criterion, HasSubstr("remember"));
   EXPECT_LT(comparison.effective_samples, 2250);
@@ -195,8 +195,8 @@ TEST(CompareJointModels, TakesTheMemoryOfEachRecordingIntoAccount) {
 }
 
 // Two copies have the same autocorrelation and the same optimum: twice the log-likelihood.
-TEST(CompareJointModels, OfARememberingRecordingTwiceHasTwiceItsLogLikelihood) {
-  const Recording recording = RememberingRecordings(1, 9).front();
+TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedCorrelatedRecording) {
+  const Recording recording = AutocorrelatedRecordings(1, 9).front();
   const auto [joint, comparison] = Compare({recording, recording}, {"viscous", "coulomb"});
   const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), {"viscous", "coulomb"}));
   const Comparison alone = CompareModels(once, PlainOptions(), kCriteriaOnly);
@@ -228,7 +228,7 @@ TEST(CompareJointModels, PredictsEachRecordingFromItself) {
 }
 
 // An angle and a rate have no common unit. The true law's residuals over their σ have an rms of 1.
-TEST(CompareJointModels, HasResidualsOverTheirDeviationWhereUnitsDiffer) {
+TEST(CompareJointModels, NormalizesResidualsOfDifferentUnits) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 61);
   runs[1].quantity = Quantity::kRate;
   runs[1].noise = 0.01;

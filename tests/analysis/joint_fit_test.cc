@@ -37,7 +37,7 @@ TEST(FitTogether, FitsEveryModelToAllRecordings) {
 }
 
 // TextbookParameters (fit_support.h): the true values in units of G.
-TEST(FitTogether, FindsTheTruthOfTheTrueLaw) {
+TEST(FitTogether, RecoversTheTruthForTheTrueLaw) {
   const std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 4);
   const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
   for (const double deviation : Deviations(joint.joint[0].whole, runs[0].parameters)) {
@@ -47,7 +47,7 @@ TEST(FitTogether, FindsTheTruthOfTheTrueLaw) {
     for (const double deviation : Deviations(joint.FitOf(k, 0), Truth(runs[k]))) EXPECT_LT(std::abs(deviation), 4) << k;
   }
   EXPECT_TRUE(joint.homogeneity[0].agrees()) << joint.homogeneity[0].verdict;
-  EXPECT_FALSE(joint.joint[0].whole.Warns("recordings_disagree"));
+  EXPECT_FALSE(joint.joint[0].whole.HasWarning("recordings_disagree"));
 }
 
 // Shared parameters are equal in all recordings; the others differ.
@@ -65,7 +65,7 @@ TEST(FitTogether, HasTheSharedEstimatesInEveryRecording) {
   }
 }
 
-TEST(FitTogether, HasOptionsForTheModelsThatHaveTheParameter) {
+TEST(FitTogether, UsesOptionsOnlyForModelsThatHaveTheParameter) {
   FitOptions options = PlainOptions();
   options.fixed = {{"coulomb", 0.004 / kTextbookTorque}};
   const JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, options);
@@ -76,16 +76,16 @@ TEST(FitTogether, HasOptionsForTheModelsThatHaveTheParameter) {
 
 // ---- Recordings that disagree --------------------------------------------------------------------------------------
 
-TEST(FitTogether, WarnsWhereRecordingsDisagree) {
+TEST(FitTogether, WarnsOfDisagreeingRecordings) {
   std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
   runs[2].parameters[0] *= 1.01;
   const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
   EXPECT_THAT(joint.homogeneity[0].disagreeing, ElementsAre(2));
-  EXPECT_TRUE(joint.joint[0].whole.Warns("recordings_disagree"));
+  EXPECT_TRUE(joint.joint[0].whole.HasWarning("recordings_disagree"));
   EXPECT_THAT(joint.homogeneity[0].verdict, HasSubstr("recording 3 disagrees with the others: its inertia is 1"));
 }
 
-TEST(FitTogether, SaysWhichRecordingKeepsItFromConverging) {
+TEST(FitTogether, NamesTheRecordingThatPreventsConvergence) {
   std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
   runs[1].parameters[0] *= 2;
   const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
@@ -98,7 +98,7 @@ TEST(FitTogether, SaysWhichRecordingKeepsItFromConverging) {
 
 // ---- Impossible joint fits -----------------------------------------------------------------------------------------
 
-TEST(FitTogether, HasFailedWhereAModelHasNothingThatIsShared) {
+TEST(FitTogether, FailsForAModelWithoutSharedParameters) {
   const std::vector<std::string> models = {"coulomb", "drag"};
   const auto recordings = Simulate(ShortRuns(2, "drag", 1));
   const JointModels joint = FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"drag"});
@@ -115,7 +115,7 @@ TEST(FitTogether, HasFailedWhereAModelHasNothingThatIsShared) {
   EXPECT_THAT(joint.joint[1].shared, ElementsAre("drag"));
 }
 
-TEST(FitTogether, HasFailedWhereARecordingAloneHas) {
+TEST(FitTogether, FailsIfASeparateFitFailed) {
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
   std::vector<RunModels> runs = FitEach(recordings, {"coulomb"}, PlainOptions());
   runs[1].alone.fits[0].termination = Termination::kFailed;

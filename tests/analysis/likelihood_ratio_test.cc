@@ -16,7 +16,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 
 // S. G. Self & K.-Y. Liang, JASA 82:605 (1987), cases 5 and 7: one and two bounded parameters.
-TEST(WeightsAtBound, AreThoseOfSelfAndLiang) {
+TEST(WeightsAtBound, MatchSelfAndLiang) {
   EXPECT_THAT(WeightsAtBound(0, 1), ElementsAre(0, 1));
   EXPECT_THAT(WeightsAtBound(1, 0), ElementsAre(0.5, 0.5));
   EXPECT_THAT(WeightsAtBound(1, 1), ElementsAre(0, 0.5, 0.5));
@@ -30,14 +30,14 @@ TEST(ChiBarTail, HasTheTabulatedFivePercentPoints) {
   EXPECT_THAT(ChiBarTail(WeightsAtBound(2, 0, 0.0), 4.2306), DoubleNear(0.05, 1e-4));
 }
 
-TEST(ChiBarTail, IsOneForNothingGained) {
+TEST(ChiBarTail, IsOneWithoutAGain) {
   EXPECT_EQ(ChiBarTail(WeightsAtBound(1, 0), 0), 1);
   EXPECT_EQ(ChiBarTail(WeightsAtBound(2, 0, 0.3), -1), 1);
 }
 
 // The statistic of two bounded means of a normal pair with known covariance, computed from the four faces of the
 // quadrant. It is an independent simulation of the weights.
-TEST(ChiBarTail, IsTheTailOfASimulatedProjectionOnTheQuadrant) {
+TEST(ChiBarTail, MatchesASimulatedProjectionOnTheQuadrant) {
   for (const double correlation : {-0.9, 0.0, 0.6}) {
     std::mt19937_64 generator(7);
     std::normal_distribution<double> normal;
@@ -60,7 +60,7 @@ TEST(ChiBarTail, IsTheTailOfASimulatedProjectionOnTheQuadrant) {
   }
 }
 
-TEST(DescribeMixture, SaysItInWords) {
+TEST(DescribeMixture, DescribesTheMixtureInWords) {
   EXPECT_EQ(DescribeMixture(WeightsAtBound(0, 1)), "χ²(1)");
   EXPECT_EQ(DescribeMixture(WeightsAtBound(1, 0)), "half χ²(0), half χ²(1)");
   EXPECT_EQ(DescribeMixture(WeightsAtBound(2, 0, 0.0)), "a quarter χ²(0), half χ²(1), a quarter χ²(2)");

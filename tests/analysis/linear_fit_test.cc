@@ -35,19 +35,19 @@ MatrixXd Normal(Index rows, Index columns, unsigned seed) {
 }
 
 /// AR(1) noise of variance 1 with this correlation.
-VectorXd Remembering(Index size, double correlation, unsigned seed) {
+VectorXd Autocorrelated(Index size, double correlation, unsigned seed) {
   VectorXd z = Normal(size, 1, seed);
   for (Index i = 1; i < size; ++i) z[i] = correlation * z[i - 1] + std::sqrt(1 - correlation * correlation) * z[i];
   return z;
 }
 
 Autocorrelation FirstOrder(double correlation) {
-  Autocorrelation memory;
-  memory.kind = Autocorrelation::Kind::kAutoregressive;
-  memory.autoregressive = {correlation};
-  memory.innovation_variance = 1 - correlation * correlation;
-  memory.interval = 1;
-  return memory;
+  Autocorrelation autocorrelation;
+  autocorrelation.kind = Autocorrelation::Kind::kAutoregressive;
+  autocorrelation.autoregressive = {correlation};
+  autocorrelation.innovation_variance = 1 - correlation * correlation;
+  autocorrelation.interval = 1;
+  return autocorrelation;
 }
 
 VectorXd Seconds(Index count) { return VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1)); }
@@ -55,7 +55,7 @@ VectorXd Seconds(Index count) { return VectorXd::LinSpaced(count, 0, static_cast
 // ---- Scores --------------------------------------------------------------------------------------------------------
 
 // Normal: l = -(y - m)² / 2σ², so ∂l/∂m = (y - m) / σ² and -∂²l/∂m² = 1 / σ².
-TEST(TermsOf, AreThoseOfANormalDensity) {
+TEST(TermsOf, MatchANormalDensity) {
   NoiseModel noise;
   noise.sigma = 0.5;
   const ReadingTerms terms = TermsOf(noise, Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(0.9, 2.3));
@@ -67,7 +67,7 @@ ReadingTerms TermsOfDraws(const NoiseModel& noise, const VectorXd& value) {
   return TermsOf(noise, value, VectorXd::Zero(value.size()));
 }
 
-TEST(ScoreCovariance, OfWhiteNormalNoiseIsThatOfIndependentScores) {
+TEST(ScoreCovariance, IsThatOfIndependentScoresForWhiteNoise) {
   NoiseModel noise;
   noise.sigma = 0.02;
   const VectorXd value = noise.sigma * Normal(50, 1, 1);
@@ -78,10 +78,10 @@ TEST(ScoreCovariance, OfWhiteNormalNoiseIsThatOfIndependentScores) {
 }
 
 // Σ_ij w_i ρ^|i-j| w_j / σ², term by term.
-TEST(ScoreCovariance, OfNoiseThatRemembersHasItsCorrelations) {
+TEST(ScoreCovariance, UsesTheCorrelationsOfTheNoise) {
   NoiseModel noise;
   noise.sigma = 0.5;
-  const VectorXd value = noise.sigma * Remembering(30, 0.8, 1);
+  const VectorXd value = noise.sigma * Autocorrelated(30, 0.8, 1);
   const VectorXd weights = Normal(30, 1, 2);
   double expected = 0;
   for (Index i = 0; i < 30; ++i)
@@ -91,7 +91,7 @@ TEST(ScoreCovariance, OfNoiseThatRemembersHasItsCorrelations) {
 }
 
 // Fisher's information of the location of Student's t is (ν + 1) / (ν + 3) / scale²; 20000 draws reproduce it to 1 %.
-TEST(ScoreCovariance, OfStudentsNoiseIsItsInformation) {
+TEST(ScoreCovariance, IsTheInformationForStudentsNoise) {
   NoiseModel noise;
   noise.family = NoiseFamily::kStudent;
   noise.sigma = 0.5;
@@ -104,7 +104,7 @@ TEST(ScoreCovariance, OfStudentsNoiseIsItsInformation) {
 }
 
 // Levels 2 σ apart: information Σ (φ(a) - φ(b))² / (Φ(b) - Φ(a)) of the intervals [a, b], in units of 1 / σ².
-TEST(ScoreCovariance, OfCoarseLevelsIsTheInformationThatTheyLeave) {
+TEST(ScoreCovariance, IsTheRemainingInformationForCoarseLevels) {
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
   noise.sigma = 0.5;
@@ -122,14 +122,14 @@ TEST(ScoreCovariance, OfCoarseLevelsIsTheInformationThatTheyLeave) {
 }
 
 // Residuals about the mean of N correlated values, 4000 times: their corrected variance is 1 within 3 %.
-TEST(Inflation, MendsTheVarianceOfResidualsAboutAMean) {
+TEST(Inflation, CorrectsTheVarianceAboutAMean) {
   constexpr Index kCount = 50;
   double lost = 0;  // the mean's variance over that of independent values
   for (Index i = 0; i < kCount; ++i)
     for (Index j = 0; j < kCount; ++j) lost += std::pow(0.9, std::abs(i - j)) / kCount;
   double variance = 0;
   for (unsigned seed = 0; seed < 4000; ++seed) {
-    const VectorXd z = Remembering(kCount, 0.9, seed);
+    const VectorXd z = Autocorrelated(kCount, 0.9, seed);
     variance += (z.array() - z.mean()).square().sum() / (kCount - 1) / 4000;
   }
   EXPECT_THAT(variance, Lt(0.8));
@@ -149,11 +149,11 @@ TEST(AutocorrelationOf, IsThatOfTheNoise) {
   noise.sigma = 0.5;
   const VectorXd zero = VectorXd::Zero(2000);
   const MatrixXd none(2000, 0);
-  const auto memory = [&](const VectorXd& z) {
+  const auto autocorrelation = [&](const VectorXd& z) {
     return AutocorrelationOf(noise, Seconds(2000), noise.sigma * z, zero, none);
   };
-  EXPECT_EQ(memory(Normal(2000, 1, 1)).Name(), "white");
-  const Autocorrelation remembered = memory(Remembering(2000, 0.9, 1));
+  EXPECT_EQ(autocorrelation(Normal(2000, 1, 1)).Name(), "white");
+  const Autocorrelation remembered = autocorrelation(Autocorrelated(2000, 0.9, 1));
   ASSERT_EQ(remembered.Name(), "AR(1)");
   // Its standard error is sqrt((1 - φ²) / N) = 0.01.
   EXPECT_THAT(remembered.autoregressive[0], DoubleNear(0.9, 0.04));

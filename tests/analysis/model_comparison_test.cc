@@ -110,7 +110,7 @@ Recording CorrelatedRecording(double sigma, double resolution, std::uint64_t see
   return recording;
 }
 
-TEST(CompareModels, TakesMemoryIntoAccount) {
+TEST(CompareModels, UsesTheAutocorrelation) {
   const auto [fitted, comparison] =
       Compare(CorrelatedRecording(0.004, 0, 5), {"viscous", "coulomb", "drag"}, kCriteriaOnly);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
@@ -124,7 +124,7 @@ TEST(CompareModels, TakesMemoryIntoAccount) {
 
 // If autocorrelation is ignored, the criterion finds additional laws in it. If it is included, viscous and dry friction
 // are recommended.
-TEST(CompareModels, RecommendsTheTrueLawUnderNoiseThatRemembers) {
+TEST(CompareModels, RecommendsTheTrueLawForAutocorrelatedNoise) {
   int right = 0;
   constexpr int kSeeds = 10;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -135,7 +135,7 @@ TEST(CompareModels, RecommendsTheTrueLawUnderNoiseThatRemembers) {
   EXPECT_GE(right, kSeeds - 1);
 }
 
-TEST(CompareModels, HasNoCriterionForQuietNoiseThatRemembers) {
+TEST(CompareModels, HasNoCriterionForSmallAutocorrelatedNoise) {
   const auto [fitted, comparison] =
       Compare(CorrelatedRecording(0.3 * kCount, kCount, 5), {"viscous", "coulomb"}, kCriteriaOnly);
   EXPECT_EQ(comparison.likelihood, Likelihood::kNone);
@@ -144,7 +144,7 @@ TEST(CompareModels, HasNoCriterionForQuietNoiseThatRemembers) {
   for (const ComparisonRow& row : comparison.rows) EXPECT_FALSE(row.bic || row.akaike_weight) << row.model;
 }
 
-TEST(CompareModels, JudgesOnlyWhatConverged) {
+TEST(CompareModels, ComparesConvergedFitsOnly) {
   Compared made = Compare(GaussianRecording("coulomb"), {"viscous", "coulomb"}, kCriteriaOnly);
   made.fitted.fits[1].termination = Termination::kNotConverged;
   made.fitted.fits[1].reason = "made so";

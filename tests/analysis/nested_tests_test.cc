@@ -25,7 +25,7 @@ std::vector<NestedTest> TestsOf(const Recording& recording, const std::vector<st
   return CompareModels(fitted, options, {.predict = false}).tests;
 }
 
-TEST(TestNested, TestsOneBoundedTermAgainstHalfAChiSquare) {
+TEST(TestNested, UsesHalfAChiSquareForOneBoundedTerm) {
   const auto tests = TestsOf(Must(SimulateRecording(NoisyRun("coulomb"))), {"viscous", "coulomb"});
   ASSERT_EQ(tests.size(), 1);
   EXPECT_EQ(tests[0].simpler, "viscous");
@@ -37,7 +37,7 @@ TEST(TestNested, TestsOneBoundedTermAgainstHalfAChiSquare) {
 
 // Two terms at their bound: w_2 = 1/4 + asin ρ / 2π is at most 1/2. Dry friction and drag together can be replaced by
 // less viscous friction, because its power of the rate lies between theirs. Therefore ρ > 0 and w_0 < 1/4.
-TEST(TestNested, TestsTwoBoundedTermsAgainstAMixtureOfThree) {
+TEST(TestNested, UsesAMixtureForTwoBoundedTerms) {
   const auto tests = TestsOf(Must(SimulateRecording(NoisyRun("viscous"))), {"viscous", "drag"});
   ASSERT_EQ(tests.size(), 1);
   EXPECT_THAT(tests[0].null, HasSubstr("half χ²(1)"));
@@ -67,7 +67,7 @@ TEST(TestNested, HasUniformProbabilitiesUnderTheSimplerLaw) {
 
 // Under the simpler law p is uniform if the stiction estimate is above coulomb; otherwise the test is not made. Of 30
 // recordings none is expected below 0.001 (3 in 100 runs have one), and about 1.5 below 0.05 (5 or more: 2 in 100).
-TEST(TestNested, SimulatesWhereTheSimplerLawHasNoSuchParameter) {
+TEST(TestNested, SimulatesForAnUnidentifiedParameter) {
   int below = 0, far_below = 0, made = 0;
   for (int seed = 1; seed <= 30; ++seed) {
     SyntheticOptions run = LawRun(kTrueLaws[1], 15, 1);
@@ -92,7 +92,7 @@ TEST(TestNested, FindsStiction) {
   EXPECT_LE(tests[0].p.value_or(1), 1e-4);  // one of 20000
 }
 
-TEST(TestNested, TestsNothingThatIsNotNested) {
+TEST(TestNested, TestsNestedModelsOnly) {
   EXPECT_THAT(TestsOf(Must(SimulateRecording(NoisyRun("coulomb"))), {"linear", "coulomb"}), IsEmpty());
   EXPECT_THAT(TestsOf(Must(SimulateRecording(NoisyRun("coulomb"))), {"drag", "asymmetric"}), IsEmpty());
 }

@@ -58,7 +58,7 @@ TEST(Parts, RecoverTheTruthFromANoiseFreePart) {
   EXPECT_THAT(EstimateOf(part, "initial_rate"), DoubleNear(MotionOf(run).Rate(7.13), 1e-5));
 }
 
-TEST(Parts, HoldWhatTheyAreToldAndWhatTheWholeFitHeld) {
+TEST(Parts, FixTheHeldParametersAndTheFitsFixedOnes) {
   FitOptions options = ModelOptions("coulomb");
   options.fixed = {{"viscous", 0.0016}};
   const FittedRun whole = FitTo(Must(SimulateRecording(NoisyRun())), options);
@@ -71,7 +71,7 @@ TEST(Parts, HoldWhatTheyAreToldAndWhatTheWholeFitHeld) {
 }
 
 // The zero is 0.012 rad and drifts by 0.001 rad/s: at 8 s it is 0.020 rad.
-TEST(Parts, TakeADriftingZeroFromWhereItIsAtTheirBegin) {
+TEST(Parts, StartADriftingZeroAtItsValueThere) {
   Recording recording = Must(SimulateRecording(QuietRun("viscous")));
   recording.value += 0.001 * recording.time;
   FitOptions options = ModelOptions("viscous");
@@ -82,7 +82,7 @@ TEST(Parts, TakeADriftingZeroFromWhereItIsAtTheirBegin) {
   EXPECT_THAT(EstimateOf(parts.Fit(8, 16, {"zero_angle", "zero_drift"}), "zero_angle"), DoubleNear(0.020, 1e-6));
 }
 
-TEST(Parts, SayWhyOneIsNotFitted) {
+TEST(Parts, ExplainAFailedFit) {
   SyntheticOptions run = NoisyRun();
   run.duration = 60;  // at rest after 41 s
   const FittedRun whole = FitTo(run, "coulomb", {});
@@ -93,7 +93,7 @@ TEST(Parts, SayWhyOneIsNotFitted) {
 }
 
 // A pendulum without friction keeps its amplitude A under either gravity, because energy is conserved.
-TEST(Parts, SeeTheAmplitudeOfAnUndampedSwing) {
+TEST(Parts, GiveTheAmplitudeOfAnUndampedSwing) {
   for (const char* model : {"linear", "viscous"}) {
     SyntheticOptions run = QuietRun(model);
     run.parameters[1] = 0;
@@ -112,7 +112,7 @@ TEST(Parts, HaveNoAmplitudeWithoutAMotion) {
   EXPECT_EQ(Parts(whole.recording, whole.fit, ModelOptions("coulomb")).Amplitude(3), 0);
 }
 
-TEST(Parts, KnowTheSensorsRangeWhereItCutsReadingsOff) {
+TEST(Parts, UseTheSensorsRangeIfReadingsAreCut) {
   SyntheticOptions run = NoisyRun();
   const FittedRun free = FitTo(run, "coulomb", {});
   EXPECT_EQ(Parts(free.recording, free.fit, ModelOptions("coulomb")).NoiseOf(free.fit).high, kInfinity);
@@ -162,7 +162,7 @@ TEST(CutEvenly, MakesEqualIntegralsOfAKnownDecay) {
 
 // In a decay within two periods, half of the integral is reached after one period. A part must still have three
 // periods.
-TEST(CutEvenly, LeavesThreePeriodsToEachPart) {
+TEST(CutEvenly, GivesEachPartThreePeriods) {
   const ExponentialDecay swing(2.6);
   const Parts parts(swing.whole.recording, swing.whole.fit, ModelOptions("linear"));
   EXPECT_THAT(CutEvenly(swing.ends, 4, parts), ElementsAre(0, 6, 12, 18, swing.ends.size() - 1));
@@ -172,16 +172,16 @@ TEST(CutEvenly, LeavesThreePeriodsToEachPart) {
 
 // ---- Sentences and numbers -----------------------------------------------------------------------------------------
 
-TEST(After, IsTheNextInstant) {
+TEST(NextDoubleAfter, IsTheNextLargerDouble) {
   for (const double time : {0.0, 1.5, -3.0, 1e6}) {
-    EXPECT_THAT(After(time), AllOf(Gt(time), Le(time + std::max(1e-9, std::abs(time) * 1e-15))));
-    const double between = 0.5 * (time + After(time));
-    EXPECT_TRUE(between == time || between == After(time));
+    EXPECT_THAT(NextDoubleAfter(time), AllOf(Gt(time), Le(time + std::max(1e-9, std::abs(time) * 1e-15))));
+    const double between = 0.5 * (time + NextDoubleAfter(time));
+    EXPECT_TRUE(between == time || between == NextDoubleAfter(time));
   }
 }
 
-TEST(TooShort, CountsHalfSwingsNotTheirEnds) {
-  EXPECT_EQ(TooShort({0, 1, 2, 3}, "halves", 12), "3 half swings are too few for halves; 12 are needed");
+TEST(TooFewHalfSwings, CountsHalfSwingsNotTheirEnds) {
+  EXPECT_EQ(TooFewHalfSwings({0, 1, 2, 3}, "halves", 12), "3 half swings are too few for halves; 12 are needed");
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ double SinusoidError(const SyntheticOptions& run, double amplitude) {
   return 2 * std::sqrt(24 / count) * run.noise / (amplitude * run.duration * kFrequency);
 }
 
-TEST(MakePlan, VariesOneFactorAtATimeAndKeepsTheBaseInEach) {
+TEST(MakePlan, VariesOneFactorAtATime) {
   SyntheticOptions run = LightRun("viscous");
   run.release_angle = -0.4;
   run.resolution = 0.001;
@@ -108,7 +108,7 @@ TEST(MakePlan, VariesOneFactorAtATimeAndKeepsTheBaseInEach) {
 }
 
 // A range that cuts off one side gives different results for releases on the two sides.
-TEST(MakePlan, HasRowsThatAreTheBasesOfTheirOwnPlans) {
+TEST(MakePlan, HasRowsThatMatchTheirOwnPlans) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.release_angle = -0.4;
   run.duration = 3;
@@ -126,7 +126,7 @@ TEST(MakePlan, HasRowsThatAreTheBasesOfTheirOwnPlans) {
   EXPECT_EQ(Errors(Rows(plan, "resolution").back()), BaseErrors(coarser));
 }
 
-TEST(MakePlan, GoesNoFartherThanItsLargestAmplitude) {
+TEST(MakePlan, LimitsTheAmplitudesOfItsRows) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.duration = 10;
   run.release_angle = 2;
@@ -135,7 +135,7 @@ TEST(MakePlan, GoesNoFartherThanItsLargestAmplitude) {
   EXPECT_THAT(Values(Must(MakePlan(run)), "release_angle"), ElementsAre(0.675, 1.35, 2.7));
 }
 
-TEST(MakePlan, HasNoResolutionToVaryWithoutOne) {
+TEST(MakePlan, OmitsTheResolutionFactorWithoutOne) {
   EXPECT_THAT(Values(Must(MakePlan(LightRun("viscous"))), "resolution"), ElementsAre());
 }
 
@@ -159,7 +159,7 @@ TEST(MakePlan, GivesTheErrorOfASinusoidsFrequency) {
 
 // If noise is larger than the levels, they add a variance of q²/12 (Widrow & Kollár); levels are 1/4, 1 and 4 of half
 // the noise.
-TEST(MakePlan, LetsErrorsGrowWithTheResolution) {
+TEST(MakePlan, PredictsErrorsThatGrowWithTheResolution) {
   SyntheticOptions run = LightRun("linear");
   run.resolution = 0.5 * run.noise;
   const auto noise = [](double resolution) { return std::sqrt(1 + resolution * resolution / 12); };
@@ -167,7 +167,7 @@ TEST(MakePlan, LetsErrorsGrowWithTheResolution) {
               ElementsAre(DoubleNear(noise(0.5) / noise(0.125), 1e-3), DoubleNear(noise(2) / noise(0.5), 0.02)));
 }
 
-TEST(MakePlan, TakesLevelsWithoutNoiseForWhiteNoiseOfTheirRounding) {
+TEST(MakePlan, TreatsLevelsWithoutNoiseAsWhiteNoise) {
   SyntheticOptions levels = LightRun("viscous", 0.001);
   levels.noise = 0;
   levels.resolution = kCount;
@@ -201,7 +201,7 @@ double BiasOverErrorWhereEqual(SyntheticOptions run) {
 }
 
 // The bias is proportional to the amplitude's square, the error to its inverse; the amplitude is accurate to 1e-4.
-TEST(MakePlan, FindsTheAmplitudeWhereTheLinearFormulasErrAsMuchAsNoiseDoes) {
+TEST(MakePlan, FindsTheAmplitudeWhereBiasEqualsTheError) {
   for (const std::string_view model : {"viscous", "drag"}) {
     SyntheticOptions run = TextbookRun(model);
     run.noise = 0.02;
@@ -210,7 +210,7 @@ TEST(MakePlan, FindsTheAmplitudeWhereTheLinearFormulasErrAsMuchAsNoiseDoes) {
 }
 
 // Below some amplitude dry friction leaves less than a whole period; above it the decrement has errors.
-TEST(MakePlan, FindsNoAmplitudeBelowThatOfAWholePeriod) {
+TEST(MakePlan, FindsNoAmplitudeBelowOneWholePeriod) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 1e-5;
   const double amplitude = Must(MakePlan(run)).amplitude_of_equal_bias.value();
@@ -221,17 +221,17 @@ TEST(MakePlan, FindsNoAmplitudeBelowThatOfAWholePeriod) {
 }
 
 // A²/8 = SinusoidError(A), which is proportional to 1/A.
-TEST(MakePlan, FindsThatAmplitudeOfAnUndampedPendulum) {
+TEST(MakePlan, FindsTheAmplitudeForAnUndampedPendulum) {
   const SyntheticOptions run = LightRun("viscous");
   const double expected = std::cbrt(8 * SinusoidError(run, 1));
   EXPECT_THAT(Must(MakePlan(run)).amplitude_of_equal_bias.value() / expected, DoubleNear(1, 0.01));
 }
 
-TEST(MakePlan, FindsNoSuchAmplitudeOfALinearPendulum) {
+TEST(MakePlan, FindsNoAmplitudeOfEqualBiasForALinearPendulum) {
   EXPECT_EQ(Must(MakePlan(LightRun("linear", 0.001))).amplitude_of_equal_bias, std::nullopt);
 }
 
-TEST(MakePlan, SwingsAMovingStartToOtherAmplitudesAtTheSamePhase) {
+TEST(MakePlan, ScalesAMovingStartAtTheSamePhase) {
   SyntheticOptions run = LightRun("viscous");
   run.start = StartKind::kMoving;
   run.initial_angle = -0.3;
@@ -255,7 +255,7 @@ TEST(MakePlan, ScalesAngleAndRateOfALinearMovingStart) {
   EXPECT_THAT(Steps(plan, "amplitude", 0), Each(DoubleNear(0.5, 1e-6)));
 }
 
-TEST(MakePlan, LeavesTheAmplitudeOfATumblingPendulumAlone) {
+TEST(MakePlan, KeepsTheAmplitudeOfATumblingPendulum) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.start = StartKind::kMoving;
   run.initial_rate = 2.1 * kFrequency;  // goes over the top above 2 ω0
@@ -274,7 +274,7 @@ TEST(MakePlan, NamesTheParametersAndTheUnitOfARate) {
   EXPECT_EQ(Rows(plan, "resolution").front().unit, "rad/s");
 }
 
-TEST(MakePlan, SaysWhyARowHasNoRecording) {
+TEST(MakePlan, ExplainsARowWithoutARecording) {
   SyntheticOptions run = LightRun("viscous");
   run.release_time = 25;
   const PlanRow half = Rows(Must(MakePlan(run)), "duration").front();
@@ -283,7 +283,7 @@ TEST(MakePlan, SaysWhyARowHasNoRecording) {
   EXPECT_THAT(half.reason, HasSubstr("the release at 25 s comes after the last sample"));
 }
 
-TEST(MakePlan, HasNoErrorsWhereThereIsNoBound) {
+TEST(MakePlan, HasNoErrorsWithoutABound) {
   SyntheticOptions run = LightRun("viscous");
   run.noise_freedom = 3;
   run.resolution = 0.001;
@@ -302,7 +302,7 @@ TEST(MakePlan, NeedsNoiseOrAResolution) {
   EXPECT_THAT(plan.error().message, HasSubstr("noise and resolution are both 0"));
 }
 
-TEST(MakePlan, NeedsARecordingToBeginWith) {
+TEST(MakePlan, NeedsARecording) {
   SyntheticOptions run = LightRun("viscous");
   run.release_time = 50;
   const Result<Plan> late = MakePlan(run);
@@ -324,7 +324,7 @@ TEST(LinearInertiaBias, IsTheSquareOfThePeriodsRatioWithoutFriction) {
 }
 
 // The formulas are exact for a linear pendulum with viscous friction, even if it is strongly damped.
-TEST(LinearInertiaBias, IsNoneForALinearPendulumWithViscousFriction) {
+TEST(LinearInertiaBias, IsZeroForALinearPendulumWithViscousFriction) {
   for (const double damping_ratio : {0.0, 0.004, 0.3}) {
     EXPECT_THAT(Bias(LightRun("linear", 2 * damping_ratio / kFrequency)), DoubleNear(0, 1e-10)) << damping_ratio;
   }
@@ -332,7 +332,7 @@ TEST(LinearInertiaBias, IsNoneForALinearPendulumWithViscousFriction) {
 
 // Dry friction does not change the period of a linear pendulum and reduces each turning point by 2 τ_c / G: the bias is
 // -ζ².
-TEST(LinearInertiaBias, IsThatOfTheDecrementForDryFrictionAndLinearGravity) {
+TEST(LinearInertiaBias, MatchesTheDecrementForDryFrictionAndLinearGravity) {
   SyntheticOptions run = LightRun("coulomb");
   run.model.gravity = Gravity::kLinear;
   run.parameters = {kInertiaOverTorque, 0, 0.001};
@@ -345,14 +345,14 @@ TEST(LinearInertiaBias, IsThatOfTheDecrementForDryFrictionAndLinearGravity) {
 }
 
 // Sum of the periods at the decreasing amplitudes, computed independently from the half swings.
-TEST(LinearInertiaBias, IsTheMeanOfThatOfAllPeriodsWithFriction) {
+TEST(LinearInertiaBias, IsTheMeanOverAllPeriodsWithFriction) {
   SyntheticOptions run = TextbookRun("drag");
   const std::vector<double> friction(run.parameters.begin() + 1, run.parameters.end());
   const double frequency = 1 / std::sqrt(run.parameters[0]);
   std::vector<double> amplitudes = {run.release_angle};
   double time = run.release_time;
   for (int half = 0; half < 20; ++half) {
-    const auto end = SwingThrough(run.model, friction, amplitudes.back(), frequency);
+    const auto end = ComputeHalfSwing(run.model, friction, amplitudes.back(), frequency);
     ASSERT_TRUE(end);
     amplitudes.push_back(end->amplitude);
     time += end->duration;

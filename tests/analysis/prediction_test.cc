@@ -94,14 +94,14 @@ double WithRounding(double sigma, double resolution) { return std::sqrt(sigma * 
 
 // ---- The right model -----------------------------------------------------------------------------------------------
 
-TEST(Prediction, OfTheRightModelIsOffByTheNoise) {
+TEST(Prediction, HasErrorsOfTheNoiseForTheRightModel) {
   for (const SyntheticOptions& run : {TextbookRun("coulomb"), MovingRun("coulomb")}) {
     SCOPED_TRACE(run.start == StartKind::kRelease ? "release" : "moving");
     ExpectForeseen(Noisy(run), ModelOptions("coulomb"), kSigma);
   }
 }
 
-TEST(Prediction, OfTheRightModelOfAGyroIsOffByTheNoise) {
+TEST(Prediction, HasErrorsOfTheNoiseForAGyro) {
   for (SyntheticOptions run : {TextbookRun("coulomb"), MovingRun("coulomb")}) {
     SCOPED_TRACE(run.start == StartKind::kRelease ? "release" : "moving");
     run.quantity = Quantity::kRate;
@@ -123,7 +123,7 @@ TEST(Prediction, CountsTheRoundingOnceForBothFamilies) {
 
 // Gaussian noise is requested where rounding is half of it, and quantized noise in the opposite case. σ includes the
 // rounding only for Gaussian noise.
-TEST(Prediction, KnowsWhatSigmaOfTheFamilyAskedForHolds) {
+TEST(Prediction, InterpretsSigmaByTheRequestedFamily) {
   for (const auto& [counts, noise] :
        {std::pair(0.3, NoiseFamily::kGaussian), std::pair(1.5, NoiseFamily::kQuantized)}) {
     SyntheticOptions run = Noisy(TextbookRun("coulomb"), counts * kCount);
@@ -135,7 +135,7 @@ TEST(Prediction, KnowsWhatSigmaOfTheFamilyAskedForHolds) {
 }
 
 // With residuals of about a count some parts alone would get another noise family than the whole fit.
-TEST(Prediction, KeepsTheFamilyOfTheFit) {
+TEST(Prediction, KeepsTheNoiseFamilyOfTheFit) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"), 0.957 * kCount);
   run.resolution = kCount;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -149,7 +149,7 @@ TEST(Prediction, KeepsTheFamilyOfTheFit) {
 }
 
 // Student's t with 4 degrees of freedom has the variance 2 (times its scale squared).
-TEST(Prediction, ComparesWithTheWholeScatterOfARobustFamily) {
+TEST(Prediction, UsesTheFullScatterOfARobustFamily) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   run.noise_freedom = 4;
   for (const NoiseFamily family : {NoiseFamily::kStudent, NoiseFamily::kHuber}) {
@@ -164,7 +164,7 @@ TEST(Prediction, ComparesWithTheWholeScatterOfARobustFamily) {
 // About 40 readings at 11 per period determine the parameters so badly that the trajectory adds more than a quarter to
 // the variance. With σ² from 34 degrees of freedom the mean square of t is 34/32. The errors of few parameters scatter,
 // too.
-TEST(PredictForward, CountsTheErrorsOfTheParameters) {
+TEST(PredictForward, IncludesTheErrorsOfParameters) {
   constexpr int kSeeds = 100;
   SyntheticOptions run = Noisy(MovingRun("coulomb"));
   run.sample_rate = 8;
@@ -184,7 +184,7 @@ TEST(PredictForward, CountsTheErrorsOfTheParameters) {
 // ---- Left-out readings ---------------------------------------------------------------------------------------------
 
 // Cross-validation covers one period after the release to the end; forward prediction the last 40 % after the release.
-TEST(Prediction, IsOfWhatFollowsTheFirstPeriodOrTheFirstPart) {
+TEST(Prediction, CoversThePartAfterTheFirstPeriodOrPart) {
   const Predictions released = Predict(Noisy(TextbookRun("coulomb")), "coulomb");
   const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
   EXPECT_THAT(static_cast<double>(released.across.samples), DoubleNear(100 * (20 - 1.9 - period), 2));
@@ -208,7 +208,7 @@ TEST(PredictForward, IsTheTrajectoryOfAFitToTheFirstPart) {
 }
 
 // With every parameter fixed at the true value the predictions are exact, and the errors are the noise.
-TEST(CrossValidate, LeavesFixedParametersFixed) {
+TEST(CrossValidate, KeepsFixedParametersFixed) {
   const SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   FitOptions options = ModelOptions("coulomb");
   const std::vector<ParameterInfo> infos = FitParameters(run.model, run.start, run.quantity);
@@ -224,7 +224,7 @@ TEST(CrossValidate, LeavesFixedParametersFixed) {
 }
 
 // Coulomb friction held at 0 is the viscous model.
-TEST(Prediction, HoldsWhatTheOptionsHold) {
+TEST(Prediction, KeepsParametersFixedByTheOptions) {
   const SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   FitOptions options = ModelOptions("coulomb");
   options.fixed["coulomb"] = 0;
@@ -234,7 +234,7 @@ TEST(Prediction, HoldsWhatTheOptionsHold) {
   EXPECT_THAT(held.forward.rms, DoubleNear(viscous.forward.rms, 1e-3 * viscous.forward.rms));
 }
 
-TEST(Prediction, SkipsWhatWasNotRecorded) {
+TEST(Prediction, SkipsGaps) {
   const Recording whole = Must(SimulateRecording(Noisy(TextbookRun("coulomb"))));
   Recording recording = whole;
   const Eigen::Index before = 900, after = 500;  // no samples from 9 to 15 s: longer than a block
@@ -248,7 +248,7 @@ TEST(Prediction, SkipsWhatWasNotRecorded) {
   EXPECT_THAT(static_cast<double>(across.samples), DoubleNear(1678 - 600, 2));
 }
 
-TEST(Prediction, LeavesOutReadingsAtTheEndOfTheRange) {
+TEST(Prediction, ExcludesReadingsAtTheEndOfTheRange) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"));
   run.range = SensorRange{-0.3, 0.3};
   const Predictions predictions = Predict(run, "coulomb");
@@ -286,7 +286,7 @@ TEST(Prediction, DoesNotDependOnTheClock) {
   EXPECT_EQ(predictions.across.samples, expected.across.samples);
 }
 
-TEST(Prediction, FollowsAZeroThatDrifts) {
+TEST(Prediction, FollowsADriftingZero) {
   Recording recording = Must(SimulateRecording(Noisy(TextbookRun("coulomb"))));
   recording.value.array() += 0.003 * recording.time.array();
   FitOptions options = ModelOptions("coulomb");
@@ -297,7 +297,7 @@ TEST(Prediction, FollowsAZeroThatDrifts) {
 }
 
 // A recording without dry friction: coulomb is at its bound, or near it, in every fit.
-TEST(Prediction, IsMadeWithAParameterAtItsBound) {
+TEST(Prediction, IsPossibleWithAParameterAtItsBound) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SyntheticOptions run = Noisy(TextbookRun("viscous"));
     run.seed = seed;
@@ -310,7 +310,7 @@ TEST(Prediction, IsMadeWithAParameterAtItsBound) {
 // ---- Wrong models and no predictions -------------------------------------------------------------------------------
 
 // Viscous friction alone cannot follow an envelope that falls linearly.
-TEST(Prediction, OfTheWrongModelIsOffByMuchMore) {
+TEST(Prediction, HasMuchLargerErrorsForTheWrongModel) {
   for (SyntheticOptions run : {Noisy(TextbookRun("coulomb")), Noisy(MovingRun("coulomb"))}) {
     for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
       run.quantity = quantity;
@@ -342,7 +342,7 @@ TEST(Prediction, NeedsThreePeriods) {
 }
 
 // Less than one sample per period: the fit follows an aliased swing.
-TEST(Prediction, SaysThatSamplesAreTooFarApart) {
+TEST(Prediction, ReportsSamplesThatAreTooFarApart) {
   SyntheticOptions run = Noisy(MovingRun("coulomb"));
   run.sample_rate = 0.9;
   run.duration = 60;
@@ -365,7 +365,7 @@ TEST(Prediction, HasNoStandardDeviationsWithoutErrors) {
 }
 
 // Start values without a possible trajectory, as after a failed fit.
-TEST(Prediction, SaysThatAFitToTheRestCannotBeMade) {
+TEST(Prediction, ReportsAFailedFit) {
   FittedRun run = FitTo(Noisy(TextbookRun("coulomb")), "coulomb", {});
   FitOptions options = ModelOptions("coulomb");
   options.fixed["coulomb"] = run.fit.parameters[2].estimate = 1;  // holds the pendulum forever

@@ -69,7 +69,7 @@ void Count(double scatter, Covered& covered) {
 
 // The binomial 99.9 % limits of 100 trials at 95 % are 87 and 100.
 
-TEST(RandomEffects, CoverTheRigsInertiaWhereThatOfRecordingsScattersAndTheJointFitDoesNot) {
+TEST(RandomEffects, CoverTheInertiaIfRecordingsScatterMore) {
   Covered covered;
   Count(0.005, covered);  // forty times the errors
   EXPECT_THAT(covered.by_mean, Ge(87));
@@ -77,7 +77,7 @@ TEST(RandomEffects, CoverTheRigsInertiaWhereThatOfRecordingsScattersAndTheJointF
   EXPECT_THAT(covered.by_joint, Lt(30));
 }
 
-TEST(RandomEffects, CoverTheRigsInertiaWhereItsScatterIsThatOfTheErrors) {
+TEST(RandomEffects, CoverTheInertiaIfScatterMatchesTheErrors) {
   Covered covered;
   Count(0.0002, covered);
   EXPECT_THAT(covered.by_mean, Ge(87));

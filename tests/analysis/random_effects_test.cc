@@ -67,7 +67,7 @@ TEST(SummarizeScatter, SolvesTheEquationOfPauleAndMandel) {
 }
 
 // Viechtbauer (2007): at the ends Q is the 97.5 % and the 2.5 % point of χ²(4), 11.143287 and 0.484419 (from tables).
-TEST(SummarizeScatter, HasAnIntervalBetweenPointsOfChiSquare) {
+TEST(SummarizeScatter, HasAnIntervalFromChiSquare) {
   const RandomEffects effects = Summarize(Scattered());
   EXPECT_THAT(StatisticAt(Scattered(), std::pow(effects.between_lower95, 2)), DoubleNear(11.143287, 1e-5));
   EXPECT_THAT(StatisticAt(Scattered(), std::pow(effects.between_upper95, 2)), DoubleNear(0.484419, 1e-5));
@@ -77,7 +77,7 @@ TEST(SummarizeScatter, HasAnIntervalBetweenPointsOfChiSquare) {
 
 // Hartung & Knapp (2001): at the Paule-Mandel estimate their factor Q / (K - 1) is 1; 2.776445 is Student's t(4) at
 // 97.5 %.
-TEST(SummarizeScatter, HasTheMeansErrorOfItsWeightsAndStudentsInterval) {
+TEST(SummarizeScatter, HasTheStandardErrorAndStudentsInterval) {
   const RandomEffects effects = Summarize(Scattered());
   const double error = 1 / std::sqrt(WeightsAt(Scattered(), effects.between * effects.between).sum());
   EXPECT_THAT(effects.std_error, DoubleNear(error, 1e-9));
@@ -85,7 +85,7 @@ TEST(SummarizeScatter, HasTheMeansErrorOfItsWeightsAndStudentsInterval) {
   EXPECT_THAT(effects.upper95, DoubleNear(effects.mean + 2.776445 * error, 1e-7));
 }
 
-TEST(SummarizeScatter, OfRunsThatAgreeHasNoScatterAndTheWeightedMean) {
+TEST(SummarizeScatter, HasNoScatterForRunsThatAgree) {
   const RandomEffects effects = Summarize(Agreeing());
   EXPECT_EQ(effects.between, 0);
   EXPECT_EQ(effects.between_lower95, 0);
@@ -95,7 +95,7 @@ TEST(SummarizeScatter, OfRunsThatAgreeHasNoScatterAndTheWeightedMean) {
 }
 
 // Runs that agree to the last digit still have errors: 0.01 / √3, without any scatter.
-TEST(SummarizeScatter, OfEqualValuesHasTheErrorOfTheirErrors) {
+TEST(SummarizeScatter, HasAnErrorForEqualValues) {
   const RandomEffects effects = SummarizeScatter(VectorXd::Constant(3, 2.5), VectorXd::Constant(3, 0.01));
   EXPECT_DOUBLE_EQ(effects.mean, 2.5);
   EXPECT_THAT(effects.std_error, DoubleNear(0.01 / std::sqrt(3.0), 1e-15));
@@ -104,7 +104,7 @@ TEST(SummarizeScatter, OfEqualValuesHasTheErrorOfTheirErrors) {
 }
 
 // Two runs with errors s at a distance d: Q = (d² / 2) / (s² + between²) = 1, so between² = d²/2 - s².
-TEST(SummarizeScatter, OfTwoRunsHasTheScatterOfTheirDistance) {
+TEST(SummarizeScatter, IsTheDistanceForTwoRuns) {
   const RandomEffects effects = SummarizeScatter(Eigen::Vector2d(1, 1.3), Eigen::Vector2d(0.1, 0.1));
   EXPECT_THAT(effects.between * effects.between, DoubleNear(0.09 / 2 - 0.01, 1e-10));
   EXPECT_THAT(effects.mean, DoubleNear(1.15, 1e-14));
@@ -112,7 +112,7 @@ TEST(SummarizeScatter, OfTwoRunsHasTheScatterOfTheirDistance) {
 }
 
 // With scatter far above the errors all runs have equal weight: the mean, and the standard deviation over √K.
-TEST(SummarizeScatter, FarAboveTheErrorsIsTheMeanOfTheRuns) {
+TEST(SummarizeScatter, IsThePlainMeanForLargeScatter) {
   Effects runs = Scattered();
   runs.std_error *= 1e-4;
   const RandomEffects effects = Summarize(runs);
@@ -195,13 +195,13 @@ Effects LogOddsRatios() {
 }
 
 // Paule-Mandel's τ² of the log risk ratios is 0.318 (gradmeta.com/metovix-validation-report.html: 0.3180).
-TEST(SummarizeScatter, HasTheScatterPublishedOfTheVaccine) {
+TEST(SummarizeScatter, HasThePublishedScatterOfTheVaccineTrials) {
   const RandomEffects effects = Summarize(LogRiskRatios());
   EXPECT_THAT(effects.between * effects.between, DoubleNear(0.3180, 2e-4));
 }
 
 // Log odds ratios, Q-profile interval 0.1302 to 1.1812 (metafor-project.org, analyses:vanhouwelingen2002).
-TEST(SummarizeScatter, HasTheIntervalPublishedOfTheVaccine) {
+TEST(SummarizeScatter, HasThePublishedIntervalOfTheVaccineTrials) {
   const RandomEffects effects = Summarize(LogOddsRatios());
   EXPECT_THAT(std::pow(effects.between_lower95, 2), DoubleNear(0.1302, 1e-4));
   EXPECT_THAT(std::pow(effects.between_upper95, 2), DoubleNear(1.1812, 1e-4));
@@ -232,7 +232,7 @@ Coverage CoverageOf(const VectorXd& std_error, double between, int draws) {
 const VectorXd kEqualErrors = VectorXd::Constant(5, 1.0);
 const VectorXd kUnequalErrors = Five({0.6, 0.8, 1.0, 1.3, 2.0});
 
-TEST(SummarizeScatter, CoversTheMeanOfRunsThatScatter) {
+TEST(SummarizeScatter, CoversTheMeanOfScatteredRuns) {
   for (const VectorXd& errors : {kEqualErrors, kUnequalErrors}) {
     for (const double between : {1.0, 5.0}) {
       SCOPED_TRACE(between);
@@ -244,7 +244,7 @@ TEST(SummarizeScatter, CoversTheMeanOfRunsThatScatter) {
 // The error is never below that of runs that agree, and its factor is that of Student's t(4). A normal mean is within
 // 2.776 of its standard deviations in 99.45 of 100 draws, and slightly more often because the error is sometimes
 // larger.
-TEST(SummarizeScatter, CoversTheMeanOfRunsThatDoNotScatterTooOften) {
+TEST(SummarizeScatter, CoversTheMeanTooOftenWithoutScatter) {
   for (const VectorXd& errors : {kEqualErrors, kUnequalErrors}) {
     EXPECT_THAT(CoverageOf(errors, 0, 2000).mean, AllOf(Ge(0.985), Le(0.9995)));
   }
@@ -267,7 +267,7 @@ TEST(ScatterP, HasAClosedFormForThreeValues) {
   EXPECT_THAT(ScatterP(value, std_error), DoubleNear(std::exp(-2.5 * 2.5), 1e-12));
 }
 
-TEST(ScatterP, IsNoNumberWithoutErrors) {
+TEST(ScatterP, IsNaNWithoutErrors) {
   const VectorXd value = Eigen::Vector3d(1, 2, 3);
   EXPECT_TRUE(std::isnan(ScatterP(value, Eigen::Vector3d(0.1, NAN, 0.1))));
   EXPECT_TRUE(std::isnan(ScatterP(value, Eigen::Vector3d(0.1, 0, 0.1))));
@@ -283,14 +283,14 @@ TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
   EXPECT_THAT(ScatterAbout(0.95, value, std_error), DoubleNear(std::sqrt(squares / 4 - 1e-4), 1e-9));
 }
 
-TEST(ScatterAbout, IsZeroWhereErrorsExplainAll) {
+TEST(ScatterAbout, IsZeroIfErrorsExplainAll) {
   const Effects agreeing = Agreeing();
   EXPECT_EQ(ScatterAbout(1, agreeing.value, agreeing.std_error), 0);
   EXPECT_THAT(ScatterAbout(1.1, agreeing.value, agreeing.std_error), Gt(0.09));  // All values are 0.1 below the centre.
 }
 
 // The defining equation with unequal errors.
-TEST(ScatterAbout, MakesTheStatisticOneLessThanTheNumberOfValues) {
+TEST(ScatterAbout, MakesTheStatisticEqualToItsDegreesOfFreedom) {
   const Effects effects = Scattered();
   const double about = ScatterAbout(1.05, effects.value, effects.std_error);
   const ArrayXd weight = WeightsAt(effects, about * about);

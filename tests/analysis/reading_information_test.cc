@@ -50,7 +50,7 @@ Eigen::Matrix2d InformationByDifferences(double x, double sigma, const std::opti
   return information;
 }
 
-TEST(ReadingInformation, IsThatOfTheNormalDistributionWithoutLevels) {
+TEST(ReadingInformation, IsTheNormalInformationWithoutLevels) {
   const Eigen::Matrix2d information = ReadingInformation(0.3, 0.2, 0, {});
   EXPECT_DOUBLE_EQ(information(0, 0), 25);
   EXPECT_DOUBLE_EQ(information(1, 1), 2);
@@ -67,7 +67,7 @@ TEST(ReadingInformation, IsTwoOverPiAtTheThresholdOfAComparator) {
   }
 }
 
-TEST(ReadingInformation, IsTheSumOverAllReadingsOfTheirProbabilitysSlopes) {
+TEST(ReadingInformation, IsTheSumOverAllReadings) {
   for (const std::optional<SensorRange>& range : {std::optional<SensorRange>(), std::optional(kNarrow)}) {
     for (const double sigma : {0.1, 0.3, 0.5, 2.5}) {
       for (const double x : {-2.0, -1.3, 0.0, 0.2, 0.49, 1.7, 3.1}) {
@@ -91,7 +91,7 @@ TEST(ReadingInformation, LosesTwelfthsOfASquaredLevelToFineLevels) {
   EXPECT_THAT(information(0, 0) * (4 + 1.0 / 12), DoubleNear(1, 3e-4));
 }
 
-TEST(ReadingInformation, VanishesInTheMiddleOfALevelWithoutMuchNoiseAndFarBeyondTheRange) {
+TEST(ReadingInformation, VanishesInsideALevelAndFarBeyondTheRange) {
   EXPECT_LT(ReadingInformation(0, 0.02, 1, {}).norm(), 1e-100);
   EXPECT_LT(ReadingInformation(1e3, 0.5, 1, kNarrow).norm(), 1e-100);
   EXPECT_LT(ReadingInformation(-1e3, 0.5, 1, kNarrow).norm(), 1e-100);

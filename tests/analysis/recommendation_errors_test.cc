@@ -10,15 +10,15 @@ namespace {
 
 /// With a true share of 95 %, more than 2 of 12 are wrong in 2 of 100 runs.
 constexpr int kSeeds = 12;
-constexpr int kMostWrong = 2;
+constexpr int kMaxWrong = 2;
 
 class Recommendation : public testing::TestWithParam<TrueLaw> {};
 
-TEST_P(Recommendation, IsTheTrueLawWhereTheRecordingTells) {
+TEST_P(Recommendation, IsTheTrueLawIfTheDataDetermineIt) {
   const TrueLaw& law = GetParam();
   const double duration = law.model == "stribeck" ? 60 : 20;
   Recommendations counts = CountRecommendations(LawRun(law, duration, 1), kSeeds, 1001);
-  EXPECT_GE(counts[std::string(law.model)], kSeeds - kMostWrong) << testing::PrintToString(counts);
+  EXPECT_GE(counts[std::string(law.model)], kSeeds - kMaxWrong) << testing::PrintToString(counts);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Recommendation, testing::ValuesIn(kTrueLaws),

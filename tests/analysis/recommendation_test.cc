@@ -56,13 +56,13 @@ Comparison Recommended(const std::vector<Case>& cases) {
 
 // Simplest within 2 of the smallest BIC: Kass & Raftery, JASA 90:773 (1995), call a smaller difference "not worth a
 // bare mention".
-TEST(Recommend, TakesTheSimplestWithinTwoOfTheSmallestBic) {
+TEST(Recommend, ChoosesTheSimplestWithinTwoOfTheSmallestBic) {
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "coulomb");
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 52.1, 1}, {"drag", 50, 1}}).recommended, "drag");
   EXPECT_EQ(Recommended({{"viscous", 51, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "viscous");
 }
 
-TEST(Recommend, TakesTheSmallerBicOfTwoEquallySimple) {
+TEST(Recommend, ChoosesTheSmallerBicOfTwoEquallySimple) {
   EXPECT_EQ(Recommended({{"asymmetric", 51, 1}, {"drag", 50, 1}}).recommended, "drag");
   EXPECT_EQ(Recommended({{"asymmetric", 50, 1}, {"drag", 51, 1}}).recommended, "asymmetric");
 }
@@ -74,13 +74,13 @@ TEST(Recommend, GivesItsReasonInWords) {
   EXPECT_THAT(Recommended({{"coulomb", 90, 0.001}, {"drag", 50, 0.003}}).reason, HasSubstr("3 times worse"));
 }
 
-TEST(Recommend, SaysWhichOthersAreAsGood) {
+TEST(Recommend, NamesEquallyGoodModels) {
   EXPECT_THAT(Recommended({{"viscous", 90, 1}, {"coulomb", 51, 1}, {"drag", 50, 1}}).reason,
               AllOf(HasSubstr("the simplest of those that the readings do not tell apart (drag, too"),
                     HasSubstr("BIC lower by 39 than with viscous")));
 }
 
-TEST(Recommend, SaysWhatIsMissing) {
+TEST(Recommend, ReportsWhatIsMissing) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   made.comparison.rows[1].lack_of_fit = true;
   made.comparison.rows[1].lag1_correlation = 0.6;
@@ -90,7 +90,7 @@ TEST(Recommend, SaysWhatIsMissing) {
 }
 
 // If more than noise is left, a smaller BIC is not enough: the law must predict readings that were not fitted.
-TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
+TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   Compared made = Make({{"drag", 60, 0.7}, {"stribeck", 50, 0.69}});
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
@@ -111,7 +111,7 @@ TEST(Recommend, RefusesALawThatPredictsNoBetterWhereMoreThanNoiseIsLeft) {
 }
 
 // The penalty per parameter is ln n for BIC and 2 for AIC, so they may disagree.
-TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
+TEST(Recommend, ReportsADifferentChoiceByAicc) {
   Compared made = Make({{"coulomb", 50, 1}, {"drag", 53, 1}});
   made.comparison.rows[0].aicc = 24;
   made.comparison.rows[1].aicc = 20;
@@ -121,7 +121,7 @@ TEST(Recommend, SaysWhereAiccIsOfAnotherOpinion) {
 }
 
 // Next to a refuted law, the weights of the others may all be 0 in double precision.
-TEST(Recommend, TakesAiccsOpinionOnlyAmongWhatIsNotRefuted) {
+TEST(Recommend, UsesAiccOnlyAmongLawsNotRefuted) {
   Compared made = Make({{"viscous", 4000, 1}, {"coulomb", 3000, 1}, {"drag", 50, 1}});
   for (ComparisonRow& row : made.comparison.rows) {
     row.aicc = row.bic;
@@ -137,7 +137,7 @@ TEST(Recommend, TakesAiccsOpinionOnlyAmongWhatIsNotRefuted) {
   EXPECT_THAT(made.comparison.reason, Not(HasSubstr("AICc would take")));
 }
 
-TEST(Recommend, CallsNoLawAnotherWhoseFurtherTermsAreZero) {
+TEST(Recommend, IgnoresLawsWhoseExtraTermsAreZero) {
   Compared made = Make({{"viscous", 90, 1}, {"coulomb", 50, 1}, {"drag", 50, 1}});
   made.comparison.rows[1].log_likelihood = made.comparison.rows[2].log_likelihood = -20;
   Recommend(made.fitted.fits, made.comparison);

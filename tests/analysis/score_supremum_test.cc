@@ -27,19 +27,19 @@ MatrixXd Seeded(Eigen::Index rows, Eigen::Index columns) {
 double Scatter(double p) { return 3 * std::sqrt(p * (1 - p) / 19'999); }
 
 // One shape: half χ²(1), with the 5 % point 2.7055.
-TEST(SupremumTail, OfOneShapeIsThatOfHalfAChiSquare) {
+TEST(SupremumTail, IsHalfAChiSquareForOneShape) {
   const MatrixXd shapes = Seeded(50, 1);
   EXPECT_THAT(SupremumTail(MatrixXd(50, 0), shapes, 2.705543, 1), DoubleNear(0.05, Scatter(0.05)));
 }
 
 // Orthogonal shapes are independent: 1 - Φ(√u)^G.
-TEST(SupremumTail, OfIndependentShapesIsTheTailOfTheirMaximum) {
+TEST(SupremumTail, IsTheTailOfTheMaximumForIndependentShapes) {
   const double expected = 1 - std::pow(0.5 * std::erfc(-2 / std::sqrt(2.0)), 5);
   EXPECT_THAT(SupremumTail(MatrixXd(9, 0), MatrixXd::Identity(9, 5), 4, 2), DoubleNear(expected, Scatter(expected)));
 }
 
 // Without the direction of the nuisance (1, 0, ...) both shapes are (0, 1, ...): one shape.
-TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
+TEST(SupremumTail, UsesOnlyWhatTheNuisanceDoesNotExplain) {
   MatrixXd nuisance = MatrixXd::Zero(4, 1);
   nuisance(0, 0) = 7;
   MatrixXd shapes = MatrixXd::Zero(4, 2);
@@ -48,7 +48,7 @@ TEST(SupremumTail, SeesOnlyWhatTheNuisanceDoesNotExplain) {
   EXPECT_THAT(SupremumTail(nuisance, shapes, 2.705543, 3), DoubleNear(0.05, Scatter(0.05)));
 }
 
-TEST(SupremumTail, IsOneWhereNothingIsLeft) {
+TEST(SupremumTail, IsOneIfNothingIsLeft) {
   const MatrixXd nuisance = Seeded(20, 3);
   EXPECT_EQ(SupremumTail(nuisance, nuisance.leftCols(2), 5, 1), 1);
   EXPECT_EQ(SupremumTail(nuisance, Seeded(20, 5).rightCols(2), 0, 1), 1);

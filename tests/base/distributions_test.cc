@@ -33,14 +33,14 @@ TEST(Distributions, MatchClosedForms) {
 }
 
 // No success in 10 trials: (1 - p)^10 = 0.025; no failure: p^10 = 0.025.
-TEST(Distributions, HaveTheLimitsOfClopperAndPearson) {
+TEST(Distributions, MatchTheLimitsOfClopperAndPearson) {
   EXPECT_EQ(BinomialLowerLimit(0, 10, 0.025), 0);
   EXPECT_NEAR(BinomialUpperLimit(0, 10, 0.025), 1 - std::pow(0.025, 0.1), 1e-12);
   EXPECT_NEAR(BinomialLowerLimit(10, 10, 0.025), std::pow(0.025, 0.1), 1e-12);
   EXPECT_EQ(BinomialUpperLimit(10, 10, 0.025), 1);
 }
 
-TEST(Distributions, ThrowOnWhatHasNone) {
+TEST(Distributions, ThrowForInvalidArguments) {
   EXPECT_THROW(ChiSquareTail(std::numeric_limits<double>::infinity(), 1), std::domain_error);
   EXPECT_THROW(StudentTail(std::numeric_limits<double>::quiet_NaN(), 1), std::domain_error);
   EXPECT_THROW(ChiSquareTail(1, 0), std::domain_error);
@@ -48,7 +48,7 @@ TEST(Distributions, ThrowOnWhatHasNone) {
 }
 
 // Values from tables of the normal distribution.
-TEST(TwoSidedP, IsThatOfTheNormalDistribution) {
+TEST(TwoSidedP, MatchesTheNormalDistribution) {
   EXPECT_NEAR(TwoSidedP(1.959963985), 0.05, 1e-9);
   EXPECT_NEAR(TwoSidedP(-3.290526731), 0.001, 1e-10);
   EXPECT_EQ(TwoSidedP(0), 1);

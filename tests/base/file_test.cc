@@ -43,7 +43,7 @@ TEST_F(ReadFileTest, ReadsAPipeToItsEnd) {
   writer.join();
 }
 
-TEST_F(ReadFileTest, RefusesMoreBytesThanItMay) {
+TEST_F(ReadFileTest, RefusesMoreThanTheAllowedBytes) {
   std::ofstream(path_) << "12345";
   EXPECT_TRUE(ReadFile(path_, "rig", 5));
   const auto refused = ReadFile(path_, "rig", 4);
@@ -52,7 +52,7 @@ TEST_F(ReadFileTest, RefusesMoreBytesThanItMay) {
   EXPECT_THAT(refused.error().message, HasSubstr("run.csv: the file has more than 4 bytes, too many for a rig file"));
 }
 
-TEST_F(ReadFileTest, SaysThatAFileCannotBeRead) {
+TEST_F(ReadFileTest, ReportsAnUnreadableFile) {
   // Linux opens this file, but reading at offset 0 fails, even for root.
   const auto refused = ReadFile("/proc/self/mem", "CSV", 1000);
   ASSERT_FALSE(refused);
@@ -60,7 +60,7 @@ TEST_F(ReadFileTest, SaysThatAFileCannotBeRead) {
   EXPECT_EQ(refused.error().message, "/proc/self/mem: the file cannot be read; check its permissions");
 }
 
-TEST_F(ReadFileTest, SaysThatThereIsNoFile) {
+TEST_F(ReadFileTest, ReportsAMissingFile) {
   EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().message,
             "/nowhere/run.csv: there is no such file; check the path");
   EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().code, StatusCode::kNotFound);

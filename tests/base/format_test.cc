@@ -24,7 +24,7 @@ TEST(NumberText, RoundsToSignificantDigits) {
   EXPECT_EQ(NumberText(-3.0, 6), "-3");
 }
 
-TEST(NumberText, IsTheShortestTextThatReadsBack) {
+TEST(NumberText, IsTheShortestTextThatReadsBackExactly) {
   EXPECT_EQ(NumberText(0.1), "0.1");
   EXPECT_EQ(NumberText(-1e300), "-1e+300");
   for (const double value : {1.0 / 3, 5e-324, std::numeric_limits<double>::max(), -2.2250738585072014e-308}) {
@@ -32,7 +32,7 @@ TEST(NumberText, IsTheShortestTextThatReadsBack) {
   }
 }
 
-TEST(Quoted, ShowsWhatPrintsAndEscapesTheRest) {
+TEST(Quoted, KeepsPrintableTextAndEscapesTheRest) {
   EXPECT_EQ(Quoted(""), R"("")");
   EXPECT_EQ(Quoted("angle_deg"), R"("angle_deg")");
   EXPECT_EQ(Quoted("θ [°]"), R"("θ [°]")");
@@ -41,7 +41,7 @@ TEST(Quoted, ShowsWhatPrintsAndEscapesTheRest) {
   EXPECT_EQ(Quoted("\xFF"), R"("\xff")");
 }
 
-TEST(Quoted, ClipsLongText) {
+TEST(Quoted, ShortensLongText) {
   EXPECT_EQ(Quoted(std::string(40, 'x')), '"' + std::string(40, 'x') + '"');
   EXPECT_EQ(Quoted(std::string(41, 'x')), '"' + std::string(40, 'x') + "...\"");
 }

@@ -25,46 +25,46 @@ TEST(ParseJsonObject, KeepsTheOrderOfTheKeys) {
   EXPECT_EQ(json->dump(), R"({"z":1,"a":[2,{"z":3}]})");
 }
 
-TEST(ParseJsonObject, SaysWhereTextIsNoJson) {
+TEST(ParseJsonObject, ReportsThePlaceOfInvalidJson) {
   EXPECT_EQ(FaultOf("{\n\"a\": 1,\n}"),
             "a.json:3:1: this is not JSON (unexpected '}'; expected string literal); correct it here");
   EXPECT_THAT(FaultOf(""), StartsWith("a.json:1:1: this is not JSON"));
 }
 
-TEST(ParseJsonObject, RefusesWhatIsNoObject) {
+TEST(ParseJsonObject, RefusesJsonThatIsNotAnObject) {
   EXPECT_EQ(FaultOf("[1]"), R"(a.json: the rig is an array; it must be an object: {"mass"})");
 }
 
-TEST(ParseJsonObject, RefusesAKeyThatAnyObjectHasTwice) {
+TEST(ParseJsonObject, RefusesARepeatedKey) {
   EXPECT_EQ(FaultOf(R"({"a": {"b": 1, "b": 2}})"), R"(a.json: the key "b" is given twice; keep one of them)");
 }
 
-TEST(ParseJsonObject, RefusesNumbersBeyondThoseOfADouble) {
+TEST(ParseJsonObject, RefusesNumbersBeyondADouble) {
   EXPECT_EQ(FaultOf(R"({"a": 1, "b": 1e999})"),
             R"(a.json: "b" is beyond what a number can be (about 1e308); correct it)");
 }
 
 TEST(ParseJsonObject, RefusesMoreThan64KiB) {
-  EXPECT_EQ(FaultOf(std::string(kMostJsonBytes + 1, ' ')),
+  EXPECT_EQ(FaultOf(std::string(kMaxJsonBytes + 1, ' ')),
             "a.json: this is longer than 64 KiB, so it is not a rig; name a rig file");
 }
 
-TEST(ShownJson, ShowsNumbersAndStringsAndOnlyTheKindOfTheRest) {
-  EXPECT_EQ(ShownJson(1.5), "1.5");
-  EXPECT_EQ(ShownJson("a\nb"), R"("a\x0ab")");
-  EXPECT_EQ(ShownJson(nullptr), "null");
-  EXPECT_EQ(ShownJson(nlohmann::ordered_json::array()), "an array");
-  EXPECT_EQ(ShownJson(nlohmann::ordered_json::object()), "an object");
+TEST(JsonForMessage, ShowsNumbersAndStringsButOnlyTheKindOfOthers) {
+  EXPECT_EQ(JsonForMessage(1.5), "1.5");
+  EXPECT_EQ(JsonForMessage("a\nb"), R"("a\x0ab")");
+  EXPECT_EQ(JsonForMessage(nullptr), "null");
+  EXPECT_EQ(JsonForMessage(nlohmann::ordered_json::array()), "an array");
+  EXPECT_EQ(JsonForMessage(nlohmann::ordered_json::object()), "an object");
 }
 
 // The UTF-8 encoding of U+FFFD is EF BF BD (Unicode 15, section 3.9).
-TEST(JsonText, ReplacesWhatIsNoUtf8) {
+TEST(JsonText, ReplacesInvalidUtf8) {
   EXPECT_EQ(JsonText("a\xFF"), "\"a\xEF\xBF\xBD\"");
   EXPECT_EQ(JsonText({{"a", 1}}), R"({"a":1})");
   EXPECT_EQ(JsonText({{"a", 1}}, 2), "{\n  \"a\": 1\n}");
 }
 
-TEST(ParseJsonObject, RefusesWhatIsDeeperOrHasMoreKeysThanAnythingHere) {
+TEST(ParseJsonObject, RefusesTooMuchDepthOrTooManyKeys) {
   const std::string deep = R"({"a": )" + std::string(30'000, '[') + std::string(30'000, ']') + "}";
   const auto refused = ParseJsonObject(deep, "rig.json", "rig", "{}");
   ASSERT_FALSE(refused);
@@ -75,7 +75,7 @@ TEST(ParseJsonObject, RefusesWhatIsDeeperOrHasMoreKeysThanAnythingHere) {
   EXPECT_FALSE(ParseJsonObject(keys + "}", "rig.json", "rig", "{}"));
 }
 
-TEST(ParseJsonObject, TakesAsManyBytesAsItIsTold) {
+TEST(ParseJsonObject, AcceptsTheGivenNumberOfBytes) {
   const std::string text = R"({"a": ")" + std::string(100'000, 'x') + "\"}";
   EXPECT_FALSE(ParseJsonObject(text, "rig.json", "rig", "{}"));
   EXPECT_TRUE(ParseJsonObject(text, "rig.json", "rig", "{}", 200'000));

@@ -12,7 +12,7 @@
 namespace pendulum::parallel_test {
 namespace {
 
-TEST(ParallelFor, DoesEveryNumberOnce) {
+TEST(ParallelFor, CallsEachNumberOnce) {
   for (const int threads : {0, 1, 3, 1000}) {
     for (const int count : {0, 1, 2, 500}) {
       std::vector<int> calls(static_cast<std::size_t>(count));
@@ -22,7 +22,7 @@ TEST(ParallelFor, DoesEveryNumberOnce) {
   }
 }
 
-TEST(ParallelFor, WorksOnSoManyThreads) {
+TEST(ParallelFor, UsesTheGivenNumberOfThreads) {
   std::mutex mutex;
   std::set<std::thread::id> seen;
   ParallelFor(50, 4, [&](int) {
@@ -35,7 +35,7 @@ TEST(ParallelFor, WorksOnSoManyThreads) {
   EXPECT_EQ(seen.size(), 4);
 }
 
-TEST(ParallelFor, WithOneThreadIsALoop) {
+TEST(ParallelFor, IsALoopWithOneThread) {
   std::vector<int> order;
   ParallelFor(5, 1, [&](int i) { order.push_back(i); });
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));

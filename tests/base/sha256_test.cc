@@ -9,7 +9,7 @@ namespace pendulum::sha256_test {
 namespace {
 
 // The examples of FIPS 180-4 (NIST, "Secure Hash Standard", examples with intermediate values), and the empty message.
-TEST(Sha256, GivesTheDigestsOfTheStandard) {
+TEST(Sha256, MatchesTheDigestsOfTheStandard) {
   EXPECT_EQ(Sha256("abc").value(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(Sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq").value(),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
@@ -19,7 +19,7 @@ TEST(Sha256, GivesTheDigestsOfTheStandard) {
 }
 
 // The digest does not depend on how the bytes are split.
-TEST(Sha256Digest, IsOfAllThatWasAdded) {
+TEST(Sha256Digest, CoversAllAddedBytes) {
   Sha256Digest digest;
   for (const char* piece : {"a", "", "bc"}) ASSERT_TRUE(digest.Add(piece));
   EXPECT_EQ(digest.Text().value(), Sha256("abc").value());

@@ -48,7 +48,7 @@ TEST_F(StagedFileTest, ShowsTheOldFileUntilItIsCommitted) {
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
-TEST_F(StagedFileTest, LeavesNothingUnlessItIsCommitted) {
+TEST_F(StagedFileTest, LeavesNothingUnlessCommitted) {
   {
     StagedFile file(path_);
     ASSERT_TRUE(file.Open());
@@ -58,7 +58,7 @@ TEST_F(StagedFileTest, LeavesNothingUnlessItIsCommitted) {
   EXPECT_EQ(FilesInFolder(), 0);
 }
 
-TEST_F(StagedFileTest, KeepsTheModeAndTheLinkOfWhatItReplaces) {
+TEST_F(StagedFileTest, KeepsModeAndLinkOfTheReplacedFile) {
   const fs::path target = folder_ / "target";
   std::ofstream(target) << "old";
   fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
@@ -70,7 +70,7 @@ TEST_F(StagedFileTest, KeepsTheModeAndTheLinkOfWhatItReplaces) {
   EXPECT_EQ(fs::status(target).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-TEST_F(StagedFileTest, SaysWhatTheSystemSaysWhereItCannotBeWritten) {
+TEST_F(StagedFileTest, ReportsTheSystemsErrorIfUnwritable) {
   const Result<void> opened = StagedFile(folder_ / "nowhere" / "result").Open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, StatusCode::kCannotWrite);

@@ -11,7 +11,7 @@ namespace pendulum::status_test {
 namespace {
 
 // The table of exit codes that every tool documents.
-TEST(ExitCode, IsThatOfTheDocumentedTable) {
+TEST(ExitCode, MatchesTheDocumentedTable) {
   EXPECT_EQ(ExitCode(StatusCode::kInvalidArgument), 2);
   EXPECT_EQ(ExitCode(StatusCode::kNotFound), 3);
   EXPECT_EQ(ExitCode(StatusCode::kDataLoss), 4);
@@ -21,9 +21,9 @@ TEST(ExitCode, IsThatOfTheDocumentedTable) {
   EXPECT_EQ(ExitCode(StatusCode::kTryAgain), 75);     // EX_TEMPFAIL
 }
 
-TEST(ExitCode, OfACodeThatDoesNotExistIsThatOfABug) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
+TEST(ExitCode, IsThatOfABugForAnUnknownCode) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
 
-TEST(Error, BecomesTheErrorOfAnyResult) {
+TEST(Error, ConvertsToTheErrorOfAnyResult) {
   const Result<int> number = Error(StatusCode::kDataLoss, "swing.csv:3: no number");
   const Result<std::vector<std::string>> words = Error(StatusCode::kNotFound, "swing.csv: no such file");
   ASSERT_FALSE(number);
@@ -34,7 +34,7 @@ TEST(Error, BecomesTheErrorOfAnyResult) {
   EXPECT_EQ(words.error().message, "swing.csv: no such file");
 }
 
-TEST(Result, HoldsTheValueWhenThereIsNoError) {
+TEST(Result, HoldsTheValueWithoutAnError) {
   const Result<int> number = 7;
   ASSERT_TRUE(number);
   EXPECT_EQ(*number, 7);

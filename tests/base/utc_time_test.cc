@@ -9,14 +9,14 @@ namespace pendulum::utc_time_test {
 namespace {
 
 // Expected values from `date --utc --date=@SECONDS +%FT%TZ` of GNU coreutils.
-TEST(UtcTimeText, IsThatOfTheCalendar) {
+TEST(UtcTimeText, MatchesTheCalendar) {
   EXPECT_EQ(UtcTimeText(0), "1970-01-01T00:00:00Z");
   EXPECT_EQ(UtcTimeText(951827696), "2000-02-29T12:34:56Z");
   EXPECT_EQ(UtcTimeText(-1), "1969-12-31T23:59:59Z");
   EXPECT_EQ(UtcTimeText(4102444799), "2099-12-31T23:59:59Z");
 }
 
-TEST(UtcTimeText, IsThePresentWhereNoneIsGiven) {
+TEST(UtcTimeText, IsThePresentTimeByDefault) {
   const std::time_t before = std::time(nullptr);
   const std::string text = UtcTimeText();
   EXPECT_LE(UtcTimeText(before), text);

@@ -106,7 +106,7 @@ TEST_F(CompareStoresTest, FindsAResultIdenticalToItself) {
   }
 }
 
-TEST_F(CompareStoresTest, TellsRoundingFromWhatMovedWithinErrors) {
+TEST_F(CompareStoresTest, DistinguishesRoundingFromChangesWithinErrors) {
   EXPECT_EQ(Move(1.0, 0.1, 1.0, 0.1).identical, 1);
   EXPECT_EQ(Move(1.0, 0.1, 1.0000000000000002, 0.1).rounding, 1);  // the next double
   EXPECT_EQ(Move(1.0, 0.1, 1.0, 0.10000000000000002).rounding, 1);
@@ -117,7 +117,7 @@ TEST_F(CompareStoresTest, TellsRoundingFromWhatMovedWithinErrors) {
   EXPECT_EQ(Move(0.0, 0.1, 0.0, 0.15).within_errors, 1);
 }
 
-TEST_F(CompareStoresTest, SaysHowFarAParameterMoved) {
+TEST_F(CompareStoresTest, ReportsHowFarAParameterMoved) {
   const StoreComparison comparison = Move(1.0, 0.5, 2.5, 0.25);
   EXPECT_EQ(comparison.moved, 1);
   EXPECT_EQ(comparison.identical + comparison.rounding + comparison.within_errors + comparison.without_error, 0);
@@ -129,7 +129,7 @@ TEST_F(CompareStoresTest, SaysHowFarAParameterMoved) {
   EXPECT_EQ(moved.errors, 6);  // 1.5 over the smaller error, 0.25
 }
 
-TEST_F(CompareStoresTest, DoesNotJudgeValuesWithoutErrors) {
+TEST_F(CompareStoresTest, SkipsValuesWithoutErrors) {
   EXPECT_EQ(Move(1.0, nullptr, 1.0, nullptr).identical, 1);
   EXPECT_EQ(Move(1.0, nullptr, 1.1, nullptr).without_error, 1);
   EXPECT_EQ(Move(1.0, 0.1, 1.0, nullptr).without_error, 1);
@@ -138,14 +138,14 @@ TEST_F(CompareStoresTest, DoesNotJudgeValuesWithoutErrors) {
   EXPECT_EQ(Move(1.0, nullptr, 1.1, nullptr).moved, 0);
 }
 
-TEST_F(CompareStoresTest, DoesNotJudgeValuesOfDifferentUnits) {
+TEST_F(CompareStoresTest, SkipsValuesOfDifferentUnits) {
   const StoreComparison comparison =
       Compare({{"a", 1.0, 0.1, "converged", "kg m^2"}}, {{"a", 5.0, 0.1, "converged", "s^2"}});
   EXPECT_EQ(comparison.moved, 0);
   EXPECT_THAT(comparison.most_moved, IsEmpty());
 }
 
-TEST_F(CompareStoresTest, ListsTheHundredThatMovedMostTheFarthestFirst) {
+TEST_F(CompareStoresTest, ListsTheHundredLargestChangesInOrder) {
   std::vector<Fit> before, after;
   for (int i = 1; i <= 130; ++i) {
     before.push_back({"run " + std::to_string(i), 0.0, 1.0});
@@ -158,7 +158,7 @@ TEST_F(CompareStoresTest, ListsTheHundredThatMovedMostTheFarthestFirst) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(comparison.most_moved[static_cast<std::size_t>(i)].errors, 131 - i);
 }
 
-TEST_F(CompareStoresTest, ListsWhichFitsEndedOtherwise) {
+TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
   std::vector<Fit> before = {{"a", 1.0, 0.1}, {"b", 1.0, 0.1}},
                    after = {{"a", 1.0, 0.1}, {"b", 1.0, nullptr, "failed"}};
   StoreComparison comparison = Compare(before, after);
@@ -182,12 +182,12 @@ TEST_F(CompareStoresTest, CountsFitsThatOneOfThemHas) {
   EXPECT_EQ(comparison.fits, 1);
   EXPECT_EQ(comparison.only_before, 1);
   EXPECT_EQ(comparison.only_after, 2);
-  ASSERT_EQ(comparison.gone.size(), 1);
-  EXPECT_EQ(comparison.gone[0].id + " " + comparison.gone[0].model, "a coulomb");
+  ASSERT_EQ(comparison.removed.size(), 1);
+  EXPECT_EQ(comparison.removed[0].id + " " + comparison.removed[0].model, "a coulomb");
   EXPECT_EQ(comparison.identical, 1);
 }
 
-TEST_F(CompareStoresTest, KnowsOtherDataAndOtherProcessors) {
+TEST_F(CompareStoresTest, DetectsOtherDataAndProcessors) {
   const StoreComparison comparison =
       Compare({{"a", 1.0, 0.1, "converged", "rad", "one", "new"}, {"b", 1.0, 0.1, "converged", "rad", "two", "old"}},
               {{"a", 1.0, 0.1, "converged", "rad", "other", "old"}, {"b", 1.0, 0.1, "converged", "rad", "two", "old"}});

@@ -23,7 +23,7 @@ inline Source SourceOf(std::vector<ManifestEntry> entries) {
     entries[i].position = static_cast<std::int64_t>(i);
     entries[i].place = "runs.csv:" + std::to_string(i + 2);
   }
-  const auto for_each = [entries](const TakeEntry& take) -> Result<void> {
+  const auto for_each = [entries](const EntrySink& take) -> Result<void> {
     for (const ManifestEntry& entry : entries) {
       if (auto taken = take(entry); !taken) return taken;
     }

@@ -130,7 +130,7 @@ void ExpectNumber(const std::string& field, const Json& number, const std::strin
 
 // ---- JSON lines ----------------------------------------------------------------------------------------------------
 
-TEST_F(ExportTest, GivesTheResultOfEachRunOnALine) {
+TEST_F(ExportTest, WritesOneResultPerLine) {
   ManifestEntry first = EntryOf("a", {{"temperature", "21"}, {"note", "line\nline"}});
   first.rig = "rig.json";
   first.from = 0.1;
@@ -148,7 +148,7 @@ TEST_F(ExportTest, GivesTheResultOfEachRunOnALine) {
   EXPECT_EQ(lines[1]["manifest"], Json::parse(R"({"path":"runs/b.csv"})"));
 }
 
-TEST_F(ExportTest, GivesTheErrorOfARunThatHasNoResult) {
+TEST_F(ExportTest, ContainsTheErrorOfARunWithoutAResult) {
   Store store = Make({EntryOf("a")});
   ASSERT_TRUE(store.Put("a", UnfittedOutcome()));
   const auto lines = LinesOf(store);
@@ -157,7 +157,7 @@ TEST_F(ExportTest, GivesTheErrorOfARunThatHasNoResult) {
   EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason}}));
 }
 
-TEST_F(ExportTest, EndsWhereNoMoreIsTaken) {
+TEST_F(ExportTest, StopsIfTheSinkReturnsAnError) {
   Store store = Make({EntryOf("a"), EntryOf("b")});
   ASSERT_TRUE(store.Put("a", UnfittedOutcome()) && store.Put("b", UnfittedOutcome()));
   for (const auto& write : {ExportJsonLines, ExportCsv}) {
@@ -173,7 +173,7 @@ TEST_F(ExportTest, EndsWhereNoMoreIsTaken) {
   }
 }
 
-TEST_F(ExportTest, SaysThatTheStoreIsDamaged) {
+TEST_F(ExportTest, ReportsADamagedStore) {
   Store store = Make({EntryOf("a")});
   ASSERT_TRUE(store.Put("a", UnfittedOutcome()));
   store.database().exec("UPDATE runs SET columns = 'no JSON'");
@@ -185,7 +185,7 @@ TEST_F(ExportTest, SaysThatTheStoreIsDamaged) {
 
 // ---- CSV -----------------------------------------------------------------------------------------------------------
 
-TEST_F(ExportTest, WritesNumbersThatReadBackBitForBit) {
+TEST_F(ExportTest, WritesNumbersThatReadBackExactly) {
   Store store = Make({EntryOf("a")});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   const auto rows = RowsOf(store);
@@ -215,7 +215,7 @@ TEST_F(ExportTest, WritesNumbersThatReadBackBitForBit) {
   EXPECT_EQ(rows[1].at("coulomb_unit"), "");
 }
 
-TEST_F(ExportTest, WritesRunsThatCouldNotBeFittedToo) {
+TEST_F(ExportTest, WritesFailedRunsToo) {
   Store store = Make({EntryOf("a"), EntryOf("b"), EntryOf("pending")});
   ASSERT_TRUE(store.Put("a", UnfittedOutcome()) && store.Put("b", RefittedOutcome()));
   const auto rows = RowsOf(store);
@@ -228,7 +228,7 @@ TEST_F(ExportTest, WritesRunsThatCouldNotBeFittedToo) {
   }
 }
 
-TEST_F(ExportTest, WritesAHeaderWhereNothingWasRefitted) {
+TEST_F(ExportTest, WritesAHeaderWithoutRefittedRuns) {
   Store store = Make({EntryOf("a", {{"x", "1"}})});
   EXPECT_THAT(RowsOf(store), IsEmpty());
   EXPECT_THAT(Rfc4180Rows(CsvOf(store)), ElementsAre(Contains("x")));
@@ -246,7 +246,7 @@ TEST_F(ExportTest, KeepsTheColumnsOfTheManifest) {
   EXPECT_EQ(rows[2].at("Öl"), "π");
 }
 
-TEST_F(ExportTest, PrefixesColumnsOfTheManifestWhoseNamesAreTaken) {
+TEST_F(ExportTest, PrefixesManifestColumnsWithTakenNames) {
   Store store = Make({EntryOf("a", {{"model", "m"}, {"inertia", "i"}, {"inertia_unit", "u"}, {"status", "s"}})});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   const auto rows = RowsOf(store);
@@ -258,7 +258,7 @@ TEST_F(ExportTest, PrefixesColumnsOfTheManifestWhoseNamesAreTaken) {
   EXPECT_EQ(rows[0].at("model"), "coulomb");
 }
 
-TEST_F(ExportTest, PrefixesAgainWhereThePrefixedNameIsTakenToo) {
+TEST_F(ExportTest, PrefixesAgainIfThePrefixedNameIsTaken) {
   Store store = Make({EntryOf("a", {{"manifest_model", "first"}, {"model", "second"}})});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   const auto rows = RowsOf(store);
@@ -280,7 +280,7 @@ TEST_F(ExportTest, NamesRigAndCalibrationOfEachRun) {
   EXPECT_EQ(rows[2].at("rig") + rows[2].at("calibration"), "");
 }
 
-TEST_F(ExportTest, WritesIdsOfAnyLetters) {
+TEST_F(ExportTest, WritesIdsInAnyScript) {
   const std::vector<std::string> ids = {"a,\"b\"",    "line\nline", "cr\r\nlf", " blank ", "\ttab",
                                         "semi;colon", "π 振り子",   "\"",       ",",       "\"\"",
                                         "\\",         "'",          "=1+1",     "#"};
@@ -300,7 +300,7 @@ TEST_F(ExportTest, WritesIdsOfAnyLetters) {
 }
 
 // RFC 4180, section 2, rules 5 to 7.
-TEST(CsvField, PutsInQuotesWhatNeedsThem) {
+TEST(CsvField, QuotesFieldsThatNeedIt) {
   EXPECT_EQ(CsvField(""), "");
   EXPECT_EQ(CsvField("a b"), "a b");
   EXPECT_EQ(CsvField("a,b"), "\"a,b\"");

@@ -56,22 +56,22 @@ class FindRecordingsTest : public testing::Test {
   const fs::path folder_ = fs::path(testing::TempDir()) / ("find_recordings_test_" + std::to_string(getpid()));
 };
 
-TEST_F(FindRecordingsTest, FindsTheCsvFilesOfAFolderAndBelowInOrder) {
+TEST_F(FindRecordingsTest, FindsCsvFilesInSubfoldersInOrder) {
   Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.txt", "d.CSV", "e.csv.bak", "csv"});
   EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv", "d.CSV"));
 }
 
-TEST_F(FindRecordingsTest, OfAFolderArePackedRecordingsAndMatFilesToo) {
+TEST_F(FindRecordingsTest, IncludesPackedRecordingsAndMatFiles) {
   Make({"b.mat", "a/phone.zip", "a/R.MAT", "c.ZIP", "c.txt", "zip", "x.mat.bak"});
   EXPECT_THAT(Find(""), ElementsAre("a/R.MAT", "a/phone.zip", "b.mat", "c.ZIP"));
 }
 
-TEST_F(FindRecordingsTest, FindsTheSameInAFolderWithoutASlash) {
+TEST_F(FindRecordingsTest, IgnoresATrailingSlash) {
   Make({"a.csv", "b/c.csv"});
   EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
 }
 
-TEST_F(FindRecordingsTest, NamesFilesAsTheFolderWasNamed) {
+TEST_F(FindRecordingsTest, KeepsTheGivenFormOfTheFolder) {
   EXPECT_THAT(FindRecordings("datasets/runs_?.csv").value(),
               ElementsAre("datasets/runs_1.csv", "datasets/runs_2.csv", "datasets/runs_3.csv", "datasets/runs_4.csv"));
   EXPECT_THAT(FindRecordings("datasets").value(), Contains("datasets/coulomb.csv"));
@@ -96,7 +96,7 @@ TEST_F(FindRecordingsTest, AgreesWithGlobOnPatterns) {
   }
 }
 
-TEST_F(FindRecordingsTest, TakesTwoAsterisksForAnyNumberOfFolders) {
+TEST_F(FindRecordingsTest, MatchesAnyNumberOfFoldersWithTwoAsterisks) {
   Make({"p1.csv", "a/p1.csv", "a/p2.csv", "a/b/p1.csv", "a/b/c/p1.csv", "d/p1.csv", "a/b/q.txt"});
   EXPECT_THAT(Find("**/p1.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/p1.csv", "d/p1.csv", "p1.csv"));
   EXPECT_THAT(Find("a/**/p?.csv"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/p1.csv", "a/p2.csv"));
@@ -106,12 +106,12 @@ TEST_F(FindRecordingsTest, TakesTwoAsterisksForAnyNumberOfFolders) {
   EXPECT_THAT(Find("a/b/**"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/b/q.txt"));
 }
 
-TEST_F(FindRecordingsTest, FindsInAPatternTheLettersThatStandThere) {
+TEST_F(FindRecordingsTest, MatchesPatternLettersLiterally) {
   Make({"A.CSV", "c.csv"});
   EXPECT_THAT(Find("*.csv"), ElementsAre("c.csv"));
 }
 
-TEST_F(FindRecordingsTest, LeavesHiddenFilesAndFoldersAlone) {
+TEST_F(FindRecordingsTest, SkipsHiddenFilesAndFolders) {
   Make({"a.csv", ".b.csv", ".c/d.csv", "e/.f.csv", "e/.g/h.csv"});
   EXPECT_EQ(FindRecordings(folder_.string()).value().size(), 1);
   EXPECT_THAT(Find("**/*"), ElementsAre("a.csv"));
@@ -119,21 +119,21 @@ TEST_F(FindRecordingsTest, LeavesHiddenFilesAndFoldersAlone) {
   EXPECT_THAT(Find("**/.g/*.csv"), ElementsAre("e/.g/h.csv"));
 }
 
-TEST_F(FindRecordingsTest, FindsNamesOfAnyBytes) {
+TEST_F(FindRecordingsTest, AcceptsNamesOfAnyBytes) {
   Make({"a b.csv", " .csv", "new\nline.csv", "quote\".csv", "\xFF.csv", "π/振.csv"});
   EXPECT_THAT(FindRecordings(folder_.string()).value().size(), 6);
   EXPECT_THAT(Find("new*line.csv"), ElementsAre("new\nline.csv"));
   EXPECT_THAT(Find("* *"), ElementsAre(" .csv", "a b.csv"));
 }
 
-TEST_F(FindRecordingsTest, TakesAFileWhosePathLooksLikeAPatternForItself) {
+TEST_F(FindRecordingsTest, AcceptsAFileWhosePathLooksLikeAPattern) {
   Make({"run[1].csv", "run1.csv"});
   EXPECT_THAT(Find("run[1].csv"), ElementsAre("run[1].csv"));
   fs::remove(folder_ / "run[1].csv");
   EXPECT_THAT(Find("run[1].csv"), ElementsAre("run1.csv"));
 }
 
-TEST_F(FindRecordingsTest, TakesAFileForItselfWhateverItsName) {
+TEST_F(FindRecordingsTest, AcceptsAFileWithAnyName) {
   Make({"serial.txt"});
   EXPECT_THAT(Find("serial.txt"), ElementsAre("serial.txt"));
 }
@@ -148,14 +148,14 @@ TEST_F(FindRecordingsTest, FollowsLinksToFilesButNotToFolders) {
   EXPECT_EQ(FaultOf("a/*/y.csv").code, StatusCode::kNotFound);
 }
 
-TEST_F(FindRecordingsTest, FollowsALinkToAFolderThatIsNamed) {
+TEST_F(FindRecordingsTest, FollowsANamedLinkToAFolder) {
   Make({"elsewhere/y.csv", "elsewhere/deep/z.csv"});
   fs::create_directory_symlink("elsewhere", folder_ / "link");
   EXPECT_THAT(Find("link"), ElementsAre("link/deep/z.csv", "link/y.csv"));
   EXPECT_THAT(Find("link/*.csv"), ElementsAre("link/y.csv"));
 }
 
-TEST_F(FindRecordingsTest, SaysWhatIsNotFound) {
+TEST_F(FindRecordingsTest, NamesWhatIsNotFound) {
   Make({"a/b.txt"});
   const std::string folder = folder_.string();
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
@@ -168,7 +168,7 @@ TEST_F(FindRecordingsTest, SaysWhatIsNotFound) {
   EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file is like this pattern; check the path");
 }
 
-TEST_F(FindRecordingsTest, RefusesAFolderThatCannotBeLookedInto) {
+TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
   Make({"a/x.csv", "locked/y.csv", "z.csv"});
   fs::permissions(folder_, fs::perms::all);
   fs::permissions(folder_ / "locked", fs::perms::none);

@@ -63,7 +63,7 @@ class FitStoreFileTest : public fit_orders::FitStoreFolder {
 
 // ---- On the disk ---------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreFileTest, IsOnTheDiskWhenItSaysSo) {
+TEST_F(FitStoreFileTest, IsDurableWhenItReturns) {
   Add("a");
   EXPECT_THAT(IdsInACopy(), ElementsAre("a"));
   ASSERT_TRUE(Store().AddBatch("batch", kCreated, OrdersOf({"b", "c"}), std::nullopt));
@@ -72,7 +72,7 @@ TEST_F(FitStoreFileTest, IsOnTheDiskWhenItSaysSo) {
   EXPECT_THAT(IdsInACopy(), ElementsAre("c", "a"));
 }
 
-TEST_F(FitStoreFileTest, LeavesOneFile) {
+TEST_F(FitStoreFileTest, LeavesOnlyOneFile) {
   Add("a");
   EXPECT_THAT(folder_.Names(), testing::Contains("fits.sqlite-wal"));
   Close();
@@ -82,7 +82,7 @@ TEST_F(FitStoreFileTest, LeavesOneFile) {
   EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("a"));
 }
 
-TEST_F(FitStoreFileTest, KeepsWhatManyThreadsAddAtOnce) {
+TEST_F(FitStoreFileTest, KeepsConcurrentAdditions) {
   constexpr int kThreads = 8, kRuns = 20;
   FitStore& store = Store();
   std::atomic<int> lost = 0;
@@ -103,7 +103,7 @@ TEST_F(FitStoreFileTest, KeepsWhatManyThreadsAddAtOnce) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM fits"), kThreads * kRuns);
 }
 
-TEST_F(FitStoreFileTest, RefusesOneOfManyAloneForItsOwnFault) {
+TEST_F(FitStoreFileTest, RefusesOnlyTheFaultyOneOfManyWrites) {
   constexpr int kThreads = 8, kRuns = 20;
   FitStore& store = Store();
   Add("taken");
@@ -126,7 +126,7 @@ TEST_F(FitStoreFileTest, RefusesOneOfManyAloneForItsOwnFault) {
 
 // ---- Other processes -----------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreFileTest, LetsNoOtherWriterIn) {
+TEST_F(FitStoreFileTest, ExcludesOtherWriters) {
   Add("a");
   const auto other = FitStore::Open(path_);
   ASSERT_FALSE(other);
@@ -136,7 +136,7 @@ TEST_F(FitStoreFileTest, LetsNoOtherWriterIn) {
   EXPECT_TRUE(FitStore::Open(path_));
 }
 
-TEST_F(FitStoreFileTest, IsNotHinderedByReaders) {
+TEST_F(FitStoreFileTest, IsNotBlockedByReaders) {
   Add("a");
   const SQLite::Database reader(path_, SQLite::OPEN_READONLY);
   SQLite::Statement rows(reader, "SELECT id FROM runs ORDER BY run");
@@ -149,7 +149,7 @@ TEST_F(FitStoreFileTest, IsNotHinderedByReaders) {
 }
 
 // Another process keeps the file open while the service ends and restarts.
-TEST_F(FitStoreFileTest, BeginsBesideAReaderWhoStays) {
+TEST_F(FitStoreFileTest, OpensBesideALongReader) {
   Add("a");
   const SQLite::Database reader(path_, SQLite::OPEN_READONLY);
   SQLite::Statement rows(reader, "SELECT id FROM runs");
@@ -162,14 +162,14 @@ TEST_F(FitStoreFileTest, BeginsBesideAReaderWhoStays) {
   EXPECT_THAT(IdsOf((*again)->List({}).value()), ElementsAre("b", "a"));
 }
 
-TEST_F(FitStoreFileTest, SaysWhereItCannotBeMade) {
+TEST_F(FitStoreFileTest, ReportsAPathThatCannotBeCreated) {
   const auto store = FitStore::Open(folder_ / "nowhere" / "fits.sqlite");
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kCannotWrite);
   EXPECT_THAT(store.error().message, StartsWith("cannot write " + (folder_ / "nowhere").string()));
 }
 
-TEST_F(FitStoreFileTest, OpensNothingElse) {
+TEST_F(FitStoreFileTest, RejectsOtherFiles) {
   folder_.Write("fits.sqlite", "path,id\na.csv,1\n");
   const auto store = FitStore::Open(path_);
   ASSERT_FALSE(store);
@@ -178,7 +178,7 @@ TEST_F(FitStoreFileTest, OpensNothingElse) {
   EXPECT_THAT(folder_.Names(), ElementsAre("fits.sqlite"));
 }
 
-TEST_F(FitStoreFileTest, SaysThatItIsDamaged) {
+TEST_F(FitStoreFileTest, ReportsDamage) {
   Add("a");
   SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("UPDATE runs SET result = '{'");
   const auto kept = Store().Find("a");
@@ -199,7 +199,7 @@ void MakeFirstVersion(const std::string& path) {
       "VALUES('old', 0, 'old.csv', '', '', '', '{}', 0, '{}')");
 }
 
-TEST_F(FitStoreFileTest, BringsAnOlderStoreUpToDate) {
+TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   MakeFirstVersion(path_);
   Add("new");
   EXPECT_EQ(NumberOutside("PRAGMA user_version"), 2);
@@ -209,7 +209,7 @@ TEST_F(FitStoreFileTest, BringsAnOlderStoreUpToDate) {
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);
 }
 
-TEST_F(FitStoreFileTest, GoesOnAfterARefitOfAManifestIntoTheSameFile) {
+TEST_F(FitStoreFileTest, ContinuesAfterAManifestRefitIntoTheSameFile) {
   ASSERT_TRUE(Store().AddBatch("batch", kCreated, OrdersOf({"a", "b"}), std::nullopt));
   Close();
   {
@@ -256,7 +256,7 @@ FitOrder LargeOrder(const std::string& id) {
   return order;
 }
 
-TEST_F(FitStoreFileTest, SaysThatThereIsNoRoomAndGoesOnOnceThereIs) {
+TEST_F(FitStoreFileTest, ReportsAFullDiskAndContinuesLater) {
   Add("a");
   {
     const FullDisk full(kMegabyte / 2);
@@ -273,7 +273,7 @@ TEST_F(FitStoreFileTest, SaysThatThereIsNoRoomAndGoesOnOnceThereIs) {
 
 // The disk becomes full at some statement, which differs between trials. When there is space again, the next run must
 // be stored.
-TEST_F(FitStoreFileTest, ForgetsAFullDiskAtOnce) {
+TEST_F(FitStoreFileTest, RecoversFromAFullDiskAtOnce) {
   Add("first");
   int refusals = 0;
   for (std::uintmax_t room = 0; room < 40; ++room) {

@@ -75,7 +75,7 @@ void ExpectUnknown(const Result<T>& result, const std::string& what) {
 
 // ---- One run -------------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreTest, KeepsARunWithAllThatItWasMadeFrom) {
+TEST_F(FitStoreTest, KeepsARunWithAllItsInputs) {
   FitOrder order = OrderOf("a");
   order.flags = R"({"model":"drag","name":"ünïcode"})";
   order.files.data = {"swing, the first.csv", std::string("a\0b\r\n\xFF", 6)};
@@ -102,7 +102,7 @@ TEST_F(FitStoreTest, KeepsARunWithAllThatItWasMadeFrom) {
   EXPECT_EQ(kept->result.dump(), outcome.result.dump());  // bit for bit, with the keys in their order
 }
 
-TEST_F(FitStoreTest, KeepsNoFileThatWasNotSent) {
+TEST_F(FitStoreTest, StoresNoFileThatWasNotSent) {
   Add("a");
   const auto kept = Store().Find("a");
   ASSERT_TRUE(kept) << kept.error().message;
@@ -110,7 +110,7 @@ TEST_F(FitStoreTest, KeepsNoFileThatWasNotSent) {
   EXPECT_FALSE(kept->order.files.calibration);
 }
 
-TEST_F(FitStoreTest, KnowsNothingOfOtherIds) {
+TEST_F(FitStoreTest, ReportsUnknownIds) {
   Add("a");
   ExpectUnknown(Store().Find("b"), "fit b");
   ExpectUnknown(Store().Find("%"), "fit %");
@@ -121,7 +121,7 @@ TEST_F(FitStoreTest, KnowsNothingOfOtherIds) {
   EXPECT_THAT(Store().RunsOf("a").value(), IsEmpty());
 }
 
-TEST_F(FitStoreTest, TakesAnIdOnce) {
+TEST_F(FitStoreTest, AcceptsAnIdOnce) {
   Add("a");
   const auto again = Store().Add(OrderOf("a"), OutcomeOf({}), std::nullopt);
   ASSERT_FALSE(again);
@@ -157,7 +157,7 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
   EXPECT_EQ(fit.models[0].parameters[2].std_error, std::nullopt);
 }
 
-TEST_F(FitStoreTest, ListsPagesThatMeet) {
+TEST_F(FitStoreTest, ListsAdjacentPages) {
   for (const char* id : {"a", "b", "c", "d", "e"}) Add(id);
   FitFilter filter;
   filter.limit = 2;
@@ -172,7 +172,7 @@ TEST_F(FitStoreTest, ListsPagesThatMeet) {
   EXPECT_THAT(Listed(filter), IsEmpty());
 }
 
-TEST_F(FitStoreTest, FindsNamesByAnyPartOfThem) {
+TEST_F(FitStoreTest, FindsNamesByPart) {
   FitOrder order = OrderOf("a");
   order.files.data.name = "Run_07 100%.csv";
   Add(order);
@@ -228,7 +228,7 @@ TEST_F(FitStoreTest, FindsRunsOfABatchAndSinceATime) {
 
 // ---- Deleting ------------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreTest, KeepsAFileOnceAndAsLongAsARunHasIt) {
+TEST_F(FitStoreTest, StoresAFileOnceWhileARunUsesIt) {
   FitOrder one = OrderOf("a"), other = OrderOf("b"), third = OrderOf("c");
   one.files.rig = other.files.rig = Share({"rig", "{}"});
   other.files.data.bytes = one.files.data.bytes;
@@ -249,7 +249,7 @@ TEST_F(FitStoreTest, KeepsAFileOnceAndAsLongAsARunHasIt) {
   }
 }
 
-TEST_F(FitStoreTest, DeletesOneRunAndNoOther) {
+TEST_F(FitStoreTest, DeletesOneRunOnly) {
   for (const char* id : {"a", "b", "c"}) Add(id);
   ASSERT_TRUE(Store().DeleteFit("b"));
   ExpectUnknown(Store().Find("b"), "fit b");
@@ -262,7 +262,7 @@ TEST_F(FitStoreTest, DeletesOneRunAndNoOther) {
 
 // ---- Batches -------------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreTest, WorksOffABatchInTheOrderItCame) {
+TEST_F(FitStoreTest, ProcessesABatchInOrder) {
   AddBatch("first", {"z", "a"});
   AddBatch("second", {"m"});
   EXPECT_THAT(Waiting(), ElementsAre("first/z", "first/a", "second/m"));
@@ -293,7 +293,7 @@ TEST_F(FitStoreTest, ListsBatchesLatestFirstInPages) {
   EXPECT_EQ(Store().ListBatches(1, std::nullopt)->front().runs, 2);
 }
 
-TEST_F(FitStoreTest, DeletesABatchWithItsRunsAndNoOther) {
+TEST_F(FitStoreTest, DeletesOneBatchWithItsRunsOnly) {
   Add("alone");
   AddBatch("first", {"a", "b"});
   AddBatch("second", {"c"});
@@ -307,14 +307,14 @@ TEST_F(FitStoreTest, DeletesABatchWithItsRunsAndNoOther) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM files"), 2);
 }
 
-TEST_F(FitStoreTest, KeepsABatchWhoseRunsWentOneByOne) {
+TEST_F(FitStoreTest, KeepsABatchWhoseRunsWereDeletedSingly) {
   AddBatch("first", {"a", "b"});
   ASSERT_TRUE(Store().DeleteFit("a") && Store().DeleteFit("b"));
   EXPECT_EQ(Store().FindBatch("first")->runs, 0);
   EXPECT_THAT(Waiting(), IsEmpty());
 }
 
-TEST_F(FitStoreTest, KeepsAllOfABatchOrNothing) {
+TEST_F(FitStoreTest, StoresABatchCompletelyOrNotAtAll) {
   Add("b");
   EXPECT_FALSE(Store().AddBatch("batch", kCreated, OrdersOf({"a", "b"}), RequestKey{"key", "sha"}));
   ExpectUnknown(Store().FindBatch("batch"), "batch batch");
@@ -333,7 +333,7 @@ std::string Now() {
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-TEST_F(FitStoreTest, KnowsWhereTheAnswerToAKeyIs) {
+TEST_F(FitStoreTest, FindsTheAnswerToAKey) {
   ASSERT_TRUE(Store().Add(OrderOf("a", Now()), OutcomeOf({}), RequestKey{"fit's", "1234"}));
   ASSERT_TRUE(Store().AddBatch("b", Now(), OrdersOf({"c"}), RequestKey{"batch's", "5678"}));
   const auto fit = Store().FindAnswer("fit's"), batch = Store().FindAnswer("batch's");

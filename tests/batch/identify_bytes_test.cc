@@ -79,7 +79,7 @@ TEST(IdentifyBytes, EqualsTheFitOfTheFilesWithACalibration) {
   EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
 }
 
-TEST(IdentifyBytes, SaysWhichOfThemIsAtFaultAndWhere) {
+TEST(IdentifyBytes, NamesTheFaultyFileAndPlace) {
   const IdentifyOptions options = OptionsFor({"viscous"});
   const std::string good = small_batch::RecordingText(1);
   const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
@@ -93,7 +93,7 @@ TEST(IdentifyBytes, SaysWhichOfThemIsAtFaultAndWhere) {
   EXPECT_THAT(calibration.message, StartsWith("cal: "));
 }
 
-TEST(IdentifyBytes, SaysThatNothingSwings) {
+TEST(IdentifyBytes, ReportsThatNothingSwings) {
   std::string rest = "time_s,angle_rad\n";
   for (int i = 0; i < 100; ++i) rest += std::to_string(i) + ",0\n";
   const Status fault = FaultOf(OptionsFor({"viscous"}), {{"rest.csv", rest}, {}, {}});

@@ -63,17 +63,17 @@ void StopEverywhere(IdentifyOptions options, const PreparedRecording& swings, in
   }
 }
 
-TEST(StoppedFitRuns, AreAllOrNothingWithSeveralModels) {
+TEST(StoppedFitRuns, AreCompleteOrMissingWithSeveralModels) {
   const IdentifyOptions options = OptionsFor({"viscous", "coulomb", "stribeck"});
   StopEverywhere(options, Read("datasets/coulomb.csv", options), 6);
 }
 
-TEST(StoppedFitRuns, AreAllOrNothingOnTheWayToRest) {
+TEST(StoppedFitRuns, AreCompleteOrMissingOnTheWayToRest) {
   const IdentifyOptions options = OptionsFor({"coulomb"});
   StopEverywhere(options, Read("datasets/to_rest.csv", options), 6);
 }
 
-TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
+TEST(StoppedFitRuns, AreCompleteOrMissingWithAnyIntervals) {
   for (const IntervalMethod method : {IntervalMethod::kProfile, IntervalMethod::kBootstrap}) {
     IdentifyOptions options = OptionsFor({"coulomb"});
     options.fit.interval = method;
@@ -81,14 +81,14 @@ TEST(StoppedFitRuns, AreAllOrNothingWithIntervalsOfAnyKind) {
   }
 }
 
-TEST(StoppedFitRuns, AreAllOrNothingOnCoarseLevelsWithoutNoise) {
+TEST(StoppedFitRuns, AreCompleteOrMissingOnCoarseLevels) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
   const IdentifyOptions options = OptionsFor({"coulomb"});
   StopEverywhere(options, Must(PrepareRecording(Must(SimulateRecording(run)), {}, std::nullopt)), 6);
 }
 
-TEST(StoppedFitRuns, AreErrorsFromTheBeginning) {
+TEST(StoppedFitRuns, AreErrorsFromTheStart) {
   std::stop_source stop;
   stop.request_stop();
   for (const bool closed_form_only : {false, true}) {
@@ -151,7 +151,7 @@ Recording OneReadingAMinute() {
   return Must(SimulateRecording(run));
 }
 
-TEST(StoppedFitRuns, EndInTheMidstOfATrajectoryOfMillionsOfSteps) {
+TEST(StoppedFitRuns, EndWithinATrajectoryOfMillionsOfSteps) {
   IdentifyOptions options = OptionsFor({"coulomb"});
   const PreparedRecording swings = Must(PrepareRecording(OneReadingAMinute(), {}, std::nullopt));
   std::stop_source stop;
@@ -163,7 +163,7 @@ TEST(StoppedFitRuns, EndInTheMidstOfATrajectoryOfMillionsOfSteps) {
   ExpectStopped(FitFirst(options, swings));
 }
 
-TEST(IdentifyEachThatMayBeStopped, AreTheSameWhenTheyAreNot) {
+TEST(IdentifyEachThatMayBeStopped, GivesTheSameResultIfNotStopped) {
   for (const char* const path : {"datasets/coulomb.csv", "datasets/to_rest.csv"}) {
     IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
     const PreparedRecording swings = Read(path, options);

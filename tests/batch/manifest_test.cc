@@ -84,7 +84,7 @@ std::string Lines(std::size_t bytes) {
 
 // ---- Valid manifests -----------------------------------------------------------------------------------------------
 
-TEST_F(ReadManifestTest, TakesTheColumnsByTheirNames) {
+TEST_F(ReadManifestTest, IdentifiesColumnsByName) {
   const auto entries = Entries(
       "to_s,id,models,path,calibration,rig,from_s\n"
       "1e1,first,\"viscous,coulomb\",runs/a.csv,cal.json,rig.json,-0.5\n"
@@ -105,7 +105,7 @@ TEST_F(ReadManifestTest, TakesTheColumnsByTheirNames) {
   EXPECT_FALSE(entries[1].from || entries[1].to);
 }
 
-TEST_F(ReadManifestTest, CarriesOtherColumnsThroughInTheirOrder) {
+TEST_F(ReadManifestTest, PassesOtherColumnsInOrder) {
   const auto entries = Entries("rig_no,path,Datum,\n007,a.csv,\"1. März, früh\",\n,b.csv,\xFF,x\n");
   ASSERT_EQ(entries.size(), 2);
   EXPECT_EQ(entries[0].columns, R"({"rig_no":"007","Datum":"1. März, früh","":""})");
@@ -124,12 +124,12 @@ TEST_F(ReadManifestTest, ReadsQuotedFields) {
   EXPECT_EQ(FieldOf("\"\n\n,\"\"\n\""), "\n\n,\"\n");
 }
 
-TEST_F(ReadManifestTest, KeepsBlanksWithinQuotesOnly) {
+TEST_F(ReadManifestTest, KeepsBlanksOnlyInQuotes) {
   EXPECT_EQ(FieldOf(R"("  b ")"), "  b ");
   EXPECT_EQ(FieldOf("  b b "), "b b");
 }
 
-TEST_F(ReadManifestTest, ReadsPathsOfAnyLetters) {
+TEST_F(ReadManifestTest, ReadsPathsInAnyScript) {
   EXPECT_THAT(PathsOf(Entries("path\nVersuche/Öl π 振り子.csv\n\"a, b.csv\"\n")),
               ElementsAre("Versuche/Öl π 振り子.csv", "a, b.csv"));
 }
@@ -144,7 +144,7 @@ TEST_F(ReadManifestTest, ReadsSemicolonsAndTabsToo) {
   EXPECT_EQ(Entries("path;x\na,b.csv;1,5\n")[0].path, "a,b.csv");
 }
 
-TEST_F(ReadManifestTest, ReadsWhatSpreadsheetsWrite) {
+TEST_F(ReadManifestTest, ReadsManifestsWrittenBySpreadsheets) {
   const auto entries = Entries("\xEF\xBB\xBFpath,id\r\na.csv,1\r\nb.csv,2");  // no line end after the last row: rule 2
   ASSERT_EQ(entries.size(), 2);
   EXPECT_EQ(entries[0].id, "1");
@@ -160,11 +160,11 @@ TEST_F(ReadManifestTest, SkipsBlankLines) {
   EXPECT_EQ(entries[1].position, 1);
 }
 
-TEST_F(ReadManifestTest, ChoosesTheSeparatorOfTheHeaderAlsoBelowBlankLines) {
+TEST_F(ReadManifestTest, DetectsTheSeparatorBelowBlankLines) {
   EXPECT_EQ(Entries("\n  \npath;id\na.csv;1\n")[0].id, "1");
 }
 
-TEST_F(ReadManifestTest, KnowsTheLineThatARowBeginsOn) {
+TEST_F(ReadManifestTest, GivesTheFirstLineOfARow) {
   const auto entries = Entries("path,x\n\"a\n\nb.csv\",1\nc.csv,\"\n\n\"\n\nd.csv,2\n");
   ASSERT_EQ(entries.size(), 3);
   EXPECT_EQ(entries[0].path, "a\n\nb.csv");
@@ -174,7 +174,7 @@ TEST_F(ReadManifestTest, KnowsTheLineThatARowBeginsOn) {
   EXPECT_THAT(FaultOf("path,x\n\"a\n\nb.csv\",1\nc.csv\n"), StartsWith(":5: the row has 1 fields"));
 }
 
-TEST_F(ReadManifestTest, HasNoEntryWhereThereIsOnlyAHeader) {
+TEST_F(ReadManifestTest, HasNoEntryForAHeaderOnly) {
   EXPECT_THAT(Entries("path,id\n"), IsEmpty());
   EXPECT_THAT(Entries("path"), IsEmpty());
 }
@@ -184,13 +184,13 @@ TEST_F(ReadManifestTest, ReadsARowOfManyLines) {
   EXPECT_TRUE(FieldOf("\"" + field + "\"") == field);
 }
 
-TEST_F(ReadManifestTest, SkipsBlankLinesHoweverMany) {
+TEST_F(ReadManifestTest, SkipsAnyNumberOfBlankLines) {
   std::string blank = Lines(std::size_t{17} << 20);
   std::ranges::replace(blank, 'x', ' ');
   EXPECT_THAT(PathsOf(Entries("path\n" + blank + "a.csv\n")), ElementsAre("a.csv"));
 }
 
-TEST_F(ReadManifestTest, EndsWhereTheTakerWantsNoMore) {
+TEST_F(ReadManifestTest, StopsIfTheSinkReturnsAnError) {
   std::ofstream(path_) << "path\na.csv\nb.csv\n\"never closed";
   int taken = 0;
   const auto read = ReadManifest(path_, [&](const ManifestEntry&) -> Result<void> {
@@ -205,7 +205,7 @@ TEST_F(ReadManifestTest, EndsWhereTheTakerWantsNoMore) {
 
 // ---- Invalid manifests ---------------------------------------------------------------------------------------------
 
-TEST_F(ReadManifestTest, RefusesAHeaderThatNamesNoRecordings) {
+TEST_F(ReadManifestTest, RefusesAHeaderWithoutRecordings) {
   const std::string empty = ": the manifest is empty; its first line names the columns, such as path,id";
   EXPECT_EQ(FaultOf(""), empty);
   EXPECT_EQ(FaultOf("\xEF\xBB\xBF\r\n\n"), empty);
@@ -225,7 +225,7 @@ TEST_F(ReadManifestTest, RefusesARowWithoutAPath) {
   EXPECT_EQ(FaultOf("id,path\n1,\n"), ":2: column path: it is empty; name a recording or delete the row");
 }
 
-TEST_F(ReadManifestTest, RefusesWindowsThatAreNone) {
+TEST_F(ReadManifestTest, RefusesInvalidWindows) {
   for (const std::string time : {"soon", "1 s", "1.5.2", "nan", "inf", "1e999", "0x10", "--1"}) {
     EXPECT_EQ(FaultOf("path,to_s\na.csv," + time + "\n"),
               ":2: column to_s: \"" + time + "\" is not a time in seconds on the file's clock");
@@ -236,14 +236,14 @@ TEST_F(ReadManifestTest, RefusesWindowsThatAreNone) {
   EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2,2\n"), ":2: from_s 2 does not lie before to_s 2");
 }
 
-TEST_F(ReadManifestTest, RefusesModelsThatThereAreNot) {
+TEST_F(ReadManifestTest, RefusesUnknownModels) {
   EXPECT_THAT(FaultOf("path,models\na.csv,all\nb.csv,magic\n"),
               StartsWith(":3: column models: there is no model 'magic'; the models are linear, "));
   EXPECT_EQ(FaultOf("path,models\na.csv,\"viscous,viscous\"\n"),
             ":2: column models: 'viscous,viscous' names viscous twice");
 }
 
-TEST_F(ReadManifestTest, RefusesQuotesThatAreNotPaired) {
+TEST_F(ReadManifestTest, RefusesUnpairedQuotes) {
   const std::string open =
       ": a field begins with a double quote that is never closed; close it, or write a quote that belongs to the text "
       "twice";
@@ -262,7 +262,7 @@ TEST_F(ReadManifestTest, RefusesCarriageReturnsAsLineEnds) {
   EXPECT_EQ(FieldOf("\"a\rb\""), "a\rb");
 }
 
-TEST_F(ReadManifestTest, RefusesWhatIsNoText) {
+TEST_F(ReadManifestTest, RefusesBytesThatAreNotText) {
   EXPECT_THAT(FaultOf(std::string("path\na\0b.csv\n", 13)), StartsWith(":2:2: a NUL byte stands here"));
   EXPECT_THAT(FaultOf("path\n" + std::string(std::size_t{2} << 20, 'a') + "\n"),
               HasSubstr(":2:1: this line is longer than 1 MiB and begins with \"aaa"));
@@ -276,8 +276,8 @@ TEST_F(ReadManifestTest, RefusesARowThatNeverEnds) {
   EXPECT_THAT(FaultOf("path,x\na.csv,\"" + lines), AllOf(StartsWith(":2:" + why), EndsWith("not closed?")));
 }
 
-TEST_F(ReadManifestTest, RefusesWhatIsNoFile) {
-  const TakeEntry none = [](const ManifestEntry&) -> Result<void> { return {}; };
+TEST_F(ReadManifestTest, RefusesAPathThatIsNotAFile) {
+  const EntrySink none = [](const ManifestEntry&) -> Result<void> { return {}; };
   const Status missing = ReadManifest(folder_ / "none.csv", none).error();
   EXPECT_EQ(missing.code, StatusCode::kNotFound);
   EXPECT_EQ(missing.message, (folder_ / "none.csv").string() + ": there is no such file; check the path");

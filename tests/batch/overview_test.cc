@@ -31,7 +31,7 @@ Json Counted(Store& store) {
   return nullptr;
 }
 
-TEST_F(OverviewTest, GroupsFailuresByTheirReasonsWithoutFileNamesAndNumbers) {
+TEST_F(OverviewTest, GroupsFailuresByReasonWithoutNamesAndNumbers) {
   Store store = StoreOf(PlainManifest(14), [](std::size_t i) -> std::optional<RunOutcome> {
     const std::string path = "run" + std::to_string(i) + ".csv";
     const std::string line = std::to_string(3 + i);
@@ -53,7 +53,7 @@ TEST_F(OverviewTest, GroupsFailuresByTheirReasonsWithoutFileNamesAndNumbers) {
   EXPECT_THAT(failures[1]["examples"], ElementsAre("run12.csv", "run13.csv"));
 }
 
-TEST_F(OverviewTest, TellsTheReasonAsItIsWhereAllFailAlike) {
+TEST_F(OverviewTest, KeepsTheReasonIfAllFailAlike) {
   Store store = StoreOf(PlainManifest(2), [](std::size_t i) {
     return FailureOf("run" + std::to_string(i) + ".csv: the window [100, 200] s leaves 0 samples", 5);
   });

@@ -103,7 +103,7 @@ std::vector<Change> ChangesOfTheFit() {
   };
 }
 
-TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
+TEST(OptionsJson, DependsOnEveryOption) {
   std::map<std::string, std::string> known;
   std::vector<Change> changes = ChangesOfTheRun();
   for (const Change& change : ChangesOfTheFit()) changes.push_back(change);
@@ -119,7 +119,7 @@ TEST(OptionsJson, DiffersWithEveryOptionThatCanBeSet) {
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. `model`
 // is the first of `models`; rig and calibration are hashed separately; users cannot set `start_values` and
 // `sensor_start`.
-TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
+TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
@@ -130,7 +130,7 @@ TEST(OptionsJson, HasBeenAskedAboutEveryMember) {
   [[maybe_unused]] auto& [start_values, sensor_start, max_trace_error, max_iterations, max_traces] = search;
 }
 
-TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
+TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {
   const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"threads", [](IdentifyOptions& o) { o.fit.threads = 7; }}));
   EXPECT_EQ(json, JsonAfter({"progress", [](IdentifyOptions& o) { o.fit.progress = [](int, int) {}; }}));
@@ -138,13 +138,13 @@ TEST(OptionsJson, DoesNotDependOnWhatNoResultDependsOn) {
 }
 
 // Their bytes are hashed separately.
-TEST(OptionsJson, LeavesRigAndCalibrationOut) {
+TEST(OptionsJson, ExcludesRigAndCalibration) {
   const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"rig", [](IdentifyOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));
   EXPECT_EQ(json, JsonAfter({"calibration", [](IdentifyOptions& o) { o.read.calibration = Calibration(); }}));
 }
 
-TEST(OptionsJson, ToldInAnyOrderIsTheSame) {
+TEST(OptionsJson, DoesNotDependOnTheOrder) {
   const auto set = [](const std::string& first, const std::string& second) {
     return JsonAfter({"", [&](IdentifyOptions& o) {
                         o.fit.fixed[first] = 1;
@@ -154,7 +154,7 @@ TEST(OptionsJson, ToldInAnyOrderIsTheSame) {
   EXPECT_EQ(set("viscous", "coulomb"), set("coulomb", "viscous"));
 }
 
-TEST(Provenance, AgreesUnlessWhatCountsDiffers) {
+TEST(Provenance, AgreesUnlessRelevantMembersDiffer) {
   const Provenance one = {"d", "r", "c", "o", "v", "cpu"};
   EXPECT_TRUE(one.Agrees(one));
   EXPECT_TRUE(one.Agrees({"d", "r", "c", "o", "v", "another cpu"}));
@@ -166,7 +166,7 @@ TEST(Provenance, AgreesUnlessWhatCountsDiffers) {
   EXPECT_FALSE(one.Agrees({"d", "r", "", "o", "v", "cpu"}));
 }
 
-TEST(CpuType, NamesTheProcessorAndTheArithmetic) {
+TEST(CpuType, NamesProcessorAndInstructionSet) {
   EXPECT_THAT(CpuType(), AnyOf(EndsWith(" (baseline)"), EndsWith(" (avx2)"), EndsWith(" (avx512)")));
   EXPECT_EQ(CpuType(), CpuType());
 }

@@ -43,7 +43,7 @@ namespace fs = std::filesystem;
 
 // ---- Runs that cannot be fitted ------------------------------------------------------------------------------------
 
-TEST_F(RefitTest, CostsARunThatCannotBeFittedItsOwnRowsOnly) {
+TEST_F(RefitTest, AFailedRunAffectsOnlyItsOwnRows) {
   WriteBatch(folder_, 1);
   fs::create_directory(folder_ / "folder.csv");
   folder_.Write("bad.csv", "time_s,angle_rad\n0,nonsense\n");
@@ -82,7 +82,7 @@ TEST_F(RefitTest, CostsARunThatCannotBeFittedItsOwnRowsOnly) {
   EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities JOIN runs USING(run) WHERE id <> 'good'"), "0");
 }
 
-TEST_F(RefitTest, SaysWhichRigOfTheWholeBatchIsWrong) {
+TEST_F(RefitTest, NamesAWrongCommonRig) {
   WriteBatch(folder_, 1);
   RefitOptions options = coulomb_;
   options.rig = "{";
@@ -103,7 +103,7 @@ TEST_F(RefitTest, FitsAFileThatAppearsLater) {
   EXPECT_EQ(ValueOf("SELECT reason FROM runs WHERE id = 'b'"), "NULL");
 }
 
-TEST_F(RefitTest, SeesAFileThatIsGone) {
+TEST_F(RefitTest, DetectsAMissingFile) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   fs::remove(folder_ / "0.csv");
@@ -113,7 +113,7 @@ TEST_F(RefitTest, SeesAFileThatIsGone) {
 }
 
 // A run without a rig and a run with an unreadable rig must have different provenance.
-TEST_F(RefitTest, SeesARigThatIsNamedAndMissing) {
+TEST_F(RefitTest, DetectsAMissingNamedRig) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
   folder_.Write("runs.csv", "path,id,rig\n0.csv,a,nowhere.json\n");
@@ -124,7 +124,7 @@ TEST_F(RefitTest, SeesARigThatIsNamedAndMissing) {
   EXPECT_EQ(ValueOf("SELECT exit_code FROM runs"), "0");
 }
 
-TEST_F(RefitTest, SaysWhyARunFailsNow) {
+TEST_F(RefitTest, ExplainsAFailedRun) {
   folder_.Write("runs.csv", "path,id\nnowhere.csv,a\n");
   RefitAll(coulomb_);
   fs::create_directory(folder_ / "nowhere.csv");
@@ -134,7 +134,7 @@ TEST_F(RefitTest, SaysWhyARunFailsNow) {
 
 // ---- Options in the manifest ---------------------------------------------------------------------------------------
 
-TEST_F(RefitTest, TakesModelsAndWindowOfARunFromTheManifest) {
+TEST_F(RefitTest, UsesModelsAndWindowOfTheManifest) {
   WriteBatch(folder_, 1);
   folder_.Write("runs.csv", "path,id,models,from_s,to_s\n0.csv,a,,,\n0.csv,b,\"viscous,drag\",,\n0.csv,c,,1.5,5.5\n");
   RefitOptions options = coulomb_;
@@ -159,7 +159,7 @@ TEST_F(RefitTest, TakesModelsAndWindowOfARunFromTheManifest) {
 
 // ---- Stopped, ended, counted ---------------------------------------------------------------------------------------
 
-TEST_F(RefitTest, GoesOnWhereItWasStopped) {
+TEST_F(RefitTest, ResumesAfterAStop) {
   WriteBatch(folder_, 6);
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "nowhere.csv,z\n");
   RefitInto(folder_ / "whole.sqlite", folder_ / "runs.csv", coulomb_);
@@ -180,7 +180,7 @@ TEST_F(RefitTest, GoesOnWhereItWasStopped) {
   EXPECT_EQ(AllRows(store_), AllRows(folder_ / "whole.sqlite"));
 }
 
-TEST_F(RefitTest, FinishesWhatSeveralThreadsHaveBegun) {
+TEST_F(RefitTest, FinishesRunsInProgress) {
   WriteBatch(folder_, 12);
   RefitInto(folder_ / "whole.sqlite", folder_ / "runs.csv", coulomb_);
   std::atomic<bool> stop = false;
@@ -196,7 +196,7 @@ TEST_F(RefitTest, FinishesWhatSeveralThreadsHaveBegun) {
   EXPECT_EQ(AllRows(store_), AllRows(folder_ / "whole.sqlite"));
 }
 
-TEST_F(RefitTest, DoesNothingOnceItIsStopped) {
+TEST_F(RefitTest, DoesNothingOnceStopped) {
   WriteBatch(folder_, 2);
   const std::atomic<bool> stop = true;
   RefitOptions options = coulomb_;
@@ -207,7 +207,7 @@ TEST_F(RefitTest, DoesNothingOnceItIsStopped) {
   EXPECT_EQ(counts.runs, 2);
 }
 
-TEST_F(RefitTest, CountsEachRunAsItIsDone) {
+TEST_F(RefitTest, CountsEachRunWhenDone) {
   WriteBatch(folder_, 3);
   RefitAll(coulomb_);
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "nowhere.csv,z\n");
@@ -232,7 +232,7 @@ Source Slow(const Source& source, std::chrono::milliseconds delay) {
   return slow;
 }
 
-TEST_F(RefitTest, EndsWithTheErrorOfACheckpoint) {
+TEST_F(RefitTest, ReturnsTheErrorOfACheckpoint) {
   WriteBatch(folder_, 4);
   const auto source = OpenSource(folder_ / "runs.csv");
   auto store = Store::Open(store_, Store::Mode::kWrite);
@@ -251,7 +251,7 @@ TEST_F(RefitTest, EndsWithTheErrorOfACheckpoint) {
   EXPECT_EQ(ValueOf("SELECT count(exit_code) FROM runs"), "2");  // after 1.1 s
 }
 
-TEST_F(RefitTest, EndsWithTheErrorOfTheStore) {
+TEST_F(RefitTest, ReturnsTheErrorOfTheStore) {
   WriteBatch(folder_, 4);
   const auto source = OpenSource(folder_ / "runs.csv");
   auto store = Store::Open(store_, Store::Mode::kWrite);
@@ -269,7 +269,7 @@ TEST_F(RefitTest, EndsWithTheErrorOfTheStore) {
   EXPECT_EQ(read, 2);
 }
 
-TEST_F(RefitTest, EndsWithTheErrorOfItsManifest) {
+TEST_F(RefitTest, ReturnsTheErrorOfItsManifest) {
   folder_.Write("runs.csv", "path,id\n0.csv,a\n1.csv,a\n");
   const auto source = OpenSource(folder_ / "runs.csv");
   auto store = Store::Open(store_, Store::Mode::kWrite);

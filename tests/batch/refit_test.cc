@@ -60,7 +60,7 @@ std::string CountsText(std::uint64_t seed) {
 
 // ---- Results equal to single fits ----------------------------------------------------------------------------------
 
-TEST_F(RefitTest, GivesToTheLastBitWhatEachRecordingGivesAlone) {
+TEST_F(RefitTest, MatchesSingleFitsBitForBit) {
   folder_.Write("rigs/one.json", small_batch::kRigText);
   folder_.Write("data/1.csv", RecordingText(1));
   folder_.Write("data/2.csv", RecordingText(2));
@@ -77,7 +77,7 @@ TEST_F(RefitTest, GivesToTheLastBitWhatEachRecordingGivesAlone) {
   EXPECT_THAT(Rows(store_, "SELECT id, exit_code, reason FROM runs ORDER BY id"), ElementsAre("a|0|NULL", "b|0|NULL"));
 }
 
-TEST_F(RefitTest, GivesTheDatasetsResultsByOneRigForAllAndACalibrationOfOne) {
+TEST_F(RefitTest, ReproducesTheDatasetsWithACommonRig) {
   for (const char* name : {"runs_1.csv", "coulomb.csv"}) fs::copy(std::string("datasets/") + name, folder_ / name);
   folder_.Write("counts.csv", CountsText(3));
   folder_.Write("calibration.json", kCalibration);
@@ -96,7 +96,7 @@ TEST_F(RefitTest, GivesTheDatasetsResultsByOneRigForAllAndACalibrationOfOne) {
   }
 }
 
-TEST_F(RefitTest, GivesClosedFormsAloneWithoutAnyFit) {
+TEST_F(RefitTest, GivesClosedFormsWithoutAFit) {
   WriteBatch(folder_, 1);
   RefitOptions options = coulomb_;
   options.run.closed_form_only = true;
@@ -106,7 +106,7 @@ TEST_F(RefitTest, GivesClosedFormsAloneWithoutAnyFit) {
   EXPECT_EQ(ValueOf("SELECT count(*) FROM fits"), "0");
 }
 
-TEST_F(RefitTest, MakesOneRunAsItMakesABatch) {
+TEST_F(RefitTest, RefitsOneRunAsInABatch) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
   ManifestEntry entry;
@@ -122,7 +122,7 @@ TEST_F(RefitTest, MakesOneRunAsItMakesABatch) {
   EXPECT_EQ(RefitRun(*source, entry, coulomb_).exit_code, ExitCode(StatusCode::kNotFound));
 }
 
-TEST_F(RefitTest, DoesNotDependOnItsThreads) {
+TEST_F(RefitTest, DoesNotDependOnTheNumberOfThreads) {
   WriteBatch(folder_, 7);
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "nowhere.csv,z\n");
   std::vector<std::string> rows;
@@ -139,7 +139,7 @@ TEST_F(RefitTest, DoesNotDependOnItsThreads) {
 
 // ---- Only what changed ---------------------------------------------------------------------------------------------
 
-TEST_F(RefitTest, MakesNothingTwice) {
+TEST_F(RefitTest, RefitsNothingTwice) {
   WriteBatch(folder_, 3);
   const RefitCounts first = RefitAll(coulomb_);
   EXPECT_EQ(first.runs, 3);
@@ -155,7 +155,7 @@ TEST_F(RefitTest, MakesNothingTwice) {
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());
 }
 
-TEST_F(RefitTest, SeesOneByteThatChangedInARecording) {
+TEST_F(RefitTest, DetectsOneChangedByte) {
   WriteBatch(folder_, 3);
   RefitAll(coulomb_);
   std::string text = folder_.Read("1.csv");
@@ -165,7 +165,7 @@ TEST_F(RefitTest, SeesOneByteThatChangedInARecording) {
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());
 }
 
-TEST_F(RefitTest, SeesAChangeInARigOrACalibrationOfSomeRuns) {
+TEST_F(RefitTest, DetectsAChangedRigOrCalibration) {
   folder_.Write("counts.csv", CountsText(2));
   folder_.Write("0.csv", RecordingText(1));
   folder_.Write("calibration.json", kCalibration);
@@ -185,7 +185,7 @@ TEST_F(RefitTest, SeesAChangeInARigOrACalibrationOfSomeRuns) {
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("c", "d"));
 }
 
-TEST_F(RefitTest, SeesOtherOptions) {
+TEST_F(RefitTest, DetectsOtherOptions) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   const std::vector<std::function<void(IdentifyOptions&)>> changes = {
@@ -215,7 +215,7 @@ TEST_F(RefitTest, SeesOtherOptions) {
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
 }
 
-TEST_F(RefitTest, DoesNotTakeThreadsForAnOption) {
+TEST_F(RefitTest, IgnoresThreadsInTheProvenance) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   RefitOptions options = coulomb_;
@@ -224,7 +224,7 @@ TEST_F(RefitTest, DoesNotTakeThreadsForAnOption) {
   EXPECT_THAT(Refitted(options), IsEmpty());
 }
 
-TEST_F(RefitTest, SeesAWindowOrModelsThatTheManifestChanged) {
+TEST_F(RefitTest, DetectsAChangedWindowOrModels) {
   WriteBatch(folder_, 3);
   folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,,\n1.csv,b,,\n2.csv,c,,\n");
   RefitAll(coulomb_);
@@ -235,14 +235,14 @@ TEST_F(RefitTest, SeesAWindowOrModelsThatTheManifestChanged) {
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // equivalent options
 }
 
-TEST_F(RefitTest, TakesRowsOfAnotherVersionForOld) {
+TEST_F(RefitTest, RefitsRowsOfAnotherVersion) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   SQLite::Database(store_.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET version = '0.0.1' WHERE id = 'b'");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
 }
 
-TEST_F(RefitTest, MakesAllAnewWhenItIsForced) {
+TEST_F(RefitTest, RefitsEverythingIfForced) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   const std::vector<std::string> rows = AllRows(store_);
@@ -252,7 +252,7 @@ TEST_F(RefitTest, MakesAllAnewWhenItIsForced) {
   EXPECT_EQ(AllRows(store_), rows);
 }
 
-TEST_F(RefitTest, TriesAgainWhatFailedWhenItIsAsked) {
+TEST_F(RefitTest, RetriesFailuresOnRequest) {
   WriteBatch(folder_, 2);
   folder_.Write("bad.csv", "time_s,angle_rad\n0,nonsense\n");
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "bad.csv,bad\nnowhere.csv,none\n");
@@ -263,7 +263,7 @@ TEST_F(RefitTest, TriesAgainWhatFailedWhenItIsAsked) {
   EXPECT_THAT(Refitted(again), ElementsAre("bad", "none"));
 }
 
-TEST_F(RefitTest, ForgetsRowsOfModelsThatAreNotAskedForAnyMore) {
+TEST_F(RefitTest, RemovesRowsOfModelsNoLongerRequested) {
   WriteBatch(folder_, 1);
   RefitAll(OptionsWith({"viscous", "coulomb", "drag"}));
   EXPECT_THAT(Rows(store_, "SELECT model FROM fits ORDER BY model"), ElementsAre("coulomb", "drag", "viscous"));

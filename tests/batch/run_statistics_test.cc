@@ -43,7 +43,7 @@ TEST(Describe, GivesQuartilesMeanAndStandardDeviation) {
 }
 
 // np.histogram(x, bins=np.histogram_bin_edges(x, 'fd')): edges 1.4, 2.6, 3.8, 5.0, 6.2.
-TEST(Describe, CountsInTheBinsOfFreedmanAndDiaconis) {
+TEST(Describe, UsesTheBinsOfFreedmanAndDiaconis) {
   const Distribution distribution = Describe(kTen);
   EXPECT_EQ(distribution.from, 1.4);
   EXPECT_EQ(distribution.to, 6.2);
@@ -54,7 +54,7 @@ TEST(Describe, CountsInTheBinsOfFreedmanAndDiaconis) {
 
 // The quartiles of 0..100 with an outlier on each side are 24.5 and 75.5, so bins end at 75.5 + 3 · 51 at most. No
 // value is lost, and the histogram has more than one bar.
-TEST(Describe, CountsOutliersBesideTheBins) {
+TEST(Describe, CountsOutliersOutsideTheBins) {
   std::vector<double> values(101);
   std::iota(values.begin(), values.end(), 0);
   values.push_back(1e6);
@@ -70,13 +70,13 @@ TEST(Describe, CountsOutliersBesideTheBins) {
 }
 
 // For 10^6 equally spaced values the rule gives a bin width of 2 · 500000 / 100, which would be 100 bins.
-TEST(Describe, HasSixtyBinsAtMost) {
+TEST(Describe, HasAtMostSixtyBins) {
   std::vector<double> values(1000000);
   std::iota(values.begin(), values.end(), 0);
   EXPECT_THAT(Describe(values).counts, SizeIs(60));
 }
 
-TEST(Describe, HasOneBinForValuesThatDoNotDiffer) {
+TEST(Describe, HasOneBinForEqualValues) {
   const Distribution one = Describe({2.5});
   EXPECT_EQ(one.median, 2.5);
   EXPECT_EQ(one.std_dev, 0);
@@ -100,7 +100,7 @@ TEST(Describe, CountsEveryValueOnce) {
 
 // False alarm rate of this rule in an independent simulation (NumPy, 4000 batches per size): 3.3 to 4.4 % for 5 to 200
 // runs. 1 % is four standard deviations of the rate.
-TEST(FindOutliers, AreFalseOnceInTwentyBatchesOfRunsWithTrueErrors) {
+TEST(FindOutliers, HaveAFalseAlarmOnceInTwentyBatches) {
   constexpr int kBatches = 3000;
   for (const std::size_t runs : {5U, 20U, 100U}) {
     int alarms = 0;
@@ -112,7 +112,7 @@ TEST(FindOutliers, AreFalseOnceInTwentyBatchesOfRunsWithTrueErrors) {
   }
 }
 
-TEST(FindOutliers, AreFoundWithTheirDistanceTheFarthestFirst) {
+TEST(FindOutliers, FindTheFarthestFirstWithItsDistance) {
   RunValues values = OneGroup({10, 11, 9, 10.5, 30, 9.5, -30, 10});
   std::ranges::fill(values.std_error, 2);
   const auto outliers = FindOutliers(values);
@@ -124,7 +124,7 @@ TEST(FindOutliers, AreFoundWithTheirDistanceTheFarthestFirst) {
 }
 
 // Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and the scale is 1.4826 · 0.5.
-TEST(FindOutliers, AreJudgedByTheScatterWhereThereIsNoError) {
+TEST(FindOutliers, UseTheScatterWithoutErrors) {
   const auto outliers = FindOutliers(OneGroup({10, 11, 9, 10.5, 30, 9.5, 10}));
   ASSERT_THAT(outliers, SizeIs(1));
   EXPECT_EQ(outliers[0].run, 4);
@@ -132,13 +132,13 @@ TEST(FindOutliers, AreJudgedByTheScatterWhereThereIsNoError) {
 }
 
 // st.norm.isf((1 - 0.95 ** (1 / 6)) / 2) = 2.63104 for six runs.
-TEST(FindOutliers, BeginAtTheLimitOfSidak) {
+TEST(FindOutliers, StartAtTheLimitOfSidak) {
   for (const auto& [value, count] : {std::pair{2.631, 0}, std::pair{2.632, 1}}) {
     EXPECT_THAT(FindOutliers(OneGroup({-0.2, 0.1, 0, -0.1, value, 0}, 1)), SizeIs(count)) << value;
   }
 }
 
-TEST(FindOutliers, AreThoseOfTheirOwnGroup) {
+TEST(FindOutliers, CompareWithinTheirOwnGroup) {
   RunValues values = NormalRuns(2, 10, 1, 7);  // groups at about 100 and 150
   EXPECT_THAT(FindOutliers(values), IsEmpty());
   values.estimate[4] = 150;  // in the first group
@@ -147,22 +147,22 @@ TEST(FindOutliers, AreThoseOfTheirOwnGroup) {
   EXPECT_EQ(outliers[0].run, 4);
 }
 
-TEST(FindOutliers, AreNotToldAmongFewerThanFiveRuns) {
+TEST(FindOutliers, NeedFiveRuns) {
   EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1000}, 0.1)), IsEmpty());
   EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000}, 0.1)), SizeIs(1));
   EXPECT_THAT(FindOutliers(OneGroup({})), IsEmpty());
 }
 
-TEST(FindOutliers, AreNotToldWithoutAnyScale) { EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty()); }
+TEST(FindOutliers, NeedAScale) { EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty()); }
 
 // ---- Repeat --------------------------------------------------------------------------------------------------------
 
 // Weights 1, 1, 1/4: mean 25.5 / 2.25, chi2 = (4/3)² + (2/3)² + (8/3)² / 4 = 4. With two degrees of freedom p is
 // exp(-chi2 / 2).
-TEST(Repeat, IsWhatThreeRunsGiveByHand) {
+TEST(AnalyzeRepeatability, MatchesThreeRunsComputedByHand) {
   RunValues values = OneGroup({10, 12, 14});
   values.std_error = {1, 1, 2};
-  const auto repeatability = Repeat(values, {});
+  const auto repeatability = AnalyzeRepeatability(values, {});
   ASSERT_TRUE(repeatability);
   ASSERT_THAT(repeatability->groups, SizeIs(1));
   const GroupRepeatability& group = repeatability->groups[0];
@@ -181,10 +181,10 @@ TEST(Repeat, IsWhatThreeRunsGiveByHand) {
 
 // With equal errors the equation of Paule and Mandel is between² = s² - error²: 4 - 1 and 16 - 1. With 2 and 1 degrees
 // of freedom the result is sqrt((2 · 3 + 1 · 15) / 3).
-TEST(Repeat, PutsGroupsTogetherByTheirDegreesOfFreedom) {
+TEST(AnalyzeRepeatability, CombinesGroupsByTheirDegreesOfFreedom) {
   RunValues values = OneGroup({10, 12, 14, 100, 100 + std::sqrt(32)}, 1);
   values.group = {0, 0, 0, 1, 1};
-  const auto repeatability = Repeat(values, {});
+  const auto repeatability = AnalyzeRepeatability(values, {});
   ASSERT_TRUE(repeatability);
   ASSERT_THAT(repeatability->groups, SizeIs(2));
   EXPECT_NEAR(repeatability->groups[0].between, std::sqrt(3), 1e-6);
@@ -199,23 +199,23 @@ TEST(Repeat, PutsGroupsTogetherByTheirDegreesOfFreedom) {
 int FalseVerdicts(int batches, std::size_t runs) {
   int verdicts = 0;
   for (int seed = 0; seed < batches; ++seed) {
-    const auto repeatability = Repeat(NormalRuns(3, runs, 1, static_cast<std::uint64_t>(seed) + 1), {});
+    const auto repeatability = AnalyzeRepeatability(NormalRuns(3, runs, 1, static_cast<std::uint64_t>(seed) + 1), {});
     if (repeatability->verdict != Repeatability::Verdict::kAgrees) ++verdicts;
   }
   return verdicts;
 }
 
 // p below 1 % on either side: 2 % of 2000 batches, with a standard deviation of 6.3.
-TEST(Repeat, IsSaidWronglyOfTrueErrorsInTwoOfAHundredBatches) {
+TEST(AnalyzeRepeatability, HasTwoFalseAlarmsInAHundredBatches) {
   const int verdicts = FalseVerdicts(2000, 10);
   EXPECT_GT(verdicts, 40 - 4 * 6.3);
   EXPECT_LT(verdicts, 40 + 4 * 6.3);
 }
 
 // Standard deviation 2, errors 1: between is sqrt(3); with 198 degrees of freedom its standard error is 0.115.
-TEST(Repeat, SeesErrorsThatAreTooSmallAndByHowMuch) {
+TEST(AnalyzeRepeatability, DetectsAndQuantifiesErrorsThatAreTooSmall) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
-    const auto repeatability = Repeat(NormalRuns(2, 100, 2, seed), {});
+    const auto repeatability = AnalyzeRepeatability(NormalRuns(2, 100, 2, seed), {});
     ASSERT_TRUE(repeatability);
     EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kScatterLarger);
     EXPECT_NEAR(repeatability->between, std::sqrt(3), 4 * 0.115);
@@ -224,9 +224,9 @@ TEST(Repeat, SeesErrorsThatAreTooSmallAndByHowMuch) {
   }
 }
 
-TEST(Repeat, SeesErrorsThatAreTooLarge) {
+TEST(AnalyzeRepeatability, DetectsErrorsThatAreTooLarge) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
-    const auto repeatability = Repeat(NormalRuns(2, 100, 0.5, seed), {});
+    const auto repeatability = AnalyzeRepeatability(NormalRuns(2, 100, 0.5, seed), {});
     ASSERT_TRUE(repeatability);
     EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kScatterSmaller);
     EXPECT_EQ(repeatability->between, 0);
@@ -235,45 +235,45 @@ TEST(Repeat, SeesErrorsThatAreTooLarge) {
 }
 
 // Rigs that differ by 50, with errors of 1: as one group they would not repeat.
-TEST(Repeat, DoesNotTakeRigsThatDifferForScatter) {
+TEST(AnalyzeRepeatability, DoesNotTreatDifferentRigsAsScatter) {
   RunValues values = NormalRuns(5, 20, 1, 3);
-  const auto by_rig = Repeat(values, {});
+  const auto by_rig = AnalyzeRepeatability(values, {});
   ASSERT_TRUE(by_rig);
   EXPECT_EQ(by_rig->verdict, Repeatability::Verdict::kAgrees);
   values.group.assign(values.size(), 0);
-  const auto together = Repeat(values, {});
+  const auto together = AnalyzeRepeatability(values, {});
   ASSERT_TRUE(together);
   EXPECT_EQ(together->verdict, Repeatability::Verdict::kScatterLarger);
   EXPECT_GT(together->between, 50);
 }
 
 // 5 % more scatter is significant in 20000 runs, but too small to report.
-TEST(Repeat, SpeaksOfTenPercentOnly) {
+TEST(AnalyzeRepeatability, NeedsADifferenceOfTenPercent) {
   for (const double scatter : {1.05, 0.95}) {
-    const auto repeatability = Repeat(NormalRuns(1, 20000, scatter, 1), {});
+    const auto repeatability = AnalyzeRepeatability(NormalRuns(1, 20000, scatter, 1), {});
     ASSERT_TRUE(repeatability);
     EXPECT_LT(std::min(repeatability->lower_p, repeatability->upper_p), 1e-6);
     EXPECT_EQ(repeatability->verdict, Repeatability::Verdict::kAgrees) << scatter;
   }
 }
 
-TEST(Repeat, LeavesOutOutliersAndRunsWithoutErrors) {
+TEST(AnalyzeRepeatability, IgnoresOutliersAndRunsWithoutErrors) {
   RunValues values = OneGroup({10, 500, 12, 14, -70});
   values.std_error = {1, 1, 1, 2, kNone};
-  const auto repeatability = Repeat(values, {{1, 490}});
+  const auto repeatability = AnalyzeRepeatability(values, {{1, 490}});
   ASSERT_TRUE(repeatability);
   EXPECT_EQ(repeatability->runs, 3);
   EXPECT_NEAR(repeatability->chi2, 4, 1e-12);
 }
 
-TEST(Repeat, IsNothingWhereNoGroupHasTwoRunsWithErrors) {
-  EXPECT_FALSE(Repeat(OneGroup({}), {}));
-  EXPECT_FALSE(Repeat(OneGroup({1}, 1), {}));
-  EXPECT_FALSE(Repeat(OneGroup({1, 2, 3}), {}));
-  EXPECT_FALSE(Repeat(OneGroup({1, 2}, 1), {{0, 9}}));
+TEST(AnalyzeRepeatability, IsMissingWithoutAGroupOfTwoRunsWithErrors) {
+  EXPECT_FALSE(AnalyzeRepeatability(OneGroup({}), {}));
+  EXPECT_FALSE(AnalyzeRepeatability(OneGroup({1}, 1), {}));
+  EXPECT_FALSE(AnalyzeRepeatability(OneGroup({1, 2, 3}), {}));
+  EXPECT_FALSE(AnalyzeRepeatability(OneGroup({1, 2}, 1), {{0, 9}}));
   RunValues apart = OneGroup({1, 2}, 1);
   apart.group = {0, 1};
-  EXPECT_FALSE(Repeat(apart, {}));
+  EXPECT_FALSE(AnalyzeRepeatability(apart, {}));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ RunValues Anscombe() {
 }
 
 // scipy.stats.linregress(x, y), SciPy 1.10.1.
-TEST(FitTrend, IsTheRegressionOfATextbook) {
+TEST(FitTrend, MatchesATextbookRegression) {
   const auto trend = FitTrend(Anscombe(), {});
   ASSERT_TRUE(trend);
   EXPECT_EQ(trend->runs, 11);
@@ -45,7 +45,7 @@ TEST(FitTrend, IsTheRegressionOfATextbook) {
 
 // numpy.linalg.lstsq(np.c_[x, g == 0, g == 1], y): one slope and two levels, 8 degrees of freedom. Adding 100 to the
 // second group changes nothing.
-TEST(FitTrend, HasALevelOfItsOwnForEachGroup) {
+TEST(FitTrend, HasOneLevelPerGroup) {
   for (const double more : {0.0, 100.0}) {
     RunValues values = Anscombe();
     for (std::size_t i = 5; i < values.size(); ++i) {
@@ -60,7 +60,7 @@ TEST(FitTrend, HasALevelOfItsOwnForEachGroup) {
   }
 }
 
-TEST(FitTrend, LeavesOutOutliersAndRunsWithoutAnOrder) {
+TEST(FitTrend, IgnoresOutliersAndRunsWithoutAnOrder) {
   RunValues values = Anscombe();
   const auto add = [&](double estimate, double order) {
     values.estimate.push_back(estimate);
@@ -77,7 +77,7 @@ TEST(FitTrend, LeavesOutOutliersAndRunsWithoutAnOrder) {
 }
 
 // Under the null hypothesis p is below 5 % in 5 % of 2000 batches, with a standard deviation of 9.7.
-TEST(FitTrend, HasATrueProbability) {
+TEST(FitTrend, HasACorrectProbability) {
   int below = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     if (FitTrend(NormalRuns(3, 4, 1, seed), {})->p < 0.05) ++below;
@@ -85,7 +85,7 @@ TEST(FitTrend, HasATrueProbability) {
   EXPECT_NEAR(below, 100, 4 * 9.7);
 }
 
-TEST(FitTrend, IsNothingWithoutADegreeOfFreedomOrASecondOrder) {
+TEST(FitTrend, NeedsADegreeOfFreedomAndTwoOrders) {
   EXPECT_FALSE(FitTrend(OneGroup({}), {}));
   EXPECT_FALSE(FitTrend(OneGroup({1, 2}), {}));
   EXPECT_FALSE(FitTrend(OneGroup({1, 2, 3}), {{0, 9}}));
@@ -97,25 +97,26 @@ TEST(FitTrend, IsNothingWithoutADegreeOfFreedomOrASecondOrder) {
   EXPECT_FALSE(FitTrend(apart, {}));
 }
 
-TEST(FitTrend, IsNoneWhereNothingScatters) {
+TEST(FitTrend, IsMissingWithoutScatter) {
   const auto trend = FitTrend(OneGroup({5, 5, 5}), {});
   ASSERT_TRUE(trend);
   EXPECT_EQ(trend->slope, 0);
   EXPECT_EQ(trend->p, 1);
 }
 
-// ---- OrderOf -------------------------------------------------------------------------------------------------------
+// ---- ParseOrderValue
+// -------------------------------------------------------------------------------------------------------
 
-TEST(OrderOf, TakesNumbers) {
+TEST(ParseOrderValue, AcceptsNumbers) {
   bool is_date = true;
-  EXPECT_EQ(OrderOf("21.5", is_date), 21.5);
+  EXPECT_EQ(ParseOrderValue("21.5", is_date), 21.5);
   EXPECT_FALSE(is_date);
-  EXPECT_EQ(OrderOf("-3e2", is_date), -300);
-  EXPECT_EQ(OrderOf("2026", is_date), 2026);
+  EXPECT_EQ(ParseOrderValue("-3e2", is_date), -300);
+  EXPECT_EQ(ParseOrderValue("2026", is_date), 2026);
 }
 
 // Expected values from Python: datetime.date(...) - datetime.date(1970, 1, 1).
-TEST(OrderOf, TakesDatesAsDays) {
+TEST(ParseOrderValue, ConvertsDatesToDays) {
   const std::vector<std::pair<const char*, double>> dates = {{"1970-01-01", 0},
                                                              {"1969-12-31", -1},
                                                              {"2024-02-29", 19782},
@@ -129,27 +130,27 @@ TEST(OrderOf, TakesDatesAsDays) {
                                                              {"2026-03-01T00:00:21.6", 20513.00025}};
   for (const auto& [text, days] : dates) {
     bool is_date = false;
-    const auto order = OrderOf(text, is_date);
+    const auto order = ParseOrderValue(text, is_date);
     ASSERT_TRUE(order) << text;
     EXPECT_TRUE(is_date) << text;
     EXPECT_NEAR(*order, days, 1e-9) << text;
   }
 }
 
-TEST(OrderOf, KnowsNothingElse) {
+TEST(ParseOrderValue, IsNegativeForOtherLaws) {
   for (const char* text : {"", "monday", "12 deg", "nan", "inf", "1,5", "2026-02-30", "2026-13-01", "2026-03", "--",
                            "01.03.2026", "03/01/2026"}) {
     bool is_date = true;
-    EXPECT_FALSE(OrderOf(text, is_date)) << text;
+    EXPECT_FALSE(ParseOrderValue(text, is_date)) << text;
     EXPECT_FALSE(is_date) << text;
   }
 }
 
-TEST(OrderOf, TakesNoTextThatOnlyBeginsAsADate) {
+TEST(ParseOrderValue, RejectsTextThatOnlyBeginsLikeADate) {
   for (const char* text : {"2026-03-01x", "2026-03-01 rig 7", "2026-03-01T25:00:00", "2026-03-01T12:61", "2026-03-01Z",
                            "2026-03-01T12:00:00z", "2026-03-01T12:00:00+1", "2026-03-01T12:00+01:00Z"}) {
     bool is_date = false;
-    EXPECT_FALSE(OrderOf(text, is_date)) << text;
+    EXPECT_FALSE(ParseOrderValue(text, is_date)) << text;
   }
 }
 

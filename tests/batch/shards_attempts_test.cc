@@ -48,7 +48,7 @@ std::vector<std::int64_t> IdentityOf(const fs::path& path) {
 
 // ---- Attempts ------------------------------------------------------------------------------------------------------
 
-TEST_F(ShardsTest, GoOnFromTheCheckpointOfAnAttemptThatWasStopped) {
+TEST_F(ShardsTest, ResumeFromTheCheckpointOfAStoppedAttempt) {
   std::atomic<bool> stop = false;
   const RefitCounts first = RefitOne(0, 1, StoppingAfter(3, stop));
   EXPECT_TRUE(first.stopped);
@@ -63,7 +63,7 @@ TEST_F(ShardsTest, GoOnFromTheCheckpointOfAnAttemptThatWasStopped) {
 }
 
 // The earlier store is complete, but all its rows are outdated.
-TEST_F(ShardsTest, GoOnFromTheCheckpointAlsoWhereThereIsAStoreOfOtherOptions) {
+TEST_F(ShardsTest, ResumeFromTheCheckpointDespiteAnotherStore) {
   RefitOne(0, 1, OptionsWith({"drag"}));
   std::atomic<bool> stop = false;
   RefitOne(0, 1, StoppingAfter(3, stop));
@@ -73,7 +73,7 @@ TEST_F(ShardsTest, GoOnFromTheCheckpointAlsoWhereThereIsAStoreOfOtherOptions) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), RowsAtOnce());
 }
 
-TEST_F(ShardsTest, KeepTheStoreOfBeforeUntilTheNewOneIsWhole) {
+TEST_F(ShardsTest, KeepTheOldStoreUntilTheNewOneIsComplete) {
   RefitOne(0, 1, OptionsWith({"drag"}));
   const auto before = IdentityOf(ShardPath(out_, 0));
   std::atomic<bool> stop = false;
@@ -81,7 +81,7 @@ TEST_F(ShardsTest, KeepTheStoreOfBeforeUntilTheNewOneIsWhole) {
   EXPECT_EQ(IdentityOf(ShardPath(out_, 0)), before);
 }
 
-TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamaged) {
+TEST_F(ShardsTest, RestartFromADamagedCheckpoint) {
   folder_.Write("out/shard-0.sqlite.part", "this is no store");
   EXPECT_EQ(RefitOne(0, 1, options_).refitted, kRuns + 1);
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
@@ -96,7 +96,7 @@ void Damage(const fs::path& store) {
   file << std::string(fs::file_size(store) - end, '\x5a');
 }
 
-TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamagedFartherBack) {
+TEST_F(ShardsTest, RestartFromACheckpointDamagedFartherBack) {
   std::atomic<bool> stop = false;
   RefitOne(0, 1, StoppingAfter(3, stop));
   Damage(out_ / "shard-0.sqlite.part");
@@ -104,7 +104,7 @@ TEST_F(ShardsTest, BeginAnewWhereTheCheckpointIsDamagedFartherBack) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), RowsAtOnce());
 }
 
-TEST_F(ShardsTest, AreMissingAndMadeAnewWhereTheyAreDamaged) {
+TEST_F(ShardsTest, AreMissingAndRefittedIfDamaged) {
   AllShards(2);
   Damage(ShardPath(out_, 1));
   EXPECT_THAT(MissingShards(out_, 2).value(), ElementsAre(1));
@@ -113,7 +113,7 @@ TEST_F(ShardsTest, AreMissingAndMadeAnewWhereTheyAreDamaged) {
   EXPECT_EQ(AllRows(store_), RowsAtOnce());
 }
 
-TEST_F(ShardsTest, AreNotWrittenAgainWhileTheyAreComplete) {
+TEST_F(ShardsTest, AreNotRewrittenIfComplete) {
   AllShards(2);
   const auto before = IdentityOf(ShardPath(out_, 1));
   const RefitCounts again = RefitOne(1, 2, options_);
@@ -125,7 +125,7 @@ TEST_F(ShardsTest, AreNotWrittenAgainWhileTheyAreComplete) {
   EXPECT_NE(IdentityOf(ShardPath(out_, 1)), before);
 }
 
-TEST_F(ShardsTest, KeepNoRunsOfAnotherShardTheyBeganAs) {
+TEST_F(ShardsTest, KeepNoRunsOfAnotherShard) {
   RefitOne(0, 2, options_);
   fs::rename(ShardPath(out_, 0), ShardPath(out_, 1));
   AllShards(2);
@@ -136,7 +136,7 @@ TEST_F(ShardsTest, KeepNoRunsOfAnotherShardTheyBeganAs) {
 }
 
 // --store results.sqlite instead of out/shard-0.sqlite: days of work must not be lost.
-TEST_F(ShardsTest, TakeNoRunsAwayFromAWholeStore) {
+TEST_F(ShardsTest, RemoveNoRunsFromACompleteStore) {
   RefitInto(store_, folder_ / "runs.csv", options_);
   const std::vector<std::string> rows = AllRows(store_);
   ShardOptions at = At(0);
@@ -145,7 +145,7 @@ TEST_F(ShardsTest, TakeNoRunsAwayFromAWholeStore) {
   EXPECT_EQ(AllRows(store_), rows);
 }
 
-TEST_F(ShardsTest, AreTheSameByTwoAttemptsAtATime) {
+TEST_F(ShardsTest, AreTheSameForTwoConcurrentAttempts) {
   const std::vector<std::string> at_once = RowsAtOnce();
   std::vector<Result<RefitCounts>> counts(2);
   {
@@ -162,7 +162,7 @@ TEST_F(ShardsTest, AreTheSameByTwoAttemptsAtATime) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), at_once);
 }
 
-TEST_F(ShardsTest, AreTheSameWhereOneOfTwoAttemptsIsStoppedMeanwhile) {
+TEST_F(ShardsTest, AreTheSameIfOneOfTwoAttemptsIsStopped) {
   const std::vector<std::string> at_once = RowsAtOnce();
   std::atomic<bool> stop = false;
   const RefitOptions stopping = StoppingAfter(2, stop);
@@ -176,7 +176,7 @@ TEST_F(ShardsTest, AreTheSameWhereOneOfTwoAttemptsIsStoppedMeanwhile) {
 }
 
 // Commits are a second apart, so with an interval of 0.1 s each commit is followed by a checkpoint.
-TEST_F(ShardsTest, PublishACheckpointWhileTheyWork) {
+TEST_F(ShardsTest, PublishCheckpointsWhileWorking) {
   auto source = OpenSource(folder_ / "runs.csv");
   ASSERT_TRUE(source);
   const auto read = source->read;
@@ -195,7 +195,7 @@ TEST_F(ShardsTest, PublishACheckpointWhileTheyWork) {
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
 }
 
-TEST_F(ShardsTest, AreWorkedOnInTheScratchFolder) {
+TEST_F(ShardsTest, AreWrittenInTheScratchFolder) {
   const fs::path scratch = folder_ / "scratch";
   fs::create_directory(scratch);
   ShardOptions at = At(0);
@@ -211,7 +211,7 @@ TEST_F(ShardsTest, AreWorkedOnInTheScratchFolder) {
 
 // A killed attempt left its file and journal, and a new attempt has the same name, as in containers where every process
 // has the same number.
-TEST_F(ShardsTest, AreTheSameAfterAKilledAttemptOfTheSameName) {
+TEST_F(ShardsTest, AreTheSameAfterAKilledAttempt) {
   RefitOne(0, 1, options_);
   LeaveAsKilled(ShardPath(out_, 0), out_ / "shard-0.sqlite.attempt-1");
   folder_.Write("0.csv", RecordingText(50));
@@ -220,7 +220,7 @@ TEST_F(ShardsTest, AreTheSameAfterAKilledAttemptOfTheSameName) {
   EXPECT_EQ(AllRows(ShardPath(out_, 0)), RowsAtOnce());
 }
 
-TEST_F(ShardsTest, SayWhereTheyCannotBeWritten) {
+TEST_F(ShardsTest, ReportAnUnwritableFolder) {
   ShardOptions at = At(0);
   at.store = folder_ / "nowhere" / "shard-0.sqlite";
   const auto counts = TryShard(at, {0, 1}, options_);

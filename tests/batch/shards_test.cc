@@ -41,7 +41,7 @@ namespace fs = std::filesystem;
 
 // ---- Shards of a batch ---------------------------------------------------------------------------------------------
 
-TEST(ShardPath, NamesTheStoreOfAShard) {
+TEST(ShardPath, IsThePathOfAShardsStore) {
   EXPECT_EQ(ShardPath("out", 3), fs::path("out/shard-3.sqlite"));
   EXPECT_EQ(ShardList({3, 17}), "3,17");
   EXPECT_EQ(ShardList({}), "");
@@ -49,7 +49,7 @@ TEST(ShardPath, NamesTheStoreOfAShard) {
 
 // ---- Merging -------------------------------------------------------------------------------------------------------
 
-TEST_F(ShardsTest, GiveTheStoreThatIsMadeAtOnce) {
+TEST_F(ShardsTest, GiveTheStoreOfASingleRefit) {
   const std::vector<std::string> at_once = RowsAtOnce();
   for (const std::int64_t count : {1, 2, 3, 9}) {  // with nine shards two are empty
     fs::remove_all(out_);
@@ -70,7 +70,7 @@ TEST_F(ShardsTest, GiveTheStoreThatIsMadeAtOnce) {
   }
 }
 
-TEST_F(ShardsTest, AreCurrentForTheWholeBatchOnceTheyAreMerged) {
+TEST_F(ShardsTest, AreCurrentForTheWholeBatchAfterMerging) {
   AllShards(3);
   ASSERT_TRUE(Merge(3));
   const RefitCounts counts = RefitInto(store_, folder_ / "runs.csv", options_);
@@ -88,7 +88,7 @@ TEST_F(ShardsTest, MayBeMergedTwice) {
   EXPECT_EQ(AllRows(store_), rows);
 }
 
-TEST_F(ShardsTest, ReplaceTheirRunsInAStoreAndKeepTheOthers) {
+TEST_F(ShardsTest, ReplaceOnlyTheirOwnRuns) {
   folder_.Write("other.csv", "path,id\n0.csv,other\n1.csv,b\n");  // b is 1.csv in this batch, too
   RefitInto(store_, folder_ / "other.csv", OptionsWith({"drag"}));
   const std::string others = "SELECT result FROM runs WHERE id = 'other'";
@@ -114,7 +114,7 @@ TEST_F(ShardsTest, AreNotMergedIntoOneOfThemselves) {
   EXPECT_EQ(MissingShards(out_, 2).value().size(), 0);
 }
 
-TEST_F(ShardsTest, LeaveNothingElseBehindOnceTheyAreMerged) {
+TEST_F(ShardsTest, LeaveNoOtherFilesAfterMerging) {
   AllShards(2);
   for (const char* name : {".pendulum.4.0.tmp", "shard-0.sqlite.part", "shard-1.sqlite.attempt-9-0-node-4",
                            "shard-1.sqlite.attempt-9-0-node-4-journal"}) {
@@ -127,7 +127,7 @@ TEST_F(ShardsTest, LeaveNothingElseBehindOnceTheyAreMerged) {
 }
 
 // A killed merge leaves its file and journal. SQLite would corrupt a new file by applying that journal to it.
-TEST_F(ShardsTest, AreMergedAlsoAfterAMergeThatWasKilled) {
+TEST_F(ShardsTest, AreMergedAfterAKilledMerge) {
   const std::vector<std::string> at_once = RowsAtOnce();
   AllShards(2);
   ASSERT_TRUE(Merge(2));
@@ -141,7 +141,7 @@ TEST_F(ShardsTest, AreMergedAlsoAfterAMergeThatWasKilled) {
 
 // ---- Missing and wrong shards --------------------------------------------------------------------------------------
 
-TEST_F(ShardsTest, AreListedWhileTheyAreMissingAndNotMerged) {
+TEST_F(ShardsTest, AreListedAndNotMergedWhileMissing) {
   RefitOne(1, 4, options_);
   std::atomic<bool> stop = false;
   RefitOne(3, 4, StoppingAfter(1, stop));
@@ -156,14 +156,14 @@ TEST_F(ShardsTest, AreListedWhileTheyAreMissingAndNotMerged) {
   EXPECT_TRUE(fs::exists(out_ / "shard-3.sqlite.part"));  // finished work is kept
 }
 
-TEST_F(ShardsTest, AreNoneMissingWhereAllAreComplete) {
+TEST_F(ShardsTest, AreNotMissingIfComplete) {
   AllShards(2);
   const auto missing = MissingShards(out_, 2);
   ASSERT_TRUE(missing);
   EXPECT_THAT(*missing, IsEmpty());
 }
 
-TEST_F(ShardsTest, AreNotLookedForInAFolderThatIsNotThere) {
+TEST_F(ShardsTest, AreNotSearchedInAMissingFolder) {
   const auto missing = MissingShards(folder_ / "nowhere", 2);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
@@ -177,7 +177,7 @@ std::string Refusal(const Result<std::int64_t>& merged) {
   return merged.error().message;
 }
 
-TEST_F(ShardsTest, OfAnotherManifestAreRefused) {
+TEST_F(ShardsTest, AreRefusedForAnotherManifest) {
   AllShards(2);
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "0.csv,more\n");
   RefitOne(1, 2, options_);
@@ -185,20 +185,20 @@ TEST_F(ShardsTest, OfAnotherManifestAreRefused) {
   EXPECT_FALSE(fs::exists(store_));
 }
 
-TEST_F(ShardsTest, OfOtherOptionsAreRefused) {
+TEST_F(ShardsTest, AreRefusedForOtherOptions) {
   AllShards(2);
   RefitOne(1, 2, OptionsWith({"coulomb"}));
   EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard of another batch"));
 }
 
-TEST_F(ShardsTest, OfAnotherVersionAreRefused) {
+TEST_F(ShardsTest, AreRefusedForAnotherVersion) {
   AllShards(2);
   SQLite::Database(ShardPath(out_, 1).string(), SQLite::OPEN_READWRITE)
       .exec("UPDATE meta SET value = '0.0.1' WHERE key = 'version'");
   EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard of another batch"));
 }
 
-TEST_F(ShardsTest, OfAnotherNumberAreRefused) {
+TEST_F(ShardsTest, AreRefusedForAnotherNumber) {
   AllShards(3);
   EXPECT_THAT(Refusal(Merge(2)), AllOf(HasSubstr("shard-0.sqlite"), HasSubstr("0/3")));
   fs::rename(ShardPath(out_, 0), ShardPath(out_, 2));
@@ -206,7 +206,7 @@ TEST_F(ShardsTest, OfAnotherNumberAreRefused) {
               AllOf(HasSubstr("shard-2.sqlite"), HasSubstr("the store of shard 0/3, not of shard 2/3")));
 }
 
-TEST_F(ShardsTest, ThatAreNoneAreRefused) {
+TEST_F(ShardsTest, AreRefusedIfInvalid) {
   AllShards(2);
   fs::remove(ShardPath(out_, 1));
   RefitInto(ShardPath(out_, 1), folder_ / "runs.csv", options_);
@@ -215,7 +215,7 @@ TEST_F(ShardsTest, ThatAreNoneAreRefused) {
   EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard-1.sqlite"));
 }
 
-TEST_F(ShardsTest, AreNotMergedIntoAFileThatIsNoStore) {
+TEST_F(ShardsTest, AreNotMergedIntoAFileThatIsNotAStore) {
   AllShards(2);
   folder_.Write("store.sqlite", "this is text");
   EXPECT_THAT(Refusal(Merge(2)), HasSubstr("store.sqlite"));

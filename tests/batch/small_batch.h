@@ -84,8 +84,8 @@ inline std::string RecordingText(const SyntheticOptions& options) {
   }
   std::string text = "time_s,angle_rad\n";
   for (Eigen::Index i = 0; i < recording->size(); ++i) {
-    constexpr std::size_t kMostCharacters = 64;
-    std::array<char, kMostCharacters> line{};
+    constexpr std::size_t kMaxCharacters = 64;
+    std::array<char, kMaxCharacters> line{};
     std::snprintf(line.data(), line.size(), "%.17g,%.17g\n", recording->time[i], recording->value[i]);
     text += line.data();
   }

@@ -85,7 +85,7 @@ TEST_F(SourceTest, ReadsFilesFromTheFolderOfTheManifest) {
   EXPECT_EQ(source.read((folder_ / "rig.json").string()).value(), "{}");  // an absolute path
 }
 
-TEST_F(SourceTest, NamesFilesAsTheManifestDoes) {
+TEST_F(SourceTest, NamesFilesLikeTheManifest) {
   const Source source = Manifest();
   EXPECT_EQ(source.read("runs/none.csv").error().code, StatusCode::kNotFound);
   EXPECT_EQ(source.read("runs/none.csv").error().message, "runs/none.csv: there is no such file; check the path");
@@ -94,7 +94,7 @@ TEST_F(SourceTest, NamesFilesAsTheManifestDoes) {
 }
 
 // Opening a pipe without a writer would block forever.
-TEST_F(SourceTest, RefusesPipesAndDevicesUnopened) {
+TEST_F(SourceTest, RefusesPipesAndDevicesWithoutOpeningThem) {
   const Source source = Manifest();
   ASSERT_EQ(::mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   for (const std::string path : {"pipe.csv", "/dev/zero"}) {
@@ -105,7 +105,7 @@ TEST_F(SourceTest, RefusesPipesAndDevicesUnopened) {
   }
 }
 
-TEST_F(SourceTest, SaysThatThereIsNoManifest) {
+TEST_F(SourceTest, ReportsAMissingManifest) {
   const auto missing = OpenSource(folder_ / "none.csv");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
@@ -134,7 +134,7 @@ TEST_F(SourceTest, NamesTheRunsOfAFolderByTheirPaths) {
   EXPECT_EQ(source.read(entries[0].path).value().size(), fs::file_size("datasets/runs_3.csv"));
 }
 
-TEST_F(SourceTest, SaysWhichPatternStandsForNothing) {
+TEST_F(SourceTest, NamesAPatternWithoutMatches) {
   const auto source = FindSource({"datasets", "datasets/*.wav"});
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, StatusCode::kNotFound);
@@ -164,7 +164,7 @@ TEST_F(SourceTest, GivesTheSameEntriesFromAPack) {
   EXPECT_EQ(entries[0].columns, R"({"temperature":"21,5 °C"})");
 }
 
-TEST_F(SourceTest, GivesTheSameBytesFromAPackOnceTheFilesAreGone) {
+TEST_F(SourceTest, GivesTheSameBytesFromAPackWithoutTheFiles) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   fs::remove_all(folder_ / "runs");
   const Source packed = OpenSource(pack_).value();
@@ -174,7 +174,7 @@ TEST_F(SourceTest, GivesTheSameBytesFromAPackOnceTheFilesAreGone) {
   EXPECT_EQ(packed.read("cal.json").value(), "\"'; DROP TABLE files; --");
 }
 
-TEST_F(SourceTest, SaysFromAPackWhatWasWrongWithAFile) {
+TEST_F(SourceTest, ReportsAFilesErrorFromAPack) {
   Write("runs.csv", "path\nruns/none.csv\nruns\npipe.csv\n");
   ASSERT_EQ(::mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   const Source source = OpenSource(folder_ / "runs.csv").value();
@@ -196,7 +196,7 @@ TEST_F(SourceTest, CanPackAPackAndAFolder) {
   EXPECT_EQ(packed.read("datasets/runs_1.csv").value().size(), fs::file_size("datasets/runs_1.csv"));
 }
 
-TEST_F(SourceTest, ReplacesAPackAsAWhole) {
+TEST_F(SourceTest, ReplacesAPackAtomically) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   const Source old = OpenSource(pack_).value();
   Write("runs.csv", "path\nruns/c.csv\n");
@@ -209,7 +209,7 @@ TEST_F(SourceTest, ReplacesAPackAsAWhole) {
   EXPECT_EQ(packed.read("runs/c.csv").value(), "new");
 }
 
-TEST_F(SourceTest, LeavesAPackAloneWhereTheSourceEndsInAnError) {
+TEST_F(SourceTest, KeepsAPackIfTheSourceEndsInAnError) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   Write("runs.csv", "path\nruns/a.csv\n\"\n");
   const auto packed = Pack(OpenSource(folder_ / "runs.csv").value(), pack_);
@@ -222,7 +222,7 @@ TEST_F(SourceTest, LeavesAPackAloneWhereTheSourceEndsInAnError) {
   }
 }
 
-TEST_F(SourceTest, SaysWhereAPackCannotBeWritten) {
+TEST_F(SourceTest, ReportsAnUnwritablePack) {
   const Source source = Manifest();
   for (const fs::path& path : {folder_ / "nowhere" / "batch.pack", folder_ / "runs"}) {
     const auto packed = Pack(source, path);
@@ -232,7 +232,7 @@ TEST_F(SourceTest, SaysWhereAPackCannotBeWritten) {
   }
 }
 
-TEST_F(SourceTest, PacksOverNothingButPacks) {
+TEST_F(SourceTest, OverwritesOnlyPacks) {
   const Source source = Manifest();
   const fs::path store = folder_ / "results.sqlite";
   SQLite::Database(store.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE runs(result)");
@@ -246,7 +246,7 @@ TEST_F(SourceTest, PacksOverNothingButPacks) {
   }
 }
 
-TEST_F(SourceTest, PacksIntoNoPipe) {
+TEST_F(SourceTest, DoesNotPackIntoAPipe) {
   ASSERT_EQ(::mkfifo(pack_.c_str(), 0600), 0);
   const auto packed = Pack(Manifest(), pack_);
   ASSERT_FALSE(packed);
@@ -254,13 +254,13 @@ TEST_F(SourceTest, PacksIntoNoPipe) {
   EXPECT_TRUE(fs::is_fifo(pack_));
 }
 
-TEST_F(SourceTest, PacksForOneProcessAtATime) {
+TEST_F(SourceTest, AllowsOneProcessToPackAtATime) {
   const auto other = StoreLock::Take(pack_);
   EXPECT_EQ(Pack(Manifest(), pack_).error().code, StatusCode::kTryAgain);
   EXPECT_FALSE(fs::exists(pack_));
 }
 
-TEST_F(SourceTest, CountsWhatCouldNotBePacked) {
+TEST_F(SourceTest, CountsFilesThatCouldNotBePacked) {
   const auto packed = Pack(Manifest(), pack_);
   ASSERT_TRUE(packed);
   EXPECT_EQ(packed->files, 5);
@@ -276,7 +276,7 @@ TEST_F(SourceTest, ReadsAManifestFromANamedPipe) {
   writer.join();
 }
 
-TEST_F(SourceTest, PacksToWhereALinkLeads) {
+TEST_F(SourceTest, FollowsALinkToThePack) {
   fs::create_directory(folder_ / "disk");
   fs::create_symlink("disk/batch.pack", pack_);
   ASSERT_TRUE(Pack(Manifest(), pack_));
@@ -304,7 +304,7 @@ TEST_F(SourceTest, RefusesOtherSqliteFilesWithATableOfFiles) {
             pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name one that was");
 }
 
-TEST_F(SourceTest, RefusesAPackOfAFormToCome) {
+TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 2");
   const auto newer = OpenSource(pack_);
@@ -314,7 +314,7 @@ TEST_F(SourceTest, RefusesAPackOfAFormToCome) {
             pack_.string() + ": it was packed in form 2, and this program knows form 1; pack it anew");
 }
 
-TEST_F(SourceTest, RefusesAPackThatWasCutShort) {
+TEST_F(SourceTest, RefusesATruncatedPack) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   fs::resize_file(pack_, fs::file_size(pack_) / 2);
   const auto damaged = OpenSource(pack_);
@@ -323,7 +323,7 @@ TEST_F(SourceTest, RefusesAPackThatWasCutShort) {
   EXPECT_THAT(damaged.error().message, StartsWith(pack_.string() + ": the file is damaged ("));
 }
 
-TEST_F(SourceTest, SaysWhichPagesOfAPackAreDamaged) {
+TEST_F(SourceTest, ReportsDamagedPagesOfAPack) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
   const auto size = static_cast<std::streamoff>(fs::file_size(pack_));
   constexpr std::streamoff kPage = 4096;  // SQLite's default

@@ -48,7 +48,7 @@ class StoreFileTest : public testing::Test {
 
 // ---- Durability and other processes --------------------------------------------------------------------------------
 
-TEST_F(StoreFileTest, KeepsWhatIsCommittedAndNothingElse) {
+TEST_F(StoreFileTest, KeepsExactlyTheCommittedData) {
   {
     Store store = Make({"a", "b"});
     ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
@@ -60,7 +60,7 @@ TEST_F(StoreFileTest, KeepsWhatIsCommittedAndNothingElse) {
   EXPECT_EQ(store.Count()->fits, 2);
 }
 
-TEST_F(StoreFileTest, ShowsReadersWhatWasCommitted) {
+TEST_F(StoreFileTest, ShowsCommittedDataToReaders) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   Store reader = Reopen();
@@ -69,12 +69,12 @@ TEST_F(StoreFileTest, ShowsReadersWhatWasCommitted) {
   EXPECT_EQ(reader.Count()->pending, 0);
 }
 
-TEST_F(StoreFileTest, LetsOneWriterIn) {
+TEST_F(StoreFileTest, AllowsOneWriter) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   Store other = Reopen(Store::Mode::kWrite);
   const std::atomic<bool> stop = true;  // otherwise it would wait for ten minutes
-  other.HurryOn(&stop);
+  other.ShortenWaitsOnStop(&stop);
   const auto put = other.Put("a", UnfittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
@@ -85,7 +85,7 @@ TEST_F(StoreFileTest, LetsOneWriterIn) {
 }
 
 // A commit needs the file exclusively; it waits for a reader in progress.
-TEST_F(StoreFileTest, WaitsForAReaderToEnd) {
+TEST_F(StoreFileTest, WaitsForAReader) {
   Store store = Make({"a", "b"});
   ASSERT_TRUE(store.Commit());
   Store reader = Reopen();
@@ -93,7 +93,7 @@ TEST_F(StoreFileTest, WaitsForAReaderToEnd) {
   ASSERT_TRUE(rows.executeStep());
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   std::atomic<bool> stop = true;
-  store.HurryOn(&stop);
+  store.ShortenWaitsOnStop(&stop);
   EXPECT_EQ(store.Commit().error().code, StatusCode::kTryAgain);
   stop = false;
   std::atomic<bool> ended = false;
@@ -127,7 +127,7 @@ TEST_F(StoreFileTest, ChecksAllPages) {
   EXPECT_THAT(checked.error().message, StartsWith(path_ + ": the file is damaged ("));
 }
 
-TEST_F(StoreFileTest, KnowsRunsThatTheLastManifestDoesNotName) {
+TEST_F(StoreFileTest, KeepsRunsMissingFromTheLastManifest) {
   Store store = Make({"a", "b"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", RefittedOutcome()) && store.Commit());
   ASSERT_TRUE(store.Begin(SourceOfIds({"b", "c"}), std::nullopt, "{}"));
@@ -137,7 +137,7 @@ TEST_F(StoreFileTest, KnowsRunsThatTheLastManifestDoesNotName) {
   EXPECT_EQ(store.Count()->earlier, 0);
 }
 
-TEST_F(StoreFileTest, SaysThatAStoreMayNotBeRead) {
+TEST_F(StoreFileTest, ReportsAnUnreadableStore) {
   Make({"a"});
   fs::permissions(folder_, fs::perms::all);
   fs::permissions(path_, fs::perms::none);
@@ -156,13 +156,13 @@ TEST_F(StoreFileTest, SaysThatAStoreMayNotBeRead) {
 
 // ---- Open ----------------------------------------------------------------------------------------------------------
 
-TEST_F(StoreFileTest, ReadsNoStoreThatIsNotThere) {
+TEST_F(StoreFileTest, ReportsAMissingStore) {
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf(Store::Mode::kRead).message, path_ + ": there is no such store; check the path");
   EXPECT_FALSE(fs::exists(path_));
 }
 
-TEST_F(StoreFileTest, BeginsInAFileWithoutTables) {
+TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   std::ofstream file(path_);
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
@@ -203,7 +203,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
   }
 }
 
-TEST_F(StoreFileTest, SaysThatItIsDamaged) {
+TEST_F(StoreFileTest, ReportsDamage) {
   {
     Store store = Make({"a"});
     ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
@@ -213,7 +213,7 @@ TEST_F(StoreFileTest, SaysThatItIsDamaged) {
   EXPECT_THAT(FaultOf(Store::Mode::kRead).message, StartsWith(path_ + ": the file is damaged ("));
 }
 
-TEST_F(StoreFileTest, SaysThatWhatIsInItIsDamaged) {
+TEST_F(StoreFileTest, ReportsDamagedContent) {
   Store store = Make({"a"});
   store.database().exec("UPDATE meta SET value = 'many' WHERE key = 'runs'");
   const auto meta = store.Meta();
@@ -222,7 +222,7 @@ TEST_F(StoreFileTest, SaysThatWhatIsInItIsDamaged) {
   EXPECT_THAT(meta.error().message, StartsWith(path_ + ": the file is damaged ("));
 }
 
-TEST_F(StoreFileTest, SaysWhereItCannotBeMade) {
+TEST_F(StoreFileTest, ReportsAPathThatCannotBeCreated) {
   const auto store = Store::Open(folder_ / "nowhere" / "results.sqlite", Store::Mode::kWrite);
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kCannotWrite);

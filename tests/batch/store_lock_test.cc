@@ -67,7 +67,7 @@ class Holder {
   pid_t process_ = 0;
 };
 
-TEST_F(StoreLockTest, HasOneHolderAtATime) {
+TEST_F(StoreLockTest, HasOneOwnerAtATime) {
   std::optional<Result<StoreLock>> lock = StoreLock::Take(store_);
   ASSERT_TRUE(*lock) << lock->error().message;
   EXPECT_TRUE(fs::exists(file_));
@@ -81,7 +81,7 @@ TEST_F(StoreLockTest, HasOneHolderAtATime) {
   EXPECT_TRUE(IsFree());
 }
 
-TEST_F(StoreLockTest, KeepsOtherProcessesAwayUntilItsOwnIsKilled) {
+TEST_F(StoreLockTest, ExcludesOtherProcessesUntilItsOwnIsKilled) {
   Holder holder(store_);
   const auto other = StoreLock::Take(store_);
   ASSERT_FALSE(other);
@@ -92,7 +92,7 @@ TEST_F(StoreLockTest, KeepsOtherProcessesAwayUntilItsOwnIsKilled) {
   EXPECT_FALSE(fs::exists(file_));
 }
 
-TEST_F(StoreLockTest, GoesWithTheObjectThatItIsMovedTo) {
+TEST_F(StoreLockTest, FollowsAMove) {
   auto lock = StoreLock::Take(store_);
   ASSERT_TRUE(lock);
   {
@@ -102,13 +102,13 @@ TEST_F(StoreLockTest, GoesWithTheObjectThatItIsMovedTo) {
   EXPECT_TRUE(IsFree());
 }
 
-TEST_F(StoreLockTest, LocksEachStoreByItself) {
+TEST_F(StoreLockTest, LocksEachStoreSeparately) {
   const auto lock = StoreLock::Take(store_);
   ASSERT_TRUE(lock);
   EXPECT_TRUE(StoreLock::Take(folder_ / "other.sqlite"));
 }
 
-TEST_F(StoreLockTest, KnowsAStoreByAnyOfItsNames) {
+TEST_F(StoreLockTest, IdentifiesAStoreByAnyName) {
   std::ofstream(store_) << "x";
   fs::create_symlink("results.sqlite", folder_ / "link.sqlite");
   const auto lock = StoreLock::Take(folder_ / "link.sqlite");
@@ -117,12 +117,12 @@ TEST_F(StoreLockTest, KnowsAStoreByAnyOfItsNames) {
   EXPECT_FALSE(IsFree());
 }
 
-TEST_F(StoreLockTest, TakesALockFileThatIsLeftOver) {
+TEST_F(StoreLockTest, ReusesALeftoverLockFile) {
   std::ofstream(file_) << "x";
   EXPECT_TRUE(IsFree());
 }
 
-TEST_F(StoreLockTest, SaysWhereItCannotBeMade) {
+TEST_F(StoreLockTest, ReportsAPathThatCannotBeCreated) {
   const fs::path store = folder_ / "nowhere" / "results.sqlite";
   const auto lock = StoreLock::Take(store);
   ASSERT_FALSE(lock);

@@ -18,8 +18,8 @@ namespace pendulum::store_rows {
 inline std::string ValueText(const SQLite::Column& value) {
   if (value.isNull()) return "NULL";
   if (!value.isFloat()) return value.getString();
-  constexpr std::size_t kMostCharacters = 64;
-  std::array<char, kMostCharacters> text{};
+  constexpr std::size_t kMaxCharacters = 64;
+  std::array<char, kMaxCharacters> text{};
   std::snprintf(text.data(), text.size(), "%a", value.getDouble());
   return text.data();
 }

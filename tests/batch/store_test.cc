@@ -53,7 +53,7 @@ TEST(Shard, CutsABatchIntoPartsThatDifferByOneAtMost) {
 }
 
 // Expected values from Python's unlimited integers.
-TEST(Shard, CutsAsItIsDefinedWhereTheProductDoesNotFit) {
+TEST(Shard, IsExactIfTheProductOverflows) {
   constexpr std::int64_t kRuns = 9000000000000000001, kCount = 999999999;
   EXPECT_EQ((Shard{0, kCount}.Begin(kRuns)), 0);
   EXPECT_EQ((Shard{1, kCount}.Begin(kRuns)), 9000000009);
@@ -84,7 +84,7 @@ std::vector<std::string> TextsOf(Store& store, const std::string& query) {
 
 std::int64_t NumberOf(Store& store, const std::string& query) { return store.database().execAndGet(query).getInt64(); }
 
-TEST_F(StoreTest, HasTheTablesThatItsSchemaExplains) {
+TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
   EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 2);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
@@ -94,7 +94,7 @@ TEST_F(StoreTest, HasTheTablesThatItsSchemaExplains) {
   EXPECT_THAT(TextsOf(store, "PRAGMA integrity_check"), ElementsAre("ok"));
 }
 
-TEST_F(StoreTest, KeepsWhatTheManifestSays) {
+TEST_F(StoreTest, StoresTheManifestsData) {
   ManifestEntry entry;
   entry.id = "a";
   entry.path = "runs/a.csv";
@@ -116,7 +116,7 @@ TEST_F(StoreTest, KeepsWhatTheManifestSays) {
   EXPECT_FALSE(runs[0].exit_code);
 }
 
-TEST_F(StoreTest, GivesTheRunsOfTheBatchInPages) {
+TEST_F(StoreTest, ListsTheRunsOfTheBatchInPages) {
   Store store = Make({"c", "a", "b"});
   const auto page = store.Next(0, 2).value(), rest = store.Next(2, 2).value();
   ASSERT_EQ(page.size(), 2);
@@ -126,7 +126,7 @@ TEST_F(StoreTest, GivesTheRunsOfTheBatchInPages) {
   EXPECT_THAT(store.Next(3, 2).value(), IsEmpty());
 }
 
-TEST_F(StoreTest, TakesTheRunsOfItsShardOnly) {
+TEST_F(StoreTest, UsesOnlyTheRunsOfItsShard) {
   const Source source = SourceOfIds({"a", "b", "c", "d", "e"});
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
   const StoreMeta meta = store.Begin(source, Shard{1, 2}, "{}").value();
@@ -164,7 +164,7 @@ TEST_F(StoreTest, ReplacesEntriesByTheirIdsAndKeepsOthers) {
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM fits"), 4);
 }
 
-TEST_F(StoreTest, RefusesAnIdThatStandsTwiceAndChangesNothing) {
+TEST_F(StoreTest, RefusesARepeatedIdWithoutAChange) {
   Store store = Make({"x"});
   const auto before = TextsOf(store, "SELECT key || value FROM meta");
   const auto begun = store.Begin(SourceOfIds({"a", "b", "a"}), std::nullopt, R"({"other":1})");
@@ -177,7 +177,7 @@ TEST_F(StoreTest, RefusesAnIdThatStandsTwiceAndChangesNothing) {
   EXPECT_EQ(store.Next(0, 10).value().size(), 1);
 }
 
-TEST_F(StoreTest, RefusesABatchOfNothing) {
+TEST_F(StoreTest, RefusesAnEmptyBatch) {
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
   const auto begun = store.Begin(SourceOf({}), std::nullopt, "{}");
   ASSERT_FALSE(begun);
@@ -185,10 +185,10 @@ TEST_F(StoreTest, RefusesABatchOfNothing) {
   EXPECT_EQ(begun.error().message, "runs.csv: it names no recording; give one a row");
 }
 
-TEST_F(StoreTest, GivesOnTheErrorOfTheSource) {
+TEST_F(StoreTest, ReturnsTheErrorOfTheSource) {
   Store store = Make({"x"});
   Source source = SourceOfIds({"a"});
-  source.for_each = [](const TakeEntry&) -> Result<void> { return Error(StatusCode::kNotFound, "gone"); };
+  source.for_each = [](const EntrySink&) -> Result<void> { return Error(StatusCode::kNotFound, "gone"); };
   const auto begun = store.Begin(source, std::nullopt, "{}");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kNotFound);
@@ -197,7 +197,7 @@ TEST_F(StoreTest, GivesOnTheErrorOfTheSource) {
 
 // ---- Rows ----------------------------------------------------------------------------------------------------------
 
-TEST_F(StoreTest, PutsARowForEachQuantityOfTheResult) {
+TEST_F(StoreTest, StoresARowForEachQuantity) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   std::int64_t quantities = 0;
@@ -228,7 +228,7 @@ TEST_F(StoreTest, PutsARowForEachQuantityOfTheResult) {
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM quantities"), quantities);
 }
 
-TEST_F(StoreTest, PutsWhatEachFitSaysAndTheResultAsItIs) {
+TEST_F(StoreTest, StoresEachFitAndTheResult) {
   Store store = Make({"a"});
   const RunOutcome& outcome = RefittedOutcome();
   ASSERT_TRUE(store.Put("a", outcome));
@@ -277,7 +277,7 @@ TEST_F(StoreTest, CountsItsRunsAndFits) {
   EXPECT_EQ(counts.failed, 2);
 }
 
-TEST_F(StoreTest, SaysWhatItIsAbout) {
+TEST_F(StoreTest, DescribesItself) {
   const std::string options = R"({"models":["coulomb"]})";
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
   const StoreMeta begun = store.Begin(SourceOfIds({"a"}), std::nullopt, options).value();
@@ -298,7 +298,7 @@ TEST_F(StoreTest, SaysWhatItIsAbout) {
 }
 
 // The reason of a failure names the file, so it is not valid for a file with another name.
-TEST_F(StoreTest, ForgetsWhyARunCouldNotBeFittedOnceItsFileIsAnother) {
+TEST_F(StoreTest, ForgetsAFailureIfTheFileChanged) {
   RefitOptions options;
   options.run.models = {"coulomb"};
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
@@ -312,7 +312,7 @@ TEST_F(StoreTest, ForgetsWhyARunCouldNotBeFittedOnceItsFileIsAnother) {
 }
 
 // The result names its recording, and so does the reason of a file that is not a recording.
-TEST_F(StoreTest, NamesAFileInItsResultAsTheManifestDoesNow) {
+TEST_F(StoreTest, NamesAFileInItsResultLikeTheManifest) {
   RefitOptions options;
   options.run.models = {"coulomb"};
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
@@ -335,7 +335,7 @@ TEST_F(StoreTest, NamesAFileInItsResultAsTheManifestDoesNow) {
   }
 }
 
-TEST_F(StoreTest, KnowsNoRunThatTheBatchDoesNotName) {
+TEST_F(StoreTest, ListsOnlyRunsOfTheBatch) {
   Store store = Make({"a"});
   const auto put = store.Put("z", RefittedOutcome());
   ASSERT_FALSE(put);

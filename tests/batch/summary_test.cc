@@ -60,7 +60,7 @@ const Json& ParameterOf(const Json& summary, const std::string& model, const std
 
 // ---- Counts --------------------------------------------------------------------------------------------------------
 
-TEST_F(SummaryTest, CountsFitsByModelAndStatusAndWhatIsRecommended) {
+TEST_F(SummaryTest, CountsFitsByModelStatusAndRecommendation) {
   Store store = StoreOf(PlainManifest(5), [](std::size_t i) -> std::optional<RunOutcome> {
     if (i == 4) return std::nullopt;
     if (i == 3) return FailureOf("run3.csv: no swing", 5);
@@ -96,7 +96,7 @@ TEST_F(SummaryTest, CountsFitsByModelAndStatusAndWhatIsRecommended) {
   EXPECT_THAT(summary["warnings"], SizeIs(testing::Ge(1U)));         // one run is pending
 }
 
-TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
+TEST_F(SummaryTest, CountsUnconvergedFitsAsFailures) {
   Store store = StoreOf(PlainManifest(3), [](std::size_t) {
     RunOutcome outcome = OutcomeOf({FitOf("viscous", 10, "not_converged")});
     outcome.exit_code = 1;
@@ -113,7 +113,7 @@ TEST_F(SummaryTest, CountsFitsThatDidNotConvergeAmongFailures) {
 // ---- Parameters ----------------------------------------------------------------------------------------------------
 
 // 10, 12, 14: expected values by hand; np.percentile(x, [25, 75]) is 11, 13.
-TEST_F(SummaryTest, DescribesEachParameterThatWasFitted) {
+TEST_F(SummaryTest, DescribesEachFittedParameter) {
   const std::vector<double> values = {10, 12, 14};
   Store store = StoreOf(PlainManifest(3), [&](std::size_t i) { return OutcomeOf({FitOf("viscous", values[i])}); });
   const Json summary = SummaryOf(store);
@@ -149,7 +149,7 @@ TEST_F(SummaryTest, DescribesEachParameterThatWasFitted) {
   EXPECT_THAT(inertia["outliers"], IsEmpty());
 }
 
-TEST_F(SummaryTest, DoesNotExpectTheStartOfEachRunToRepeat) {
+TEST_F(SummaryTest, ExcludesTheStartFromRepeatability) {
   Store store =
       StoreOf(PlainManifest(6), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 5 ? 1e6 : 10)}); });
   const Json angle = ParameterOf(SummaryOf(store), "viscous", "release_angle");
@@ -159,7 +159,7 @@ TEST_F(SummaryTest, DoesNotExpectTheStartOfEachRunToRepeat) {
 }
 
 // The trend is over the position: y = 10 + 0.5 i with an outlier, which is left out.
-TEST_F(SummaryTest, NamesOutliersAndFindsTheTrendOfTheOthers) {
+TEST_F(SummaryTest, ExcludesOutliersFromTheTrend) {
   Store store = StoreOf(PlainManifest(20), [](std::size_t i) {
     const double scatter = i % 2 == 0 ? 0.01 : -0.01;
     return OutcomeOf({FitOf("viscous", i == 7 ? 1000 : 10 + 0.5 * static_cast<double>(i) + scatter)});
@@ -206,7 +206,7 @@ TEST_F(SummaryTest, GroupsRunsByAColumnOfTheManifest) {
   EXPECT_NEAR(repeatability["rows"][1]["weighted_mean"].get<double>(), 90, 1e-9);
 }
 
-TEST_F(SummaryTest, TakesColumnsOfAnyName) {
+TEST_F(SummaryTest, AcceptsAnyColumnName) {
   for (const std::string name : {"a.b", "$", "günther", "[0]", "it's", "a b"}) {
     const std::string manifest = ManifestOf(6, "," + name, [](std::size_t i) { return i < 3 ? ",A" : ",B"; });
     Store store = StoreOf(manifest, [](std::size_t i) { return OutcomeOf({FitOf("viscous", i < 3 ? 10 : 90)}); });
@@ -242,7 +242,7 @@ TEST_F(SummaryTest, FindsTrendsOverNumbers) {
   EXPECT_THAT(trend["text"], HasSubstr(" for 1 of temperature (p "));
 }
 
-TEST_F(SummaryTest, KnowsDatesAlsoWhereTheLastRunHasNone) {
+TEST_F(SummaryTest, RecognizesDatesIfTheLastRunHasNone) {
   const std::string manifest =
       ManifestOf(10, ",date", [](std::size_t i) { return i == 9 ? "," : ",2026-03-0" + std::to_string(i + 1); });
   Store store =
@@ -261,7 +261,7 @@ TEST_F(SummaryTest, ThinsThePointsOfManyRuns) {
   EXPECT_EQ(trend["points_total"], 4500);
 }
 
-TEST_F(SummaryTest, TellsApartTheRigsThatTheManifestNames) {
+TEST_F(SummaryTest, SeparatesTheRigsOfTheManifest) {
   const auto make = [](std::size_t i) { return OutcomeOf({FitOf("viscous", i % 2 == 0 ? 10 : 90)}); };
   Store several =
       StoreOf(ManifestOf(8, ",rig", [](std::size_t i) { return i % 2 == 0 ? ",a.json" : ",b.json"; }), make);
@@ -278,7 +278,7 @@ std::vector<std::string> WarningsOf(const Json& summary) {
   return codes;
 }
 
-TEST_F(SummaryTest, WarnsOfAColumnThatOrdersNothing) {
+TEST_F(SummaryTest, WarnsOfAColumnWithoutAnOrder) {
   const char* const dates[] = {"2026-03-01", "2026-03-02T12:00Z", "03.03.2026", ""};
   Store store = StoreOf(ManifestOf(4, ",date", [&](std::size_t i) { return std::string(",") + dates[i]; }),
                         [](std::size_t) { return OutcomeOf({FitOf("viscous", 10)}); });
@@ -292,7 +292,7 @@ TEST_F(SummaryTest, WarnsOfAColumnThatOrdersNothing) {
   EXPECT_THAT(WarningsOf(SummaryOf(store)), testing::Not(testing::Contains("no_order")));
 }
 
-TEST_F(SummaryTest, WarnsOfRunsOfEarlierManifestsAndOfOneSwingUnderTwoNames) {
+TEST_F(SummaryTest, WarnsOfEarlierManifestsAndDuplicateSwings) {
   const auto make = [](std::size_t i) {
     RunOutcome outcome = OutcomeOf({FitOf("viscous", 10)});
     outcome.provenance.data_sha256 = i < 2 ? "same" : "other " + std::to_string(i);
@@ -306,7 +306,7 @@ TEST_F(SummaryTest, WarnsOfRunsOfEarlierManifestsAndOfOneSwingUnderTwoNames) {
 
 // ---- Refusals ------------------------------------------------------------------------------------------------------
 
-TEST_F(SummaryTest, RefusesAColumnThatTheManifestDoesNotHave) {
+TEST_F(SummaryTest, RefusesAnUnknownColumn) {
   Store store = StoreOf(ManifestOf(2, ",rig,place,date", [](std::size_t) { return ",,here,2026-01-01"; }),
                         [](std::size_t) { return OutcomeOf({FitOf("viscous", 10)}); });
   for (const auto& [options, flag] :
@@ -327,7 +327,7 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
             (folder_ / "store.sqlite").string() + ": no run is refitted yet; refit some first");
 }
 
-TEST_F(SummaryTest, GivesTheOverviewBesideOrWithoutParameters) {
+TEST_F(SummaryTest, GivesTheOverviewWithOrWithoutParameters) {
   Store store = StoreOf(PlainManifest(3), [](std::size_t i) {
     return i == 0 ? FailureOf("no swing", 5) : OutcomeOf({FitOf("viscous", 10)});
   });
@@ -340,7 +340,7 @@ TEST_F(SummaryTest, GivesTheOverviewBesideOrWithoutParameters) {
 
 // ---- Published schema ----------------------------------------------------------------------------------------------
 
-TEST_F(SummaryTest, IsAsItsSchemaSays) {
+TEST_F(SummaryTest, MatchesItsSchema) {
   const char* const path = "include/pendulum/report/summary.schema.json";
   if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path;
   std::ifstream file(path);

@@ -45,7 +45,7 @@ TEST_F(TemporaryStoreTest, RemovesFileAndJournalBeforeAndAfter) {
   EXPECT_FALSE(fs::exists(path) || fs::exists(journal));
 }
 
-TEST_F(TemporaryStoreTest, LeavesWhatWasRenamed) {
+TEST_F(TemporaryStoreTest, KeepsARenamedFile) {
   {
     const TemporaryStore store(folder_ / "a.sqlite");
     Write("a.sqlite", "whole");
@@ -66,13 +66,13 @@ TEST_F(TemporaryStoreTest, PublishesACopyOfEveryByte) {
   }
 }
 
-TEST_F(TemporaryStoreTest, LeavesTheOldFileWhereThereIsNothingToPublish) {
+TEST_F(TemporaryStoreTest, KeepsTheOldFileIfThereIsNothingToPublish) {
   const fs::path to = Write("to", "what was there");
   EXPECT_EQ(Publish(folder_ / "none", to).error().code, StatusCode::kNotFound);
   EXPECT_EQ(Read(to), "what was there");
 }
 
-TEST_F(TemporaryStoreTest, SaysWhichFolderIsNotThere) {
+TEST_F(TemporaryStoreTest, NamesAMissingFolder) {
   EXPECT_TRUE(CheckFolderOf(folder_ / "a.sqlite"));
   EXPECT_TRUE(CheckFolderOf("a.sqlite"));
   const auto checked = CheckFolderOf(folder_ / "nowhere" / "a.sqlite");

@@ -111,7 +111,7 @@ EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int
     if (found == known.end()) continue;
     point.parameters[i] = kTruth[found - known.begin()] / point.problem.si_per_internal[i];
   }
-  if (const OrderedPair order = OrderOf(point.problem.model); order.larger >= 0) {
+  if (const OrderedPair order = FindOrderedPair(point.problem.model); order.larger >= 0) {
     point.parameters[static_cast<std::size_t>(order.larger)] =
         2 * point.parameters[static_cast<std::size_t>(order.smaller)];
   }

@@ -59,14 +59,14 @@ TEST(ClosedForms, QuantifyTheFiniteAmplitudeBiasOfTheInertia) {
   EXPECT_NEAR(forms.linear->corrected_inertia.value, 0.079 / kTorque, 4 * forms.linear->corrected_inertia.std_error);
 }
 
-TEST(ClosedForms, SayWhichLawTheEnvelopeFollows) {
+TEST(ClosedForms, ReportWhichLawTheEnvelopeFollows) {
   const ClosedForms forms = Must(EstimateClosedForms(Read(Published()), kViscousModel));
   EXPECT_THAT(forms.envelope, StartsWith("as exponential (viscous friction alone"));
   EXPECT_THAT(forms.envelope, HasSubstr("not as straight line (coulomb"));
   EXPECT_EQ(forms.wrong_law, "");
 }
 
-TEST(ClosedForms, SayWhenTheModelsFrictionIsNotTheTurningPoints) {
+TEST(ClosedForms, ReportAModelWithTheWrongFriction) {
   Decay decay = Published();
   decay.coulomb = 0.003 / kTorque;
   const ClosedForms forms = Must(EstimateClosedForms(Read(decay), kViscousModel));
@@ -74,7 +74,7 @@ TEST(ClosedForms, SayWhenTheModelsFrictionIsNotTheTurningPoints) {
   EXPECT_THAT(forms.envelope, StartsWith("no single term of friction"));
 }
 
-TEST(ClosedForms, CountTrueSecondsOnAClockThatIsWrong) {
+TEST(ClosedForms, UseTrueSecondsOnAWrongClock) {
   Recording recording = Read(Published());
   const ClosedForms right = Must(EstimateClosedForms(recording, kViscousModel));
   recording.time = 100 + recording.time.array() / 1.25;  // a clock that advances 1 s in 1.25 s
@@ -85,7 +85,7 @@ TEST(ClosedForms, CountTrueSecondsOnAClockThatIsWrong) {
   EXPECT_NEAR(forms.table.peaks[3].time, 100 + right.table.peaks[3].time / 1.25, 1e-6);
 }
 
-TEST(ClosedForms, GoOnWithoutADecrementWhereTurningPointsAreTooFew) {
+TEST(ClosedForms, WorkWithoutADecrementForFewTurningPoints) {
   Decay decay = Published();
   decay.duration = 2.3;  // three turning points, the last one near the end
   const MotionModel drag = {"drag", "drag", Gravity::kSine};

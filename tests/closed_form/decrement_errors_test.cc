@@ -69,25 +69,25 @@ void ExpectTrueErrors(const MotionModel& model, const Decay& decay, double resol
   for (std::size_t k = 0; k < z.size(); ++k) ExpectStandardNormal(z[k], std::string(model.name) + ": " + names[k]);
 }
 
-TEST(DecrementErrors, AreTrueForViscousFriction) {
+TEST(DecrementErrors, AreRightForViscousFriction) {
   Decay decay = ReferenceDecay();
   decay.viscous = 0.003 / kTorque;
   ExpectTrueErrors({"viscous", "viscous", Gravity::kSine}, decay);
 }
 
-TEST(DecrementErrors, AreTrueForDryFrictionAlone) {
+TEST(DecrementErrors, AreRightForDryFrictionAlone) {
   Decay decay = ReferenceDecay();
   decay.coulomb = 0.003 / kTorque;
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay);
 }
 
-TEST(DecrementErrors, AreTrueForBothOnCounts) {
+TEST(DecrementErrors, AreRightForBothTermsOnCounts) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay, 0.003464);  // 0.1985 deg per count
 }
 
-TEST(DecrementErrors, AreTrueWithDrag) {
+TEST(DecrementErrors, AreRightWithDrag) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
   decay.drag = 0.002 / kTorque;

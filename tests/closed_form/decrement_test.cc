@@ -38,7 +38,7 @@ TEST(FitDecrement, RecoversAllThreeTermsAtLargeAmplitude) {
   EXPECT_NEAR(found.friction[2].value, 0.001, 1e-5);
 }
 
-TEST(FitDecrement, RecoversThemFromTheRateTheSameWay) {
+TEST(FitDecrement, RecoversTheTermsFromARateToo) {
   Decay decay = AllThree();
   decay.quantity = Quantity::kRate;
   const Decrement found = Must(FitDecrement(SimulateDecay(decay), kDragModel));
@@ -60,7 +60,7 @@ TEST(FitDecrement, KeepsTheUnitOfAnUncalibratedAngle) {
   EXPECT_NEAR(found.friction[0].value, 2 * 0.02 / square, 1e-6);
 }
 
-TEST(FitDecrement, GoesOnAcrossAGap) {
+TEST(FitDecrement, ContinuesAcrossAGap) {
   const Recording gap = WithNoise(WithoutSamples(SimulateDecay(AllThree()), 9.0, 12.3), 1e-3, 5);
   const Decrement found = Must(FitDecrement(gap, kDragModel));
   EXPECT_NEAR(found.inertia.value, 0.04, 4 * found.inertia.std_error);
@@ -68,7 +68,7 @@ TEST(FitDecrement, GoesOnAcrossAGap) {
   EXPECT_GT(found.Probability(), 1e-3);
 }
 
-TEST(FitDecrement, FollowsTheTurningPointsAsItsGradientSays) {
+TEST(FitDecrement, HasTheGradientOfItsTurningPoints) {
   const Recording recording = WithNoise(SimulateDecay(AllThree()), 1e-3, 1);
   PeakTable table = Must(LocatePeaks(recording));
   const std::vector<bool> all(3, true);
@@ -81,7 +81,7 @@ TEST(FitDecrement, FollowsTheTurningPointsAsItsGradientSays) {
   EXPECT_NEAR((after.friction[1].value - before.friction[1].value) / change, slope[3], 0.02 * std::abs(slope[3]));
 }
 
-TEST(FitDecrement, RejectsALawThatIsNotTheMotions) {
+TEST(FitDecrement, RejectsAWrongLaw) {
   const Recording recording = WithNoise(SimulateDecay(AllThree()), 1e-3, 2);
   EXPECT_LT(Must(FitDecrement(recording, kViscousModel)).Probability(), 1e-6);
   EXPECT_GT(Must(FitDecrement(recording, kDragModel)).Probability(), 1e-3);
@@ -96,7 +96,7 @@ TEST(FitDecrement, NeedsMoreTurningPointsThanUnknowns) {
   EXPECT_THAT(found.error().message, HasSubstr("3 turning points are too few for the 7 unknowns"));
 }
 
-TEST(CompareEnvelopes, NamesTheOneTermThatIsThere) {
+TEST(CompareEnvelopes, FindsTheOnlyTermPresent) {
   const std::vector<std::string> terms = {"viscous", "coulomb", "drag"};
   const std::vector<std::string> shapes = {"exponential", "straight line", "hyperbola"};
   for (std::size_t truth = 0; truth < terms.size(); ++truth) {

@@ -37,7 +37,7 @@ HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
   return table;
 }
 
-TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
+TEST(FrictionFrom, IsExactForDryFrictionAtAnyAmplitude) {
   for (const double amplitude : {0.3, 1.5, 2.6}) {
     const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
     const std::vector<double> friction =
@@ -47,7 +47,7 @@ TEST(FrictionFrom, OfDryFrictionIsExactAtAnyAmplitude) {
   }
 }
 
-TEST(FrictionFrom, OfSmallViscousSwingsIsTheLogDecrement) {
+TEST(FrictionFrom, IsTheLogDecrementForSmallViscousSwings) {
   // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2.
   const double viscous = 0.002, zeta = 0.5 * viscous * 5, ratio = std::exp(-kPi * zeta / std::sqrt(1 - zeta * zeta));
   HalfSwingTable table;
@@ -75,7 +75,7 @@ TEST(FrictionFrom, RecoversEachLawAloneFromItsDecay) {
   }
 }
 
-TEST(FrictionFrom, TellsTheThreeLawsApartWhenAllAreThere) {
+TEST(FrictionFrom, SeparatesAllThreeTerms) {
   for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
     for (const double degrees : {60.0, 100.0, 150.0}) {
       SCOPED_TRACE(std::to_string(degrees) + (quantity == Quantity::kRate ? " deg, rate" : " deg, angle"));
@@ -105,7 +105,7 @@ TEST(FrictionFrom, CountsNoLossAcrossAGap) {
   EXPECT_NEAR(FrictionOf(recording, "viscous")[0] / 0.004, 1, 0.03);
 }
 
-TEST(FrictionFrom, GivesEveryRegisteredModelItsParameters) {
+TEST(FrictionFrom, GivesAllParametersOfEveryModel) {
   const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
   for (const MotionModel& model : MotionModels()) {
     EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5).front()).size() + 1, PhysicalParameters(model).size())
@@ -113,7 +113,7 @@ TEST(FrictionFrom, GivesEveryRegisteredModelItsParameters) {
   }
 }
 
-TEST(FrictionFrom, LeavingOneOutIsTheBalanceOfTheSimplerLaw) {
+TEST(FrictionFrom, MatchesTheSimplerLawWithoutAParameter) {
   Decay decay{5, 0.003, 0.003, 0.0006, 60 * kRadFromDeg, 60, Quantity::kAngle};
   const HalfSwingTable table = Must(TabulateHalfSwings(SimulateDecay(decay)));
   const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5).front();

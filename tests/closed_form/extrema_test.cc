@@ -75,7 +75,7 @@ TEST(FindExtrema, NeedsNoUniformSampling) {
   EXPECT_LT(LargestError(found, expected).time, 0.1 / 50);
 }
 
-TEST(FindExtrema, NoiseInventsNoTurningPointAndMovesNoneFar) {
+TEST(FindExtrema, NoiseAddsNoTurningPointAndMovesNoneFar) {
   const std::vector<Extremum> expected = TurningPointsOfDampedSine(19.9);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -87,7 +87,7 @@ TEST(FindExtrema, NoiseInventsNoTurningPointAndMovesNoneFar) {
   }
 }
 
-TEST(FindExtrema, NoiseAtRestInventsNoTurningPoint) {
+TEST(FindExtrema, NoiseAtRestGivesNoTurningPoint) {
   // Turning points every 0.63 s. The amplitude is below a standard deviation of the noise from 7.7 s on; 50 s follow.
   const auto to_rest = [](double t) { return std::exp(-0.6 * t) * std::sin(kOmega * t); };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -96,7 +96,7 @@ TEST(FindExtrema, NoiseAtRestInventsNoTurningPoint) {
   }
 }
 
-TEST(FindExtrema, FlickeringByACountIsNoTurningPoint) {
+TEST(FindExtrema, FlickerOfOneCountIsNotATurningPoint) {
   const double count = 0.02;
   Recording recording = Sample([&](double t) { return count * std::round(DampedSine(t) / count); }, 20, 100);
   for (Eigen::Index i = 0; i < recording.size(); i += 37) recording.value[i] += count;
@@ -136,7 +136,7 @@ TEST(FindExtrema, RefusesAConstantReading) {
             "the reading is constant: there is no swing in it; check the sensor, or choose another column");
 }
 
-TEST(FindExtrema, RefusesFewerThanThreeTurningPointsAndSaysHowManyThereWere) {
+TEST(FindExtrema, RefusesFewerThanThreeTurningPointsWithTheirNumber) {
   // Minima and maxima of cos(5 t + 0.8) are at 0.468, 1.097 and 1.725 s.
   const auto wave = [](double t) { return std::cos(kOmega * t + 0.8); };
   const auto two = FindExtrema(Sample(wave, 1.5, 100));
@@ -157,14 +157,14 @@ TEST(SuccessiveDifferenceNoise, IsTheStandardDeviationOfWhiteNoise) {
   }
 }
 
-TEST(SuccessiveDifferenceNoise, StaysSoWhenSamplesAreUneven) {
+TEST(SuccessiveDifferenceNoise, IsRightForUnevenSamples) {
   Recording recording = Sample(DampedSine, 20, 500);
   for (Eigen::Index i = 0; i < recording.size(); ++i) recording.time[i] += i % 2 == 0 ? 0.0 : 0.0018;
   for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = DampedSine(recording.time[i]);
   EXPECT_THAT(SuccessiveDifferenceNoise(WithNoise(recording, 0.01, 1)), DoubleNear(0.01, 3e-4));
 }
 
-TEST(SuccessiveDifferenceNoise, OfAStraightLineIsZeroHoweverItIsSampled) {
+TEST(SuccessiveDifferenceNoise, IsZeroForAStraightLine) {
   Recording recording = Sample([](double t) { return 3 - 0.5 * t; }, 2, 10);
   EXPECT_THAT(SuccessiveDifferenceNoise(recording), DoubleNear(0, 1e-14));
   recording.time = recording.time.array().square().eval();

@@ -99,12 +99,12 @@ void ExpectWhole(const Recording& recording, const FreeSwing& swing) {
   EXPECT_EQ(swing.from, recording.time[0]);
   EXPECT_EQ(swing.to, LastTime(recording));
   EXPECT_EQ(Sentence(swing.ends), kToTheEnd);
-  EXPECT_FALSE(swing.beats);
+  EXPECT_FALSE(swing.has_beats);
 }
 
 // ---- Where a swing begins -----------------------------------------------------------------------------------------
 
-TEST(FindFreeSwings, TakesAHoldAndItsReleaseAsAWhole) {
+TEST(FindFreeSwings, IncludesAHoldAndItsRelease) {
   const Recording recording = Joined({Still(0.5, 2), Swing(0.5, 15)});
   const FreeSwing swing = OnlySwing(recording);
   ExpectWhole(recording, swing);
@@ -122,7 +122,7 @@ TEST(FindFreeSwings, GivesTurningPointsHalfPeriodAndAmplitude) {
   }
 }
 
-TEST(FindFreeSwings, TakesAStartInMotionFromTheFirstSample) {
+TEST(FindFreeSwings, IncludesAStartInMotionFromTheFirstSample) {
   for (const double from : {0.1, 0.25, 0.4, 0.55}) {  // of 0.64 s between the first two turning points
     SCOPED_TRACE(from);
     const Recording recording = Joined({Part(Swing(0.5, 15), from)});
@@ -132,7 +132,7 @@ TEST(FindFreeSwings, TakesAStartInMotionFromTheFirstSample) {
   }
 }
 
-TEST(FindFreeSwings, BeginsAfterAPushFromRestAtTheFirstTurningPoint) {
+TEST(FindFreeSwings, BeginsAtTheFirstTurningPointAfterAPush) {
   const Recording pushed = Part(Swing(0.5, 16), Crossing(Swing(0.5, 16), 0));  // at full speed through its rest
                                                                                // position
   const FreeSwing swing = OnlySwing(Joined({Still(0, 3), pushed}));
@@ -140,7 +140,7 @@ TEST(FindFreeSwings, BeginsAfterAPushFromRestAtTheFirstTurningPoint) {
   EXPECT_THAT(swing.from, DoubleNear(3 + kHalfPeriod / 2, 0.05));
 }
 
-TEST(FindFreeSwings, LeavesOutWhatIsBeforeAndAfter) {
+TEST(FindFreeSwings, ExcludesDisturbancesBeforeAndAfter) {
   // Moved from rest to 0.5 rad in 0.8 s, held for 2 s, and caught after 12 s and put down.
   const Recording swing = Swing(0.5, 12);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -154,7 +154,7 @@ TEST(FindFreeSwings, LeavesOutWhatIsBeforeAndAfter) {
   }
 }
 
-TEST(FindFreeSwings, DropsAHoldThatCreeps) {
+TEST(FindFreeSwings, DropsAHoldThatDrifts) {
   const auto creep = [](double t) { return 0.472 + 0.014 * t; };
   const FreeSwing creeping = OnlySwing(Joined({Sample(creep, 2, kRate), Swing(0.5, 15)}, 1e-4));
   EXPECT_EQ(Sentence(creeping.begins), kUnsteady);
@@ -168,7 +168,7 @@ TEST(FindFreeSwings, DropsAHoldThatTrembles) {
   EXPECT_THAT(swing.from, AllOf(Ge(1.99), Le(2.15)));
 }
 
-TEST(FindFreeSwings, BeginsNearTheUprightWithTheNextTurningPoint) {
+TEST(FindFreeSwings, BeginsAtTheNextTurningPointNearTheUpright) {
   const double upright = 170 * kRadFromDeg;
   const FreeSwing swing = OnlySwing(Joined({Still(upright, 2), Swing(upright, 20)}));
   EXPECT_EQ(Sentence(swing.begins),
@@ -197,7 +197,7 @@ Recording SwingToRest(double rest) {
   return Joined({Still(0.29, 1), swing, Still(-0.01, rest)});
 }
 
-TEST(FindFreeSwings, CutsTheRestOnePeriodAfterTheMotion) {
+TEST(FindFreeSwings, EndsOnePeriodAfterTheMotion) {
   const FreeSwing swing = OnlySwing(SwingToRest(60));
   EXPECT_THAT(swing.to, AllOf(Ge(kStop + kHalfPeriod), Le(kStop + 5 * kHalfPeriod)));
   EXPECT_EQ(swing.ends.reason, WindowEnd::Reason::kAtRest);
@@ -209,7 +209,7 @@ TEST(FindFreeSwings, KeepsAShortRest) {
   ExpectWhole(recording, OnlySwing(recording));
 }
 
-TEST(FindFreeSwings, KeepsWhatSwingsOnUnderTheNoise) {
+TEST(FindFreeSwings, KeepsMotionBelowTheNoise) {
   // The amplitude at the end is 0.7 of the noise; one period of 126 samples shows it with five and a half standard
   // errors. Turning points can be detected up to 14 s. By chance a later one is found in the wrong place and ends the
   // swing.
@@ -225,7 +225,7 @@ TEST(FindFreeSwings, KeepsWhatSwingsOnUnderTheNoise) {
   EXPECT_THAT(whole, Ge(10));
 }
 
-TEST(FindFreeSwings, NoiseBreaksNoSwing) {
+TEST(FindFreeSwings, KeepsASwingWithNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     const Recording recording = Joined({Still(0.5, 2), Swing(0.5, 20)}, 0.04, seed);
@@ -233,7 +233,7 @@ TEST(FindFreeSwings, NoiseBreaksNoSwing) {
   }
 }
 
-TEST(FindFreeSwings, EndsWhereAHandBrakes) {
+TEST(FindFreeSwings, EndsIfAHandBrakes) {
   // At its thirteenth passage through the bottom it is slowed to the speed of a swing of 0.2 rad.
   const Recording swing = Swing(0.5, 20);
   const double brake = Crossing(swing, 12);
@@ -245,7 +245,7 @@ TEST(FindFreeSwings, EndsWhereAHandBrakes) {
   EXPECT_THAT(swings[1].from, AllOf(Gt(brake), Lt(brake + kHalfPeriod)));
 }
 
-TEST(FindFreeSwings, EndsWhereAHandStops) {
+TEST(FindFreeSwings, EndsIfAHandStopsIt) {
   const Recording swing = Swing(0.5, 20);
   const double stop = Crossing(swing, 12);
   const FreeSwing found = OnlySwing(Joined({Part(swing, 0, stop), Still(0, 6)}));
@@ -268,7 +268,7 @@ TEST(FindFreeSwings, FindsEveryRelease) {
   EXPECT_THAT(swings[1].amplitude, DoubleNear(0.8, 0.01));
 }
 
-TEST(FindFreeSwings, GapsBreakNoSwingThoughTurningPointsAreMissing) {
+TEST(FindFreeSwings, KeepsASwingAcrossGaps) {
   const Recording whole = Joined({Still(0.5, 2), Swing(0.5, 25)});
   for (const auto& [from, to] : {std::pair(6.0, 6.5), std::pair(6.3, 8.0), std::pair(9.1, 13.3)}) {
     SCOPED_TRACE(to);
@@ -279,7 +279,7 @@ TEST(FindFreeSwings, GapsBreakNoSwingThoughTurningPointsAreMissing) {
   }
 }
 
-TEST(FindFreeSwings, ASlipOfTimeEndsASwing) {
+TEST(FindFreeSwings, EndsASwingAtATimeSlip) {
   // Between two turning points, two samples are lost without a gap in the time stamps: a thirtieth of a half swing.
   const Recording swing = Joined({Still(0.5, 2), Swing(0.5, 25)}, 0.0005);
   Recording slipped = WithoutSamples(swing, 14.2, 14.225);
@@ -291,7 +291,7 @@ TEST(FindFreeSwings, ASlipOfTimeEndsASwing) {
   EXPECT_THAT(swings[1].from, AllOf(Ge(14.19), Lt(14.2 + 1.1 * kHalfPeriod)));
 }
 
-TEST(FindFreeSwings, ALoneOutlierAtATurningPointBreaksNone) {
+TEST(FindFreeSwings, KeepsASwingWithOneOutlyingTurningPoint) {
   const Recording whole = Joined({Still(0.5, 2), Swing(0.5, 25)});
   for (const double further : {0.15, -0.15}) {
     SCOPED_TRACE(further);
@@ -305,14 +305,14 @@ TEST(FindFreeSwings, ALoneOutlierAtATurningPointBreaksNone) {
   }
 }
 
-TEST(FindFreeSwings, MarksASwingThatBeats) {
+TEST(FindFreeSwings, MarksABeatingSwing) {
   // Two modes with nearly the same frequency: the amplitude rises and falls every 6.3 s and decays.
   const auto two = [](double t) {
     return std::exp(-0.03 * t) * (0.3 * std::cos(kOmega * t) + 0.2 * std::cos(1.2 * kOmega * t));
   };
   const Recording recording = Joined({Sample(two, 40, kRate)});
   const FreeSwing swing = OnlySwing(recording);
-  EXPECT_TRUE(swing.beats);
+  EXPECT_TRUE(swing.has_beats);
   EXPECT_THAT(swing.from, Le(kHalfPeriod));
   EXPECT_THAT(swing.to, Ge(39.0));
 }
@@ -331,14 +331,14 @@ TEST(FindFreeSwings, RefusesAConstantReading) {
             "the reading is constant: there is no swing in it; check the sensor, or choose another column");
 }
 
-TEST(FindFreeSwings, RefusesWhatDoesNotTurn) {
+TEST(FindFreeSwings, RefusesAReadingWithoutTurningPoints) {
   EXPECT_EQ(Refusal(Joined({Still(0.3, 2), Guided(0.3, 0, 1), Still(0, 5)})),
             "turning points that stand out of the noise between neighbouring samples: 0; at least three turning "
             "points, with five samples or more between them, are needed to tell a swing: choose a window of free "
             "swing, or record for longer");
 }
 
-TEST(FindFreeSwings, RefusesASwingThatIsDriven) {
+TEST(FindFreeSwings, RefusesADrivenSwing) {
   const auto growing = [](double t) { return 0.1 * std::exp(0.05 * t) * std::sin(kOmega * t); };
   EXPECT_EQ(
       Refusal(Joined({Sample(growing, 30, kRate)})),
@@ -350,14 +350,14 @@ TEST(FindFreeSwings, RefusesASwingThatIsDriven) {
             "see; what lies between --from and --to is fitted as it is");
 }
 
-TEST(FindFreeSwings, AStartInMotionIsNoClimb) {
+TEST(FindFreeSwings, DoesNotCountAStartInMotionAsAClimb) {
   // It loses a two-hundredth of its amplitude per half swing, and starts where it passes its rest position.
   const Recording swing = SimulateDecay({kOmega, 0, 0.001, 0, 0.5, 9});
   const Recording recording = Joined({Part(swing, Crossing(swing, 0))}, 0.01);
   ExpectWhole(recording, OnlySwing(recording));
 }
 
-TEST(FindFreeSwings, RefusesAPendulumHeldAtOneAngleAfterAnother) {
+TEST(FindFreeSwings, RefusesAPendulumMovedByHand) {
   const double angles[] = {0.0, 0.5, -0.3, 0.8, 0.1, 0.6, -0.5, 0.7, -0.1, 0.9, 0.2};
   std::vector<Recording> pieces;
   for (std::size_t i = 1; i < std::size(angles); ++i) {
@@ -370,7 +370,7 @@ TEST(FindFreeSwings, RefusesAPendulumHeldAtOneAngleAfterAnother) {
             "window of free swing with --from and --to");
 }
 
-TEST(FindFreeSwings, AsksForTheUnitOfASwingBeyondTheUpright) {
+TEST(FindFreeSwings, AsksForTheUnitIfASwingExceedsTheUpright) {
   const Recording in_degrees =
       Sample([](double t) { return 25 * std::exp(-0.02 * t) * std::cos(kOmega * t); }, 20, kRate);
   EXPECT_THAT(Refusal(in_degrees),
@@ -378,7 +378,7 @@ TEST(FindFreeSwings, AsksForTheUnitOfASwingBeyondTheUpright) {
                                  "the column in another unit?"));
 }
 
-TEST(FindFreeSwings, TakesCountsForNoAngle) {
+TEST(FindFreeSwings, DoesNotTreatCountsAsAnAngle) {
   Recording counts = Joined({Still(0.4, 1), Swing(0.4, 10)});
   counts.value = 500 + 300 * counts.value.array();
   counts.unit = "counts";

@@ -22,7 +22,7 @@ using Friction = std::array<double, 3>;
 
 std::optional<HalfSwingEnd> Swing(const MotionModel& model, const Friction& friction, double amplitude,
                                   double natural_frequency) {
-  return SwingThrough(model, friction, amplitude, natural_frequency, 1, true);
+  return ComputeHalfSwing(model, friction, amplitude, natural_frequency, 1, true);
 }
 
 /// Rate and angle for the drag law by classical Runge-Kutta steps in time, as an independent method.
@@ -52,7 +52,7 @@ HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
   return end;
 }
 
-TEST(HalfSwingMap, WithoutFrictionTakesHalfThePeriodOfTheEllipticIntegral) {
+TEST(HalfSwingMap, TakesHalfTheEllipticPeriodWithoutFriction) {
   for (const double amplitude : {1e-4, 0.1, 0.42, 1.0, 1.5, 2.0}) {
     const auto end = Swing(kDragModel, Friction{}, amplitude, kFrequency);
     ASSERT_TRUE(end);
@@ -64,7 +64,7 @@ TEST(HalfSwingMap, WithoutFrictionTakesHalfThePeriodOfTheEllipticIntegral) {
   }
 }
 
-TEST(HalfSwingMap, LinearPendulumLosesTwiceTheStickingAngleToDryFriction) {
+TEST(HalfSwingMap, LosesTwiceTheStickingAngleToDryFriction) {
   const auto end = Swing(kLinearDrag, Friction{0, 0.01, 0}, 0.3, kFrequency);
   ASSERT_TRUE(end);
   EXPECT_NEAR(end->amplitude, 0.28, 1e-14);
@@ -72,7 +72,7 @@ TEST(HalfSwingMap, LinearPendulumLosesTwiceTheStickingAngleToDryFriction) {
   EXPECT_NEAR(end->peak_rate, 0.29 * kFrequency, 1e-13);  // half the distance, about the point where friction holds
 }
 
-TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
+TEST(HalfSwingMap, FollowsTheLogDecrementForALinearPendulum) {
   const double damping_ratio = 0.05;
   const double root = std::sqrt(1 - damping_ratio * damping_ratio);
   const auto end = Swing(kLinearDrag, Friction{2 * damping_ratio / kFrequency, 0, 0}, 0.3, kFrequency);
@@ -85,7 +85,7 @@ TEST(HalfSwingMap, LinearPendulumDecaysByTheLogDecrement) {
   EXPECT_NEAR(end->peak_rate, 0.3 * kFrequency * std::exp(-damping_ratio * kFrequency * delay), 1e-13);
 }
 
-TEST(HalfSwingMap, AgreesWithRungeKuttaForAllThreeTermsAtOnce) {
+TEST(HalfSwingMap, MatchesRungeKuttaForAllThreeTerms) {
   const Friction friction = {0.004, 0.003, 0.002};
   for (const double amplitude : {0.05, 0.42, 1.2, 2.1}) {
     const auto end = Swing(kDragModel, friction, amplitude, kFrequency);
@@ -98,13 +98,13 @@ TEST(HalfSwingMap, AgreesWithRungeKuttaForAllThreeTermsAtOnce) {
   }
 }
 
-TEST(HalfSwingMap, FrictionMayHaveEitherSign) {
+TEST(HalfSwingMap, AcceptsFrictionOfEitherSign) {
   const auto gain = Swing(kLinearDrag, Friction{0, -0.01, 0}, 0.3, kFrequency);
   ASSERT_TRUE(gain);
   EXPECT_NEAR(gain->amplitude, 0.32, 1e-14);
 }
 
-TEST(HalfSwingMap, IsNothingWhereFrictionStopsTheSwingShort) {
+TEST(HalfSwingMap, IsMissingIfFrictionStopsTheSwing) {
   EXPECT_FALSE(Swing(kDragModel, Friction{0, 0.2, 0}, 0.3, kFrequency));
   EXPECT_FALSE(Swing(kDragModel, Friction{0, 0.5, 0}, 0.3, kFrequency));
 }

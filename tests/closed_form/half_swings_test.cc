@@ -32,7 +32,7 @@ double DryFriction(double t) {
 
 double Cosine(double t) { return 0.1 + std::cos(kOmega * t - 0.9); }
 
-TEST(TabulateHalfSwings, DryFrictionLeavesTheZeroWhereItIs) {
+TEST(TabulateHalfSwings, HasNoZeroShiftForDryFriction) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(DryFriction, 8, 200)));
   ASSERT_THAT(table.half_swings, SizeIs(11));      // 12 turning points after the start, half a period apart
   EXPECT_THAT(table.zero, DoubleNear(0.1, 1e-4));  // the mean of the reading has a larger error
@@ -44,12 +44,12 @@ TEST(TabulateHalfSwings, DryFrictionLeavesTheZeroWhereItIs) {
   }
 }
 
-TEST(TabulateHalfSwings, AnExponentialDecayShiftsTheZeroLessThanAThousandthOfTheAmplitude) {
+TEST(TabulateHalfSwings, HasATinyZeroShiftForExponentialDecay) {
   const auto decay = [](double t) { return 0.1 + std::exp(-0.05 * t) * std::cos(kOmega * t - 0.9); };
   EXPECT_THAT(Must(TabulateHalfSwings(Sample(decay, 20, 200))).zero, DoubleNear(0.1, 1e-3));
 }
 
-TEST(TabulateHalfSwings, DatesThePassagesThroughZero) {
+TEST(TabulateHalfSwings, LocatesThePassagesThroughZero) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 100, 1000)));
   ASSERT_THAT(table.half_swings, SizeIs(11));
   // cos(5 t - 0.9) on a clock that starts at 1000 s. Turning points are at 5 t - 0.9 = n π.
@@ -60,7 +60,7 @@ TEST(TabulateHalfSwings, DatesThePassagesThroughZero) {
   }
 }
 
-TEST(TabulateHalfSwings, ALineThroughManySamplesDatesAPassageBetterThanTwoOfThem) {
+TEST(TabulateHalfSwings, LocatesAPassageBetterWithManySamples) {
   constexpr double kNoise = 0.05;
   double squares = 0;
   int count = 0;
@@ -77,7 +77,7 @@ TEST(TabulateHalfSwings, ALineThroughManySamplesDatesAPassageBetterThanTwoOfThem
   EXPECT_LT(std::sqrt(squares / count), 0.0045);
 }
 
-TEST(TabulateHalfSwings, DatesPassagesFromTwoSamplesWhereThereAreNoMore) {
+TEST(TabulateHalfSwings, LocatesPassagesFromTwoSamples) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 8)));  // five samples per half period
   for (std::size_t i = 0; i < table.half_swings.size(); ++i) {
     const double crossing = ((0.5 + static_cast<double>(i)) * kPi + 0.9) / kOmega;
@@ -85,12 +85,12 @@ TEST(TabulateHalfSwings, DatesPassagesFromTwoSamplesWhereThereAreNoMore) {
   }
 }
 
-TEST(TabulateHalfSwings, EachContinuesTheOneBeforeIt) {
+TEST(TabulateHalfSwings, ContinuesEachHalfSwingFromThePrevious) {
   const HalfSwingTable table = Must(TabulateHalfSwings(Sample(Cosine, 8, 100)));
   for (std::size_t i = 0; i < table.half_swings.size(); ++i) EXPECT_EQ(table.half_swings[i].continues, i > 0) << i;
 }
 
-TEST(TabulateHalfSwings, AGapBreaksTheRun) {
+TEST(TabulateHalfSwings, BreaksTheRunAtAGap) {
   // Turning points at 0.18 + 0.628 i: only the half swing from 2.69 s to 3.32 s is lost in the gap.
   const HalfSwingTable table = Must(TabulateHalfSwings(WithoutSamples(Sample(Cosine, 8, 100), 2.75, 3.25)));
   ASSERT_THAT(table.half_swings, SizeIs(11));
@@ -99,13 +99,13 @@ TEST(TabulateHalfSwings, AGapBreaksTheRun) {
   EXPECT_THAT(table.half_swings[4].crossing, DoubleNear((5.5 * kPi + 0.9) / kOmega, 1e-3));
 }
 
-TEST(TabulateHalfSwings, AGapOfATenthOfASecondDoesNot) {
+TEST(TabulateHalfSwings, AcceptsAGapOfATenthOfASecond) {
   const HalfSwingTable table = Must(TabulateHalfSwings(WithoutSamples(Sample(Cosine, 8, 100), 2.9, 3.0)));
   ASSERT_THAT(table.half_swings, SizeIs(12));
   for (std::size_t i = 1; i < 12; ++i) EXPECT_TRUE(table.half_swings[i].continues) << i;
 }
 
-TEST(TabulateHalfSwings, RefusesHalfSwingsOfWhichNoTwoFollowEachOther) {
+TEST(TabulateHalfSwings, RefusesIsolatedHalfSwings) {
   Recording recording = Sample(Cosine, 8, 100);
   for (double turn = 0.9 / kOmega; turn < 8; turn += 2 * kHalfPeriod) {
     recording = WithoutSamples(recording, turn + 0.1, turn + kHalfPeriod - 0.1);
@@ -116,7 +116,7 @@ TEST(TabulateHalfSwings, RefusesHalfSwingsOfWhichNoTwoFollowEachOther) {
   EXPECT_THAT(table.error().message, HasSubstr("no two half swings follow each other without a gap"));
 }
 
-TEST(TabulateHalfSwings, RefusesWhatHasTooFewTurningPoints) {
+TEST(TabulateHalfSwings, RefusesTooFewTurningPoints) {
   const auto table = TabulateHalfSwings(Sample(Cosine, 1, 100));
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().code, StatusCode::kFailedPrecondition);

@@ -26,7 +26,7 @@ double Linear(double t) {
                     (std::cos(phase) + kDampingRatio * kNatural / kDamped * std::sin(phase));
 }
 
-TEST(LogDecrement, GivesBackTheLinearPendulum) {
+TEST(LogDecrement, ReproducesTheLinearPendulum) {
   const PeakTable table = Must(LocatePeaks(Sample(Linear, 15, 100)));
   for (const int periods : {1, 2, 5, 9}) {
     const auto found = ApplyLogDecrement(table, Gravity::kLinear, 1, periods);
@@ -42,7 +42,7 @@ TEST(LogDecrement, GivesBackTheLinearPendulum) {
   }
 }
 
-TEST(LogDecrement, ScattersAsItsErrorsSay) {
+TEST(LogDecrement, ScattersAsItsErrorsPredict) {
   const Recording clean = Sample(Linear, 15, 100);
   constexpr int kSeeds = 200;
   Eigen::Array4d squares = Eigen::Array4d::Zero();
@@ -72,7 +72,7 @@ TEST(LogDecrement, TakesTheLongerPeriodOfLargeSwingsForInertia) {
   EXPECT_NEAR(found->corrected_inertia.value * kNatural * kNatural, 1, 1e-5);
 }
 
-TEST(LogDecrement, ChoosesPeriodsThatGiveTheSmallestError) {
+TEST(LogDecrement, ChoosesThePeriodsWithTheSmallestError) {
   const PeakTable table = Must(LocatePeaks(WithNoise(Sample(Linear, 25, 100), 1e-3, 4)));
   const auto best = ApplyLogDecrement(table, Gravity::kLinear);
   ASSERT_TRUE(best);
@@ -83,7 +83,7 @@ TEST(LogDecrement, ChoosesPeriodsThatGiveTheSmallestError) {
   }
 }
 
-TEST(LogDecrement, FollowsTheTurningPointsAsItsGradientSays) {
+TEST(LogDecrement, HasTheGradientOfItsTurningPoints) {
   PeakTable table = Must(LocatePeaks(WithNoise(Sample(Linear, 15, 100), 1e-3, 4)));
   const auto before = ApplyLogDecrement(table, Gravity::kSine, 0, 4);
   constexpr double kChange = 1e-5;
@@ -103,7 +103,7 @@ TEST(LogDecrement, FollowsTheTurningPointsAsItsGradientSays) {
   EXPECT_NEAR(corrected, slope[3], 1e-2 * std::abs(slope[3]));
 }
 
-TEST(LogDecrement, IsNothingBeyondTheTurningPointsOrAcrossAGap) {
+TEST(LogDecrement, IsMissingBeyondTheTurningPointsOrAcrossAGap) {
   const PeakTable table = Must(LocatePeaks(WithoutSamples(Sample(Linear, 15, 100), 5.0, 7.0)));
   EXPECT_FALSE(ApplyLogDecrement(table, Gravity::kSine, 0, 40));
   EXPECT_FALSE(ApplyLogDecrement(table, Gravity::kSine, 0, 0));
@@ -114,7 +114,7 @@ TEST(LogDecrement, IsNothingBeyondTheTurningPointsOrAcrossAGap) {
   EXPECT_GT(table.peaks[longest->first].time, 7.0);
 }
 
-TEST(TabulateDecay, GivesEachPairAndTheSumOfAllBefore) {
+TEST(TabulateDecay, GivesEachPairAndTheSumSoFar) {
   const PeakTable table = Must(LocatePeaks(Sample(Linear, 15, 100)));
   const std::vector<DecayRow> rows = TabulateDecay(table);
   ASSERT_EQ(rows.size(), table.peaks.size());

@@ -46,7 +46,7 @@ TEST(LocatePeaks, FindsACosinesTurningPointsExactly) {
   }
 }
 
-TEST(LocatePeaks, LargeSwingsTurnWhereTheEllipticFunctionSays) {
+TEST(LocatePeaks, MatchesEllipticFunctionsForLargeSwings) {
   constexpr double kAmplitude = 1.5;
   const auto swing = [](double t) { return UndampedAngle(kAmplitude, 1 / (kFrequency * kFrequency), t - 0.5); };
   const PeakTable table = Must(LocatePeaks(Sample(swing, 10, 100)));
@@ -58,7 +58,7 @@ TEST(LocatePeaks, LargeSwingsTurnWhereTheEllipticFunctionSays) {
   }
 }
 
-TEST(LocatePeaks, ScatterAsTheirErrorsSay) {
+TEST(LocatePeaks, ScattersAsItsErrorsPredict) {
   const Recording clean = Sample(Cosine, 12, 100);
   double time_squares = 0, value_squares = 0, count = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -76,7 +76,7 @@ TEST(LocatePeaks, ScatterAsTheirErrorsSay) {
   EXPECT_NEAR(std::sqrt(value_squares / count), 1, 0.08);
 }
 
-TEST(LocatePeaks, TakeTheKinkOfDryFrictionIntoAccount) {
+TEST(LocatePeaks, AccountsForTheKinkOfDryFriction) {
   const Recording recording = Sample(DryDecay, 8, 200);
   const auto largest_delay = [&](const Kink& kink) {
     double largest = 0;
@@ -90,7 +90,7 @@ TEST(LocatePeaks, TakeTheKinkOfDryFrictionIntoAccount) {
   EXPECT_GT(largest_delay({-0.01, kFrequency}), 2e-3);
 }
 
-TEST(LocatePeaks, FollowTheReadingsAsTheirInfluenceSays) {
+TEST(LocatePeaks, HasTheInfluencesOfTheReadings) {
   Recording recording = WithNoise(Sample(Cosine, 8, 100), 0.001, 7);
   const PeakTable before = Must(LocatePeaks(recording));
   const Peak& peak = before.peaks[2];
@@ -105,7 +105,7 @@ TEST(LocatePeaks, FollowTheReadingsAsTheirInfluenceSays) {
   EXPECT_NEAR(peak.influence.row(1).sum(), 1, 1e-9);
 }
 
-TEST(LocatePeaks, InfluenceAndCovarianceOfNumbersMadeFromThem) {
+TEST(LocatePeaks, PropagatesInfluenceAndCovariance) {
   const PeakTable table = Must(LocatePeaks(WithNoise(Sample(Cosine, 8, 100), 0.001, 3)));
   Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(1, 2 * static_cast<Eigen::Index>(table.peaks.size()));
   gradient(0, 0) = -1;  // the time between the first and the last turning point
@@ -116,7 +116,7 @@ TEST(LocatePeaks, InfluenceAndCovarianceOfNumbersMadeFromThem) {
   EXPECT_NEAR(influence.squaredNorm() * table.noise * table.noise, expected, 1e-9 * expected);
 }
 
-TEST(LocatePeaks, LeavesSaturatedTurningPointsOut) {
+TEST(LocatePeaks, ExcludesSaturatedTurningPoints) {
   Recording recording = Sample(Cosine, 8, 100);
   recording.range = SensorRange{-1, 0.4};
   recording.value = recording.value.cwiseMin(0.4);
@@ -126,7 +126,7 @@ TEST(LocatePeaks, LeavesSaturatedTurningPointsOut) {
   EXPECT_TRUE(LocatePeaks(recording));
 }
 
-TEST(LocatePeaks, TellsWhereAGapBreaksTheSequence) {
+TEST(LocatePeaks, ReportsWhereAGapBreaksTheSequence) {
   const PeakTable table = Must(LocatePeaks(WithoutSamples(Sample(Cosine, 12, 100), 4.0, 6.1)));
   int breaks = 0;
   for (std::size_t i = 1; i < table.peaks.size(); ++i) {
@@ -137,7 +137,7 @@ TEST(LocatePeaks, TellsWhereAGapBreaksTheSequence) {
   EXPECT_EQ(breaks, 1);
 }
 
-TEST(LocatePeaks, NeedsThreeThatFollowEachOther) {
+TEST(LocatePeaks, NeedsThreeConsecutiveTurningPoints) {
   const auto located = LocatePeaks(Sample(Cosine, 1.7, 100));
   ASSERT_FALSE(located);
   EXPECT_EQ(located.error().code, StatusCode::kFailedPrecondition);

@@ -16,7 +16,7 @@ using testing::DoubleNear;
 
 // ---- Amplitude and period ----------------------------------------------------------------------------------------
 
-TEST(PeriodRatio, IsThatOfThePublishedTable) {
+TEST(PeriodRatio, MatchesThePublishedTable) {
   // T/T0 at amplitude [deg], computed independently by the arithmetic-geometric mean.
   constexpr std::pair<double, double> kTable[] = {{10, 1.001907188143}, {30, 1.017408797596},  {60, 1.073182007149},
                                                   {90, 1.180340599016}, {120, 1.372880500618}, {150, 1.762203729504},
@@ -26,7 +26,7 @@ TEST(PeriodRatio, IsThatOfThePublishedTable) {
   }
 }
 
-TEST(PeriodRatio, IsTheCompleteEllipticIntegralOfTheStandardLibrary) {
+TEST(PeriodRatio, MatchesTheStandardLibrarysEllipticIntegral) {
   for (double degrees = 1; degrees < 180; degrees += 1) {
     const double expected = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg));
     EXPECT_THAT(PeriodRatio(degrees * kRadFromDeg) / expected, DoubleNear(1, 1e-12)) << degrees;
@@ -38,12 +38,12 @@ TEST(PeriodRatio, IsOneAtRestAndTheSameOnBothSides) {
   EXPECT_EQ(PeriodRatio(-1.2), PeriodRatio(1.2));
 }
 
-TEST(AngleAmplitude, OfAnAngleIsItself) {
+TEST(AngleAmplitude, IsUnchangedForAnAngle) {
   EXPECT_EQ(AngleAmplitude(Quantity::kAngle, 1.3, 5), 1.3);
   EXPECT_EQ(AngleAmplitude(Quantity::kAngle, 4.0, 5), 3.1);
 }
 
-TEST(AngleAmplitude, OfAPeakRateFollowsFromEnergy) {
+TEST(AngleAmplitude, FollowsFromEnergyForAPeakRate) {
   // ω_peak² / 2 = ω0² (1 - cos A).
   for (const double amplitude : {0.1, 1.0, 2.0, 3.0}) {
     const double peak = 5 * std::sqrt(2 * (1 - std::cos(amplitude)));
@@ -57,7 +57,7 @@ TEST(AngleAmplitude, OfAPeakRateFollowsFromEnergy) {
 // Near the top, the angle and the rate around their peaks differ more and more from a parabola. The amplitudes come out
 // too small, and so does the correction of the period.
 
-TEST(NaturalFrequency, OfAnUndampedAngleIsRightAtEveryAmplitude) {
+TEST(NaturalFrequency, IsRightForAnUndampedAngleAtAnyAmplitude) {
   for (double degrees = 10; degrees <= 170; degrees += 10) {
     const auto angle = [&](double t) { return UndampedAngle(degrees * kRadFromDeg, 1.0 / 25, t + 0.3); };
     const HalfSwingTable table = Must(TabulateHalfSwings(Sample(angle, 30, 100)));
@@ -66,7 +66,7 @@ TEST(NaturalFrequency, OfAnUndampedAngleIsRightAtEveryAmplitude) {
   }
 }
 
-TEST(NaturalFrequency, OfAnUndampedRateIsRightAtEveryAmplitude) {
+TEST(NaturalFrequency, IsRightForAnUndampedRateAtAnyAmplitude) {
   for (double degrees = 10; degrees <= 170; degrees += 10) {
     const auto rate = [&](double t) { return UndampedRate(degrees * kRadFromDeg, 5, t + 0.3); };
     Recording recording = Sample(rate, 30, 100);

@@ -55,7 +55,7 @@ TEST(ApparentFrequency, FoldsAtHalfTheRate) {
   EXPECT_NEAR(ApparentFrequency(2.3, 1), 0.3, 1e-12);
 }
 
-TEST(ApparentFrequency, IsThatOfTheSameSamples) {
+TEST(ApparentFrequency, GivesTheSameSamplesAsTheTrueFrequency) {
   for (const double frequency : {0.1, 0.6, 1.3, 2.9}) {
     for (int i = 0; i < 9; ++i) {
       EXPECT_NEAR(std::cos(2 * kPi * frequency * i / 0.8),
@@ -64,12 +64,12 @@ TEST(ApparentFrequency, IsThatOfTheSameSamples) {
   }
 }
 
-TEST(HoldsMirror, WhereTwoFrequenciesOfTheRangeHaveTheSameSamples) {
-  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 1));      // the mirror frequencies 0.5 and 1 lie outside
-  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 0.76));    // once per cycle
-  EXPECT_TRUE(HoldsMirror(0.66, 0.89, 1.52));    // twice per cycle
-  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 1.267));  // 5/3 of 0.76
-  EXPECT_FALSE(HoldsMirror(0.66, 0.89, 100));    // 0 is no mirror between two positive frequencies
+TEST(CanAliasWithinRange, IsTrueIfTwoFrequenciesGiveTheSameSamples) {
+  EXPECT_FALSE(CanAliasWithinRange(0.66, 0.89, 1));      // the mirror frequencies 0.5 and 1 lie outside
+  EXPECT_TRUE(CanAliasWithinRange(0.66, 0.89, 0.76));    // once per cycle
+  EXPECT_TRUE(CanAliasWithinRange(0.66, 0.89, 1.52));    // twice per cycle
+  EXPECT_FALSE(CanAliasWithinRange(0.66, 0.89, 1.267));  // 5/3 of 0.76
+  EXPECT_FALSE(CanAliasWithinRange(0.66, 0.89, 100));    // 0 is no mirror between two positive frequencies
 }
 
 TEST(DescribeSampling, MeasuresAnEvenRecording) {
@@ -124,7 +124,7 @@ TEST(DescribeSampling, FindsGapsAndJitter) {
   EXPECT_THAT(Codes(sampling), ElementsAre("gaps", "jitter"));
 }
 
-TEST(SamplingWarnings, CallFewerThanEightSamplesAPeriodSlow) {
+TEST(SamplingWarnings, ReportFewerThanEightSamplesPerPeriod) {
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.5, 3.9, 60), 1.0, std::nullopt)), ElementsAre("slow_sampling"));
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.5, 4.1, 60), 1.0, std::nullopt)), IsEmpty());
   EXPECT_THAT(MessageOf(DescribeSampling(Cosine(0.5, 3.9, 60), 1.0, std::nullopt), "slow_sampling"),
@@ -142,18 +142,18 @@ TEST(SamplingWarnings, ExplainTheApparentPeriod) {
   EXPECT_THAT(message, HasSubstr("sample at least at 15.2 Hz"));
 }
 
-TEST(SamplingWarnings, SayWhenSamplesOnceOrTwiceACycleAreAmbiguous) {
+TEST(SamplingWarnings, ReportOneOrTwoSamplesPerCycleAsAmbiguous) {
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 0.76, 30), std::nullopt, 0.76)), Contains("once_a_cycle"));
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.52, 30), std::nullopt, 0.76)), Contains("once_a_cycle"));
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.267, 30), std::nullopt, 0.76)), Not(Contains("once_a_cycle")));
 }
 
-TEST(SamplingWarnings, CallARateJustAboveTwiceTheFrequencyNearlyAliased) {
+TEST(SamplingWarnings, ReportARateJustAboveTwiceTheFrequency) {
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.7, 30), std::nullopt, 0.76)),
               ElementsAre("nearly_aliased", "once_a_cycle"));
 }
 
-TEST(SamplingWarnings, TellTheSeenFrequencyFromTheExpectedOneOnlyWhereItAliases) {
+TEST(SamplingWarnings, CompareFrequenciesOnlyIfAliased) {
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 100, 300), 0.5 / 0.76, 0.78).frequency_hz, 0.76, 1e-12);
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 1, 30), 0.5 / 0.24, 0.78).frequency_hz, 0.78, 1e-12);
 }

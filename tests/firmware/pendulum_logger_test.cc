@@ -81,7 +81,7 @@ double LargestOffset(const std::vector<Conversion>& conversions, int period) {
 
 class AtRate : public testing::TestWithParam<std::tuple<std::string, double, int>> {};
 
-TEST_P(AtRate, EveryCodeOfAMinuteComesAtItsTime) {
+TEST_P(AtRate, EveryCodeOfAMinuteArrivesAtItsTime) {
   const auto& [board, hz, oversample] = GetParam();
   Bench bench(Board(board));
   const ReceivedRun& run = bench.Record(Rate(hz, oversample), 60);
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Boards, AtRate,
 INSTANTIATE_TEST_SUITE_P(Oversampling, AtRate,
                          testing::Values(std::tuple("uno", 200.0, 16), std::tuple("uno", 1000.0, 8)));
 
-TEST(PendulumLogger, OverloadIsCountedAndTheRestIsRight) {
+TEST(PendulumLogger, CountsOverloadAndKeepsOtherSamplesRight) {
   Bench bench(Board("uno"));
   const ReceivedRun& run = bench.Record(Rate(4000), 10);
   const std::vector<Conversion> conversions = bench.Conversions();
@@ -143,7 +143,7 @@ TEST_P(OnBadLine, NoWrongSampleIsAcceptedAndLossesAreCounted) {
 
 INSTANTIATE_TEST_SUITE_P(FlippedAndDropped, OnBadLine, testing::Bool());
 
-TEST(PendulumLogger, TicksBeginAgainAfterTwoToTheThirtyTwoAndTimesDoNot) {
+TEST(PendulumLogger, KeepsTimesAcrossTheTickOverflow) {
   constexpr double kSeconds = 2200;  // 2³² ticks are 2147 s
   Bench bench(Board("uno"));
   const ReceivedRun& run = bench.Record(Rate(50), kSeconds);
@@ -153,7 +153,7 @@ TEST(PendulumLogger, TicksBeginAgainAfterTwoToTheThirtyTwoAndTimesDoNot) {
   EXPECT_EQ(WrongSamples(run, bench.Conversions()), 0);
 }
 
-TEST(PendulumLogger, InterruptsHeldBackCostSamplesAndMoveNone) {
+TEST(PendulumLogger, LosesSamplesButShiftsNoneIfInterruptsAreLate) {
   Bench bench(Board("uno"));
   const auto hold = [&bench] { bench.board().HoldInterrupts(0.0105); };
   const ReceivedRun& run = bench.Record(Rate(1000), 2, hold);
@@ -165,7 +165,7 @@ TEST(PendulumLogger, InterruptsHeldBackCostSamplesAndMoveNone) {
   EXPECT_EQ(WrongSamples(run, bench.Conversions()), 0);
 }
 
-TEST(PendulumLogger, StartsAgainFromTheBeginning) {
+TEST(PendulumLogger, RestartsCompletely) {
   Bench bench(Board("uno"));
   const auto before = bench.Answered<wire::Info>(wire::Command<wire::kAskInfo>{});
   ASSERT_TRUE(before.has_value());
@@ -180,7 +180,7 @@ TEST(PendulumLogger, StartsAgainFromTheBeginning) {
   EXPECT_EQ(after->is_running, 0);
 }
 
-TEST(PendulumLogger, SaysWhatItIs) {
+TEST(PendulumLogger, IdentifiesItself) {
   for (const std::string name : {"uno", "mega"}) {
     Bench bench(Board(name));
     const auto info = bench.Answered<wire::Info>(wire::Command<wire::kAskInfo>{});
@@ -194,7 +194,7 @@ TEST(PendulumLogger, SaysWhatItIs) {
   }
 }
 
-TEST(PendulumLogger, RefusesWhatItCannotDo) {
+TEST(PendulumLogger, RefusesImpossibleCommands) {
   Bench bench(Board("uno"));
   EXPECT_EQ(bench.Status(wire::SetRate{249, 1}), wire::kOutOfRange);
   EXPECT_EQ(bench.Status(wire::SetRate{62501, 1}), wire::kOutOfRange);
@@ -228,7 +228,7 @@ TEST(PendulumLogger, KeepsItsCalibrationWithoutPower) {
   EXPECT_EQ(info->calibration.slope_variance, line.slope_variance);
 }
 
-TEST(PendulumLogger, ForgetsACalibrationThatIsDamaged) {
+TEST(PendulumLogger, DiscardsADamagedCalibration) {
   Bench bench(Board("uno"));
   ASSERT_EQ(bench.Status(wire::StoreCalibration{{-49.6077F, 0.1985F, 0, 0, 0}}), wire::kDone);
   BoardOptions damaged = Board("uno");
@@ -251,7 +251,7 @@ TEST(PendulumLogger, AnswersAQuestionMarkInWords) {
   EXPECT_EQ(bench.Status(wire::Command<wire::kStop>{}), wire::kDone);  // the question has not confused it
 }
 
-TEST(SimulatedBoard, SeesWhatABoardWouldNotForgive) {
+TEST(SimulatedBoard, DetectsFaultsThatABoardWouldNotTolerate) {
   const auto faults = [](const std::string& name) {
     BoardOptions options = Board("uno");
     options.firmware = std::string(PENDULUM_BAD_FIRMWARE) + "/bad_" + name + ".elf";
@@ -264,7 +264,7 @@ TEST(SimulatedBoard, SeesWhatABoardWouldNotForgive) {
   EXPECT_EQ(faults("FORGETS").second, 1U);  // the flag is never cleared, so it never rises again
 }
 
-TEST(SimulatedBoard, RatiometricReadingsDoNotSeeTheSupply) {
+TEST(SimulatedBoard, GivesRatiometricReadingsIndependentOfTheSupply) {
   PotentiometerOptions rippled{.supply_ripple = 0.01};
   Potentiometer quiet{PotentiometerOptions()}, ratiometric{rippled};
   rippled.is_ratiometric = false;

@@ -134,11 +134,11 @@ class PseudoTerminal {
   /// Bytes without room now are written with the next ones: a machine that was suspended reads many at once. Bytes that
   /// nobody reads are lost.
   void Write(const std::vector<std::uint8_t>& bytes) {
-    constexpr std::size_t kMostUnread = std::size_t{1} << 16;
+    constexpr std::size_t kMaxUnread = std::size_t{1} << 16;
     unread_.insert(unread_.end(), bytes.begin(), bytes.end());
     const ssize_t count = unread_.empty() ? 0 : ::write(host_side_, unread_.data(), unread_.size());
     if (count > 0) unread_.erase(unread_.begin(), unread_.begin() + count);
-    if (unread_.size() > kMostUnread) unread_.clear();
+    if (unread_.size() > kMaxUnread) unread_.clear();
   }
 
   std::vector<std::uint8_t> Read() {

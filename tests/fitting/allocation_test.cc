@@ -48,7 +48,7 @@ void* __wrap_malloc(std::size_t size) {
 namespace pendulum::allocation_test {
 namespace {
 
-TEST(Allocations, AreSeen) {
+TEST(Allocations, AreDetected) {
   int before = allocations;
   const Eigen::VectorXd vector = Eigen::VectorXd::Constant(1000, allocations);
   EXPECT_EQ(allocations - before, 1) << vector.sum();

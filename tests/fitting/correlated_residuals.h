@@ -26,33 +26,34 @@ inline constexpr double kSampleInterval = 0.01;  // s, of EvenTimes
 // ---- The likelihood computed independently: a dense covariance matrix -----------------------------------------------
 
 /// Correlations of lags 0..longest, from the weights ψ of an infinite moving average (Box & Jenkins, section 3.4).
-inline std::vector<double> Correlations(const Autocorrelation& memory, std::size_t longest) {
+inline std::vector<double> Correlations(const Autocorrelation& autocorrelation, std::size_t longest) {
   constexpr std::size_t kWeights = 20'000;
   std::vector<double> psi(kWeights, 0);
   psi[0] = 1;
   for (std::size_t k = 1; k < kWeights; ++k) {
-    if (k == 1) psi[k] = memory.moving_average;
-    for (std::size_t j = 1; j <= std::min(k, memory.autoregressive.size()); ++j) {
-      psi[k] += memory.autoregressive[j - 1] * psi[k - j];
+    if (k == 1) psi[k] = autocorrelation.moving_average;
+    for (std::size_t j = 1; j <= std::min(k, autocorrelation.autoregressive.size()); ++j) {
+      psi[k] += autocorrelation.autoregressive[j - 1] * psi[k - j];
     }
   }
   std::vector<double> correlation;
   for (std::size_t lag = 0; lag <= longest; ++lag) {
     double sum = 0;
     for (std::size_t k = 0; k + lag < kWeights; ++k) sum += psi[k] * psi[k + lag];
-    correlation.push_back(memory.innovation_variance * sum);
+    correlation.push_back(autocorrelation.innovation_variance * sum);
   }
   return correlation;
 }
 
 /// Covariance of z plus rounding.
-inline Eigen::MatrixXd Covariance(const Autocorrelation& memory, double sigma, double rounding_variance,
+inline Eigen::MatrixXd Covariance(const Autocorrelation& autocorrelation, double sigma, double rounding_variance,
                                   const Eigen::VectorXd& time) {
   const Eigen::Index size = time.size();
   std::vector<double> correlation;
-  if (memory.kind == Autocorrelation::Kind::kAutoregressive || memory.kind == Autocorrelation::Kind::kMixed) {
-    correlation =
-        Correlations(memory, static_cast<std::size_t>(std::round((time[size - 1] - time[0]) / kSampleInterval)));
+  if (autocorrelation.kind == Autocorrelation::Kind::kAutoregressive ||
+      autocorrelation.kind == Autocorrelation::Kind::kMixed) {
+    correlation = Correlations(autocorrelation,
+                               static_cast<std::size_t>(std::round((time[size - 1] - time[0]) / kSampleInterval)));
   }
   Eigen::MatrixXd covariance(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -60,8 +61,8 @@ inline Eigen::MatrixXd Covariance(const Autocorrelation& memory, double sigma, d
       const double step = std::abs(time[i] - time[j]);
       double rho = i == j ? 1 : 0;
       if (!correlation.empty()) rho = correlation[static_cast<std::size_t>(std::round(step / kSampleInterval))];
-      if (memory.kind == Autocorrelation::Kind::kContinuous && i != j) {
-        rho = (1 - memory.white_share) * std::exp(-step / memory.decay_time);
+      if (autocorrelation.kind == Autocorrelation::Kind::kContinuous && i != j) {
+        rho = (1 - autocorrelation.white_share) * std::exp(-step / autocorrelation.decay_time);
       }
       covariance(i, j) = sigma * sigma * rho + (i == j ? rounding_variance : 0);
     }
@@ -76,20 +77,20 @@ inline double DenseLogLikelihood(const Eigen::MatrixXd& covariance, const Eigen:
          0.5 * static_cast<double>(left.size()) * std::log(2 * kPi);
 }
 
-inline double DenseLogLikelihood(const CorrelatedResiduals& data, const Autocorrelation& memory, double sigma,
+inline double DenseLogLikelihood(const CorrelatedResiduals& data, const Autocorrelation& autocorrelation, double sigma,
                                  const Eigen::VectorXd& shift) {
-  return DenseLogLikelihood(Covariance(memory, sigma, data.rounding_variance, data.time),
+  return DenseLogLikelihood(Covariance(autocorrelation, sigma, data.rounding_variance, data.time),
                             data.residual - data.jacobian * shift);
 }
 
 inline double DenseLogLikelihood(const CorrelatedResiduals& data, const CorrelatedLikelihood& found) {
-  return DenseLogLikelihood(data, found.memory, found.sigma, found.shift);
+  return DenseLogLikelihood(data, found.autocorrelation, found.sigma, found.shift);
 }
 
 // ---- Examples ------------------------------------------------------------------------------------------------------
 
-inline Autocorrelation Autoregressive(std::vector<double> memory) {
-  Autocorrelation like{Autocorrelation::Kind::kAutoregressive, std::move(memory)};
+inline Autocorrelation Autoregressive(std::vector<double> autoregression) {
+  Autocorrelation like{Autocorrelation::Kind::kAutoregressive, std::move(autoregression)};
   like.interval = kSampleInterval;
   like.innovation_variance = 1 / Correlations(like, 0)[0];
   return like;
@@ -121,9 +122,9 @@ inline CorrelatedResiduals Residuals(const Eigen::VectorXd& time, const Eigen::V
 }
 
 /// Residuals drawn from the dense covariance matrix.
-inline CorrelatedResiduals Drawn(const Autocorrelation& memory, double sigma, double rounding_variance,
+inline CorrelatedResiduals Drawn(const Autocorrelation& autocorrelation, double sigma, double rounding_variance,
                                  const Eigen::VectorXd& time, std::uint64_t seed) {
-  const Eigen::LLT<Eigen::MatrixXd> root(Covariance(memory, sigma, rounding_variance, time));
+  const Eigen::LLT<Eigen::MatrixXd> root(Covariance(autocorrelation, sigma, rounding_variance, time));
   return Residuals(time, root.matrixL() * NormalNumbers(time.size(), seed), rounding_variance);
 }
 

@@ -55,10 +55,10 @@ inline std::vector<double> TextbookParameters(const MotionModel& model) {
 /// Whether a short run hardly determines all parameters of a law. Examples are friction of slow motion alone, or a
 /// share by which the directions differ, which acts almost like a shift of the zero. Fits then end at bounds, or not
 /// identifiable.
-inline bool IsHardlyTold(const MotionModel& model) {
-  return OrderOf(model).larger >= 0 || std::ranges::any_of(PhysicalParameters(model), [](const ParameterInfo& info) {
-           return std::isfinite(info.upper);
-         });
+inline bool IsHardlyDetermined(const MotionModel& model) {
+  return FindOrderedPair(model).larger >= 0 ||
+         std::ranges::any_of(PhysicalParameters(model),
+                             [](const ParameterInfo& info) { return std::isfinite(info.upper); });
 }
 
 /// The textbook rig held at 0.423 rad for 1.9 s, 20 s at 100 Hz; the sensor's zero is 0.012 rad off. No noise.

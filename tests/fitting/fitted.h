@@ -88,9 +88,9 @@ Recording WithNoise(Recording recording, std::uint64_t seed, Noise noise) {
 }
 
 /// Stationary AR(1) noise with the given lag-1 correlation and standard deviation, one sample per call.
-class RememberingNoise {
+class AutocorrelatedNoise {
  public:
-  RememberingNoise(double correlation, double deviation) : correlation_(correlation), deviation_(deviation) {}
+  AutocorrelatedNoise(double correlation, double deviation) : correlation_(correlation), deviation_(deviation) {}
 
   double operator()(std::mt19937_64& generator) {
     const double fresh = started_ ? std::sqrt(1 - correlation_ * correlation_) : 1.0;

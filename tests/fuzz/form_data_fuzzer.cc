@@ -18,10 +18,10 @@ void Check(std::string_view content_type, std::string_view body) {
     Require(parts.error().code == StatusCode::kInvalidArgument && parts.error().message.size() < 2000);
     return;
   }
-  Require(ParseMediaType(content_type).has_value() && parts->size() <= kMostFormParts);
+  Require(ParseMediaType(content_type).has_value() && parts->size() <= kMaxFormParts);
   const char* behind = body.data();
   for (const FormPart& part : *parts) {
-    Require(!part.name.empty() && part.name.size() + part.filename.size() <= kMostPartHeadBytes);
+    Require(!part.name.empty() && part.name.size() + part.filename.size() <= kMaxPartHeadBytes);
     if (part.content.empty()) continue;
     Require(part.content.data() >= behind);
     behind = part.content.data() + part.content.size();

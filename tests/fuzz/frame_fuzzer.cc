@@ -52,7 +52,7 @@ void Check(std::span<const std::uint8_t> bytes) {
 
 /// The input with valid frames: every piece between two zeros gets the correct encoding and CRC, so that the code after
 /// these checks is reached too.
-std::vector<std::uint8_t> Mended(std::span<const std::uint8_t> bytes) {
+std::vector<std::uint8_t> Repaired(std::span<const std::uint8_t> bytes) {
   std::vector<std::uint8_t> mended, piece;
   for (const std::uint8_t byte : bytes) {
     if (byte != 0 || piece.empty()) {
@@ -77,6 +77,6 @@ std::vector<std::uint8_t> Mended(std::span<const std::uint8_t> bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> bytes(data, size);
   pendulum::Check(bytes);
-  pendulum::Check(pendulum::Mended(bytes));
+  pendulum::Check(pendulum::Repaired(bytes));
   return 0;
 }

@@ -20,7 +20,7 @@ Recording EvenSamples(double clock_scale) {
   return recording;
 }
 
-TEST(AddConclusions, TakesTheFrequencyFromTheHalfPeriodOfTheSwing) {
+TEST(AddConclusions, DerivesTheFrequencyFromTheHalfPeriod) {
   FreeSwing swing;
   swing.half_period = 0.625;
   Identification report;
@@ -34,7 +34,7 @@ TEST(AddConclusions, TakesTheFrequencyFromTheHalfPeriodOfTheSwing) {
 
 // sqrt(G / I_O) / 2π = sqrt(1.8 / 0.05) / 2π = 6 / 2π Hz in true seconds; 1.1 times as many cycles in one of the
 // file's.
-TEST(AddConclusions, ExpectsTheFrequencyOfTheRigOnTheClockOfTheFile) {
+TEST(AddConclusions, PredictsTheFrequencyFromTheRigOnTheFilesClock) {
   FreeSwing swing;
   swing.half_period = 0.625;
   Identification report;
@@ -45,7 +45,7 @@ TEST(AddConclusions, ExpectsTheFrequencyOfTheRigOnTheClockOfTheFile) {
   EXPECT_NEAR(*report.sampling->expected_frequency_hz, 1.1 * 6 / (2 * 3.14159265358979), 1e-12);
 }
 
-TEST(AddConclusions, KnowsNoFrequencyOfASwingWithoutTurningPoints) {
+TEST(AddConclusions, HasNoFrequencyWithoutTurningPoints) {
   Identification report;
   report.used = EvenSamples(1);
   AddConclusions(FreeSwing(), std::nullopt, {}, report);

@@ -44,7 +44,7 @@ TEST(SummarizeUsed, DescribesTheWindow) {
   EXPECT_EQ(data.resolution_source, "");
 }
 
-TEST(AllWarnings, SaysEachOnceDataFirst) {
+TEST(AllWarnings, ListEachWarningOnceDataFirst) {
   Identification report = ExampleReport();
   report.fits.push_back(report.fits.front());
   report.fits.back().warnings.push_back({"gap", "another gap"});
@@ -53,7 +53,7 @@ TEST(AllWarnings, SaysEachOnceDataFirst) {
                           Field(&Warning::message, std::string(report.fits[1].model.name) + ": another gap")));
 }
 
-TEST(Identification, HasTheCheckOfAFitOrNone) {
+TEST(Identification, GivesTheCheckOfAFitOrNone) {
   Identification report = ExampleReport();
   EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
   EXPECT_EQ(report.CheckOf(1), nullptr);
@@ -61,13 +61,13 @@ TEST(Identification, HasTheCheckOfAFitOrNone) {
   EXPECT_EQ(report.CheckOf(0), nullptr);
 }
 
-TEST(AllWarnings, AreThoseOfTheRecordingWithoutAFit) {
+TEST(AllWarnings, AreTheRecordingsWarningsWithoutAFit) {
   Identification report = ExampleReport();
   report.fits.clear();
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
 }
 
-TEST(AllWarnings, OfAJointFitSayWhoseTheyAre) {
+TEST(AllWarnings, NameTheRecordingInAJointFit) {
   Identification report = ExampleJointReport();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
   report.runs[1].warnings = report.runs[0].warnings;
@@ -83,7 +83,7 @@ TEST(AllWarnings, OfAJointFitSayWhoseTheyAre) {
                           Field(&Warning::message, "recording 2 (b c.csv): there is a gap of 0.7 s after 7 s")));
 }
 
-TEST(RecordingLabel, IsItsNumberAndItsFile) {
+TEST(RecordingLabel, IsNumberAndFile) {
   Identification report = ExampleJointReport();
   EXPECT_TRUE(report.is_joint());
   EXPECT_FALSE(ExampleReport().is_joint());
@@ -92,7 +92,7 @@ TEST(RecordingLabel, IsItsNumberAndItsFile) {
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2");
 }
 
-TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
+TEST(RecordingLabel, DistinguishesReleasesOfOneFile) {
   Identification report = ExampleJointReport();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 3;
@@ -102,7 +102,7 @@ TEST(RecordingLabel, TellsTheReleasesOfOneFileApart) {
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 
-TEST(MainFit, IsTheRecommendedElseTheFirstThatConverged) {
+TEST(MainFit, IsTheRecommendedOrTheFirstConvergedFit) {
   Identification report = ExampleComparedReport();
   EXPECT_EQ(report.MainFit(), 0);
   report.comparison->recommended = "drag";
@@ -116,7 +116,7 @@ TEST(MainFit, IsTheRecommendedElseTheFirstThatConverged) {
   EXPECT_EQ(report.MainFit(), 0);
 }
 
-TEST(IsShownInFull, IsTrueOfAllFitsThatAreNotCompared) {
+TEST(IsShownInFull, IsTrueWithoutAComparison) {
   Identification report = ExampleComparedReport();
   report.comparison.reset();
   EXPECT_TRUE(report.IsShownInFull(0));
@@ -132,7 +132,7 @@ Identification RunThatEnded(const std::vector<Termination>& fits) {
   return run;
 }
 
-TEST(ExitCode, IsThatOfTheFitThatStandsForTheRun) {
+TEST(ExitCode, FollowsTheMainFitOfTheRun) {
   EXPECT_EQ(ExitCode(RunThatEnded({})), 0);  // closed forms alone
   EXPECT_EQ(ExitCode(RunThatEnded({Termination::kConverged})), 0);
   EXPECT_EQ(ExitCode(RunThatEnded({Termination::kNotConverged})), 1);
@@ -142,7 +142,7 @@ TEST(ExitCode, IsThatOfTheFitThatStandsForTheRun) {
   EXPECT_EQ(ExitCode(RunThatEnded({Termination::kFailed, Termination::kNotConverged})), 1);
 }
 
-TEST(ExitCode, IsThatOfTheRecommendedFit) {
+TEST(ExitCode, FollowsTheRecommendedFit) {
   Identification run = RunThatEnded({Termination::kConverged, Termination::kNotIdentifiable});
   run.fits[0].model = Must(FindMotionModel("viscous"));
   run.fits[1].model = Must(FindMotionModel("coulomb"));
@@ -153,7 +153,7 @@ TEST(ExitCode, IsThatOfTheRecommendedFit) {
   EXPECT_EQ(ExitCode(run), 0);
 }
 
-TEST(Parts, AreTheRecordingsOfAJointIdentificationOrTheOneItself) {
+TEST(Parts, AreTheJointRecordingsOrTheSingleOne) {
   const Identification joint = ExampleJointReport(), single = ExampleReport();
   EXPECT_THAT(joint.Parts(), ElementsAre(&joint.runs[0], &joint.runs[1]));
   EXPECT_THAT(single.Parts(), ElementsAre(&single));

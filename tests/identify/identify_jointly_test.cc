@@ -34,7 +34,7 @@ Result<Identification> Joined(const std::vector<std::string>& paths, const std::
 }
 
 // src/docs/examples.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
-TEST(IdentifyJointly, TellsTheRigOfSeveralRecordings) {
+TEST(IdentifyJointly, IdentifiesTheRigOfSeveralRecordings) {
   const auto run = Joined({"datasets/runs_2.csv", "datasets/runs_3.csv"}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
@@ -92,7 +92,7 @@ TEST_F(DifferentRigs, AreRefused) {
               AllOf(StartsWith(first_ + " and " + second_ + " describe different rigs"), HasSubstr("--rig")));
 }
 
-TEST_F(DifferentRigs, GiveWayToTheOneOfTheCommandLine) {
+TEST_F(DifferentRigs, AreReplacedByTheRigOfTheCommandLine) {
   const auto run = Joined({first_, second_}, "datasets/textbook_rig.json");
   ASSERT_TRUE(run) << run.error().message;
   ASSERT_TRUE(run->rig);

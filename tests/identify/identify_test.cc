@@ -36,7 +36,7 @@ std::vector<Result<Identification>> FitTextbook(const IdentifyOptions& options) 
 }
 
 // Seconds labelled as milliseconds give a frequency a thousand times higher than the rig's masses and length predict.
-TEST(IdentifyEach, AskAboutUnitsWhereTheRigLetsAnotherFrequencyExpect) {
+TEST(IdentifyEach, AsksAboutUnitsIfTheRigPredictsAnotherFrequency) {
   const IdentifyOptions options = OptionsFor({"viscous"});
   const Rig rig = Must(ReadRig("datasets/textbook_rig.json"));
   for (const double factor : {1e-3, 1.0}) {
@@ -72,7 +72,7 @@ std::vector<Result<Identification>> FitTwoReleases(const IdentifyOptions& option
   return IdentifyEach(options, Must(PrepareRecording(TwoReleases(), options, std::nullopt)));
 }
 
-TEST(IdentifyEach, PutsAllThatIsConcludedBesideTheFit) {
+TEST(IdentifyEach, AddsAllConclusionsToTheFit) {
   const auto runs = FitTextbook(OptionsFor({"viscous"}));
   ASSERT_THAT(runs, SizeIs(1));
   ASSERT_TRUE(runs[0]) << runs[0].error().message;
@@ -112,7 +112,7 @@ TEST(IdentifyEach, MakesClosedFormsWithoutAFit) {
   EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 
-TEST(IdentifyEach, TakesTheClosedFormsOfSmallAnglesForReadingsInAnUnknownUnit) {
+TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   Recording counts = Must(SimulateRecording(NoisyRun("viscous")));
@@ -126,7 +126,7 @@ TEST(IdentifyEach, TakesTheClosedFormsOfSmallAnglesForReadingsInAnUnknownUnit) {
   EXPECT_THAT(runs[0]->warnings.back().message, StartsWith("the readings are in counts, not in an angle's unit"));
 }
 
-TEST(IdentifyEach, FitsEachReleaseThatWasChosen) {
+TEST(IdentifyEach, FitsEachChosenRelease) {
   IdentifyOptions options = OptionsFor({"viscous"});
   options.swing.release = SwingChoice::kAll;
   const auto runs = FitTwoReleases(options);
@@ -141,7 +141,7 @@ TEST(IdentifyEach, FitsEachReleaseThatWasChosen) {
   EXPECT_LT(runs[0]->data.to, runs[1]->data.from);
 }
 
-TEST(IdentifyEach, SaysOfSeveralWhichCouldNotBeFitted) {
+TEST(IdentifyEach, NamesTheFailedSwingAmongSeveral) {
   IdentifyOptions options = OptionsFor({"magic"});
   options.swing.release = SwingChoice::kAll;
   const auto runs = FitTwoReleases(options);
@@ -154,14 +154,14 @@ TEST(IdentifyEach, SaysOfSeveralWhichCouldNotBeFitted) {
   }
 }
 
-TEST(IdentifyEach, SaysOfOneAlonePlainlyWhyItCouldNotBeFitted) {
+TEST(IdentifyEach, GivesAPlainErrorForOneFailedSwing) {
   const auto runs = FitTextbook(OptionsFor({"magic"}));
   ASSERT_FALSE(runs.at(0));
   EXPECT_EQ(runs[0].error().code, StatusCode::kInvalidArgument);
   EXPECT_THAT(runs[0].error().message, StartsWith("there is no model 'magic'"));
 }
 
-TEST(IdentifyEach, SaysWhyThereAreNeitherFitsNorClosedForms) {
+TEST(IdentifyEach, ExplainsMissingFitsAndClosedForms) {
   IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   options.swing.from = 1.9;

@@ -18,22 +18,22 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-// ---- ErrorAmong ----------------------------------------------------------------------------------------------------
+// ---- ErrorOfRun ----------------------------------------------------------------------------------------------------
 
 std::string MessageAmong(const std::string& message, const std::string& path, int release) {
-  const Status status = ErrorAmong({StatusCode::kFailedPrecondition, message}, path, release).value();
+  const Status status = ErrorOfRun({StatusCode::kFailedPrecondition, message}, path, release).value();
   EXPECT_EQ(status.code, StatusCode::kFailedPrecondition);
   return status.message;
 }
 
-TEST(ErrorAmong, NamesTheRecordingOnce) {
+TEST(ErrorOfRun, NamesTheRecordingOnce) {
   EXPECT_EQ(MessageAmong("no swing", "a.csv", 0), "a.csv: no swing");
   EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 0), "a.csv: no swing");
   EXPECT_EQ(MessageAmong("a.csv:7: no number", "a.csv", 0), "a.csv:7: no number");
   EXPECT_EQ(MessageAmong("no swing", "-", 0), "standard input: no swing");
 }
 
-TEST(ErrorAmong, NamesTheReleaseBehindTheRecording) {
+TEST(ErrorOfRun, NamesTheReleaseAfterTheRecording) {
   EXPECT_EQ(MessageAmong("no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
   EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
 }
@@ -53,7 +53,7 @@ class PrepareFileTest : public testing::Test {
   const std::string path_ = testing::TempDir() + "prepared_recording_test_" + std::to_string(getpid()) + ".csv";
 };
 
-TEST_F(PrepareFileTest, TakesTheRigThatTheRecordingDescribes) {
+TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
   const auto one = Read(R"(# rig: {"gravity_torque": {"value": 1.8, "std_dev": 0.01}})");
   ASSERT_TRUE(one) << one.error().message;
   ASSERT_TRUE(one->known.rig);
@@ -64,20 +64,20 @@ TEST_F(PrepareFileTest, TakesTheRigThatTheRecordingDescribes) {
   EXPECT_THAT(one->recording.warnings, IsEmpty());  // the report has them
 }
 
-TEST_F(PrepareFileTest, PrefersTheRigThatIsGiven) {
+TEST_F(PrepareFileTest, PrefersAGivenRig) {
   const auto one = Read(R"(# rig: {"gravity_torque": 1.8})", Rig{{2.5, 0}, {}, {}});
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(one->known.rig->gravity_torque.value, 2.5);
 }
 
-TEST_F(PrepareFileTest, NamesTheMetadataOfARigThatIsWrong) {
+TEST_F(PrepareFileTest, NamesWrongRigMetadata) {
   const auto one = Read(R"(# rig: {"gravity_torque": -1})");
   ASSERT_FALSE(one);
   EXPECT_EQ(one.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(one.error().message, StartsWith(path_ + ": # rig"));
 }
 
-TEST_F(PrepareFileTest, HasNoRigWhereNoneIsDescribed) {
+TEST_F(PrepareFileTest, HasNoRigWithoutADescription) {
   const auto one = Read("# a comment");
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_FALSE(one->known.rig);

@@ -75,7 +75,7 @@ TEST(Dual, HasTheArithmeticOfCeresJets) {
   ExpectTheArithmeticOfJets<9>();
 }
 
-TEST(Dual, OfANumberHasNoDerivativesOfAParameterItsOwn) {
+TEST(Dual, HasNoDerivativesForANumber) {
   const Dual<5> number(0.25);
   const Dual<5> parameter(0.25, 3);
   for (int i = 0; i < 5; ++i) {
@@ -85,7 +85,7 @@ TEST(Dual, OfANumberHasNoDerivativesOfAParameterItsOwn) {
   EXPECT_EQ(number, parameter) << "numbers are compared";
 }
 
-TEST(Partials, AddTheProductWithANumberInAllLanes) {
+TEST(Partials, AddTheProductWithABroadcastNumber) {
   Partials<5> sum;
   Partials<5> term;
   for (int i = 0; i < 5; ++i) {

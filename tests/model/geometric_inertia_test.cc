@@ -46,7 +46,7 @@ void ExpectRelativelyNear(double found, double expected, double relative) {
 }
 
 // For the published rig, m l²/3 + M l² is 0.0761 kg m² and (M + m) l² is 0.0878 kg m².
-TEST(GeometricInertias, AreThoseOfTheRodAndBobAndOfThePointMass) {
+TEST(GeometricInertias, AreGivenForRodAndBobAndPointMass) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   ASSERT_THAT(inertias, SizeIs(2));
   EXPECT_FALSE(inertias[0].is_point_mass);
@@ -58,7 +58,7 @@ TEST(GeometricInertias, AreThoseOfTheRodAndBobAndOfThePointMass) {
 }
 
 // dI = l² dM + l²/3 dm + 2 l (M + m/3) dl; for the point mass l² dm and M + m instead.
-TEST(GeometricInertias, HaveErrorsToFirstOrder) {
+TEST(GeometricInertias, HaveFirstOrderErrors) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   const double square = kLength * kLength;
   const double own = Norm({square * kBobError, square / 3 * kRodError, 2 * kLength * (kBob + kRod / 3) * kLengthError});
@@ -86,7 +86,7 @@ TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
 }
 
 // With a massless rod, inertia and torque are both proportional to the bob's mass, so an error of that mass cancels.
-TEST(GeometricInertias, DifferFromTheFitsByNothingWhereOneErrorMovesBothAlike) {
+TEST(GeometricInertias, HaveNoErrorOfDifferenceForACommonError) {
   const std::vector<GeometricInertia> inertias = GeometricInertias(
       ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0, "rod_length": 0.5, "gravity": 9.81})"),
       0.1);
@@ -98,7 +98,7 @@ TEST(GeometricInertias, DifferFromTheFitsByNothingWhereOneErrorMovesBothAlike) {
   }
 }
 
-TEST(GeometricInertias, HaveNoErrorsWhereTheRigGivesNone) {
+TEST(GeometricInertias, HaveNoErrorsIfTheRigGivesNone) {
   const std::vector<GeometricInertia> inertias =
       Inertias(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
   ASSERT_THAT(inertias, SizeIs(2));
@@ -109,7 +109,7 @@ TEST(GeometricInertias, HaveNoErrorsWhereTheRigGivesNone) {
 }
 
 // The error of gravity changes the fitted inertia but not the geometric one.
-TEST(GeometricInertias, DifferFromTheFitsByTheErrorOfGravityAlone) {
+TEST(GeometricInertias, DifferByTheErrorOfGravityAlone) {
   const std::vector<GeometricInertia> inertias = Inertias(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": {"value": 9.81, "std_dev": 0.02}})");
   ASSERT_THAT(inertias, SizeIs(2));
@@ -130,7 +130,7 @@ TEST(GeometricInertias, TakeAnInertiaThatTheFileNames) {
 }
 
 // An inertia from CAD replaces the one computed from rod and bob. The point mass still uses rod and bob.
-TEST(GeometricInertias, TakeAnInertiaThatTheFileNamesBesideARodAndABob) {
+TEST(GeometricInertias, UseTheFilesInertiaBesideARodAndABob) {
   const std::vector<GeometricInertia> inertias = Inertias(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81,
           "inertia": 0.0775})");
@@ -141,12 +141,12 @@ TEST(GeometricInertias, TakeAnInertiaThatTheFileNamesBesideARodAndABob) {
   EXPECT_THAT(inertias[1].value, DoubleNear(0.475 * 0.43 * 0.43, 1e-15));
 }
 
-TEST(GeometricInertias, AreNoneWhereOnlyTheTorqueIsKnown) {
+TEST(GeometricInertias, AreEmptyIfOnlyTheTorqueIsKnown) {
   EXPECT_THAT(Inertias(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.01}})"), IsEmpty());
   EXPECT_THAT(Inertias(R"({"mass": 0.475, "center_of_mass": 0.387, "gravity": 9.81})"), IsEmpty());
 }
 
-TEST(GeometricInertias, AreThoseOfARigThatNoFileDescribes) {
+TEST(GeometricInertias, AreGivenForARigWithoutAFile) {
   Rig rig;
   rig.gravity_torque = {1.8, 0};
   EXPECT_THAT(GeometricInertias(rig, kFitted), IsEmpty());
@@ -159,7 +159,7 @@ TEST(GeometricInertias, AreThoseOfARigThatNoFileDescribes) {
 }
 
 // For a rig without a file, the error of the torque changes the fitted inertia as it does for a rig from a file.
-TEST(GeometricInertias, ShareTheErrorOfTheTorqueOfARigThatNoFileDescribes) {
+TEST(GeometricInertias, ShareTheTorquesErrorWithoutAFile) {
   Rig rig;
   rig.gravity_torque = {1.8, 0.009};
   rig.inertia = RigValue{0.08, 0.0003};

@@ -28,7 +28,7 @@ std::vector<std::string_view> ParameterNames(std::string_view model) {
   return Names(PhysicalParameters(FindMotionModel(model).value()));
 }
 
-TEST(MotionModels, HaveTheDocumentedNamesEachOnce) {
+TEST(MotionModels, HaveUniqueDocumentedNames) {
   const std::vector<std::string_view> names = Names(MotionModels());
   EXPECT_THAT(names, IsSupersetOf({"linear", "viscous", "coulomb", "drag"}));
   EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
@@ -42,7 +42,7 @@ TEST(MotionModels, LinearIsViscousFrictionWithLinearGravity) {
   EXPECT_EQ(model->gravity, Gravity::kLinear);
 }
 
-TEST(MotionModels, EachFrictionLawIsAModelOfSineGravityUnderItsOwnName) {
+TEST(MotionModels, IncludeEachFrictionLawWithSineGravity) {
   FrictionModels::ForEach([]<typename F>() {
     const Result<MotionModel> model = FindMotionModel(F::kName);
     ASSERT_TRUE(model) << F::kName;
@@ -52,7 +52,7 @@ TEST(MotionModels, EachFrictionLawIsAModelOfSineGravityUnderItsOwnName) {
   });
 }
 
-TEST(FindMotionModel, NamesTheModelsThereAreWhenThereIsNone) {
+TEST(FindMotionModel, ListsTheModelsForAnUnknownName) {
   for (const std::string_view wrong : {"Coulomb", "coulom", "", "viscous,coulomb"}) {
     const Result<MotionModel> model = FindMotionModel(wrong);
     ASSERT_FALSE(model) << wrong;
@@ -64,11 +64,11 @@ TEST(FindMotionModel, NamesTheModelsThereAreWhenThereIsNone) {
   }
 }
 
-TEST(MotionModelNames, StartWithTheDocumentedOnesInTheirOrder) {
+TEST(MotionModelNames, StartWithTheDocumentedNamesInOrder) {
   EXPECT_THAT(MotionModelNames(), testing::StartsWith("linear, viscous, coulomb, drag"));
 }
 
-TEST(PhysicalParameters, AreInertiaAndThoseOfTheFrictionLawInTheDocumentedOrder) {
+TEST(PhysicalParameters, AreInertiaAndFrictionInTheDocumentedOrder) {
   EXPECT_THAT(ParameterNames("linear"), ElementsAre("inertia", "viscous"));
   EXPECT_THAT(ParameterNames("viscous"), ElementsAre("inertia", "viscous"));
   EXPECT_THAT(ParameterNames("coulomb"), ElementsAre("inertia", "viscous", "coulomb"));

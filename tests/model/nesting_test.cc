@@ -39,7 +39,7 @@ TEST(FindNesting, CountsAParameterOfEitherSignAsFree) {
   EXPECT_THAT(nesting->unidentified, IsEmpty());
 }
 
-TEST(FindNesting, KnowsWhatHasNoMeaningInTheSimplerLaw) {
+TEST(FindNesting, NamesTheParameterUndefinedInTheSimplerLaw) {
   const auto stribeck = Between("coulomb", "stribeck");
   ASSERT_TRUE(stribeck);
   EXPECT_THAT(stribeck->unidentified, ElementsAre("stribeck_rate"));
@@ -49,7 +49,7 @@ TEST(FindNesting, KnowsWhatHasNoMeaningInTheSimplerLaw) {
   EXPECT_THAT(asymmetric->unidentified, ElementsAre("asymmetry"));
 }
 
-TEST(FindNesting, NestsNothingInItselfInASimplerLawOrBesideIt) {
+TEST(FindNesting, FindsNoNestingInItselfOrASimplerLaw) {
   EXPECT_FALSE(Between("drag", "drag"));
   EXPECT_FALSE(Between("drag", "coulomb"));
   EXPECT_FALSE(Between("drag", "stribeck"));
@@ -57,24 +57,24 @@ TEST(FindNesting, NestsNothingInItselfInASimplerLawOrBesideIt) {
 }
 
 // The small-angle model is not nested in any other model.
-TEST(FindNesting, NestsNoOtherGravity) {
+TEST(FindNesting, RequiresTheSameGravity) {
   EXPECT_FALSE(Between("linear", "coulomb"));
   EXPECT_FALSE(Between("linear", "viscous"));
 }
 
-TEST(RichestWithin, IsTheNestedLawOfMostParameters) {
-  EXPECT_EQ(RichestWithin(*FindMotionModel("stribeck"))->name, "coulomb");
-  EXPECT_EQ(RichestWithin(*FindMotionModel("drag"))->name, "coulomb");
-  EXPECT_EQ(RichestWithin(*FindMotionModel("coulomb"))->name, "viscous");
-  EXPECT_FALSE(RichestWithin(*FindMotionModel("viscous")));
+TEST(LargestNestedModel, IsTheNestedLawOfMostParameters) {
+  EXPECT_EQ(LargestNestedModel(*FindMotionModel("stribeck"))->name, "coulomb");
+  EXPECT_EQ(LargestNestedModel(*FindMotionModel("drag"))->name, "coulomb");
+  EXPECT_EQ(LargestNestedModel(*FindMotionModel("coulomb"))->name, "viscous");
+  EXPECT_FALSE(LargestNestedModel(*FindMotionModel("viscous")));
 }
 
-TEST(OrderOf, NamesStictionAndCoulomb) {
-  const OrderedPair order = OrderOf(*FindMotionModel("stribeck"));
+TEST(FindOrderedPair, GivesStictionAndCoulomb) {
+  const OrderedPair order = FindOrderedPair(*FindMotionModel("stribeck"));
   const auto infos = PhysicalParameters(*FindMotionModel("stribeck"));
   EXPECT_EQ(infos.at(static_cast<std::size_t>(order.larger)).name, "stiction");
   EXPECT_EQ(infos.at(static_cast<std::size_t>(order.smaller)).name, "coulomb");
-  EXPECT_LT(OrderOf(*FindMotionModel("drag")).larger, 0);
+  EXPECT_LT(FindOrderedPair(*FindMotionModel("drag")).larger, 0);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(ParseRig, ReproducesTheTextbookRig) {
   EXPECT_EQ(rig.inertia->std_dev, 0);
 }
 
-TEST(ParseRig, TakesTheGravityTorqueAsItIs) {
+TEST(ParseRig, KeepsAGivenGravityTorque) {
   const Rig rig = RigOf(R"({"gravity_torque": {"value": 1.803, "std_dev": 0.002}})");
   EXPECT_EQ(rig.gravity_torque.value, 1.803);
   EXPECT_EQ(rig.gravity_torque.std_dev, 0.002);
@@ -68,7 +68,7 @@ TEST(ParseRig, AcceptsAMasslessRod) {
   EXPECT_DOUBLE_EQ(rig.inertia->value, 0.5);       // M l^2
 }
 
-TEST(ParseRig, PrefersTheInertiaOfTheFileToGeometry) {
+TEST(ParseRig, PrefersTheFilesInertiaToGeometry) {
   const Rig rig = RigOf(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81,
           "inertia": {"value": 0.079, "std_dev": 0.001}})");
@@ -90,7 +90,7 @@ TEST(ParseRig, PropagatesOneErrorByItsDerivative) {
   EXPECT_NEAR(rig.inertia->std_dev, 2 * 0.0761171666666667 * 0.001 / 0.43, 1e-15);
 }
 
-TEST(ParseRig, PropagatesIndependentErrorsAsMonteCarloDoes) {
+TEST(ParseRig, MatchesMonteCarloForIndependentErrors) {
   const Rig rig = RigOf(
       R"({"bob_mass": {"value": 0.38, "std_dev": 0.002}, "rod_mass": {"value": 0.095, "std_dev": 0.005},
           "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0.05}})");
@@ -132,7 +132,7 @@ TEST(ParseRig, NamesAMissingKey) {
   EXPECT_THAT(FaultOf(R"({"gravity_torque": {"std_dev": 1}})"), HasSubstr(R"("gravity_torque" has no "value")"));
 }
 
-TEST(ParseRig, AsksWhichDescriptionIsMeantWhenNoKeyTells) {
+TEST(ParseRig, AsksWhichDescriptionIsMeant) {
   for (const char* const text : {"{}", R"({"gravity": 9.81})", R"({"inertia": 0.076})"}) {
     EXPECT_THAT(FaultOf(text), HasSubstr("the rig does not say what it is; it must be {\"bob_mass\""));
   }
@@ -146,7 +146,7 @@ TEST(ParseRig, RefusesAMixtureOfDescriptions) {
   EXPECT_THAT(FaultOf(R"({"gravity_torque": 1.8, "gravity": 9.81})"), HasSubstr("cannot be mixed"));
 }
 
-TEST(ParseRig, RefusesAValueThatIsNotPositive) {
+TEST(ParseRig, RefusesANonPositiveValue) {
   EXPECT_EQ(FaultOf(R"({"gravity_torque": 0})"), R"(rig.json: "gravity_torque" is 0; it must be positive)");
   EXPECT_THAT(FaultOf(R"({"gravity_torque": {"value": -1.5}})"),
               HasSubstr(R"("value" of "gravity_torque" is -1.5; it must be positive)"));
@@ -157,7 +157,7 @@ TEST(ParseRig, RefusesAValueThatIsNotPositive) {
               HasSubstr(R"("std_dev" of "gravity_torque" is -0.1; it must be 0 or more)"));
 }
 
-TEST(ParseRig, RefusesWhatIsNotANumber) {
+TEST(ParseRig, RefusesValuesThatAreNotNumbers) {
   EXPECT_EQ(FaultOf(R"({"gravity_torque": "1.8"})"),
             R"(rig.json: "gravity_torque" is "1.8"; it must be a number or {"value": number, "std_dev": number})");
   EXPECT_THAT(FaultOf(R"({"gravity_torque": null})"), HasSubstr(R"("gravity_torque" is null)"));
@@ -177,7 +177,7 @@ TEST(ParseRig, AcceptsTheSameKeyInTwoObjects) {
   EXPECT_EQ(RigOf(R"({"gravity_torque": {"value": 1}, "inertia": {"value": 2}})").inertia->value, 2);
 }
 
-TEST(ParseRig, NamesLineAndColumnOfWhatIsNotJson) {
+TEST(ParseRig, NamesLineAndColumnOfInvalidJson) {
   EXPECT_EQ(FaultOf("{\n  \"gravity_torque\": 1.8,\n}"),
             "rig.json:3:1: this is not JSON (unexpected '}'; expected string literal); correct it here");
   EXPECT_THAT(FaultOf(""), StartsWith("rig.json:1:1: this is not JSON"));
@@ -191,7 +191,7 @@ TEST(ParseRig, RefusesJsonThatIsNotAnObject) {
   EXPECT_THAT(FaultOf("1.8"), HasSubstr("the rig is 1.8; it must be an object"));
 }
 
-TEST(ParseRig, RefusesNumbersBeyondTheRangeOfADouble) {
+TEST(ParseRig, RefusesNumbersBeyondADouble) {
   EXPECT_EQ(FaultOf(R"({"bob_mass": 1, "rod_mass": 1e999, "rod_length": 1, "gravity": 1})"),
             R"(rig.json: "rod_mass" is beyond what a number can be (about 1e308); correct it)");
   // Each value fits in a double, but the product does not.
@@ -201,7 +201,7 @@ TEST(ParseRig, RefusesNumbersBeyondTheRangeOfADouble) {
   EXPECT_THAT(FaultOf(R"({"gravity_torque": 1e-300})"), HasSubstr("beyond 1e-30 to 1e30"));
 }
 
-TEST(ParseRig, RefusesATextTooLongToBeARigWithoutParsingIt) {
+TEST(ParseRig, RefusesATooLongTextWithoutParsingIt) {
   EXPECT_THAT(FaultOf(std::string(100000, '[')), HasSubstr("longer than 64 KiB"));
   EXPECT_THAT(FaultOf(std::string(60000, '[')), HasSubstr("this is not JSON"));
 }
@@ -215,7 +215,7 @@ TEST(ReadRig, ReadsAFile) {
   std::filesystem::remove(path);
 }
 
-TEST(ReadRig, SaysThatAFileIsNotThere) {
+TEST(ReadRig, ReportsAMissingFile) {
   const Result<Rig> rig = ReadRig("/nowhere/rig.json");
   ASSERT_FALSE(rig.has_value());
   EXPECT_EQ(rig.error().code, StatusCode::kNotFound);

@@ -65,7 +65,7 @@ TEST(SensorModel, HasTheDerivativesOfItsReading) {
 
 /// Textbook: at rest an accelerometer shows g along the rod and 0 across it. On a point mass that swings on a string
 /// without friction it shows 0 across the string, because r α = -g sin θ.
-TEST(SensorModel, ShowsWhatAnAccelerometerDoes) {
+TEST(SensorModel, MatchesAnAccelerometer) {
   SensorModel sensor = Kind(SensorKind::kAcceleration);
   sensor.gravity = 9.81;
   const std::array across = {0.0, 1.0, 0.0, 0.5};
@@ -78,7 +78,7 @@ TEST(SensorModel, ShowsWhatAnAccelerometerDoes) {
 }
 
 /// A point on a circle, seen from the pivot, appears at its angle, also beyond a full turn.
-TEST(SensorModel, SeesTheAngleFromThePivot) {
+TEST(SensorModel, MeasuresTheAngleFromThePivot) {
   for (const double down : {1.0, -1.0}) {
     SensorModel arc = Kind(SensorKind::kArc);
     arc.down = down;

@@ -53,7 +53,7 @@ TEST(SquareCoefficient, IsTheProductWithItselfAtEveryOrder) {
   }
 }
 
-TEST(CauchyProduct, ReadsNoCoefficientBeyondTheOneAskedFor) {
+TEST(CauchyProduct, UsesNoCoefficientBeyondTheRequestedOne) {
   const Series<double> x = Coefficients({1, 2});
   EXPECT_EQ(CauchyProduct(x, x, 1), 4);
   EXPECT_EQ(SquareCoefficient(x, 1), 4);
@@ -103,7 +103,7 @@ void ExpectSine(const Series<double>& angle) {
   }
 }
 
-TEST(SineSeries, IsTheTaylorSeriesOfTheSineOfRandomSeries) {
+TEST(SineSeries, IsTheTaylorSeriesForRandomSeries) {
   std::mt19937_64 generator(20260802);
   for (const double decay : {0.3, 0.6, 1.0}) {
     Series<double> angle = RandomSeries(generator, decay);
@@ -114,7 +114,7 @@ TEST(SineSeries, IsTheTaylorSeriesOfTheSineOfRandomSeries) {
   }
 }
 
-TEST(SineSeries, IsTheTaylorSeriesOfTheSineFromRestAtNinetyDegrees) {
+TEST(SineSeries, IsTheTaylorSeriesFromRestAtNinetyDegrees) {
   Series<double> angle{};
   angle[0] = std::acos(0.0);
   angle[2] = -0.5;
@@ -123,7 +123,7 @@ TEST(SineSeries, IsTheTaylorSeriesOfTheSineFromRestAtNinetyDegrees) {
 }
 
 // sin τ = τ - τ³/3! + τ⁵/5! - ...
-TEST(SineSeries, OfTimeItselfIsThatOfTheTextbook) {
+TEST(SineSeries, IsTheTextbookSeriesForTimeItself) {
   Series<double> angle{};
   angle[1] = 1;
   const Series<double> sine = SineInOrder(angle);

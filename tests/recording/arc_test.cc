@@ -43,7 +43,7 @@ TEST(FitArc, FindsTheCircleOfExactPoints) {
   EXPECT_THAT(arc->Angle(640 + 400 * std::sin(0.2), 120 + 400 * std::cos(0.2)), DoubleNear(0.2, 1e-8));
 }
 
-TEST(FitArc, SeesWhichWayYGrows) {
+TEST(FitArc, DetectsTheDirectionOfY) {
   const Points points(0.3, 0, 1);
   const Result<Arc> arc = FitArc(points.x, -points.y);
   ASSERT_TRUE(arc) << arc.error().message;
@@ -53,7 +53,7 @@ TEST(FitArc, SeesWhichWayYGrows) {
 
 /// Over 300 seeds the squared distance to the truth, weighted with the covariance, is χ² with 3 degrees of freedom. Its
 /// mean is 3 ± 0.14.
-TEST(FitArc, HasTheErrorsItSays) {
+TEST(FitArc, HasErrorsAsStated) {
   double sum = 0;
   constexpr int kSeeds = 300;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
@@ -68,7 +68,7 @@ TEST(FitArc, HasTheErrorsItSays) {
 
 /// The middle of a sine of amplitude A is J0(A) radii below the pivot (DLMF 10.9.1): 0.28 for 1.9, 0.00 for 2.4. For 3
 /// it is 0.26 radii above the pivot.
-TEST(FitArc, RefusesPointsThatDoNotTellWhichWayIsDown) {
+TEST(FitArc, RefusesPointsWithoutADownDirection) {
   EXPECT_TRUE(FitArc(Points(1.9, 0, 1).x, Points(1.9, 0, 1).y));
   for (const double half : {2.4, 3.0, 30.0}) {
     const Points points(half, 0.5, 1);
@@ -79,7 +79,7 @@ TEST(FitArc, RefusesPointsThatDoNotTellWhichWayIsDown) {
   }
 }
 
-TEST(FitArc, RefusesPointsThatTellNoPivot) {
+TEST(FitArc, RefusesPointsThatDetermineNoPivot) {
   const Points points(0.02, 1, 1);
   const Result<Arc> arc = FitArc(points.x, points.y);
   ASSERT_FALSE(arc);

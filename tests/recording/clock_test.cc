@@ -69,7 +69,7 @@ void ExpectUntouched(const RawSamples& samples) {
 
 std::vector<double> ValuesOf(const RawSamples& samples) { return {samples.value.begin(), samples.value.end()}; }
 
-TEST(LineNumbers, KnowsTheLineOfEachRow) {
+TEST(LineNumbers, GivesTheLineOfEachRow) {
   LineNumbers lines;
   for (const std::size_t line : {2, 3, 4, 7, 8, 20}) lines.Add(line);
   EXPECT_EQ(lines.size(), 6);
@@ -78,16 +78,16 @@ TEST(LineNumbers, KnowsTheLineOfEachRow) {
 
 // ---- Nothing to repair -------------------------------------------------------------------------------------------
 
-TEST(RepairClock, LeavesUniformStampsAsTheyAre) {
+TEST(RepairClock, KeepsUniformStamps) {
   ExpectUntouched(Rows(Stamps(2000, Hundredth)));
   ExpectUntouched(Rows(Stamps(600, [](int i) { return std::round(i * 100.0 / 3); }), "ms"));  // 33, 67, 100
 }
 
-TEST(RepairClock, LeavesGapsAsTheyAre) {
+TEST(RepairClock, KeepsGaps) {
   ExpectUntouched(Rows(Stamps(2000, [](int i) { return Hundredth(i + (i > 700 ? 250 : 0) + (i > 701 ? 1 : 0)); })));
 }
 
-TEST(RepairClock, LeavesEventDrivenSamplingAsItIs) {
+TEST(RepairClock, KeepsEventDrivenSampling) {
   std::mt19937 random(7);
   double time = 4;
   ExpectUntouched(Rows(Stamps(3000, [&](int) {
@@ -99,7 +99,7 @@ TEST(RepairClock, LeavesEventDrivenSamplingAsItIs) {
 
 // ---- Counters ----------------------------------------------------------------------------------------------------
 
-TEST(RepairClock, CountsOnWhenACounterOf32BitsBeginsAgain) {
+TEST(RepairClock, UnwrapsA32BitCounter) {
   for (const char* const unit : {"us", "ms"}) {
     const double start = 4294967296.0 - 995;  // 2^32
     const RawSamples repaired =
@@ -110,7 +110,7 @@ TEST(RepairClock, CountsOnWhenACounterOf32BitsBeginsAgain) {
   }
 }
 
-TEST(RepairClock, CountsOnAsOftenAsTheCounterBegins) {
+TEST(RepairClock, UnwrapsACounterRepeatedly) {
   const double step = 1e9;
   const RawSamples repaired =
       Repaired(Rows(Stamps(20, [&](int i) { return std::fmod(step * i, 4294967296.0); }), "us"));
@@ -119,7 +119,7 @@ TEST(RepairClock, CountsOnAsOftenAsTheCounterBegins) {
   EXPECT_THAT(WarningOf(repaired), testing::HasSubstr("4 times in all"));  // 19e9 / 2^32 = 4.4
 }
 
-TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
+TEST(RepairClock, DoesNotUnwrapIfTheStepDiffers) {
   // The logger was restarted: a wrap would mean 2^32 us between two steps of 10 ms.
   EXPECT_EQ(
       FaultOf(Rows(Stamps(200, [](int i) { return i < 100 ? 3e9 + 1e4 * i : 1e4 * i; }), "us")),
@@ -127,7 +127,7 @@ TEST(RepairClock, DoesNotCountOnWhereTheStepAcrossIsUnlikeTheOthers) {
       "one file; split it before this line");
 }
 
-TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
+TEST(RepairClock, UnwrapsA16BitCounter) {
   struct Case {
     const char* unit;
     double first;  // First of the counter's 65536 values.
@@ -144,7 +144,7 @@ TEST(RepairClock, CountsOnWhenACounterOf16BitsBeginsAgain) {
   }
 }
 
-TEST(RepairClock, DoesNotCountOnACounterOf16BitsWhereStepsAreUnalike) {
+TEST(RepairClock, DoesNotUnwrapA16BitCounterWithUnequalSteps) {
   // Set back after 61 s, 4.5 s before the counter's end; then set back after a value above 16 bits.
   EXPECT_THAT(FaultOf(Rows(Stamps(12000, [](int i) { return 10.0 * (i % 6100); }), "ms")),
               testing::HasSubstr("so the clock was set back"));
@@ -178,7 +178,7 @@ void ExpectTheClockBack(const Rounding& rounding, const std::function<double(dou
   EXPECT_EQ(repaired.warnings.at(0).code, "time_rounded");
 }
 
-TEST(RepairClock, FindsTheUniformClockBehindCoarseStamps) {
+TEST(RepairClock, FindsTheUniformClockOfCoarseStamps) {
   // At 29.97 Hz three successive rows share a stamp of 0.1 s, except for one slip in 1000 rows.
   for (const Rounding& rounding : {Rounding{0.1, 30, 0.013}, Rounding{1, 30, 0.4}, Rounding{0.1, 29.97, 100, 0.34},
                                    Rounding{0.01, 30, 3.3}, Rounding{0.1, 12, 0}, Rounding{0.01, 83.1, 0}}) {
@@ -194,7 +194,7 @@ RawSamples Coarse(int seconds, double grid, double start, const std::function<do
   return Rows(Stamps(100 * seconds + 1, [&](int i) { return round((100 * start + i) / counts) * grid; }));
 }
 
-TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
+TEST(RepairClock, GivesTheUncertaintyOfTheRate) {
   for (const int seconds : {20, 30}) {
     for (const double grid : {0.1, 0.5, 1.0}) {
       for (const double start : {0.0, 0.03, 0.27, 17.48}) {
@@ -219,7 +219,7 @@ TEST(RepairClock, KnowsHowFarTheRateIsOpen) {
 
 /// At both limits the band that contains the stamps is one step wide. Its width is convex in the slope, so it is larger
 /// outside.
-TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
+TEST(RepairClock, AllowsExactlyTheSlopesThatFitAllStamps) {
   std::mt19937 random(19);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   for (int trial = 0; trial < 300; ++trial) {
@@ -243,7 +243,7 @@ TEST(RepairClock, LeavesOpenExactlyTheSlopesThatFitAllStamps) {
   }
 }
 
-TEST(RepairClock, SaysWhatItMadeOfCoarseStamps) {
+TEST(RepairClock, ReportsTheRepairOfCoarseStamps) {
   // Rows 2 and 898, and rows 1 and 899, are a third of a step off, towards and away from each other. So 0.3 s is at
   // most 1 / 896 too long or 1 / 898 too short.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
@@ -253,7 +253,7 @@ TEST(RepairClock, SaysWhatItMadeOfCoarseStamps) {
             "are cut off instead of rounded, the new ones, and release_time with them, are 0.05 s too early");
 }
 
-TEST(RepairClock, KeepsCoarseStampsOfUnevenSamplingThatIncrease) {
+TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
   std::mt19937 random(3);
   double time = 0;
   const RawSamples samples =
@@ -265,7 +265,7 @@ TEST(RepairClock, KeepsCoarseStampsOfUnevenSamplingThatIncrease) {
             "uniform clock agrees with them; they were kept, and rounding scatters them by 0.29 ms");  // 1 / sqrt(12)
 }
 
-TEST(RepairClock, RefusesCoarseStampsWithRowsLost) {
+TEST(RepairClock, RefusesCoarseStampsWithLostRows) {
   const auto stamp = [](int i) { return std::round((i < 300 ? i : i + 40) / 3.0) / 10; };
   EXPECT_EQ(FaultOf(Rows(Stamps(600, stamp))),
             "run.csv:3: time 0 s stands on line 2 too, and 598 of 600 rows share a time in this way; no uniform clock "
@@ -274,7 +274,7 @@ TEST(RepairClock, RefusesCoarseStampsWithRowsLost) {
 
 // ---- Stamps that repeat ------------------------------------------------------------------------------------------
 
-TEST(RepairClock, LeavesOutRowsThatShareAStamp) {
+TEST(RepairClock, RemovesRowsThatShareAStamp) {
   std::vector<double> time = Stamps(100, Hundredth);
   time[50] = time[49];
   const RawSamples repaired = Repaired(Rows(time));
@@ -287,12 +287,12 @@ TEST(RepairClock, LeavesOutRowsThatShareAStamp) {
             "first 0.49 s; of rows that are equal one was kept");
 }
 
-TEST(RepairClock, KeepsOneOfRowsThatAreEqual) {
+TEST(RepairClock, KeepsOneOfSeveralEqualRows) {
   EXPECT_THAT(ValuesOf(Repaired(Rows({0, 1, 2, 2, 3, 4, 5, 6, 7, 8}, "s", {0, 1, 5, 5, 3, 4, 5, 6, 7, 8}))),
               ElementsAre(0, 1, 5, 3, 4, 5, 6, 7, 8));
 }
 
-TEST(RepairClock, LeavesOutRowsOfAClockThatStoodStill) {
+TEST(RepairClock, RemovesRowsOfAStoppedClock) {
   std::vector<double> time = Stamps(100, Hundredth);
   for (int i = 61; i < 66; ++i) time[i] = time[60];
   const RawSamples repaired = Repaired(Rows(time));
@@ -301,7 +301,7 @@ TEST(RepairClock, LeavesOutRowsOfAClockThatStoodStill) {
   EXPECT_EQ(repaired.warnings.at(0).code, "time_repeated");
 }
 
-TEST(RepairClock, RefusesWhenMoreThanAFifthOfTheRowsShareAStamp) {
+TEST(RepairClock, RefusesMoreThanAFifthOfSharedStamps) {
   std::mt19937 random(5);
   double time = 0;
   const std::vector<double> stamps = Stamps(100, [&](int i) {
@@ -314,7 +314,7 @@ TEST(RepairClock, RefusesWhenMoreThanAFifthOfTheRowsShareAStamp) {
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
 
-TEST(RepairClock, LeavesOutTheFewestRowsWhereAStampGoesBack) {
+TEST(RepairClock, RemovesTheFewestRowsIfStampsGoBack) {
   std::vector<double> time = Stamps(100, Hundredth);
   time[40] = 0.375;  // Between rows 37 and 38: without row 40 the times increase.
   time[80] = 0.835;  // Late, between rows 83 and 84.
@@ -330,7 +330,7 @@ TEST(RepairClock, LeavesOutTheFewestRowsWhereAStampGoesBack) {
       "out for times to increase, 2 of 100 rows");
 }
 
-TEST(RepairClock, SeesThatStampsAreOutOfOrderAcrossOthers) {
+TEST(RepairClock, DetectsNonAdjacentUnorderedStamps) {
   std::vector<double> time = Stamps(100, [](int i) { return i; });
   for (const auto& [row, stamp] : {std::pair{11, 13.0}, {12, 12.0}, {13, 14.0}, {14, 12.5}}) time[row] = stamp;
   // 10 13 12 14 12.5 15: both 10 12 12.5 15 and 10 13 14 15 leave out two rows; leaving out one is not enough.
@@ -343,7 +343,7 @@ TEST(RepairClock, RefusesAClockThatWasSetBack) {
             "split it before this line");
 }
 
-TEST(RepairClock, RefusesWhenMoreThanATwentiethOfTheRowsGoBack) {
+TEST(RepairClock, RefusesMoreThanATwentiethOfBackwardRows) {
   std::vector<double> time = Stamps(100, Hundredth);
   for (int i = 4; i < 100; i += 15) time[i] -= 0.015;
   EXPECT_EQ(FaultOf(Rows(time)),

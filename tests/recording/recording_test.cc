@@ -32,7 +32,7 @@ Status FaultOf(const Recording& recording) {
   return made ? Status{StatusCode::kInternal, "no fault"} : made.error();
 }
 
-TEST(MakeRecording, KeepsEverythingOfARecordingThatHoldsTheInvariant) {
+TEST(MakeRecording, KeepsAValidRecordingUnchanged) {
   Recording recording = Ramp(kMinimumSamples);
   recording.path = "swing.csv";
   recording.unit = "deg";
@@ -57,7 +57,7 @@ TEST(MakeRecording, RefusesFewerThanEightSamples) {
 
 TEST(MakeRecording, RefusesAnEmptyRecording) { EXPECT_EQ(FaultOf(Recording()).code, StatusCode::kFailedPrecondition); }
 
-TEST(MakeRecording, RefusesTimesAndValuesThatDifferInNumber) {
+TEST(MakeRecording, RefusesTimesAndValuesOfDifferentNumber) {
   Recording recording = Ramp(9);
   recording.value.conservativeResize(8);
   const Status fault = FaultOf(recording);
@@ -65,7 +65,7 @@ TEST(MakeRecording, RefusesTimesAndValuesThatDifferInNumber) {
   EXPECT_THAT(fault.message, HasSubstr("9 times and 8 values"));
 }
 
-TEST(MakeRecording, NamesTheFirstSampleThatIsNotFinite) {
+TEST(MakeRecording, NamesTheFirstNonFiniteSample) {
   for (const double bad : {kNan, kInf, -kInf}) {
     Recording recording = Ramp(9);
     recording.value[3] = bad;
@@ -88,7 +88,7 @@ TEST(MakeRecording, NamesTheFirstTimeThatDoesNotIncreaseAndThePath) {
   EXPECT_EQ(fault.message, "swing.csv: time 3 s of sample 4 does not follow 3 s; times must increase");
 }
 
-TEST(MakeRecording, RefusesAResolutionThatIsNoSpacing) {
+TEST(MakeRecording, RefusesAnInvalidResolution) {
   for (const double bad : {-0.1, kNan, kInf}) {
     Recording recording = Ramp(9);
     recording.resolution = bad;

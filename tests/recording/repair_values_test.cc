@@ -70,7 +70,7 @@ Recording Wrapped(Recording recording, double low) {
   return recording;
 }
 
-TEST(RepairValues, ContinuesAnAngleAcrossTheZeroOfASensorThatBeginsAgain) {
+TEST(RepairValues, UnwrapsAnAngleAcrossTheSensorsZero) {
   Recording recording = Wrapped(Wave(0.5), 0);  // hangs at 0 = 360 deg: jumps at each of 16 passages
   recording.range = SensorRange{0, 2 * kPi};
   const Recording repaired = RepairValues(recording);
@@ -81,21 +81,21 @@ TEST(RepairValues, ContinuesAnAngleAcrossTheZeroOfASensorThatBeginsAgain) {
   EXPECT_FALSE(repaired.range);
 }
 
-TEST(RepairValues, ContinuesALargeSwingBeyondHalfATurn) {
+TEST(RepairValues, UnwrapsALargeSwingBeyondHalfATurn) {
   // The sensor is mounted at 60 deg and shows (-180, 180] deg.
   const Recording repaired = RepairValues(Wrapped(Wave(-2.5, kPi / 3), -kPi));
   ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
   EXPECT_LT(FarthestFrom(repaired, [](double t) { return kPi / 3 - 2.5 * std::cos(5 * t); }), 1e-12);
 }
 
-TEST(RepairValues, LeavesAnAngleOfMoreThanATurnAsItIs) {
+TEST(RepairValues, KeepsAnAngleOfMoreThanATurn) {
   Recording recording = Wave(2.0);
   recording.value.tail(500).array() += 2 * kPi;  // cause unknown
   const Recording repaired = RepairValues(recording);
   EXPECT_EQ(repaired.value, recording.value);
 }
 
-TEST(RepairValues, UnwrapsNoRateAndNoCounts) {
+TEST(RepairValues, DoesNotUnwrapRatesOrCounts) {
   for (const std::string unit : {"rad/s", "counts"}) {
     Recording recording = Wrapped(Wave(0.5), 0);
     recording.unit = unit;
@@ -106,7 +106,7 @@ TEST(RepairValues, UnwrapsNoRateAndNoCounts) {
 
 // ---- Repeated readings ----------------------------------------------------------------------------------------------
 
-TEST(RepairValues, LeavesOutWhatATrackerRepeats) {
+TEST(RepairValues, RemovesATrackersRepeats) {
   for (const int times : {2, 3}) {
     SCOPED_TRACE(times);
     Recording recording = Wave(0.5);
@@ -122,7 +122,7 @@ TEST(RepairValues, LeavesOutWhatATrackerRepeats) {
   }
 }
 
-TEST(RepairValues, LeavesOutARunThatIsFrozenInMotion) {
+TEST(RepairValues, RemovesAFrozenRunInMotion) {
   Recording recording = Wave(0.5);
   recording.value.segment(151, 5).setConstant(recording.value[150]);  // halfway down
   const Recording repaired = RepairValues(recording);
@@ -131,7 +131,7 @@ TEST(RepairValues, LeavesOutARunThatIsFrozenInMotion) {
   EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-12);
 }
 
-TEST(RepairValues, KeepsWhatRepeatsAtRestAndWhereQuantizedReadingsTurn) {
+TEST(RepairValues, KeepsRepeatsAtRestAndAtQuantizedTurningPoints) {
   Recording rest = Wave(0.5);  // held for 2 s, and at rest after six periods
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
     rest.value[i] = 0.5 * std::cos(std::clamp(5 * (rest.time[i] - 2), 0.0, 12 * kPi));
@@ -150,7 +150,7 @@ TEST(RepairValues, KeepsWhatRepeatsAtRestAndWhereQuantizedReadingsTurn) {
 
 // ---- Spikes ---------------------------------------------------------------------------------------------------------
 
-TEST(RepairValues, LeavesOutSpikesAndNothingBesides) {
+TEST(RepairValues, RemovesOnlySpikes) {
   const Recording clean = Noisy(Wave(0.5), 0.002, 1);
   for (const double height : {0.1, -0.3, 3.0}) {
     Recording recording = clean;
@@ -164,7 +164,7 @@ TEST(RepairValues, LeavesOutSpikesAndNothingBesides) {
   }
 }
 
-TEST(RepairValues, LeavesOutReadingsThatDropToAFixedValue) {
+TEST(RepairValues, RemovesReadingsThatDropToAFixedValue) {
   Recording recording = Noisy(Wave(0.5, 1), 0.002, 1);
   for (Eigen::Index i = 40; i < recording.size(); i += 97) recording.value[i] = 0;
   const Recording repaired = RepairValues(recording);
@@ -187,7 +187,7 @@ TEST(RepairValues, KeepsAKickAndARelease) {
   }
 }
 
-TEST(RepairValues, TakesHardlyAnyNoiseForASpike) {
+TEST(RepairValues, RarelyTreatsNoiseAsASpike) {
   Eigen::Index left_out = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const Recording recording = Noisy(Wave(0.5, 0, 300), 0.003, seed);
@@ -196,7 +196,7 @@ TEST(RepairValues, TakesHardlyAnyNoiseForASpike) {
   EXPECT_THAT(left_out, Le(6));  // of 300,000
 }
 
-TEST(RepairValues, LeavesNothingOutWhereThereAreTooManySpikes) {
+TEST(RepairValues, KeepsAllReadingsIfThereAreTooManySpikes) {
   Recording recording = Noisy(Wave(0.5), 0.002, 1);
   for (Eigen::Index i = 3; i < recording.size(); i += 7) recording.value[i] += 0.8;
   const Recording repaired = RepairValues(recording);
@@ -229,7 +229,7 @@ Recording OnlyChanges(const Recording& recording) {
   return changes;
 }
 
-TEST(RepairValues, NoticesRowsThatStandOnlyWhereTheValueChanges) {
+TEST(RepairValues, DetectsRowsWrittenOnlyAtChanges) {
   const Recording repaired = RepairValues(OnlyChanges(Counted(20000, 5e-4)));
   ASSERT_THAT(Codes(repaired), ElementsAre("event_driven"));
   EXPECT_EQ(repaired.warnings[0].message,
@@ -237,14 +237,14 @@ TEST(RepairValues, NoticesRowsThatStandOnlyWhereTheValueChanges) {
             "half a count early all along, and the error bars know nothing of it; record at even times if you can");
 }
 
-TEST(RepairValues, NoticesNoEventsInEvenSamples) {
+TEST(RepairValues, FindsNoEventsInEvenSamples) {
   EXPECT_THAT(Codes(RepairValues(Counted(2000, 5e-3))), IsEmpty());
   EXPECT_THAT(Codes(RepairValues(Counted(20000, 5e-4))), testing::Not(testing::Contains("event_driven")));
 }
 
 // ---- Saturation ----------------------------------------------------------------------------------------------------
 
-TEST(RepairValues, TakesTheLevelOfFlatTopsForAnEndOfTheRange) {
+TEST(RepairValues, TreatsTheLevelOfFlatTopsAsARangeEnd) {
   Recording clipped = Noisy(Wave(0.6), 0.002, 5);
   clipped.value = clipped.value.cwiseMin(0.4);
   const Recording repaired = RepairValues(clipped);
@@ -254,13 +254,13 @@ TEST(RepairValues, TakesTheLevelOfFlatTopsForAnEndOfTheRange) {
   EXPECT_EQ(repaired.size(), clipped.size());
 }
 
-TEST(RepairValues, TakesRoundedTopsForWhatTheyAre) {
+TEST(RepairValues, AcceptsRoundedTops) {
   Recording coarse = Wave(0.6);
   coarse.value = (coarse.value / 0.02).array().round() * 0.02;
   EXPECT_FALSE(RepairValues(coarse).range.has_value());
 }
 
-TEST(RepairValues, LeavesTheRangeThatTheFileTells) {
+TEST(RepairValues, KeepsTheRangeGivenByTheFile) {
   Recording clipped = Wave(0.6);
   clipped.value = clipped.value.cwiseMin(0.4);
   clipped.range = SensorRange{-1, 0.4};

@@ -91,13 +91,13 @@ int InventedOf200(const Record& record) {
 constexpr double kPotentiometer = 0.1985;  // deg per count of a 10-bit converter
 constexpr double kZero = -49.6077;         // deg at count 0
 
-TEST(FindResolution, OfACalibratedConverterIsItsCount) {
+TEST(FindResolution, IsTheCountOfACalibratedConverter) {
   EXPECT_EQ(
       WrongOf200(kPotentiometer, [](Lab& lab) { return Quantized(lab.Swing(2000, 40, 0.1), kPotentiometer, kZero); }),
       0);
 }
 
-TEST(FindResolution, SurvivesAConversionToRadians) {
+TEST(FindResolution, IsFoundAfterConversionToRadians) {
   constexpr double kRadian = kPotentiometer * kPi / 180;
   EXPECT_EQ(WrongOf200(kRadian,
                        [](Lab& lab) -> Eigen::VectorXd {
@@ -106,7 +106,7 @@ TEST(FindResolution, SurvivesAConversionToRadians) {
             0);
 }
 
-TEST(FindResolution, IsTheSensorsNotThePrinters) {
+TEST(FindResolution, IsTheSensorsNotTheDecimals) {
   for (const int decimals : {2, 3, 4, 6}) {
     SCOPED_TRACE(decimals);
     EXPECT_EQ(WrongOf200(kPotentiometer,
@@ -117,7 +117,7 @@ TEST(FindResolution, IsTheSensorsNotThePrinters) {
   }
 }
 
-TEST(FindResolution, SeesLevelsThroughOutliersThatStandOnNone) {
+TEST(FindResolution, IgnoresOutliersOffTheLevels) {
   const auto with_outliers = [](Index count) {
     return [count](Lab& lab) {
       Eigen::VectorXd value = Quantized(lab.Swing(count, 40, 0.1), kPotentiometer, kZero);
@@ -129,21 +129,21 @@ TEST(FindResolution, SeesLevelsThroughOutliersThatStandOnNone) {
   EXPECT_EQ(WrongOf200(kPotentiometer, with_outliers(5000)), 0);
 }
 
-TEST(FindResolution, OfAFewLevelsIsTheirSpacing) {
+TEST(FindResolution, IsTheSpacingOfAFewLevels) {
   EXPECT_EQ(WrongOf200(1, [](Lab& lab) { return Quantized(lab.Swing(1000, 3.4, 0.01), 1); }), 0);   // 7 or 8 levels
   EXPECT_EQ(WrongOf200(1, [](Lab& lab) { return Quantized(lab.Swing(1000, 10.4, 0.01), 1); }), 0);  // 20
 }
 
-TEST(FindResolution, OfFiftyReadingsIsFoundWhileLevelsAreMetInNeighbours) {
+TEST(FindResolution, IsFoundInFiftyReadingsWithAdjacentLevels) {
   EXPECT_EQ(WrongOf200(0.3, [](Lab& lab) { return Quantized(lab.Swing(50, 20, 0.1), 0.3); }), 0);  // 130 levels
 }
 
-TEST(FindResolution, OfAnEncoderThatSkipsLevelsIsOneCount) {
+TEST(FindResolution, IsOneCountForAnEncoderThatSkipsLevels) {
   constexpr double kCount = 2 * kPi / 4096;
   EXPECT_EQ(WrongOf200(kCount, [](Lab& lab) { return Quantized(lab.Swing(1000, 1.5, 0), kCount); }), 0);
 }
 
-TEST(FindResolution, OfAveragedReadingsIsTheFinerSpacing) {
+TEST(FindResolution, IsTheFinerSpacingOfAveragedReadings) {
   EXPECT_EQ(WrongOf200(0.5,
                        [](Lab& lab) -> Eigen::VectorXd {
                          const Eigen::VectorXd value = Quantized(lab.Swing(4001, 40, 0.3), 1);
@@ -152,14 +152,14 @@ TEST(FindResolution, OfAveragedReadingsIsTheFinerSpacing) {
             0);
 }
 
-TEST(FindResolution, OfFiveMillionReadingsIsFoundFromSomeOfThem) {
+TEST(FindResolution, UsesASampleOfFiveMillionReadings) {
   const Eigen::VectorXd value = Quantized(Lab(1).Swing(5'000'000, 2, 0), 1e-3);
   EXPECT_NEAR(FindResolution(value), 1e-3, 1e-9);
 }
 
 // ---- Continuous readings --------------------------------------------------------------------------------------------
 
-TEST(FindResolution, IsNotInventedForNoise) {
+TEST(FindResolution, IsZeroForNoise) {
   for (const Index count : {50, 300, 1500}) {
     SCOPED_TRACE(count);
     EXPECT_EQ(InventedOf200([&](Lab& lab) { return lab.Swing(count, 20, 0.3); }), 0);
@@ -167,14 +167,14 @@ TEST(FindResolution, IsNotInventedForNoise) {
   }
 }
 
-TEST(FindResolution, IsNotInventedForASmoothSwing) {
+TEST(FindResolution, IsZeroForASmoothSwing) {
   for (const Index count : {50, 300, 1500}) {
     SCOPED_TRACE(count);
     EXPECT_EQ(InventedOf200([&](Lab& lab) { return lab.Swing(count, 1, 0); }), 0);
   }
 }
 
-TEST(FindResolution, IsNotInventedForReadingsThatRepeat) {
+TEST(FindResolution, IsZeroForRepeatedReadings) {
   EXPECT_EQ(InventedOf200([](Lab& lab) { return EachRepeated(lab.Swing(17, 1, 0.01), 3); }), 0);
   EXPECT_EQ(InventedOf200([](Lab& lab) { return EachRepeated(lab.Swing(500, 1, 0.01), 3); }), 0);
   EXPECT_EQ(InventedOf200([](Lab& lab) {
@@ -185,13 +185,13 @@ TEST(FindResolution, IsNotInventedForReadingsThatRepeat) {
             0);
 }
 
-TEST(FindResolution, OfARampOrOfOneValueIsNone) {
+TEST(FindResolution, IsZeroForARampOrOneValue) {
   EXPECT_EQ(FindResolution(Eigen::VectorXd::LinSpaced(1000, 0, 7)), 0);
   EXPECT_EQ(FindResolution(Eigen::VectorXd::Constant(1000, 0.3)), 0);
   EXPECT_EQ(FindResolution(Eigen::VectorXd()), 0);
 }
 
-TEST(FindResolution, OfNoisePrintedCoarselyIsThePrintersStepOrNone) {
+TEST(FindResolution, IsThePrintedStepOrZeroForNoise) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const double found = FindResolution(Printed(Lab(seed).Swing(1000, 20, 0.3), 2));
     EXPECT_TRUE(found == 0 || std::abs(found - 0.01) < 1e-6) << seed << ": " << found;

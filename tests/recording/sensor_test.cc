@@ -66,19 +66,19 @@ TEST(ParseCalibration, NeedsOnlyInputUnitAndCoefficients) {
 }
 
 /// The published table of the reference rig: straight line 0.1985 x - 49.6077 deg.
-TEST(Calibration, TurnsReadingsIntoRadians) {
+TEST(Calibration, ConvertsReadingsToRadians) {
   const Calibration line = CalibrationOf(With("coefficients", "[-49.6077, 0.1985]"));
   EXPECT_NEAR(line.Angle(261) / kDegree, 2.2008, 1e-12);  // 51.8085 - 49.6077, computed by hand
   EXPECT_DOUBLE_EQ(line.Slope(261), 0.1985 * kDegree);
 }
 
-TEST(Calibration, OfHigherOrderHasTheSlopeOfItsCurve) {
+TEST(Calibration, HasTheSlopeOfAHigherOrderCurve) {
   const Calibration cubic = CalibrationOf(R"({"input": "volts", "angle_unit": "rad", "coefficients": [1, 2, 3, 4]})");
   EXPECT_DOUBLE_EQ(cubic.Angle(2), 49);  // 1 + 4 + 12 + 32
   EXPECT_DOUBLE_EQ(cubic.Slope(2), 62);  // 2 + 12 + 48
 }
 
-TEST(Calibration, FindsTheReadingThatShowsAnAngle) {
+TEST(Calibration, FindsTheReadingOfAnAngle) {
   const Calibration line = CalibrationOf(With("coefficients", "[-49.6077, 0.1985]"));
   EXPECT_NEAR(line.Reading(2.2008 * kDegree, 0), 261, 1e-9);
   // x³ + 2 x increases everywhere: 12 at 2, -33 at -3.
@@ -90,7 +90,7 @@ TEST(Calibration, FindsTheReadingThatShowsAnAngle) {
   }
 }
 
-TEST(Calibration, FindsTheReadingNextToWhereItIsSought) {
+TEST(Calibration, FindsTheReadingNearestToTheGivenOne) {
   // x² - 1 is 3 at 2 and at -2.
   const Calibration parabola = CalibrationOf(With("coefficients", "[-1, 0, 1]"));
   EXPECT_NEAR(parabola.Reading(3 * kDegree, 1.5), 2, 1e-12);
@@ -98,12 +98,12 @@ TEST(Calibration, FindsTheReadingNextToWhereItIsSought) {
   EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // flat there: neither side is nearer
 }
 
-TEST(Calibration, KnowsItsUnit) {
+TEST(Calibration, ConvertsItsUnit) {
   EXPECT_DOUBLE_EQ(CalibrationOf(With("angle_unit", "\"deg\"")).RadFromUnit(), kDegree);
   EXPECT_EQ(CalibrationOf(With("angle_unit", "\"rad\"")).RadFromUnit(), 1);
 }
 
-TEST(ParseCalibration, NamesTheKeyThatIsUnknownOrMissing) {
+TEST(ParseCalibration, NamesAnUnknownOrMissingKey) {
   EXPECT_THAT(FaultOf(With("offset", "1")), StartsWith(R"(cal.json: "offset" is not a key of a calibration; )"));
   EXPECT_THAT(FaultOf(R"({"input": "counts", "angle_unit": "deg"})"),
               StartsWith(R"(cal.json: "coefficients" is missing; a calibration is {"input": "counts", )"));
@@ -122,7 +122,7 @@ TEST(ParseCalibration, RefusesValuesOfAnotherType) {
   EXPECT_THAT(FaultOf(With("coefficients", "[1, 2]").replace(0, 1, "[{")), StartsWith("cal.json:1:"));
 }
 
-TEST(ParseCalibration, RefusesACurveThatTellsNoAngle) {
+TEST(ParseCalibration, RefusesACurveWithoutAngles) {
   EXPECT_EQ(FaultOf(With("coefficients", "[]")),
             R"(cal.json: "coefficients" is empty; it must hold at least an offset and a slope)");
   for (const char* const flat : {"[3]", "[3, 0]", "[3, 0, 0.0]"}) {
@@ -134,14 +134,14 @@ TEST(ParseCalibration, RefusesACurveThatTellsNoAngle) {
             R"(cal.json: "coefficients" has 17 numbers; there may be at most 16)");
 }
 
-TEST(ParseCalibration, RefusesNumbersThatAreNotFinite) {
+TEST(ParseCalibration, RefusesNonFiniteNumbers) {
   EXPECT_THAT(FaultOf(R"({"input": "counts", "angle_unit": "deg", "coefficients": [1, NaN]})"),
               HasSubstr("this is not JSON"));
   EXPECT_EQ(FaultOf(R"({"input": "counts", "angle_unit": "deg", "coefficients": [1, 1e999]})"),
             R"(cal.json: "coefficients" is beyond what a number can be (about 1e308); correct it)");
 }
 
-TEST(ParseCalibration, RefusesWhatIsNoCovariance) {
+TEST(ParseCalibration, RefusesAnInvalidCovariance) {
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0]]")),
             R"(cal.json: "covariance" is an array; it must be one row of 2 numbers for each of the 2 coefficients)");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0], [0]]")),
@@ -162,7 +162,7 @@ TEST(ParseCalibration, RefusesARangeThatDoesNotIncrease) {
   }
 }
 
-TEST(ReadCalibration, ReadsAFileAndSaysThatThereIsNone) {
+TEST(ReadCalibration, ReadsAFileAndReportsAMissingOne) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sensor_test.json";
   std::ofstream(path) << With("input_range", "[0, 1023]");
   const Result<Calibration> calibration = ReadCalibration(path);

@@ -42,14 +42,14 @@ TEST(SelectWindow, IncludesBothEnds) {
   EXPECT_EQ(window->value[8], 12.0);
 }
 
-TEST(SelectWindow, TakesTheSamplesBetweenEndsThatAreNoSampleTimes) {
+TEST(SelectWindow, SelectsSamplesBetweenArbitraryTimes) {
   const Result<Recording> window = SelectWindow(Ramp(), 11.9, 16.1);
   ASSERT_TRUE(window.has_value());
   EXPECT_EQ(window->size(), 9);
   EXPECT_EQ(window->time[0], 12.0);
 }
 
-TEST(SelectWindow, KeepsWhatIsKnownOfTheRecording) {
+TEST(SelectWindow, KeepsTheRecordingsProperties) {
   const Result<Recording> window = SelectWindow(Ramp(), 12.0, 16.0);
   ASSERT_TRUE(window.has_value());
   EXPECT_EQ(window->path, "swing.csv");
@@ -60,7 +60,7 @@ TEST(SelectWindow, KeepsWhatIsKnownOfTheRecording) {
   EXPECT_EQ(window->warnings.size(), 1);
 }
 
-TEST(SelectWindow, LeavesAnEndOpenThatIsNan) {
+TEST(SelectWindow, LeavesABoundOpenForNaN) {
   EXPECT_EQ(SelectWindow(Ramp(), kOpen, kOpen)->time, Ramp().time);
   EXPECT_EQ(SelectWindow(Ramp(), kOpen, kOpen)->value, Ramp().value);
   EXPECT_EQ(SelectWindow(Ramp(), 15.0, kOpen)->size(), 11);
@@ -68,14 +68,14 @@ TEST(SelectWindow, LeavesAnEndOpenThatIsNan) {
   EXPECT_EQ(SelectWindow(Ramp(), -kInf, kInf)->size(), 21);
 }
 
-TEST(SelectWindow, RefusesAStartThatIsNotBeforeItsEnd) {
+TEST(SelectWindow, RefusesAStartNotBeforeTheEnd) {
   EXPECT_EQ(FaultOf(15.0, 12.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(15.0, 15.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(kInf, kOpen).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(15.0, 12.5).message, "the window [15, 12.5] s is empty; its start must lie before its end");
 }
 
-TEST(SelectWindow, RefusesFewerThanEightSamplesAndGivesTheSpan) {
+TEST(SelectWindow, RefusesFewerThanEightSamplesWithTheSpan) {
   const Status fault = FaultOf(12.0, 15.0);  // 12, 12.5, ..., 15: seven samples.
   EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(fault.message,
@@ -83,12 +83,12 @@ TEST(SelectWindow, RefusesFewerThanEightSamplesAndGivesTheSpan) {
             "needed: widen the window");
 }
 
-TEST(SelectWindow, RefusesAWindowBesideTheRecording) {
+TEST(SelectWindow, RefusesAWindowOutsideTheRecording) {
   EXPECT_EQ(FaultOf(30.0, 40.0).code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(FaultOf(kOpen, 5.0).code, StatusCode::kFailedPrecondition);
 }
 
-TEST(SelectWindow, RefusesAnEmptyRecordingWithoutReadingIt) {
+TEST(SelectWindow, RefusesAnEmptyRecording) {
   const Result<Recording> window = SelectWindow(Recording(), kOpen, kOpen);
   ASSERT_FALSE(window.has_value());
   EXPECT_EQ(window.error().code, StatusCode::kFailedPrecondition);
@@ -96,7 +96,7 @@ TEST(SelectWindow, RefusesAnEmptyRecordingWithoutReadingIt) {
 
 // ---- Thinned --------------------------------------------------------------------------------------------------------
 
-TEST(Thinned, KeepsEverySoManyThSampleAndNoMoreThanAsked) {
+TEST(Thinned, KeepsEveryKThSampleWithinTheLimit) {
   const Recording third = Thinned(Ramp(), 7);  // 21 samples
   EXPECT_EQ(third.value, Eigen::VectorXd::LinSpaced(7, 0.0, 18.0));
   EXPECT_EQ(third.time, Eigen::VectorXd::LinSpaced(7, 10.0, 19.0));
@@ -105,14 +105,14 @@ TEST(Thinned, KeepsEverySoManyThSampleAndNoMoreThanAsked) {
   EXPECT_EQ(Thinned(Ramp(), 1).value, Eigen::VectorXd::Zero(1));
 }
 
-TEST(Thinned, IsTheRecordingItselfWhereItIsShortEnough) {
+TEST(Thinned, IsTheRecordingItselfIfShortEnough) {
   for (const Eigen::Index most : {21, 22, 1000}) {
     EXPECT_EQ(Thinned(Ramp(), most).time, Ramp().time) << most;
     EXPECT_EQ(Thinned(Ramp(), most).value, Ramp().value) << most;
   }
 }
 
-TEST(Thinned, KeepsWhatIsKnownOfTheRecording) {
+TEST(Thinned, KeepsTheRecordingsProperties) {
   const Recording thinned = Thinned(Ramp(), 7);
   EXPECT_EQ(thinned.path, "swing.csv");
   EXPECT_EQ(thinned.quantity, Quantity::kRate);
@@ -122,7 +122,7 @@ TEST(Thinned, KeepsWhatIsKnownOfTheRecording) {
 
 // ---- Excerpt --------------------------------------------------------------------------------------------------------
 
-TEST(Excerpt, IsAsDenseAsAskedAndAsLongAsThatAllows) {
+TEST(Excerpt, HasTheRequestedDensityAndTheAllowedLength) {
   // 21 samples, one every half second from 10 s on.
   const Recording first = Excerpt(Ramp(), 9, 2, false);
   EXPECT_EQ(first.time[0], 10);
@@ -133,7 +133,7 @@ TEST(Excerpt, IsAsDenseAsAskedAndAsLongAsThatAllows) {
   EXPECT_GE(last.time[0], 15.5);
 }
 
-TEST(Excerpt, IsTheWholeWhereThatIsDenseEnough) { EXPECT_EQ(Excerpt(Ramp(), 100, 2, false).time, Ramp().time); }
+TEST(Excerpt, IsTheWholeRecordingIfDenseEnough) { EXPECT_EQ(Excerpt(Ramp(), 100, 2, false).time, Ramp().time); }
 
 }  // namespace
 }  // namespace pendulum::window_test

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Expected values: 270 deg / 1024 = 0.2637 deg; 3.3 V are 0.66 of 5 V, and 270 (0.66 - 0.5) = 43.2 deg.
-TEST(AdcPlanText, ComparesReferencesAndSaysWhichSaturate) {
+TEST(AdcPlanText, ListsReferencesAndNamesThoseThatSaturate) {
   const std::vector<AdcSensor> sensors = {
       {.reference_voltage = 5}, {.reference_voltage = 3.3}, {.reference_voltage = 1.1}};
   EXPECT_EQ(AdcPlanText(sensors),
@@ -35,13 +35,13 @@ TEST(AdcPlanText, ComparesReferencesAndSaysWhichSaturate) {
 )");
 }
 
-TEST(AdcPlanText, NamesTheDividerThatThereIs) {
+TEST(AdcPlanText, NamesTheExistingDivider) {
   const std::vector<AdcSensor> sensors = {{.bits = 12, .reference_voltage = 3.3, .divider = 0.5}};
   EXPECT_THAT(AdcPlanText(sensors), AllOf(HasSubstr("across 5 V, divided by 2, read by 12 bits"),
                                           HasSubstr("0 to 3103"), Not(HasSubstr("With a reference"))));
 }
 
-TEST(AdcPlanText, OfNoSensorIsEmpty) { EXPECT_EQ(AdcPlanText({}), ""); }
+TEST(AdcPlanText, IsEmptyWithoutSensors) { EXPECT_EQ(AdcPlanText({}), ""); }
 
 }  // namespace
 }  // namespace pendulum::adc_plan_text_test

@@ -22,7 +22,7 @@ std::string PlotOf(const CalibrationTable& table) {
   return fit ? CalibrationPlot(table, *fit) : "";
 }
 
-TEST(CalibrationPlot, HoldsPointsResidualsAndTheCurve) {
+TEST(CalibrationPlot, ContainsPointsResidualsAndTheCurve) {
   const std::string script = PlotOf(TableOf("counts,angle_deg\n100,-10\n200,11\n300,29\n"));  // -29 + 0.195 x
   EXPECT_THAT(script, StartsWith("$points << EndOfData\n100 -10 -0.5"));
   EXPECT_THAT(script, AllOf(HasSubstr("$curve << EndOfData\n100 -9.5"), HasSubstr("set terminal svg"),
@@ -30,12 +30,12 @@ TEST(CalibrationPlot, HoldsPointsResidualsAndTheCurve) {
                             HasSubstr("plot -0.0975"), HasSubstr(", 0.0975")));
 }
 
-TEST(CalibrationPlot, OfVoltsHasNoLinesOfACount) {
+TEST(CalibrationPlot, HasNoCountLinesForVolts) {
   EXPECT_THAT(PlotOf(TableOf("volts,angle_rad\n1,-1\n2,1.1\n3,2.9\n")),
               AllOf(HasSubstr("set ylabel 'residual [rad]'\nplot 0 with lines"), Not(HasSubstr("dt 2"))));
 }
 
-TEST(CalibrationPlot, SaysNothingThatAFileSays) {
+TEST(CalibrationPlot, ContainsNoTextFromTheFile) {
   CalibrationTable table = TableOf(kReferenceTable);
   table.path = "'; system('false'); '";
   EXPECT_THAT(PlotOf(table), AllOf(Not(HasSubstr("system")), Not(HasSubstr("set output"))));

@@ -93,7 +93,7 @@ TEST(CalibrationText, RecommendsTheOrderThatFitsBetter) {
       AllOf(HasSubstr("This curve is significantly better than a straight line (F(1, 9) "), HasSubstr("rad/V^2")));
 }
 
-TEST(CalibrationText, SeesNoLackOfFitInRoundedCounts) {
+TEST(CalibrationText, FindsNoLackOfFitInRoundedCounts) {
   std::vector<double> counts, angles;
   for (int i = 0; i < 60; ++i) {
     angles.push_back(-50 + 1.7 * i);
@@ -118,7 +118,7 @@ TEST(CalibrationText, ListsAtMostFiftyPoints) {
   EXPECT_EQ(std::ranges::count(points, '\n'), 2 + kShownPoints);
 }
 
-TEST(CalibrationText, SaysWhyThereAreNoErrors) {
+TEST(CalibrationText, ExplainsMissingErrors) {
   const std::string text = TextOf(TableOf("counts,angle_deg\n10,0\n20,20\n40,50\n"), 2);
   EXPECT_THAT(Unwrapped(text), HasSubstr("as many coefficients as the table has points and passes through each: there "
                                          "are no residuals to tell standard errors, and none is given."));
@@ -126,7 +126,7 @@ TEST(CalibrationText, SaysWhyThereAreNoErrors) {
                           Not(HasSubstr(" -0.000"))));
 }
 
-TEST(CalibrationText, SaysWhereTheCurveTurnsInTheSensorsRange) {
+TEST(CalibrationText, ReportsWhereTheCurveTurnsInTheSensorsRange) {
   // 60 - (x - 60)² / 60 rises up to 60 counts, which is outside the table.
   const CalibrationTable table = TableOf("counts,angle_deg\n0,0\n10,18\n20,33\n30,45\n40,53\n");
   EXPECT_THAT(Unwrapped(TextOf(table, 2, SensorRange{0, 1023})),

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(ClosedFormsJson, AreInSiWithARigAndInUnitsOfGravityWithout) {
+TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
   Identification report = ExampleReport();
   report.rig->gravity_torque.value = 2;
   const Json si = ClosedFormsJson(report);
@@ -27,14 +27,14 @@ TEST(ClosedFormsJson, AreInSiWithARigAndInUnitsOfGravityWithout) {
             R"({"estimate":0.005,"std_error":0.0005,"unit":"1"})");
 }
 
-TEST(ClosedFormsJson, NameTheirModelWithoutAFitToo) {
+TEST(ClosedFormsJson, NamesTheModelWithoutAFitToo) {
   Identification report = ExampleReport();
   report.fits.clear();
   report.closed_forms->decrement.reset();
   EXPECT_EQ(ClosedFormsJson(report)["model"], "coulomb");
 }
 
-TEST(ClosedFormsJson, SayWhyAPartIsMissing) {
+TEST(ClosedFormsJson, ExplainsAMissingPart) {
   Identification report = ExampleReport();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
@@ -49,7 +49,7 @@ TEST(ClosedFormsJson, SayWhyAPartIsMissing) {
             "for 4 unknowns");
 }
 
-TEST(ClosedFormsJson, AreNullWhereThereAreNone) { EXPECT_TRUE(ClosedFormsJson(ExampleRateReport()).is_null()); }
+TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(ClosedFormsJson(ExampleRateReport()).is_null()); }
 
 TEST(ClosedFormsJson, NameTheUnitOfTheNoise) {
   Identification report = ExampleReport();
@@ -70,7 +70,7 @@ TEST(CheckJson, HasARowForEachQuantity) {
   EXPECT_FALSE(rows[0].contains("reason"));
 }
 
-TEST(CheckJson, SaysWhyThereIsNoZ) {
+TEST(CheckJson, ExplainsAMissingZ) {
   ClosedFormCheck check = ExampleCheck();
   Json row = CheckJson(&check)[2];
   for (const char* key : {"std_error", "z", "agrees"}) EXPECT_TRUE(row[key].is_null()) << key;
@@ -85,7 +85,7 @@ TEST(CheckJson, SaysWhyThereIsNoZ) {
 
 TEST(CheckJson, IsEmptyWithoutACheck) { EXPECT_EQ(CheckJson(nullptr), Json::array()); }
 
-TEST(SamplingJson, TurnsWhatIsNotKnownIntoNull) {
+TEST(SamplingJson, WritesUnknownValuesAsNull) {
   Sampling sampling;
   sampling.rate_hz = 12.5;
   const Json json = SamplingJson(sampling);

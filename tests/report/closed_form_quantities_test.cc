@@ -58,7 +58,7 @@ TEST(DecrementEstimates, KeepTheUnitOfTheReadings) {
 }
 
 // sin 30 deg = 1/2; the derivative of asin there is 1 / cos 30 deg.
-TEST(StickingAngle, IsWhereGravityEqualsDryFriction) {
+TEST(StickingAngle, IsTheAngleWhereGravityEqualsDryFriction) {
   Decrement decrement = *ExampleClosedForms().decrement;
   decrement.friction[1] = {0.5, 0.01};
   const auto sticking = StickingAngle(decrement);
@@ -68,7 +68,7 @@ TEST(StickingAngle, IsWhereGravityEqualsDryFriction) {
   EXPECT_NEAR(sticking->estimate.std_error, 0.01 / std::cos(kPi / 6), 1e-15);
 }
 
-TEST(StickingAngle, NeedsDryFrictionThatGravityCanOvercome) {
+TEST(StickingAngle, NeedsDryFrictionBelowGravity) {
   Decrement decrement = *ExampleClosedForms().decrement;
   for (const double coulomb : {-0.001, 0.0, 1.0, 2.0}) {
     decrement.friction[1].value = coulomb;

@@ -45,7 +45,7 @@ std::vector<std::string> TurningPointLines(const Identification& report) {
 }
 
 // Expected values rounded by hand; G = 1.8 N m, and 1 rad = 57.2958 deg.
-TEST(ClosedFormText, GivesTheClosedFormsInSi) {
+TEST(ClosedFormText, ReportsSiUnits) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), StartsWith(R"([[Closed forms]]
     Formulas of the linear pendulum, over 2 periods from turning point 1 on;
     corrected_inertia: each period divided by the elliptic integral's ratio.
@@ -73,7 +73,7 @@ TEST(ClosedFormText, GivesTheClosedFormsInSi) {
 )"));
 }
 
-TEST(ClosedFormText, IsInUnitsOfGravityWithoutARig) {
+TEST(ClosedFormText, UsesUnitsOfGravityWithoutARig) {
   Identification report = ExampleReport();
   report.rig.reset();
   const std::string text = ClosedFormText(report);
@@ -81,7 +81,7 @@ TEST(ClosedFormText, IsInUnitsOfGravityWithoutARig) {
   EXPECT_THAT(text, HasSubstr("    coulomb         τ_c      0.0050 ± 0.0005     1\n"));
 }
 
-TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
+TEST(ClosedFormText, RoundsFitAndClosedFormAlikeAndExplainsDifferences) {
   EXPECT_THAT(ClosedFormText(ExampleReport()), HasSubstr(R"([[Closed forms against the fit]]
     quantity               formula ± error        fit    z  agrees
     inertia_small_angle    0.08020 ± 0.00020  0.07900  6.2  NO
@@ -96,13 +96,13 @@ TEST(ClosedFormText, RoundsTheFitAsItsClosedFormAndSaysWhyTheyDiffer) {
 )"));
 }
 
-TEST(ClosedFormText, ShowsNoZThatIsNoNumber) {
+TEST(ClosedFormText, HidesANonFiniteZ) {
   Identification report = ExampleReport();
   report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
   EXPECT_THAT(ClosedFormText(report), HasSubstr("0.08020 ± 0.00020  0.07900    -  NO\n"));
 }
 
-TEST(ClosedFormText, NamesTheModelOfEachCheckWhereThereAreSeveral) {
+TEST(ClosedFormText, NamesTheModelOfEachOfSeveralChecks) {
   Identification report = ExampleReport();
   report.fits.push_back(report.fits.front());
   report.fits.back().model = {"viscous", "viscous", Gravity::kSine};
@@ -132,7 +132,7 @@ TEST(ClosedFormText, ListsTurningPointsInDegrees) {
 )"));
 }
 
-TEST(ClosedFormText, LeavesTheMiddleOfManyTurningPointsToTheSeries) {
+TEST(ClosedFormText, OmitsTheMiddleOfManyTurningPoints) {
   EXPECT_EQ(TurningPointLines(ReportWithTurningPoints(12)).size(), 12);
   const std::vector<std::string> lines = TurningPointLines(ReportWithTurningPoints(20));
   ASSERT_EQ(lines.size(), 13);
@@ -142,7 +142,7 @@ TEST(ClosedFormText, LeavesTheMiddleOfManyTurningPointsToTheSeries) {
   EXPECT_THAT(lines[12], StartsWith("        20 "));
 }
 
-TEST(ClosedFormText, ListsSixtyTurningPointsOfClosedFormsOnly) {
+TEST(ClosedFormText, ListsSixtyTurningPointsWithoutAFit) {
   Identification report = ReportWithTurningPoints(60);
   report.fits.clear();
   report.checks.clear();
@@ -156,7 +156,7 @@ TEST(ClosedFormText, ListsSixtyTurningPointsOfClosedFormsOnly) {
   EXPECT_THAT(lines[60], StartsWith("        61 "));
 }
 
-TEST(ClosedFormText, GivesARateItsOwnUnits) {
+TEST(ClosedFormText, UsesRateUnitsForARate) {
   Identification report = ExampleReport();
   report.data.unit = "rad/s";
   report.closed_forms->table.quantity = Quantity::kRate;
@@ -167,7 +167,7 @@ TEST(ClosedFormText, GivesARateItsOwnUnits) {
                               "                              0.573 ± 0.006      deg/s\n"));
 }
 
-TEST(ClosedFormText, ShowsCountsAsTheyAre) {
+TEST(ClosedFormText, ShowsCountsUnconverted) {
   Identification report = ExampleReport();
   report.data.unit = "counts";
   const std::string text = ClosedFormText(report);
@@ -176,7 +176,7 @@ TEST(ClosedFormText, ShowsCountsAsTheyAre) {
   EXPECT_THAT(text, HasSubstr("    zero_angle      z       0.01000 ± 0.00010    counts\n    inertia "));
 }
 
-TEST(ClosedFormText, SaysWhatThereIsNot) {
+TEST(ClosedFormText, ReportsMissingParts) {
   Identification report = ExampleReport();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
@@ -192,7 +192,7 @@ TEST(ClosedFormText, SaysWhatThereIsNot) {
   EXPECT_EQ(ClosedFormText(Identification()), "");
 }
 
-TEST(SamplingText, GivesTheFacts) {
+TEST(SamplingText, DescribesTheSampling) {
   EXPECT_EQ(SamplingText(ExampleReport()), R"([[Sampling]]
     rate       100 Hz, intervals scatter by 0.2 ms
     gaps       1, of 0.5 s at most
@@ -203,7 +203,7 @@ TEST(SamplingText, GivesTheFacts) {
 )");
 }
 
-TEST(SamplingText, LeavesOutWhatIsNotKnown) {
+TEST(SamplingText, OmitsUnknownFacts) {
   Identification report;
   EXPECT_EQ(SamplingText(report), "");
   report.sampling = Sampling();

@@ -27,7 +27,7 @@ TEST(ComparisonJson, HasARowForEachModel) {
   }
 }
 
-TEST(ComparisonJson, SaysWhyAPredictionIsMissing) {
+TEST(ComparisonJson, ExplainsAMissingPrediction) {
   Identification report = ExampleComparedReport();
   report.comparison->rows[0].forward = {0, 0, 0, "it ends early"};
   const Json row = ComparisonJson(report)["rows"][0];
@@ -37,7 +37,7 @@ TEST(ComparisonJson, SaysWhyAPredictionIsMissing) {
   EXPECT_EQ(ComparisonJson(report)["rows"][0]["reason"], "forward prediction: not made");
 }
 
-TEST(ComparisonJson, NamesWhatTheCriteriaRestOn) {
+TEST(ComparisonJson, NamesTheBasisOfTheCriteria) {
   Identification report = ExampleComparedReport();
   const std::pair<Likelihood, const char*> named[] = {
       {Likelihood::kIndependent, "independent"}, {Likelihood::kCorrelated, "correlated"}, {Likelihood::kNone, "none"}};
@@ -49,14 +49,14 @@ TEST(ComparisonJson, NamesWhatTheCriteriaRestOn) {
   }
 }
 
-TEST(ComparisonJson, RecommendsNothingAsNull) {
+TEST(ComparisonJson, IsNullWithoutARecommendation) {
   Identification report = ExampleComparedReport();
   report.comparison->recommended.clear();
   EXPECT_TRUE(ComparisonJson(report)["recommended"].is_null());
   EXPECT_TRUE(ComparisonJson(ExampleReport()).is_null());
 }
 
-TEST(ComparisonJson, SaysWhyThereIsNoP) {
+TEST(ComparisonJson, ExplainsAMissingP) {
   const Json tests = ComparisonJson(ExampleComparedReport())["tests"];
   EXPECT_FALSE(tests[0].contains("reason"));
   EXPECT_TRUE(tests[1]["p"].is_null());
@@ -71,7 +71,7 @@ TEST(ComparisonJson, NamesTheUnitOfARate) {
   EXPECT_TRUE(row["cross_validation"].contains("rms_rad_s"));
 }
 
-TEST(ComparisonJson, TurnsNumbersThatAreNoneIntoNull) {
+TEST(ComparisonJson, WritesNonFiniteNumbersAsNull) {
   Identification report = ExampleComparedReport();
   ComparisonRow& row = report.comparison->rows[0];
   row.aic = kNan;
@@ -93,7 +93,7 @@ TEST(ConstancyJson, HasBothTests) {
   EXPECT_FALSE(json.contains("reason"));
 }
 
-TEST(ConstancyJson, SaysWhyOneTestIsMissing) {
+TEST(ConstancyJson, ExplainsAMissingTest) {
   Constancy constancy = ExampleConstant();
   constancy.halves_p.reset();
   constancy.halves.clear();
@@ -105,7 +105,7 @@ TEST(ConstancyJson, SaysWhyOneTestIsMissing) {
   EXPECT_EQ(json["constant"], true);
 }
 
-TEST(ConstancyJson, IsNullWhereNothingWasTestedForAReason) {
+TEST(ConstancyJson, IsNullWithAReasonWithoutATest) {
   FitReport fit = ExampleFit();
   Constancy constancy;
   EXPECT_TRUE(ConstancyJson(nullptr).is_null());

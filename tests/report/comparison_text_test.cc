@@ -17,7 +17,7 @@ std::string ComparisonText(const Identification& report) { return ToText(Compari
 std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report, 0)); }
 
 // Expected values: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
-TEST(ComparisonSections, RecommendFirst) {
+TEST(ComparisonSections, StartWithTheRecommendation) {
   EXPECT_EQ(ComparisonText(ExampleComparedReport()), R"([[Comparison]]
     Recommended: coulomb.
     It is the only one that converged.
@@ -41,7 +41,7 @@ TEST(ComparisonSections, RecommendFirst) {
 )");
 }
 
-TEST(ComparisonSections, WarnWhereNoneIsRecommended) {
+TEST(ComparisonSections, WarnIfNothingIsRecommended) {
   Identification report = ExampleComparedReport();
   report.comparison->recommended.clear();
   report.comparison->reason = "None converged.";
@@ -52,7 +52,7 @@ TEST(ComparisonSections, WarnWhereNoneIsRecommended) {
   EXPECT_THAT(text, Not(HasSubstr("Likelihood-ratio")));
 }
 
-TEST(ComparisonSections, SayWhyNothingWasPredicted) {
+TEST(ComparisonSections, ExplainMissingPredictions) {
   Identification report = ExampleComparedReport();
   ComparisonRow& row = report.comparison->rows[0];
   row.cross_validation = row.forward = {0, 0, 0, "shorter than three periods"};
@@ -64,22 +64,22 @@ TEST(ComparisonSections, SayWhyNothingWasPredicted) {
   EXPECT_THAT(ComparisonText(report), HasSubstr("    coulomb, last part: it ends early.\n"));
 }
 
-TEST(ComparisonSections, AreInTheUnitOfTheReadings) {
+TEST(ComparisonSections, UseTheUnitOfTheReadings) {
   Identification report = ExampleComparedReport();
   report.data.unit = "counts";
   EXPECT_THAT(ComparisonText(report), HasSubstr("rms [counts]"));
   EXPECT_THAT(ComparisonText(report), HasSubstr("  0.00349  "));
 }
 
-TEST(ComparisonSections, AreNoneOfOneModel) { EXPECT_EQ(ComparisonText(ExampleReport()), ""); }
+TEST(ComparisonSections, AreEmptyForOneModel) { EXPECT_EQ(ComparisonText(ExampleReport()), ""); }
 
-TEST(ConstancySections, AreASentenceWhereAllIsConstant) {
+TEST(ConstancySections, AreOneSentenceIfAllIsConstant) {
   EXPECT_EQ(ConstancyText(ExampleReport()),
             "[[Constancy]]\n    inertia and friction are constants of the recording.\n");
 }
 
 // 0.4 rad = 22.918 deg, 0.3 rad = 17.189 deg, 0.2 rad = 11.459 deg.
-TEST(ConstancySections, HaveTheWindowsOfATrend) {
+TEST(ConstancySections, ShowTheWindowsOfATrend) {
   EXPECT_EQ(ConstancyText(ExampleComparedReport()), R"([[Constancy]]
     inertia falls by 1.9 % from the largest to the smallest swings (p = 1e-09).
     from [s]  to [s]  amplitude [deg]  inertia [kg m^2] ± error
@@ -89,7 +89,7 @@ TEST(ConstancySections, HaveTheWindowsOfATrend) {
 )");
 }
 
-TEST(ConstancySections, HaveTheHalvesThatDiffer) {
+TEST(ConstancySections, ShowDifferingHalves) {
   Identification report = ExampleReport();
   report.constancy[0].halves_p = 1e-6;
   report.constancy[0].verdict = "viscous differs between the halves";
@@ -101,7 +101,7 @@ TEST(ConstancySections, HaveTheHalvesThatDiffer) {
             "    viscous      0.0030 ± 0.0005        0.0025 ± 0.0008  N m s/rad  -0.5\n");
 }
 
-TEST(ConstancySections, SayWhatWasNotTested) {
+TEST(ConstancySections, ReportMissingTests) {
   Identification report = ExampleReport();
   report.constancy[0] = Constancy();
   EXPECT_EQ(ConstancyText(report), "");

@@ -29,7 +29,7 @@ CoverageStudy ExampleStudy() {
   return study;
 }
 
-TEST(CoverageText, HasALineForEachParameterAndOneForEachScenario) {
+TEST(CoverageText, HasALinePerParameterAndPerScenario) {
   const std::vector<CoverageStudy> studies = {ExampleStudy()};
   EXPECT_EQ(CoverageText(studies),
             "scenario  parameter  coverage  [95 %]          rms error        error/bound  std error/error  no interval "
@@ -43,7 +43,7 @@ TEST(CoverageText, HasALineForEachParameterAndOneForEachScenario) {
             "breeze          1000        998       1       1  a window left open\n");
 }
 
-TEST(CoverageText, SaysWhatMisses) {
+TEST(CoverageText, NamesWhatMisses) {
   CoverageStudy study = ExampleStudy();
   study.rows[0].precise = false;
   study.rows[1].precise = false;
@@ -51,7 +51,7 @@ TEST(CoverageText, SaysWhatMisses) {
   EXPECT_THAT(text, AllOf(HasSubstr("2  error\n"), HasSubstr("2  coverage, error\n"), Not(HasSubstr("pass"))));
 }
 
-TEST(CoverageMarkdown, GivesTheCommandTheRulesAndTheSameNumbers) {
+TEST(CoverageMarkdown, ContainsTheCommandTheRulesAndTheSameNumbers) {
   CoverageStudy lax = ExampleStudy();
   lax.scenario.name = "storm";
   lax.scenario.rule.highest = 1;
@@ -66,7 +66,7 @@ TEST(CoverageMarkdown, GivesTheCommandTheRulesAndTheSameNumbers) {
   EXPECT_THAT(text, HasSubstr("\n| breeze | 1000 | 998 | 1 | 1 | a window left open |\n"));
 }
 
-TEST(CoverageScenarioList, NamesEachScenarioAndSaysWhatItIs) {
+TEST(CoverageScenarioList, ListsNameAndDescriptionOfEachScenario) {
   CoverageScenario quiet;
   quiet.name = "quiet";
   quiet.description = "no noise";

@@ -30,7 +30,7 @@ TEST(SymbolicEquation, NamesEveryParameterOfEveryModel) {
   }
 }
 
-TEST(FittedEquation, RoundsEachNumberAsItsErrorSaysAndTorqueAsInertia) {
+TEST(FittedEquation, RoundsEachNumberByItsError) {
   FitReport fit = ExampleFit();
   fit.parameters = {ExampleParameter(kInertia, "kg m^2", 0.07902, 0.0008),
                     ExampleParameter(kViscous, "N m s/rad", 0.00302, 0.00016),
@@ -39,12 +39,12 @@ TEST(FittedEquation, RoundsEachNumberAsItsErrorSaysAndTorqueAsInertia) {
   EXPECT_EQ(FittedEquation(fit, rig), "0.0790 th'' + 0.00302 th' + 0.00101 sgn(th') + 1.80 sin th = 0");
 }
 
-TEST(FittedEquation, HasOneForGravityWithoutARig) {
+TEST(FittedEquation, HasUnitGravityWithoutARig) {
   EXPECT_EQ(FittedEquation(ExampleRateReport().fits.front(), std::nullopt),
             "0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0");
 }
 
-TEST(FittedEquation, KeepsTheTermOfAParameterAtItsBoundAndTheSignOfANegativeOne) {
+TEST(FittedEquation, KeepsTermsAtABoundAndNegativeSigns) {
   FitReport fit = ExampleFit();
   fit.parameters[1].estimate = -0.003;
   EXPECT_EQ(FittedEquation(fit, std::nullopt), "0.07900 th'' - 0.0030 th' + 0 sgn(th') + sin th = 0");

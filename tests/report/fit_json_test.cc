@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-TEST(IntervalJson, HasNullForAnEndThatIsMissing) {
+TEST(IntervalJson, HasNullForAMissingEnd) {
   EXPECT_EQ(IntervalJson(0.5, 2.0).dump(), "[0.5,2.0]");
   EXPECT_EQ(IntervalJson(0.5, std::nullopt).dump(), "[0.5,null]");
   EXPECT_EQ(IntervalJson(std::nullopt, 2.0).dump(), "[null,2.0]");
@@ -38,7 +38,7 @@ TEST(ParametersJson, HasNumbersUnitsAndFlagsByName) {
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 
-TEST(ParametersJson, SaysWhyAnErrorIsNull) {
+TEST(ParametersJson, ExplainsAMissingError) {
   FitReport fit = ExampleFit();
   fit.parameters[3].upper95.reset();
   fit.parameters[3].open_interval = OpenInterval::kFlatLikelihood;
@@ -54,7 +54,7 @@ TEST(ParametersJson, SaysWhyAnErrorIsNull) {
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
 }
 
-TEST(DerivedJson, SaysWhyAnErrorIsNull) {
+TEST(DerivedJson, ExplainsAMissingError) {
   const Json derived = DerivedJson(ExampleFit());
   EXPECT_EQ(derived["natural_frequency"]["interval95"].dump(), "[4.763,4.793]");
   EXPECT_TRUE(derived["damping_ratio"]["std_error"].is_null());
@@ -78,7 +78,7 @@ TEST(CorrelationJson, IsTheCovarianceOverTheStandardErrors) {
   EXPECT_DOUBLE_EQ(matrix[1][2].get<double>(), 0);
 }
 
-TEST(SystematicJson, IsOfWhatHasSystematicErrorsOnly) {
+TEST(SystematicJson, ListsParametersWithSystematicErrorsOnly) {
   EXPECT_EQ(SystematicJson(ExampleFit()).dump(), R"({"names":["inertia"],"matrix":[[1e-06]]})");
   FitReport none;
   EXPECT_EQ(SystematicJson(none).dump(), R"({"names":[],"matrix":[]})");
@@ -98,7 +98,7 @@ TEST(NoiseJson, CarriesTheUnitInItsKeys) {
   EXPECT_EQ(NoiseJson(fit, DataSummary())["reason"], "sigma_rad_s is not a finite number");
 }
 
-TEST(StatisticsJson, HasNullForWhatIsNotFinite) {
+TEST(StatisticsJson, HasNullForNonFiniteNumbers) {
   FitReport fit = ExampleFit();
   EXPECT_EQ(StatisticsJson(fit)["rms_residual_rad"], 0.00349);
   EXPECT_FALSE(StatisticsJson(fit).contains("reason"));

@@ -12,11 +12,11 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(TermsTogether, LeavesBlanksOnlyBeforeSigns) {
-  EXPECT_EQ(TermsTogether("a th' + b sin th = 0"), "a\u00A0th' +\u00A0b\u00A0sin\u00A0th =\u00A00");
+TEST(WithUnbrokenTerms, KeepsBlanksOnlyBeforeSigns) {
+  EXPECT_EQ(WithUnbrokenTerms("a th' + b sin th = 0"), "a\u00A0th' +\u00A0b\u00A0sin\u00A0th =\u00A00");
 }
 
-TEST(ParameterSection, IsTheTableOfEstimatesAlone) {
+TEST(ParameterSection, HasOnlyTheTableOfEstimates) {
   EXPECT_EQ(ToText(Sections{ParameterSection(ExampleFit(), true)}), R"([[Parameters of coulomb]]
     name              value ± std error  unit       95 % interval
     inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]
@@ -29,7 +29,7 @@ TEST(ParameterSection, IsTheTableOfEstimatesAlone) {
 )");
 }
 
-TEST(ParameterSection, SaysFirstThatThereIsNoResult) {
+TEST(ParameterSection, StartsWithAMissingResult) {
   FitReport fit = ExampleFit();
   fit.termination = Termination::kNotConverged;
   fit.reason = "100 iterations were not enough";
@@ -39,7 +39,7 @@ TEST(ParameterSection, SaysFirstThatThereIsNoResult) {
 }
 
 // The rounding is that of the estimate's error 0.00025. Degrees: 0.423 rad × 57.2958 × 1.01 = 24.4785.
-TEST(FitSections, PutSystematicErrorsAndClosedFormsIntoATableOfTheirOwn) {
+TEST(FitSections, ListSystematicErrorsAndClosedFormsSeparately) {
   FitReport fit = ExampleFit();
   fit.parameters[0].closed_form = 0.0795;
   fit.parameters[3].closed_form = 1.01 * 0.423;

@@ -28,7 +28,7 @@ std::vector<std::string> Keys(const Json& object) {
 Json HomogeneityOf(const Identification& report) { return JointFitJson(report, 0)["homogeneity"]; }
 
 // tests/tools/result_schema_test.py checks the tool's output with the schema.
-TEST(ToJson, OfAJointFitHasArraysOfItsRecordings) {
+TEST(ToJson, HasArraysOfRecordingsForAJointFit) {
   const Json json = ToJson(ExampleJointReport());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
                                       "closed_forms", "warnings", "reason"));
@@ -44,7 +44,7 @@ TEST(ToJson, OfAJointFitHasArraysOfItsRecordings) {
   EXPECT_EQ(json["fits"][0], JointFitJson(ExampleJointReport(), 0));
 }
 
-TEST(ToJson, OfAJointFitSaysWhoseClosedFormsThereAreNot) {
+TEST(ToJson, NamesTheRecordingWithoutClosedForms) {
   Identification report = ExampleJointReport();
   EXPECT_EQ(ToJson(report)["reason"], "recording 2 (b c.csv): only 2 turning points can be located");
   report.runs[0].closed_forms.reset();
@@ -56,7 +56,7 @@ TEST(ToJson, OfAJointFitSaysWhoseClosedFormsThereAreNot) {
   EXPECT_FALSE(ToJson(report).contains("reason"));
 }
 
-TEST(ToJson, OfAJointFitNamesTheRecordingOfAWarning) {
+TEST(ToJson, NamesTheRecordingOfAJointFitsWarning) {
   const Json warnings = ToJson(ExampleJointReport())["warnings"];
   ASSERT_EQ(warnings.size(), 2);
   EXPECT_EQ(warnings[0]["message"], "recording 1 (run.csv): there is a gap of 0.5 s after 7 s");
@@ -75,7 +75,7 @@ TEST(JointFitJson, KeepsTheOrderOfKeys) {
   EXPECT_EQ(fit["correlation"].dump(), R"({"names":["inertia","viscous"],"matrix":[[1.0,0.5],[0.5,1.0]]})");
 }
 
-TEST(JointFitJson, HasEachRecordingAsTheJointFitSeesIt) {
+TEST(JointFitJson, ShowsEachRecordingAsJointlyFitted) {
   const Json runs = JointFitJson(ExampleJointReport(), 0)["runs"];
   ASSERT_EQ(runs.size(), 2);
   EXPECT_THAT(Keys(runs[0]), ElementsAre("path", "release", "amplitude_rad", "parameters", "covariance", "correlation",
@@ -90,7 +90,7 @@ TEST(JointFitJson, HasEachRecordingAsTheJointFitSeesIt) {
   EXPECT_EQ(runs[1]["alone"], "not_converged: too few iterations");
 }
 
-TEST(JointFitJson, SaysWhatARecordingLacks) {
+TEST(JointFitJson, ReportsALackOfFitPerRecording) {
   Identification report = ExampleJointReport();
   report.runs[1].data.path.clear();
   report.runs[1].data.release = 0;
@@ -103,7 +103,7 @@ TEST(JointFitJson, SaysWhatARecordingLacks) {
 }
 
 // The numbers are those of ExampleSharedInertia, calculated there.
-TEST(JointFitJson, TellsWhatEachRecordingAloneSays) {
+TEST(JointFitJson, ReportsSeparateEstimates) {
   const Json inertia = HomogeneityOf(ExampleJointReport())["parameters"]["inertia"];
   EXPECT_EQ(
       inertia.dump(),
@@ -113,7 +113,7 @@ TEST(JointFitJson, TellsWhatEachRecordingAloneSays) {
       R"("runs":[{"estimate":0.0789,"std_error":0.0003,"z":-0.4},{"estimate":0.0791,"std_error":0.0004,"z":0.4}]})");
 }
 
-TEST(JointFitJson, SaysOfARecordingThatItTellsNothing) {
+TEST(JointFitJson, ReportsAnUninformativeRecording) {
   Identification report = ExampleJointReport();
   std::vector<RunEstimate>& runs = report.joint[0].homogeneity.parameters[0].runs;
   runs[0] = {};
@@ -148,13 +148,13 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
             R"("reason":"all that is shared is fixed"})");
 }
 
-TEST(JointFitJson, TellsWhatAmplitudeExplains) {
+TEST(JointFitJson, ReportsAmplitudeDependence) {
   EXPECT_EQ(HomogeneityOf(ExampleJointReport())["amplitude_dependence"].dump(),
             R"([{"parameter":"inertia","slope":0.0125,"std_error":0.005,"unit":"kg m^2 / rad^2","p":0.25,)"
             R"("span":0.0078125,"rest_p":0.75}])");
 }
 
-TEST(JointFitJson, HasAnRmsWhereReadingsHaveOneUnit) {
+TEST(JointFitJson, HasAnRmsForCommonUnits) {
   Identification report = ExampleJointReport();
   EXPECT_EQ(JointFitJson(report, 0)["statistics"].dump(),
             R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
@@ -164,7 +164,7 @@ TEST(JointFitJson, HasAnRmsWhereReadingsHaveOneUnit) {
               ElementsAre("log_likelihood", "aic", "aicc", "bic", "effective_samples"));
 }
 
-TEST(ToJson, OfSensorsWithDifferentUnitsComparesInSigmas) {
+TEST(ToJson, ComparesInSigmasForDifferentUnits) {
   Identification report = ExampleComparedJointReport();
   EXPECT_EQ(ToJson(report)["comparison"]["rows"][0]["rms_residual_rad"], 0.00349);
   report.data.unit = "sigma";
@@ -173,7 +173,7 @@ TEST(ToJson, OfSensorsWithDifferentUnitsComparesInSigmas) {
   EXPECT_EQ(row["cross_validation"]["rms_sigma"], 0.0035);
 }
 
-TEST(JointFitJson, WritesAnEquationWhereAllOfItIsShared) {
+TEST(JointFitJson, WritesAnEquationIfAllIsShared) {
   Identification report = ExampleJointReport();
   EXPECT_THAT(JointFitJson(report, 0)["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
   report.joint[0].shared = {"inertia", "viscous"};
@@ -191,7 +191,7 @@ TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
 }
 
 // dump() would also write null for each, but without a reason.
-TEST(JointFitJson, HasAReasonForWhatIsNotFinite) {
+TEST(JointFitJson, ExplainsNonFiniteNumbers) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Identification report = ExampleJointReport();
   Homogeneity& homogeneity = report.joint[0].homogeneity;

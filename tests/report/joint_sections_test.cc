@@ -49,7 +49,7 @@ int WidestOf(const std::string& text) {
   return widest;
 }
 
-TEST(JointSections, CompareBeforeTheyTellAndEndWithTheOtherLaws) {
+TEST(JointSections, StartWithTheComparisonAndEndWithOtherLaws) {
   EXPECT_THAT(Titles(JointSections(ExampleJointReport())),
               ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?", "Each recording's own",
                           "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion"));
@@ -59,7 +59,7 @@ TEST(JointSections, CompareBeforeTheyTellAndEndWithTheOtherLaws) {
                           "Noise and statistics", "Equation of motion", "Parameters of drag"));
 }
 
-TEST(JointSections, TellNoMotionOfWhatIsNoOnePendulum) {
+TEST(JointSections, ShowNoMotionIfThePendulumsDiffer) {
   Identification report = ExampleJointReport();
   report.fits[0].termination = Termination::kNotConverged;
   EXPECT_THAT(Titles(JointSections(report)), ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?",
@@ -79,20 +79,20 @@ TEST(JointSections, NumberTheRecordings) {
 )");
 }
 
-TEST(JointSections, TellTheReleasesOfOneFileApart) {
+TEST(JointSections, DistinguishReleasesOfOneFile) {
   Identification report = ExampleJointReport();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 2;
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  run.csv, swing 1\n    2  run.csv, swing 2\n"));
 }
 
-TEST(JointSections, CallARecordingWithoutAFileADash) {
+TEST(JointSections, ShowADashForARecordingWithoutAFile) {
   Identification report = ExampleJointReport();
   report.runs[0].data.path.clear();
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  -\n    2  b c.csv\n"));
 }
 
-TEST(JointSections, SayWhatIsSharedByHowMany) {
+TEST(JointSections, CountTheRecordingsThatShareParameters) {
   const std::string text = TextOf(ExampleJointReport(), "Fit");
   EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; start, zero and noise\n"));
   EXPECT_THAT(text, HasSubstr("    status  converged: the step left to make is below 0.1 standard errors\n"));
@@ -101,7 +101,7 @@ TEST(JointSections, SayWhatIsSharedByHowMany) {
 // Expected positions: the strip has 21 places from 0.078312 (first - 1.96 errors) to 0.079884 (second + 1.96 errors),
 // 0.0000786 each. 0.0789 is at 7.5, its upper end at 15.0; 0.0791 is at 10.0; the joint 0.0790 ± 0.00049 is at 2.5 to
 // 8.8 to 15.0; the mean 0.078972 ± 0.00047 is at 2.4 to 8.4 to 14.4.
-TEST(AgreementSection, DrawsEachRecordingTheJointFitAndTheMean) {
+TEST(AgreementSection, DrawsRecordingsJointFitAndMean) {
   EXPECT_THAT(Agreement(ExampleJointReport()), HasSubstr(R"([[Do the recordings agree?]]
     Verdict: the recordings agree on inertia, viscous.
     inertia [kg m^2]                        z
@@ -112,7 +112,7 @@ TEST(AgreementSection, DrawsEachRecordingTheJointFitAndTheMean) {
     Agreement: chi-square 0.16, 1 degree)"));
 }
 
-TEST(AgreementSection, TellsTheScatterBetweenRecordings) {
+TEST(AgreementSection, ReportsTheScatterBetweenRecordings) {
   EXPECT_THAT(Agreement(ExampleJointReport()), HasSubstr(R"( p 0.69. Random effects:
     mean in [0.07590, 0.08200] (95 %); between recordings a standard deviation
     of 0 kg m^2, in [0, 0.005].
@@ -128,7 +128,7 @@ TEST(AgreementSection, CountsDegreesOfFreedom) {
 
 // Expected positions: the widest interval, of the mean 0.0034 ± 0.00196, has 21 places of 0.0002. In it 0.0025 ±
 // 0.00049 has places 3 to 8, 0.0045 ± 0.00098 has 10 to 20, and 0.0033 is at 9.
-TEST(AgreementSection, MarksTheJointEstimateWhereARecordingDoesNotReachIt) {
+TEST(AgreementSection, MarksTheJointEstimateOutsideAnInterval) {
   Identification report = ExampleJointReport();
   report.fits[0].parameters[1].estimate = 0.0033;
   const std::string text = Agreement(report);
@@ -141,7 +141,7 @@ TEST(AgreementSection, MarksTheJointEstimateWhereARecordingDoesNotReachIt) {
   EXPECT_THAT(row("joint"), Not(HasSubstr("|")));
 }
 
-TEST(AgreementSection, CautionsWhereRecordingsDisagree) {
+TEST(AgreementSection, HighlightsDisagreement) {
   Identification report = ExampleJointReport();
   const std::string caution = "\x1B[33mVerdict: ";  // SGR 33 of ECMA-48: yellow
   EXPECT_THAT(Agreement(report, {.colour = true}), Not(HasSubstr(caution)));
@@ -150,20 +150,20 @@ TEST(AgreementSection, CautionsWhereRecordingsDisagree) {
   EXPECT_THAT(Agreement(report, {.colour = true}), HasSubstr(caution + "the recordings do not agree"));
 }
 
-TEST(AgreementSection, IsAVerdictAloneWhereNothingWasTested) {
+TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity = {};
   report.joint[0].homogeneity.verdict = "not tested: all that is shared is fixed";
   EXPECT_EQ(Agreement(report), "[[Do the recordings agree?]]\n    Verdict: not tested: all that is shared is fixed.\n");
 }
 
-TEST(AgreementSection, HasADashForARecordingThatTellsNothing) {
+TEST(AgreementSection, HasADashForAnUninformativeRecording) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity.parameters[0].runs[0] = {};
   EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 alone +-\n    2 alone +0.0791"));
 }
 
-TEST(AgreementSection, GoesWithoutTheJointEstimateOfAFailedFit) {
+TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
   Identification report = ExampleFailedJointReport();
   report.fits[0].parameters.clear();
   const std::string text = Agreement(report);
@@ -172,14 +172,14 @@ TEST(AgreementSection, GoesWithoutTheJointEstimateOfAFailedFit) {
 }
 
 // The unit of a dimensionless number is 1; coulomb without a rig is an example.
-TEST(AgreementSection, HasNoUnitBehindAPureNumber) {
+TEST(AgreementSection, HasNoUnitForADimensionlessNumber) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity.parameters[1].unit = "1";
   report.joint[0].homogeneity.parameters[1].scatter.between = 0.00125;
   EXPECT_THAT(Agreement(report), Not(testing::ContainsRegex("0\\.0013[ \n]+1,")));
 }
 
-TEST(JointSections, GiveEachRecordingOnlyWhatIsItsOwn) {
+TEST(JointSections, ShowOwnParametersPerRecording) {
   EXPECT_EQ(TextOf(ExampleJointReport(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
        name             value ± std error  unit  95 % interval
     1  release_angle  0.42300 ± 0.00020    rad   [0.42260, 0.42340]
@@ -189,7 +189,7 @@ TEST(JointSections, GiveEachRecordingOnlyWhatIsItsOwn) {
 )");
 }
 
-TEST(JointSections, SayWhatNoiseEachHasAndHowItEndedAlone) {
+TEST(JointSections, ShowNoiseAndSeparateStatusPerRecording) {
   const std::string text = TextOf(ExampleJointReport(), "Noise and statistics");
   EXPECT_THAT(text, HasSubstr("    recording 1  "));
   EXPECT_THAT(text, HasSubstr("lack of"));
@@ -198,14 +198,14 @@ TEST(JointSections, SayWhatNoiseEachHasAndHowItEndedAlone) {
   EXPECT_THAT(text, HasSubstr("    all          log-likelihood 1234.50, AIC -2457.00, AICc -2456.88, BIC"));
 }
 
-TEST(JointSections, HaveAnEquationOnlyWhereAllOfItIsShared) {
+TEST(JointSections, ShowAnEquationOnlyIfAllIsShared) {
   Identification report = ExampleJointReport();
   report.joint[0].shared = {"inertia"};
   EXPECT_EQ(TextOf(report, "Equation of motion"), "");
   EXPECT_THAT(TextOf(report, "Each recording's own"), HasSubstr("    1  viscous "));
 }
 
-TEST(JointSections, HaveNoNumbersThatAFailedFitHasNot) {
+TEST(JointSections, ShowNoNumbersOfAFailedFit) {
   const std::string text = ToText(ExampleFailedJointReport());
   EXPECT_THAT(text, HasSubstr("status  failed: no joint trajectory can be traced"));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise and statistics]]")));
@@ -213,13 +213,13 @@ TEST(JointSections, HaveNoNumbersThatAFailedFitHasNot) {
   EXPECT_THAT(text, Not(testing::ContainsRegex("[^a-z](nan|inf)[^a-z]")));
 }
 
-TEST(ToText, OfAJointFitEndsWithTheWarningsOfEachRecording) {
+TEST(ToText, EndsAJointFitWithTheRecordingsWarnings) {
   EXPECT_THAT(ToText(ExampleJointReport()),
               HasSubstr("[[Warnings]]\n  - recording 1 (run.csv): there is a gap of 0.5 s after 7 s\n"));
 }
 
 // ESC [ 2 J clears a terminal. Labels of recordings occur in verdicts and in the status that repeats them.
-TEST(ToText, OfAJointFitHidesWhatWouldSteerATerminal) {
+TEST(ToText, ReplacesTerminalControlCharactersOfAJointFit) {
   Identification report = ExampleJointReport();
   report.runs[1].data.path = "a\x1B[2J\n.csv";
   report.runs[1].warnings = {{"gap", "a gap"}};
@@ -251,7 +251,7 @@ Identification WideReport() {
   return report;
 }
 
-TEST(JointSections, FitATerminalOfEightyColumns) {
+TEST(JointSections, FitInEightyColumns) {
   for (const Identification& report :
        {ExampleJointReport(), ExampleComparedJointReport(), ExampleFailedJointReport()}) {
     EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
@@ -260,7 +260,7 @@ TEST(JointSections, FitATerminalOfEightyColumns) {
 }
 
 // The amplitude of a recording whose separate fit failed.
-TEST(JointSections, HaveADashForAnAmplitudeThatIsNotKnown) {
+TEST(JointSections, ShowADashForAnUnknownAmplitude) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity.amplitudes[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(TextOf(report, "Recordings"), testing::ContainsRegex("    1 .* held +-\n"));

@@ -12,12 +12,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(NumberObject, HasNoReasonWhereNothingIsMissing) {
+TEST(NumberObject, HasNoReasonIfNothingIsMissing) {
   EXPECT_EQ(NumberObject().Set("a", 0.5).Set("b", std::optional(2.0), "unused").Set("c", Json("text")).Done().dump(),
             R"({"a":0.5,"b":2.0,"c":"text"})");
 }
 
-TEST(NumberObject, SaysWhyNumbersAreMissingEachReasonOnce) {
+TEST(NumberObject, GivesEachReasonForMissingNumbersOnce) {
   NumberObject object;
   object.Set("a", kInfinity).Set("b", std::nullopt, "not measured").Set("c", std::nullopt, "lost");
   object.Set("d", std::nullopt, "not measured").Set("e", std::optional(kInfinity), "unused");
@@ -26,14 +26,14 @@ TEST(NumberObject, SaysWhyNumbersAreMissingEachReasonOnce) {
             R"(e is not a finite number"})");
 }
 
-TEST(NumberOrNull, IsNullForWhatIsNoNumber) {
+TEST(NumberOrNull, IsNullForNonFiniteNumbers) {
   EXPECT_EQ(NumberOrNull(0.25), Json(0.25));
   EXPECT_TRUE(NumberOrNull(std::nullopt).is_null());
   EXPECT_TRUE(NumberOrNull(kInfinity).is_null());
   EXPECT_TRUE(TextOrNull("").is_null());
 }
 
-TEST(KeyWithUnit, SpellsASlashAsAnUnderscore) { EXPECT_EQ(KeyWithUnit("sigma", "rad/s"), "sigma_rad_s"); }
+TEST(KeyWithUnit, WritesASlashAsAnUnderscore) { EXPECT_EQ(KeyWithUnit("sigma", "rad/s"), "sigma_rad_s"); }
 
 }  // namespace
 }  // namespace pendulum::json_parts_test

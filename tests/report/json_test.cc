@@ -35,7 +35,7 @@ std::string FileText(const char* path) {
 }
 
 // The example was written by hand from the design and the schema; tests/tools/result_schema_test.py validates it.
-TEST(ToJsonText, GivesTheExampleByteForByte) {
+TEST(ToJsonText, MatchesTheExampleByteForByte) {
   EXPECT_EQ(ToJsonText(ExampleComparedReport()), FileText("tests/report/result_example.json"));
 }
 
@@ -52,7 +52,7 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
   EXPECT_EQ(json["tool"]["version"], kVersion);
 }
 
-TEST(ToJson, GoesWithoutAFit) {
+TEST(ToJson, WorksWithoutAFit) {
   Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
@@ -62,7 +62,7 @@ TEST(ToJson, GoesWithoutAFit) {
   EXPECT_EQ(json["closed_forms"]["turning_points"], 5);
 }
 
-TEST(ToJson, SaysWhyThereAreNoClosedForms) {
+TEST(ToJson, ExplainsMissingClosedForms) {
   const Json json = ToJson(ExampleRateReport());
   EXPECT_TRUE(json["closed_forms"].is_null());
   EXPECT_EQ(json["reason"], "only 2 turning points can be located");
@@ -71,19 +71,19 @@ TEST(ToJson, SaysWhyThereAreNoClosedForms) {
   EXPECT_FALSE(ToJson(ExampleReport()).contains("reason"));
 }
 
-TEST(ToJson, SaysWhyConstancyWasNotTested) {
+TEST(ToJson, ExplainsAMissingConstancyTest) {
   const Json fit = ToJson(ExampleRateReport())["fits"][0];
   EXPECT_TRUE(fit["constancy"].is_null());
   EXPECT_EQ(fit["constancy_reason"], "the fit is not_converged");
   EXPECT_FALSE(ToJson(ExampleReport())["fits"][0].contains("constancy_reason"));
 }
 
-TEST(ToJson, HasNoComparisonOfOneFit) {
+TEST(ToJson, HasNoComparisonForOneFit) {
   EXPECT_TRUE(ToJson(ExampleReport())["comparison"].is_null());
   EXPECT_EQ(ToJson(ExampleComparedReport())["comparison"]["recommended"], "coulomb");
 }
 
-TEST(ToJson, SaysWhyThereIsNoStandardError) {
+TEST(ToJson, ExplainsAMissingStandardError) {
   const Json parameters = ToJson(ExampleReport())["fits"][0]["parameters"];
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
   EXPECT_TRUE(parameters["coulomb"]["std_error"].is_null());
@@ -99,7 +99,7 @@ TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 
-TEST(ToJson, SaysWhyAnIntervalIsOpen) {
+TEST(ToJson, ExplainsAnOpenInterval) {
   Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
@@ -109,7 +109,7 @@ TEST(ToJson, SaysWhyAnIntervalIsOpen) {
   EXPECT_EQ(json["reason"], "the interval is open: no value that it may have is excluded");
 }
 
-TEST(ToJson, GivesIntervalsOfDerivedQuantitiesEndByEnd) {
+TEST(ToJson, GivesEachEndOfDerivedIntervals) {
   Identification report = ExampleReport();
   report.fits[0].derived[1].upper95 = 0.005;
   const Json derived = ToJson(report)["fits"][0]["derived"];
@@ -131,12 +131,12 @@ TEST(ToJson, NamesTheNoiseFamily) {
   EXPECT_TRUE(ToJson(ExampleRateReport())["fits"][0]["noise"]["sigma_std_error"].is_null());
 }
 
-TEST(ToJson, SaysWhoTellsTheResolution) {
+TEST(ToJson, ReportsTheSourceOfTheResolution) {
   EXPECT_EQ(ToJson(ExampleReport())["data"]["resolution_source"], "found");
   EXPECT_TRUE(ToJson(ExampleRateReport())["data"]["resolution_source"].is_null());
 }
 
-TEST(ToJson, GivesARateItsOwnUnits) {
+TEST(ToJson, UsesRateUnitsForARate) {
   const Json json = ToJson(ExampleRateReport());
   EXPECT_TRUE(json["rig"].is_null());
   EXPECT_TRUE(json["data"].contains("resolution_rad_s"));
@@ -157,7 +157,7 @@ TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
   EXPECT_EQ(fit["identifiability"], Json::array());
 }
 
-TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {
+TEST(ToJson, OmitsNoiseAndStatisticsOfAFailedFit) {
   Identification report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const Json fit = ToJson(report)["fits"][0];
@@ -165,7 +165,7 @@ TEST(ToJson, HasNeitherNoiseNorStatisticsOfAFailedFit) {
   EXPECT_TRUE(fit["statistics"].is_null());
 }
 
-TEST(ToJson, TurnsNumbersThatAreNoneIntoNullWithAReason) {
+TEST(ToJson, WritesNonFiniteNumbersAsNullWithAReason) {
   Identification report = ExampleReport();
   FitReport& fit = report.fits[0];
   fit.statistics.aicc = std::numeric_limits<double>::infinity();
@@ -182,14 +182,14 @@ TEST(ToJson, TurnsNumbersThatAreNoneIntoNullWithAReason) {
   EXPECT_TRUE(json["correlation"]["matrix"][0][1].is_null());
 }
 
-TEST(ToJson, SaysThatADerivedQuantityLacksItsError) {
+TEST(ToJson, ReportsAMissingErrorOfADerivedQuantity) {
   const Json derived = ToJson(ExampleReport())["fits"][0]["derived"];
   EXPECT_EQ(derived["natural_frequency"]["std_error"], 0.0075);
   EXPECT_TRUE(derived["damping_ratio"]["std_error"].is_null());
   EXPECT_THAT(derived["damping_ratio"]["reason"], HasSubstr("no standard error"));
 }
 
-TEST(ToJson, LeavesOutWhatARecordingInMemoryDoesNotHave) {
+TEST(ToJson, OmitsFileDataForARecordingInMemory) {
   Identification report = ExampleReport();
   report.data.path.clear();
   report.data.sha256.clear();
@@ -198,7 +198,7 @@ TEST(ToJson, LeavesOutWhatARecordingInMemoryDoesNotHave) {
   EXPECT_TRUE(data["sha256"].is_null());
 }
 
-TEST(ToJsonText, ReplacesBytesThatAreNotUtf8) {
+TEST(ToJsonText, ReplacesInvalidUtf8) {
   Identification report = ExampleReport();
   report.data.path = "w\xFCrfel.csv";
   const std::string text = ToJsonText(report);

@@ -13,9 +13,9 @@ TEST(DisplayWidth, CountsCharactersNotBytes) {
   EXPECT_EQ(DisplayWidth(""), 0);
 }
 
-TEST(DisplayWidth, CountsNoSequenceOfColour) { EXPECT_EQ(DisplayWidth("\x1B[1;31mmm\x1B[0mτ"), 3); }
+TEST(DisplayWidth, IgnoresColourSequences) { EXPECT_EQ(DisplayWidth("\x1B[1;31mmm\x1B[0mτ"), 3); }
 
-TEST(TableWithin, IsAnAlignedTableWhereThatFits) {
+TEST(TableWithin, IsAnAlignedTableIfItFits) {
   const std::vector<Column> columns = {{"name"}, {"value", true}, {"± error", false, 1}};
   const std::vector<std::vector<std::string>> rows = {{"b", "12", "± 3"}};
   EXPECT_EQ(TableWithin(columns, rows, 2, 21), AlignedTable(columns, rows, 2));  // 2 + 4 + 2 + 5 + 1 + 7
@@ -23,7 +23,7 @@ TEST(TableWithin, IsAnAlignedTableWhereThatFits) {
 }
 
 // Value and error stay together: both continue below, next to the name. A row without either is left out there.
-TEST(TableWithin, GoesOnBelowWithTheFirstColumn) {
+TEST(TableWithin, ContinuesBelowWithTheFirstColumn) {
   const std::vector<Column> columns = {{"name"}, {"unit"}, {"value", true}, {"± error", false, 1}};
   EXPECT_EQ(TableWithin(columns, {{"b", "s", "12", "± 3"}, {"c", "m", "", ""}}, 0, 20),
             "name  unit\n"
@@ -34,7 +34,7 @@ TEST(TableWithin, GoesOnBelowWithTheFirstColumn) {
             "b        12 ± 3\n");
 }
 
-TEST(TableWithin, KeepsAColumnThatFitsNowhereBesideTheFirst) {
+TEST(TableWithin, KeepsAColumnThatFitsNowhere) {
   EXPECT_EQ(TableWithin({{""}, {""}, {""}}, {{"a", "incomprehensible", "b"}}, 0, 8), "a  incomprehensible\n\na  b\n");
 }
 
@@ -59,7 +59,7 @@ TEST(Paragraph, FillsLinesAndIndentsThem) {
   EXPECT_EQ(Paragraph("one two  three four", "- ", 9), "- one two\n  three\n  four\n");
 }
 
-TEST(Paragraph, GivesAWordThatIsTooLongALineOfItsOwn) {
+TEST(Paragraph, GivesATooLongWordItsOwnLine) {
   EXPECT_EQ(Paragraph("a incomprehensible b", "", 4), "a\nincomprehensible\nb\n");
 }
 

@@ -20,27 +20,27 @@ using testing::StartsWith;
 std::string MarkdownOf(Block block) { return ToMarkdown(Sections{{"T", "", {std::move(block)}}}); }
 
 // Active characters of GitHub-flavoured Markdown, version 0.29, sections 4.10, 6.1, 6.4, 6.6 and 6.10.
-TEST(MarkdownText, EscapesWhatIsActive) {
+TEST(MarkdownText, EscapesMarkup) {
   EXPECT_EQ(MarkdownText("a|b*c`d<e&f~g$h\\i"), "a\\|b\\*c\\`d\\<e\\&f\\~g\\$h\\\\i");
   EXPECT_EQ(MarkdownText("[x](javascript:y) ![z][w] [v]: u"), "[x\\](javascript:y) ![z\\][w] [v\\]: u");
   EXPECT_EQ(MarkdownText("_a_ release_angle τ_c _"), "\\_a\\_ release_angle τ_c \\_");
   EXPECT_EQ(MarkdownText("a\nb\x1B[1m"), "a?b?[1m");
 }
 
-TEST(MarkdownText, LeavesNumbersAndIntervalsAlone) {
+TEST(MarkdownText, KeepsNumbersAndIntervals) {
   for (const char* text : {"[0.0785, 0.0795]", "-0.5", "N m s^2/rad^2", "0.0790 ± 0.0003", "χ² (p 0.14)"}) {
     EXPECT_EQ(MarkdownText(text), text);
   }
 }
 
-TEST(ToMarkdown, LetsNoParagraphBeginAHeadingOrAList) {
+TEST(ToMarkdown, EscapesHeadingsAndListsInParagraphs) {
   EXPECT_EQ(MarkdownOf(Words{"# x"}), "## T\n\n\\# x\n");
   EXPECT_EQ(MarkdownOf(Words{"12. x"}), "## T\n\n12\\. x\n");
   EXPECT_EQ(MarkdownOf(Words{"1 of 2 agree"}), "## T\n\n1 of 2 agree\n");
   EXPECT_EQ(MarkdownOf(Items{{"- x", "y"}}), "## T\n\n- \\- x\n- y\n");
 }
 
-TEST(ToMarkdown, PutsValueAndErrorIntoOneCell) {
+TEST(ToMarkdown, ShowsValueAndErrorInOneCell) {
   Table table{{{"name"}, {"empty"}, {"value", true}, {"± error", false, 1}, {"agrees"}},
               {{"a|b", "", "12", "± 3", "NO"}, {"c", "", "5", "", "yes"}}};
   table.caution = "NO";
@@ -52,7 +52,7 @@ TEST(ToMarkdown, PutsValueAndErrorIntoOneCell) {
             "| c | 5 | yes |\n");
 }
 
-TEST(ToMarkdown, GivesFactsFormulasAndWhatIsLeftOut) {
+TEST(ToMarkdown, ShowsFactsFormulasAndOmissions) {
   EXPECT_EQ(MarkdownOf(Facts{{"model", "b |th'|"}, {"status", "failed", Emphasis::kAlarm}}),
             "## T\n\n| | |\n| --- | --- |\n| model | b \\|th'\\| |\n| status | **failed** |\n");
   EXPECT_EQ(MarkdownOf(Formula{"b\u00A0th' = 0"}), "## T\n\n```text\nb th' = 0\n```\n");
@@ -62,7 +62,7 @@ TEST(ToMarkdown, GivesFactsFormulasAndWhatIsLeftOut) {
   EXPECT_EQ(MarkdownOf(table), "## T\n\n| n |\n| --- |\n| 1 |\n| ... 7 more |\n| 9 |\n");
 }
 
-TEST(ToMarkdown, BeginsWithVerdictAndParameters) {
+TEST(ToMarkdown, StartsWithVerdictAndParameters) {
   EXPECT_THAT(ToMarkdown(ExampleComparedReport()), StartsWith(R"(# Pendulum: swing.csv
 
 ## Verdict
@@ -89,13 +89,13 @@ TEST(ToMarkdown, BeginsWithVerdictAndParameters) {
 )"));
 }
 
-TEST(ToMarkdown, SaysFirstThatAFitDidNotConverge) {
+TEST(ToMarkdown, StartsWithAMissingConvergence) {
   EXPECT_THAT(ToMarkdown(ExampleRateReport()),
               StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge: its numbers are no "
                          "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));
 }
 
-TEST(ToMarkdown, OfAJointFitBeginsWithWhetherTheRecordingsAgree) {
+TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
   EXPECT_THAT(ToMarkdown(ExampleJointReport()), StartsWith(R"(# Pendulum: 2 recordings of one rig
 
 ## Verdict
@@ -118,19 +118,19 @@ TEST(ToMarkdown, OfAJointFitBeginsWithWhetherTheRecordingsAgree) {
 }
 
 // Unescaped, the stars and bars of a strip would be emphasis and cells.
-TEST(ToMarkdown, OfAJointFitShowsStripsAsTheyAre) {
+TEST(ToMarkdown, ShowsStripsVerbatimForAJointFit) {
   EXPECT_THAT(ToMarkdown(ExampleJointReport()),
               HasSubstr("| 1 alone | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));
 }
 
-TEST(ToMarkdown, GoesWithoutAFit) {
+TEST(ToMarkdown, WorksWithoutAFit) {
   Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
   EXPECT_THAT(ToMarkdown(report), HasSubstr("No fit was asked for: closed forms only."));
 }
 
-TEST(ToMarkdown, IsNotMisledByTheNameOfAFile) {
+TEST(ToMarkdown, EscapesMarkupInAFileName) {
   Identification report = ExampleReport();
   report.data.path = "a|<script>\n# [x](http://y)";
   const std::string text = ToMarkdown(report);

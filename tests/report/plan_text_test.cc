@@ -36,7 +36,7 @@ Plan ExamplePlan() {
 }
 
 // 5.2e-7 s² · 2 N m of 0.08 kg m², 1.5e-5 of 0.0015 s; rounded by the rules of the Particle Data Group.
-TEST(PlanText, GivesTheBaseInSiWithARigAndTheRowsInPercent) {
+TEST(PlanText, ShowsTheBaseInSiAndRowsInPercent) {
   EXPECT_EQ(
       PlanText(ExamplePlan(), ExampleRig()),
       "[[Predicted standard errors]] (Cramér-Rao: no unbiased fit has smaller ones)\n"
@@ -73,19 +73,19 @@ TEST(PlanText, GivesTheBaseInSiWithARigAndTheRowsInPercent) {
       "    torques.\n");
 }
 
-TEST(PlanText, StaysInUnitsOfTheGravityTorqueWithoutARig) {
+TEST(PlanText, UsesUnitsOfGravityTorqueWithoutARig) {
   const std::string text = PlanText(ExamplePlan(), {});
   EXPECT_THAT(text, HasSubstr("\n    inertia        0.0400000  ± 0.0000005 s^2  0.0013 %\n"));
   EXPECT_THAT(text, HasSubstr("\n    viscous        0.001500   ± 0.000015  s    1 %\n"));
   EXPECT_THAT(text, ContainsRegex("Torques and inertia are in units of the[ \n]+gravity torque G"));
 }
 
-TEST(PlanText, RemindsOfTheRigsOwnError) {
+TEST(PlanText, MentionsTheRigsOwnError) {
   EXPECT_THAT(PlanText(ExamplePlan(), ExampleRig(0.005)),
               ContainsRegex("rig's gravity torque G,[ \n]+0.25 %, adds to"));
 }
 
-TEST(PlanText, GivesTheErrorOfAParameterThatIs0InItsUnit) {
+TEST(PlanText, ShowsTheErrorOfAZeroParameterInItsUnit) {
   Plan plan = ExamplePlan();
   plan.truth[1] = 0;
   const std::string text = PlanText(plan, ExampleRig());
@@ -94,13 +94,13 @@ TEST(PlanText, GivesTheErrorOfAParameterThatIs0InItsUnit) {
   EXPECT_THAT(text, ContainsRegex("40 s +0.0005 +4e-06 "));
 }
 
-TEST(PlanText, WritesPercentAboveAHundredWithoutAPowerOfTen) {
+TEST(PlanText, WritesLargePercentagesWithoutPowersOfTen) {
   Plan plan = ExamplePlan();
   plan.rows[3].std_errors[1] = 0.00333;
   EXPECT_THAT(PlanText(plan, {}), ContainsRegex("40 s +0.0005 +222 "));
 }
 
-TEST(PlanText, SaysWhyThereIsNoRecording) {
+TEST(PlanText, ExplainsAMissingRecording) {
   Plan plan = ExamplePlan();
   plan.rows[3] = {"duration", "s", 0.5, false, std::vector<std::optional<double>>(5), {}, "too few samples"};
   const std::string text = PlanText(plan, {});
@@ -109,7 +109,7 @@ TEST(PlanText, SaysWhyThereIsNoRecording) {
   EXPECT_THAT(text, Not(HasSubstr("no bound is known")));
 }
 
-TEST(PlanText, SaysWhatADashStandsFor) {
+TEST(PlanText, ExplainsADash) {
   Plan plan = ExamplePlan();
   plan.rows[0].std_errors[4].reset();
   EXPECT_THAT(PlanText(plan, {}), HasSubstr("\n    - no bound is known for this noise and sensor, or the readings"));
@@ -119,7 +119,7 @@ TEST(PlanText, SaysWhatADashStandsFor) {
   EXPECT_THAT(PlanText(plan, {}), ContainsRegex("less than one[ \n]+whole[ \n]+period"));
 }
 
-TEST(PlanText, ComparesNothingWithAnErrorThatIsNotKnown) {
+TEST(PlanText, MakesNoComparisonWithoutAnError) {
   Plan plan = ExamplePlan();
   for (PlanRow& row : plan.rows) row.std_errors.assign(5, std::nullopt);
   plan.amplitude_of_equal_bias.reset();
@@ -129,14 +129,14 @@ TEST(PlanText, ComparesNothingWithAnErrorThatIsNotKnown) {
                                   "\n]+is[ \n]+not[ \n]+known"));
 }
 
-TEST(PlanText, SaysThatTheLinearFormulasNeverFail) {
+TEST(PlanText, ReportsAccurateLinearFormulas) {
   Plan plan = ExamplePlan();
   plan.amplitude_of_equal_bias.reset();
   EXPECT_THAT(PlanText(plan, {}), ContainsRegex("have[ \n]+no[ \n]+amplitude[ \n]+up[ \n]+to[ \n]+2.5[ \n]+rad[ "
                                                 "\n]+from[ \n]+which[ \n]+on[ \n]+they[ \n]+are[ \n]+off"));
 }
 
-TEST(PlanText, SaysWhatLevelsWithoutNoiseAreTakenFor) {
+TEST(PlanText, ExplainsLevelsWithoutNoise) {
   Plan plan = ExamplePlan();
   plan.noise_of_levels = 0.001;
   const std::string text = PlanText(plan, {});

@@ -12,12 +12,12 @@ std::string Pdg(double value, double error) {
 }
 
 // The two examples of the Review of Particle Physics, Introduction, section 5.3.
-TEST(PdgText, GivesThePublishedExamples) {
+TEST(PdgText, ReproducesThePublishedExamples) {
   EXPECT_EQ(Pdg(0.827, 0.119), "0.83 ± 0.12");
   EXPECT_EQ(Pdg(0.827, 0.367), "0.8 ± 0.4");
 }
 
-TEST(PdgText, ChangesDigitsAtTheLimitsOfTheRule) {
+TEST(PdgText, ChangesDigitsAtTheRulesLimits) {
   EXPECT_EQ(Pdg(0.827, 0.100), "0.83 ± 0.10");
   EXPECT_EQ(Pdg(0.827, 0.354), "0.83 ± 0.35");
   EXPECT_EQ(Pdg(0.827, 0.3549), "0.83 ± 0.35");  // three digits are compared without rounding
@@ -33,7 +33,7 @@ TEST(PdgText, RoundsHalvesOfTheErrorUpwardsInDecimalDigits) {
   EXPECT_EQ(Pdg(4.778, 0.00145), "4.7780 ± 0.0015");
 }
 
-TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndForErrorsOfTensAndMore) {
+TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndLargeErrors) {
   EXPECT_EQ(Pdg(3e-6, 1.2e-7), "(3.00 ± 0.12)e-06");
   EXPECT_EQ(Pdg(0.0001234, 5e-6), "0.000123 ± 0.000005");
   EXPECT_EQ(Pdg(12345, 678), "(1.23 ± 0.07)e+04");
@@ -41,19 +41,19 @@ TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndForErrorsOfTensAndMore) {
   EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
 }
 
-TEST(PdgText, TakesTheDecimalOfAnErrorLargerThanTheValue) {
+TEST(PdgText, UsesTheErrorsDecimalForALargeError) {
   EXPECT_EQ(Pdg(0.02, 12), "0 ± 12");
   EXPECT_EQ(Pdg(0, 0.0012), "0.0000 ± 0.0012");
   EXPECT_EQ(Pdg(-0.0001, 0.02), "0.000 ± 0.020");
   EXPECT_EQ(Pdg(-0.0151, 0.02), "-0.015 ± 0.020");
 }
 
-TEST(PdgText, ShowsNoMoreDigitsThanMeanSomething) {
+TEST(PdgText, ShowsSignificantDigitsOnly) {
   EXPECT_EQ(Pdg(0.079, 0), "0.079 ± 0");
   EXPECT_EQ(Pdg(0.07900000000001234, 1e-16), "0.079 ± 1e-16");
 }
 
-TEST(RoundedText, GivesWhateverBelongsToAQuantityToTheSameDecimal) {
+TEST(RoundedText, RoundsAllNumbersOfAQuantityAlike) {
   const Rounding milli = PdgRounding(0.0790, 0.0012);
   EXPECT_EQ(RoundedText(0.08123, milli), "0.0812");
   const Rounding micro = PdgRounding(3e-6, 1.2e-7);
@@ -66,13 +66,13 @@ TEST(SignificantRounding, KeepsTrailingZeros) {
   EXPECT_EQ(RoundedText(1.7e-5, SignificantRounding(1.7e-5, 3)), "1.70e-05");
 }
 
-TEST(SignificantDigits, CountsFromTheFirstDigitThatIsNotZero) {
+TEST(SignificantDigits, CountsFromTheFirstNonzeroDigit) {
   EXPECT_EQ(SignificantDigits(0.0790, {4, 0}), 3);
   EXPECT_EQ(SignificantDigits(3.1e-6, {2, -6}), 3);
   EXPECT_EQ(SignificantDigits(0.0001, {2, 0}), 1);
 }
 
-TEST(FixedText, AgreesWithPrintf) { EXPECT_EQ(FixedText(-1.005e300, 0).substr(0, 5), "-1005"); }
+TEST(FixedText, MatchesPrintf) { EXPECT_EQ(FixedText(-1.005e300, 0).substr(0, 5), "-1005"); }
 
 }  // namespace
 }  // namespace pendulum::rounding_test

@@ -28,14 +28,14 @@ TEST(SectionText, AlignsFactsAndFillsTheirLines) {
             "          word word word word\n");
 }
 
-TEST(SectionText, SaysWhatATableLeavesOut) {
+TEST(SectionText, ReportsWhatATableOmits) {
   Table table{{{"n", true}}, {{"1"}, {"2"}, {"9"}}};
   table.rows_before = 2;
   table.left_out = "... 6 more";
   EXPECT_EQ(TextOf(table), "[[T]]\n    n\n    1\n    2\n    ... 6 more\n    9\n");
 }
 
-TEST(SectionText, BreaksEquationsOnlyWhereTheyMayBe) {
+TEST(SectionText, BreaksEquationsOnlyBeforeSigns) {
   const std::string term = "aaaaaaaaaaaaaaaaaa\u00A0b";
   EXPECT_EQ(TextOf(Formula{term + " +\u00A0" + term + " +\u00A0" + term + " =\u00A0" + "0"}),
             "[[T]]\n    aaaaaaaaaaaaaaaaaa b + aaaaaaaaaaaaaaaaaa b + aaaaaaaaaaaaaaaaaa b = 0\n");
@@ -47,7 +47,7 @@ TEST(SectionText, BreaksEquationsOnlyWhereTheyMayBe) {
 TEST(SectionText, ListsItems) { EXPECT_EQ(TextOf(Items{{"one", "two"}}), "[[T]]\n  - one\n  - two\n"); }
 
 // SGR sequences of ECMA-48: 1 bold, 31 red, 33 yellow, 0 plain.
-TEST(SectionText, IsColouredOnlyWhenAsked) {
+TEST(SectionText, IsColouredOnRequest) {
   Table table{{{"agrees"}, {"z"}}, {{"NO", "7"}, {"yes", "NOT"}}};
   table.caution = "NO";
   const Sections sections = {
@@ -58,7 +58,7 @@ TEST(SectionText, IsColouredOnlyWhenAsked) {
   EXPECT_THAT(ToText(sections), Not(HasSubstr("\x1B")));
 }
 
-TEST(SectionText, ColoursEveryLineByItself) {
+TEST(SectionText, ColoursEachLineSeparately) {
   const std::string word(50, 'x');
   EXPECT_EQ(TextOf(Items{{word + " " + word}, Emphasis::kCaution}, {.colour = true}),
             "\x1B[1m[[T]]\x1B[0m\n  - \x1B[33m" + word + "\x1B[0m\n    \x1B[33m" + word + "\x1B[0m\n");

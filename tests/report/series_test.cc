@@ -56,7 +56,7 @@ std::vector<std::string> Keys(const Json& object) {
   return keys;
 }
 
-TEST(ToResidualCsv, GivesEveryDigitInSi) {
+TEST(ToResidualCsv, WritesAllDigitsInSi) {
   EXPECT_EQ(ToResidualCsv(ThreeSamples(), FitOfThreeSamples(), OverlayOfThreeSamples()),
             "time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad\n"
             "0,0.5,0.25,0.25,0.5,1\n"
@@ -72,7 +72,7 @@ TEST(ToResidualCsv, NamesTheUnitOfARate) {
             "time_s,measured_rad_s,fitted_rad_s,residual_rad_s,linear_closed_form_rad_s,nonlinear_closed_form_rad_s");
 }
 
-TEST(ToResidualCsv, LeavesFieldsEmptyThatThereAreNot) {
+TEST(ToResidualCsv, LeavesMissingFieldsEmpty) {
   EXPECT_EQ(ToResidualCsv(ThreeSamples(), FitReport()),
             "time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad\n"
             "0,0.5,,,,\n"
@@ -124,7 +124,7 @@ TEST(SeriesJson, NamesTheUnitOfARateOrOfCounts) {
   EXPECT_TRUE(SeriesJson(report)["peaks"][0].contains("rate_rad_s"));
 }
 
-TEST(SeriesJson, IsNullForWhatThereIsNot) {
+TEST(SeriesJson, IsNullForMissingParts) {
   Identification report = ReportOfThreeSamples();
   report.closed_forms.reset();
   report.checks.clear();
@@ -153,7 +153,7 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
   }
 }
 
-TEST(SeriesJson, OfThePageHasSevenDigitsAndNoResiduals) {
+TEST(SeriesJson, HasSevenDigitsAndNoResidualsForThePage) {
   Identification report = ReportOfThreeSamples();
   report.used.value[2] = -0.123456789012;
   const Json all = SeriesJson(report);
@@ -249,14 +249,14 @@ TEST(SeriesJson, HasNoMotionWhereThereIsNone) {
   EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
 }
 
-TEST(ToSeriesJsonText, IsOneLineOfTheSame) {
+TEST(ToSeriesJsonText, IsTheSameOnOneLine) {
   const Identification report = ReportOfThreeSamples();
   const std::string text = ToSeriesJsonText(report);
   EXPECT_EQ(text.find('\n'), text.size() - 1);
   EXPECT_EQ(Json::parse(text), SeriesJson(report));
 }
 
-TEST(SeriesJson, OfAJointFitIsAnArrayOfItsRecordings) {
+TEST(SeriesJson, IsAnArrayOfRecordingsForAJointFit) {
   Identification report = ExampleJointReport();
   report.runs = {ReportOfThreeSamples(), ReportOfThreeSamples()};
   report.runs[1].fits[0].fitted[0] = 0.75;

@@ -68,14 +68,14 @@ long CountAbove(const std::vector<std::string>& lines, char mark) {
   return count;
 }
 
-TEST(TerminalPlot, IsAsciiOfATerminal) {
+TEST(TerminalPlot, IsAsciiForATerminal) {
   const std::vector<std::string> lines = Draw(Swing(0.76, 2000));
   EXPECT_THAT(lines, SizeIs(testing::Le(24)));
   EXPECT_THAT(lines, Each(SizeIs(testing::Le(79))));
   for (const char c : Joined(lines)) EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
 }
 
-TEST(PictureText, HasNeitherFormFeedsNorBlanksAtEnds) {
+TEST(PictureText, HasNoFormFeedsOrTrailingBlanks) {
   EXPECT_EQ(PictureText("\f   \n a b  \n\n c\fd\n"), " a b\n c\nd\n");
   EXPECT_EQ(PictureText(""), "");
 }
@@ -90,19 +90,19 @@ TEST(TerminalPlot, HasMeasuredDotsFittedStarsAndResidualsInDegrees) {
 }
 
 // 100 swings per second; every column has hundreds of samples, which must fill it from end to end.
-TEST(TerminalPlot, LosesNoSwingHoweverMany) {
+TEST(TerminalPlot, ShowsEverySwing) {
   const std::vector<std::string> lines = Draw(Swing(100, 200'000));
   EXPECT_GT(CountAbove(lines, '.'), 67 * 7);
   EXPECT_LT(TerminalPlot(Swing(100, 200'000).used, Swing(100, 200'000).fit).size(), 40'000);
 }
 
-TEST(TerminalPlot, KeepsALoneOutlierAmongManySamples) {
+TEST(TerminalPlot, KeepsASingleOutlierAmongManySamples) {
   Drawn drawn = Swing(0.76, 200'000);
   drawn.used.value[77'777] = 3;  // rad = 171.9 deg
   EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), HasSubstr(" 171.887\n"));
 }
 
-TEST(TerminalPlot, GoesWithoutAFit) {
+TEST(TerminalPlot, WorksWithoutAFit) {
   Drawn drawn = Swing(0.76, 50);
   drawn.fit.fitted.resize(0);
   drawn.fit.residual.resize(0);
@@ -113,14 +113,14 @@ TEST(TerminalPlot, GoesWithoutAFit) {
   EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), Not(HasSubstr("nan")));
 }
 
-TEST(TerminalPlot, DrawsWhatDoesNotMove) {
+TEST(TerminalPlot, DrawsAConstantReading) {
   Drawn drawn = Swing(0, 50);
   drawn.used.value.setZero();
   drawn.fit.fitted = drawn.fit.residual = Eigen::VectorXd::Zero(50);
   EXPECT_THAT(Joined(Draw(drawn)), HasSubstr("time [s]"));
 }
 
-TEST(TerminalPlot, IsInTheUnitOfReadingsThatAreNoAngle) {
+TEST(TerminalPlot, UsesTheReadingsUnitForNonAngles) {
   Drawn drawn = Swing(0.76, 500);
   drawn.used.unit = "counts";
   EXPECT_THAT(TerminalPlot(drawn.used, drawn.fit), HasSubstr("[counts]"));

@@ -9,7 +9,7 @@ namespace pendulum::text_parts_test {
 namespace {
 
 // 0.0790 ± 0.0012: the leading digits 120 keep two digits (PDG); other numbers have the same last decimal.
-TEST(QuantityNumbers, ShowsAllToTheDecimalOfTheError) {
+TEST(QuantityNumbers, RoundsAllToTheDecimalOfTheError) {
   const QuantityNumbers numbers(0.07901, 0.0012);
   EXPECT_EQ(numbers.Value(), "0.0790");
   EXPECT_EQ(numbers.Error(), "± 0.0012");
@@ -27,13 +27,13 @@ TEST(QuantityNumbers, MultipliesEveryNumberByTheFactor) {
   EXPECT_EQ(numbers.Number(0.08), "0.800");
 }
 
-TEST(QuantityNumbers, BracketsValueAndErrorButNoNumberByItself) {
+TEST(QuantityNumbers, BracketsValueAndErrorTogether) {
   const QuantityNumbers numbers(3e-6, 1.2e-7);
   EXPECT_EQ(numbers.Value() + " " + numbers.Error(), "(3.00 ± 0.12)e-06");
   EXPECT_EQ(numbers.Number(3e-6), "3.00e-06");
 }
 
-TEST(QuantityNumbers, HasSixDigitsWithoutAUsableError) {
+TEST(QuantityNumbers, HasSixDigitsWithoutAnError) {
   for (const auto& error : {std::optional<double>(), std::optional(std::numeric_limits<double>::infinity()),
                             std::optional(std::numeric_limits<double>::quiet_NaN())}) {
     const QuantityNumbers numbers(0.123456789, error);
@@ -53,7 +53,7 @@ TEST(ReadingText, AddsDegreesToRadians) {
 TEST(Prose, IsIndentedBelowItsHeading) { EXPECT_EQ(Heading("Data") + Prose("one two"), "[[Data]]\n    one two\n"); }
 
 // ESC [ starts control sequences, such as clearing the screen; U+009B is the same in one character.
-TEST(Printable, HasNothingThatSteersATerminal) {
+TEST(Printable, ContainsNoTerminalControlCharacters) {
   EXPECT_EQ(Printable("a\x1B[2Jb\n\x7F\xC2\x9Bm.csv"), "a?[2Jb???m.csv");
   EXPECT_EQ(Printable("Mañana τ ±.csv"), "Mañana τ ±.csv");
 }

@@ -91,14 +91,14 @@ constexpr const char* kWholeFit = R"([[Data]]
   - the residuals are not white; friction may be of another kind
 )";
 
-TEST(ToText, GivesTheWholeFit) {
+TEST(ToText, ShowsTheWholeFit) {
   Identification report = ExampleReport();
   report.sampling.reset();
   report.closed_forms.reset();
   EXPECT_EQ(ToText(report), kWholeFit);
 }
 
-TEST(ToText, HasTheClosedFormsAfterTheFit) {
+TEST(ToText, ShowsClosedFormsAfterTheFit) {
   const std::string text = ToText(ExampleReport());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
@@ -109,7 +109,7 @@ TEST(ToText, HasTheClosedFormsAfterTheFit) {
                                     "Closed forms against the fit", "Turning points", "Warnings"));
 }
 
-TEST(ToText, TellsWithoutARigWhatToMeasure) {
+TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0\n"));
   EXPECT_THAT(OneLine(text), HasSubstr("torques are in units of the gravity torque G"));
@@ -118,13 +118,13 @@ TEST(ToText, TellsWithoutARigWhatToMeasure) {
   EXPECT_THAT(text, Not(HasSubstr("systematic")));
 }
 
-TEST(ToText, GivesARateInDegreesPerSecondToo) {
+TEST(ToText, ShowsARateInDegreesPerSecondToo) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    rate_bias     0.25  rad/s\n               14.3239  deg/s\n"));
   EXPECT_THAT(text, HasSubstr("sigma 0.0035 rad/s (0.201 deg/s)"));
 }
 
-TEST(ToText, SaysWhichIntervalIsOpen) {
+TEST(ToText, NamesTheOpenInterval) {
   Identification report = ExampleReport();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
@@ -136,7 +136,7 @@ TEST(ToText, SaysWhichIntervalIsOpen) {
   EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 
-TEST(ToText, SaysWhoTellsTheResolution) {
+TEST(ToText, ReportsTheSourceOfTheResolution) {
   Identification report = ExampleReport();
   report.data.resolution_source = "file";
   EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
@@ -144,7 +144,7 @@ TEST(ToText, SaysWhoTellsTheResolution) {
   EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), as given\n"));
 }
 
-TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
+TEST(ToText, OmitsADerivedErrorLargerThanTheValue) {
   Identification report = ExampleReport();
   report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
                             {"natural_frequency", "rad/s", 4.7781234}};
@@ -152,7 +152,7 @@ TEST(ToText, LeavesOutTheErrorOfADerivedQuantityThatExceedsIt) {
                                         "    natural_frequency  4.77812  rad/s\n"));
 }
 
-TEST(ToText, SaysAReasonOnceForAllParametersItConcerns) {
+TEST(ToText, GivesACommonReasonOnce) {
   const std::string text = ToText(ExampleRateReport());
   EXPECT_THAT(text, HasSubstr("    status  not_converged: 100 iterations were not enough\n"));
   EXPECT_THAT(OneLine(text),
@@ -160,7 +160,7 @@ TEST(ToText, SaysAReasonOnceForAllParametersItConcerns) {
   EXPECT_THAT(text, Not(HasSubstr("Standard errors:")));
 }
 
-TEST(ToText, ShowsNeitherStatisticsNorAnEquationOfAFailedFit) {
+TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
   Identification report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const std::string text = ToText(report);
@@ -169,7 +169,7 @@ TEST(ToText, ShowsNeitherStatisticsNorAnEquationOfAFailedFit) {
   EXPECT_THAT(text, Not(HasSubstr("[[Equation")));
 }
 
-TEST(ToText, SortsCorrelationsBySizeAndLeavesOutSmallOnes) {
+TEST(ToText, SortsCorrelationsAndOmitsSmallOnes) {
   Identification report = ExampleReport();
   report.fits[0].covariance = Eigen::Matrix3d{{1, 0.25, -0.75}, {0.25, 1, 0.0625}, {-0.75, 0.0625, 1}};
   EXPECT_THAT(ToText(report), HasSubstr("[[Correlations]] (those below 0.1 in size are not listed)\n"
@@ -191,7 +191,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 }
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
-TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
+TEST(ToText, ComparesTheInertiaWithTheRigsWithoutACheck) {
   Identification report = ExampleReport();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
   report.checks.clear();
@@ -204,7 +204,7 @@ TEST(ToText, SaysHowTheFittedInertiaDiffersFromTheRigsUnlessACheckDoes) {
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
 }
 
-TEST(ToText, GoesWithoutAFit) {
+TEST(ToText, WorksWithoutAFit) {
   Identification report = ExampleReport();
   report.fits.clear();
   report.checks.clear();
@@ -224,7 +224,7 @@ TEST(ToText, HasNoWarningsSectionWithoutWarnings) {
   EXPECT_THAT(ToText(report), Not(HasSubstr("[[Warnings]]")));
 }
 
-TEST(ToText, ComparesBeforeItTellsAndOfTheOthersGivesTheParameters) {
+TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
   const std::string text = ToText(ExampleComparedReport());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
@@ -236,7 +236,7 @@ TEST(ToText, ComparesBeforeItTellsAndOfTheOthersGivesTheParameters) {
                                     "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
 }
 
-TEST(ToText, HidesWhatWouldSteerATerminalInTheNameOfAFile) {
+TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {
   Identification report = ExampleReport();
   report.data.path = "a\x1B[2J\n[[Fit]].csv";
   EXPECT_THAT(ToText(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
@@ -283,7 +283,7 @@ Identification WideReport() {
   return report;
 }
 
-TEST(ToText, FitsATerminalOfEightyColumns) {
+TEST(ToText, FitsInEightyColumns) {
   EXPECT_LE(WidestOf(ToText(ExampleReport())), 80);
   EXPECT_LE(WidestOf(ToText(ExampleRateReport())), 80);
   EXPECT_LE(WidestOf(ToText(ExampleComparedReport())), 80);

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(MakeCalibrationOptions, GivesAConverterItsFullScale) {
+TEST(MakeCalibrationOptions, SetsTheFullScaleOfAConverter) {
   const auto options = MakeCalibrationOptions({.order = 2, .input_range = "", .bits = 10});
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->order, 2);
@@ -22,7 +22,7 @@ TEST(MakeCalibrationOptions, GivesAConverterItsFullScale) {
   EXPECT_EQ(options->input_range->high, 1023);  // 2^10 - 1
 }
 
-TEST(MakeCalibrationOptions, NamesTheFlagThatIsWrong) {
+TEST(MakeCalibrationOptions, NamesTheWrongFlag) {
   const std::vector<std::pair<CalibrationFlags, std::string>> refusals = {
       {{.order = 0, .input_range = "", .bits = 0}, "--order is 0; it must be 1 to 5"},
       {{.order = 6, .input_range = "", .bits = 0}, "--order is 6; it must be 1 to 5"},

@@ -18,7 +18,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(NearestName, FindsWhatWasMeant) {
+TEST(NearestName, FindsTheIntendedName) {
   constexpr std::array<std::string_view, 3> kNames = {"model", "noise", "from"};
   EXPECT_EQ(NearestName("modle", kNames), "model");
   EXPECT_EQ(NearestName("form", kNames), "from");
@@ -45,7 +45,7 @@ TEST(ParseSettings, ReadsNamesAndValues) {
   EXPECT_EQ(ParseSettings("--fix", "zero_angle=-1e-3,inertia=0.08", "viscous", kSettable), expected);
 }
 
-TEST(ParseSettings, NamesTheFlagAndWhatIsWrong) {
+TEST(ParseSettings, NamesTheFlagAndTheFault) {
   const std::pair<const char*, const char*> refusals[] = {
       {"coulomb=1", "--set: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, zero_angle"},
       {"viscous", "--set: 'viscous' must be name=value"},
@@ -64,7 +64,7 @@ TEST(ParseSettings, NamesTheFlagAndWhatIsWrong) {
   }
 }
 
-TEST(ParseRanges, LeavesOutEitherEnd) {
+TEST(ParseRanges, AcceptsAMissingBound) {
   EXPECT_TRUE(ParseRanges("--bounds", "", "viscous", kSettable)->empty());
   const ParameterRanges ranges =
       ParseRanges("--bounds", "inertia=0.07:0.09,viscous=:1e-2,zero_angle=-0.1:", "viscous", kSettable).value();
@@ -77,7 +77,7 @@ TEST(ParseRanges, LeavesOutEitherEnd) {
   EXPECT_EQ(ranges.at("zero_angle").upper, kUnbounded);
 }
 
-TEST(ParseRanges, NamesTheFlagAndWhatIsWrong) {
+TEST(ParseRanges, NamesTheFlagAndTheFault) {
   const std::pair<const char*, const char*> refusals[] = {
       {"coulomb=0:1",
        "--bounds: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, zero_angle"},
@@ -109,7 +109,7 @@ TEST(ParsePriors, ReadsMeanAndStandardDeviation) {
   EXPECT_EQ(priors.at("zero_angle").std_dev, 0.05);
 }
 
-TEST(ParsePriors, NamesTheFlagAndWhatIsWrong) {
+TEST(ParsePriors, NamesTheFlagAndTheFault) {
   const std::pair<const char*, const char*> refusals[] = {
       {"coulomb=1:1",
        "--prior: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, zero_angle"},

@@ -28,7 +28,7 @@ void ExpectRefused(const Result<Flags>& flags, const std::string& message) {
 // ---- Names ---------------------------------------------------------------------------------------------------------
 
 // The flags of the tools without files and threads, which a remote client must not set.
-TEST(FlagNames, AreThoseOfTheTools) {
+TEST(FlagNames, MatchTheFlagsOfTheTools) {
   EXPECT_THAT(RunFlagNames(),
               UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
                                    "prior", "time_column", "value_column", "unit", "sample_rate_hz", "resolution",
@@ -54,7 +54,7 @@ TEST(CheckFlagName, SuggestsTheNearest) {
 
 // ---- Fits ----------------------------------------------------------------------------------------------------------
 
-TEST(RunFlagsOf, LeavesWhatIsNotGivenAtItsDefault) {
+TEST(RunFlagsOf, KeepsDefaultsForMissingFlags) {
   const auto flags = RunFlagsOf({});
   ASSERT_TRUE(flags) << flags.error().message;
   EXPECT_EQ(flags->model, "coulomb");
@@ -66,7 +66,7 @@ TEST(RunFlagsOf, LeavesWhatIsNotGivenAtItsDefault) {
   EXPECT_FALSE(flags->closed_form_only);
 }
 
-TEST(RunFlagsOf, TakesEachFlagToItsOwnPlace) {
+TEST(RunFlagsOf, StoresEachFlagInItsMember) {
   const std::vector<std::pair<std::string, std::string RunFlags::*>> places = {
       {"model", &RunFlags::model},
       {"models", &RunFlags::model},
@@ -98,7 +98,7 @@ TEST(RunFlagsOf, TakesEachFlagToItsOwnPlace) {
   }
 }
 
-TEST(RunFlagsOf, KnowsTwoStatesOfASwitch) {
+TEST(RunFlagsOf, AcceptsTwoStatesOfASwitch) {
   EXPECT_TRUE(RunFlagsOf({{"closed_form_only", "true"}})->closed_form_only);
   EXPECT_FALSE(RunFlagsOf({{"closed_form_only", "false"}})->closed_form_only);
   for (const char* text : {"1", "yes", "True", "true "}) {
@@ -107,7 +107,7 @@ TEST(RunFlagsOf, KnowsTwoStatesOfASwitch) {
   }
 }
 
-TEST(RunFlagsOf, RefusesWhatIsNoFlagOfAFit) {
+TEST(RunFlagsOf, RefusesUnknownFlags) {
   ExpectRefused(RunFlagsOf({{"modle", "drag"}}), "--modle is not a flag of this request; did you mean --model?");
   ExpectRefused(RunFlagsOf({{"from", ""}}), "--from has an empty value; leave the flag out for its default");
   ExpectRefused(RunFlagsOf({{"model", "drag"}, {"models", "drag"}}),
@@ -122,7 +122,7 @@ TEST(RunFlagsOf, RefusesWhatIsNoFlagOfAFit) {
 
 // ---- Simulations ---------------------------------------------------------------------------------------------------
 
-TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
+TEST(SimulationFlagsOf, AcceptsTextsNumbersAndIntegers) {
   const auto flags = SimulationFlagsOf({{"model", "drag"},
                                         {"gravity", "linear"},
                                         {"set", "inertia=0.1"},
@@ -162,7 +162,7 @@ TEST(SimulationFlagsOf, TakesTextsNumbersAndWholes) {
   EXPECT_EQ(flags->seed, 18446744073709551615U);
 }
 
-TEST(SimulationFlagsOf, RefusesWhatIsNoNumber) {
+TEST(SimulationFlagsOf, RefusesInvalidNumbers) {
   for (const char* text : {"", "ten", "1 s", "1,5", "nan", "inf", "1e999"}) {
     const auto flags = SimulationFlagsOf({{"duration", text}});
     ASSERT_FALSE(flags) << text;
@@ -178,7 +178,7 @@ TEST(SimulationFlagsOf, RefusesWhatIsNoNumber) {
 
 // ---- Calibrations --------------------------------------------------------------------------------------------------
 
-TEST(CalibrationFlagsOf, TakesItsFlags) {
+TEST(CalibrationFlagsOf, AcceptsItsFlags) {
   const auto flags = CalibrationFlagsOf({{"order", "2"}, {"bits", "10"}});
   ASSERT_TRUE(flags) << flags.error().message;
   EXPECT_EQ(flags->order, 2);
@@ -188,7 +188,7 @@ TEST(CalibrationFlagsOf, TakesItsFlags) {
   EXPECT_EQ(CalibrationFlagsOf({})->order, 1);
 }
 
-TEST(CalibrationFlagsOf, RefusesWhatIsNoWholeNumber) {
+TEST(CalibrationFlagsOf, RefusesNumbersThatAreNotWhole) {
   for (const char* text : {"1.5", "2147483648", "one", "1e1"}) {
     ExpectRefused(CalibrationFlagsOf({{"order", text}}),
                   std::string("--order is '") + text + "'; it must be an integer");

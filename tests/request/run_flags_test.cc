@@ -21,7 +21,7 @@ std::string Refusal(const RunFlags& flags) {
   return options.error().message;
 }
 
-TEST(MakeRunOptions, FitsCoulombToTheLongestSwingUnlessItIsTold) {
+TEST(MakeRunOptions, FitsCoulombToTheLongestSwingByDefault) {
   const auto options = MakeRunOptions({});
   ASSERT_TRUE(options);
   EXPECT_THAT(options->models, ElementsAre("coulomb"));
@@ -30,7 +30,7 @@ TEST(MakeRunOptions, FitsCoulombToTheLongestSwingUnlessItIsTold) {
   EXPECT_FALSE(options->closed_form_only);
 }
 
-TEST(MakeRunOptions, TakesModelsWindowAndParameters) {
+TEST(MakeRunOptions, AcceptsModelsWindowAndParameters) {
   RunFlags flags;
   flags.model = "viscous,drag";
   flags.from = "1.5";
@@ -46,7 +46,7 @@ TEST(MakeRunOptions, TakesModelsWindowAndParameters) {
   EXPECT_EQ(options->read.unit, "counts");
 }
 
-TEST(MakeRunOptions, NamesTheFlagThatIsWrong) {
+TEST(MakeRunOptions, NamesTheWrongFlag) {
   RunFlags flags;
   flags.model = "tar";
   EXPECT_THAT(Refusal(flags), HasSubstr("--model: there is no model 'tar'"));

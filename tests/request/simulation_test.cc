@@ -36,7 +36,7 @@ SimulationFlags Flags(const std::string& set) {
 
 constexpr std::string_view kRelease = "release_angle=0.4,release_time=1.5";
 
-TEST(MakeSimulation, DividesTorquesAndInertiaByTheGravityTorqueOfTheRig) {
+TEST(MakeSimulation, DividesTorquesAndInertiaByTheRigsGravityTorque) {
   SimulationFlags flags =
       Flags("release_angle=0.4,inertia=0.06,viscous=0.003,coulomb=0.005,drag=0.001,release_time=1.5");
   flags.model = "drag";
@@ -53,21 +53,21 @@ TEST(MakeSimulation, DividesTorquesAndInertiaByTheGravityTorqueOfTheRig) {
                           Pair("release_angle", 0.4), Pair("release_time", 1.5), Pair("zero_angle", 0.0)));
 }
 
-TEST(MakeSimulation, TakesValuesInUnitsOfTheGravityTorqueWithoutARig) {
+TEST(MakeSimulation, UsesUnitsOfGravityTorqueWithoutARig) {
   const Result<Simulation> simulation =
       MakeSimulation(Flags("inertia=0.04,coulomb=0.002," + std::string(kRelease)), {});
   ASSERT_TRUE(simulation) << simulation.error().message;
   EXPECT_THAT(simulation->synthetic.parameters, ElementsAre(0.04, 0, 0.002));
 }
 
-TEST(MakeSimulation, TakesTheGeometricInertiaOfTheRigWhenNoneIsSet) {
+TEST(MakeSimulation, UsesTheRigsGeometricInertiaByDefault) {
   const Result<Simulation> simulation = MakeSimulation(Flags(std::string(kRelease)), RoundRig());
   ASSERT_TRUE(simulation) << simulation.error().message;
   EXPECT_THAT(simulation->synthetic.parameters, ElementsAre(DoubleEq(0.04), 0, 0));
   EXPECT_THAT(simulation->truth.front(), Pair("inertia", 0.08));
 }
 
-TEST(MakeSimulation, StartsInMotionWhenAngleAndRateAreGiven) {
+TEST(MakeSimulation, StartsInMotionForAnAngleAndARate) {
   const Result<Simulation> simulation = MakeSimulation(Flags("inertia=0.04,initial_angle=0.1,initial_rate=-2"), {});
   ASSERT_TRUE(simulation) << simulation.error().message;
   EXPECT_EQ(simulation->synthetic.start, StartKind::kMoving);
@@ -78,7 +78,7 @@ TEST(MakeSimulation, StartsInMotionWhenAngleAndRateAreGiven) {
                           Pair("initial_rate", -2.0), Pair("zero_angle", 0.0)));
 }
 
-TEST(MakeSimulation, ReadsTheSensorInTheUnitOfTheColumn) {
+TEST(MakeSimulation, ReadsSensorFlagsInTheColumnsUnit) {
   SimulationFlags flags = Flags("inertia=0.04,zero_angle=0.1," + std::string(kRelease));
   flags.noise = 2;
   flags.resolution = 0.5;
@@ -95,7 +95,7 @@ TEST(MakeSimulation, ReadsTheSensorInTheUnitOfTheColumn) {
   EXPECT_THAT(simulation->synthetic.range->high, DoubleEq(45 * kRadPerDeg));
 }
 
-TEST(MakeSimulation, HandsOnTheLawOfTheNoiseWithoutAUnit) {
+TEST(MakeSimulation, PassesTheNoiseLawUnchanged) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.noise_correlation = -0.5;
   flags.noise_freedom = 3;
@@ -121,7 +121,7 @@ TEST(MakeSimulation, GivesAGyroARateBiasInsteadOfAZeroAngle) {
   EXPECT_THAT(wrong.error().message, HasSubstr("no parameter 'zero_angle'"));
 }
 
-TEST(MakeSimulation, ChoosesGravityIndependentlyOfFriction) {
+TEST(MakeSimulation, AllowsAnyGravityWithAnyFriction) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.gravity = "linear";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
@@ -130,7 +130,7 @@ TEST(MakeSimulation, ChoosesGravityIndependentlyOfFriction) {
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
 }
 
-TEST(MakeSimulation, TakesLinearGravityWithViscousFrictionForTheLinearModel) {
+TEST(MakeSimulation, TreatsLinearViscousAsTheLinearModel) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.model = "linear";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
@@ -139,7 +139,7 @@ TEST(MakeSimulation, TakesLinearGravityWithViscousFrictionForTheLinearModel) {
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
 }
 
-TEST(MakeSimulation, ListsTheNamesThatTheModelHasWhenOneIsUnknown) {
+TEST(MakeSimulation, ListsTheModelsNamesForAnUnknownName) {
   SimulationFlags flags = Flags("inertia=0.04,coulomb=0.1," + std::string(kRelease));
   flags.model = "viscous";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
@@ -151,7 +151,7 @@ TEST(MakeSimulation, ListsTheNamesThatTheModelHasWhenOneIsUnknown) {
             "initial_angle, initial_rate, zero_angle");
 }
 
-TEST(SimulationOfRecording, ScattersTheTruthOfEachSeedAboutTheSetValues) {
+TEST(SimulationOfRecording, ScattersTheTruthAboutTheSetValues) {
   SimulationFlags flags = Flags("inertia=0.06,viscous=0.003," + std::string(kRelease));
   flags.spread = "release_angle=0.01,inertia=0.001";
   flags.seed = 5;
@@ -171,7 +171,7 @@ TEST(SimulationOfRecording, ScattersTheTruthOfEachSeedAboutTheSetValues) {
   EXPECT_EQ(second->synthetic.release_angle, truth(3));
 }
 
-TEST(SimulationOfRecording, GivesASeedTheSameTruthWhateverTheFirstSeed) {
+TEST(SimulationOfRecording, GivesOneTruthPerSeed) {
   SimulationFlags flags = Flags("inertia=0.06," + std::string(kRelease));
   flags.spread = "inertia=0.001";
   const Result<Simulation> from_1 = MakeSimulation(flags, {});
@@ -190,7 +190,7 @@ TEST(SimulationOfRecording, KeepsTheSetValuesWithoutASpread) {
   EXPECT_EQ(third->synthetic.seed, 3);
 }
 
-TEST(SimulationOfRecording, KeepsTheOrderOfAModelsParameters) {
+TEST(SimulationOfRecording, RespectsTheOrderOfAModelsParameters) {
   SimulationFlags flags = Flags("inertia=0.06,coulomb=0.01,stiction=0.01,stribeck_rate=0.1," + std::string(kRelease));
   flags.model = "stribeck";
   flags.spread = "coulomb=0.001,stiction=0.001";
@@ -202,7 +202,7 @@ TEST(SimulationOfRecording, KeepsTheOrderOfAModelsParameters) {
   }
 }
 
-TEST(MakeSimulation, LosesCountsAtTheTimesGiven) {
+TEST(MakeSimulation, LosesCountsAtTheGivenTimes) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.resolution = 0.5;
   flags.lose = "5.25:-3,8:1";

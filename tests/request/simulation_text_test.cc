@@ -46,7 +46,7 @@ std::vector<std::string> ValueFields(const std::string& csv) {
   return fields;
 }
 
-TEST(RecordingCsv, ReadsBackAsTheRecording) {
+TEST(RecordingCsv, ReadsBackIdentically) {
   for (const std::string unit : {"deg", "rad", "deg_s", "rad_s"}) {
     SimulationFlags flags;
     flags.unit = unit;
@@ -63,7 +63,7 @@ TEST(RecordingCsv, ReadsBackAsTheRecording) {
   }
 }
 
-TEST(RecordingCsv, SaysWhatMadeItAndGivesTheSensorInItsOwnUnit) {
+TEST(RecordingCsv, ContainsItsOriginAndTheSensorsUnit) {
   SimulationFlags flags;
   flags.resolution = 0.1985;
   flags.range = "-49.6077,153.4578";
@@ -98,7 +98,7 @@ TEST(RecordingCsv, PrintsZeroWithoutASign) {
   EXPECT_THAT(csv, testing::Not(HasSubstr("-0\n")));
 }
 
-TEST(RecordingCsv, PrintsTheEndsOfTheRangeAsTheyWereGiven) {
+TEST(RecordingCsv, WritesTheEndsOfTheRangeAsGiven) {
   SimulationFlags flags;
   flags.range = "-9.9,12.1";
   const Simulation options = Options(flags);
@@ -114,7 +114,7 @@ TEST(RecordingCsv, PrintsShortTimesWithoutAnExponent) {
   EXPECT_THAT(RecordingCsv(options, Simulated(options), 1), HasSubstr("\n0.0001,"));
 }
 
-TEST(TruthJson, GivesParametersNoiseAndSeed) {
+TEST(TruthJson, ContainsParametersNoiseAndSeed) {
   SimulationFlags flags;
   flags.noise = 0.5;
   flags.resolution = 0.2;
@@ -133,7 +133,7 @@ TEST(TruthJson, GivesParametersNoiseAndSeed) {
   EXPECT_THAT(text, EndsWith("}\n"));
 }
 
-TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
+TEST(TruthJson, ContainsANoiseLawThatIsNotWhiteGaussian) {
   SimulationFlags flags;
   flags.noise = 0.5;
   flags.noise_correlation = 0.9;
@@ -143,7 +143,7 @@ TEST(TruthJson, GivesTheLawOfTheNoiseWhereItIsNotWhiteAndGaussian) {
   EXPECT_EQ(truth.at("noise_freedom"), 4);
 }
 
-TEST(TruthJson, ListsTheCountsThatAreLost) {
+TEST(TruthJson, ListsLostCounts) {
   SimulationFlags flags;
   EXPECT_FALSE(nlohmann::json::parse(TruthJson(Options(flags), 1)).contains("lost_counts"));
   flags.resolution = 0.5;
@@ -152,7 +152,7 @@ TEST(TruthJson, ListsTheCountsThatAreLost) {
   EXPECT_EQ(truth.at("lost_counts"), nlohmann::json::parse(R"([{"time_s": 5.25, "counts": -3}])"));
 }
 
-TEST(TruthJson, GivesARateItsOwnNames) {
+TEST(TruthJson, UsesRateNamesForARate) {
   SimulationFlags flags;
   flags.unit = "rad_s";
   flags.noise = 0.5;

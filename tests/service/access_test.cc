@@ -44,7 +44,7 @@ bool IsForeign(const std::string& method, Fields fields, const std::string& host
 // ---- Hosts ---------------------------------------------------------------------------------------------------------
 
 // RFC 6761, section 6.3 (localhost), RFC 1122, section 3.2.1.3 (127.0.0.0/8), RFC 4291, section 2.5.3 (::1).
-TEST(IsLoopback, KnowsTheNamesOfThisMachine) {
+TEST(IsLoopback, AcceptsTheNamesOfThisMachine) {
   for (const char* host :
        {"localhost", "localhost:8080", "LocalHost:1", "localhost.", "a.localhost", "a.b.localhost:80", "127.0.0.1",
         "127.0.0.1.", "127.0.0.1:65535", "127.255.255.254", "127.1.2.3:0", "[::1]", "[::1]:8080",
@@ -53,7 +53,7 @@ TEST(IsLoopback, KnowsTheNamesOfThisMachine) {
   }
 }
 
-TEST(IsLoopback, KnowsNoOther) {
+TEST(IsLoopback, RejectsOtherHosts) {
   for (const char* host : {"",
                            "example.com",
                            "localhost.example.com",
@@ -103,7 +103,7 @@ TEST(IsLoopback, KnowsNoOther) {
   EXPECT_FALSE(IsLoopback(std::string("[::1\0]", 6)));
 }
 
-TEST(IsListedHost, ComparesNamesAndAPortWhereTheListHasOne) {
+TEST(IsListedHost, ComparesNamesAndListedPorts) {
   const std::vector<std::string> list = {"lab.example", "Bench.Example:8080", "[2001:db8::5]"};
   for (const char* host : {"lab.example", "LAB.example:1", "lab.example.", "bench.example:8080", "[2001:db8::5]:80"}) {
     EXPECT_TRUE(IsListedHost(host, list)) << host;
@@ -131,7 +131,7 @@ TEST(RefuseAccess, AllowsAnyHostWithAToken) {
 }
 
 // RFC 9112, section 3.2: a server must answer 400 to a request without Host and to one with several.
-TEST(RefuseAccess, RefusesARequestWithoutOneHost) {
+TEST(RefuseAccess, RefusesARequestWithoutExactlyOneHost) {
   EXPECT_EQ(Answer(Request("GET", {}), {}), "400 the request has 0 Host fields; it must have one (RFC 9112)");
   EXPECT_EQ(Answer(Request("GET", {{"Host", "localhost"}, {"HOST", "localhost"}}), {}),
             "400 the request has 2 Host fields; it must have one (RFC 9112)");
@@ -139,7 +139,7 @@ TEST(RefuseAccess, RefusesARequestWithoutOneHost) {
 }
 
 // RFC 9112, section 3.2.2: a target in absolute form overrides Host; here both must be allowed.
-TEST(RefuseAccess, LooksAtTheHostOfAnAbsoluteTarget) {
+TEST(RefuseAccess, ChecksTheHostOfAnAbsoluteTarget) {
   const Fields local = {{"Host", "localhost"}}, foreign = {{"Host", "evil.example"}};
   EXPECT_EQ(Answer(Request("GET", local, "http://localhost/v1/fits"), {}), "allowed");
   EXPECT_EQ(Answer(Request("GET", local, "http://evil.example/v1/fits"), {}).substr(0, 3), "403");
@@ -160,13 +160,13 @@ TEST(IsSameSecret, ComparesBytes) {
 }
 
 // RFC 9110, section 11.1: the scheme in either case, followed by one or more blanks.
-TEST(RefuseAccess, TakesTheRightToken) {
+TEST(RefuseAccess, AcceptsTheRightToken) {
   EXPECT_EQ(AnswerOfToken(std::string("Bearer ") + kToken), "allowed");
   EXPECT_EQ(AnswerOfToken(std::string("bearer   ") + kToken), "allowed");
   EXPECT_EQ(AnswerOfToken(std::string("BEARER ") + kToken + " "), "allowed");
 }
 
-TEST(RefuseAccess, RefusesAnyOtherToken) {
+TEST(RefuseAccess, RefusesAWrongToken) {
   const std::string another =
       "401 the token of the request is not that of this service; send the one in its --token_file";
   const std::string right = kToken;
@@ -195,7 +195,7 @@ TEST(RefuseAccess, RefusesARequestWithoutAToken) {
 }
 
 // RFC 6750, section 3.1.
-TEST(RefuseAccess, ChallengesWithAnErrorOnlyWhereATokenIsWrong) {
+TEST(RefuseAccess, ChallengesWithAnErrorOnlyForAWrongToken) {
   const auto challenge = [](Fields fields) {
     fields.push_back({"Host", "localhost"});
     const auto problem = RefuseAccess(Request("GET", std::move(fields)), {kToken, {}}, Audience::kTokenHolders);
@@ -219,7 +219,7 @@ TEST(IsCrossSite, AllowsTheServicesOwnPage) {
 }
 
 // Node's fetch sends only Sec-Fetch-Mode: cors; curl and Python send no such field.
-TEST(IsCrossSite, AllowsWhatIsNoBrowser) {
+TEST(IsCrossSite, AllowsClientsThatAreNoBrowser) {
   EXPECT_FALSE(IsForeign("POST", {{"sec-fetch-mode", "cors"}}));
   EXPECT_FALSE(IsForeign("POST", {}));
   EXPECT_FALSE(IsForeign("DELETE", {{"User-Agent", "curl/7.88.1"}, {"Accept", "*/*"}}));
@@ -274,7 +274,7 @@ TEST(IsCrossSite, ComparesOriginWithHost) {
 }
 
 // The origin of a sandboxed frame or a file:// page is null (WHATWG HTML, section 7.1.1).
-TEST(IsCrossSite, RefusesOriginNullWhereItWrites) {
+TEST(IsCrossSite, RefusesOriginNullForWrites) {
   EXPECT_TRUE(IsForeign("POST", {{"Origin", "null"}}));
   EXPECT_TRUE(IsForeign("DELETE", {{"Origin", "null"}}));
   EXPECT_FALSE(IsForeign("GET", {{"Origin", "null"}}));
@@ -282,7 +282,7 @@ TEST(IsCrossSite, RefusesOriginNullWhereItWrites) {
   EXPECT_TRUE(IsForeign("GET", {{"Origin", "null"}, {"Sec-Fetch-Site", "cross-site"}}));
 }
 
-TEST(RefuseAccess, RefusesAnotherSiteWhateverItKnows) {
+TEST(RefuseAccess, RefusesAnotherSiteWithAnyToken) {
   const std::string fault =
       "403 the request comes from a page of another site; this service answers its own page, and programs";
   EXPECT_EQ(Answer(Request("POST", {{"Host", "localhost"}, {"Origin", "http://evil.example"}}), {}), fault);

@@ -13,7 +13,7 @@ using wire::AnswerHead;
 using wire::HttpDate;
 using wire::MayHaveBody;
 
-TEST(HttpDate, IsThatOfTheStandard) {
+TEST(HttpDate, MatchesTheStandardsExample) {
   EXPECT_EQ(HttpDate(784111777), "Sun, 06 Nov 1994 08:49:37 GMT");   // RFC 9110, section 5.6.7; date -d @784111777
   EXPECT_EQ(HttpDate(1709164800), "Thu, 29 Feb 2024 00:00:00 GMT");  // date -u -d @1709164800
 }
@@ -28,7 +28,7 @@ TEST(AnswerHead, HasStatusFieldsAndFraming) {
             "Connection: close\r\n\r\n");
 }
 
-TEST(AnswerHead, LeavesOutFieldsThatAreTheServersOrNone) {
+TEST(AnswerHead, OmitsFieldsReservedForTheServer) {
   const HttpResponse response{200,
                               {{"content-length", "1"},
                                {"TRANSFER-ENCODING", "chunked"},
@@ -44,13 +44,13 @@ TEST(AnswerHead, LeavesOutFieldsThatAreTheServersOrNone) {
             "HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nConnection: close\r\n\r\n");
 }
 
-TEST(AnswerHead, MakesControlCharactersBlanks) {
+TEST(AnswerHead, ReplacesControlCharactersByBlanks) {
   const HttpResponse response{200, {{"X", std::string("a\rb\nc\0d\te\x7f", 10) + "ü"}}, "", nullptr};
   EXPECT_EQ(AnswerHead(response, {}, 784111777),
             "HTTP/1.1 200 OK\r\nX: a b c d\te ü\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nConnection: close\r\n\r\n");
 }
 
-TEST(AnswerHead, KnowsTheReasonsOfStatusesThatAreUsedAndNeedsNone) {
+TEST(AnswerHead, HasReasonPhrasesForAllUsedStatuses) {
   const auto line = [](int status) { return AnswerHead({status, {}, "", nullptr}, {}, 0).substr(0, 30); };
   EXPECT_EQ(line(431), "HTTP/1.1 431 Request Header Fi");
   EXPECT_EQ(line(429).substr(0, 26), "HTTP/1.1 429 Too Many Requ");
@@ -58,7 +58,7 @@ TEST(AnswerHead, KnowsTheReasonsOfStatusesThatAreUsedAndNeedsNone) {
   EXPECT_EQ(line(555).substr(0, 15), "HTTP/1.1 555 \r\n");
 }
 
-TEST(MayHaveBody, SaysNoWhereTheStandardDoes) {  // RFC 9110, section 6.4.1
+TEST(MayHaveBody, FollowsTheStandard) {  // RFC 9110, section 6.4.1
   EXPECT_FALSE(MayHaveBody(100));
   EXPECT_FALSE(MayHaveBody(204));
   EXPECT_FALSE(MayHaveBody(304));

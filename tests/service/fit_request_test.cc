@@ -45,22 +45,22 @@ std::string Form(const std::string& parts) { return parts + "--X--\r\n"; }
 
 RequestTarget TargetOf(const HttpRequest& request) { return ParseTarget(request.target).value(); }
 
-OrProblem<FitRequest> Fit(const HttpRequest& request, const RequestLimits& limits = {}) {
+ResultOrProblem<FitRequest> Fit(const HttpRequest& request, const RequestLimits& limits = {}) {
   return ParseFitRequest(request, TargetOf(request), limits);
 }
 
-OrProblem<FitRequest> Batch(const HttpRequest& request, const RequestLimits& limits = {}) {
+ResultOrProblem<FitRequest> Batch(const HttpRequest& request, const RequestLimits& limits = {}) {
   return ParseBatchRequest(request, TargetOf(request), limits);
 }
 
 /// "400 the sentence" for a problem, otherwise "taken".
-std::string Answer(const OrProblem<FitRequest>& request) {
+std::string Answer(const ResultOrProblem<FitRequest>& request) {
   return request ? "taken" : std::to_string(request.error().status()) + " " + request.error().detail;
 }
 
 // ---- Three kinds of body -------------------------------------------------------------------------------------------
 
-TEST(ParseFitRequest, TakesARecordingAsItIs) {
+TEST(ParseFitRequest, AcceptsAPlainRecording) {
   for (const char* type : {"text/csv", "text/csv; charset=utf-8", "TEXT/CSV", "text/plain", "application/octet-stream",
                            "application/zip", "application/x-matlab-data"}) {
     const auto request = Fit(Post("/v1/fits?model=drag&from=0.5&name=run%201.csv", type, kCsv));
@@ -85,7 +85,7 @@ TEST(ParseFitRequest, HasTheDefaultsOfTheCommandLine) {
   EXPECT_THAT(request->options.models, ElementsAre("coulomb"));
 }
 
-TEST(ParseFitRequest, TakesAForm) {
+TEST(ParseFitRequest, AcceptsAForm) {
   const auto request = Fit(Post("/v1/fits?from=1", kForm,
                                 Form(Part("options", R"({"models": "viscous,coulomb", "seed": 7, "to": 2.5})") +
                                      Part("data", kCsv, "C:\\lab\\run.csv") + Part("rig", kRig, "my_rig.json") +
@@ -104,7 +104,7 @@ TEST(ParseFitRequest, TakesAForm) {
   EXPECT_EQ(request->flags.at("seed"), "7");
 }
 
-TEST(ParseFitRequest, TakesAJsonObject) {
+TEST(ParseFitRequest, AcceptsAJsonObject) {
   const Json body = {{"name", "ünïcode.csv"},
                      {"data", kCsv},
                      {"rig", {{"gravity_torque", {{"value", 1.8}}}}},
@@ -121,7 +121,7 @@ TEST(ParseFitRequest, TakesAJsonObject) {
   EXPECT_TRUE(request->options.closed_form_only);
 }
 
-TEST(ParseFitRequest, CutsLongNamesOfFilesBetweenCharacters) {
+TEST(ParseFitRequest, ShortensFileNamesBetweenCharacters) {
   std::string name = "x";
   while (name.size() < 300) name += "ü";  // two bytes each, so the 200th byte is the first of a pair
   const auto request = Fit(Post("/v1/fits", kForm, Form(Part("data", kCsv, name))));
@@ -129,7 +129,7 @@ TEST(ParseFitRequest, CutsLongNamesOfFilesBetweenCharacters) {
   EXPECT_EQ(request->data[0].name, name.substr(0, 199));
 }
 
-TEST(ParseFitRequest, TakesTheNameOfTheQueryBeforeThatOfTheFile) {
+TEST(ParseFitRequest, PrefersTheNameInTheQuery) {
   const auto form = Fit(Post("/v1/fits?name=mine", kForm, Form(Part("data", kCsv, "run.csv"))));
   ASSERT_TRUE(form) << form.error().detail;
   EXPECT_EQ(form->data[0].name, "mine");
@@ -137,7 +137,7 @@ TEST(ParseFitRequest, TakesTheNameOfTheQueryBeforeThatOfTheFile) {
 
 // ---- Refused requests ----------------------------------------------------------------------------------------------
 
-TEST(ParseFitRequest, RefusesOtherKindsOfContent) {
+TEST(ParseFitRequest, RefusesOtherContentTypes) {
   constexpr const char* kWanted = "; it must be text/csv, multipart/form-data or application/json";
   EXPECT_EQ(Answer(Fit(Post("/v1/fits", "", kCsv))), std::string("415 the body has no Content-Type") + kWanted);
   EXPECT_EQ(Answer(Fit(Post("/v1/fits", "image/png", kCsv))),
@@ -152,7 +152,7 @@ TEST(ParseFitRequest, RefusesOtherKindsOfContent) {
 }
 
 // An invalid Content-Type is shown, not reported as missing.
-TEST(ParseFitRequest, ShowsAContentTypeThatIsNone) {
+TEST(ParseFitRequest, ShowsAnInvalidContentType) {
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "csv", kCsv))), HasSubstr("\"csv\""));
 }
 
@@ -160,7 +160,7 @@ struct WrongFit {
   std::string answer, target, type, body;
 };
 
-TEST(ParseFitRequest, RefusesWhatIsWrongAndSaysWhy) {
+TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
   const std::string data = Part("data", kCsv);
   const std::vector<WrongFit> wrong = {
       {"400 --modle is not a flag of this request; did you mean --model?", "/v1/fits?modle=drag", "text/csv", kCsv},
@@ -206,7 +206,7 @@ TEST(ParseFitRequest, RefusesWhatIsWrongAndSaysWhy) {
   for (const WrongFit& fit : wrong) EXPECT_EQ(Answer(Fit(Post(fit.target, fit.type, fit.body))), fit.answer);
 }
 
-TEST(ParseFitRequest, SaysWhereJsonIsNone) {
+TEST(ParseFitRequest, ReportsInvalidJson) {
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "application/json", "{\n\"data\": x}"))),
               StartsWith("400 the body:2:9: this is not JSON ("));
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "application/json", "[]"))),
@@ -217,7 +217,7 @@ TEST(ParseFitRequest, SaysWhereJsonIsNone) {
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "multipart/form-data", Form(Part("data", kCsv))))), StartsWith("400 "));
 }
 
-TEST(ParseFitRequest, TakesAsManyLinesAsItMay) {
+TEST(ParseFitRequest, AcceptsTheMaximumNumberOfLines) {
   const RequestLimits limits{3, 10};
   const std::string lines = "t,x\n1,1\n2,2\n";
   EXPECT_EQ(Answer(Fit(Post("/v1/fits", "text/csv", lines), limits)), "taken");
@@ -227,7 +227,7 @@ TEST(ParseFitRequest, TakesAsManyLinesAsItMay) {
 }
 
 // A batch of ten thousand runs stores the options ten thousand times.
-TEST(ParseBatchRequest, TakesNoOptionsOfAnyLength) {
+TEST(ParseBatchRequest, LimitsTheLengthOfOptions) {
   const auto answer = [](std::size_t blanks) {
     const std::string options = R"({"model": "drag)" + std::string(blanks, ' ') + "\"}";
     return Answer(Batch(Post("/v1/batches", kForm, Form(Part("data", kCsv) + Part("options", options)))));
@@ -237,7 +237,7 @@ TEST(ParseBatchRequest, TakesNoOptionsOfAnyLength) {
 }
 
 // A name is used in files and messages, so control characters are refused, as in a query (RequestTarget).
-TEST(ParseFitRequest, LetsNoControlCharactersIntoNames) {
+TEST(ParseFitRequest, RemovesControlCharactersFromNames) {
   for (const auto& request : {Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\nb"})")),
                               Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\u001b[2J"})")),
                               Fit(Post("/v1/fits", kForm, Form(Part("data", kCsv, "a%0D%0Ab"))))}) {
@@ -248,7 +248,7 @@ TEST(ParseFitRequest, LetsNoControlCharactersIntoNames) {
 
 // ---- Batches -------------------------------------------------------------------------------------------------------
 
-TEST(ParseBatchRequest, TakesManyRecordingsAndWhatTheyShare) {
+TEST(ParseBatchRequest, AcceptsManyRecordingsWithSharedFiles) {
   const auto request = Batch(Post(
       "/v1/batches?model=viscous", kForm,
       Form(Part("data", "1", "a.csv") + Part("rig", kRig) + Part("data", "2", "b.csv") + Part("data", "3", "a.csv"))));
@@ -261,7 +261,7 @@ TEST(ParseBatchRequest, TakesManyRecordingsAndWhatTheyShare) {
   EXPECT_THAT(request->options.models, ElementsAre("viscous"));
 }
 
-TEST(ParseBatchRequest, RefusesWhatIsWrongAndSaysWhy) {
+TEST(ParseBatchRequest, RefusesAndExplainsInvalidRequests) {
   const std::string data = Part("data", kCsv, "run.csv");
   EXPECT_EQ(Answer(Batch(Post("/v1/batches", "text/csv", kCsv))),
             "415 the Content-Type is \"text/csv\"; it must be multipart/form-data");
@@ -280,14 +280,14 @@ TEST(ParseBatchRequest, RefusesWhatIsWrongAndSaysWhy) {
 // ---- Refits --------------------------------------------------------------------------------------------------------
 
 /// A refit of a run with these flags, a rig and a calibration.
-OrProblem<FitRequest> Refit(const std::string& query, const std::string& body = "",
-                            const std::string& type = "application/json") {
+ResultOrProblem<FitRequest> Refit(const std::string& query, const std::string& body = "",
+                                  const std::string& type = "application/json") {
   const HttpRequest request = Post("/v1/fits/1/refits" + query, body.empty() ? "" : type, body);
   return ParseRefitRequest(request, TargetOf(request), {{"model", "drag"}, {"from", "0.5"}},
                            {{"run.csv", kCsv}, Share({"rig", kRig}), Share({"calibration", kCalibration})});
 }
 
-TEST(ParseRefitRequest, KeepsWhatIsNotChanged) {
+TEST(ParseRefitRequest, KeepsEverythingElse) {
   const auto request = Refit("");
   ASSERT_TRUE(request) << request.error().detail;
   EXPECT_THAT(request->flags, UnorderedElementsAre(Pair("model", "drag"), Pair("from", "0.5")));
@@ -296,7 +296,7 @@ TEST(ParseRefitRequest, KeepsWhatIsNotChanged) {
   EXPECT_TRUE(request->rig && request->calibration);
 }
 
-TEST(ParseRefitRequest, ChangesAddsAndTakesAwayFlags) {
+TEST(ParseRefitRequest, ChangesAddsAndRemovesFlags) {
   const auto query = Refit("?models=viscous,coulomb&to=3&from=&name=again");
   ASSERT_TRUE(query) << query.error().detail;
   EXPECT_THAT(query->flags, UnorderedElementsAre(Pair("models", "viscous,coulomb"), Pair("to", "3")));
@@ -307,14 +307,14 @@ TEST(ParseRefitRequest, ChangesAddsAndTakesAwayFlags) {
   EXPECT_THAT(body->options.models, ElementsAre("coulomb"));  // the default
 }
 
-TEST(ParseRefitRequest, ReplacesOrTakesAwayRigAndCalibration) {
+TEST(ParseRefitRequest, ReplacesOrRemovesRigAndCalibration) {
   const auto request = Refit("", R"({"rig": {"gravity_torque": {"value": 2}}, "calibration": null})");
   ASSERT_TRUE(request) << request.error().detail;
   EXPECT_EQ(Json::parse(request->rig->bytes)["gravity_torque"]["value"], 2);
   EXPECT_FALSE(request->calibration);
 }
 
-TEST(ParseRefitRequest, RefusesWhatIsWrongAndSaysWhy) {
+TEST(ParseRefitRequest, RefusesAndExplainsInvalidRequests) {
   EXPECT_EQ(Answer(Refit("", R"({"data": "x"})")), "400 a refit has the recording that is there; leave data out");
   EXPECT_EQ(Answer(Refit("", kCsv, "text/csv")),
             "415 the Content-Type is \"text/csv\"; it must be application/json, or the body empty");
@@ -327,7 +327,7 @@ TEST(ParseRefitRequest, RefusesWhatIsWrongAndSaysWhy) {
 }
 
 // An unknown flag, or a name in the body, would otherwise be ignored silently.
-TEST(ParseRefitRequest, PassesOverNothing) {
+TEST(ParseRefitRequest, IgnoresNothingSilently) {
   EXPECT_EQ(Answer(Refit("?modle=")), "400 --modle is not a flag of this request; did you mean --model?");
   const auto named = Refit("", R"({"name": "again"})");
   EXPECT_TRUE(!named || named->data.at(0).name == "again");
@@ -350,7 +350,7 @@ TEST(FlagTextsOf, WritesNumbersAndSwitchesAsText) {
   EXPECT_EQ(flags->at("closed_form_only"), "false");
 }
 
-TEST(OptionsOf, SaysThatAStoreHasOtherFlags) {
+TEST(OptionsOf, ReportsUnknownFlagsInAStore) {
   FitOrder order;
   order.flags = "model=drag";
   ASSERT_FALSE(OptionsOf(order));

@@ -105,7 +105,7 @@ class FittingServiceBatchesTest : public asked_service::ServiceTest {
 
 // ---- Complete batches ----------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceBatchesTest, FitsAllOfThemInTheOrderSent) {
+TEST_F(FittingServiceBatchesTest, FitsAllRunsInTheOrderSent) {
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
   ASSERT_EQ(response.status, 202) << response.body;
   const std::string location = FieldOf(response, "Location");
@@ -131,7 +131,7 @@ TEST_F(FittingServiceBatchesTest, FitsAllOfThemInTheOrderSent) {
 }
 
 // A run's answer equals that of a single fit.
-TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForAFitAlone) {
+TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForASingleFit) {
   const Json batch = Done(Sent(ThreeRecordings()));
   const auto fit = [&](std::size_t i) { return "/v1/fits/" + batch["fits"][i]["id"].get<std::string>(); };
   EXPECT_EQ(Get(fit(0)).body, Post("/v1/fits?model=viscous", "text/csv", Recording()).body);
@@ -144,7 +144,7 @@ TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForAFitAlone) {
   EXPECT_THAT(IdsAt("/v1/fits?batch=" + batch["id"].get<std::string>()), SizeIs(3));
 }
 
-TEST_F(FittingServiceBatchesTest, GoesOnAtTheNextStart) {
+TEST_F(FittingServiceBatchesTest, ResumesAtTheNextStart) {
   const std::string location = Sent(ThreeRecordings() + ThreeRecordings());
   End();  // ends the service in any state
   const Json batch = Done(location);
@@ -155,7 +155,7 @@ TEST_F(FittingServiceBatchesTest, GoesOnAtTheNextStart) {
   EXPECT_EQ(Get(location).body, batch.dump(2) + "\n");
 }
 
-TEST_F(FittingServiceBatchesTest, TellsWhoStoppedThatItGoesOnLater) {
+TEST_F(FittingServiceBatchesTest, TellsAStoppedClientThatItContinuesLater) {
   Service().Stop();  // no run is started
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
   ASSERT_EQ(response.status, 202) << response.body;
@@ -171,7 +171,7 @@ TEST_F(FittingServiceBatchesTest, TellsWhoStoppedThatItGoesOnLater) {
   EXPECT_EQ(Done("/v1/batches/" + batch["id"].get<std::string>())["done"], 3);
 }
 
-TEST_F(FittingServiceBatchesTest, TakesABatchOnceForEachKey) {
+TEST_F(FittingServiceBatchesTest, AcceptsABatchOncePerKey) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const HttpResponse first = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()), key);
   const HttpResponse again = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()), key);
@@ -205,7 +205,7 @@ std::int64_t MostMemory() {
 void ForgetMostMemory() { std::ofstream("/proc/self/clear_refs") << 5; }  // proc(5)
 
 // A request of one megabyte needs only a few megabytes of memory, even if many runs share a rig.
-TEST_F(FittingServiceBatchesTest, HoldsASharedRigOnce) {
+TEST_F(FittingServiceBatchesTest, StoresASharedRigOnce) {
   constexpr std::size_t kRig = 60'000, kRuns = 3000;  // 170 MiB with a separate rig per run
   std::string parts = PartOf("rig", small_batch::kRigText + std::string(kRig, ' '));
   for (std::size_t i = 0; i < kRuns; ++i) parts += PartOf("data", "x", "a.csv");
@@ -233,7 +233,7 @@ TEST_F(FittingServiceBatchesTest, DeletesABatchWithItsFits) {
   EXPECT_EQ(Done(next)["done"], 1);  // its threads still run
 }
 
-TEST_F(FittingServiceBatchesTest, EndsTheEventsOfABatchThatIsDeleted) {
+TEST_F(FittingServiceBatchesTest, EndsTheEventsOfADeletedBatch) {
   Service().Stop();
   const std::string location = Sent(ThreeRecordings());
   const HttpResponse response = Get(location + "/events");
@@ -243,7 +243,7 @@ TEST_F(FittingServiceBatchesTest, EndsTheEventsOfABatchThatIsDeleted) {
   EXPECT_TRUE(response.events().is_last);
 }
 
-TEST_F(FittingServiceBatchesTest, PassesOverARunThatWasDeletedAlone) {
+TEST_F(FittingServiceBatchesTest, SkipsARunDeletedSeparately) {
   Service().Stop();
   const std::string location = Sent(ThreeRecordings());
   const Json waiting = JsonAt(location);
@@ -278,13 +278,13 @@ void ExpectAllEvents(const std::vector<Event>& events, const Json& batch) {
   EXPECT_EQ(events[3].data, (Json{{"runs", 3}, {"done", 3}, {"failed", 1}}));
 }
 
-TEST_F(FittingServiceBatchesTest, TellsOfEachRunAsItIsDone) {
+TEST_F(FittingServiceBatchesTest, SendsAnEventPerFinishedRun) {
   const std::string location = Sent(ThreeRecordings());
   const auto events = Listened(location);
   ExpectAllEvents(events, JsonAt(location));
 }
 
-TEST_F(FittingServiceBatchesTest, TellsOfABatchThatIsDone) {
+TEST_F(FittingServiceBatchesTest, SendsTheEventsOfAFinishedBatch) {
   const std::string location = Sent(ThreeRecordings());
   const Json batch = Done(location);
   ExpectAllEvents(Listened(location), batch);
@@ -292,7 +292,7 @@ TEST_F(FittingServiceBatchesTest, TellsOfABatchThatIsDone) {
   ExpectAllEvents(Listened(location), batch);
 }
 
-TEST_F(FittingServiceBatchesTest, GoesOnAfterTheLastEventThatAClientHas) {
+TEST_F(FittingServiceBatchesTest, ResumesAfterTheClientsLastEvent) {
   const std::string location = Sent(ThreeRecordings());
   Done(location);
   const auto events = Listened(location, {{"Last-Event-ID", "2"}});
@@ -311,7 +311,7 @@ TEST_F(FittingServiceBatchesTest, GoesOnAfterTheLastEventThatAClientHas) {
 }
 
 // Waiting runs have no "done" event.
-TEST_F(FittingServiceBatchesTest, TellsNothingOfRunsThatWait) {
+TEST_F(FittingServiceBatchesTest, SendsNoEventsForWaitingRuns) {
   Service().Stop();
   const std::string location = Sent(ThreeRecordings());
   const HttpResponse response = Get(location + "/events");
@@ -323,7 +323,7 @@ TEST_F(FittingServiceBatchesTest, TellsNothingOfRunsThatWait) {
 
 // ---- Limits --------------------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceBatchesTest, KeepsSoManyWaitingAndNoMore) {
+TEST_F(FittingServiceBatchesTest, LimitsTheNumberOfWaitingRuns) {
   options_.limits.max_runs = 4;
   Service().Stop();
   Sent(ThreeRecordings());
@@ -334,7 +334,7 @@ TEST_F(FittingServiceBatchesTest, KeepsSoManyWaitingAndNoMore) {
   EXPECT_EQ(AnswerOf(Post("/v1/batches", kForm, FormOf(ThreeRecordings() + ThreeRecordings()))).substr(0, 3), "413");
 }
 
-TEST_F(FittingServiceBatchesTest, StopsARunThatTakesTooLongAndGoesOn) {
+TEST_F(FittingServiceBatchesTest, StopsARunThatTakesTooLongAndContinues) {
   SyntheticOptions minutes = small_batch::Truth(1);
   minutes.duration = 300;
   minutes.sample_rate = 200;  // a fit takes seconds on any machine

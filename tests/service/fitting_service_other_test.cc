@@ -38,7 +38,7 @@ constexpr const char* kSimulation =
     "set=inertia%3D0.044,viscous%3D0.0011,coulomb%3D0.0022,release_angle%3D0.4,release_time%3D0.3&duration=8&rate=40&"
     "noise=0.1&seed=7";
 
-TEST_F(FittingServiceOtherTest, SimulatesWhatAFitFindsAgain) {
+TEST_F(FittingServiceOtherTest, SimulatesRecordingsThatAFitRecovers) {
   const HttpResponse response = Ask("POST", std::string("/v1/simulations?") + kSimulation);
   ASSERT_EQ(response.status, 200) << response.body;
   const Json json = Json::parse(response.body);
@@ -49,7 +49,7 @@ TEST_F(FittingServiceOtherTest, SimulatesWhatAFitFindsAgain) {
   EXPECT_NEAR(inertia["estimate"].get<double>(), 0.044, 5 * inertia["std_error"].get<double>());
 }
 
-TEST_F(FittingServiceOtherTest, SimulatesTheSameFromQueryBodyAndForCsv) {
+TEST_F(FittingServiceOtherTest, SimulatesTheSameFromQueryAndBody) {
   const std::string query = Ask("POST", std::string("/v1/simulations?") + kSimulation).body;
   const Json body = {{"set", "inertia=0.044,viscous=0.0011,coulomb=0.0022,release_angle=0.4,release_time=0.3"},
                      {"duration", 8},
@@ -72,7 +72,7 @@ TEST_F(FittingServiceOtherTest, SimulatesWithARig) {
   EXPECT_EQ(Json::parse(response.body)["truth"].at("inertia"), 0.079) << response.body.substr(0, 400);
 }
 
-TEST_F(FittingServiceOtherTest, RefusesSimulationsThatAreNone) {
+TEST_F(FittingServiceOtherTest, RefusesInvalidSimulations) {
   const auto answer = [&](const std::string& query) { return AnswerOf(Ask("POST", "/v1/simulations?" + query)); };
   EXPECT_THAT(answer("durration=1"),
               StartsWith("400 'durration' is not a parameter of this request; did you mean 'duration'?"));
@@ -110,7 +110,7 @@ TEST_F(FittingServiceOtherTest, CalibratesTheTextbooksTable) {
   EXPECT_TRUE(ParseCalibration(json["calibration"].dump(), "calibration"));  // a fit accepts it
 }
 
-TEST_F(FittingServiceOtherTest, LeavesNothingOutOfTwoPoints) {
+TEST_F(FittingServiceOtherTest, HasNoLeaveOneOutResultForTwoPoints) {
   const HttpResponse response = Post("/v1/calibrations", "text/csv", "counts,angle_deg\n0,0\n100,20\n");
   ASSERT_EQ(response.status, 200) << response.body;
   const Json json = Json::parse(response.body);
@@ -118,7 +118,7 @@ TEST_F(FittingServiceOtherTest, LeavesNothingOutOfTwoPoints) {
   EXPECT_TRUE(json["points"][0]["left_out"].is_null());
 }
 
-TEST_F(FittingServiceOtherTest, RefusesTablesThatAreNone) {
+TEST_F(FittingServiceOtherTest, RefusesInvalidTables) {
   EXPECT_THAT(AnswerOf(Post("/v1/calibrations", "text/csv", "")), StartsWith("422 table"));
   EXPECT_THAT(AnswerOf(Post("/v1/calibrations", "text/csv", "counts,angle_deg\n1,x\n")), StartsWith("422 table:2:"));
   EXPECT_THAT(AnswerOf(Post("/v1/calibrations?order=9", "text/csv", "")), StartsWith("400 --order is 9"));
@@ -135,7 +135,7 @@ std::set<std::string> Names(const Json& list) {
 
 // Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); the small-angle model is nested
 // in none.
-TEST_F(FittingServiceOtherTest, TellsWhichModelIsWithinWhich) {
+TEST_F(FittingServiceOtherTest, ReportsWhichModelsAreNested) {
   const std::map<std::string, std::set<std::string>> expected = {
       {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}}, {"coulomb", {"drag", "stribeck", "asymmetric"}}};
   const Json models = JsonAt("/v1/models")["models"];
@@ -175,14 +175,14 @@ TEST_F(FittingServiceOtherTest, HasExamplesThatCanBeFitted) {
 
 // ---- The service itself --------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceOtherTest, IsWellUntilItStops) {
+TEST_F(FittingServiceOtherTest, IsHealthyUntilItStops) {
   EXPECT_EQ(JsonAt("/healthz"), (Json{{"status", "ok"}, {"version", std::string(kVersion)}}));
   Service().Stop();
   EXPECT_EQ(Get("/healthz").status, 503);
   EXPECT_EQ(Json::parse(Get("/healthz").body)["status"], "stopping");
 }
 
-TEST_F(FittingServiceOtherTest, AnswersThatItStopsToFitsThatAreStopped) {
+TEST_F(FittingServiceOtherTest, ReportsTheStopToStoppedFits) {
   Service().Stop();
   Service().StopFits();
   const HttpResponse response = Post("/v1/fits?model=viscous", "text/csv", Recording());
@@ -196,7 +196,7 @@ double MetricOf(const std::string& text, const std::string& name) {
   return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + name.size() + 1));
 }
 
-TEST_F(FittingServiceOtherTest, CountsWhatItDoes) {
+TEST_F(FittingServiceOtherTest, CountsItsWork) {
   Fitted();
   (void)Post("/v1/fits", "text/csv", asked_service::RestingRecording());
   Service().Count({"GET", "/v1/fits/abc?x=1", "127.0.0.1:1", 404, 10, std::chrono::microseconds(3000)});
@@ -222,7 +222,7 @@ TEST_F(FittingServiceOtherTest, CountsWhatItDoes) {
   EXPECT_THAT(text, HasSubstr("pendulum_build_info{version=\"" + std::string(kVersion) + "\"} 1"));
 }
 
-TEST_F(FittingServiceOtherTest, DescribesEachRouteAndNoOther) {
+TEST_F(FittingServiceOtherTest, DescribesExactlyItsRoutes) {
   const Json document = JsonAt("/openapi.json");
   EXPECT_THAT(document["openapi"].get<std::string>(), StartsWith("3.1"));
   std::set<std::string> described, answered;
@@ -247,7 +247,7 @@ TEST_F(FittingServiceOtherTest, DescribesEachRouteAndNoOther) {
 
 // ---- The page ------------------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceOtherTest, HasThePageAtEachOfItsPaths) {
+TEST_F(FittingServiceOtherTest, ServesThePageAtEachPath) {
   const std::string page = Get("/").body;
   EXPECT_THAT(page, HasSubstr("/app.js"));
   for (const char* path : {"/fits", "/fits/abc", "/batches/abc", "/compare?ids=a,b", "/calibration", "/live"}) {
@@ -261,7 +261,7 @@ TEST_F(FittingServiceOtherTest, HasThePageAtEachOfItsPaths) {
 }
 
 // With this policy a browser runs and displays only files of the service.
-TEST_F(FittingServiceOtherTest, LetsThePageRunItsOwnFilesOnly) {
+TEST_F(FittingServiceOtherTest, RestrictsThePageToItsOwnFiles) {
   const HttpResponse response = Get("/");
   const std::string policy = FieldOf(response, "Content-Security-Policy");
   for (const char* rule : {"default-src 'none'", "script-src 'self'", "style-src 'self'", "connect-src 'self'",
@@ -278,7 +278,7 @@ TEST_F(FittingServiceOtherTest, LetsThePageRunItsOwnFilesOnly) {
   }
 }
 
-TEST_F(FittingServiceOtherTest, SaysTheSameToBrowsersEverywhere) {
+TEST_F(FittingServiceOtherTest, SendsTheSameSecurityFieldsEverywhere) {
   for (const HttpResponse& response :
        {Get("/"), Get("/v1/fits"), Get("/none"), Get("/healthz"), Get("/openapi.json"), Get("/v1/fits/none"),
         Ask("PATCH", "/v1/fits"), Service().Refusal(413, "too much")}) {
@@ -341,7 +341,7 @@ TEST_F(FittingServiceOtherTest, SaysThatTheGuideIsNotInstalled) {
 
 // ---- The live recording --------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceOtherTest, HasNoLiveRecordingUnlessToldOfOne) {
+TEST_F(FittingServiceOtherTest, HasNoLiveRecordingByDefault) {
   for (const char* path : {"/v1/live", "/v1/live/events", "/v1/live/recording"}) {
     EXPECT_THAT(AnswerOf(Get(path)), StartsWith("404 this service watches no recording; start serve_pendulum with"));
   }

@@ -36,7 +36,7 @@ class FittingServiceRefusalsTest : public asked_service::ServiceTest {
 
 // ---- Unknown clients -----------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceRefusalsTest, AnswersThisMachineOnlyUnlessToldOtherwise) {
+TEST_F(FittingServiceRefusalsTest, AnswersOnlyThisMachineByDefault) {
   EXPECT_THAT(Answer("GET", "/v1/fits", {{"Host", "evil.example"}}), StartsWith("403 "));
   EXPECT_THAT(Answer("GET", "/", {{"Host", "evil.example"}}), StartsWith("403 "));
   EXPECT_EQ(Answer("GET", "/v1/fits", {{"Host", "127.0.0.1:8080"}}), "200");
@@ -45,13 +45,13 @@ TEST_F(FittingServiceRefusalsTest, AnswersThisMachineOnlyUnlessToldOtherwise) {
   EXPECT_EQ(Answer("GET", "/v1/fits", {{"Origin", "http://localhost"}}), "200");
 }
 
-TEST_F(FittingServiceRefusalsTest, AnswersTheHostsThatAreAllowed) {
+TEST_F(FittingServiceRefusalsTest, AnswersAllowedHosts) {
   options_.access.allowed_hosts = {"lab.example"};
   EXPECT_EQ(Answer("GET", "/v1/fits", {{"Host", "lab.example"}}), "200");
   EXPECT_THAT(Answer("GET", "/v1/fits", {{"Host", "lab.example.evil"}}), StartsWith("403 "));
 }
 
-TEST_F(FittingServiceRefusalsTest, AnswersThoseWhoKnowTheTokenAndNobodyElse) {
+TEST_F(FittingServiceRefusalsTest, AnswersOnlyWithTheToken) {
   options_.access.token = kToken;
   const HttpResponse response = Ask("GET", "/v1/fits");
   EXPECT_EQ(response.status, 401);
@@ -71,7 +71,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersThoseWhoKnowTheTokenAndNobodyElse) {
 
 // ---- Paths, methods, parameters ------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceRefusalsTest, KnowsItsPathsOnly) {
+TEST_F(FittingServiceRefusalsTest, RejectsUnknownPaths) {
   for (const char* path : {"/v1", "/v1/fit", "/v2/fits", "/v1/fits/a/b", "/v1/fits/a/series/x", "/index.html",
                            "/app.js.map", "/.git", "/V1/fits"}) {
     EXPECT_EQ(Answer("GET", path),
@@ -84,7 +84,7 @@ TEST_F(FittingServiceRefusalsTest, KnowsItsPathsOnly) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, TellsWhichMethodsThereAre) {
+TEST_F(FittingServiceRefusalsTest, ListsTheAllowedMethods) {
   const auto allowed = [&](const std::string& method, const std::string& target) {
     const HttpResponse response = Ask(method, target);
     EXPECT_EQ(response.status, 405) << method << " " << target;
@@ -99,7 +99,7 @@ TEST_F(FittingServiceRefusalsTest, TellsWhichMethodsThereAre) {
   EXPECT_EQ(Ask("HEAD", "/v1/models").status, 200);
 }
 
-TEST_F(FittingServiceRefusalsTest, RefusesParametersThatItDoesNotKnow) {
+TEST_F(FittingServiceRefusalsTest, RefusesUnknownParameters) {
   EXPECT_EQ(Answer("GET", "/v1/fits?limt=3"), "400 'limt' is not a parameter of this request; did you mean 'limit'?");
   EXPECT_THAT(Answer("GET", "/v1/batches?model=drag"), StartsWith("400 'model' is not a parameter of this request"));
   for (const char* target : {"/v1/fits/abc?x=1", "/v1/models?x", "/healthz?x=1", "/metrics?x=1", "/app.js?v=2"}) {
@@ -117,7 +117,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesParametersOutOfTheirDomain) {
 }
 
 // Otherwise a typing error would return an empty list, or all fits.
-TEST_F(FittingServiceRefusalsTest, RefusesATimeThatIsNone) {
+TEST_F(FittingServiceRefusalsTest, RefusesAnInvalidTime) {
   Fitted("?closed_form_only=true");
   for (const char* text : {"yesterday", "2026-13-01T00:00:00Z", "now", "12", "2026-11-23T00:00:00Z%20x"}) {
     EXPECT_THAT(Answer("GET", std::string("/v1/fits?since=") + text), StartsWith("400 since is '")) << text;
@@ -128,7 +128,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesATimeThatIsNone) {
 
 // ---- Lanes and refusals of the server ------------------------------------------------------------------------------
 
-TEST_F(FittingServiceRefusalsTest, LetsWhatCalculatesWaitElsewhere) {
+TEST_F(FittingServiceRefusalsTest, QueuesCalculationsSeparately) {
   const auto lane = [&](const std::string& method, const std::string& target) {
     return Service().LaneOf({method, target, {}, ""});
   };
@@ -152,7 +152,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersForTheServerToo) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, SaysNothingThatWouldEndAHeader) {
+TEST_F(FittingServiceRefusalsTest, WritesNothingThatWouldEndAHeader) {
   const HttpResponse fit = Post("/v1/fits?closed_form_only=true", "application/json",
                                 Json{{"data", Recording()}, {"name", "a\r\nSet-Cookie: x=1"}}.dump());
   if (fit.status != 200) return;  // the service may refuse such a name

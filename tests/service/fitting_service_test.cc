@@ -76,7 +76,7 @@ TEST_F(FittingServiceTest, AnswersTheSameToEachKindOfBody) {
   EXPECT_EQ(Post("/v1/fits", "application/json", body.dump()).body, expected);
 }
 
-TEST_F(FittingServiceTest, KeepsWhatItAnsweredOverARestart) {
+TEST_F(FittingServiceTest, KeepsAnswersAcrossARestart) {
   const HttpResponse response = Post("/v1/fits?model=viscous&name=run.csv", "text/csv", Recording());
   const std::string location = FieldOf(response, "Location");
   const std::string series = Get(location + "/series").body;
@@ -86,7 +86,7 @@ TEST_F(FittingServiceTest, KeepsWhatItAnsweredOverARestart) {
   EXPECT_THAT(IdsAt("/v1/fits"), ElementsAre(IdOf(location)));
 }
 
-TEST_F(FittingServiceTest, SaysWhyARecordingCannotBeFitted) {
+TEST_F(FittingServiceTest, ExplainsWhyARecordingCannotBeFitted) {
   const HttpResponse rest = Post("/v1/fits", "text/csv", asked_service::RestingRecording());
   EXPECT_EQ(AnswerOf(rest), "422 the reading is constant: no swing");  // the sentence of fit_pendulum
   EXPECT_EQ(Json::parse(rest.body)["code"], "no_swing");
@@ -121,7 +121,7 @@ TEST_F(FittingServiceTest, StopsAFitThatTakesTooLong) {
   EXPECT_THAT(IdsAt("/v1/fits"), SizeIs(done));
 }
 
-TEST_F(FittingServiceTest, FitsForManyAtATime) {
+TEST_F(FittingServiceTest, ServesManyClientsAtOnce) {
   constexpr int kThreads = 4, kFits = 3;
   const std::string expected = ResultOf(FitOf({"viscous"}, {{"a", Recording()}, {}, {}}));
   FittingService& service = Service();
@@ -142,7 +142,7 @@ TEST_F(FittingServiceTest, FitsForManyAtATime) {
 
 // ---- Repeated requests ---------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceTest, AnswersOnceForEachKey) {
+TEST_F(FittingServiceTest, AnswersOncePerKey) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const HttpResponse first = Post("/v1/fits?model=viscous", "text/csv", Recording(), key);
   EXPECT_EQ(FieldOf(first, "Idempotency-Replayed"), "");
@@ -161,7 +161,7 @@ TEST_F(FittingServiceTest, AnswersOnceForEachKey) {
   EXPECT_NE(FieldOf(Post("/v1/fits?model=viscous", "text/csv", Recording()), "Location"), FieldOf(first, "Location"));
 }
 
-TEST_F(FittingServiceTest, KnowsAFormAgainWhoseBoundaryIsAnother) {
+TEST_F(FittingServiceTest, RecognizesAFormWithAnotherBoundary) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const std::string form = FormOf(PartOf("data", Recording(), "run.csv") + PartOf("options", R"({"model":"viscous"})"));
   std::string other = form;
@@ -176,7 +176,7 @@ TEST_F(FittingServiceTest, KnowsAFormAgainWhoseBoundaryIsAnother) {
 }
 
 // A short boundary may also occur in the data: two forms that differ only there are different requests.
-TEST_F(FittingServiceTest, TellsFormsApartThatDifferByTheirBoundary) {
+TEST_F(FittingServiceTest, DistinguishesFormsWhoseDataContainTheBoundary) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const auto post = [&](const std::string& name) {
     const std::string head = "--7\r\nContent-Disposition: form-data; name=\"data\"; filename=\"" + name + "\"\r\n\r\n";
@@ -186,14 +186,14 @@ TEST_F(FittingServiceTest, TellsFormsApartThatDifferByTheirBoundary) {
   EXPECT_EQ(post("run17.csv").status, 422);
 }
 
-TEST_F(FittingServiceTest, KeepsNoKeyOfWhatFailed) {
+TEST_F(FittingServiceTest, ForgetsTheKeyOfAFailedRequest) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   EXPECT_EQ(Post("/v1/fits", "text/csv", "x", key).status, 422);
   EXPECT_EQ(Post("/v1/fits?model=viscous", "text/csv", Recording(), key).status, 200);
   EXPECT_EQ(Post("/v1/fits", "text/csv", Recording(), {{"Idempotency-Key", ""}}).status, 400);
 }
 
-TEST_F(FittingServiceTest, KnowsAKeyAfterARestart) {
+TEST_F(FittingServiceTest, RemembersAKeyAfterARestart) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const HttpResponse first = Post("/v1/fits?model=viscous", "text/csv", Recording(), key);
   End();
@@ -203,7 +203,7 @@ TEST_F(FittingServiceTest, KnowsAKeyAfterARestart) {
 }
 
 // Of several simultaneous requests with one key, one is answered. The others must wait or get the same answer.
-TEST_F(FittingServiceTest, FitsOnceForAKeyHoweverManyAskAtOnce) {
+TEST_F(FittingServiceTest, FitsOncePerKeyForConcurrentRequests) {
   FittingService& service = Service();
   std::vector<HttpResponse> responses(4);
   std::vector<std::thread> threads;
@@ -226,7 +226,7 @@ TEST_F(FittingServiceTest, FitsOnceForAKeyHoweverManyAskAtOnce) {
 
 // ---- Stored data ---------------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceTest, TellsWhatAFitWasMadeFrom) {
+TEST_F(FittingServiceTest, ReportsTheInputsOfAFit) {
   const std::string rig = small_batch::kRigText;
   const HttpResponse response = Post("/v1/fits?from=0", kForm,
                                      FormOf(PartOf("data", Recording(), "swing ü 1.csv") + PartOf("rig", rig) +
@@ -266,14 +266,14 @@ TEST_F(FittingServiceTest, GivesSeriesResidualsReportAndMarkdown) {
   EXPECT_THAT(markdown.body, HasSubstr("my run.csv"));
 }
 
-TEST_F(FittingServiceTest, HasNoResidualsOfClosedFormsAlone) {
+TEST_F(FittingServiceTest, HasNoResidualsForClosedFormsOnly) {
   const std::string location = Fitted("?model=viscous&closed_form_only=true");
   EXPECT_EQ(Get(location + "/residuals").status, 404);
   EXPECT_EQ(Get(location + "/markdown").status, 200);
   EXPECT_EQ(Get(location + "/series").status, 200);
 }
 
-TEST_F(FittingServiceTest, GivesAllSamplesBeforeAnyWindow) {
+TEST_F(FittingServiceTest, GivesAllSamplesRegardlessOfTheWindow) {
   const Json samples = JsonAt(Fitted("?model=viscous&from=2&to=7") + "/samples");
   EXPECT_EQ(samples["samples"], 320);  // 8 s at 40 Hz
   EXPECT_EQ(samples["unit"], "rad");
@@ -313,7 +313,7 @@ TEST_F(FittingServiceTest, RefitsTheSameRecordingWithOtherOptions) {
   EXPECT_EQ(AnswerOf(Ask("POST", "/v1/fits/none/refits")), "404 there is no fit none; it may have been deleted");
 }
 
-TEST_F(FittingServiceTest, RefitsWhatWasDeletedNoMore) {
+TEST_F(FittingServiceTest, RejectsARefitOfADeletedFit) {
   const std::string location = Fitted();
   const std::string refit = FieldOf(Ask("POST", location + "/refits?model=coulomb"), "Location");
   ASSERT_EQ(Ask("DELETE", location).status, 204);
@@ -323,7 +323,7 @@ TEST_F(FittingServiceTest, RefitsWhatWasDeletedNoMore) {
 
 // ---- Lists and deleting --------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceTest, ListsWhatItHas) {
+TEST_F(FittingServiceTest, ListsItsFits) {
   const std::string first = Fitted("?model=viscous&name=first.csv"), second = Fitted("?models=viscous,coulomb");
   const Json list = JsonAt("/v1/fits");
   ASSERT_EQ(list["fits"].size(), 2U);
@@ -359,7 +359,7 @@ TEST_F(FittingServiceTest, ListsInPages) {
   EXPECT_THAT(IdsAt("/v1/fits?limit=99999"), SizeIs(3));
 }
 
-TEST_F(FittingServiceTest, DeletesWithAllThatHangsOnIt) {
+TEST_F(FittingServiceTest, DeletesAFitWithItsFiles) {
   const std::string location = Fitted();
   const HttpResponse deleted = Ask("DELETE", location);
   EXPECT_EQ(deleted.status, 204);

@@ -83,7 +83,7 @@ TEST(ParseFormData, ReadsWhatCurlSendsWithBackslashes) {
 }
 
 // Python's requests 2.34.2 with urllib3 2.7.0: files data 'läuf "1".csv' and 'b\\c\r\n.csv', fields options and ö.
-TEST(ParseFormData, ReadsWhatRequestsSends) {
+TEST(ParseFormData, ReadsAFormOfRequests) {
   const std::string body =
       "--d813902922a28381460adff4595def90\r\nContent-Disposition: form-data; name=\"options\"\r\n\r\n"
       "{\"model\":\"drag\"}\r\n--d813902922a28381460adff4595def90\r\nContent-Disposition: form-data; name=\"\xc3\xb6\""
@@ -98,7 +98,7 @@ TEST(ParseFormData, ReadsWhatRequestsSends) {
 
 // Chromium 156: append("data", csv, 'a "b"\\c\r\n%22 äπ.csv'), append("options", '{"model": "drag"}\r\nx\ny'),
 // append('na"me\n', ""), append("plain", a Blob without a type). A literal %22 in the name is decoded too.
-TEST(ParseFormData, ReadsWhatABrowserSends) {
+TEST(ParseFormData, ReadsABrowsersForm) {
   const std::string body =
       "------WebKitFormBoundaryepWWNMvwjaQ52KHP\r\nContent-Disposition: form-data; name=\"data\"; filename=\"a "
       "%22b%22\\c%0D%0A%22 \xc3\xa4\xcf\x80.csv\"\r\nContent-Type: text/csv\r\n\r\nt,a\n0,1\n\r\n"
@@ -118,7 +118,7 @@ TEST(ParseFormData, ReadsWhatABrowserSends) {
 }
 
 // Python's email package, as_bytes(policy=email.policy.HTTP) and SMTP, which folds long lines.
-TEST(ParseFormData, ReadsWhatPythonsEmailWrites) {
+TEST(ParseFormData, ReadsAFormOfPythonsEmail) {
   const std::string type = "multipart/form-data;\t boundary=\"===============8676321469719812468==\"";
   const std::string begin =
       "--===============8676321469719812468==\r\nContent-Type: text/csv; charset=\"us-ascii\"\r\n"
@@ -138,7 +138,7 @@ TEST(ParseFormData, ReadsWhatPythonsEmailWrites) {
 
 // RFC 2046, section 5.1.1, the boundaries of its example. Preamble and epilogue are ignored. The last line end before a
 // boundary belongs to the boundary, a second one before it to the part.
-TEST(ParseFormData, PassesOverPreambleAndEpilogue) {
+TEST(ParseFormData, SkipsPreambleAndEpilogue) {
   const std::string body =
       "This is the preamble.  It is to be ignored, though it\r\nis a handy place for composers to include an\r\n"
       "explanatory note.\r\n\r\n--simple boundary\r\nContent-Disposition: form-data; name=a\r\n\r\nThis does NOT end "
@@ -151,7 +151,7 @@ TEST(ParseFormData, PassesOverPreambleAndEpilogue) {
 }
 
 // The form of RFC 7578, sections 4.2 and 5.1, with names of RFC 6266, section 5, and RFC 8187, section 3.2.3.
-TEST(ParseFormData, ReadsNamesOfFiles) {
+TEST(ParseFormData, ReadsFileNames) {
   EXPECT_EQ(NamesOf("name=\"data\"; filename=\"example.csv\""), "data|example.csv");
   EXPECT_EQ(NamesOf("name=data; filename=example.csv"), "data|example.csv");
   EXPECT_EQ(NamesOf("NAME=data; FileName=\"an example.csv\""), "data|an example.csv");
@@ -165,7 +165,7 @@ TEST(ParseFormData, ReadsNamesOfFiles) {
 }
 
 // WHATWG HTML, section 4.10.21.8: only a quote and line breaks are escaped.
-TEST(ParseFormData, DecodesTheEscapesOfBrowsersOnly) {
+TEST(ParseFormData, DecodesOnlyTheEscapesOfBrowsers) {
   EXPECT_EQ(NamesOf("name=\"%22%0d%0A\"; filename=\"100%25 %41 %2 %\""), "\"\r\n|100%25 %41 %2 %");
   EXPECT_EQ(NamesOf("name=\"%2522\"; filename=\"%%22\""), "%2522|%\"");
 }
@@ -185,14 +185,14 @@ TEST(ParseFormData, ReadsFieldsInAnyCaseAndOrder) {
 
 // ---- Boundaries ----------------------------------------------------------------------------------------------------
 
-TEST(ParseFormData, TakesABoundaryForOneOnALineOfItsOwnOnly) {
+TEST(ParseFormData, AcceptsABoundaryOnlyOnItsOwnLine) {
   const std::string content = "--X\r\n--X\n\r\n--XY\r\n --X\r\nx--X\r\n--X-\r\n--X--y\r\n--x\r\n\n--X--\r\r\n- -X--";
   // At the start of the content the first of these lines would end the part; "-" prevents that.
   EXPECT_THAT(PartsOf(kType, Form(Named("name=a"), "-" + content)), ElementsAre("a|||-" + content));
 }
 
 // RFC 2046, section 5.1.1: transport-padding, which a receiver must handle.
-TEST(ParseFormData, PassesOverBlanksBehindABoundary) {
+TEST(ParseFormData, SkipsBlanksAfterABoundary) {
   const std::string head = Named("name=a") + "\r\n\r\n";
   EXPECT_THAT(PartsOf(kType, "--X \t \r\n" + head + "1\r\n--X\t\r\n" + head + "2\r\n--X-- \t"),
               ElementsAre("a|||1", "a|||2"));
@@ -208,11 +208,11 @@ TEST(ParseFormData, ReadsContentOfAnyBytes) {
 }
 
 // RFC 2046, section 5.1.1: body-part := MIME-part-headers [CRLF *OCTET], so the blank line may belong to the boundary.
-TEST(ParseFormData, ReadsAPartOfAHeadAlone) {
+TEST(ParseFormData, ReadsAPartWithoutContent) {
   EXPECT_THAT(PartsOf(kType, "--X\r\n" + Named("name=a") + "\r\n\r\n--X--"), ElementsAre("a|||"));
 }
 
-TEST(ParseFormData, KnowsBoundariesOfAllLetters) {
+TEST(ParseFormData, AcceptsBoundariesOfAllCharacters) {
   const std::string letters = "0'()+_,-./:=? z";  // RFC 2046: bchars
   EXPECT_THAT(PartsOf("multipart/form-data; boundary=\"" + letters + "\"",
                       "--" + letters + "\r\n" + Named("name=a") + "\r\n\r\nx\r\n--" + letters + "--"),
@@ -242,7 +242,7 @@ TEST(ParseFormData, RefusesABodyWithoutItsBoundary) {
   }
 }
 
-TEST(ParseFormData, RefusesAFormThatWasCutOff) {
+TEST(ParseFormData, RefusesATruncatedForm) {
   const std::string whole =
       "--X\r\n" + Named("name=a") + "\r\n\r\none\r\n--X\r\n" + Named("name=b") + "\r\n\r\ntwo\r\n--X--";
   ASSERT_EQ(PartsOf(kType, whole).size(), 2);
@@ -266,12 +266,12 @@ TEST(ParseFormData, RefusesAPartWithoutAName) {
   EXPECT_EQ(FaultOf(Form(Named("name*=utf-8''a"))), fault);
 }
 
-TEST(ParseFormData, NamesThePartThatIsWrong) {
+TEST(ParseFormData, NamesTheFaultyPart) {
   EXPECT_THAT(FaultOf("--X\r\n" + Named("name=a") + "\r\n\r\n1\r\n--X\r\nA: b\r\n\r\n2\r\n--X--"),
               StartsWith("part 2 of the form has no name"));
 }
 
-TEST(ParseFormData, RefusesADispositionOfAnotherKind) {
+TEST(ParseFormData, RefusesAnotherDisposition) {
   EXPECT_EQ(FaultOf(Form("Content-Disposition: attachment; name=a")),
             "part 1 of the form has the Content-Disposition \"attachment; name=a\"; that of a form is form-data");
   EXPECT_THAT(FaultOf(Form("Content-Disposition: name=a")), HasSubstr("that of a form is form-data"));
@@ -283,7 +283,7 @@ TEST(ParseFormData, RefusesADispositionOfAnotherKind) {
               HasSubstr("has the field content-disposition twice"));
 }
 
-TEST(ParseFormData, RefusesContentThatIsEncoded) {
+TEST(ParseFormData, RefusesEncodedContent) {
   for (const char* encoding : {"base64", "quoted-printable", "x-gzip", ""}) {
     EXPECT_EQ(FaultOf(Form(Named("name=a") + "\r\nContent-Transfer-Encoding: " + encoding)),
               "part 1 of the form has the Content-Transfer-Encoding \"" + std::string(encoding) +
@@ -304,7 +304,7 @@ TEST(ParseFormData, RefusesNamesInOtherEncodings) {
   }
 }
 
-TEST(ParseFormData, RefusesHeadsThatAreNone) {
+TEST(ParseFormData, RefusesInvalidHeads) {
   EXPECT_EQ(FaultOf(Form("no colon")), "part 1 of the form has the line \"no colon\" in its head; write Name: value");
   EXPECT_THAT(FaultOf(Form("Content Type: a/b")), HasSubstr("write Name: value"));
   EXPECT_THAT(FaultOf(Form(": a/b")), HasSubstr("write Name: value"));
@@ -325,8 +325,8 @@ TEST(ParseFormData, RefusesHeadsThatAreNone) {
 TEST(ParseFormData, LimitsTheHeadOfAPart) {
   const std::string rest = "Content-Disposition: form-data; name=\"\"";
   const auto head = [&](std::size_t bytes) { return Named("name=\"" + std::string(bytes - rest.size(), 'n') + "\""); };
-  EXPECT_EQ(PartsOf(kType, Form(head(kMostPartHeadBytes))).front().size(), kMostPartHeadBytes - rest.size() + 4);
-  EXPECT_EQ(FaultOf(Form(head(kMostPartHeadBytes + 1))),
+  EXPECT_EQ(PartsOf(kType, Form(head(kMaxPartHeadBytes))).front().size(), kMaxPartHeadBytes - rest.size() + 4);
+  EXPECT_EQ(FaultOf(Form(head(kMaxPartHeadBytes + 1))),
             "part 1 of the form has a head of more than 8192 bytes, or no blank line below it; shorten its names");
   EXPECT_THAT(FaultOf(Form("X: " + std::string(1 << 20, 'n'))), HasSubstr("more than 8192 bytes"));
 }
@@ -334,13 +334,13 @@ TEST(ParseFormData, LimitsTheHeadOfAPart) {
 TEST(ParseFormData, LimitsTheNumberOfParts) {
   const std::string part = "--X\r\n" + Named("name=data") + "\r\n\r\nx\r\n";
   std::string body;
-  for (std::size_t i = 0; i < kMostFormParts; ++i) body += part;
-  EXPECT_EQ(PartsOf(kType, body + "--X--").size(), kMostFormParts);
+  for (std::size_t i = 0; i < kMaxFormParts; ++i) body += part;
+  EXPECT_EQ(PartsOf(kType, body + "--X--").size(), kMaxFormParts);
   EXPECT_EQ(FaultOf(body + part + "--X--"), "the form has more than 20000 parts; send it in several");
 }
 
 // A parser that restarts at every line, or at every byte of a line, would need quadratic time.
-TEST(ParseFormData, ReadsLongBodiesOfAlmostBoundaries) {
+TEST(ParseFormData, ReadsLongBodiesOfNearBoundaries) {
   constexpr std::size_t kBytes = std::size_t{1} << 21;
   const std::string head = "--X\r\n" + Named("name=a") + "\r\n\r\n";
   for (const std::string piece :

@@ -19,7 +19,7 @@ std::string KeyOf(const std::string& value) {
   return key ? *key : "refused: " + key.error().message;
 }
 
-TEST(IdempotencyKey, IsWhatTheClientWrote) {
+TEST(IdempotencyKey, IsUnchanged) {
   // The example of draft-ietf-httpapi-idempotency-key-header, section 2.1, with its quotes, and without quotes.
   EXPECT_EQ(KeyOf("\"8e03978e-40d5-43e8-bc93-6894a57f9324\""), "\"8e03978e-40d5-43e8-bc93-6894a57f9324\"");
   EXPECT_EQ(KeyOf("8e03978e-40d5-43e8-bc93-6894a57f9324"), "8e03978e-40d5-43e8-bc93-6894a57f9324");
@@ -38,12 +38,12 @@ TEST(IdempotencyKey, MayBeAbsent) {
   EXPECT_EQ(*none, "");
 }
 
-TEST(IdempotencyKey, HasAtMost255Bytes) {
+TEST(IdempotencyKey, IsLimitedTo255Bytes) {
   EXPECT_EQ(KeyOf(std::string(255, 'k')), std::string(255, 'k'));
   EXPECT_EQ(KeyOf(std::string(256, 'k')), "refused: the Idempotency-Key has 256 bytes; it may have 255");
 }
 
-TEST(IdempotencyKey, IsRefusedWhereItIsNone) {
+TEST(IdempotencyKey, IsRefusedIfInvalid) {
   EXPECT_EQ(KeyOf(""), "refused: the Idempotency-Key is empty; give each request one of its own, or none");
   EXPECT_THAT(KeyOf(" \t "), HasSubstr("is empty"));
   for (const std::string& key : {std::string("a b"), std::string("a\tb"), std::string("a\x7F"), std::string("\xC3\xA9"),

@@ -119,7 +119,7 @@ std::string Rows(int first, int end, double rate = 200) {
 
 // ---- States --------------------------------------------------------------------------------------------------------
 
-TEST_F(LiveRecordingTest, WaitsWhereThereIsNothing) {
+TEST_F(LiveRecordingTest, WaitsIfThereIsNoFile) {
   EXPECT_EQ(Look(), "waiting 0  null");
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
@@ -127,7 +127,7 @@ TEST_F(LiveRecordingTest, WaitsWhereThereIsNothing) {
   EXPECT_EQ(bytes.error().message, "run.csv: there is no recording yet; start record_pendulum --out run.csv");
 }
 
-TEST_F(LiveRecordingTest, FollowsARunFromItsHeadToItsEnd) {
+TEST_F(LiveRecordingTest, FollowsARunFromStartToEnd) {
   Begin("");
   EXPECT_EQ(Look(), "waiting 0  null");
   Append(kHead);
@@ -142,7 +142,7 @@ TEST_F(LiveRecordingTest, FollowsARunFromItsHeadToItsEnd) {
   EXPECT_EQ(Look(), "ended 3 counts 200.0");
 }
 
-TEST_F(LiveRecordingTest, ReadsARunThatHadEndedBefore) {
+TEST_F(LiveRecordingTest, ReadsARunThatHasAlreadyEnded) {
   End(kCounts + Rows(0, 7));
   EXPECT_EQ(Look(), "ended 7 counts 200.0");
 }
@@ -156,7 +156,7 @@ TEST_F(LiveRecordingTest, PrefersThePartToAnEarlierRun) {
   EXPECT_EQ(Look(), "waiting 0  null");
 }
 
-TEST_F(LiveRecordingTest, TakesWholeLinesOnly) {
+TEST_F(LiveRecordingTest, UsesCompleteLinesOnly) {
   Begin(kCounts + "0,50");
   EXPECT_EQ(Look(), "recording 0 counts 200.0");
   Append("0\n0.0");
@@ -168,7 +168,7 @@ TEST_F(LiveRecordingTest, TakesWholeLinesOnly) {
 }
 
 // Rows after the requested time are only in the part file.
-TEST_F(LiveRecordingTest, ReadsTheWholeRecordingOnceItIsThere) {
+TEST_F(LiveRecordingTest, ReadsTheCompleteRecordingWhenAvailable) {
   Begin(kCounts + Rows(0, 1218));
   const NextEvents next = live_.Listen();
   EXPECT_THAT(NamesOf(Hear(next)), ElementsAre("recording", "samples"));
@@ -180,14 +180,14 @@ TEST_F(LiveRecordingTest, ReadsTheWholeRecordingOnceItIsThere) {
   EXPECT_EQ(*live_.Bytes(), kCounts + Rows(0, 1200));
 }
 
-TEST_F(LiveRecordingTest, ForgetsARunThatWasGivenUp) {
+TEST_F(LiveRecordingTest, ForgetsAnAbandonedRun) {
   Begin(kCounts + Rows(0, 10));
   EXPECT_EQ(Look(), "recording 10 counts 200.0");
   fs::remove(part_);
   EXPECT_EQ(Look(), "waiting 0  null");
 }
 
-TEST_F(LiveRecordingTest, BeginsAnewWithAnotherRun) {
+TEST_F(LiveRecordingTest, RestartsWithAnotherRun) {
   Begin(kCounts + Rows(0, 10));
   EXPECT_EQ(Look(), "recording 10 counts 200.0");
   Begin(kCounts + Rows(0, 4));  // the same file, shorter
@@ -209,7 +209,7 @@ TEST_F(LiveRecordingTest, BeginsAnewWithAnotherRun) {
   EXPECT_EQ(Look(), "ended 5 counts 200.0");
 }
 
-TEST_F(LiveRecordingTest, HasEndedWhereNobodyWritesToThePartAnyMore) {
+TEST_F(LiveRecordingTest, EndsIfNobodyWritesToThePart) {
   Begin(kCounts + Rows(0, 3));
   fs::last_write_time(part_, fs::file_time_type::clock::now() - std::chrono::minutes(5));
   EXPECT_EQ(Look(), "ended 3 counts 200.0");
@@ -233,7 +233,7 @@ TEST_F(LiveRecordingTest, ReadsAnyBytes) {
 
 // ---- Events --------------------------------------------------------------------------------------------------------
 
-TEST_F(LiveRecordingTest, TellsEachListenerStateAndSamples) {
+TEST_F(LiveRecordingTest, SendsStateAndSamplesToEachListener) {
   const NextEvents early = live_.Listen();
   auto events = Hear(early);
   ASSERT_THAT(NamesOf(events), ElementsAre("waiting"));
@@ -258,7 +258,7 @@ TEST_F(LiveRecordingTest, TellsEachListenerStateAndSamples) {
   EXPECT_THAT(Hear(late), IsEmpty());
 }
 
-TEST_F(LiveRecordingTest, SaysWaitingBeforeTheSamplesOfAnotherRun) {
+TEST_F(LiveRecordingTest, ReportsWaitingBeforeSamplesOfAnotherRun) {
   Begin(kCounts + Rows(0, 10));
   const NextEvents next = live_.Listen();
   EXPECT_THAT(NamesOf(Hear(next)), ElementsAre("recording", "samples"));
@@ -270,7 +270,7 @@ TEST_F(LiveRecordingTest, SaysWaitingBeforeTheSamplesOfAnotherRun) {
   EXPECT_THAT(NamesOf(Hear(next)), ElementsAre("waiting"));
 }
 
-TEST_F(LiveRecordingTest, OutlivesItsListenersAndTheyIt) {
+TEST_F(LiveRecordingTest, MayBeDestroyedBeforeOrAfterItsListeners) {
   Begin(kCounts + "0,1\n");
   NextEvents next;
   {
@@ -294,7 +294,7 @@ TEST_F(LiveRecordingTest, SendsEverySampleOfASlowRun) {
   for (int i = 0; i < 800; ++i) EXPECT_EQ(times[static_cast<std::size_t>(i)], i / 40.0);
 }
 
-TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsASecondWithTheirExtremes) {
+TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsPerSecondWithExtremes) {
   constexpr int kSeconds = 30, kRate = 1000;
   Begin(kCounts);
   const NextEvents next = live_.Listen();
@@ -324,7 +324,7 @@ TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsASecondWithTheirExtremes) {
   }
 }
 
-TEST_F(LiveRecordingTest, BeginsAgainForAListenerThatIsMinutesLate) {
+TEST_F(LiveRecordingTest, RestartsForAListenerThatIsMinutesLate) {
   Begin(kCounts + Rows(0, 10));
   const NextEvents prompt = live_.Listen(), late = live_.Listen();
   Hear(prompt);
@@ -342,7 +342,7 @@ TEST_F(LiveRecordingTest, BeginsAgainForAListenerThatIsMinutesLate) {
 
 // ---- Long runs -----------------------------------------------------------------------------------------------------
 
-TEST_F(LiveRecordingTest, KeepsALongRunThinnedWithItsEndsAndExtremes) {
+TEST_F(LiveRecordingTest, ThinsALongRunButKeepsEndsAndExtremes) {
   for (const int samples : {1, 2, 1900, 3997, 3999, 4001, 20'000, 100'000}) {
     std::string rows = Rows(0, samples);
     if (samples > 3) rows.replace(rows.find(',', rows.size() / 3) + 1, 3, "-77");
@@ -363,7 +363,7 @@ TEST_F(LiveRecordingTest, KeepsALongRunThinnedWithItsEndsAndExtremes) {
   }
 }
 
-TEST_F(LiveRecordingTest, RefusesToGiveMoreThanAFitReads) {
+TEST_F(LiveRecordingTest, LimitsItsBytesToThoseOfAFit) {
   Begin(kCounts);
   fs::resize_file(part_, (std::uintmax_t{1} << 29) + 1);  // a sparse file: it uses no disk space
   const auto bytes = live_.Bytes();
@@ -372,7 +372,7 @@ TEST_F(LiveRecordingTest, RefusesToGiveMoreThanAFitReads) {
   EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 64 MiB; fit the file itself");
 }
 
-TEST_F(LiveRecordingTest, IsForAnyThread) {
+TEST_F(LiveRecordingTest, IsThreadSafe) {
   Begin(kCounts);
   std::vector<std::thread> threads;
   std::vector<std::string> heard(4);

@@ -35,7 +35,7 @@ std::string CalibrationLine(const std::string& unit, const std::string& input) {
          "\",\"coefficients\":[-20,1.5]}";
 }
 
-TEST(LiveRows, PassesOverRowsThatAreNone) {
+TEST(LiveRows, SkipsInvalidRows) {
   const Read read({"time_s,adc_counts",
                    "0,1",
                    "nan,2",
@@ -60,7 +60,7 @@ TEST(LiveRows, PassesOverRowsThatAreNone) {
   EXPECT_THAT(read.values, ElementsAre(1, 6, 8, 1000));
 }
 
-TEST(LiveRows, BeginsWithTheNamesOfTheColumns) {
+TEST(LiveRows, StartsAtTheColumnNames) {
   LiveRows rows;
   EXPECT_FALSE(rows.Take("# range: 0,1023"));
   EXPECT_FALSE(rows.Take("\r"));
@@ -70,7 +70,7 @@ TEST(LiveRows, BeginsWithTheNamesOfTheColumns) {
   EXPECT_TRUE(rows.Take("0,1"));
 }
 
-TEST(LiveRows, TellsTheUnitFromTheColumn) {
+TEST(LiveRows, ReadsTheUnitFromTheColumn) {
   const auto unit = [](const std::string& names) { return Read({names}).rows.unit(); };
   EXPECT_EQ(unit("time_s,adc_counts"), "counts");
   EXPECT_EQ(unit("time_s,angle_deg"), "deg");
@@ -81,7 +81,7 @@ TEST(LiveRows, TellsTheUnitFromTheColumn) {
   EXPECT_EQ(unit("time_s"), "");
 }
 
-TEST(LiveRows, TellsTheRateThatTheFileSays) {
+TEST(LiveRows, ReadsTheSamplingRateFromTheFile) {
   const auto rate = [](const std::string& line) { return Read({line, "time_s,adc_counts"}).rows.rate(); };
   EXPECT_THAT(rate("# sample_rate_hz: 200"), Optional(200.0));
   EXPECT_THAT(rate("#sample_rate_hz:62.5\r"), Optional(62.5));
@@ -103,7 +103,7 @@ TEST(LiveRows, ShowsCalibratedCountsInDegrees) {
   EXPECT_THAT(rad.values, ElementsAre(testing::DoubleNear(7448.4513, 1e-3)));
 }
 
-TEST(LiveRows, ShowsCountsWhereTheCalibrationIsNone) {
+TEST(LiveRows, ShowsCountsWithAnInvalidCalibration) {
   for (const std::string& line : {CalibrationLine("deg", "volts"), CalibrationLine("grad", "counts"),
                                   std::string("# calibration: {\"input\":"), std::string("# calibration:")}) {
     const Read read({line, "time_s,adc_counts", "0,100"});

@@ -34,7 +34,7 @@ class MalformedRequestsTest : public Served {
   }
 };
 
-TEST_F(MalformedRequestsTest, ThatGiveTheLengthTwiceAreRefused) {  // RFC 9112, section 6.3 and 11.2
+TEST_F(MalformedRequestsTest, AreRefusedForTwoLengths) {  // RFC 9112, section 6.3 and 11.2
   const std::string post = "POST / HTTP/1.1\r\nHost: a\r\n", body = "\r\n0\r\n\r\n";
   ExpectRefused({
       post + "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n" + body,
@@ -49,7 +49,7 @@ TEST_F(MalformedRequestsTest, ThatGiveTheLengthTwiceAreRefused) {  // RFC 9112, 
   });
 }
 
-TEST_F(MalformedRequestsTest, OfAnUnknownLengthAreRefused) {
+TEST_F(MalformedRequestsTest, AreRefusedIfTheLengthIsUnknown) {
   const std::string post = "POST / HTTP/1.1\r\nHost: a\r\n", body = "\r\n0\r\n\r\n";
   ExpectRefused({
       post + "Transfer-Encoding: gzip, chunked\r\n" + body,
@@ -74,7 +74,7 @@ TEST_F(MalformedRequestsTest, OfAnUnknownLengthAreRefused) {
   });
 }
 
-TEST_F(MalformedRequestsTest, WithHeadsThatCanBeReadTwoWaysAreRefused) {
+TEST_F(MalformedRequestsTest, AreRefusedForAmbiguousHeads) {
   using namespace std::string_literals;  // NOLINT: for the NUL within
   ExpectRefused({
       "GET / HTTP/1.1\r\nHost: a\r\nX: one\r\n two\r\n\r\n",
@@ -99,7 +99,7 @@ TEST_F(MalformedRequestsTest, WithHeadsThatCanBeReadTwoWaysAreRefused) {
   });
 }
 
-TEST_F(MalformedRequestsTest, ThatAreNoRequestsForThisServerAreRefused) {
+TEST_F(MalformedRequestsTest, AreRefusedIfMeantForAnotherService) {
   ExpectRefused({
       "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
       "GET / HTTP/1.2\r\nHost: a\r\n\r\n",
@@ -114,7 +114,7 @@ TEST_F(MalformedRequestsTest, ThatAreNoRequestsForThisServerAreRefused) {
   });
 }
 
-TEST_F(MalformedRequestsTest, ThatAreNotHttpAreAnsweredBeforeTheyEnd) {
+TEST_F(MalformedRequestsTest, AreAnsweredEarlyIfNotHttp) {
   Start();
   for (const std::string& bytes : {std::string("\x16\x03\x01\x02\x00\x01", 6), std::string("GET /\r\n"),
                                    std::string("EHLO there\r\n"), std::string("GET / HTTP/1.1\n")}) {
@@ -124,7 +124,7 @@ TEST_F(MalformedRequestsTest, ThatAreNotHttpAreAnsweredBeforeTheyEnd) {
   }
 }
 
-TEST_F(MalformedRequestsTest, WithChunksThatAreNoneAreRefused) {
+TEST_F(MalformedRequestsTest, AreRefusedForInvalidChunks) {
   const std::string post = "POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
   ExpectRefused({
       post + "x\r\nabc\r\n0\r\n\r\n",
@@ -141,14 +141,14 @@ TEST_F(MalformedRequestsTest, WithChunksThatAreNoneAreRefused) {
   });
 }
 
-TEST_F(MalformedRequestsTest, ThatExpectSomethingElseAreRefused) {
+TEST_F(MalformedRequestsTest, AreRefusedForOtherExpectations) {
   Start();
   const RawAnswer answer = Ask("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\nExpect: 200-ok\r\n\r\nbody");
   EXPECT_EQ(answer.status, 417);
   EXPECT_THAT(answer.body, HasSubstr("\"200-ok\""));
 }
 
-TEST_F(MalformedRequestsTest, AreAnsweredWhateverTheyAre) {
+TEST_F(MalformedRequestsTest, AreAlwaysAnswered) {
   Start();
   const std::string valid = Post("/path?a=b", "a body", "X-Some: thing\r\nConnection: close\r\n");
   std::mt19937 random(20261123);

@@ -37,7 +37,7 @@ FieldParameters ParametersOf(const std::string& text, Backslash backslash) {
 }
 
 // RFC 9110, section 8.3.1: "the following media types are equivalent".
-TEST(ParseMediaType, ReadsTheExamplesOfTheStandardAlike) {
+TEST(ParseMediaType, ReadsTheEquivalentExamplesOfTheStandard) {
   EXPECT_EQ(TypeOf("text/html;charset=utf-8").type, "text/html");
   EXPECT_THAT(TypeOf("text/html;charset=utf-8").Parameter("charset"), Optional(std::string_view("utf-8")));
   EXPECT_THAT(TypeOf("Text/HTML;Charset=\"utf-8\"").Parameter("charset"), Optional(std::string_view("utf-8")));
@@ -54,7 +54,7 @@ TEST(ParseMediaType, ReadsATypeWithoutParameters) {
 }
 
 // RFC 9110, section 5.6.6: parameters = *( OWS ";" OWS [ parameter ] ).
-TEST(ParseMediaType, AllowsBlanksAndNothingAboutSemicolons) {
+TEST(ParseMediaType, AllowsBlanksAndEmptyParameters) {
   EXPECT_THAT(TypeOf("text/csv ; ;; a=1\t;b=\"2\" ;").parameters, ElementsAre(Pair("a", "1"), Pair("b", "2")));
   EXPECT_THAT(TypeOf("text/csv;").parameters, IsEmpty());
 }
@@ -68,7 +68,7 @@ TEST(ParseMediaType, ReadsQuotedValues) {
               Optional(std::string_view("gc0pJq0M:08jU534c0p")));
 }
 
-TEST(ParseMediaType, RefusesWhatIsNone) {
+TEST(ParseMediaType, RefusesInvalidTypes) {
   EXPECT_EQ(FaultOf(""), "the content type \"\" is no media type; write one such as text/csv");
   for (const char* text : {"text", "text/", "/csv", "/", "text/csv/x", "text /csv", "text/ csv", "te(xt/csv",
                            "text/csv,a/b", "text/csv x", ";charset=utf-8", "t\xC3\xA9xt/csv", "\"text/csv\""}) {
@@ -76,7 +76,7 @@ TEST(ParseMediaType, RefusesWhatIsNone) {
   }
 }
 
-TEST(ParseMediaType, RefusesParametersThatAreNone) {
+TEST(ParseMediaType, RefusesInvalidParameters) {
   const auto fault = [](const std::string& parameters) { return FaultOf("text/csv;" + parameters); };
   EXPECT_EQ(fault("charset"), "the parameters of the content type have \"charset\", which is not name=value");
   EXPECT_THAT(fault("=utf-8"), HasSubstr("which is not name=value"));
@@ -97,7 +97,7 @@ TEST(ParseMediaType, RefusesParametersThatAreNone) {
 
 // Browsers encode file names by WHATWG HTML, section 4.10.21.8 (multipart/form-data encoding): quotes and line breaks
 // are escaped, a backslash is not.
-TEST(ParseFieldParameters, LeavesABackslashThatEscapesNoQuote) {
+TEST(ParseFieldParameters, KeepsABackslashThatEscapesNoQuote) {
   EXPECT_THAT(ParametersOf(R"(;filename="C:\runs\a.csv")", Backslash::kEscapesQuotes),
               ElementsAre(Pair("filename", R"(C:\runs\a.csv)")));
   EXPECT_THAT(ParametersOf(R"(;filename="a\"b\\c.csv")", Backslash::kEscapesQuotes),
@@ -106,17 +106,17 @@ TEST(ParseFieldParameters, LeavesABackslashThatEscapesNoQuote) {
               ElementsAre(Pair("filename", "C:runsa.csv")));
 }
 
-TEST(ParseFieldParameters, KeepsBytesBeyondAsciiInQuotes) {
+TEST(ParseFieldParameters, KeepsNonAsciiBytesInQuotes) {
   EXPECT_THAT(ParametersOf(";a=\"Öl \xFF\\\xC3\xA9\"", Backslash::kEscapesAll), ElementsAre(Pair("a", "Öl \xFFé")));
 }
 
-TEST(ParseFieldParameters, NamesWhoseTheyAre) {
+TEST(ParseFieldParameters, NamesTheirField) {
   const auto wrong = ParseFieldParameters("x", "part 3", Backslash::kEscapesQuotes);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().message, "the parameters of part 3 have \"x\", where a semicolon must be");
 }
 
-TEST(ParseFieldParameters, ReadsManyOfThem) {
+TEST(ParseFieldParameters, ReadsManyParameters) {
   constexpr int kMany = 100'000;
   std::string text;
   for (int i = 0; i < kMany; ++i) text += ";p" + std::to_string(i) + "=\"" + std::to_string(i) + "\"";
@@ -124,7 +124,7 @@ TEST(ParseFieldParameters, ReadsManyOfThem) {
             kMany);
 }
 
-TEST(IsToken, KnowsItsLetters) {
+TEST(IsToken, AcceptsTokenCharactersOnly) {
   EXPECT_TRUE(IsToken("!#$%&'*+-.^_`|~09azAZ"));  // all characters of RFC 9110, section 5.6.2
   for (const char c : std::string("\"(),/:;<=>?@[\\]{} \t\x7F\x80\xFF") + '\0') {
     EXPECT_FALSE(IsToken("a" + std::string(1, c))) << static_cast<int>(c);
@@ -132,9 +132,9 @@ TEST(IsToken, KnowsItsLetters) {
   EXPECT_FALSE(IsToken(""));
 }
 
-TEST(LowerCase, LeavesBytesBeyondAsciiAlone) { EXPECT_EQ(LowerCase("AZaz[@Ä"), "azaz[@Ä"); }
+TEST(LowerCase, KeepsNonAsciiBytes) { EXPECT_EQ(LowerCase("AZaz[@Ä"), "azaz[@Ä"); }
 
-TEST(WithoutBlanks, KeepsThoseInside) {
+TEST(WithoutBlanks, KeepsInnerBlanks) {
   EXPECT_EQ(WithoutBlanks(" \ta b\t "), "a b");
   EXPECT_EQ(WithoutBlanks(" \t"), "");
   EXPECT_EQ(WithoutBlanks(""), "");

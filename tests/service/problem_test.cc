@@ -52,7 +52,7 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
 }
 
 // The exit codes are those that the tools give (src/docs/reference.md).
-TEST(ProblemOf, GivesEachStatusCodeItsHttpStatusAndExitCode) {
+TEST(ProblemOf, MapsEachStatusCodeToHttpStatusAndExitCode) {
   const auto figures = [](StatusCode code) { return Figures(ProblemOf(Status{code, "why"})); };
   EXPECT_EQ(figures(StatusCode::kInvalidArgument), "400 wrong_request 2");
   EXPECT_EQ(figures(StatusCode::kNotFound), "404 not_found 3");
@@ -63,7 +63,7 @@ TEST(ProblemOf, GivesEachStatusCodeItsHttpStatusAndExitCode) {
   EXPECT_EQ(figures(StatusCode::kInternal), "500 internal 70");
 }
 
-TEST(ProblemOf, GivesTheRefusalsOfHttpTheirCodes) {
+TEST(ProblemOf, GivesCodesForHttpRefusals) {
   const auto figures = [](int status) { return Figures(ProblemOf(status, "why")); };
   EXPECT_EQ(figures(400), "400 wrong_request 2");
   EXPECT_EQ(figures(403), "403 forbidden -");
@@ -80,7 +80,7 @@ TEST(ProblemOf, GivesTheRefusalsOfHttpTheirCodes) {
   EXPECT_EQ(figures(507), "507 cannot_write 73");
 }
 
-TEST(ProblemOf, TakesAStatusItDoesNotKnowForOneOfItsClass) {
+TEST(ProblemOf, TreatsAnUnknownStatusByItsClass) {
   EXPECT_EQ(ProblemOf(418, "why").status(), 400);
   EXPECT_EQ(ProblemOf(422, "why").status(), 400);  // several kinds share this status
   EXPECT_EQ(ProblemOf(0, "why").status(), 400);
@@ -88,7 +88,7 @@ TEST(ProblemOf, TakesAStatusItDoesNotKnowForOneOfItsClass) {
   EXPECT_EQ(ProblemOf(999, "why").status(), 500);
 }
 
-TEST(Problem, OfEachKindHasACodeAndATitleOfItsOwn) {
+TEST(Problem, HasAUniqueCodeAndTitleForEachKind) {
   std::set<std::string> codes, titles;
   constexpr int kKinds = 18;
   for (int i = 0; i < kKinds; ++i) {
@@ -103,7 +103,7 @@ TEST(Problem, OfEachKindHasACodeAndATitleOfItsOwn) {
 }
 
 // RFC 9110, sections 15.5.9 and 15.6.4, and RFC 6585, section 4.
-TEST(ProblemOf, SaysWhenToAskAgainWhereThatMayHelp) {
+TEST(ProblemOf, SetsRetryAfterIfUseful) {
   for (const int status : {408, 429, 503}) {
     const HttpResponse response = ProblemResponse(ProblemOf(status, "why"));
     EXPECT_GE(std::stoi(FieldOf(response, "Retry-After")), 1) << status;
@@ -115,7 +115,7 @@ TEST(ProblemOf, SaysWhenToAskAgainWhereThatMayHelp) {
 }
 
 // RFC 9110, section 10.2.3: a whole number of seconds.
-TEST(RetryLater, SaysHowManySeconds) {
+TEST(RetryLater, GivesTheNumberOfSeconds) {
   const auto after = [](seconds wait) {
     return FieldOf(ProblemResponse(RetryLater(ProblemKind::kTooManyRequests, "why", wait)), "Retry-After");
   };
@@ -136,7 +136,7 @@ TEST(Unauthorized, ChallengesTheClient) {
 }
 
 // RFC 9110, section 15.5.6.
-TEST(MethodNotAllowed, NamesThoseThatAre) {
+TEST(MethodNotAllowed, ListsTheAllowedMethods) {
   const HttpResponse response = ProblemResponse(MethodNotAllowed("PO\r\nST", "GET, DELETE"));
   EXPECT_EQ(response.status, 405);
   EXPECT_EQ(FieldOf(response, "Allow"), "GET, DELETE");
@@ -145,7 +145,7 @@ TEST(MethodNotAllowed, NamesThoseThatAre) {
 }
 
 // Unicode 15, section 3.9: U+FFFD for each invalid byte of UTF-8; the rest follows RFC 8259, section 7.
-TEST(ProblemResponse, CarriesADetailOfAnyBytes) {
+TEST(ProblemResponse, AcceptsADetailOfAnyBytes) {
   EXPECT_EQ(JsonOf({ProblemKind::kUnusableData, "a\xFF\"\\\n" + std::string(1, '\0') + "π", {}})["detail"],
             "a\uFFFD\"\\\n" + std::string(1, '\0') + "π");
   const std::string body = ProblemResponse({ProblemKind::kUnusableData, "a\nb", {}}).body;

@@ -67,7 +67,7 @@ TEST(ParseTarget, ReadsLettersBeyondAscii) {
 }
 
 // RFC 9112, section 3.2.2: a server must accept the absolute form; RFC 3986, section 3.1: schemes ignore case.
-TEST(ParseTarget, TakesTheAbsoluteForm) {
+TEST(ParseTarget, AcceptsTheAbsoluteForm) {
   EXPECT_EQ(PathOf("http://www.example.org/pub/WWW/TheProject.html"), "/pub/WWW/TheProject.html");
   EXPECT_EQ(PathOf("HTTPS://localhost:8080/a?b=c"), "/a");
   EXPECT_EQ(PathOf("http://localhost"), "/");
@@ -92,7 +92,7 @@ TEST(ParseTarget, RefusesOtherForms) {
   EXPECT_THAT(FaultOf("/v1/fits?a=1#top"), HasSubstr("has a fragment"));
 }
 
-TEST(ParseTarget, RefusesSegmentsThatAreNoNames) {
+TEST(ParseTarget, RefusesInvalidSegments) {
   for (const char* target : {"/.", "/..", "/v1/../etc", "/v1/.", "/%2e%2E/etc", "/.%2e", "/a/%2e/b"}) {
     EXPECT_THAT(FaultOf(target), HasSubstr("is no name; write the path without it")) << target;
   }
@@ -106,7 +106,7 @@ TEST(ParseTarget, RefusesSegmentsThatAreNoNames) {
   EXPECT_EQ(PathOf("/..a/a../.a"), "/..a/a../.a");
 }
 
-TEST(ParseTarget, RefusesEscapesThatAreNone) {
+TEST(ParseTarget, RefusesInvalidEscapes) {
   for (const char* escape : {"%", "%4", "%%", "%4G", "%G4", "%-1", "% 41", "%u0041", "%+1", "%0x41"}) {
     EXPECT_THAT(FaultOf("/" + std::string(escape)), HasSubstr("write a percent sign as %25")) << escape;
     EXPECT_THAT(FaultOf("/a?b=" + std::string(escape)), HasSubstr("write a percent sign as %25")) << escape;
@@ -117,7 +117,7 @@ TEST(ParseTarget, RefusesEscapesThatAreNone) {
 }
 
 // Ill-formed sequences: Unicode 15, table 3-8 and the following tables; RFC 3629, section 10.
-TEST(ParseTarget, RefusesBytesThatAreNoUtf8) {
+TEST(ParseTarget, RefusesInvalidUtf8) {
   for (const char* bytes :
        {"%80",          "%FF",          "%C0%80",    "%C0%AF",    "%C1%BF",       "%E0%80%AF",    "%E0%9F%BF",
         "%F0%80%80%AF", "%F0%8F%BF%BF", "%ED%A0%80", "%ED%BF%BF", "%F4%90%80%80", "%F5%80%80%80", "%C3",
@@ -142,7 +142,7 @@ TEST(ParseTarget, RefusesControlCharacters) {
 // ---- The query -----------------------------------------------------------------------------------------------------
 
 // WHATWG, URL Standard, section 5.1 (application/x-www-form-urlencoded parsing): its example, and + as a blank.
-TEST(ParseTarget, ReadsTheQueryAsFormsWriteIt) {
+TEST(ParseTarget, ReadsFormEncodedQueries) {
   EXPECT_THAT(QueryOf("a=b&c"), ElementsAre(Pair("a", "b"), Pair("c", "")));
   EXPECT_THAT(QueryOf("a+b=c+d&e=%2B"), ElementsAre(Pair("a b", "c d"), Pair("e", "+")));
   EXPECT_THAT(QueryOf("a=b=c&d=="), ElementsAre(Pair("a", "b=c"), Pair("d", "=")));
@@ -154,13 +154,13 @@ TEST(ParseTarget, ReadsTheQueryAsFormsWriteIt) {
 
 // Output of Python's urllib.parse.urlencode({"name": "Öl & Wasser/1+1", "init": "inertia=0.01,viscous=2e-3", "path":
 // "C:\\a"}).
-TEST(ParseTarget, ReadsWhatPythonWrites) {
+TEST(ParseTarget, ReadsTargetsWrittenByPython) {
   EXPECT_THAT(
       QueryOf("name=%C3%96l+%26+Wasser%2F1%2B1&init=inertia%3D0.01%2Cviscous%3D2e-3&path=C%3A%5Ca"),
       ElementsAre(Pair("name", "Öl & Wasser/1+1"), Pair("init", "inertia=0.01,viscous=2e-3"), Pair("path", "C:\\a")));
 }
 
-TEST(ParseTarget, RefusesAParameterGivenTwice) {
+TEST(ParseTarget, RefusesARepeatedParameter) {
   EXPECT_EQ(FaultOf("/v1/fits?model=drag&limit=1&model=drag"),
             "the query parameter \"model\" is given twice; keep one of them");
   EXPECT_THAT(FaultOf("/v1/fits?model=drag&%6dodel"), HasSubstr("is given twice"));
@@ -181,7 +181,7 @@ TEST(ParseTarget, ReadsManyParameters) {
   EXPECT_THAT(parsed.back(), Pair("p99999", "99999"));
 }
 
-TEST(ParseTarget, HasSentencesOfALengthThatCanBeRead) {
+TEST(ParseTarget, LimitsTheLengthOfItsMessages) {
   const std::string much(100'000, 'x');
   for (const std::string& target : {"/" + much + "%", "/a?" + much + "=%", "/a?" + much + "&" + much,
                                     "/a?b=" + much + "%FF", "/" + much + "/", much}) {

@@ -36,7 +36,7 @@ class RunTailTest : public testing::Test {
   RunTail tail_{run_};
 };
 
-TEST_F(RunTailTest, GivesEachWholeLineOnce) {
+TEST_F(RunTailTest, GivesEachCompleteLineOnce) {
   EXPECT_EQ(Look(), "");
   Write("");
   EXPECT_EQ(Look(), "");
@@ -49,7 +49,7 @@ TEST_F(RunTailTest, GivesEachWholeLineOnce) {
   EXPECT_EQ(Look(), "bc\n\nd\n");
 }
 
-TEST_F(RunTailTest, SaysWhenTheFileIsAnother) {
+TEST_F(RunTailTest, ReportsAnotherFile) {
   Write("first\n");
   EXPECT_EQ(Look(), "first\n");
   Write("2\n");  // shorter
@@ -66,14 +66,14 @@ TEST_F(RunTailTest, SaysWhenTheFileIsAnother) {
   EXPECT_EQ(Look(), "");
 }
 
-TEST_F(RunTailTest, ForgetsALineThatWasUnfinishedWhenTheFileWentAway) {
+TEST_F(RunTailTest, ForgetsAnUnfinishedLineOfARemovedFile) {
   Write("a\nunfinished");
   EXPECT_EQ(Look(), "a\n");
   Write("b\n");
   EXPECT_EQ(Look(), "new: b\n");
 }
 
-TEST_F(RunTailTest, PrefersThePart) {
+TEST_F(RunTailTest, PrefersThePartFile) {
   std::ofstream(run_) << "whole\n";
   EXPECT_EQ(Look(), "whole\n");
   EXPECT_FALSE(tail_.is_growing());
@@ -84,7 +84,7 @@ TEST_F(RunTailTest, PrefersThePart) {
   EXPECT_EQ(Look(), "new: whole\n");
 }
 
-TEST_F(RunTailTest, OpensNothingButFiles) {
+TEST_F(RunTailTest, OpensRegularFilesOnly) {
   fs::create_directory(part_);
   EXPECT_EQ(Look(), "");
   EXPECT_LT(OpenRegularFile(part_), 0);
@@ -95,7 +95,7 @@ TEST_F(RunTailTest, OpensNothingButFiles) {
   EXPECT_LT(OpenRegularFile(folder_ / "absent"), 0);
 }
 
-TEST_F(RunTailTest, PassesOverALineWithoutAnEnd) {
+TEST_F(RunTailTest, SkipsALineWithoutAnEnd) {
   Write("a\n");
   EXPECT_EQ(Look(), "a\n");
   for (int i = 0; i < 20; ++i) {
@@ -106,7 +106,7 @@ TEST_F(RunTailTest, PassesOverALineWithoutAnEnd) {
   EXPECT_EQ(Look(), "b\n");
 }
 
-TEST_F(RunTailTest, ReadsALongFileInSeveralLooks) {
+TEST_F(RunTailTest, ReadsALongFileInSeveralSteps) {
   std::string text;
   while (text.size() < (std::size_t{9} << 20)) text += "line " + std::to_string(text.size()) + "\n";
   Write(text);

@@ -51,7 +51,7 @@ class ServerEventsTest : public Served {
   std::atomic<int> asked_ = 0;
 };
 
-TEST_F(ServerEventsTest, ComeInTheirOrderAndEnd) {
+TEST_F(ServerEventsTest, ArriveInOrderAndEnd) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer = client.Ask(Get("/events"));
@@ -66,7 +66,7 @@ TEST_F(ServerEventsTest, ComeInTheirOrderAndEnd) {
   EXPECT_EQ(answered().size(), 1);
 }
 
-TEST_F(ServerEventsTest, ComeToHttp10WithoutChunks) {
+TEST_F(ServerEventsTest, ArriveWithoutChunksOverHttp10) {
   Start();
   const RawAnswer answer = Connect().Ask("GET /events HTTP/1.0\r\n\r\n");
   EXPECT_EQ(answer.fields.count("transfer-encoding"), 0);
@@ -82,7 +82,7 @@ TEST_F(ServerEventsTest, AreNotSentToHead) {
   EXPECT_EQ(asked_, 0);
 }
 
-TEST_F(ServerEventsTest, ComeOneByOneToSeveral) {
+TEST_F(ServerEventsTest, ArriveOneByOneAtSeveralClients) {
   Start();
   std::vector<RawClient> clients;
   for (int i = 0; i < 10; ++i) clients.push_back(Listening("/endless"));
@@ -92,7 +92,7 @@ TEST_F(ServerEventsTest, ComeOneByOneToSeveral) {
   EXPECT_EQ(server_->Count().streams, 10);
 }
 
-TEST_F(ServerEventsTest, EndWithAClientThatGoes) {
+TEST_F(ServerEventsTest, EndForAClientThatDisconnects) {
   Start();
   for (const bool is_reset : {false, true}) {
     for (const std::string target : {"/endless", "/silent"}) {
@@ -108,7 +108,7 @@ TEST_F(ServerEventsTest, EndWithAClientThatGoes) {
   EXPECT_EQ(asked_, asked) << "nobody asks for what nobody hears";
 }
 
-TEST_F(ServerEventsTest, EndWithAClientThatDoesNotRead) {
+TEST_F(ServerEventsTest, EndForAClientThatDoesNotRead) {
   options_.request_time = std::chrono::milliseconds(200);
   Start();
   RawClient client = Connect(4096);
@@ -118,7 +118,7 @@ TEST_F(ServerEventsTest, EndWithAClientThatDoesNotRead) {
   EXPECT_EQ(server_->Count().streams, 0);
 }
 
-TEST_F(ServerEventsTest, OutliveTheTimeOfARequest) {
+TEST_F(ServerEventsTest, MayLastLongerThanARequest) {
   options_.request_time = std::chrono::milliseconds(100);
   options_.idle_time = std::chrono::milliseconds(100);
   Start();
@@ -128,21 +128,21 @@ TEST_F(ServerEventsTest, OutliveTheTimeOfARequest) {
   }
 }
 
-TEST_F(ServerEventsTest, ThatAreSilentAreKeptOpenByComments) {
+TEST_F(ServerEventsTest, AreKeptOpenByComments) {
   options_.max_silence = std::chrono::milliseconds(100);
   Start();
   RawClient client = Listening("/silent");
   for (int i = 0; i < 2; ++i) EXPECT_EQ(client.ReadUntil("\n\n\r\n"), "3\r\n:\n\n\r\n");
 }
 
-TEST_F(ServerEventsTest, ThatThrowBreakOffWithoutTheLastChunk) {
+TEST_F(ServerEventsTest, EndWithoutTheLastChunkAfterAnException) {
   Start();
   RawClient client = Listening("/broken");
   EXPECT_THAT(client.ReadAll(), Not(HasSubstr("0\r\n\r\n")));
   EXPECT_EQ(Connect().Ask(Get("/")).status, 200);
 }
 
-TEST_F(ServerEventsTest, LeaveHalfOfTheConnectionsToRequests) {
+TEST_F(ServerEventsTest, LeaveHalfOfTheConnectionsForRequests) {
   options_.max_connections = 6;
   Start();
   std::vector<RawClient> clients;

@@ -32,7 +32,7 @@ class ServerLimitsTest : public Served {
   }
 };
 
-TEST_F(ServerLimitsTest, AHeadThatIsTooLongIsRefused) {
+TEST_F(ServerLimitsTest, RejectsATooLongHead) {
   options_.max_head = 1000;
   Start();
   const std::string before = "GET / HTTP/1.1\r\nHost: a\r\nX: ", after = "\r\n\r\n";
@@ -46,7 +46,7 @@ TEST_F(ServerLimitsTest, AHeadThatIsTooLongIsRefused) {
   EXPECT_TRUE(endless.IsEnded());
 }
 
-TEST_F(ServerLimitsTest, ABodyWhoseLengthIsTooLargeIsRefusedBeforeItComes) {
+TEST_F(ServerLimitsTest, RejectsATooLargeBodyBeforeReadingIt) {
   Start();
   EXPECT_EQ(Connect().Ask(Post("/", std::string(100'000, 'x'))).status, 200);
   RawClient client = Connect();
@@ -57,12 +57,12 @@ TEST_F(ServerLimitsTest, ABodyWhoseLengthIsTooLargeIsRefusedBeforeItComes) {
   EXPECT_EQ(handler_.calls, 1);
 }
 
-TEST_F(ServerLimitsTest, ARefusedHeadIsAskedForBeforeTheLengthOfItsBody) {
+TEST_F(ServerLimitsTest, ChecksAccessBeforeTheBodyLength) {
   Start();
   EXPECT_EQ(Connect().Ask("POST /refused HTTP/1.1\r\nHost: a\r\nContent-Length: 100001\r\n\r\n").status, 401);
 }
 
-TEST_F(ServerLimitsTest, ABodyThatGrowsTooLargeInChunksIsRefused) {
+TEST_F(ServerLimitsTest, RejectsABodyThatGrowsTooLargeInChunks) {
   Start();
   RawClient client = Connect();
   client.Send("POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n");
@@ -74,7 +74,7 @@ TEST_F(ServerLimitsTest, ABodyThatGrowsTooLargeInChunksIsRefused) {
   EXPECT_TRUE(Eventually([&] { return server_->Count().buffered == 0; }));
 }
 
-TEST_F(ServerLimitsTest, AChunkThatWouldBeTooLargeIsRefusedBeforeItComes) {
+TEST_F(ServerLimitsTest, RejectsATooLargeChunkBeforeReadingIt) {
   Start();
   for (const std::string size : {"186a1", "ffffffffffffffff"}) {  // 100001
     EXPECT_EQ(Connect().Ask("POST / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n" + size + "\r\n").status,
@@ -83,7 +83,7 @@ TEST_F(ServerLimitsTest, AChunkThatWouldBeTooLargeIsRefusedBeforeItComes) {
   EXPECT_EQ(handler_.calls, 0);
 }
 
-TEST_F(ServerLimitsTest, AClientThatSendsFarTooMuchSeesWhy) {
+TEST_F(ServerLimitsTest, AnswersAClientThatSendsFarTooMuch) {
   Start();
   RawClient client = Connect();
   client.Send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 600000\r\n\r\n");
@@ -91,7 +91,7 @@ TEST_F(ServerLimitsTest, AClientThatSendsFarTooMuchSeesWhy) {
   EXPECT_EQ(client.Read().status, 413);
 }
 
-TEST_F(ServerLimitsTest, AllBodiesTogetherHaveALimit) {
+TEST_F(ServerLimitsTest, LimitsAllBodiesTogether) {
   options_.max_connections = 20;
   Start();
   std::vector<RawClient> clients;
@@ -110,7 +110,7 @@ TEST_F(ServerLimitsTest, AllBodiesTogetherHaveALimit) {
   EXPECT_EQ(Connect().Ask(Post("/", "abcd")).status, 200);
 }
 
-TEST_F(ServerLimitsTest, ALaneThatIsFullRefusesAtOnceAndTheOtherServes) {
+TEST_F(ServerLimitsTest, RefusesRequestsForAFullLaneOnly) {
   Start();
   std::vector<RawClient> fits = FillFits();
   EXPECT_EQ(server_->Count().waiting, 3);
@@ -124,7 +124,7 @@ TEST_F(ServerLimitsTest, ALaneThatIsFullRefusesAtOnceAndTheOtherServes) {
   EXPECT_EQ(client.Ask(Get("/fit")).status, 200);
 }
 
-TEST_F(ServerLimitsTest, WhatWaitsTooLongIsNotBegun) {
+TEST_F(ServerLimitsTest, DropsARequestThatWaitsTooLong) {
   options_.wait_time = milliseconds(50);
   Start();
   std::vector<RawClient> fits = FillFits();
@@ -135,7 +135,7 @@ TEST_F(ServerLimitsTest, WhatWaitsTooLongIsNotBegun) {
   EXPECT_THAT(statuses, testing::ElementsAre(200, 200, 408, 408, 408));
 }
 
-TEST_F(ServerLimitsTest, WhatWaitsIsServedInItsOrder) {
+TEST_F(ServerLimitsTest, ServesWaitingRequestsInOrder) {
   options_.fit_threads = 1;
   std::string order;
   handler_.answer = [&](const HttpRequest& request) {
@@ -155,7 +155,7 @@ TEST_F(ServerLimitsTest, WhatWaitsIsServedInItsOrder) {
   EXPECT_EQ(order, "1234");
 }
 
-TEST_F(ServerLimitsTest, OneConnectionTooManyIsToldSo) {
+TEST_F(ServerLimitsTest, ReportsTooManyConnections) {
   options_.max_connections = 4;
   options_.yield_time = std::chrono::minutes(1);
   Start();
@@ -176,7 +176,7 @@ TEST_F(ServerLimitsTest, OneConnectionTooManyIsToldSo) {
 }
 
 // Connections without a request, or with an endless head, must not block other clients.
-TEST_F(ServerLimitsTest, WhoAsksNothingMakesRoom) {
+TEST_F(ServerLimitsTest, ClosesIdleConnectionsForNewOnes) {
   options_.max_connections = 4;
   options_.yield_time = milliseconds(0);
   Start();
@@ -198,7 +198,7 @@ TEST_F(ServerLimitsTest, WhoAsksNothingMakesRoom) {
   EXPECT_EQ(fit.Read().status, 200) << "who is being answered stays";
 }
 
-TEST_F(ServerLimitsTest, AFloodOfConnectionsIsTurnedAwayAndLeavesNothing) {
+TEST_F(ServerLimitsTest, RejectsAFloodOfConnections) {
   options_.max_connections = 4;
   options_.yield_time = std::chrono::minutes(1);
   Start();
@@ -212,7 +212,7 @@ TEST_F(ServerLimitsTest, AFloodOfConnectionsIsTurnedAwayAndLeavesNothing) {
   EXPECT_EQ(Connect().Ask(Get("/")).status, 200);
 }
 
-TEST_F(ServerLimitsTest, ARequestThatDoesNotComeInTimeIsRefused) {
+TEST_F(ServerLimitsTest, RejectsARequestThatArrivesTooSlowly) {
   options_.request_time = milliseconds(200);
   Start();
   RawClient head = Connect(), body = Connect(), chunk = Connect();
@@ -227,7 +227,7 @@ TEST_F(ServerLimitsTest, ARequestThatDoesNotComeInTimeIsRefused) {
   }
 }
 
-TEST_F(ServerLimitsTest, EmptyLinesAreNoRequest) {
+TEST_F(ServerLimitsTest, IgnoresEmptyLines) {
   options_.request_time = milliseconds(200);
   Start();
   RawClient client = Connect();
@@ -236,7 +236,7 @@ TEST_F(ServerLimitsTest, EmptyLinesAreNoRequest) {
   EXPECT_TRUE(answered().empty());
 }
 
-TEST_F(ServerLimitsTest, TimeForARequestIsNotGivenAnewWithEachByte) {
+TEST_F(ServerLimitsTest, DoesNotExtendTheTimeWithEachByte) {
   options_.request_time = milliseconds(200);
   Start();
   RawClient client = Connect();
@@ -249,7 +249,7 @@ TEST_F(ServerLimitsTest, TimeForARequestIsNotGivenAnewWithEachByte) {
   EXPECT_EQ(answered()[0].status, 408);
 }
 
-TEST_F(ServerLimitsTest, AConnectionWithoutARequestIsClosed) {
+TEST_F(ServerLimitsTest, ClosesAConnectionWithoutARequest) {
   options_.idle_time = milliseconds(500);
   Start();
   RawClient used = Connect();
@@ -259,7 +259,7 @@ TEST_F(ServerLimitsTest, AConnectionWithoutARequestIsClosed) {
   EXPECT_EQ(answered().size(), 1) << "nothing was asked, nothing is answered";
 }
 
-TEST_F(ServerLimitsTest, AnAnswerThatIsNotTakenIsDropped) {
+TEST_F(ServerLimitsTest, DropsAnAnswerThatIsNotRead) {
   options_.request_time = milliseconds(200);
   handler_.answer = [](const HttpRequest&) { return HttpResponse{200, {}, std::string(30'000'000, 'x'), nullptr}; };
   Start();
@@ -270,7 +270,7 @@ TEST_F(ServerLimitsTest, AnAnswerThatIsNotTakenIsDropped) {
   EXPECT_TRUE(Eventually([&] { return server_->Count().connections == 0 && server_->Count().buffered == 0; }));
 }
 
-TEST_F(ServerLimitsTest, AnswersThatAreNotTakenKeepNewOnesFromBeingMade) {
+TEST_F(ServerLimitsTest, RejectsRequestsWhileAnswersAreUnread) {
   handler_.answer = [](const HttpRequest& request) {
     return HttpResponse{200, {}, std::string(request.target == "/large" ? 30'000'000 : 3, 'x'), nullptr};
   };
@@ -284,7 +284,7 @@ TEST_F(ServerLimitsTest, AnswersThatAreNotTakenKeepNewOnesFromBeingMade) {
   EXPECT_EQ(Connect().Ask(Get("/small")).status, 200);
 }
 
-TEST_F(ServerLimitsTest, WithoutFileDescriptorsConnectionsWaitUntilThereAreSome) {
+TEST_F(ServerLimitsTest, WaitsForFileDescriptors) {
   Start();
   RawClient early = Connect();
   EXPECT_EQ(early.Ask(Get("/")).status, 200);
@@ -303,7 +303,7 @@ TEST_F(ServerLimitsTest, WithoutFileDescriptorsConnectionsWaitUntilThereAreSome)
   EXPECT_EQ(late.Read().body, "GET /late\n");
 }
 
-TEST_F(ServerLimitsTest, TwoHundredSlowClientsDelayNoOther) {
+TEST_F(ServerLimitsTest, ServesOthersDespiteTwoHundredSlowClients) {
   options_.request_time = milliseconds(60'000);
   Start();
   std::vector<RawClient> slow;

@@ -26,14 +26,14 @@ class ServerStopTest : public Served {
   }
 };
 
-TEST_F(ServerStopTest, WithNothingUnderWayReturnsAtOnce) {
+TEST_F(ServerStopTest, ReturnsAtOnceIfIdle) {
   options_.stop_time = milliseconds(3'600'000);
   Start();
   StopAndJoin();
   EXPECT_EQ(server_->Count().connections, 0);
 }
 
-TEST_F(ServerStopTest, BeforeRunReturnsToo) {
+TEST_F(ServerStopTest, ReturnsAtOnceIfStoppedBeforeRun) {
   auto server = Server::Listen(options_, handler_, nullptr);
   ASSERT_TRUE(server);
   (*server)->Stop();
@@ -52,7 +52,7 @@ TEST_F(ServerStopTest, ClosesIdleConnections) {
   EXPECT_TRUE(used.IsEnded());
 }
 
-TEST_F(ServerStopTest, AnswersWhatIsUnderWayAndClosesIt) {
+TEST_F(ServerStopTest, AnswersRequestsInProgressAndCloses) {
   Start();
   RawClient client = StopWithAFitUnderWay();
   handler_.gate.count_down();
@@ -63,7 +63,7 @@ TEST_F(ServerStopTest, AnswersWhatIsUnderWayAndClosesIt) {
   EXPECT_TRUE(client.IsEnded());
 }
 
-TEST_F(ServerStopTest, AnswersWhatWaitsInALane) {
+TEST_F(ServerStopTest, AnswersRequestsWaitingInALane) {
   options_.fit_threads = 1;
   Start();
   RawClient waiting = Connect();
@@ -77,7 +77,7 @@ TEST_F(ServerStopTest, AnswersWhatWaitsInALane) {
   EXPECT_EQ(waiting.Read().body, "GET /fit?waits\n");
 }
 
-TEST_F(ServerStopTest, TakesTheRestOfARequestWhoseHeadIsAccepted) {
+TEST_F(ServerStopTest, ReadsTheRestOfAnAcceptedRequest) {
   Start();
   RawClient client = Connect();
   client.Send("POST /late HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\n\r\nbo");
@@ -86,7 +86,7 @@ TEST_F(ServerStopTest, TakesTheRestOfARequestWhoseHeadIsAccepted) {
   EXPECT_EQ(client.Ask("dy").body, "POST /late\nbody");
 }
 
-TEST_F(ServerStopTest, RefusesARequestThatComesLater) {
+TEST_F(ServerStopTest, RefusesLaterRequests) {
   Start();
   RawClient client = Connect();
   client.Send(Get("/first") + "GET /second HTTP/1.1\r\nHo");
@@ -100,7 +100,7 @@ TEST_F(ServerStopTest, RefusesARequestThatComesLater) {
   EXPECT_TRUE(client.IsEnded());
 }
 
-TEST_F(ServerStopTest, WaitsNoLongerThanItIsGiven) {
+TEST_F(ServerStopTest, RespectsTheTimeLimit) {
   options_.stop_time = milliseconds(100);
   Start();
   RawClient slow = Connect();

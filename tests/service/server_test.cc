@@ -36,7 +36,7 @@ TEST_F(ServerTest, AnswersManyRequestsOnOneConnection) {
   EXPECT_EQ(server_->Count().refused, 0);
 }
 
-TEST_F(ServerTest, SendsTheFieldsThatAreItsOwn) {
+TEST_F(ServerTest, SendsItsOwnFields) {
   handler_.answer = [](const HttpRequest&) {
     return HttpResponse{201, {{"Location", "/v1/fits/1"}, {"Content-Length", "7"}}, "made", nullptr};
   };
@@ -60,7 +60,7 @@ TEST_F(ServerTest, AnswersPipelinedRequestsInTheirOrder) {
   EXPECT_EQ(client.Read().body, "GET /fifth\n");
 }
 
-TEST_F(ServerTest, TakesARequestThatComesByteByByte) {
+TEST_F(ServerTest, AcceptsARequestByteByByte) {
   Start();
   RawClient client = Connect();
   for (const char byte : Post("/slow", "body") + Get("/next")) client.Send({&byte, 1});
@@ -68,7 +68,7 @@ TEST_F(ServerTest, TakesARequestThatComesByteByByte) {
   EXPECT_EQ(client.Read().body, "GET /next\n");
 }
 
-TEST_F(ServerTest, PutsChunksTogetherAndLeavesOutTrailers) {
+TEST_F(ServerTest, JoinsChunksAndDropsTrailers) {
   std::vector<std::string> names;
   handler_.answer = [&](const HttpRequest& request) {
     for (const HttpField& field : request.fields) names.push_back(field.name);
@@ -110,7 +110,7 @@ TEST_F(ServerTest, SendsNoBodyAndNoLengthWithStatus204) {
   EXPECT_EQ(client.Ask(Get("/there")).body, "text");
 }
 
-TEST_F(ServerTest, ClosesWhenAskedTo) {
+TEST_F(ServerTest, ClosesOnRequest) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer = client.Ask(Get("/", "Connection: close\r\n"));
@@ -127,7 +127,7 @@ TEST_F(ServerTest, ServesHttp10AndClosesAfterwards) {
   EXPECT_TRUE(client.IsEnded());
 }
 
-TEST_F(ServerTest, TakesTheTargetOfAProxy) {
+TEST_F(ServerTest, AcceptsTheTargetOfAProxy) {
   Start();
   RawClient client = Connect();
   EXPECT_EQ(client.Ask("GET http://localhost:80/path?a=b HTTP/1.1\r\nHost: localhost:80\r\n\r\n").body,
@@ -151,7 +151,7 @@ TEST_F(ServerTest, SendsContinueOnceTheHeadIsAccepted) {
   EXPECT_EQ(client.Read().body, "POST /a\nbody");
 }
 
-TEST_F(ServerTest, ReadsNoBodyThatItsHeadRefuses) {
+TEST_F(ServerTest, ReadsNoBodyOfARejectedHead) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer =
@@ -162,7 +162,7 @@ TEST_F(ServerTest, ReadsNoBodyThatItsHeadRefuses) {
   EXPECT_EQ(handler_.calls, 0);
 }
 
-TEST_F(ServerTest, LetsARefusedClientReadItsAnswerThoughItSendsOn) {
+TEST_F(ServerTest, LetsARefusedClientReadTheAnswer) {
   Start();
   RawClient client = Connect();
   client.Send("POST /refused HTTP/1.1\r\nHost: a\r\nContent-Length: 90000\r\n\r\n");
@@ -170,7 +170,7 @@ TEST_F(ServerTest, LetsARefusedClientReadItsAnswerThoughItSendsOn) {
   EXPECT_EQ(client.Read().body, "who is there?");
 }
 
-TEST_F(ServerTest, KeepsAConnectionWhoseRefusedRequestHasNoBody) {
+TEST_F(ServerTest, KeepsAConnectionAfterRejectingABodylessRequest) {
   Start();
   RawClient client = Connect();
   EXPECT_EQ(client.Ask(Get("/refused")).status, 401);
@@ -186,7 +186,7 @@ TEST_F(ServerTest, AnswersAClientThatHasEndedSending) {
   EXPECT_TRUE(client.IsEnded());
 }
 
-TEST_F(ServerTest, TellsAClientThatEndsWithinItsRequest) {
+TEST_F(ServerTest, ReportsAClientThatEndsWithinItsRequest) {
   Start();
   for (const std::string begun : {"GET / HT", "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\nfour"}) {
     RawClient client = Connect();
@@ -196,7 +196,7 @@ TEST_F(ServerTest, TellsAClientThatEndsWithinItsRequest) {
   }
 }
 
-TEST_F(ServerTest, SurvivesAHandlerThatThrows) {
+TEST_F(ServerTest, SurvivesAnExceptionOfTheHandler) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer = client.Ask(Get("/throw"));
@@ -205,7 +205,7 @@ TEST_F(ServerTest, SurvivesAHandlerThatThrows) {
   EXPECT_EQ(client.Ask(Get("/after")).body, "GET /after\n");
 }
 
-TEST_F(ServerTest, LetsNoLineBreakOfAValueReachTheWire) {
+TEST_F(ServerTest, RemovesLineBreaksFromFieldValues) {
   handler_.answer = [](const HttpRequest&) {
     return HttpResponse{200, {{"X-Name", "run\r\nSet-Cookie: a=b"}, {"Bad\r\nName", "v"}, {"X", "y"}}, "", nullptr};
   };
@@ -217,7 +217,7 @@ TEST_F(ServerTest, LetsNoLineBreakOfAValueReachTheWire) {
   EXPECT_EQ(answer["x"], "y");
 }
 
-TEST_F(ServerTest, AnswersAStatusThatIsNoneWith500) {
+TEST_F(ServerTest, ReplacesAnInvalidStatusBy500) {
   handler_.answer = [](const HttpRequest&) { return HttpResponse{0, {}, "", nullptr}; };
   Start();
   EXPECT_EQ(Connect().Ask(Get("/")).status, 500);
@@ -233,7 +233,7 @@ TEST_F(ServerTest, SendsAnAnswerOfManyPieces) {
   EXPECT_TRUE(Eventually([&] { return server_->Count().buffered == 0; }));
 }
 
-TEST_F(ServerTest, ServesSixtyFourClientsAtATime) {
+TEST_F(ServerTest, ServesSixtyFourClientsAtOnce) {
   options_.max_queue = 64;
   Start();
   std::vector<std::thread> clients;
@@ -252,7 +252,7 @@ TEST_F(ServerTest, ServesSixtyFourClientsAtATime) {
   EXPECT_EQ(handler_.calls, 640);
 }
 
-TEST_F(ServerTest, TellsOfEachAnswer) {
+TEST_F(ServerTest, ReportsEachAnswer) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer = client.Ask(Post("/some?where", "body"));
@@ -266,7 +266,7 @@ TEST_F(ServerTest, TellsOfEachAnswer) {
   EXPECT_GT(told.time.count(), 0);
 }
 
-TEST(Listen, RefusesWhatIsNoAddress) {
+TEST(Listen, RefusesAnInvalidAddress) {
   EchoHandler handler;
   ServerOptions options;
   options.address = "localhost.example";
@@ -276,7 +276,7 @@ TEST(Listen, RefusesWhatIsNoAddress) {
   EXPECT_THAT(server.error().message, HasSubstr("address \"localhost.example\""));
 }
 
-TEST(Listen, SaysThatAPortIsTaken) {
+TEST(Listen, ReportsAPortInUse) {
   EchoHandler handler;
   ServerOptions options;
   options.port = 0;
@@ -289,7 +289,7 @@ TEST(Listen, SaysThatAPortIsTaken) {
   EXPECT_THAT(second.error().message, HasSubstr("127.0.0.1:" + std::to_string(options.port)));
 }
 
-TEST(Listen, TakesAnAddressOfIpVersion6) {
+TEST(Listen, AcceptsAnIpv6Address) {
   EchoHandler handler;
   ServerOptions options;
   options.address = "::1";

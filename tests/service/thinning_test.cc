@@ -33,7 +33,7 @@ bool IsIncreasing(const std::vector<Eigen::Index>& indices) {
   return std::ranges::adjacent_find(indices, std::ranges::greater_equal()) == indices.end();
 }
 
-TEST(Thin, KeepsAllOfFew) {
+TEST(Thin, KeepsAllOfAFewSamples) {
   EXPECT_THAT(Thin(Seconds(4), Numbers{1, 2, 3, kNan}, 4), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(Thin(Seconds(1), Numbers{1}, 4), ElementsAre(0));
   EXPECT_THAT(Thin(Numbers(), Numbers(), 4), IsEmpty());
@@ -47,23 +47,23 @@ TEST(Thin, KeepsTheExtremesOfEachBlockInTheirOrder) {
   EXPECT_THAT(Thin(Seconds(11), value, 4), ElementsAre(0, 2, 8, 10));
 }
 
-TEST(Thin, TakesOneSampleOfABlockThatIsConstant) {
+TEST(Thin, KeepsOneSampleOfAConstantBlock) {
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, 5.0), 6), ElementsAre(0, 1, 4, 8));
 }
 
 // Blocks have equal durations: a burst gets one, a gap gets no samples.
-TEST(Thin, GivesAGapNoSamples) {
+TEST(Thin, GivesNoSamplesInAGap) {
   const Numbers time = {0, 1, 2, 3, 97, 98, 99, 100};
   EXPECT_THAT(Thin(time, Numbers{0, 1, 2, 3, 4, 5, 6, 7}, 6), ElementsAre(0, 1, 3, 4, 6, 7));
 }
 
-TEST(Thin, TakesNanForNoExtreme) {
+TEST(Thin, IgnoresNaNAsAnExtreme) {
   EXPECT_THAT(Thin(Seconds(9), Numbers{0, kNan, 3, kNan, kNan, kNan, kNan, kNan, kNan}, 6), ElementsAre(0, 2, 8));
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, kNan), 6), ElementsAre(0, 8));
 }
 
 // A decaying swing: all limits and properties of the declaration must hold for any size.
-TEST(Thin, HoldsItsPromisesOnASwing) {
+TEST(Thin, KeepsItsGuaranteesForASwing) {
   for (const std::size_t size : {5U, 4001U, 4002U, 8001U, 100'003U}) {
     Numbers time(size), value(size);
     for (std::size_t i = 0; i < size; ++i) {
@@ -82,7 +82,7 @@ TEST(Thin, HoldsItsPromisesOnASwing) {
   }
 }
 
-TEST(Thin, UsesMostOfWhatItMay) {
+TEST(Thin, UsesItsFullLimit) {
   constexpr std::size_t kMany = 100'000;
   Numbers value(kMany);
   for (std::size_t i = 0; i < kMany; ++i) value[i] = std::sin(static_cast<double>(i));
@@ -90,7 +90,7 @@ TEST(Thin, UsesMostOfWhatItMay) {
 }
 
 // Files may contain times that do not increase or are infinite.
-TEST(Thin, KeepsItsLimitOnAnyTimes) {
+TEST(Thin, RespectsItsLimitForAnyTimes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Numbers value = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   for (const Numbers& time : {Numbers(10, 1.0), Numbers(10, kNan), Numbers(10, kInfinity),

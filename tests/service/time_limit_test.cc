@@ -30,7 +30,7 @@ bool IsStopped(const std::stop_token& token) {
   return token.stop_requested();
 }
 
-TEST(TimeLimit, StopsWhatTakesLongerAndNotBefore) {
+TEST(TimeLimit, StopsOnlyWorkThatTakesTooLong) {
   TimeLimit limit(kShort);
   EXPECT_EQ(limit.limit(), kShort);
   const auto begin = Clock::now();
@@ -39,7 +39,7 @@ TEST(TimeLimit, StopsWhatTakesLongerAndNotBefore) {
   EXPECT_GE(Clock::now() - begin, kShort);
 }
 
-TEST(TimeLimit, StopsEachOfSeveralAfterItsOwnTime) {
+TEST(TimeLimit, StopsEachAfterItsOwnTime) {
   TimeLimit limit(kShort);
   const TimeLimit::Watch first(limit);
   std::this_thread::sleep_for(kShort / 2);
@@ -50,7 +50,7 @@ TEST(TimeLimit, StopsEachOfSeveralAfterItsOwnTime) {
   EXPECT_GE(Clock::now() - begin, kShort);
 }
 
-TEST(TimeLimit, WatchesWhatComesAfterOneThatWasStopped) {
+TEST(TimeLimit, WatchesWorkAfterAStoppedOne) {
   TimeLimit limit(kShort);
   const TimeLimit::Watch first(limit);
   ASSERT_TRUE(IsStopped(first.token()));
@@ -58,7 +58,7 @@ TEST(TimeLimit, WatchesWhatComesAfterOneThatWasStopped) {
   EXPECT_TRUE(IsStopped(second.token()));
 }
 
-TEST(TimeLimit, LetsWhatIsDoneInTimeAlone) {
+TEST(TimeLimit, DoesNotStopWorkDoneInTime) {
   TimeLimit limit(kNever);
   std::stop_token token;
   {
@@ -68,7 +68,7 @@ TEST(TimeLimit, LetsWhatIsDoneInTimeAlone) {
   EXPECT_FALSE(token.stop_requested());
 }
 
-TEST(TimeLimit, StopsAllThereIsAndAllToCome) {
+TEST(TimeLimit, StopsAllCurrentAndFutureWork) {
   TimeLimit limit(kNever);
   const TimeLimit::Watch one(limit), other(limit);
   EXPECT_FALSE(one.token().stop_requested() || other.token().stop_requested());
@@ -77,7 +77,7 @@ TEST(TimeLimit, StopsAllThereIsAndAllToCome) {
   EXPECT_TRUE(TimeLimit::Watch(limit).token().stop_requested());
 }
 
-TEST(TimeLimit, EndsWhileNothingIsWatched) {
+TEST(TimeLimit, EndsWhileIdle) {
   { const TimeLimit limit(kNever); }
   { const TimeLimit limit(kShort); }
 }

@@ -15,7 +15,7 @@ namespace {
 
 using wire::WorkQueue;
 
-TEST(WorkQueue, TakesWhatItsThreadsAndItsPlacesHold) {
+TEST(WorkQueue, AcceptsWorkForItsThreadsAndPlaces) {
   WorkQueue queue(2, 3);
   std::latch gate(1), begun(2);
   std::atomic<int> done = 0;
@@ -37,7 +37,7 @@ TEST(WorkQueue, TakesWhatItsThreadsAndItsPlacesHold) {
   EXPECT_TRUE(queue.Offer([] {}));
 }
 
-TEST(WorkQueue, WithoutPlacesTakesWhatItsThreadsDo) {
+TEST(WorkQueue, AcceptsWorkForItsThreadsWithoutPlaces) {
   WorkQueue queue(1, 0);
   std::latch gate(1);
   EXPECT_TRUE(queue.Offer([&] { gate.wait(); }));
@@ -45,7 +45,7 @@ TEST(WorkQueue, WithoutPlacesTakesWhatItsThreadsDo) {
   gate.count_down();
 }
 
-TEST(WorkQueue, ServesInTheOrderOfTheOffers) {
+TEST(WorkQueue, RunsWorkInTheOrderOffered) {
   WorkQueue queue(1, 10);
   std::latch gate(1), done(1);
   std::string order;
@@ -57,7 +57,7 @@ TEST(WorkQueue, ServesInTheOrderOfTheOffers) {
   EXPECT_EQ(order, "abcdefgh");
 }
 
-TEST(WorkQueue, ClosingDropsWhatWaitsAndAwaitsWhatRuns) {
+TEST(WorkQueue, DropsWaitingWorkAndFinishesRunningWorkOnClose) {
   WorkQueue queue(1, 10);
   std::latch begun(1), gate(1);
   std::atomic<bool> has_run = false, has_run_later = false;

@@ -47,7 +47,7 @@ TEST(MakeCalibrateSensorOptions, CalibratesATable) {
   EXPECT_EQ(options->Inputs()[0].flag, "--data");
 }
 
-TEST(MakeCalibrateSensorOptions, LeavesOutWhatIsNotAsked) {
+TEST(MakeCalibrateSensorOptions, OmitsOutputsThatAreNotRequested) {
   CalibrateSensorFlags flags = TableFlags();
   flags.data = "-";
   const auto options = MakeCalibrateSensorOptions(flags);
@@ -58,7 +58,7 @@ TEST(MakeCalibrateSensorOptions, LeavesOutWhatIsNotAsked) {
   EXPECT_THAT(options->Inputs(), IsEmpty());
 }
 
-TEST(MakeCalibrateSensorOptions, TakesTheRangeOfAConverterFromItsBits) {
+TEST(MakeCalibrateSensorOptions, DerivesTheConverterRangeFromItsBits) {
   CalibrateSensorFlags flags = TableFlags();
   flags.bits = 12;
   const auto options = MakeCalibrateSensorOptions(flags);
@@ -87,7 +87,7 @@ TEST(MakeCalibrateSensorOptions, PlansASensorForEachReference) {
   }
 }
 
-TEST(MakeCalibrateSensorOptions, PlansTheUsualBoardUnlessToldOtherwise) {
+TEST(MakeCalibrateSensorOptions, PlansTheUsualBoardByDefault) {
   const auto options = MakeCalibrateSensorOptions(PlanFlags());
   ASSERT_TRUE(options) << options.error().message;
   ASSERT_EQ(options->plan.size(), 1);

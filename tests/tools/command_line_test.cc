@@ -38,12 +38,12 @@ TEST(PositionalArguments, FollowsGflagsGrammar) {
   EXPECT_THAT(Positional({"a.csv", "--data=x=y", "-", "--", "--data"}), ElementsAre("a.csv", "-", "--data"));
 }
 
-TEST(PositionalArguments, TakesADashedValueAsGflagsDoes) {
+TEST(PositionalArguments, AcceptsADashedValueAsGflagsDoes) {
   EXPECT_THAT(Positional({"--from", "-2.5"}), IsEmpty());
   EXPECT_THAT(Positional({"--data", "--help", "x"}), ElementsAre("x"));
 }
 
-TEST(PositionalArguments, SuggestsTheNearestOwnFlag) {
+TEST(PositionalArguments, SuggestsTheNearestFlagOfTheTool) {
   EXPECT_EQ(Refusal({"--dat", "a.csv"}), "--dat is not a flag of this tool; did you mean --data?");
   EXPECT_EQ(Refusal({"-residual=x"}), "--residual is not a flag of this tool; did you mean --residuals?");
   EXPECT_EQ(Refusal({"--verbose"}), "--verbose is not a flag of this tool; --help lists the flags");
@@ -56,7 +56,7 @@ TEST(PositionalArguments, RefusesAFlagWithoutItsValue) {
   EXPECT_EQ(Refusal({"--data", ""}), "--data has an empty value; leave the flag out for its default");
 }
 
-TEST(PositionalArguments, RefusesAFlagGivenTwice) {
+TEST(PositionalArguments, RefusesARepeatedFlag) {
   EXPECT_EQ(Refusal({"--residuals", "a", "--residuals=b"}), "--residuals is given twice; leave one of them out");
   EXPECT_EQ(Refusal({"--clock-scale", "1", "x", "-clock_scale", "1"}),
             "--clock_scale is given twice; leave one of them out");
@@ -66,7 +66,7 @@ TEST(PositionalArguments, RefusesAFlagGivenTwice) {
   EXPECT_THAT(Positional({"--help", "--help"}), IsEmpty());
 }
 
-TEST(PositionalArguments, RefusesANumberThatIsNone) {
+TEST(PositionalArguments, RefusesAnInvalidNumber) {
   EXPECT_EQ(Refusal({"--from", "soon"}), "--from is 'soon'; it must be a number");
   EXPECT_EQ(Refusal({"--count", "1.5"}), "--count is '1.5'; it must be an integer");
   EXPECT_EQ(Refusal({"--count", "1e2x"}), "--count is '1e2x'; it must be an integer");

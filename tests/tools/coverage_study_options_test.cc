@@ -19,7 +19,7 @@ CoverageFlags Flags(const std::string& scenario) {
   return flags;
 }
 
-TEST(MakeCoverageStudyOptions, StudiesTheScenariosInTheirOrder) {
+TEST(MakeCoverageStudyOptions, KeepsTheOrderOfScenarios) {
   CoverageFlags flags = Flags("moving,white_0.5");
   flags.count = 20;
   flags.seed = 7;
@@ -39,7 +39,7 @@ TEST(MakeCoverageStudyOptions, StudiesTheScenariosInTheirOrder) {
   EXPECT_EQ(options->Outputs()[0].path, "coverage.md");
 }
 
-TEST(MakeCoverageStudyOptions, GivesTheCommandThatMakesTheSameTablesAgain) {
+TEST(MakeCoverageStudyOptions, GivesACommandThatReproducesTheTables) {
   const auto options = MakeCoverageStudyOptions(Flags("all"));
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->command, "coverage_study --scenario all --count 1000 --seed 1");
@@ -47,7 +47,7 @@ TEST(MakeCoverageStudyOptions, GivesTheCommandThatMakesTheSameTablesAgain) {
   EXPECT_THAT(options->Outputs(), IsEmpty());
 }
 
-TEST(MakeCoverageStudyOptions, ListsAllScenariosWithoutBeingGivenOne) {
+TEST(MakeCoverageStudyOptions, ListsAllScenariosByDefault) {
   CoverageFlags flags;
   flags.list = true;
   flags.markdown = "coverage.md";

@@ -41,7 +41,7 @@ std::string RefusalOfFix(const std::string& fix) {
   return Refusal(flags);
 }
 
-TEST(MakeFitPendulumOptions, HasDefaultsForAllButTheData) {
+TEST(MakeFitPendulumOptions, HasDefaultsForEverythingButTheData) {
   const auto options = MakeFitPendulumOptions(WithData());
   ASSERT_TRUE(options);
   EXPECT_THAT(options->data, ElementsAre("run.csv"));
@@ -54,7 +54,7 @@ TEST(MakeFitPendulumOptions, HasDefaultsForAllButTheData) {
   EXPECT_EQ(options->Inputs().size(), 1);
 }
 
-TEST(MakeFitPendulumOptions, TakesEveryFlag) {
+TEST(MakeFitPendulumOptions, AcceptsEveryFlag) {
   FitPendulumFlags flags = WithData();
   flags.rig = "rig.json";
   flags.model = "drag";
@@ -80,7 +80,7 @@ TEST(MakeFitPendulumOptions, TakesEveryFlag) {
               ElementsAre(testing::FieldsAre("--data", "run.csv"), testing::FieldsAre("--rig", "rig.json")));
 }
 
-TEST(MakeFitPendulumOptions, MakesNoFitWithClosedFormsOnly) {
+TEST(MakeFitPendulumOptions, MakesNoFitForClosedFormsOnly) {
   FitPendulumFlags flags = WithData();
   flags.closed_form_only = true;
   flags.model = "drag";
@@ -98,7 +98,7 @@ TEST(MakeFitPendulumOptions, MakesNoFitWithClosedFormsOnly) {
                                                   testing::FieldsAre("--series", NumberedPath("-", 1, 2))));
 }
 
-TEST(MakeFitPendulumOptions, RefusesWithClosedFormsOnlyWhatOnlyAFitNeeds) {
+TEST(MakeFitPendulumOptions, RefusesFitFlagsForClosedFormsOnly) {
   const std::vector<std::pair<std::string FitPendulumFlags::*, std::string>> of_a_fit = {
       {&FitPendulumFlags::residuals, "--residuals r.csv"}, {&FitPendulumFlags::start, "--start moving"},
       {&FitPendulumFlags::fix, "--fix viscous=0"},         {&FitPendulumFlags::init, "--init viscous=0.1"},
@@ -124,14 +124,14 @@ TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
   EXPECT_EQ(Refusal(flags), "'run.csv' belongs to no flag; the recording is given with --data");
 }
 
-TEST(MakeFitPendulumOptions, NamesTheModelsThereAre) {
+TEST(MakeFitPendulumOptions, ListsTheModels) {
   FitPendulumFlags flags = WithData();
   flags.model = "columb";
   EXPECT_EQ(Refusal(flags),
             "--model: there is no model 'columb'; the models are " + MotionModelNames() + "; or all, by itself");
 }
 
-TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
+TEST(MakeFitPendulumOptions, AcceptsSeveralModelsInOrder) {
   FitPendulumFlags flags = WithData();
   flags.model = "drag,viscous";
   EXPECT_THAT(MakeFitPendulumOptions(flags).value().models, ElementsAre("drag", "viscous"));
@@ -141,13 +141,13 @@ TEST(MakeFitPendulumOptions, TakesSeveralModelsInTheirOrder) {
   EXPECT_THAT(Refusal(flags), HasSubstr("there is no model ''"));
 }
 
-TEST(MakeFitPendulumOptions, TakesEveryFrictionLawForAll) {
+TEST(MakeFitPendulumOptions, ExpandsAllToEveryFrictionLaw) {
   FitPendulumFlags flags = WithData();
   flags.model = "all";
   EXPECT_THAT(MakeFitPendulumOptions(flags).value().models, ElementsAreArray(FrictionModels::kNames));
 }
 
-TEST(MakeFitPendulumOptions, TakesParametersThatOnlySomeOfTheModelsHave) {
+TEST(MakeFitPendulumOptions, AcceptsParametersOfSomeModelsOnly) {
   FitPendulumFlags flags = WithData();
   flags.model = "viscous,drag";
   flags.fix = "drag=0.001";
@@ -156,7 +156,7 @@ TEST(MakeFitPendulumOptions, TakesParametersThatOnlySomeOfTheModelsHave) {
   EXPECT_THAT(Refusal(flags), HasSubstr("stiction"));
 }
 
-TEST(MakeFitPendulumOptions, KnowsThreeKindsOfStart) {
+TEST(MakeFitPendulumOptions, AcceptsThreeKindsOfStart) {
   FitPendulumFlags flags = WithData();
   flags.start = "held";
   EXPECT_EQ(Refusal(flags), "--start is 'held'; it must be auto, release or moving");
@@ -164,7 +164,7 @@ TEST(MakeFitPendulumOptions, KnowsThreeKindsOfStart) {
   EXPECT_EQ(MakeFitPendulumOptions(flags)->fit.start, StartKind::kRelease);
 }
 
-TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
+TEST(MakeFitPendulumOptions, RequiresAWindowOfPositiveLength) {
   FitPendulumFlags flags = WithData();
   flags.from = "3";
   flags.to = "2.5";
@@ -177,7 +177,7 @@ TEST(MakeFitPendulumOptions, WantsAWindowOfPositiveLength) {
   EXPECT_EQ(Refusal(flags), "");
 }
 
-TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
+TEST(MakeFitPendulumOptions, RefusesFixingAParameterTheModelLacks) {
   const std::string names =
       "inertia, viscous, coulomb, release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, "
       "zero_drift, bias_drift, rate_scale, acceleration_bias, acceleration_scale, axis, radius, pivot_x, pivot_y, "
@@ -185,7 +185,7 @@ TEST(MakeFitPendulumOptions, RefusesToFixWhatTheModelDoesNotHave) {
   EXPECT_EQ(RefusalOfFix("drag=0.1"), "--fix: model coulomb has no parameter 'drag'; its parameters are " + names);
 }
 
-TEST(MakeFitPendulumOptions, SaysOfTheFileWhatItDoesNotSayItself) {
+TEST(MakeFitPendulumOptions, PassesFactsAboutTheFile) {
   FitPendulumFlags flags = WithData();
   flags.data = "-";
   flags.calibration = "cal.json";
@@ -222,7 +222,7 @@ TEST(MakeFitPendulumOptions, RefusesFlagsThatContradictEachOther) {
             "--unit is 'grad'; it must be one of rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm, mm");
 }
 
-TEST(MakeFitPendulumOptions, WantsAPositiveSampleRate) {
+TEST(MakeFitPendulumOptions, RequiresAPositiveSampleRate) {
   FitPendulumFlags flags = WithData();
   for (const char* const rate : {"0", "-5"}) {
     flags.sample_rate_hz = rate;
@@ -232,7 +232,7 @@ TEST(MakeFitPendulumOptions, WantsAPositiveSampleRate) {
   EXPECT_EQ(Refusal(flags), "--sample_rate_hz is 'fast'; it must be a positive number of samples per second");
 }
 
-TEST(MakeFitPendulumOptions, TakesSeveralRecordingsOrAListOfThem) {
+TEST(MakeFitPendulumOptions, AcceptsSeveralRecordingsOrAList) {
   FitPendulumFlags flags;
   flags.data = "a.csv,b.csv";
   flags.json = "fit.json";
@@ -269,7 +269,7 @@ TEST(MakeFitPendulumOptions, ReadsStandardInputOnce) {
   EXPECT_EQ(Refusal(flags), "");
 }
 
-TEST(MakeFitPendulumOptions, KnowsReleasesByNumberOrAll) {
+TEST(MakeFitPendulumOptions, AcceptsReleasesByNumberOrAll) {
   FitPendulumFlags flags = WithData();
   EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kLongest);
   flags.release = "all";
@@ -282,7 +282,7 @@ TEST(MakeFitPendulumOptions, KnowsReleasesByNumberOrAll) {
   }
 }
 
-TEST(MakeFitPendulumOptions, TakesWhatIsKnownOfParameters) {
+TEST(MakeFitPendulumOptions, AcceptsPriorKnowledgeOfParameters) {
   FitPendulumFlags flags = WithData();
   flags.init = "inertia=0.08,zero_drift=0";
   flags.bounds = "viscous=:0.1";
@@ -295,7 +295,7 @@ TEST(MakeFitPendulumOptions, TakesWhatIsKnownOfParameters) {
   EXPECT_EQ(options->fit.priors.at("coulomb").std_dev, 0.001);
 }
 
-TEST(MakeFitPendulumOptions, NamesTheFlagOfAParameterThatIsWrong) {
+TEST(MakeFitPendulumOptions, NamesTheFlagOfAWrongParameter) {
   FitPendulumFlags flags = WithData();
   flags.init = "inertia=x";
   EXPECT_EQ(Refusal(flags), "--init inertia is 'x'; it must be a number in SI units");
@@ -307,7 +307,7 @@ TEST(MakeFitPendulumOptions, NamesTheFlagOfAParameterThatIsWrong) {
   EXPECT_EQ(Refusal(flags), "--prior: 'inertia=1' must be name=mean:std_dev");
 }
 
-TEST(MakeFitPendulumOptions, RefusesToHoldAParameterThatAnotherFlagNames) {
+TEST(MakeFitPendulumOptions, RefusesFixingAParameterNamedByAnotherFlag) {
   FitPendulumFlags flags = WithData();
   flags.fix = "viscous=0.003";
   flags.init = "viscous=0.002";
@@ -326,7 +326,7 @@ FitPendulumFlags WithTwoRecordings() {
   return flags;
 }
 
-TEST(MakeFitPendulumOptions, FitsSeveralRecordingsTogetherUnlessItIsToldNotTo) {
+TEST(MakeFitPendulumOptions, FitsSeveralRecordingsTogetherByDefault) {
   FitPendulumFlags flags = WithTwoRecordings();
   EXPECT_TRUE(MakeFitPendulumOptions(flags)->IsJoint(2));
   EXPECT_FALSE(MakeFitPendulumOptions(flags)->IsJoint(1));  // a list of one
@@ -342,7 +342,7 @@ TEST(MakeFitPendulumOptions, FitsSeveralRecordingsTogetherUnlessItIsToldNotTo) {
   EXPECT_TRUE(MakeFitPendulumOptions(flags)->IsJoint(1));
 }
 
-TEST(MakeFitPendulumOptions, SharesInertiaAndFrictionOfAllModelsUnlessNamed) {
+TEST(MakeFitPendulumOptions, SharesInertiaAndFrictionByDefault) {
   FitPendulumFlags flags = WithTwoRecordings();
   EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("inertia", "viscous", "coulomb"));
   flags.model = "viscous,drag";
@@ -353,7 +353,7 @@ TEST(MakeFitPendulumOptions, SharesInertiaAndFrictionOfAllModelsUnlessNamed) {
   EXPECT_THAT(MakeFitPendulumOptions(flags)->shared, ElementsAre("drag", "inertia"));
 }
 
-TEST(MakeFitPendulumOptions, NamesWhatCanBeShared) {
+TEST(MakeFitPendulumOptions, ListsTheParametersThatCanBeShared) {
   FitPendulumFlags flags = WithTwoRecordings();
   for (const std::string wrong : {"release_angle", "zero_angle", "drag", "", "All"}) {
     flags.shared = wrong.empty() ? "inertia,," : "inertia," + wrong;
@@ -365,7 +365,7 @@ TEST(MakeFitPendulumOptions, NamesWhatCanBeShared) {
   EXPECT_EQ(Refusal(flags), "--shared names inertia twice");
 }
 
-TEST(MakeFitPendulumOptions, MakesNoBootstrapOfSeveralRecordingsTogether) {
+TEST(MakeFitPendulumOptions, RejectsABootstrapOfAJointFit) {
   FitPendulumFlags flags = WithTwoRecordings();
   const std::string refusal =
       "--interval bootstrap is for recordings one by one (--shared none); several together have covariance and profile";
@@ -385,7 +385,7 @@ TEST(MakeFitPendulumOptions, MakesNoBootstrapOfSeveralRecordingsTogether) {
   EXPECT_EQ(Refusal(flags), refusal);
 }
 
-TEST(JointOutputs, AreNumberedWhereEachRecordingHasItsOwn) {
+TEST(JointOutputs, AreNumberedIfEachRecordingHasItsOwn) {
   FitPendulumFlags flags = WithTwoRecordings();
   flags.json = "fit.json";
   flags.residuals = "r.csv";

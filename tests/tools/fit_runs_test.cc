@@ -33,7 +33,7 @@ Result<Identification> OnlyRun(FitPendulumOptions options) {
   return runs->front();
 }
 
-TEST(FitAll, PutsClosedFormsAndTheirCheckBesideAFit) {
+TEST(FitAll, AddsClosedFormsAndTheirCheckToAFit) {
   const auto run = OnlyRun(TextbookOptions());
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
@@ -47,7 +47,7 @@ TEST(FitAll, PutsClosedFormsAndTheirCheckBesideAFit) {
   EXPECT_NEAR(report.sampling->rate_hz, 100, 1e-6);
 }
 
-TEST(FitAll, MakesNoFitForClosedFormsOnly) {
+TEST(FitAll, SkipsFitsForClosedFormsOnly) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   const auto run = OnlyRun(options);
@@ -63,7 +63,7 @@ TEST(FitAll, MakesNoFitForClosedFormsOnly) {
 
 // The rig's masses and lengths predict sqrt(1.8033 / 0.0761) / 2π = 0.775 Hz. The recorded swing, at up to 24 deg, is
 // slower.
-TEST(FitAll, ComparesTheSwingWithWhatTheRigLetsExpect) {
+TEST(FitAll, ComparesTheFrequencyWithTheRigs) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   const auto run = OnlyRun(options);
@@ -72,7 +72,7 @@ TEST(FitAll, ComparesTheSwingWithWhatTheRigLetsExpect) {
   EXPECT_NEAR(run->sampling->frequency_hz, 0.755, 0.01);
 }
 
-TEST(FitAll, SaysWhyThereAreNoClosedForms) {
+TEST(FitAll, ExplainsMissingClosedForms) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   options.swing.from = 1.9;
@@ -103,7 +103,7 @@ FitPendulumOptions TwoRunsOptions() {
   return *MakeFitPendulumOptions(flags);
 }
 
-TEST(FitAll, MakesOneRunOfSeveralRecordings) {
+TEST(FitAll, CombinesSeveralRecordingsInOneRun) {
   const auto run = OnlyRun(TwoRunsOptions());
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
@@ -131,7 +131,7 @@ TEST(FitAll, MakesOneRunOfSeveralRecordings) {
 }
 
 // A shared parameter has at most the standard error of either recording alone.
-TEST(FitAll, TellsSharedParametersBetterTogetherThanAlone) {
+TEST(FitAll, EstimatesSharedParametersBetterJointly) {
   const auto together = OnlyRun(TwoRunsOptions());
   ASSERT_TRUE(together);
   for (const char* path : {"datasets/runs_1.csv", "datasets/runs_2.csv"}) {
@@ -147,7 +147,7 @@ TEST(FitAll, TellsSharedParametersBetterTogetherThanAlone) {
   }
 }
 
-TEST(FitAll, PutsClosedFormsAndSamplingBesideEachRecordingOfAJointFit) {
+TEST(FitAll, AddsClosedFormsAndSamplingToEachRecording) {
   const auto run = OnlyRun(TwoRunsOptions());
   ASSERT_TRUE(run);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -162,7 +162,7 @@ TEST(FitAll, PutsClosedFormsAndSamplingBesideEachRecordingOfAJointFit) {
   }
 }
 
-TEST(FitAll, FitsEachRecordingByItselfWhenNothingIsShared) {
+TEST(FitAll, FitsRecordingsSeparatelyIfNothingIsShared) {
   FitPendulumOptions options = TwoRunsOptions();
   options.sharing = Sharing::kNothing;
   const auto setup = ReadSetup(options);
@@ -173,7 +173,7 @@ TEST(FitAll, FitsEachRecordingByItselfWhenNothingIsShared) {
   for (const auto& run : *runs) EXPECT_FALSE(run.value().is_joint());
 }
 
-TEST(FitAll, MakesNoJointFitWhereOneRecordingCannotBeFitted) {
+TEST(FitAll, MakesNoJointFitIfOneRecordingFails) {
   FitPendulumOptions options = TwoRunsOptions();
   options.data.emplace_back("datasets/nowhere.csv");
   const auto run = OnlyRun(options);
@@ -182,7 +182,7 @@ TEST(FitAll, MakesNoJointFitWhereOneRecordingCannotBeFitted) {
   EXPECT_EQ(run.error().message, "datasets/nowhere.csv: there is no such file; check the path");
 }
 
-TEST(FitAll, SharesNothingOfOneSwing) {
+TEST(FitAll, SharesNothingForOneSwing) {
   FitPendulumFlags flags;
   flags.data = "datasets/runs_1.csv";
   flags.shared = "all";
@@ -193,7 +193,7 @@ TEST(FitAll, SharesNothingOfOneSwing) {
             "--shared is for several recordings, or the releases of one (--release all), and there is one swing");
 }
 
-TEST(CheckNumberedOutputs, LetsAJointResultBeOnStandardOutput) {
+TEST(CheckNumberedOutputs, AllowsAJointResultOnStandardOutput) {
   FitPendulumOptions options = TwoRunsOptions();
   options.json = "-";
   const auto setup = ReadSetup(options);

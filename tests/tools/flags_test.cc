@@ -28,7 +28,7 @@ class FlagsTest : public testing::Test {
   gflags::FlagSaver saver_;  // restores all flags after each test
 };
 
-TEST(IsOwnFlag, ComparesFoldersHoweverTheWayThereIsSpelled) {
+TEST(IsOwnFlag, ComparesFoldersInAnySpelling) {
   EXPECT_TRUE(IsOwnFlag("src/tools/b.h", "src/tools/a_main.cc"));
   EXPECT_TRUE(IsOwnFlag("../../src/tools/b.h", "/home/me/pendulum/src/tools/a_main.cc"));
   EXPECT_FALSE(IsOwnFlag("./src/logging.cc", "src/tools/a_main.cc"));
@@ -44,7 +44,7 @@ TEST_F(FlagsTest, SetsFlagsAndLeavesOtherArguments) {
   EXPECT_THAT(parsed->positional, ElementsAre("bob"));
 }
 
-TEST_F(FlagsTest, RefusesWithoutSettingAnything) {
+TEST_F(FlagsTest, RefusesBadFlagsWithoutSettingAnything) {
   const auto parsed = Parse({"--width=2", "--shap=flat"});
   ASSERT_FALSE(parsed);
   EXPECT_EQ(parsed.error().code, StatusCode::kInvalidArgument);

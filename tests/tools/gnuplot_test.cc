@@ -25,7 +25,7 @@ class WithPath {
   std::string old_;
 };
 
-TEST(RunGnuplot, GivesWhatTheScriptDraws) {
+TEST(RunGnuplot, ReturnsTheDrawing) {
   ASSERT_TRUE(CheckGnuplot());
   const auto svg = RunGnuplot("set terminal svg\nplot '-' with lines notitle\n0 1\n1 3\ne\n");
   ASSERT_TRUE(svg) << svg.error().message;
@@ -33,7 +33,7 @@ TEST(RunGnuplot, GivesWhatTheScriptDraws) {
   EXPECT_THAT(*svg, HasSubstr("</svg>"));
 }
 
-TEST(RunGnuplot, TakesAScriptAndADrawingLargerThanAPipe) {
+TEST(RunGnuplot, HandlesAScriptLargerThanAPipe) {
   std::string script = "set terminal svg\n$data << EndOfData\n";
   for (int i = 0; i < 20'000; ++i) script += std::to_string(i) + " " + std::to_string(i * 7919 % 1000) + "\n";
   const auto svg = RunGnuplot(script + "EndOfData\nplot $data with points\n");
@@ -41,14 +41,14 @@ TEST(RunGnuplot, TakesAScriptAndADrawingLargerThanAPipe) {
   EXPECT_GT(svg->size(), 200'000);
 }
 
-TEST(RunGnuplot, GivesTheWordsOfAScriptThatFails) {
+TEST(RunGnuplot, ReturnsTheMessageOfAFailedScript) {
   const auto svg = RunGnuplot("plot nonsense\n");
   ASSERT_FALSE(svg);
   EXPECT_EQ(svg.error().code, StatusCode::kCannotWrite);
   EXPECT_THAT(svg.error().message, StartsWith("plot: gnuplot fails: \""));
 }
 
-TEST(CheckGnuplot, NamesThePackageThatIsMissing) {
+TEST(CheckGnuplot, NamesTheMissingPackage) {
   const WithPath none("/nowhere");
   const auto checked = CheckGnuplot();
   ASSERT_FALSE(checked);

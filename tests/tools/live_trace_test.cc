@@ -51,7 +51,7 @@ std::vector<bool> MarkedColumns(const std::vector<std::string>& rows) {
 
 // ---- Plot --------------------------------------------------------------------------------------------------------
 
-TEST(LiveTrace, FitsANarrowTerminalAndShowsTheNewest) {
+TEST(LiveTrace, ShowsTheNewestSamplesOnANarrowTerminal) {
   const LiveTrace trace = TraceOf([](double t) { return t < 9 ? 0.0 : 50.0; }, 0, 10);
   for (const std::size_t width : {20U, 40U, 60U, 80U, 200U}) {
     const auto rows = trace.Plot(width);
@@ -76,7 +76,7 @@ TEST(LiveTrace, FitsATerminalOf80Columns) {
   }
 }
 
-TEST(LiveTrace, ReachesFromTheLowestToTheHighestValue) {
+TEST(LiveTrace, SpansTheLowestToTheHighestValue) {
   const auto rows = TraceOf([](double t) { return 30 * std::sin(std::numbers::pi * t) + 10; }, 0, 10).Plot();
   EXPECT_THAT(rows[0], HasSubstr("*"));
   EXPECT_THAT(rows[LiveTrace::kRows - 2], HasSubstr("*"));
@@ -87,7 +87,7 @@ TEST(LiveTrace, ReachesFromTheLowestToTheHighestValue) {
 }
 
 // A step up after 5 of 10 s: the left half is low, the right half is high, the rest is empty.
-TEST(LiveTrace, DrawsAStepWhereItIs) {
+TEST(LiveTrace, DrawsAStepAtItsTime) {
   const auto rows = TraceOf([](double t) { return t < 5 ? -20.0 : 20.0; }, 0, 10).Plot();
   const std::string top = Picture(rows[0]), bottom = Picture(rows[10]);
   const std::size_t middle = top.size() / 2;
@@ -97,21 +97,21 @@ TEST(LiveTrace, DrawsAStepWhereItIs) {
   EXPECT_NEAR(static_cast<double>(bottom.rfind('*')), static_cast<double>(middle), 1);
 }
 
-TEST(LiveTrace, PutsTheNewestAtTheRight) {
+TEST(LiveTrace, DrawsTheNewestSampleAtTheRight) {
   const auto marked = MarkedColumns(TraceOf([](double t) { return t; }, 0, 2).Plot());
   EXPECT_TRUE(marked.back());
   EXPECT_NEAR(static_cast<double>(std::ranges::count(marked, true)), 0.2 * static_cast<double>(marked.size()), 1.5);
   EXPECT_FALSE(marked.front());
 }
 
-TEST(LiveTrace, ForgetsWhatIsOlderThanTenSeconds) {
+TEST(LiveTrace, DropsSamplesOlderThanTenSeconds) {
   const auto rows = TraceOf([](double t) { return t < 5 ? 1000.0 : 3 * std::sin(t); }, 0, 20).Plot();
   EXPECT_LE(Label(rows[0]), 3);
   EXPECT_GE(Label(rows[10]), -3);
 }
 
 // Half a count of noise must not look like a swing: the axis spans at least 2 deg or counts.
-TEST(LiveTrace, DrawsRestAsALineInTheMiddle) {
+TEST(LiveTrace, DrawsRestAsACentredLine) {
   const auto rows = TraceOf([](double t) { return 7 + 0.01 * std::sin(t); }, 0, 10).Plot();
   EXPECT_NEAR(Label(rows[0]), 8, 0.06);
   EXPECT_NEAR(Label(rows[10]), 6, 0.06);
@@ -121,7 +121,7 @@ TEST(LiveTrace, DrawsRestAsALineInTheMiddle) {
   EXPECT_THAT(Picture(rows[5]), Not(HasSubstr(" ")));
 }
 
-TEST(LiveTrace, LeavesAGapWhereNothingCame) {
+TEST(LiveTrace, LeavesAGapWithoutSamples) {
   LiveTrace trace("counts");
   for (int i = 0; i <= 1000; ++i) {
     if (i < 400 || i > 600) trace.Take(i / 100.0, i, i, 1023);
@@ -133,7 +133,7 @@ TEST(LiveTrace, LeavesAGapWhereNothingCame) {
 
 // ---- StatusLine --------------------------------------------------------------------------------------------------
 
-TEST(LiveTrace, TellsTimeRateAndValue) {
+TEST(LiveTrace, ShowsTimeRateAndValue) {
   LiveTrace trace("deg");
   for (int i = 0; i <= 2480; ++i) trace.Take(i / 200.0, -12.34, 465, 1023);
   EXPECT_THAT(trace.StatusLine("lost 0"),
@@ -148,7 +148,7 @@ std::string LevelOf(double counts) {
   return line.substr(line.find('['), line.find("  |") - line.find('['));
 }
 
-TEST(LiveTrace, TellsWhereTheReadingIs) {
+TEST(LiveTrace, ShowsTheLevelOfTheReading) {
   const std::string low = LevelOf(1), middle = LevelOf(511.5), high = LevelOf(1022);
   const auto share = [](const std::string& level) {
     return static_cast<double>(level.find('*') - 1) / static_cast<double>(level.find(']') - 2);
@@ -164,7 +164,7 @@ TEST(LiveTrace, WarnsAtTheEndsOfTheConverter) {
   EXPECT_THAT(LevelOf(1023), EndsWith("*] HIGH"));
 }
 
-TEST(LiveTrace, HasNoRateOfOneSample) {
+TEST(LiveTrace, HasNoRateForOneSample) {
   LiveTrace trace("counts");
   trace.Take(3, 500, 500, 1023);
   EXPECT_THAT(trace.StatusLine("x"), StartsWith("3.0 s  0 Hz  500.0 counts  "));
@@ -173,7 +173,7 @@ TEST(LiveTrace, HasNoRateOfOneSample) {
 // ---- RedrawnLines ------------------------------------------------------------------------------------------------
 
 // ECMA-48: CSI n A moves the cursor up n lines, CSI K erases to the end of the line.
-TEST(RedrawnLines, DrawsOverWhatItDrewBefore) {
+TEST(RedrawnLines, DrawsOverThePreviousLines) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   RedrawnLines lines(ends[1]);

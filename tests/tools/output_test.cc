@@ -74,14 +74,14 @@ std::string Write(const std::vector<Output>& outputs) {
   return written.error().message;
 }
 
-TEST_F(OutputTest, CheckLeavesNoTrace) {
+TEST_F(OutputTest, CheckCreatesNothing) {
   Create("old", "kept");
   EXPECT_EQ(Check({Path("new"), Path("old"), "-", "/dev/null"}, {Path("data")}, StatusCode::kCannotWrite), "");
   EXPECT_THAT(Names(), UnorderedElementsAre("old"));
   EXPECT_EQ(Text("old"), "kept");
 }
 
-TEST_F(OutputTest, CheckRefusesWhatCannotBeWritten) {
+TEST_F(OutputTest, CheckRefusesUnwritablePaths) {
   EXPECT_EQ(Unwritable(directory_), "cannot write " + directory_.string() + ": it is a directory");
   EXPECT_EQ(Unwritable(Path("no/x")), "cannot write " + Path("no/x") + ": No such file or directory");
   EXPECT_EQ(Unwritable(Path("new/")), "cannot write " + Path("new/") + ": No such file or directory");
@@ -131,7 +131,7 @@ TEST_F(OutputTest, CheckComparesEachOutputWithAllOthersAndAllInputs) {
             "--out0 " + Path("out0") + " is the output of --out149 too");
 }
 
-TEST_F(OutputTest, CheckSeesThroughALinkToAFileThatIsNotThereYet) {
+TEST_F(OutputTest, CheckFollowsALinkToAMissingFile) {
   fs::create_symlink("new", Path("link"));
   EXPECT_NE(Check({Path("link"), Path("new")}, {}, StatusCode::kInvalidArgument), "");
 }
@@ -144,7 +144,7 @@ TEST_F(OutputTest, WritesAndReplacesWholeFiles) {
   EXPECT_THAT(Names(), UnorderedElementsAre("old", "b"));
 }
 
-TEST_F(OutputTest, WritesNothingWhenOneFileCannotBeWritten) {
+TEST_F(OutputTest, WritesNothingIfOneFileIsUnwritable) {
   EXPECT_EQ(Write({{Path("a"), "a"}, {Path("no/b"), "b"}}),
             "cannot write " + Path("no/b") + ": No such file or directory");
   EXPECT_TRUE(Names().empty());
@@ -159,7 +159,7 @@ TEST_F(OutputTest, WritesMoreFilesAtOnceThanAHundred) {
   EXPECT_EQ(Text("149"), "text 149");
 }
 
-TEST_F(OutputTest, LeavesAloneWhatAKilledProcessOfTheSameNumberLeft) {
+TEST_F(OutputTest, IgnoresFilesOfAKilledProcess) {
   const auto left = [](int i) { return ".pendulum." + std::to_string(::getpid()) + "." + std::to_string(i) + ".tmp"; };
   for (int i = 0; i < 1000; ++i) Create(left(i), "left");
   EXPECT_EQ(Write({{Path("a"), "a"}}), "");
@@ -168,7 +168,7 @@ TEST_F(OutputTest, LeavesAloneWhatAKilledProcessOfTheSameNumberLeft) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(Text(left(i)), "left");
 }
 
-TEST_F(OutputTest, KeepsThePermissionsOfAFileItReplacesAndFollowsTheUmaskForANewOne) {
+TEST_F(OutputTest, KeepsPermissionsOrFollowsTheUmask) {
   Create("old", "");
   fs::permissions(Path("old"), fs::perms(0640));
   const mode_t mask = ::umask(027);
@@ -198,7 +198,7 @@ TEST_F(OutputTest, WritesIntoANamedPipe) {
   EXPECT_TRUE(fs::is_fifo(Path("pipe")));
 }
 
-TEST_F(OutputTest, WritesIntoDevicesAndTellsWhenTheyAreFull) {
+TEST_F(OutputTest, WritesToDevicesAndReportsWhenTheyAreFull) {
   EXPECT_EQ(Write({{"/dev/null", "gone"}}), "");
   EXPECT_EQ(Write({{"/dev/full", "x"}}), "cannot write /dev/full: No space left on device");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
@@ -219,7 +219,7 @@ TEST_F(OutputTest, WritesPiecesOneAfterTheOther) {
   EXPECT_EQ(read, "abc");
 }
 
-TEST_F(OutputTest, KeepsTheOldFileWhereAPieceFails) {
+TEST_F(OutputTest, KeepsTheOldFileIfAPieceFails) {
   Create("old", "kept");
   const auto written = WritePieces(Path("old"), 3, [](int i) -> Result<std::string> {
     if (i == 2) return Error(StatusCode::kInternal, "no third piece");
@@ -233,7 +233,7 @@ TEST_F(OutputTest, KeepsTheOldFileWhereAPieceFails) {
             "cannot write " + Path("no/x") + ": No such file or directory");
 }
 
-TEST_F(OutputTest, WritesTheSameWhereSynchronisationIsDeferred) {
+TEST_F(OutputTest, WritesTheSameWithDeferredSynchronisation) {
   Create("old", "a longer text");
   const std::vector<Output> outputs = {{Path("old"), "new"}, {Path("b"), "b"}};
   EXPECT_TRUE(WriteOutputs(outputs, Durability::kDeferred));
@@ -250,16 +250,16 @@ TEST(IsStandardOutput, HasThreeNames) {
   EXPECT_FALSE(IsStandardOutput("./-"));
 }
 
-TEST(NumberedPath, IsThePathItselfForOneRecording) { EXPECT_EQ(NumberedPath("a/run.csv", 0, 1), "a/run.csv"); }
+TEST(NumberedPath, IsUnchangedForOneRecording) { EXPECT_EQ(NumberedPath("a/run.csv", 0, 1), "a/run.csv"); }
 
-TEST(NumberedPath, CountsFromOneWithThreeDigitsOrMore) {
+TEST(NumberedPath, StartsAtOneWithThreeDigitsOrMore) {
   EXPECT_EQ(NumberedPath("a.b/run.csv", 0, 2), "a.b/run_001.csv");
   EXPECT_EQ(NumberedPath("run", 11, 12), "run_012");
   EXPECT_EQ(NumberedPath("run.x.csv", 999, 1000), "run.x_1000.csv");
   EXPECT_EQ(NumberedPath("run.csv", 0, 1000), "run_0001.csv");
 }
 
-TEST(NumberedPath, LeavesStandardOutputAlone) {
+TEST(NumberedPath, KeepsStandardOutput) {
   for (const std::string path : {"-", "/dev/stdout", "/dev/fd/1"}) EXPECT_EQ(NumberedPath(path, 1, 3), path);
 }
 

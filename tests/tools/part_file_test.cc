@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-TEST(PartFile, LiesBesideTheRecording) {
+TEST(PartFile, IsNextToTheRecording) {
   const TemporaryFolder folder;
   EXPECT_EQ(PartFile(folder.Path("run.csv")).path(), folder.Path("run.csv") + ".part");
   folder.Create("run.csv", "an older one");
@@ -38,7 +38,7 @@ TEST(PartFile, CanBeReadWhileItGrows) {
   EXPECT_THAT(folder.Names(), UnorderedElementsAre("run.csv.part"));
 }
 
-TEST(PartFile, StaysUnlessItIsRemoved) {
+TEST(PartFile, RemainsUnlessRemoved) {
   const TemporaryFolder folder;
   {
     PartFile part(folder.Path("run.csv"));
@@ -50,7 +50,7 @@ TEST(PartFile, StaysUnlessItIsRemoved) {
   EXPECT_THAT(folder.Names(), IsEmpty());
 }
 
-TEST(PartFile, IsRemovedWhileItIsOpen) {
+TEST(PartFile, CanBeRemovedWhileOpen) {
   const TemporaryFolder folder;
   folder.Create("run.csv", "whole");
   PartFile part(folder.Path("run.csv"));
@@ -61,7 +61,7 @@ TEST(PartFile, IsRemovedWhileItIsOpen) {
   EXPECT_THAT(folder.Names(), UnorderedElementsAre("run.csv"));
 }
 
-TEST(PartFile, KnowsThatOfAnEarlierRecording) {
+TEST(PartFile, DetectsTheFileOfAnEarlierRecording) {
   const TemporaryFolder folder;
   PartFile part(folder.Path("run.csv"));
   EXPECT_FALSE(part.Exists());
@@ -75,7 +75,7 @@ TEST(PartFile, KnowsThatOfAnEarlierRecording) {
 }
 
 // A stream has no file next to it.
-TEST(PartFile, IsNoneOfAStream) {
+TEST(PartFile, IsNotUsedForAStream) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo(folder.Path("pipe").c_str(), 0600), 0);
   for (const std::string& path : {std::string("-"), std::string("/dev/null"), folder.Path("pipe"), folder.Path("")}) {
@@ -91,7 +91,7 @@ TEST(PartFile, IsNoneOfAStream) {
   EXPECT_THAT(folder.Names(), UnorderedElementsAre("pipe"));
 }
 
-TEST(PartFile, TellsThatItCannotBeBegun) {
+TEST(PartFile, ReportsAFailureToOpen) {
   const TemporaryFolder folder;
   PartFile part(folder.Path("nowhere/run.csv"));
   const auto opened = part.Open();
@@ -100,7 +100,7 @@ TEST(PartFile, TellsThatItCannotBeBegun) {
   EXPECT_THAT(opened.error().message, AllOf(HasSubstr("nowhere/run.csv.part"), HasSubstr("No such file")));
 }
 
-TEST(PartFile, TellsThatTheDiskIsFull) {
+TEST(PartFile, ReportsAFullDisk) {
   const TemporaryFolder folder;
   std::filesystem::create_symlink("/dev/full", folder.Path("run.csv.part"));
   PartFile part(folder.Path("run.csv"));

@@ -33,7 +33,7 @@ RecordPendulumOptions Made(const Flags& flags) {
 
 // ---- Recording ---------------------------------------------------------------------------------------------------
 
-TEST(MakeRecordPendulumOptions, RecordsUntilItIsStoppedUnlessToldOtherwise) {
+TEST(MakeRecordPendulumOptions, RecordsUntilStoppedByDefault) {
   const RecordPendulumOptions options = Made(Recording());
   EXPECT_EQ(options.task, RecordTask::kRecord);
   EXPECT_EQ(options.out, "run.csv");
@@ -48,7 +48,7 @@ TEST(MakeRecordPendulumOptions, RecordsUntilItIsStoppedUnlessToldOtherwise) {
   EXPECT_EQ(options.baud, 115200);
 }
 
-TEST(MakeRecordPendulumOptions, TakesEveryFlagOfARecording) {
+TEST(MakeRecordPendulumOptions, AcceptsEveryFlagOfARecording) {
   Flags flags = Recording();
   flags.port = "/dev/ttyACM1";
   flags.seconds = "12.5";
@@ -86,7 +86,7 @@ TEST(MakeRecordPendulumOptions, NamesItsFiles) {
   EXPECT_THAT(Made(Recording()).Inputs(), IsEmpty());
 }
 
-TEST(MakeRecordPendulumOptions, ReachesTheEndsOfTheRates) {
+TEST(MakeRecordPendulumOptions, AcceptsTheExtremesOfTheRates) {
   Flags flags = Recording();
   for (const double rate : {32.0, 8000.0}) {
     flags.rate_hz = rate;
@@ -143,7 +143,7 @@ TEST(MakeRecordPendulumOptions, StoresACalibration) {
 }
 
 // The user has given --store_calibration, so a message must not mention --calibration.
-TEST(MakeRecordPendulumOptions, NamesTheFlagThatNamesTheStoredCalibration) {
+TEST(MakeRecordPendulumOptions, NamesTheFlagForTheStoredCalibration) {
   Flags flags;
   flags.store_calibration = "cal.json";
   const RecordPendulumOptions options = Made(flags);
@@ -151,7 +151,7 @@ TEST(MakeRecordPendulumOptions, NamesTheFlagThatNamesTheStoredCalibration) {
   EXPECT_EQ(options.Inputs()[0].flag, "--store_calibration");
 }
 
-TEST(MakeRecordPendulumOptions, ShowsAndLists) {
+TEST(MakeRecordPendulumOptions, AcceptsShowingAndListing) {
   Flags flags;
   flags.info = true;
   EXPECT_EQ(Made(flags).task, RecordTask::kInfo);
@@ -184,7 +184,7 @@ void ExpectRefusals(const Flags& good, const std::vector<Refusal>& refusals) {
   }
 }
 
-TEST(MakeRecordPendulumOptions, RefusesNoTaskAndTwo) {
+TEST(MakeRecordPendulumOptions, RefusesNoTaskAndTwoTasks) {
   ExpectRefusals(Recording(), {{"--out is missing", [](Flags& f) { f.out.clear(); }},
                                {"only one can be done at a time", [](Flags& f) { f.list = true; }},
                                {"only one can be done at a time", [](Flags& f) { f.info = true; }},
@@ -216,7 +216,7 @@ TEST(MakeRecordPendulumOptions, RefusesWrongNumbers) {
                   {"--seconds is 1e9; it must be", [](Flags& f) { f.seconds = "1e9"; }}});
 }
 
-TEST(MakeRecordPendulumOptions, RefusesAFitOfNothing) {
+TEST(MakeRecordPendulumOptions, RefusesAFitWithoutARecording) {
   ExpectRefusals(Recording(), {{"--rig belongs to a fit; add --fit", [](Flags& f) { f.rig = "rig.json"; }},
                                {"--model belongs to a fit; add --fit", [](Flags& f) { f.model = "all"; }},
                                {"--fit needs a recording in a file", [](Flags& f) { f.fit = true, f.out = "-"; }},
@@ -224,7 +224,7 @@ TEST(MakeRecordPendulumOptions, RefusesAFitOfNothing) {
                                {"no_such_model", [](Flags& f) { f.fit = true, f.model = "no_such_model"; }}});
 }
 
-TEST(MakeRecordPendulumOptions, RefusesFlagsOfARecordingWhereNoneIsMade) {
+TEST(MakeRecordPendulumOptions, RefusesRecordingFlagsForOtherTasks) {
   const std::vector<Refusal> refusals = {
       {"--seconds belongs to a recording; add --out", [](Flags& f) { f.seconds = "5"; }},
       {"--until_rest belongs to a recording", [](Flags& f) { f.until_rest = true; }},
@@ -248,7 +248,7 @@ TEST(MakeRecordPendulumOptions, RefusesFlagsOfARecordingWhereNoneIsMade) {
 
 // 10 bits per byte. 16 samples are a payload of 44 bytes, and 48 with CRC, COBS and 0: 11 520 / 48 * 16 = 3840 Hz. 8
 // samples (200 Hz, 25 frames per second) are 32 bytes: 2880 Hz. A single sample has 18 bytes: 640 Hz.
-TEST(LineCapacityHz, IsThatOfWholeFrames) {
+TEST(LineCapacityHz, CountsWholeFrames) {
   EXPECT_DOUBLE_EQ(LineCapacityHz({500, 1}, 115200), 3840);
   EXPECT_DOUBLE_EQ(LineCapacityHz({500, 1}, 1000000), 1000000.0 / 480 * 16);
   EXPECT_DOUBLE_EQ(LineCapacityHz({10000, 1}, 115200), 2880);

@@ -98,7 +98,7 @@ std::vector<std::string> CodesOf(const RecordedRun& recorded) {
 
 // ---- Normal ends -------------------------------------------------------------------------------------------------
 
-TEST(RecordRun, RecordsForSoManySeconds) {
+TEST(RecordRun, RecordsForTheGivenSeconds) {
   Laboratory laboratory(WithSawtooth());
   laboratory.options.seconds = 2;
   const RecordedRun recorded = laboratory.Recorded();
@@ -111,7 +111,7 @@ TEST(RecordRun, RecordsForSoManySeconds) {
 }
 
 // Frames have 8 samples; 0.104 s at 200 Hz contain the 21 samples at 0, 0.005, ..., 0.1 s.
-TEST(RecordRun, RecordsNoMoreThanWasAskedFor) {
+TEST(RecordRun, RecordsNoMoreThanRequested) {
   Laboratory laboratory(WithSawtooth());
   laboratory.options.seconds = 0.104;
   const RecordedRun recorded = laboratory.Recorded();
@@ -147,7 +147,7 @@ TEST(RecordRun, RecordsMeansWithTheirCalibration) {
   EXPECT_NEAR(recording.resolution, 0.25 / 16 * kRadFromDeg, 1e-12);
 }
 
-TEST(RecordRun, StopsWhenItIsStopped) {
+TEST(RecordRun, StopsOnRequest) {
   Laboratory laboratory(WithSawtooth());
   std::thread user([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -200,27 +200,27 @@ LoggerScript TenFramesAnd(Then then) {
   return script;
 }
 
-TEST(RecordRun, KeepsWhatCameBeforeTheCableWasPulled) {
+TEST(RecordRun, KeepsSamplesBeforeTheCableIsPulled) {
   Laboratory laboratory(TenFramesAnd(Then::kUnplugged));
-  EXPECT_THAT(RecordedUntil(Then::kUnplugged, laboratory).why_lost, HasSubstr("is gone"));
+  EXPECT_THAT(RecordedUntil(Then::kUnplugged, laboratory).loss_reason, HasSubstr("is gone"));
 }
 
-TEST(RecordRun, KeepsWhatCameBeforeAReset) {
+TEST(RecordRun, KeepsSamplesBeforeAReset) {
   Laboratory laboratory(TenFramesAnd(Then::kReset));
-  EXPECT_THAT(RecordedUntil(Then::kReset, laboratory).why_lost, HasSubstr("started again"));
+  EXPECT_THAT(RecordedUntil(Then::kReset, laboratory).loss_reason, HasSubstr("started again"));
 }
 
-TEST(RecordRun, KeepsWhatCameBeforeAnEndThatNobodyAskedFor) {
+TEST(RecordRun, KeepsSamplesBeforeAnUnrequestedEnd) {
   Laboratory laboratory(TenFramesAnd(Then::kEnd));
-  EXPECT_THAT(RecordedUntil(Then::kEnd, laboratory).why_lost, HasSubstr("by itself"));
+  EXPECT_THAT(RecordedUntil(Then::kEnd, laboratory).loss_reason, HasSubstr("by itself"));
 }
 
-TEST(RecordRun, KeepsWhatCameBeforeSilence) {
+TEST(RecordRun, KeepsSamplesBeforeSilence) {
   Laboratory laboratory(TenFramesAnd(Then::kSilence));
-  EXPECT_THAT(RecordedUntil(Then::kSilence, laboratory).why_lost, HasSubstr("silent"));
+  EXPECT_THAT(RecordedUntil(Then::kSilence, laboratory).loss_reason, HasSubstr("silent"));
 }
 
-TEST(RecordRun, TellsLostFramesAndKeepsTheTimes) {
+TEST(RecordRun, ReportsLostFramesAndKeepsTheTimes) {
   LoggerScript script = WithSawtooth();
   script.lost_frames = {5, 6};
   Laboratory laboratory(script);
@@ -238,7 +238,7 @@ TEST(RecordRun, TellsLostFramesAndKeepsTheTimes) {
   EXPECT_EQ(recording.value[40], Sawtooth(0.28));
 }
 
-TEST(RecordRun, WaitsNotForeverForTheEnd) {
+TEST(RecordRun, DoesNotWaitForeverForTheEnd) {
   LoggerScript script = WithSawtooth();
   script.sends_end = false;
   Laboratory laboratory(script);
@@ -253,7 +253,7 @@ TEST(RecordRun, WaitsNotForeverForTheEnd) {
 
 // ---- No data -----------------------------------------------------------------------------------------------------
 
-TEST(RecordRun, TellsThatNothingCame) {
+TEST(RecordRun, ReportsAnEmptyRecording) {
   LoggerScript script;
   script.frames = 0;
   Laboratory laboratory(script);
@@ -264,7 +264,7 @@ TEST(RecordRun, TellsThatNothingCame) {
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
 }
 
-TEST(RecordRun, IsStoppedBeforeAnythingCame) {
+TEST(RecordRun, CanBeStoppedBeforeAnythingArrives) {
   LoggerScript script;
   script.frames = 0;
   Laboratory laboratory(script);
@@ -280,7 +280,7 @@ TEST(RecordRun, IsStoppedBeforeAnythingCame) {
 }
 
 // The part file may belong to an earlier recording that no new data has replaced.
-TEST(RecordRun, TouchesNothingWhereTheLoggerDoesNotStart) {
+TEST(RecordRun, ChangesNothingIfTheLoggerDoesNotStart) {
   LoggerScript script;
   script.refused = {{'S', pendulum_logger::kUnknown}};
   Laboratory laboratory(script);
@@ -295,12 +295,12 @@ TEST(RecordRun, TouchesNothingWhereTheLoggerDoesNotStart) {
 
 // ---- The copy on the disk ----------------------------------------------------------------------------------------
 
-TEST(RecordRun, HasACopyOnTheDiskMeanwhile) {
+TEST(RecordRun, HasAPartFileOnTheDiskMeanwhile) {
   Laboratory laboratory(WithSawtooth());
   std::string meanwhile;
   std::thread user([&] {
-    constexpr int kMostTries = 2000;
-    for (int i = 0; i < kMostTries && std::ranges::count(meanwhile, '\n') < 250; ++i) {
+    constexpr int kMaxTries = 2000;
+    for (int i = 0; i < kMaxTries && std::ranges::count(meanwhile, '\n') < 250; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       meanwhile = laboratory.folder.Text("run.csv.part");
     }
@@ -315,18 +315,18 @@ TEST(RecordRun, HasACopyOnTheDiskMeanwhile) {
   EXPECT_EQ(ReadBack(laboratory.folder.Text("run.csv.part")).size(), recorded.run.size());
 }
 
-TEST(RecordRun, GoesOnWhereTheCopyCannotBe) {
+TEST(RecordRun, ContinuesIfThePartFileCannotBeWritten) {
   Laboratory laboratory(WithSawtooth());
   laboratory.options.out = laboratory.folder.Path("nowhere/run.csv");
   laboratory.options.seconds = 0.5;
   const RecordedRun recorded = laboratory.Recorded();
   ExpectSawtooth(ReadBack(recorded.Csv()), 100);
-  EXPECT_THAT(recorded.part_trouble, HasSubstr("nowhere/run.csv.part"));
+  EXPECT_THAT(recorded.part_file_error, HasSubstr("nowhere/run.csv.part"));
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
 }
 
 // Samples lost after the requested end do not belong to the recording.
-TEST(RecordRun, CountsNoLossBehindItsEnd) {
+TEST(RecordRun, CountsNoLossAfterItsEnd) {
   LoggerScript script = WithSawtooth();
   script.lost_frames = {13, 14, 15, 16};  // 0.5 s are frames 0 to 12
   Laboratory laboratory(script);
@@ -336,21 +336,21 @@ TEST(RecordRun, CountsNoLossBehindItsEnd) {
   EXPECT_TRUE(IsComplete(recorded));
 }
 
-TEST(RecordRun, GoesOnWhereTheDiskIsFull) {
+TEST(RecordRun, ContinuesIfTheDiskIsFull) {
   Laboratory laboratory(WithSawtooth());
   std::filesystem::create_symlink("/dev/full", laboratory.folder.Path("run.csv.part"));
   laboratory.options.seconds = 0.5;
   const RecordedRun recorded = laboratory.Recorded();
   ExpectSawtooth(ReadBack(recorded.Csv()), 100);
-  EXPECT_THAT(recorded.part_trouble, HasSubstr("No space left"));
+  EXPECT_THAT(recorded.part_file_error, HasSubstr("No space left"));
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
 }
 
-TEST(RecordRun, HasNoCopyOfAStream) {
+TEST(RecordRun, HasNoPartFileForAStream) {
   Laboratory laboratory(WithSawtooth());
   laboratory.options.out = "-";
   laboratory.options.seconds = 0.2;
-  EXPECT_EQ(laboratory.Recorded().part_trouble, "");
+  EXPECT_EQ(laboratory.Recorded().part_file_error, "");
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
 }
 

@@ -86,7 +86,7 @@ std::size_t Width(const std::string& text) {
 
 // ---- RecordText --------------------------------------------------------------------------------------------------
 
-TEST(RecordText, TellsWhatWasRecorded) {
+TEST(RecordText, DescribesTheRecording) {
   const std::string text = FlatText(Recorded());
   EXPECT_THAT(text, AllOf(HasSubstr("file run.csv"), HasSubstr("pendulum_logger version 1.0, Arduino Uno, run 42"),
                           HasSubstr("4 at 200 Hz, 0.02 s; none lost"), HasSubstr("460 to 540 of 0 to 1023 counts"),
@@ -95,20 +95,20 @@ TEST(RecordText, TellsWhatWasRecorded) {
 }
 
 // -135 + 0.25 * 460 = -20 and -135 + 0.25 * 540 = 0.
-TEST(RecordText, TellsAnglesWhereTheyAreKnown) {
+TEST(RecordText, ShowsAnglesIfKnown) {
   RecordedRun recorded = Recorded();
   recorded.description.calibration = QuarterDegree();
   EXPECT_THAT(FlatText(recorded), HasSubstr("460 to 540 of 0 to 1023 counts, -20 to 0 deg"));
 }
 
-TEST(RecordText, LooksOnlyAtWhatBelongsToTheRecording) {
+TEST(RecordText, UsesOnlyTheRecordingsOwnNumbers) {
   RecordedRun recorded = Recorded({500, 510, 520, 1023, 0});
   recorded.run.KeepFirst(3);
   EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("3 at 200 Hz, 0.015 s"), HasSubstr("500 to 520 of")));
   EXPECT_THAT(CodesOf(recorded), IsEmpty());
 }
 
-TEST(RecordText, TellsOversampling) {
+TEST(RecordText, ShowsOversampling) {
   RecordedRun recorded(SamplingRate{1250, 16});
   wire::Data frame{};
   frame.count = 1;
@@ -120,7 +120,7 @@ TEST(RecordText, TellsOversampling) {
 }
 
 // A second of the logger is 1.0005 true seconds: its clock is slow by 500 ppm.
-TEST(RecordText, TellsTheClockAsItGoes) {
+TEST(RecordText, ShowsTheMeasuredClock) {
   RecordedRun recorded = Recorded();
   EXPECT_THAT(FlatText(recorded), HasSubstr("± 0.3 %"));
   recorded.description.clock = {.scale = 1.0005, .std_dev = 12e-6, .is_measured = true};
@@ -129,14 +129,14 @@ TEST(RecordText, TellsTheClockAsItGoes) {
   EXPECT_THAT(FlatText(recorded), HasSubstr("3009 ± 12 ppm fast"));
 }
 
-TEST(RecordText, TellsWhyItEnded) {
+TEST(RecordText, ShowsWhyItEnded) {
   RecordedRun recorded = Recorded();
   recorded.end = RunEnd::kRest;
   EXPECT_THAT(FlatText(recorded), HasSubstr("ended at rest"));
   recorded.end = RunEnd::kStopped;
   EXPECT_THAT(FlatText(recorded), HasSubstr("ended by hand"));
   recorded.end = RunEnd::kLost;
-  recorded.why_lost = "the logger has fallen silent";
+  recorded.loss_reason = "the logger has fallen silent";
   EXPECT_THAT(FlatText(recorded), HasSubstr("ended too early: the logger has fallen silent"));
 }
 
@@ -145,26 +145,26 @@ TEST(RecordText, FitsATerminal) {
   recorded.description.calibration = QuarterDegree();
   recorded.description.losses = {123456, 100000, 20000, 3456, 7, false};
   recorded.description.clock.is_implausible = true;
-  recorded.part_trouble = "cannot write run.csv.part: No space left on device";
+  recorded.part_file_error = "cannot write run.csv.part: No space left on device";
   const std::string text = RecordText(recorded, "run.csv");
   EXPECT_THAT(Flat(text), HasSubstr("[[Warnings]]"));
   EXPECT_LE(Width(text), 80);
 }
 
-TEST(RecordText, SteersNoTerminal) {
+TEST(RecordText, ContainsNoTerminalControlCharacters) {
   RecordedRun recorded = Recorded();
-  recorded.part_trouble = "cannot write \x1b[2Jrun.csv.part";
+  recorded.part_file_error = "cannot write \x1b[2Jrun.csv.part";
   EXPECT_THAT(RecordText(recorded, "\x1b[2Jrun.csv"), Not(HasSubstr("\x1b")));
 }
 
 // ---- RecordWarnings ----------------------------------------------------------------------------------------------
 
-TEST(RecordWarnings, AreNoneOfAGoodRecording) {
+TEST(RecordWarnings, AreEmptyForAGoodRecording) {
   EXPECT_THAT(RecordWarnings(Recorded()), IsEmpty());
   EXPECT_TRUE(IsComplete(Recorded()));
 }
 
-TEST(RecordWarnings, TellWhereSamplesWereLost) {
+TEST(RecordWarnings, ReportLostSamples) {
   RecordedRun recorded = Recorded();
   recorded.description.losses->samples = 30;
   recorded.description.losses->dropped = 20;
@@ -179,17 +179,17 @@ TEST(RecordWarnings, TellWhereSamplesWereLost) {
   EXPECT_FALSE(IsComplete(recorded));
 }
 
-TEST(RecordWarnings, TellAnEndThatDidNotCome) {
+TEST(RecordWarnings, ReportAMissingEnd) {
   RecordedRun recorded = Recorded();
   recorded.description.losses->is_end_known = false;
   EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
   EXPECT_FALSE(IsComplete(recorded));
 }
 
-TEST(RecordWarnings, TellALoggerThatIsGone) {
+TEST(RecordWarnings, ReportALostLogger) {
   RecordedRun recorded = Recorded();
   recorded.end = RunEnd::kLost;
-  recorded.why_lost = "/dev/ttyACM0 is gone";
+  recorded.loss_reason = "/dev/ttyACM0 is gone";
   recorded.description.losses->is_end_known = false;
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));  // the End frame is missing, too
@@ -206,24 +206,24 @@ TEST(RecordWarnings, CountSaturatedReadings) {
   EXPECT_TRUE(IsComplete(Recorded({0, 1, 1022, 1023, 1023})));
 }
 
-TEST(RecordWarnings, TellEverythingElse) {
+TEST(RecordWarnings, ReportAllOtherProblems) {
   RecordedRun recorded = Recorded();
   recorded.description.losses->contradicting_frames = 2;
   recorded.description.clock.is_implausible = true;
-  recorded.part_trouble = "cannot write run.csv.part: No space left on device";
+  recorded.part_file_error = "cannot write run.csv.part: No space left on device";
   EXPECT_THAT(CodesOf(recorded), ElementsAre("contradicting_frames", "clock_implausible", "no_part"));
   EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("2 frames"), HasSubstr("No space left on device")));
 }
 
 // ---- Loggers and ports -------------------------------------------------------------------------------------------
 
-TEST(LoggerText, TellsWhatTheLoggerIs) {
+TEST(LoggerText, DescribesTheLogger) {
   const std::string text = Flat(LoggerText(Uno(), "/dev/ttyACM0"));
   EXPECT_THAT(text, AllOf(HasSubstr("port /dev/ttyACM0"), HasSubstr("version 1.0"), HasSubstr("board Arduino Uno"),
                           HasSubstr("reference supply voltage"), HasSubstr("41 so far"), HasSubstr("no calibration")));
 }
 
-TEST(LoggerText, TellsTheCalibration) {
+TEST(LoggerText, ShowsTheCalibration) {
   wire::Info info = Uno();
   info.has_calibration = 1;
   info.calibration = {-135.1F, 0.2637F, 0, 0, 0};
@@ -232,7 +232,7 @@ TEST(LoggerText, TellsTheCalibration) {
   EXPECT_THAT(Flat(LoggerText(info, "p")), HasSubstr("angle = 135 - 0.25 x deg, x in counts, with its covariance"));
 }
 
-TEST(PortsText, ListsOneALine) {
+TEST(PortsText, ListsOnePortPerLine) {
   const std::vector<PortName> ports = {{"/dev/ttyACM0", "Arduino \x1b[2JUno", true}, {"/dev/ttyUSB1", "", false}};
   const std::string text = PortsText(ports);
   std::istringstream lines(text);
@@ -245,7 +245,7 @@ TEST(PortsText, ListsOneALine) {
   EXPECT_TRUE(lines.get() == EOF);
 }
 
-TEST(PortsText, TellsThatThereIsNone) { EXPECT_THAT(PortsText({}), HasSubstr("no USB serial port")); }
+TEST(PortsText, ReportsMissingPorts) { EXPECT_THAT(PortsText({}), HasSubstr("no USB serial port")); }
 
 }  // namespace
 }  // namespace pendulum::record_text_test

@@ -73,7 +73,7 @@ TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunHasItsRows) {
   EXPECT_THAT(printed_, HasSubstr("in the store                    2\n"));
 }
 
-TEST_F(RefitCommandsTest, RefusesACommonRigThatIsWrongBeforeAnyFit) {
+TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {
   RefitPendulumsOptions options = Options(RefitCommand::kRefit);
   options.rig = folder_ / "rig.json";
   EXPECT_EQ(Run(options), 3);
@@ -83,7 +83,7 @@ TEST_F(RefitCommandsTest, RefusesACommonRigThatIsWrongBeforeAnyFit) {
   EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
 }
 
-TEST_F(RefitCommandsTest, ExportsByTheNameOfTheOutput) {
+TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = "-";
@@ -111,7 +111,7 @@ TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
   EXPECT_TRUE(fs::is_fifo(options.out));
 }
 
-TEST_F(RefitCommandsTest, TellsByItsExitCodeWhetherSomethingMoved) {
+TEST_F(RefitCommandsTest, ReportsChangesByExitCode) {
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions other = Options(RefitCommand::kRefit);
   other.stores = {folder_ / "b.sqlite"};
@@ -124,7 +124,7 @@ TEST_F(RefitCommandsTest, TellsByItsExitCodeWhetherSomethingMoved) {
   EXPECT_EQ(Run(compare), 1);
 }
 
-TEST_F(RefitCommandsTest, MissesAndMergesShards) {
+TEST_F(RefitCommandsTest, ListsMissingShardsAndMergesThem) {
   RefitPendulumsOptions options = Options(RefitCommand::kRefit);
   options.refit.shard = Shard{1, 2};
   fs::create_directories(folder_ / "out");
@@ -141,7 +141,7 @@ TEST_F(RefitCommandsTest, MissesAndMergesShards) {
   EXPECT_THAT(said_, HasSubstr("of 2 shards these are missing: 0"));
 }
 
-TEST_F(RefitCommandsTest, MergesWhatIsComplete) {
+TEST_F(RefitCommandsTest, MergesCompleteShards) {
   for (const std::int64_t k : {0, 1}) {
     RefitPendulumsOptions options = Options(RefitCommand::kRefit);
     options.refit.shard = Shard{k, 2};
@@ -161,7 +161,7 @@ TEST_F(RefitCommandsTest, MergesWhatIsComplete) {
   EXPECT_EQ(printed_, "");
 }
 
-TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
+TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
   RefitPendulumsOptions options = Options(RefitCommand::kReport);
   options.out = folder_ / "summary.json";
   EXPECT_EQ(Run(options), 3);  // the store does not exist
@@ -187,7 +187,7 @@ TEST_F(RefitCommandsTest, ReportsByTheNameOfTheOutput) {
   EXPECT_EQ(Run(options), 2);  // the output is the store itself
 }
 
-TEST_F(RefitCommandsTest, RefitsWhatItPacked) {
+TEST_F(RefitCommandsTest, RefitsItsOwnPack) {
   RefitPendulumsOptions pack = Options(RefitCommand::kPack);
   pack.out = folder_ / "runs.pack";
   ASSERT_EQ(Run(pack), 0) << said_;
@@ -200,7 +200,7 @@ TEST_F(RefitCommandsTest, RefitsWhatItPacked) {
   EXPECT_EQ(Run(pack), 2);
 }
 
-TEST_F(RefitCommandsTest, PacksOverNoneOfTheRecordings) {
+TEST_F(RefitCommandsTest, NeverOverwritesARecordingWithAPack) {
   fs::copy("datasets/runs_1.csv", folder_ / "one.csv");
   RefitPendulumsOptions pack = Options(RefitCommand::kPack);
   pack.manifest.clear();
@@ -210,7 +210,7 @@ TEST_F(RefitCommandsTest, PacksOverNoneOfTheRecordings) {
   EXPECT_EQ(fs::file_size(folder_ / "one.csv"), fs::file_size("datasets/runs_1.csv"));
 }
 
-TEST_F(RefitCommandsTest, RefitsNothingIntoAStoreThatIsInUse) {
+TEST_F(RefitCommandsTest, DoesNotRefitAStoreInUse) {
   const auto lock = StoreLock::Take(folder_ / "a.sqlite");
   ASSERT_TRUE(lock);
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 75);
@@ -226,7 +226,7 @@ int RefitAfter(int signal, const RefitPendulumsOptions& options) {
   return RunRefitCommand(forced).value_or(-1);
 }
 
-TEST_F(RefitCommandsTest, TellsASignalByItsExitCodeAndWhatIsLeft) {
+TEST_F(RefitCommandsTest, ReportsASignalByExitCodeAndRemainingRuns) {
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 75}}) {
     EXPECT_EXIT(std::exit(RefitAfter(signal, Options(RefitCommand::kRefit))), testing::ExitedWithCode(code),
                 "2 are left: the same command goes on from here");

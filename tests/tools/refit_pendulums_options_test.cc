@@ -58,7 +58,7 @@ TEST(MakeRefitPendulumsOptions, RefitsWithoutACommand) {
   EXPECT_FALSE(options->refit.shard);
 }
 
-TEST(MakeRefitPendulumsOptions, TakesAShard) {
+TEST(MakeRefitPendulumsOptions, AcceptsAShard) {
   RefitFlags flags = GoodFlags();
   flags.shard = "3/64";
   flags.scratch = "/tmp";
@@ -73,7 +73,7 @@ TEST(MakeRefitPendulumsOptions, TakesAShard) {
   EXPECT_EQ(options->shard.checkpoint, 5);
 }
 
-TEST(MakeRefitPendulumsOptions, RefusesShardsThatAreNone) {
+TEST(MakeRefitPendulumsOptions, RefusesInvalidShards) {
   for (const char* shard : {"3", "3/3", "-1/3", "a/3", "1/0", "1/3x", "/3", "0/2000000000"}) {
     RefitFlags flags = GoodFlags();
     flags.shard = shard;
@@ -81,7 +81,7 @@ TEST(MakeRefitPendulumsOptions, RefusesShardsThatAreNone) {
   }
 }
 
-TEST(MakeRefitPendulumsOptions, NamesWhatIsWrongWithARefit) {
+TEST(MakeRefitPendulumsOptions, NamesTheFaultOfARefit) {
   const std::vector<std::pair<std::string, std::function<void(RefitFlags&)>>> wrong = {
       {"no store was given", [](RefitFlags& f) { f.store.clear(); }},
       {"no runs were given", [](RefitFlags& f) { f.manifest.clear(); }},
@@ -110,7 +110,7 @@ TEST(MakeRefitPendulumsOptions, NamesWhatIsWrongWithARefit) {
   }
 }
 
-TEST(MakeRefitPendulumsOptions, KnowsTheCommands) {
+TEST(MakeRefitPendulumsOptions, AcceptsTheCommands) {
   const std::vector<std::pair<RefitFlags, RefitCommand>> commands = {
       {CommandFlags({"status"}, {"store"}), RefitCommand::kStatus},
       {CommandFlags({"export"}, {"store", "out"}), RefitCommand::kExport},

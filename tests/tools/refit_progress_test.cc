@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-TEST(DurationText, IsInTheUnitsThatPeopleUse) {
+TEST(DurationText, UsesCommonUnits) {
   EXPECT_EQ(DurationText(0.2), "0 s");
   EXPECT_EQ(DurationText(59.4), "59 s");
   EXPECT_EQ(DurationText(60), "1 min 00 s");
@@ -29,7 +29,7 @@ TEST(DurationText, IsInTheUnitsThatPeopleUse) {
 }
 
 // 500 of 2000 in 10 s: 50 per second, and the other 1500 take 30 s.
-TEST(ProgressText, TellsRateAndTimeLeft) {
+TEST(ProgressText, ShowsRateAndRemainingTime) {
   RefitCounts counts;
   counts.runs = 2000;
   counts.refitted = 400;
@@ -39,7 +39,7 @@ TEST(ProgressText, TellsRateAndTimeLeft) {
   EXPECT_THAT(ProgressText(counts, 10), EndsWith(", 3 could not be fitted"));
 }
 
-TEST(ProgressText, KnowsNoRateBeforeTheFirstRun) {
+TEST(ProgressText, ShowsNoRateBeforeTheFirstRun) {
   RefitCounts counts;
   counts.runs = 5;
   EXPECT_EQ(ProgressText(counts, 1), "0 of 5 runs (0 %)");
@@ -74,7 +74,7 @@ TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
   ::close(follower);
 }
 
-TEST(RefitProgress, WritesPlainLinesNowAndThenElsewhere) {
+TEST(RefitProgress, WritesOccasionalPlainLinesElsewhere) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   RefitProgress progress("refit_pendulums", ends[1], std::chrono::milliseconds(100));
@@ -93,7 +93,7 @@ TEST(RefitProgress, WritesPlainLinesNowAndThenElsewhere) {
   ::close(ends[0]);
 }
 
-TEST(RefitProgress, DrawsNothingOnAPipeWithinSeconds) {
+TEST(RefitProgress, DrawsNothingOnAPipeAtFirst) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   RefitProgress progress("refit_pendulums", ends[1]);

@@ -30,7 +30,7 @@ StoreComparison SomeMoved() {
   return comparison;
 }
 
-TEST(ComparisonText, CountsAndNamesWhatMoved) {
+TEST(ComparisonText, CountsAndNamesChangedParameters) {
   const std::string text = ComparisonText(SomeMoved(), "a.sqlite", "b.sqlite");
   EXPECT_THAT(text, HasSubstr("    in both                         12\n"));
   EXPECT_THAT(text, HasSubstr("    in b.sqlite only                2\n"));
@@ -40,14 +40,14 @@ TEST(ComparisonText, CountsAndNamesWhatMoved) {
   EXPECT_THAT(text, Not(HasSubstr("CPU")));
 }
 
-TEST(ComparisonText, NamesTypesOfCpuThatDiffer) {
+TEST(ComparisonText, NamesDifferingCpuTypes) {
   StoreComparison comparison = SomeMoved();
   comparison.cpus_after = {"another"};
   EXPECT_THAT(ComparisonText(comparison, "a", "b"),
               HasSubstr("[[Types of CPU]]\n    a: a processor\n    b: another\n"));
 }
 
-TEST(ComparisonText, ShowsNothingThatSteersATerminal) {
+TEST(ComparisonText, ContainsNoTerminalControlCharacters) {
   StoreComparison comparison = SomeMoved();
   comparison.most_moved[0].id = "a\x1b[2Jb\nc";
   EXPECT_THAT(ComparisonText(comparison, "a", "b"), Not(HasSubstr("\x1b")));
@@ -57,7 +57,7 @@ TEST(ComparisonText, ShowsNothingThatSteersATerminal) {
 Store StoreOfThree(const std::string& path) {
   auto store = Store::Open(path, Store::Mode::kWrite);
   const Source source = {"three",
-                         [](const TakeEntry& take) -> Result<void> {
+                         [](const EntrySink& take) -> Result<void> {
                            for (std::int64_t k = 0; k < 3; ++k) {
                              ManifestEntry entry;
                              entry.position = k;

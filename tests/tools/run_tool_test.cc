@@ -25,22 +25,22 @@ std::pair<int, std::string> RunOf(const Work& work, std::vector<std::string> arg
   return {code, testing::internal::GetCapturedStderr()};
 }
 
-TEST(RunTool, GivesTheExitCodeOfTheWork) {
+TEST(RunTool, ReturnsTheExitCodeOfTheWork) {
   EXPECT_EQ(RunOf([](const auto&) { return 0; }), std::pair(0, std::string()));
   EXPECT_EQ(RunOf([](const auto&) { return 1; }), std::pair(1, std::string()));
 }
 
-TEST(RunTool, SaysAnErrorUnderItsNameAndExitsWithItsCode) {
+TEST(RunTool, PrintsAnErrorAndExitsWithItsCode) {
   const auto missing = [](const auto&) -> Result<int> { return Error(StatusCode::kNotFound, "no such file"); };
   EXPECT_EQ(RunOf(missing), std::pair(3, std::string("swing: no such file\n")));
 }
 
-TEST(RunTool, TakesAnExceptionForABug) {
+TEST(RunTool, TreatsAnExceptionAsABug) {
   const auto broken = [](const auto&) -> Result<int> { throw std::runtime_error("out of bounds"); };
   EXPECT_EQ(RunOf(broken), std::pair(70, std::string("swing: internal error: out of bounds\n")));
 }
 
-TEST(RunTool, HandsOnWhatBelongsToNoFlagAndRefusesUnknownFlags) {
+TEST(RunTool, PassesArgumentsAndRefusesUnknownFlags) {
   std::vector<std::string> seen;
   const auto work = [&](const std::vector<std::string>& positional) {
     seen = positional;

@@ -28,7 +28,7 @@ ServePendulumFlags Flags() {
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
-TEST(MakeServePendulumOptions, ServeThisMachineAloneUnlessToldOtherwise) {
+TEST(MakeServePendulumOptions, ServeOnlyThisMachineByDefault) {
   const auto options = MakeServePendulumOptions(Flags(), "");
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->store, "fits.sqlite");
@@ -49,7 +49,7 @@ TEST(InstalledGuide, IsBesideTheFolderOfTheProgram) {
   EXPECT_EQ(InstalledGuide("/home/ada/pendulum/bin/serve_pendulum"), "/home/ada/pendulum/share/doc/pendulum/html");
 }
 
-TEST(MakeServePendulumOptions, TakeEachFlagToItsPlace) {
+TEST(MakeServePendulumOptions, StoreEachFlag) {
   ServePendulumFlags flags = Flags();
   flags.port = 0;
   flags.address = "0.0.0.0";
@@ -119,7 +119,7 @@ TEST(MakeServePendulumOptions, RefuseWrongFlagsAndNameThem) {
   }
 }
 
-TEST(MakeServePendulumOptions, WantATokenWhereOtherMachinesCanAsk) {
+TEST(MakeServePendulumOptions, RequireATokenForOtherMachines) {
   for (const char* address : {"0.0.0.0", "192.168.1.5", "::", "128.0.0.1", "::ffff:127.0.0.1"}) {
     ServePendulumFlags flags = Flags();
     flags.address = address;
@@ -155,7 +155,7 @@ TEST_F(ReadTokenTest, IsTheFirstLineOfTheFile) {
   }
 }
 
-TEST_F(ReadTokenTest, IsThatOfTheEnvironmentWhereThereIsNoFile) {
+TEST_F(ReadTokenTest, UsesTheEnvironmentWithoutAFile) {
   EXPECT_EQ(ReadToken("", nullptr).value(), "");
   EXPECT_EQ(ReadToken("", "").value(), "");
   EXPECT_EQ(ReadToken("", kToken).value(), kToken);
@@ -163,7 +163,7 @@ TEST_F(ReadTokenTest, IsThatOfTheEnvironmentWhereThereIsNoFile) {
   EXPECT_EQ(ReadToken(folder_.Path("token"), kToken).value(), "that_of_the_file");
 }
 
-TEST_F(ReadTokenTest, HasSixteenVisibleCharacters) {
+TEST_F(ReadTokenTest, RequiresSixteenVisibleCharacters) {
   for (const std::string text : {"0123456789abcde", "0123456789abcde f", "0123456789abcdef\t", "0123456789abcdéf"}) {
     const auto refused = Read(text);
     ASSERT_FALSE(refused) << text;
@@ -175,7 +175,7 @@ TEST_F(ReadTokenTest, HasSixteenVisibleCharacters) {
   }
 }
 
-TEST_F(ReadTokenTest, RefusesAFileWithoutOne) {
+TEST_F(ReadTokenTest, RefusesAFileWithoutAToken) {
   for (const char* text : {"", "\n", "\r\n0123456789abcdef\n"}) {
     const auto refused = Read(text);
     ASSERT_FALSE(refused) << text;

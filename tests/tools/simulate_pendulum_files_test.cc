@@ -79,7 +79,7 @@ TEST_F(WriteRecordingsTest, WritesTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST_F(WriteRecordingsTest, RefusesBeforeTheWorkWhatCannotBeWritten) {
+TEST_F(WriteRecordingsTest, RefusesUnwritablePathsBeforeTheWork) {
   flags_.count = 2000;
   fs::create_directory(folder_.Path("run_1500.csv"));
   EXPECT_EQ(Refused(StatusCode::kCannotWrite), "cannot write " + folder_.Path("run_1500.csv") + ": it is a directory");
@@ -99,7 +99,7 @@ TEST_F(WriteRecordingsTest, RefusesAManifestOrARigThatARecordingWouldReplace) {
   EXPECT_THAT(folder_.Names(), UnorderedElementsAre("run_0007.csv"));
 }
 
-TEST_F(WriteRecordingsTest, ReplacesWhatIsThere) {
+TEST_F(WriteRecordingsTest, ReplacesExistingFiles) {
   folder_.Create("run_002.csv", "old");
   Make();
   EXPECT_THAT(folder_.Text("run_002.csv"), StartsWith("# simulate_pendulum "));

@@ -49,18 +49,18 @@ class ManifestTest : public testing::Test {
   SimulateFlags flags_;
 };
 
-TEST_F(ManifestTest, HasARowForARecordingWithItsSeedAndTruth) {
+TEST_F(ManifestTest, HasARowPerRecordingWithSeedAndTruth) {
   EXPECT_EQ(Header(), "path,id,seed,true_inertia,true_viscous,true_release_angle,true_release_time,true_zero_angle\n");
   EXPECT_EQ(Row(2), "../runs/run_003.csv,run_003,9,0.04,0,0.25,0.5,0\n");
 }
 
-TEST_F(ManifestTest, NamesTheRigWhereThereIsOne) {
+TEST_F(ManifestTest, NamesTheRigIfGiven) {
   flags_.rig = folder_.Path("rig, the first.json");
   EXPECT_THAT(Header(), StartsWith("path,id,rig,seed,true_inertia,"));
   EXPECT_THAT(Row(9), StartsWith("../runs/run_010.csv,run_010,\"../rig, the first.json\",16,0.04,"));
 }
 
-TEST_F(ManifestTest, GivesPathsAsSeenFromItsFolder) {
+TEST_F(ManifestTest, GivesPathsRelativeToItsFolder) {
   flags_.manifest = folder_.Path("runs/runs.csv");
   EXPECT_THAT(Row(0), StartsWith("run_001.csv,run_001,"));
   flags_.manifest = folder_.Path("runs.csv");
@@ -69,7 +69,7 @@ TEST_F(ManifestTest, GivesPathsAsSeenFromItsFolder) {
   EXPECT_THAT(Row(0), StartsWith("runs/run.csv,run,"));
 }
 
-TEST_F(ManifestTest, LeadsBackFromAFolderBehindALink) {
+TEST_F(ManifestTest, ResolvesAFolderBehindALink) {
   fs::create_directories(folder_.Path("deep/deeper"));
   fs::create_directory_symlink("deep/deeper", folder_.Path("link"));
   flags_.manifest = folder_.Path("link/runs.csv");
@@ -79,7 +79,7 @@ TEST_F(ManifestTest, LeadsBackFromAFolderBehindALink) {
   EXPECT_TRUE(fs::equivalent((fs::path(folder_.Path("link")) / path).parent_path(), folder_.Path("runs")));
 }
 
-TEST_F(ManifestTest, GivesEachRecordingItsOwnTruth) {
+TEST_F(ManifestTest, GivesTheTruthOfEachRecording) {
   flags_.spread = "inertia=0.001";
   const SimulateOptions options = Options();
   const Manifest manifest(options);

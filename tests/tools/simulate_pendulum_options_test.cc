@@ -67,14 +67,14 @@ TEST(MakeSimulateOptions, PlansWithoutAnOutput) {
   EXPECT_FALSE(MakeSimulateOptions(Flags("inertia=0.04," + std::string(kRelease)), {})->plan);
 }
 
-TEST(MakeSimulateOptions, PlansWithAResolutionAlone) {
+TEST(MakeSimulateOptions, PlansWithOnlyAResolution) {
   SimulateFlags flags = PlanFlags();
   flags.noise = 0;
   flags.resolution = 0.2;
   EXPECT_TRUE(MakeSimulateOptions(flags, {}));
 }
 
-TEST(MakeSimulateOptions, RefusesWhatAPlanHasNoUseFor) {
+TEST(MakeSimulateOptions, RefusesFlagsThatAPlanIgnores) {
   const std::vector<Refusal> refusals = {
       {"--out contradicts --plan, which makes no recording", [](SimulateFlags& f) { f.out = "-"; }},
       {"--truth contradicts --plan", [](SimulateFlags& f) { f.truth = "truth.json"; }},
@@ -94,7 +94,7 @@ TEST(MakeSimulateOptions, RefusesWhatAPlanHasNoUseFor) {
   }
 }
 
-TEST(SimulateOptions, NumberTruthFilesAsTheRecordings) {
+TEST(SimulateOptions, NumberTruthFilesLikeRecordings) {
   SimulateFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   EXPECT_EQ(MakeSimulateOptions(flags, {})->Outputs(0).size(), 1);
   flags.truth = "truth.json";

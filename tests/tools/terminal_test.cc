@@ -64,26 +64,26 @@ class OfATerminal : public testing::Test {
   Descriptor end_{OpenTerminal(controller_)};
 };
 
-TEST_F(OfATerminal, IsWanted) {
+TEST_F(OfATerminal, HasColour) {
   ASSERT_GE(end_.value(), 0);
   EXPECT_TRUE(WantsColour(end_.value()));
 }
 
-TEST_F(OfATerminal, IsNotWantedWithNoColorUnlessThatIsEmpty) {
+TEST_F(OfATerminal, HasNoColourWithNonEmptyNoColor) {
   const WithVariable zero("NO_COLOR", "0");  // any value disables colours
   EXPECT_FALSE(WantsColour(end_.value()));
   const WithVariable empty("NO_COLOR", "");
   EXPECT_TRUE(WantsColour(end_.value()));
 }
 
-TEST_F(OfATerminal, IsNotWantedOfOneThatKnowsNone) {
+TEST_F(OfATerminal, HasNoColourIfUnsupported) {
   for (const char* kind : {"dumb", "", static_cast<const char*>(nullptr)}) {
     const WithVariable terminal("TERM", kind);
     EXPECT_FALSE(WantsColour(end_.value()));
   }
 }
 
-TEST_F(OfATerminal, IsNotWantedElsewhere) {
+TEST_F(OfATerminal, HasNoColourElsewhere) {
   const Descriptor null(::open("/dev/null", O_WRONLY));
   EXPECT_FALSE(WantsColour(null.value()));
   EXPECT_FALSE(WantsColour(-1));

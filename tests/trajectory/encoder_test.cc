@@ -46,7 +46,7 @@ TEST(SimulateRecording, HasEventsWhereTheCosineCrossesEdges) {
   }
 }
 
-TEST(SimulateRecording, ScattersEdgesAndStampsAsAsked) {
+TEST(SimulateRecording, ScattersEdgesAndStampsAsGiven) {
   SyntheticOptions options = Undamped();
   options.duration = 60;
   options.noise = 5e-4;
@@ -73,7 +73,7 @@ TEST(SimulateRecording, ScattersEdgesAndStampsAsAsked) {
   EXPECT_LT(std::sqrt(stamps), 1.0e-4);
 }
 
-TEST(SimulateRecording, ReadsTheSameEncoderAtEvenTimes) {
+TEST(SimulateRecording, SamplesTheSameEncoderAtEvenTimes) {
   SyntheticOptions options = Undamped();
   options.noise = 5e-4;
   options.sample_rate = 1000;
@@ -88,7 +88,7 @@ TEST(SimulateRecording, ReadsTheSameEncoderAtEvenTimes) {
   }
 }
 
-TEST(SimulateRecording, RefusesEventsOfWhatIsNoEncoder) {
+TEST(SimulateRecording, RefusesEventsWithoutAnEncoder) {
   const auto refused = [](void (*change)(SyntheticOptions&)) {
     SyntheticOptions options = Undamped();
     change(options);

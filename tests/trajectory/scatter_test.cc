@@ -72,7 +72,7 @@ TEST(ScatterParameters, DrawsParametersAndSeedsIndependently) {
   EXPECT_THAT(Correlation(draws.col(0), next), DoubleNear(0, kTolerance / kDraws));
 }
 
-TEST(ScatterParameters, TellsNothingOfTheNoiseOfTheSameSeed) {
+TEST(ScatterParameters, IsIndependentOfTheNoiseOfTheSameSeed) {
   SyntheticOptions options;
   options.model = {"linear", "viscous", Gravity::kLinear};
   options.parameters = {0.04, 0.002};
@@ -100,7 +100,7 @@ TEST(ScatterParameters, IsHalfNormalAboveABoundAtTheMean) {
   EXPECT_THAT(StdDev(x), DoubleNear(std_dev, kTolerance * std_dev / kDraws));
 }
 
-TEST(ScatterParameters, KeepsTheOrderOfTwoParameters) {
+TEST(ScatterParameters, RespectsTheOrderOfTwoParameters) {
   const Eigen::MatrixXd draws = Draws({{kBounded, 10, 0.5}, {kBounded, 10, 0.5}}, {.larger = 1, .smaller = 0});
   const Eigen::VectorXd difference = draws.col(1) - draws.col(0);
   EXPECT_GE(difference.minCoeff(), 0);
@@ -108,7 +108,7 @@ TEST(ScatterParameters, KeepsTheOrderOfTwoParameters) {
   EXPECT_THAT(Mean(difference), DoubleNear(2 * 0.5 / std::sqrt(std::numbers::pi), kTolerance * 0.5 / kDraws));
 }
 
-TEST(ScatterParameters, IsTheMeanWithoutAStandardDeviationAndTheSameForASeed) {
+TEST(ScatterParameters, IsTheMeanWithoutScatterAndReproducible) {
   const std::vector<ScatteredParameter> parameters = {{kInertia, 0.079, 0}, {kReleaseAngle, 0.4, 0.1}};
   const auto once = ScatterParameters(parameters, {}, 7);
   const auto again = ScatterParameters(parameters, {}, 7);
@@ -119,7 +119,7 @@ TEST(ScatterParameters, IsTheMeanWithoutAStandardDeviationAndTheSameForASeed) {
   EXPECT_NE((*once)[1], (*other)[1]);
 }
 
-TEST(ScatterParameters, GivesUpWhereNoDrawIsWithinTheBounds) {
+TEST(ScatterParameters, FailsIfNoDrawIsWithinTheBounds) {
   const auto message = [](const ScatteredParameter& parameter, OrderedPair order = {}) {
     const auto values = ScatterParameters(std::vector{parameter, {kBounded, 5, 0}}, order, 9);
     EXPECT_FALSE(values);

@@ -196,7 +196,7 @@ void ExpectDerivatives(const MotionModel& model, StartKind start) {
   }
 }
 
-TEST(Derivatives, AreTheCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
+TEST(Derivatives, MatchCentralDifferencesThroughReversalsAndStop) {
   for (const MotionModel& model : MotionModels()) {
     FrictionModels::Visit(model.friction, [&]<typename F>() {
       for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) ExpectDerivatives<F>(model, start);
@@ -206,7 +206,7 @@ TEST(Derivatives, AreTheCentralDifferencesForEveryModelThroughReversalsAndTheSto
 
 // Linear gravity and dry friction alone, in half swing n = 0, 1, ...:
 // θ = (-1)^n τ_c + (A - (2 n + 1) τ_c) cos(ω0 t); at rest after N half swings θ = (-1)^N (A - 2 N τ_c).
-TEST(Derivatives, AreThoseOfTheStaircaseThroughTheStop) {
+TEST(Derivatives, MatchTheStaircaseThroughTheStop) {
   using Dual = pendulum::Dual<4>;  // of a release; the derivative by viscous friction is not tested here
   constexpr double kOmega = 5, kInertia = 0.04, kDry = 0.007, kAngle = 0.5;
   constexpr int kHalfSwings = 36;  // 0.5 - 72 · 0.007 = -0.004: a turning point within the 0.007 at which friction
@@ -251,13 +251,13 @@ void ExpectJumpsAtReversals() {
   }
 }
 
-TEST(Derivatives, OfTheRateJumpByTheRatioOfAccelerationsAtAReversal) {
+TEST(Derivatives, JumpByTheAccelerationRatioAtAReversal) {
   FrictionModels::ForEach([]<typename F>() { ExpectJumpsAtReversals<F>(); });
 }
 
 // ---- The sine of a dual series -----------------------------------------------------------------------------------
 
-TEST(SineSeries, CarriesTheDerivativesOfTheCoupledRecurrenceInPlainDualArithmetic) {
+TEST(SineSeries, MatchesPlainDualArithmetic) {
   using Jet = ceres::Jet<double, 3>;
   std::mt19937_64 generator(20260804);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -319,7 +319,7 @@ void ExpectTheSameMotion(InstructionSet set) {
 
 class Instructions : public testing::TestWithParam<InstructionSet> {};
 
-TEST_P(Instructions, OfAnySetGiveTheSameMotionUpToRounding) {
+TEST_P(Instructions, GiveTheSameMotionUpToRounding) {
   if (kInstructionSet < GetParam()) GTEST_SKIP() << "this processor has no such instructions";
   FrictionModels::ForEach([&]<typename F>() { ExpectTheSameMotion<F>(GetParam()); });
 }

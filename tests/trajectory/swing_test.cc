@@ -27,14 +27,14 @@ TEST(OrderForTolerance, FollowsTheFormulaWithinItsLimits) {
   EXPECT_EQ(OrderForTolerance(0.1), 8);
 }
 
-TEST(EvaluateSeries, IsThePolynomialUpToTheOrderGiven) {
+TEST(EvaluateSeries, IsThePolynomialUpToTheGivenOrder) {
   const Series<double> series = Coefficients({1, 2, 3});
   EXPECT_EQ(EvaluateSeries(series, 2, 2.0), 17);
   EXPECT_EQ(EvaluateSeries(series, 1, 2.0), 5);
   EXPECT_EQ(EvaluateSeries(series, 0, 2.0), 1);
 }
 
-TEST(EvaluatePartials, AreTheDerivativesOfThePolynomialOfAnyOrder) {
+TEST(EvaluatePartials, MatchThePolynomialsDerivativesForAnyOrder) {
   Series<Dual<2>> series;
   for (int k = 0; k <= kMaxOrder; ++k) {
     series[k].v.set(0, k + 1);
@@ -57,7 +57,7 @@ TEST(GravityTorque, IsTheSineOrTheAngle) {
 
 // ---- Direction of motion -----------------------------------------------------------------------------------------
 
-TEST(DirectionOfMotion, IsThatOfTheRateHoweverSlow) {
+TEST(DirectionOfMotion, FollowsTheRateHoweverSlow) {
   const Pendulum<CoulombFriction, double> stuck{Gravity::kSine, 0.04, {0, 2}};
   for (const double angle : {-0.5, 0.0, 0.5}) {
     EXPECT_EQ(DirectionOfMotion(stuck, angle, 1e-300), 1);
@@ -65,7 +65,7 @@ TEST(DirectionOfMotion, IsThatOfTheRateHoweverSlow) {
   }
 }
 
-TEST(DirectionOfMotion, FromRestIsThatOfGravityBeyondDryFrictionAndNoneWithin) {
+TEST(DirectionOfMotion, FollowsGravityFromRestBeyondDryFriction) {
   const Pendulum<CoulombFriction, double> linear{Gravity::kLinear, 0.04, {0.1, 0.25}};
   const Pendulum<CoulombFriction, double> sine{Gravity::kSine, 0.04, {0.1, 0.25}};
   for (const double sign : {1.0, -1.0}) {
@@ -77,14 +77,14 @@ TEST(DirectionOfMotion, FromRestIsThatOfGravityBeyondDryFrictionAndNoneWithin) {
   }
 }
 
-TEST(DirectionOfMotion, AtEqualityIsNone) {
+TEST(DirectionOfMotion, IsNoneAtEquality) {
   const Pendulum<CoulombFriction, double> linear{Gravity::kLinear, 0.04, {0, 0.25}};
   for (const double angle : {0.25, std::nextafter(0.25, 1.0), -0.25, std::nextafter(-0.25, -1.0)}) {
     EXPECT_EQ(DirectionOfMotion(linear, angle, 0), 0) << angle - 0.25;
   }
 }
 
-TEST(DirectionOfMotion, WithoutDryFrictionIsNoneOnlyAtTheBottom) {
+TEST(DirectionOfMotion, IsNoneOnlyAtTheBottomWithoutDryFriction) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {0.1}};
   EXPECT_EQ(DirectionOfMotion(pendulum, 0, 0), 0);
   EXPECT_EQ(DirectionOfMotion(pendulum, 1e-12, 0), -1);
@@ -118,7 +118,7 @@ Series<double> Expand(const Pendulum<F, double>& pendulum, double direction, dou
 }
 
 // θ = s (A cos ω0 τ + ...); with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
-TEST(SwingExpansion, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
+TEST(SwingExpansion, IsSineAndCosineForLinearGravityAndDryFriction) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.25, {0, 0.125}};
   for (const double direction : {1.0, -1.0}) {
     const Series<double> angle = Expand(pendulum, direction, 0.5, direction);
@@ -133,7 +133,7 @@ TEST(SwingExpansion, OfALinearPendulumWithDryFrictionIsThatOfSineAndCosine) {
 }
 
 // θ = π/2 + u, u'' = -cos u gives u = -τ²/2 + τ⁶/240 - τ¹⁰/19200 + ... by inserting the series into itself.
-TEST(SwingExpansion, FromRestAtNinetyDegreesHasOneCoefficientInFour) {
+TEST(SwingExpansion, HasOneCoefficientInFourFromRestAtNinetyDegrees) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 1, {0}};
   const Series<double> angle = Expand(pendulum, -1, std::acos(0.0), 0);
   const std::array<double, 13> expected = {std::acos(0.0), 0, -0.5, 0, 0, 0, 1.0 / 240, 0, 0, 0, -1.0 / 19200, 0, 0};
@@ -155,7 +155,7 @@ TEST(StepLength, IsTheLeastOverTheLastFourCoefficients) {
   }
 }
 
-TEST(StepLength, IsAtMostTheLongest) {
+TEST(StepLength, IsAtMostTheGivenMaximum) {
   Series<double> angle{};
   EXPECT_EQ(StepLength(angle, 10, 1e-12, 9.0), 9);
   angle[10] = 1e-12;
@@ -169,7 +169,7 @@ double Reversal(const Series<double>& rate, int order, double direction, double 
 }
 
 // (0.5 - τ)(1 + τ²) has one root.
-TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
+TEST(FirstReversal, IsTheRootOfTheRateUpToTheEndOfTheStep) {
   const Series<double> rate = Coefficients({0.5, -1, 0.5, -1});
   EXPECT_THAT(Reversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
   EXPECT_THAT(Reversal(rate, 3, 1.0, 0.5), DoubleNear(0.5, 1e-15));
@@ -180,14 +180,14 @@ TEST(FirstReversal, IsTheRootOfTheRateWithinTheStepItsEndIncluded) {
 }
 
 // τ (0.25 - τ): the motion starts at the root 0.
-TEST(FirstReversal, FromRestIsTheNextRoot) {
+TEST(FirstReversal, IsTheNextRootFromRest) {
   const Series<double> rate = Coefficients({0, 0.25, -1});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
   EXPECT_THAT(Reversal(rate, 2, 1.0, 0.2), Lt(0));
 }
 
 // 1 - 1e6 τ²: Halley's method alone would leave the interval if it started at its end.
-TEST(FirstReversal, IsFoundNearTheBeginningOfALongStep) {
+TEST(FirstReversal, IsFoundNearTheStartOfALongStep) {
   const Series<double> rate = Coefficients({1, 0, -1e6});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
   // 1e-9 - τ + τ³ / 2, flat near its end
@@ -205,7 +205,7 @@ State<T> StateAfter(const Expanded<T>& swing, const State<T>& start, double tau)
 
 // Linear, θ = v √I sin(τ / √I): for v = I = 1 the turning point is at τ = π √I / 2, θ = v √I. I and v carry
 // derivatives.
-TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
+TEST(StateAtReversal, HasTheDerivativesOfItsInstantAndAngle) {
   using Dual = pendulum::Dual<2>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   const State<Dual> start{Dual(3.0), Dual(0.0), Dual(1, 1)};
@@ -223,7 +223,7 @@ TEST(StateAtReversal, CarriesTheDerivativesOfItsInstantAndAngle) {
   for (int i = 0; i < 2; ++i) EXPECT_EQ(reversal.rate.v[i], 0);
 }
 
-TEST(StateAtReversal, AddsToTheShiftThatThePreviousReversalsLeft) {
+TEST(StateAtReversal, AddsToTheShiftOfPreviousReversals) {
   using Dual = pendulum::Dual<1>;
   const Pendulum<ViscousFriction, Dual> pendulum{Gravity::kLinear, Dual(1, 0), {Dual(0)}};
   State<Dual> start{Dual(0.0), Dual(0.0), Dual(1.0)};
@@ -244,13 +244,13 @@ Segment<Dual<1>> MovingParabola() {
 }
 
 // θ_p - 2 (3 + 10 τ).
-TEST(PartialsAtFixedTime, AreLessByTheRateTimesTheShiftOfTheStart) {
+TEST(PartialsAtFixedTime, CorrectForTheShiftOfTheStart) {
   const std::array<double, 3> expected = {4, 0, 30};
   for (int n = 0; n < 3; ++n) EXPECT_EQ(PartialsAtFixedTime(MovingParabola(), n)[0], expected[n]) << n;
 }
 
 // 3 + 10 τ, and 20 + 60 τ - 2 · 10.
-TEST(RateOf, IsTheDerivativeByTime) {
+TEST(RateOf, IsTheTimeDerivative) {
   const Segment<Dual<1>> rate = RateOf(MovingParabola());
   EXPECT_EQ(rate.order, 1);
   const std::array<double, 2> value = {3, 10};
@@ -261,7 +261,7 @@ TEST(RateOf, IsTheDerivativeByTime) {
   }
 }
 
-TEST(RateOf, RestIsNone) {
+TEST(RateOf, IsZeroAtRest) {
   Segment<Dual<1>> rest = MovingParabola();
   rest.order = 0;
   rest.angle[1] = std::numeric_limits<double>::quiet_NaN();  // coefficients beyond the order may have any value
@@ -271,7 +271,7 @@ TEST(RateOf, RestIsNone) {
   EXPECT_EQ(PartialsAtFixedTime(rate, 0)[0], 0);
 }
 
-TEST(Values, KeepsTheNumbersAndDropsTheDerivatives) {
+TEST(Values, DropsTheDerivatives) {
   using Dual = pendulum::Dual<2>;
   const Pendulum<CoulombFriction, Dual> dual{Gravity::kLinear, Dual(0.04, 0), {Dual(0.5, 1), Dual(0.25)}};
   const Pendulum<CoulombFriction, double> values = Values(dual);

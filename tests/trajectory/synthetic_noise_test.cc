@@ -17,7 +17,7 @@ namespace {
 
 using testing::DoubleNear;
 
-TEST(SimulateRecording, AddsWhiteNoiseOfTheStandardDeviationAskedFor) {
+TEST(SimulateRecording, AddsWhiteNoiseOfTheGivenDeviation) {
   SyntheticOptions options = TextbookRig();
   options.duration = 200;
   const Result<Recording> clean = SimulateRecording(options);
@@ -44,7 +44,7 @@ std::vector<double> NoiseOf(SyntheticOptions options) {
 }
 
 // e_i = r e_(i-1) + sqrt(1 - r²) σ x_i with white x_i. Subtracting r e_(i-1) leaves white noise of σ sqrt(1 - r²).
-TEST(SimulateRecording, CorrelatesEachSamplesNoiseWithTheOneBefore) {
+TEST(SimulateRecording, CorrelatesEachNoiseSampleWithThePrevious) {
   for (const double correlation : {0.9, 0.5, -0.7}) {
     SyntheticOptions options = TextbookRig();
     options.noise = 0.0035;
@@ -59,7 +59,7 @@ TEST(SimulateRecording, CorrelatesEachSamplesNoiseWithTheOneBefore) {
   }
 }
 
-TEST(SimulateRecording, HasCorrelatedNoiseOfItsFullSizeFromTheFirstSampleOn) {
+TEST(SimulateRecording, HasFullyCorrelatedNoiseFromTheFirstSample) {
   SyntheticOptions options = TextbookRig();
   options.duration = 2.1;
   options.noise = 1;
@@ -78,7 +78,7 @@ TEST(SimulateRecording, HasCorrelatedNoiseOfItsFullSizeFromTheFirstSampleOn) {
 
 // The empirical distribution of n samples stays within 2.7 / sqrt(n) of the true one, except for one seed in a million
 // (Kolmogorov: 2 exp(-2 d² n)).
-TEST(SimulateRecording, DrawsStudentsNoiseOfTheScaleAskedFor) {
+TEST(SimulateRecording, DrawsStudentsNoiseOfTheGivenScale) {
   SyntheticOptions options = TextbookRig();
   options.noise = 0.0035;
   options.noise_freedom = 3;
@@ -95,7 +95,7 @@ TEST(SimulateRecording, DrawsStudentsNoiseOfTheScaleAskedFor) {
 }
 
 // Fine quantization adds q²/12 to the variance (Widrow & Kollar, Quantization Noise, 2008).
-TEST(SimulateRecording, QuantizesAfterTheNoise) {
+TEST(SimulateRecording, AddsNoiseBeforeQuantization) {
   SyntheticOptions options = TextbookRig();
   options.duration = 200;
   const Result<Recording> clean = SimulateRecording(options);

@@ -61,7 +61,7 @@ std::vector<std::pair<double, double>> Peaks(const Recording& recording, double 
 
 // ---- The motion --------------------------------------------------------------------------------------------------
 
-TEST(SimulateRecording, ReproducesThePublishedFrequencyAndDampingOfTheTextbookRig) {
+TEST(SimulateRecording, ReproducesTheTextbookRigsFrequencyAndDamping) {
   const Result<Recording> recording = SimulateRecording(TextbookRig());
   ASSERT_TRUE(recording) << recording.error().message;
   const std::vector<std::pair<double, double>> peaks = Peaks(*recording, 0.05);
@@ -72,7 +72,7 @@ TEST(SimulateRecording, ReproducesThePublishedFrequencyAndDampingOfTheTextbookRi
   EXPECT_THAT(decrement / std::hypot(2 * kPi, decrement), DoubleNear(0.004, 0.0001));  // published: about 0.004
 }
 
-TEST(SimulateRecording, IsHeldUntilTheReleaseAndMovesAfterIt) {
+TEST(SimulateRecording, IsHeldUntilTheRelease) {
   SyntheticOptions options = TextbookRig();
   options.zero = 0.012;
   const Result<Recording> recording = SimulateRecording(options);
@@ -132,7 +132,7 @@ TEST(SimulateRecording, FollowsTheEllipticFunctionsOfTheUndampedPendulum) {
 
 // Dry friction alone reduces the amplitude of the linear pendulum by 2 τ_c/G per half swing: 0.43, -0.37, ..., 0.07,
 // -0.01. There |θ| < τ_c/G = 0.03 and friction holds it.
-TEST(SimulateRecording, DryFrictionAloneStopsWhereTheStaircaseOfAmplitudesEnds) {
+TEST(SimulateRecording, StopsAtTheEndOfTheDryFrictionStaircase) {
   SyntheticOptions options;
   options.model = {"coulomb", "coulomb", Gravity::kLinear};
   options.parameters = {0.04, 0, 0.03};
@@ -149,7 +149,7 @@ TEST(SimulateRecording, DryFrictionAloneStopsWhereTheStaircaseOfAmplitudesEnds) 
 
 // ---- The sensor --------------------------------------------------------------------------------------------------
 
-TEST(SensorReading, IsTheValueItselfWithoutLevelsAndRange) { EXPECT_EQ(SensorReading(0.123, 0, {}), 0.123); }
+TEST(SensorReading, IsUnchangedWithoutLevelsAndRange) { EXPECT_EQ(SensorReading(0.123, 0, {}), 0.123); }
 
 TEST(SensorReading, RoundsToTheNearestMultipleWithoutARange) {
   EXPECT_EQ(SensorReading(0.37, 0.25, {}), 0.25);
@@ -178,7 +178,7 @@ TEST(SensorReading, ReachesTheTopOfARangeOfWholeLevelsDespiteRounding) {
   }
 }
 
-TEST(SimulateRecording, ShowsOnlyLevelsOfTheSensorWithinItsRange) {
+TEST(SimulateRecording, ShowsOnlyLevelsWithinTheRange) {
   SyntheticOptions options = TextbookRig();
   const double step = 0.1985 * kRadFromDeg;
   options.resolution = step;
@@ -202,7 +202,7 @@ TEST(SimulateRecording, ShowsOnlyLevelsOfTheSensorWithinItsRange) {
 
 // ---- Sampling ----------------------------------------------------------------------------------------------------
 
-TEST(SimulateRecording, TakesAJitteredSampleAtTheInstantOfItsStamp) {
+TEST(SimulateRecording, EvaluatesAJitteredSampleAtItsStamp) {
   SyntheticOptions options = LinearPendulum();
   options.jitter = 0.001;
   const Result<Recording> recording = SimulateRecording(options);
@@ -215,7 +215,7 @@ TEST(SimulateRecording, TakesAJitteredSampleAtTheInstantOfItsStamp) {
   ExpectStandardDeviation(offsets, 0.001);
 }
 
-TEST(SimulateRecording, KeepsStampsIncreasingWhenJitterExceedsTheInterval) {
+TEST(SimulateRecording, KeepsStampsIncreasingUnderLargeJitter) {
   SyntheticOptions options = LinearPendulum();
   options.jitter = 0.05;
   options.start_time = 3;
@@ -225,7 +225,7 @@ TEST(SimulateRecording, KeepsStampsIncreasingWhenJitterExceedsTheInterval) {
   EXPECT_TRUE(std::is_sorted(recording->time.begin(), recording->time.end(), std::less_equal<>()));
 }
 
-TEST(SimulateRecording, RepeatsItselfForASeedAndNotForAnother) {
+TEST(SimulateRecording, IsReproducibleForASeedOnly) {
   SyntheticOptions options = TextbookRig();
   options.noise = 0.01;
   options.jitter = 0.001;
@@ -240,7 +240,7 @@ TEST(SimulateRecording, RepeatsItselfForASeedAndNotForAnother) {
   EXPECT_NE(once->time, other->time);
 }
 
-TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
+TEST(SimulateRecording, KeepsTheNoiseOfASeedUnderJitter) {
   SyntheticOptions options = TextbookRig();
   options.noise = 0.01;
   const Result<Recording> steady = SimulateRecording(options);
@@ -253,7 +253,7 @@ TEST(SimulateRecording, JitterLeavesTheNoiseOfASeedAlone) {
 // ---- Invalid options ---------------------------------------------------------------------------------------------
 
 // An encoder that misses edges shows readings shifted by whole levels from then on.
-TEST(SimulateRecording, LosesCountsFromATimeOn) {
+TEST(SimulateRecording, LosesCountsFromAGivenTime) {
   SyntheticOptions options = TextbookRig();
   options.resolution = 0.0078125;  // 2^-7, so sums of levels are exact
   const Recording whole = *SimulateRecording(options);
@@ -271,7 +271,7 @@ struct Refusal {
   void (*spoil)(SyntheticOptions&);
 };
 
-TEST(SimulateRecording, RefusesWhatCannotBeAndNamesIt) {
+TEST(SimulateRecording, RefusesAndNamesInvalidOptions) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto invalid = StatusCode::kInvalidArgument;
   const auto unusable = StatusCode::kFailedPrecondition;

@@ -39,7 +39,7 @@ double GlobalError(double amplitude, double tolerance) {
 
 // Compares with the elliptic functions. Rounding is amplified like a tolerance of 2e-17 (measured). Beyond 177 deg it
 // causes more than 1e-10 rad.
-TEST(TraceTolerance, KeepsTheGlobalErrorAskedForUpToRounding) {
+TEST(TraceTolerance, KeepsTheRequestedErrorUpToRounding) {
   for (const double degrees : {1.0, 10.0, 24.0, 60.0, 90.0, 120.0, 150.0, 170.0, 175.0, 178.0, 179.0}) {
     const double amplitude = degrees * kRadFromDeg;
     const double rounding = 2e-17 * Amplification(amplitude);
@@ -50,14 +50,14 @@ TEST(TraceTolerance, KeepsTheGlobalErrorAskedForUpToRounding) {
   }
 }
 
-TEST(TraceTolerance, IsNotFinerThanItMustBeByMoreThanAHundredTimes) {
+TEST(TraceTolerance, IsWithinAFactorOfAHundredOfTheNeededOne) {
   for (const double degrees : {60.0, 90.0, 150.0}) {
     const double amplitude = degrees * kRadFromDeg;
     EXPECT_THAT(GlobalError(amplitude, 100 * TraceTolerance(1e-8, amplitude)), Ge(1e-8)) << degrees << " deg";
   }
 }
 
-TEST(TraceTolerance, ShrinksWithTheAmplitudeAndWithTheErrorAskedFor) {
+TEST(TraceTolerance, ShrinksWithAmplitudeAndRequestedError) {
   double before = 1;
   for (double degrees = 0; degrees < 180; degrees += 0.5) {
     const double tolerance = TraceTolerance(1e-8, degrees * kRadFromDeg);
@@ -67,11 +67,11 @@ TEST(TraceTolerance, ShrinksWithTheAmplitudeAndWithTheErrorAskedFor) {
   }
 }
 
-TEST(TraceTolerance, OfSmallSwingsIsAFourHundredthOfTheError) { EXPECT_DOUBLE_EQ(TraceTolerance(4e-6, 0), 1e-8); }
+TEST(TraceTolerance, IsAFourHundredthOfTheErrorForSmallSwings) { EXPECT_DOUBLE_EQ(TraceTolerance(4e-6, 0), 1e-8); }
 
 TEST(TraceTolerance, IsTheSameOnBothSides) { EXPECT_EQ(TraceTolerance(1e-8, -1.2), TraceTolerance(1e-8, 1.2)); }
 
-TEST(TraceTolerance, IsNeverBelowTheFloorOfRounding) {
+TEST(TraceTolerance, IsNeverBelowRounding) {
   EXPECT_EQ(TraceTolerance(0, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-20, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-12, kPi), 1e-17);

@@ -57,7 +57,7 @@ Trajectory Staircase(const Start<double>& start, const TraceOptions& options) {
 
 // ---- The hold ----------------------------------------------------------------------------------------------------
 
-TEST(Trajectory, IsConstantFromTheBeginningToTheRelease) {
+TEST(Trajectory, IsConstantUntilTheRelease) {
   TraceOptions options = Until(10);
   options.begin = -1;
   const Trajectory trajectory = Staircase({StartKind::kRelease, 1.9, 0.43, 0}, options);
@@ -69,14 +69,14 @@ TEST(Trajectory, IsConstantFromTheBeginningToTheRelease) {
   EXPECT_THAT(trajectory.Angle(1.9 + kHalfSwing), DoubleNear(-0.37, 1e-12));
 }
 
-TEST(Trajectory, ReleasedAtTheBeginningHasNoHold) {
+TEST(Trajectory, HasNoHoldIfReleasedAtTheStart) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {0.001}};
   const Trace trace = TraceOf(pendulum, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
   ASSERT_FALSE(trace.segments.empty());
   EXPECT_GT(trace.segments.front().order, 0);
 }
 
-TEST(Trajectory, StaysInTheHandWhenTheReleaseComesAfterTheEnd) {
+TEST(Trajectory, IsHeldIfTheReleaseIsAfterTheEnd) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {0.001}};
   const Trace trace = TraceOf(pendulum, {StartKind::kRelease, 5, 0.4, 0}, Until(3));
   ASSERT_EQ(trace.segments.size(), 1);
@@ -89,7 +89,7 @@ TEST(Trajectory, StaysInTheHandWhenTheReleaseComesAfterTheEnd) {
 
 // ---- Rest --------------------------------------------------------------------------------------------------------
 
-TEST(Trajectory, ComesToRestWhereTheStaircaseEnds) {
+TEST(Trajectory, ReachesRestWhereTheStaircaseEnds) {
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, 0.43, 0}, Until(10));
   const TraceSummary& summary = trajectory.summary();
   EXPECT_EQ(summary.outcome, Outcome::kComplete);
@@ -103,7 +103,7 @@ TEST(Trajectory, ComesToRestWhereTheStaircaseEnds) {
   }
 }
 
-TEST(Trajectory, WithoutDryFrictionNeverStops) {
+TEST(Trajectory, NeverStopsWithoutDryFriction) {
   const Trajectory trajectory = MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{0.04, 0.01},
                                                {StartKind::kRelease, 0, 0.4, 0}, Until(60))
                                     .value();
@@ -111,7 +111,7 @@ TEST(Trajectory, WithoutDryFrictionNeverStops) {
   EXPECT_GT(trajectory.summary().reversals, 90);
 }
 
-TEST(Trajectory, MarginIsTheSmallestOverAllReversals) {
+TEST(Trajectory, HasTheSmallestMarginOfAllReversals) {
   // It turns at 0.31 (margin 0.28). The trace ends on the way to -0.37 + 0.06.
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, -0.37, 0}, Until(1.5 * kHalfSwing));
   EXPECT_EQ(trajectory.summary().reversals, 1);
@@ -119,7 +119,7 @@ TEST(Trajectory, MarginIsTheSmallestOverAllReversals) {
 }
 
 // The last half swings of a staircase from 1e-6 rad at a tolerance of 1e-8 rad, where accuracy would permit any step.
-TEST(Trajectory, TakesNoStepBeyondAQuarterPeriodAndSoMissesNoReversal) {
+TEST(Trajectory, MissesNoReversalBecauseStepsAreLimited) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.04, {0, 3e-8}};
   const Trace trace = TraceOf(pendulum, {StartKind::kRelease, 0, 1e-6, 0}, Until(20, 1e-8));
   for (const Segment<double>& segment : trace.segments) {
@@ -156,7 +156,7 @@ TEST(Rest, HoldsAtEqualityDespiteRounding) {
   EXPECT_THAT(trajectory.Angle(5), DoubleNear(-0.03, 1e-15));
 }
 
-TEST(MovingStart, AtRateZeroGoesInTheDirectionOfItsAcceleration) {
+TEST(MovingStart, FollowsItsAccelerationAtRateZero) {
   for (const double angle : {0.3, -0.3}) {
     const Trajectory trajectory = Staircase({StartKind::kMoving, 0, angle, 0}, Until(10));
     EXPECT_LT(trajectory.Rate(0.01) * angle, 0);
@@ -164,13 +164,13 @@ TEST(MovingStart, AtRateZeroGoesInTheDirectionOfItsAcceleration) {
   }
 }
 
-TEST(MovingStart, AtRateZeroInsideTheRestBandNeverMoves) {
+TEST(MovingStart, NeverMovesAtRateZeroInsideTheRestBand) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.04, {0, 0.03}};
   EXPECT_EQ(TraceOf(pendulum, {StartKind::kMoving, 0, 0.02, 0}, Until(1)).summary.outcome, Outcome::kNeverMoved);
 }
 
 // θ - x and θ' move on the ellipse of the half swing. Upwards x = -0.03, so it turns at -0.03 + sqrt(0.23² + 0.3²).
-TEST(MovingStart, GoesOnInTheDirectionOfItsRate) {
+TEST(MovingStart, ContinuesInTheDirectionOfItsRate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.2, 1.5}, Until(10));
   const double turn = std::atan2(0.3, 0.23) / 5;
   EXPECT_EQ(trajectory.Angle(0), 0.2);
@@ -179,7 +179,7 @@ TEST(MovingStart, GoesOnInTheDirectionOfItsRate) {
   EXPECT_THAT(trajectory.Rate(turn), DoubleNear(0, 1e-11));
 }
 
-TEST(MovingStart, InsideTheRestBandMovesWhileItHasARate) {
+TEST(MovingStart, MovesInsideTheRestBandWithARate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.0, 0.05}, Until(3));
   // It moves on an ellipse about x = -0.03 with 0.05 / ω0 = 0.01, so it stops at hypot(0.03, 0.01) - 0.03, within the
   // band.
@@ -187,7 +187,7 @@ TEST(MovingStart, InsideTheRestBandMovesWhileItHasARate) {
   EXPECT_THAT(trajectory.Angle(3), DoubleNear(std::hypot(0.03, 0.01) - 0.03, 1e-12));
 }
 
-TEST(MovingStart, FastEnoughGoesOverTheTop) {
+TEST(MovingStart, GoesOverTheTopIfFastEnough) {
   const Trajectory trajectory = MakeTrajectory({"viscous", "viscous", Gravity::kSine}, std::array{1.0, 0.0},
                                                {StartKind::kMoving, 0, 0.0, 3.0}, Until(20, 1e-16))
                                     .value();
@@ -202,7 +202,7 @@ TEST(MovingStart, FastEnoughGoesOverTheTop) {
 
 // ---- Dense output ------------------------------------------------------------------------------------------------
 
-TEST(Trajectory, ItsSegmentsFollowOneAnotherFromBeginToEnd) {
+TEST(Trajectory, HasContiguousSegmentsFromStartToEnd) {
   TraceOptions options = Until(20);
   options.begin = 0.5;
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kSine, kReferenceInertia, {0.0017, 0.02}};
@@ -229,7 +229,7 @@ TEST(Trajectory, AngleAndRateAreContinuousAcrossSegmentsAndReversals) {
   }
 }
 
-TEST(Trajectory, RateIsTheDerivativeOfTheAngle) {
+TEST(Trajectory, HasARateThatIsTheDerivativeOfTheAngle) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.4, -0.5}, Until(2));
   for (double time = 0.0101; time < 2; time += 0.0731) {
     const double slope = (trajectory.Angle(time + 1e-5) - trajectory.Angle(time - 1e-5)) / 2e-5;
@@ -258,7 +258,7 @@ TEST(MakeTrajectory, RefusesAWrongNumberOfParameters) {
   EXPECT_THAT(trajectory.error().message, HasSubstr("model coulomb takes 3 parameters, not 2"));
 }
 
-TEST(MakeTrajectory, RefusesAnInertiaThatIsNotPositive) {
+TEST(MakeTrajectory, RefusesANonPositiveInertia) {
   for (const double inertia : {0.0, -0.04, kNan}) {
     const Result<Trajectory> trajectory =
         MakeTrajectory(kCoulombModel, std::array{inertia, 0.0, 0.0}, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
@@ -269,7 +269,7 @@ TEST(MakeTrajectory, RefusesAnInertiaThatIsNotPositive) {
   }
 }
 
-TEST(MakeTrajectory, RefusesAPendulumThatFrictionHolds) {
+TEST(MakeTrajectory, RefusesAPendulumHeldByFriction) {
   const Result<Trajectory> trajectory =
       MakeTrajectory(kCoulombModel, std::array{0.04, 0.0, 0.5}, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
   ASSERT_FALSE(trajectory);
@@ -289,7 +289,7 @@ TEST(MakeTrajectory, RefusesAnAbsurdTimeScale) {
   EXPECT_THAT(trajectory.error().message, HasSubstr("time scale is too short"));
 }
 
-TEST(TraceTrajectory, StopsAtTheLimitOfSteps) {
+TEST(TraceTrajectory, StopsAtTheStepLimit) {
   TraceOptions options = Until(1e6);
   options.max_steps = 100;
   const Trace trace =
@@ -298,7 +298,7 @@ TEST(TraceTrajectory, StopsAtTheLimitOfSteps) {
   EXPECT_THAT(trace.segments.size(), Le(100));
 }
 
-TEST(TraceTrajectory, RefusesNumbersThatAreNotFinite) {
+TEST(TraceTrajectory, RefusesNonFiniteNumbers) {
   for (const double bad : {kNan, kInfinity, 1e300}) {
     const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {bad}};
     EXPECT_EQ(TraceOf(pendulum, {StartKind::kMoving, 0, 0.4, 1.0}, Until(1)).summary.outcome, Outcome::kNotTraceable)

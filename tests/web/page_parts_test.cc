@@ -11,19 +11,19 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(ScriptText, EndsNoScriptAndIsTheSameJson) {
+TEST(ScriptText, CannotEndAScriptAndKeepsTheJson) {
   const Json json = {{"name", "</script><!--"}, {"value", 0.1}};
   EXPECT_THAT(ScriptText(json), Not(HasSubstr("<")));
   EXPECT_EQ(Json::parse(ScriptText(json)), json);
 }
 
-TEST(ScriptText, ReplacesWhatIsNoUtf8) { EXPECT_EQ(ScriptText("a\xff"), "\"a\xef\xbf\xbd\""); }
+TEST(ScriptText, ReplacesInvalidUtf8) { EXPECT_EQ(ScriptText("a\xff"), "\"a\xef\xbf\xbd\""); }
 
-TEST(FillPage, PutsEachPartInItsPlace) {
+TEST(FillPage, InsertsEachPartInItsPlace) {
   EXPECT_EQ(FillPage("<p>@A@</p>@B@.", {{"@A@", 1}, {"@B@", Json{{"b", nullptr}}}}), "<p>1</p>{\"b\":null}.");
 }
 
-TEST(FillPage, DoesNotSearchWhatWasPutIn) { EXPECT_EQ(FillPage("@A@ @B@", {{"@A@", "@B@"}, {"@B@", 2}}), "\"@B@\" 2"); }
+TEST(FillPage, DoesNotSearchInsertedText) { EXPECT_EQ(FillPage("@A@ @B@", {{"@A@", "@B@"}, {"@B@", 2}}), "\"@B@\" 2"); }
 
 }  // namespace
 }  // namespace pendulum::page_parts_test

@@ -32,7 +32,7 @@ Identification SampledReport() {
   return report;
 }
 
-TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
+TEST(ToHtml, ContainsResultSeriesAndCommand) {
   const Identification report = SampledReport();
   const std::string html = ToHtml(report, "fit_pendulum --data run.csv");
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
@@ -42,7 +42,7 @@ TEST(ToHtml, HoldsTheResultTheSeriesAndTheCommand) {
   EXPECT_THAT(html, Not(HasSubstr("@RESULT@")));
 }
 
-TEST(ToHtml, HoldsEachRecordingOfAJointFit) {
+TEST(ToHtml, ContainsEachRecordingOfAJointFit) {
   Identification report = ExampleJointReport();
   for (Identification& run : report.runs) run.used = ExampleSamples();
   report.runs[1].used.value[0] = 0.5;
@@ -53,7 +53,7 @@ TEST(ToHtml, HoldsEachRecordingOfAJointFit) {
   EXPECT_EQ(series[1].at("measured").at(0), 0.5);
 }
 
-TEST(ToHtml, LetsNoNameEndItsScript) {
+TEST(ToHtml, EscapesScriptEndsInNames) {
   Identification report = SampledReport();
   report.data.path = "</script><script>alert(1)</script>@SERIES@.csv";
   const std::string html = ToHtml(report, "<!--");
@@ -63,7 +63,7 @@ TEST(ToHtml, LetsNoNameEndItsScript) {
 }
 
 // The page has no address of a server, and its policy forbids loading.
-TEST(ToHtml, FetchesNothing) {
+TEST(ToHtml, LoadsNoResources) {
   const std::string html = ToHtml(SampledReport(), "");
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, Not(HasSubstr(" src=\"http")));

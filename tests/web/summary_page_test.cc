@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-TEST(SummaryHtml, HoldsTheSummary) {
+TEST(SummaryHtml, ContainsTheSummary) {
   const Json summary = {{"schema_version", 1}, {"store", {{"path", "results.sqlite"}, {"runs", 2000}}}};
   const std::string html = SummaryHtml(summary);
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
@@ -22,7 +22,7 @@ TEST(SummaryHtml, HoldsTheSummary) {
   EXPECT_THAT(html, Not(HasSubstr("@SUMMARY@")));
 }
 
-TEST(SummaryHtml, LetsNoRunEndItsScript) {
+TEST(SummaryHtml, EscapesScriptEndsInNames) {
   const Json summary = {{"id", "</script><script>alert(1)</script>"}};
   const std::string html = SummaryHtml(summary);
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
@@ -30,7 +30,7 @@ TEST(SummaryHtml, LetsNoRunEndItsScript) {
 }
 
 // The page has no address of a server, and its policy forbids loading.
-TEST(SummaryHtml, FetchesNothing) {
+TEST(SummaryHtml, LoadsNoResources) {
   const std::string html = SummaryHtml(nullptr);
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, Not(HasSubstr(" src=\"http")));

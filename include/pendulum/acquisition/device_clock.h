@@ -19,11 +19,11 @@ struct DeviceClock {
   double scale = 1;                   ///< True seconds per second of the device.
   double std_dev = kResonatorStdDev;  ///< Standard deviation of the scale.
   bool is_measured = false;           ///< If false, scale and std_dev are those of any resonator.
-  /// The measured scale is impossible for a resonator (kMostDeviation). One of the clocks is wrong, so it is not used.
+  /// The measured scale is impossible for a resonator (kMaxDeviation). One of the clocks is wrong, so it is not used.
   bool is_implausible = false;
 };
 
-inline constexpr double kMostDeviation = 0.02;
+inline constexpr double kMaxDeviation = 0.02;
 
 /// Compares the device's clock with the host's, MODEL.md eqs. (12.1) and (12.2). A frame is never early and usually a
 /// little late. Therefore only the earliest arrival in each part of the run (10 to 32 parts) counts, and a line is

@@ -33,9 +33,9 @@ class Logger {
   Logger(SerialPort port, const std::atomic<bool>& stop) : port_(std::move(port)), stop_(stop) {}
 
   /// Stops a running measurement and asks the board for its Info. Opening the port resets most boards, and their boot
-  /// loader then listens for a second or two; `patience_seconds` must cover that. kDataLoss: no answer, not a logger,
+  /// loader then listens for a second or two; `timeout_seconds` must cover that. kDataLoss: no answer, not a logger,
   /// or a logger with another protocol, clock or converter.
-  Result<pendulum_logger::Info> Connect(double patience_seconds = 5);
+  Result<pendulum_logger::Info> Connect(double timeout_seconds = 5);
 
   /// Sets the sampling rate. kDataLoss: the logger refuses or does not answer.
   Result<void> SetRate(const SamplingRate& rate);

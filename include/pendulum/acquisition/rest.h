@@ -36,7 +36,7 @@ class RestDetector {
   static constexpr std::size_t kTurns = 4;  // only the last ones are kept
 
   void Close();
-  void FollowTurns(double mean);
+  void TrackTurningPoints(double mean);
 
   Block open_;
   std::deque<Block> blocks_;  // of the last kRestSeconds

@@ -27,7 +27,7 @@ double PerCount(const Recording& used);
 
 /// The autocorrelation that all models share: that of the best model, of low order. Misfit looks like a process of very
 /// high order; a low order whitens it nearly as well in a fraction of the time.
-Autocorrelation SharedMemory(const FitReport& best);
+Autocorrelation SharedAutocorrelation(const FitReport& best);
 
 /// Describes the likelihood behind the criteria, in words.
 std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best);

@@ -12,6 +12,6 @@ namespace pendulum {
 /// error is the standard deviation of the windows about the estimate, beyond their errors (MODEL.md section 9). It is
 /// added in squares to the systematic error in `fit`, with the warning not_constant. Joint fits use the scatter between
 /// recordings instead (RandomEffects).
-void CountInconstancy(const Constancy& constancy, FitReport& fit);
+void AddInconstancyError(const Constancy& constancy, FitReport& fit);
 
 }  // namespace pendulum

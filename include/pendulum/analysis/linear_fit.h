@@ -29,8 +29,8 @@ ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, cons
 
 /// The covariance of W'score for residuals with this noise and autocorrelation (MODEL.md eq. (7.7)). time N, weights N
 /// x K.
-Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& memory, const ReadingTerms& terms,
-                                const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
+Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& autocorrelation,
+                                const ReadingTerms& terms, const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 
 /// The autocorrelation of N residuals. time: true s; jacobian: N x K, by all parameters fitted to them. White if the
 /// Ljung-Box test does not doubt it (p > 0.05).

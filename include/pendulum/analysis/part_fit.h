@@ -18,7 +18,7 @@
 namespace pendulum {
 
 /// The smallest double above `time`; a part that ends at `time` does not contain it.
-double After(double time);
+double NextDoubleAfter(double time);
 
 /// A second fit to a part of the recording.
 struct PartFit {
@@ -55,15 +55,15 @@ class Parts {
   double low_ = -kInfinity, high_ = kInfinity;
 };
 
-inline constexpr std::size_t kFewestHalfSwings = 6;
+inline constexpr std::size_t kMinHalfSwings = 6;
 
 /// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (9.6)). Inertia and friction then have about
 /// equal errors in all parts, because their variances are proportional to 1 / (amplitude² duration³). Returns indices
-/// into `ends` [s, file's clock], which has at least parts · kFewestHalfSwings + 1 elements. Every part has at least
-/// kFewestHalfSwings half swings, three periods.
+/// into `ends` [s, file's clock], which has at least parts · kMinHalfSwings + 1 elements. Every part has at least
+/// kMinHalfSwings half swings, three periods.
 std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits);
 
 /// "7 half swings are too few for ...".
-std::string TooShort(const std::vector<double>& ends, const std::string& what, std::size_t needed);
+std::string TooFewHalfSwings(const std::vector<double>& ends, const std::string& what, std::size_t needed);
 
 }  // namespace pendulum

@@ -19,7 +19,7 @@ struct Prediction {
 /// Blocked cross-validation (P. Burman, E. Chow and D. Nolan, Biometrika 81:351, 1994). The recording is cut into
 /// kBlocks blocks of equal duration. Each block in turn is left out and predicted by a fit to the rest. The blocks
 /// begin one period after the release (or the first sample); every fit includes that period. `used` holds the samples
-/// of `fit`, which converged; `options` are those of `fit`. There is no prediction for fewer than kFewestPeriods, for a
+/// of `fit`, which converged; `options` are those of `fit`. There is no prediction for fewer than kMinPeriods, for a
 /// recording that IsUndersampled, or if a fit fails. Cost: kBlocks fits.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options);
 
@@ -29,6 +29,6 @@ Prediction PredictForward(const Recording& used, const FitReport& fit, const Fit
 
 inline constexpr int kBlocks = 5;
 inline constexpr double kFirstPart = 0.6;
-inline constexpr double kFewestPeriods = 3;  ///< Periods of small swings after the release.
+inline constexpr double kMinPeriods = 3;  ///< Periods of small swings after the release.
 
 }  // namespace pendulum

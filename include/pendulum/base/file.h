@@ -44,7 +44,7 @@ class InputFile {
 };
 
 /// Reads a whole file, which may be a pipe. `kind` is the expected kind of file; messages say "a <kind> file".
-/// kNotFound: there is no such file. kDataLoss: it is a directory, cannot be read or has more than `most_bytes`.
-Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t most_bytes);
+/// kNotFound: there is no such file. kDataLoss: it is a directory, cannot be read or has more than `max_bytes`.
+Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view kind, std::uintmax_t max_bytes);
 
 }  // namespace pendulum

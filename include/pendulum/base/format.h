@@ -16,7 +16,7 @@ std::string NumberText(double value);
 std::string ProbabilityText(double p);
 
 /// Degrees of freedom as messages show them: "1 degree of freedom", "8 degrees of freedom".
-std::string FreedomText(int degrees);
+std::string DegreesOfFreedomText(int degrees);
 
 /// One lower-case hexadecimal digit; `digit` is below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }

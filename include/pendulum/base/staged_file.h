@@ -13,7 +13,7 @@ namespace pendulum {
 tl::unexpected<Status> CannotWrite(const std::string& path, const std::string& why);
 
 /// The operating system's message for an errno.
-std::string SystemWords(int error);
+std::string SystemErrorText(int error);
 
 /// The file that a path refers to after symbolic links in its last component are followed. The file need not exist.
 std::filesystem::path FollowLinks(std::filesystem::path path);

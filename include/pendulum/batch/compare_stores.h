@@ -23,7 +23,7 @@ struct ChangedStatus {
 };
 
 /// A fit that is only in the first store.
-struct GoneFit {
+struct RemovedFit {
   std::string id, model;
 };
 
@@ -39,13 +39,13 @@ struct StoreComparison {
   std::int64_t moved = 0;                        ///< Different by more than one standard error.
   std::int64_t without_error = 0;                ///< Different values without errors, or in another unit.
   std::int64_t changed_status = 0;
-  std::vector<MovedParameter> most_moved;     ///< At most kMostListed, the largest first.
-  std::vector<ChangedStatus> status_changes;  ///< At most kMostListed.
-  std::vector<GoneFit> gone;                  ///< At most kMostListed.
+  std::vector<MovedParameter> most_moved;     ///< At most kMaxListed, the largest first.
+  std::vector<ChangedStatus> status_changes;  ///< At most kMaxListed.
+  std::vector<RemovedFit> removed;            ///< At most kMaxListed.
   std::vector<std::string> cpus_before, cpus_after;
 
   static constexpr double kRounding = 1e-9;
-  static constexpr int kMostListed = 100;
+  static constexpr int kMaxListed = 100;
 };
 
 /// Errors: those of the stores.

@@ -26,12 +26,12 @@ struct ManifestEntry {
 };
 
 /// Takes the entries one by one; an error ends the reading.
-using TakeEntry = std::function<Result<void>(const ManifestEntry&)>;
+using EntrySink = std::function<Result<void>(const ManifestEntry&)>;
 
 /// Reads a manifest: CSV (RFC 4180, also with semicolons or tabs) whose header has the column `path`, and optionally
 /// `id` (default: the path), `rig`, `calibration`, `from_s`, `to_s`, `models`; other columns are kept. The listed files
 /// are not checked here. Memory: one row. kNotFound: no such file. kDataLoss: invalid CSV, no column `path`, a repeated
 /// column, a row of another length, no path, an invalid window or model; the message has file, line and column.
-Result<void> ReadManifest(const std::filesystem::path& path, const TakeEntry& take);
+Result<void> ReadManifest(const std::filesystem::path& path, const EntrySink& take);
 
 }  // namespace pendulum

@@ -66,7 +66,7 @@ struct Repeatability {
 
 /// std::nullopt if no group has two runs with errors. The verdict differs from kAgrees if p is below 1 % and the ratio
 /// is off by 10 %.
-std::optional<Repeatability> Repeat(const RunValues& values, const std::vector<Outlier>& outliers);
+std::optional<Repeatability> AnalyzeRepeatability(const RunValues& values, const std::vector<Outlier>& outliers);
 
 /// One least-squares slope of the values over their order, common to all groups; each group has a separate mean. The
 /// error comes from the scatter about the line (MODEL.md eq. (11.3)).
@@ -81,6 +81,6 @@ std::optional<Trend> FitTrend(const RunValues& values, const std::vector<Outlier
 
 /// Days since 1970-01-01 of an ISO 8601 date, "2026-03-01", "2026-03-01T12:30:00Z" or "2026-03-01 13:30+01:00" (UTC by
 /// default), or the value of a text that is a number; std::nullopt for other texts. `is_date`: which of both it is.
-std::optional<double> OrderOf(const std::string& text, bool& is_date);
+std::optional<double> ParseOrderValue(const std::string& text, bool& is_date);
 
 }  // namespace pendulum

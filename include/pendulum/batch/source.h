@@ -17,15 +17,15 @@ struct Source {
   std::string name;  ///< Name in messages.
 
   /// Passes every entry to `take`, in order of position. Errors of the source, or of `take`, end it.
-  std::function<Result<void>(const TakeEntry& take)> for_each;
+  std::function<Result<void>(const EntrySink& take)> for_each;
 
   /// The bytes of a file of an entry (path, rig or calibration), for any thread. kNotFound: no such file. kDataLoss: a
-  /// directory, a pipe or a device, unreadable, or larger than kMostRecordingBytes.
+  /// directory, a pipe or a device, unreadable, or larger than kMaxRecordingBytes.
   std::function<Result<std::string>(const std::string& path)> read;
 };
 
 /// A recording is held in memory while it is fitted.
-inline constexpr std::uintmax_t kMostRecordingBytes = std::uintmax_t{1} << 29;
+inline constexpr std::uintmax_t kMaxRecordingBytes = std::uintmax_t{1} << 29;
 
 /// Opens a path as a packed file if it is one, otherwise as a manifest. kNotFound: no such file.
 Result<Source> OpenSource(const std::filesystem::path& path);

@@ -116,7 +116,7 @@ class Store {
   Result<void> Check();
 
   /// When `stop` is true, commits wait two seconds for readers instead of ten minutes. `stop` must outlive the store.
-  void HurryOn(const std::atomic<bool>* stop);
+  void ShortenWaitsOnStop(const std::atomic<bool>* stop);
 
   Result<StoreMeta> Meta();
   Result<StoreCounts> Count();

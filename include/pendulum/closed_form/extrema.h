@@ -23,7 +23,7 @@ double TurningThreshold(const Recording& recording, double noise);
 
 /// The turning points that FindExtrema finds, preceded by the first candidate, which may be the start or lie in a hold.
 /// May be empty.
-std::vector<Extremum> FindTurns(const Recording& recording, double threshold);
+std::vector<Extremum> FindTurningPoints(const Recording& recording, double threshold);
 
 /// Turning points in time order, alternately maxima and minima, located to O(h³) instead of to one sample. A turning
 /// point counts once the reading has moved back by more than TurningThreshold. A hold, or a start in the middle of a

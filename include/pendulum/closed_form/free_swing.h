@@ -18,14 +18,14 @@ struct FreeSwing {
   std::vector<double> turns;     ///< s, its turning points
   WindowBegin begins;            ///< Why it begins at `from`.
   WindowEnd ends;                ///< Why it ends at `to`.
-  double behind_hold = 0;        ///< s, the first sample after its initial hold; `from` without a hold
+  double after_hold = 0;         ///< s, the first sample after its initial hold; `from` without a hold
   bool from_given = false;       ///< The user gave `from`; to_given: the user gave `to`.
   bool to_given = false;
   bool undersampled = false;  ///< Sampled too slowly to show turning points; not examined.
-  bool beats = false;         ///< The amplitude decays but rises again and again, which a single pendulum does not do.
+  bool has_beats = false;     ///< The amplitude decays but rises again and again, which a single pendulum does not do.
 };
 
-/// The free swings of a recording in time order: runs of at least two half swings that JudgeHalfSwings calls free. A
+/// The free swings of a recording in time order: runs of at least two half swings that ClassifyHalfSwings calls free. A
 /// swing begins with the steady part of the hold before it. Without a hold it begins where the motion towards its first
 /// turning point begins, if that motion takes no longer than a half swing. After a hold within 15 deg of the upright it
 /// begins at the next turning point. It ends one period after the last motion larger than the noise, or before it is

@@ -31,6 +31,6 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig);
 
 /// The error of one run among several, with its recording and, unless it is 0, its release in the message.
-tl::unexpected<Status> ErrorAmong(const Status& status, const std::string& path, int release);
+tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release);
 
 }  // namespace pendulum

@@ -23,10 +23,10 @@ struct Nesting {
 std::optional<Nesting> FindNesting(const MotionModel& simpler, const MotionModel& richer);
 
 /// The nested model with the most parameters; std::nullopt if no model is nested in this one.
-std::optional<MotionModel> RichestWithin(const MotionModel& model);
+std::optional<MotionModel> LargestNestedModel(const MotionModel& model);
 
 /// Indices into PhysicalParameters of the pair of which one is never below the other. Both are negative if the law has
 /// no such pair.
-OrderedPair OrderOf(const MotionModel& model);
+OrderedPair FindOrderedPair(const MotionModel& model);
 
 }  // namespace pendulum

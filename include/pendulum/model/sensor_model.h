@@ -20,7 +20,7 @@ enum class SensorKind {
 
 /// Computes readings from a motion. The members are known constants; the S = size() parameters are not known.
 struct SensorModel {
-  static constexpr int kMostParameters = 4;
+  static constexpr int kMaxParameters = 4;
   static constexpr int kStates = 3;  ///< Angle, rate and angular acceleration.
 
   SensorKind kind = SensorKind::kDirect;
@@ -32,7 +32,7 @@ struct SensorModel {
   struct Response {
     double reading = 0;
     std::array<double, kStates> by_state{};
-    std::array<double, kMostParameters> by_parameter{};
+    std::array<double, kMaxParameters> by_parameter{};
   };
 
   /// The reading for an angle [rad] and its derivatives [rad/s, rad/s^2]; `parameters` has S values. Not for kDirect.

@@ -51,13 +51,13 @@ struct RawSamples {
 /// stamps on a grid that is coarse compared with the sampling interval. They are replaced by the middle of the uniform
 /// clocks that agree with all of them; clock_std_dev gives the spread of these. If no clock agrees and the stamps
 /// increase, they are kept. time_repeated: rows that share a time stamp are left out, up to a fifth of all; of
-/// identical rows one is kept. time_not_increasing: stamps go back by at most kMostStepsBack sampling intervals. As few
+/// identical rows one is kept. time_not_increasing: stamps go back by at most kMaxStepsBack sampling intervals. As few
 /// rows as possible are left out, up to a twentieth of all. Gaps and uneven sampling cause no warning. kDataLoss: any
 /// other stamps that do not increase; the message has the line, both times and what to do. Cost: one pass, about twenty
 /// if the stamps are not uniform.
 Result<RawSamples> RepairClock(RawSamples samples);
 
 /// A clock that goes back by more sampling intervals (median) than this was set back.
-inline constexpr int kMostStepsBack = 5;
+inline constexpr int kMaxStepsBack = 5;
 
 }  // namespace pendulum

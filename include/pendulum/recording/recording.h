@@ -30,7 +30,7 @@ struct Recording {
   double resolution = 0;     ///< Spacing of the values the sensor can give, in the unit of value; 0 if unknown or
                              ///< continuous.
   std::string resolution_source;  ///< Its origin: "given" by the user, from the "file", or "found" in the values.
-  /// For events (TakeEdges): one of the edges between counts, in the unit of value. A reading at a whole number of
+  /// For events (ConvertToEdges): one of the edges between counts, in the unit of value. A reading at a whole number of
   /// resolutions from it is an edge crossed at its time. A reading halfway between two edges means that the value lies
   /// between them.
   std::optional<double> edge;

@@ -10,7 +10,7 @@ namespace pendulum {
 Result<Recording> SelectWindow(Recording recording, double from, double to);
 
 /// The recording with times converted to true seconds (clock_scale), counted from its first sample.
-Recording InTrueTime(Recording recording);
+Recording InTrueSeconds(Recording recording);
 
 /// At most `most` samples from the start or from the end, thinned to `per_second` [Hz] if the recording is that dense.
 Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end);

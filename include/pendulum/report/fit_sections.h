@@ -30,6 +30,6 @@ std::string NoiseText(const FitReport& fit);
 Section ParameterSection(const FitReport& fit, bool is_one_of_several);
 
 /// An equation with line breaks only before +, - and =: the other blanks become no-break spaces.
-std::string TermsTogether(const std::string& equation);
+std::string WithUnbrokenTerms(const std::string& equation);
 
 }  // namespace pendulum

@@ -20,7 +20,7 @@ class NumberObject {
   NumberObject& Set(const std::string& key, const std::optional<double>& value, const std::string& reason);
 
   /// Adds a reason; a repeated reason is added once.
-  void Because(const std::string& reason);
+  void AddReason(const std::string& reason);
 
   /// Returns the object and empties this one.
   nlohmann::ordered_json Done();

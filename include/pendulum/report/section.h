@@ -58,7 +58,7 @@ struct Section {
     return *this;
   }
   /// Adds sentences; an empty text adds nothing.
-  Section& Say(std::string text, Emphasis emphasis = Emphasis::kNone) {
+  Section& AddText(std::string text, Emphasis emphasis = Emphasis::kNone) {
     if (!text.empty()) blocks.emplace_back(Words{std::move(text), emphasis});
     return *this;
   }

@@ -38,7 +38,7 @@ struct RunFlags {
 };
 
 /// The error for a flag that cannot be combined with --closed_form_only.
-tl::unexpected<Status> NeedsAFit(std::string_view flag);
+tl::unexpected<Status> NeedsFitError(std::string_view flag);
 
 /// Converts flags to options; the caller reads rig and calibration. kInvalidArgument: a flag is wrong or contradicts
 /// another; the message names it.

@@ -24,7 +24,7 @@ namespace pendulum {
 
 /// A value, or the problem of a request.
 template <typename T>
-using OrProblem = tl::expected<T, Problem>;
+using ResultOrProblem = tl::expected<T, Problem>;
 
 inline tl::unexpected<Problem> Refused(const Status& status) { return tl::unexpected(ProblemOf(status)); }
 inline tl::unexpected<Problem> Refused(ProblemKind kind, std::string detail) {
@@ -52,24 +52,24 @@ inline constexpr const char* kUnnamed = "data";
 /// data, rig, calibration and options, or a JSON object with these members. The query has flags and the recording's
 /// `name`. Problems: as RunFlagsOf and MakeRunOptions; an unknown or repeated part, another content type, too many
 /// lines.
-OrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
-                                      const RequestLimits& limits);
+ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
+                                            const RequestLimits& limits);
 
 /// Reads the request for a batch: as ParseFitRequest, with a form of one or more parts data.
-OrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
-                                        const RequestLimits& limits);
+ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
+                                              const RequestLimits& limits);
 
 /// Reads the changes of a refit from the query or a JSON object. A flag with an empty value removes the previous one. A
 /// new rig or calibration replaces the previous one; null removes it.
-OrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
-                                        RunFiles files);
+ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
+                                              RunFiles files);
 
 /// The options of one run of the service with these flags and this calibration. Errors as RunFlagsOf and
 /// MakeRunOptions; kInvalidArgument: release all.
 Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
 /// kUnsupportedMediaType: the body has none of these types, or has a content coding.
-OrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
+ResultOrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);
 
 /// The flags of a stored run, and the options they set. kDataLoss: the stored text is damaged.
 Result<FlagTexts> FlagsOf(const FitOrder& order);

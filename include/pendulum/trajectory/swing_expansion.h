@@ -69,8 +69,8 @@ class SwingExpansion {
     const auto friction = dual_friction_(n, rate_.dual, direction_, pendulum_.friction.data()).v;
     const double rate = rate_.value[n + 1];
     const double factor = per_torque_[n + 1];
-    const auto known_early = factor * gravity - rate * inertia_;
-    rate_.dual[n + 1] = T(rate, known_early + factor * friction);
+    const auto known_in_advance = factor * gravity - rate * inertia_;
+    rate_.dual[n + 1] = T(rate, known_in_advance + factor * friction);
   }
 
   const Pendulum<F, T>& pendulum_;

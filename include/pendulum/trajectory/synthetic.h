@@ -28,8 +28,8 @@ enum class RowTiming {
 };
 
 /// Limits for event rows. An edge must not move as far as the next edge, and each count produces a row.
-inline constexpr double kMostEventNoise = 0.2;  ///< Standard deviation of an edge, in counts.
-inline constexpr double kFinestEvents = 1e-5;   ///< Resolution, rad.
+inline constexpr double kMaxEventNoise = 0.2;  ///< Standard deviation of an edge, in counts.
+inline constexpr double kFinestEvents = 1e-5;  ///< Resolution, rad.
 
 /// Options for a simulated recording. They contain the true values that a fit of the recording should find.
 struct SyntheticOptions {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/solve/cross_jumps.h"
+#include "pendulum/fitting/solve/escape_discontinuities.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/solve/search.h"
@@ -46,10 +46,10 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
   Solution solution = Search(cost, problem.data, guess, problem.solve);
   UnwrapOffset(problem, solution);
   MaximizeLikelihood(cost, problem, options, solution);
-  CrossJumps(cost, problem, options, solution);
+  EscapeDiscontinuities(cost, problem, options, solution);
   for (int refinement = 0; solution.usable; ++refinement) {
     solution.usable = MeasureTraceError(cost, tolerance, solution);
-    if (solution.trace_error <= max_error || refinement == kMostTraceRefinements) break;
+    if (solution.trace_error <= max_error || refinement == kMaxTraceRefinements) break;
     tolerance = FinerTolerance(tolerance);
     cost.set_tolerance(tolerance);
     solution = Continue(cost, solution, problem.solve);
@@ -75,11 +75,11 @@ Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& 
 
 /// Whether a search ended at a local minimum, and not because of one of its limits.
 bool IsAtLocalMinimum(const Attempt& attempt) {
-  constexpr double kNear = 1, kNearJump = 3;  // standard errors
+  constexpr double kNear = 1, kNearDiscontinuity = 3;  // standard errors
   if (!attempt.solution.usable) return false;
   const std::optional<Optimum> optimum = Linearize(attempt.problem->solve, *attempt.cost, attempt.solution);
   return optimum && optimum->inverse.identifiable &&
-         RemainingShift(*optimum) < (HasJumps(*attempt.problem) ? kNearJump : kNear);
+         RemainingShift(*optimum) < (HasDiscontinuities(*attempt.problem) ? kNearDiscontinuity : kNear);
 }
 
 /// Keeps the better of two attempts. The local minimum of the other one is remembered.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
-#include "pendulum/fitting/fit/rival_solutions.h"
+#include "pendulum/fitting/fit/alternative_minima.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/solve.h"
@@ -19,7 +19,7 @@ struct Attempt {
   std::unique_ptr<FitProblem> problem;
   std::unique_ptr<TrajectoryCost> cost;
   Solution solution;
-  std::vector<RivalSolution> rivals;  ///< Local minima at which the searches from other starts ended.
+  std::vector<AlternativeMinimum> rivals;  ///< Local minima at which the searches from other starts ended.
 };
 
 /// Solves from the start values, from each of the sensor's starts (SensorStarts) and from the mirror image of the

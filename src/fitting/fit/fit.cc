@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "fitting/fit/attempt.h"
-#include "pendulum/fitting/fit/broken_order.h"
-#include "pendulum/fitting/fit/judge.h"
-#include "pendulum/fitting/fit/rival_solutions.h"
+#include "pendulum/fitting/fit/alternative_minima.h"
+#include "pendulum/fitting/fit/make_fit_report.h"
+#include "pendulum/fitting/fit/order_violation.h"
 #include "pendulum/fitting/likelihood/noise.h"
-#include "pendulum/fitting/solve/cross_jumps.h"
+#include "pendulum/fitting/solve/escape_discontinuities.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/start/start_values.h"
 #include "pendulum/trajectory/trajectory.h"
@@ -35,20 +35,20 @@ struct Rescue {
 };
 
 /// Whether a solution leaves at most a tenth of the readings' variance unexplained.
-bool Explains(const FitProblem& problem, const Solution& solution) {
+bool ExplainsReadings(const FitProblem& problem, const Solution& solution) {
   constexpr double kUnexplained = 0.1;
   return solution.usable && problem.UnexplainedShare(solution.readings) <= kUnexplained;
 }
 
 /// A short hold may be a turning point. A recording that a release does not explain may have begun in motion.
-bool MayBeginInMotion(const Attempt& attempt, const FitOptions& options) {
+bool MayStartInMotion(const Attempt& attempt, const FitOptions& options) {
   const StartValues& start = attempt.problem->start;
   return !options.start && start.start == StartKind::kRelease &&
-         (start.short_hold || !Explains(*attempt.problem, attempt.solution));
+         (start.short_hold || !ExplainsReadings(*attempt.problem, attempt.solution));
 }
 
 /// Events show a hold by one row only. If edges scatter by more than 0.15 count, the start is not as assumed.
-bool MayBeginHeld(const Attempt& attempt, const FitOptions& options) {
+bool MayStartHeld(const Attempt& attempt, const FitOptions& options) {
   constexpr double kScattered = 0.15;  // of a count
   const NoiseModel& noise = attempt.solution.noise;
   return !options.start && attempt.problem->start.start == StartKind::kMoving && noise.family == NoiseFamily::kEdges &&
@@ -57,7 +57,7 @@ bool MayBeginHeld(const Attempt& attempt, const FitOptions& options) {
 
 /// The reference rate of a Stribeck law found in the data may lead to parameters that the law does not allow.
 bool ViolatesOrder(const Attempt& attempt, const FitOptions& /*options*/) {
-  return !BrokenOrder(*attempt.problem, attempt.solution.parameters).empty();
+  return !OrderViolation(*attempt.problem, attempt.solution.parameters).empty();
 }
 
 template <StartKind kStart>
@@ -69,7 +69,7 @@ std::vector<FitOptions> StartingSo(const Attempt& /*attempt*/, const FitOptions&
 
 /// One attempt from each of the other reference rates that the data suggest.
 std::vector<FitOptions> FromOtherReferenceRates(const Attempt& attempt, const FitOptions& options) {
-  constexpr int kMostTraces = 400;
+  constexpr int kMaxTraces = 400;
   std::vector<FitOptions> alternatives;
   if (options.search.start_values) return alternatives;
   for (const EnergyBalance& balance : attempt.problem->start.other_balances) {
@@ -77,19 +77,19 @@ std::vector<FitOptions> FromOtherReferenceRates(const Attempt& attempt, const Fi
     other.search.start_values = attempt.problem->start;
     other.search.start_values->energy_balance = balance;
     std::ranges::copy(FrictionFrom(balance), other.search.start_values->parameters.begin() + 1);
-    other.search.max_traces = std::min(options.search.max_traces, kMostTraces);
+    other.search.max_traces = std::min(options.search.max_traces, kMaxTraces);
     alternatives.push_back(std::move(other));
   }
   return alternatives;
 }
 
 bool KeepsOrder(const Attempt& other, const Attempt& /*attempt*/) {
-  return other.solution.usable && BrokenOrder(*other.problem, other.solution.parameters).empty();
+  return other.solution.usable && OrderViolation(*other.problem, other.solution.parameters).empty();
 }
 
 constexpr std::array<Rescue, 3> kRescues = {{
-    {"moving_start", MayBeginInMotion, StartingSo<StartKind::kMoving>, IsBetter},
-    {"release_start", MayBeginHeld, StartingSo<StartKind::kRelease>, IsBetter},
+    {"moving_start", MayStartInMotion, StartingSo<StartKind::kMoving>, IsBetter},
+    {"release_start", MayStartHeld, StartingSo<StartKind::kRelease>, IsBetter},
     {"other_reference_rates", ViolatesOrder, FromOtherReferenceRates, KeepsOrder},
 }};
 
@@ -114,9 +114,9 @@ std::vector<AttemptRecord> ApplyRescues(const Recording& recording, const FitOpt
 
 /// A likelihood with jumps has many local minima, and a search may end at a high one. A profile that finds a lower one
 /// shows it.
-void ConcludeFromProfiles(const FitProblem& problem, FitReport& report) {
+void CheckProfilesForBetterMinimum(const FitProblem& problem, FitReport& report) {
   const auto found_better = [](const ParameterEstimate& p) { return p.open_interval == OpenInterval::kBetterMinimum; };
-  if (!HasJumps(problem) || report.termination != Termination::kConverged) return;
+  if (!HasDiscontinuities(problem) || report.termination != Termination::kConverged) return;
   if (!std::ranges::any_of(report.parameters, found_better)) return;
   report.termination = Termination::kNotConverged;
   report.reason =
@@ -131,7 +131,7 @@ std::string OrderViolationOf(const FitProblem& problem, const FitReport& report)
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {
     estimates.push_back(problem.Internal(i, report.parameters[i].estimate));
   }
-  return estimates.empty() ? "" : BrokenOrder(problem, estimates);
+  return estimates.empty() ? "" : OrderViolation(problem, estimates);
 }
 
 /// The report. Once a stop is requested, it may be incomplete.
@@ -139,13 +139,13 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
   Result<Attempt> attempt = MakeAttempt(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());
   std::vector<AttemptRecord> records = ApplyRescues(recording, options, *attempt);
-  std::string violation = BrokenOrder(*attempt->problem, attempt->solution.parameters);
+  std::string violation = OrderViolation(*attempt->problem, attempt->solution.parameters);
   Result<FitReport> report = FitReport();
   if (violation.empty()) {
     const double log_posterior = LogPosterior(*attempt);
-    report = Judge(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
-    ConcludeFromRivals(*attempt->problem, attempt->rivals, log_posterior, *report);
-    ConcludeFromProfiles(*attempt->problem, *report);
+    report = MakeFitReport(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+    CheckAlternativeMinima(*attempt->problem, attempt->alternatives, log_posterior, *report);
+    CheckProfilesForBetterMinimum(*attempt->problem, *report);
     violation = OrderViolationOf(*attempt->problem, *report);
   }
   if (!violation.empty()) {

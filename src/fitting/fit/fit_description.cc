@@ -86,8 +86,8 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
 
 }  // namespace
 
-FitReport IntroduceFit(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                       const Solution& solution) {
+FitReport InitializeReport(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+                           const Solution& solution) {
   FitReport report;
   report.model = problem.model;
   report.start = problem.start.start;
@@ -103,7 +103,7 @@ Description Describe(const Recording& recording, const FitProblem& problem, cons
                      const Solution& solution, int free_parameters) {
   Description described;
   FitReport& report = described.report;
-  report = IntroduceFit(recording, problem, cost, solution);
+  report = InitializeReport(recording, problem, cost, solution);
   const Eigen::VectorXd& z = described.quantile_residuals =
       QuantileResiduals(solution.noise, recording.value, solution.readings);
   report.fitted = solution.readings;
@@ -113,10 +113,11 @@ Description Describe(const Recording& recording, const FitProblem& problem, cons
   report.statistics.rms_residual = problem.RmsResidual(report.fitted);
   report.noise = DescribeNoise(problem, solution, z);
   described.trace = cost.Trace(solution.parameters);
-  described.correlated = !IsRounding(recording, report) &&
-                         (FollowEachOther(z, PeriodLags(problem)) ||
-                          SwingAlong(recording.time, report.fitted, z,
-                                     2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
+  described.correlated =
+      !IsRounding(recording, report) &&
+      (AreAutocorrelated(z, PeriodLags(problem)) ||
+       HavePhaseOrAmplitudeErrors(recording.time, report.fitted, z,
+                                  2 * kPi / (problem.start.natural_frequency * recording.clock_scale)));
   return described;
 }
 

@@ -25,7 +25,7 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-bool FitReport::Warns(std::string_view code) const {
+bool FitReport::HasWarning(std::string_view code) const {
   return std::ranges::find(warnings, code, &Warning::code) != warnings.end();
 }
 

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 /// All parameters that are not fixed, free ones first.
-std::vector<int> NotFixed(const Optimum& optimum) {
+std::vector<int> UnfixedParameters(const Optimum& optimum) {
   std::vector<int> parameters = optimum.free;
   parameters.insert(parameters.end(), optimum.at_bound.begin(), optimum.at_bound.end());
   return parameters;
@@ -48,7 +48,7 @@ ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const Profi
 }
 
 void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
-  std::vector<int> parameters = NotFixed(fitted.optimum);
+  std::vector<int> parameters = UnfixedParameters(fitted.optimum);
   std::ranges::sort(parameters);
   for (const int i : parameters) {
     SetProfileInterval(
@@ -61,9 +61,9 @@ void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
 void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
   const Bootstrap bootstrap =
       RunBootstrap(fitted.problem, fitted.options, fitted.solution, fitted.quantile_residuals, fitted.correlation);
-  constexpr int kFewest = kBootstrapFits * 9 / 10;
-  for (const int i : NotFixed(fitted.optimum)) {
-    if (bootstrap.estimates.rows() < kFewest) {
+  constexpr int kMin = kBootstrapFits * 9 / 10;
+  for (const int i : UnfixedParameters(fitted.optimum)) {
+    if (bootstrap.estimates.rows() < kMin) {
       report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kFailedResamples;
       continue;
     }
@@ -74,7 +74,7 @@ void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
 }
 
 /// The linearized fit over the free parameters of `optimum`.
-LinearizedFit LinearizedOf(const FittedModel& fitted, const Optimum& optimum) {
+LinearizedFit LinearizeFit(const FittedModel& fitted, const Optimum& optimum) {
   const FitProblem& problem = fitted.problem;
   const std::vector<int>& free = optimum.free;
   const auto size = static_cast<Index>(free.size());
@@ -101,7 +101,7 @@ LinearizedFit LinearizedOf(const FittedModel& fitted, const Optimum& optimum) {
 }
 
 /// The parameters that are most strongly correlated with the one in `row` of the inverse.
-std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& optimum, Index row) {
+std::vector<std::string> MostCorrelatedParameters(const FitProblem& problem, const Optimum& optimum, Index row) {
   constexpr double kClosely = 0.9;
   const Eigen::MatrixXd& inverse = optimum.inverse.matrix;
   std::vector<std::string> names;
@@ -114,14 +114,14 @@ std::vector<std::string> TradedFor(const FitProblem& problem, const Optimum& opt
 
 /// Whether the noise is so small that the likelihood is not parabolic: only the few samples near the edges of levels
 /// carry information.
-bool IsQuiet(const FittedModel& fitted) {
+bool HasLittleNoise(const FittedModel& fitted) {
   constexpr double kFewAtEdges = 500;
   constexpr double kAtSmallest = 1.05;
   const NoiseModel& noise = fitted.solution.noise;
   if (noise.family != NoiseFamily::kQuantized) return false;
   const double levels = noise.sigma / noise.resolution;
   const auto samples = static_cast<double>(fitted.problem.data.time.size());
-  return levels < kAtSmallest * kSmallestSigma || (levels < kQuietSigma && samples * levels < kFewAtEdges);
+  return levels < kAtSmallest * kSmallestSigma || (levels < kSmallSigma && samples * levels < kFewAtEdges);
 }
 
 /// Whether a bound truncates the posterior.
@@ -149,8 +149,8 @@ IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& post
 }
 
 /// Sets the estimates of the free parameters to the means of the posterior.
-void MoveTo(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted,
-            const std::vector<int>& free, FitReport& report) {
+void UsePosteriorMeans(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted,
+                       const std::vector<int>& free, FitReport& report) {
   const bool cut_off = ReachesBound(linear, posterior);
   for (std::size_t row = 0; row < free.size(); ++row) {
     const auto i = static_cast<std::size_t>(free[row]);
@@ -230,16 +230,17 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
 }
 
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
-  constexpr std::size_t kMostSamples = 200'000;  // beyond this, the matrices of the draws need too much memory
+  constexpr std::size_t kMaxSamples = 200'000;  // beyond this, the matrices of the draws need too much memory
   const bool asked = fitted.options.interval == IntervalMethod::kAuto;
-  const bool remembers = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
-  if (!asked || remembers || !IsQuiet(fitted) || fitted.problem.data.time.size() > kMostSamples) return std::nullopt;
+  const bool is_autocorrelated = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
+  if (!asked || is_autocorrelated || !HasLittleNoise(fitted) || fitted.problem.data.time.size() > kMaxSamples)
+    return std::nullopt;
   Optimum optimum = WithoutBounds(fitted.optimum);
   if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
-  const LinearizedFit linear = LinearizedOf(fitted, optimum);
+  const LinearizedFit linear = LinearizeFit(fitted, optimum);
   const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed, fitted.options.stop);
   if (!posterior) return std::nullopt;
-  MoveTo(linear, *posterior, fitted, optimum.free, report);
+  UsePosteriorMeans(linear, *posterior, fitted, optimum.free, report);
   constexpr double kNormal = 1.959963984540054;
   errors.covariance = posterior->covariance;
   errors.t95 = Eigen::VectorXd::Constant(posterior->covariance.rows(), kNormal);
@@ -267,8 +268,8 @@ void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& re
 
 namespace {
 
-Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& optimum, int parameter,
-                                     const ParameterEstimate& estimate) {
+Identifiability AssessIdentifiability(const FitProblem& problem, const Optimum& optimum, int parameter,
+                                      const ParameterEstimate& estimate) {
   // A correlation of 0.995 with the others: its error is ten times what it would be if they were known.
   constexpr double kTraded = 100;
   constexpr double kImprecise = 0.1;  // of the estimate
@@ -288,7 +289,7 @@ Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& o
     for (const int other : unseen) known.direction.emplace_back(problem.infos[static_cast<std::size_t>(other)].name);
   } else if (traded || reaches_bound) {
     known.verdict = Identifiability::Verdict::kWeakly;
-    if (traded) known.direction = TradedFor(problem, optimum, row);
+    if (traded) known.direction = MostCorrelatedParameters(problem, optimum, row);
   } else {
     return known;
   }
@@ -299,9 +300,9 @@ Identifiability JudgeIdentifiability(const FitProblem& problem, const Optimum& o
 }  // namespace
 
 void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
-  for (const int i : NotFixed(optimum)) {
+  for (const int i : UnfixedParameters(optimum)) {
     const ParameterEstimate& estimate = report.parameters[static_cast<std::size_t>(i)];
-    report.identifiability.push_back(JudgeIdentifiability(problem, optimum, i, estimate));
+    report.identifiability.push_back(AssessIdentifiability(problem, optimum, i, estimate));
   }
 }
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
-#include "pendulum/fitting/fit/broken_order.h"
 #include "pendulum/fitting/fit/fit_description.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/intervals.h"
+#include "pendulum/fitting/fit/order_violation.h"
 #include "pendulum/fitting/joint/joint_errors.h"
 #include "pendulum/fitting/joint/joint_problem.h"
 #include "pendulum/fitting/joint/solve_jointly.h"
@@ -25,38 +25,38 @@ namespace {
 using Eigen::Index;
 
 /// A joint solution and the intermediate results for its report.
-struct Work {
+struct JointState {
   JointProblem joint;
   Solution solution;
   Optimum optimum;
-  std::vector<Optimum> own_optima;        // K: the optimum restricted to each recording
-  std::vector<Description> descriptions;  // K
-  std::vector<Autocorrelation> memories;  // K
+  std::vector<Optimum> own_optima;                // K: the optimum restricted to each recording
+  std::vector<Description> descriptions;          // K
+  std::vector<Autocorrelation> autocorrelations;  // K
   Errors errors;
   Eigen::MatrixXd systematic;  // P x P, units of G
   bool from_posteriors = false;
 };
 
 /// The indices of a recording's free parameters among all free parameters.
-std::vector<Index> RowsOf(const Work& work, std::size_t k) {
-  return work.joint.members[k].RowsAmong(work.optimum.free, work.own_optima[k].free);
+std::vector<Index> RowsOf(const JointState& state, std::size_t k) {
+  return state.joint.members[k].RowsAmong(state.optimum.free, state.own_optima[k].free);
 }
 
-void SeeOwn(Work& work) {
-  const Optimum& all = work.optimum;
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
+void SetOwnOptima(JointState& state) {
+  const Optimum& all = state.optimum;
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
     Optimum own;
     own.information = all.information(member.at, member.at);
     own.gradient = all.gradient(member.at);
-    own.free = member.Own(all.free);
-    own.at_bound = member.Own(all.at_bound);
+    own.free = member.OwnIndices(all.free);
+    own.at_bound = member.OwnIndices(all.at_bound);
     own.inverse.identifiable = all.inverse.identifiable;
-    own.inverse.direction = member.Own(all.inverse.direction);
-    work.own_optima.push_back(std::move(own));
+    own.inverse.direction = member.OwnIndices(all.inverse.direction);
+    state.own_optima.push_back(std::move(own));
     if (!all.inverse.identifiable) continue;
-    const std::vector<Index> rows = RowsOf(work, k);
-    work.own_optima[k].inverse.matrix = all.inverse.matrix(rows, rows);
+    const std::vector<Index> rows = RowsOf(state, k);
+    state.own_optima[k].inverse.matrix = all.inverse.matrix(rows, rows);
   }
 }
 
@@ -75,12 +75,12 @@ std::string NamesOf(const JointProblem& joint, const std::vector<int>& parameter
 }
 
 /// The recordings that the joint trajectories do not explain.
-std::string Unexplained(const Work& work) {
+std::string DescribeUnexplained(const JointState& state) {
   std::string left;
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
     const double share = member.problem->UnexplainedShare(member.solution.readings);
-    if (share <= MostUnexplained(work.descriptions[k].correlated)) continue;
+    if (share <= MaxUnexplainedShare(state.descriptions[k].correlated)) continue;
     left += (left.empty() ? "" : ", ") +
             (share < 1 ? std::to_string(std::lround(100 * share)) + " %" : std::string("all")) +
             " of the variance of recording " + std::to_string(k + 1);
@@ -89,33 +89,33 @@ std::string Unexplained(const Work& work) {
 }
 
 /// The first recording that has a second solution by itself, which the other recordings do not exclude.
-std::string Ambiguous(const Work& work) {
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const FitReport& alone = *work.joint.members[k].alone;
-    if (alone.Warns("ambiguous_sensor")) return "recording " + std::to_string(k + 1) + ": " + alone.reason;
+std::string DescribeAmbiguity(const JointState& state) {
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const FitReport& alone = *state.joint.members[k].alone;
+    if (alone.HasWarning("ambiguous_sensor")) return "recording " + std::to_string(k + 1) + ": " + alone.reason;
   }
   return "";
 }
 
-Ending EndOf(const Work& work) {
-  if (const std::string left = Unexplained(work); !left.empty()) {
-    const bool restricted = work.joint.members.front().problem->restricted;
+Ending DetermineEnding(const JointState& state) {
+  if (const std::string left = DescribeUnexplained(state); !left.empty()) {
+    const bool restricted = state.joint.members.front().problem->restricted;
     return {Termination::kNotConverged,
             std::string(restricted ? "not with the values, bounds and priors that were given, or " : "") +
-                "these are not swings of one pendulum with one " + NameList(work.joint.shared) +
+                "these are not swings of one pendulum with one " + NameList(state.joint.shared) +
                 ": the best joint trajectories leave " + left + " unexplained"};
   }
-  const InformationInverse& inverse = work.optimum.inverse;
+  const InformationInverse& inverse = state.optimum.inverse;
   if (!inverse.identifiable) {
-    const std::string names = NamesOf(work.joint, inverse.direction);
+    const std::string names = NamesOf(state.joint, inverse.direction);
     return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
   }
-  for (const JointMember& member : work.joint.members) {
-    const std::string broken = BrokenOrder(*member.problem, member.solution.parameters);
-    if (!broken.empty()) return {Termination::kNotIdentifiable, broken};
+  for (const JointMember& member : state.joint.members) {
+    const std::string violation = OrderViolation(*member.problem, member.solution.parameters);
+    if (!violation.empty()) return {Termination::kNotIdentifiable, violation};
   }
-  if (std::string why = Ambiguous(work); !why.empty()) return {Termination::kNotIdentifiable, std::move(why)};
-  if (const double shift = RemainingShift(work.optimum); !(shift <= kLargestShift)) {
+  if (std::string why = DescribeAmbiguity(state); !why.empty()) return {Termination::kNotIdentifiable, std::move(why)};
+  if (const double shift = RemainingShift(state.optimum); !(shift <= kLargestShift)) {
     return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +
                                             " standard errors is left to make; shorter windows or another model may "
                                             "converge"};
@@ -126,47 +126,47 @@ Ending EndOf(const Work& work) {
 
 // ---- Errors ---------------------------------------------------------------------------------------------------------
 
-Errors ErrorsAt(const Work& work, const Optimum& optimum) {
+Errors ErrorsAt(const JointState& state, const Optimum& optimum) {
   std::vector<FittedRun> runs;
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    runs.push_back({*member.problem, *member.cost, member.solution, work.memories[k], member.at});
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
+    runs.push_back({*member.problem, *member.cost, member.solution, state.autocorrelations[k], member.at});
   }
-  return ComputeErrors(runs, work.joint.cost->priors(), optimum);
+  return ComputeErrors(runs, state.joint.cost->priors(), optimum);
 }
 
 /// Whether the joint residuals of a recording equal those of its own fit, apart from the cost of shared parameters.
-bool IsAsAlone(const JointMember& member, bool correlated) {
+bool MatchesSeparateFit(const JointMember& member, bool correlated) {
   constexpr double kFew = 10;  // of the deviance
   const FitReport& alone = *member.alone;
   const double rise = 2 * member.samples() * std::abs(std::log(member.solution.noise.sigma / alone.noise.sigma));
-  const bool remembers = alone.noise.memory.kind != Autocorrelation::Kind::kWhite;
-  return alone.termination == Termination::kConverged && rise < kFew && (remembers || !correlated);
+  const bool is_autocorrelated = alone.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite;
+  return alone.termination == Termination::kConverged && rise < kFew && (is_autocorrelated || !correlated);
 }
 
-Errors OwnErrors(const Work& work, std::size_t k) {
-  const std::vector<Index> rows = RowsOf(work, k);
-  return {work.errors.covariance(rows, rows), work.errors.t95(rows), {work.errors.runs[k]}};
+Errors OwnErrors(const JointState& state, std::size_t k) {
+  const std::vector<Index> rows = RowsOf(state, k);
+  return {state.errors.covariance(rows, rows), state.errors.t95(rows), {state.errors.runs[k]}};
 }
 
 // ---- Intervals ------------------------------------------------------------------------------------------------------
 
-bool WantsProfiles(const Work& work) {
-  const IntervalMethod method = work.joint.members.front().options.interval;
+bool NeedsProfiles(const JointState& state) {
+  const IntervalMethod method = state.joint.members.front().options.interval;
   if (method == IntervalMethod::kProfile) return true;
   return method == IntervalMethod::kAuto &&
-         IsNearBound(work.joint.solve, work.optimum, work.solution.parameters, work.errors.covariance);
+         IsNearBound(state.joint.solve, state.optimum, state.solution.parameters, state.errors.covariance);
 }
 
 /// Profiles of the shared parameters, identical in every report.
-void SetSharedProfiles(Work& work, std::vector<FitReport>& reports) {
-  const JointProblem& joint = work.joint;
-  const ErrorsOf errors_of = [&](const Optimum& optimum) { return ErrorsAt(work, optimum); };
-  if (!joint.cost->SumOfSquares(work.solution.parameters, &work.solution.sum)) return;
+void SetSharedProfiles(JointState& state, std::vector<FitReport>& reports) {
+  const JointProblem& joint = state.joint;
+  const ErrorsOf errors_of = [&](const Optimum& optimum) { return ErrorsAt(state, optimum); };
+  if (!joint.cost->SumOfSquares(state.solution.parameters, &state.solution.sum)) return;
   for (int i = 0; i < static_cast<int>(joint.shared.size()); ++i) {
     if (joint.solve.fixed[static_cast<std::size_t>(i)]) continue;
     const ProfileInterval interval =
-        ProfileParameter(*joint.cost, joint.solve, work.solution, work.optimum, errors_of, joint.samples(), i);
+        ProfileParameter(*joint.cost, joint.solve, state.solution, state.optimum, errors_of, joint.samples(), i);
     for (std::size_t k = 0; k < reports.size(); ++k) {
       const auto own = std::ranges::find(joint.members[k].at, i) - joint.members[k].at.begin();
       SetProfileInterval(*joint.members[k].problem, static_cast<int>(own), interval, reports[k]);
@@ -179,49 +179,50 @@ void SetSharedProfiles(Work& work, std::vector<FitReport>& reports) {
 
 // ---- Reports --------------------------------------------------------------------------------------------------------
 
-FitReport ReportOf(const Work& work, std::size_t k) {
-  const JointMember& member = work.joint.members[k];
-  FitReport report = work.descriptions[k].report;
-  const Optimum& own = work.own_optima[k];
-  const Errors errors = OwnErrors(work, k);
-  report.noise.memory = work.memories[k];
+FitReport ReportOf(const JointState& state, std::size_t k) {
+  const JointMember& member = state.joint.members[k];
+  FitReport report = state.descriptions[k].report;
+  const Optimum& own = state.own_optima[k];
+  const Errors errors = OwnErrors(state, k);
+  report.noise.autocorrelation = state.autocorrelations[k];
   report.statistics.effective_samples = errors.runs[0].effective_samples;
   report.noise.sigma_std_error = errors.runs[0].sigma;
   SetParameters(*member.recording, member.options, *member.problem, own, member.solution, report);
   SetCovariance(*member.problem, own, errors, report);
-  SetSystematicErrors(*member.problem, work.systematic(member.at, member.at), report);
+  SetSystematicErrors(*member.problem, state.systematic(member.at, member.at), report);
   SetCovarianceIntervals(*member.problem, member.solution, own, errors, report);
-  if (work.from_posteriors) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
+  if (state.from_posteriors) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
   return report;
 }
 
 /// Sets parameters, errors and intervals of all recordings.
-void SetReports(Work& work, JointFit& fit) {
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) fit.runs.push_back(ReportOf(work, k));
-  if (WantsProfiles(work) && !work.from_posteriors) SetSharedProfiles(work, fit.runs);
+void SetReports(JointState& state, JointFit& fit) {
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) fit.runs.push_back(ReportOf(state, k));
+  if (NeedsProfiles(state) && !state.from_posteriors) SetSharedProfiles(state, fit.runs);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    SetDerived(*member.problem, work.own_optima[k], OwnErrors(work, k), member.solution, fit.runs[k]);
-    SetIdentifiability(*member.problem, work.own_optima[k], fit.runs[k]);
+    const JointMember& member = state.joint.members[k];
+    SetDerived(*member.problem, state.own_optima[k], OwnErrors(state, k), member.solution, fit.runs[k]);
+    SetIdentifiability(*member.problem, state.own_optima[k], fit.runs[k]);
   }
 }
 
 /// Sets parameters without errors.
-void SetReportsWithoutErrors(Work& work, JointFit& fit) {
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    FitReport report = work.descriptions[k].report;
-    SetParameters(*member.recording, member.options, *member.problem, work.own_optima[k], member.solution, report);
+void SetReportsWithoutErrors(JointState& state, JointFit& fit) {
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
+    FitReport report = state.descriptions[k].report;
+    SetParameters(*member.recording, member.options, *member.problem, state.own_optima[k], member.solution, report);
     report.derived = DerivedQuantities(member.problem->infos, member.solution.parameters, nullptr, {});
-    if (!work.optimum.inverse.identifiable) SetIdentifiability(*member.problem, work.own_optima[k], report);
+    if (!state.optimum.inverse.identifiable) SetIdentifiability(*member.problem, state.own_optima[k], report);
     fit.runs.push_back(std::move(report));
   }
 }
 
 /// Number of free parameters, of those at a bound other than 0, and one σ for each recording.
-int CountParameters(const Work& work) {
-  auto count = static_cast<int>(work.optimum.free.size() + work.joint.members.size());
-  for (const int i : work.optimum.at_bound) count += work.solution.parameters[static_cast<std::size_t>(i)] == 0 ? 0 : 1;
+int CountParameters(const JointState& state) {
+  auto count = static_cast<int>(state.optimum.free.size() + state.joint.members.size());
+  for (const int i : state.optimum.at_bound)
+    count += state.solution.parameters[static_cast<std::size_t>(i)] == 0 ? 0 : 1;
   return count;
 }
 
@@ -238,10 +239,10 @@ void CopyShared(const JointFit& fit, const std::vector<std::string>& names, cons
 }
 
 /// The noise of the first recording with autocorrelated residuals, otherwise of the first recording.
-const NoiseEstimate& ExampleOfNoise(const JointFit& fit) {
-  const auto remembers = std::ranges::find_if(
-      fit.runs, [](const FitReport& run) { return run.noise.memory.kind != Autocorrelation::Kind::kWhite; });
-  return (remembers == fit.runs.end() ? fit.runs.front() : *remembers).noise;
+const NoiseEstimate& RepresentativeNoise(const JointFit& fit) {
+  const auto is_autocorrelated = std::ranges::find_if(
+      fit.runs, [](const FitReport& run) { return run.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite; });
+  return (is_autocorrelated == fit.runs.end() ? fit.runs.front() : *is_autocorrelated).noise;
 }
 
 /// Copies the results for the shared parameters from the first recording's report.
@@ -262,7 +263,7 @@ void SetShared(JointFit& fit) {
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
-  whole.noise = ExampleOfNoise(fit);
+  whole.noise = RepresentativeNoise(fit);
 }
 
 /// The result if no joint trajectory can be computed.
@@ -270,7 +271,7 @@ JointFit Failed(const JointProblem& joint, JointFit fit) {
   fit.whole.termination = Termination::kFailed;
   fit.whole.reason = "no joint trajectory can be traced: the recordings are too different, or what is fixed holds them";
   for (const JointMember& member : joint.members) {
-    fit.runs.push_back(IntroduceFit(*member.recording, *member.problem, *member.cost, member.solution));
+    fit.runs.push_back(InitializeReport(*member.recording, *member.problem, *member.cost, member.solution));
     SetParameters(*member.recording, member.options, *member.problem, Optimum{}, member.solution, fit.runs.back());
     fit.runs.back().termination = fit.whole.termination;
     fit.runs.back().reason = fit.whole.reason;
@@ -278,45 +279,46 @@ JointFit Failed(const JointProblem& joint, JointFit fit) {
   return fit;
 }
 
-void AddWarnings(const Work& work, JointFit& fit) {
+void AddWarnings(const JointState& state, JointFit& fit) {
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    const Description& described = work.descriptions[k];
+    const JointMember& member = state.joint.members[k];
+    const Description& described = state.descriptions[k];
     fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
                                        described.quantile_residuals, described.correlated, fit.runs[k]);
   }
 }
 
 /// Describes the residuals of each recording at the solution.
-void DescribeAll(Work& work) {
-  SeeOwn(work);
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    work.descriptions.push_back(Describe(*member.recording, *member.problem, *member.cost, member.solution,
-                                         static_cast<int>(work.own_optima[k].free.size())));
+void DescribeAll(JointState& state) {
+  SetOwnOptima(state);
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
+    state.descriptions.push_back(Describe(*member.recording, *member.problem, *member.cost, member.solution,
+                                          static_cast<int>(state.own_optima[k].free.size())));
   }
 }
 
 /// Computes the autocorrelation of each recording's residuals, and the covariance of the parameters.
-void FindErrors(Work& work) {
-  for (std::size_t k = 0; k < work.joint.members.size(); ++k) {
-    const JointMember& member = work.joint.members[k];
-    const Description& described = work.descriptions[k];
-    work.memories.push_back(IsAsAlone(member, described.correlated)
-                                ? member.alone->noise.memory
-                                : AutocorrelationOf(*member.problem, *member.cost, member.solution, work.own_optima[k],
-                                                    described.quantile_residuals, described.correlated));
+void FindErrors(JointState& state) {
+  for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
+    const JointMember& member = state.joint.members[k];
+    const Description& described = state.descriptions[k];
+    state.autocorrelations.push_back(MatchesSeparateFit(member, described.correlated)
+                                         ? member.alone->noise.autocorrelation
+                                         : AutocorrelationOf(*member.problem, *member.cost, member.solution,
+                                                             state.own_optima[k], described.quantile_residuals,
+                                                             described.correlated));
   }
-  work.errors = ErrorsAt(work, work.optimum);
-  if (work.from_posteriors) work.errors.covariance = work.optimum.inverse.matrix;
+  state.errors = ErrorsAt(state, state.optimum);
+  if (state.from_posteriors) state.errors.covariance = state.optimum.inverse.matrix;
 }
 
 /// Sets termination and reason in every report.
-void SetEnding(Work& work, FitReport& whole) {
-  const auto [termination, reason] = EndOf(work);
+void SetEnding(JointState& state, FitReport& whole) {
+  const auto [termination, reason] = DetermineEnding(state);
   whole.termination = termination;
   whole.reason = reason;
-  for (Description& described : work.descriptions) {
+  for (Description& described : state.descriptions) {
     described.report.termination = termination;
     described.report.reason = reason;
   }
@@ -352,35 +354,35 @@ namespace {
 Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());
-  Work work;
-  work.joint = *std::move(joint);
-  work.solution = SolveJointly(work.joint);
+  JointState state;
+  state.joint = *std::move(joint);
+  state.solution = SolveJointly(state.joint);
   JointFit fit;
-  fit.shared = work.joint.shared;
-  fit.whole.model = work.joint.members.front().problem->model;
-  std::optional<Optimum> optimum = Linearize(work.joint.solve, *work.joint.cost, work.solution);
-  fit.whole.solver = {work.solution.iterations, work.joint.cost->traces(), work.solution.message, {}};
-  if (!optimum) return Failed(work.joint, std::move(fit));
-  work.optimum = *std::move(optimum);
+  fit.shared = state.joint.shared;
+  fit.whole.model = state.joint.members.front().problem->model;
+  std::optional<Optimum> optimum = Linearize(state.joint.solve, *state.joint.cost, state.solution);
+  fit.whole.solver = {state.solution.iterations, state.joint.cost->traces(), state.solution.message, {}};
+  if (!optimum) return Failed(state.joint, std::move(fit));
+  state.optimum = *std::move(optimum);
   // Computed first, because posteriors change σ, on which the optimum's information depends.
-  work.systematic = SystematicErrors(work.joint, work.solution, work.optimum);
-  work.from_posteriors = HasPosteriors(work.joint) && UsePosteriors(work.joint, work.solution, work.optimum);
-  DescribeAll(work);
-  SetEnding(work, fit.whole);
+  state.systematic = SystematicErrors(state.joint, state.solution, state.optimum);
+  state.from_posteriors = HasPosteriors(state.joint) && UsePosteriors(state.joint, state.solution, state.optimum);
+  DescribeAll(state);
+  SetEnding(state, fit.whole);
   if (fit.whole.termination == Termination::kConverged) {
-    FindErrors(work);
-    SetReports(work, fit);
+    FindErrors(state);
+    SetReports(state, fit);
   } else {
-    SetReportsWithoutErrors(work, fit);
+    SetReportsWithoutErrors(state, fit);
   }
-  AddWarnings(work, fit);
-  fit.parameters = CountParameters(work);
+  AddWarnings(state, fit);
+  fit.parameters = CountParameters(state);
   std::vector<const FitReport*> all;
   all.reserve(fit.runs.size());
   for (const FitReport& run : fit.runs) all.push_back(&run);
   fit.whole.statistics = SumStatistics(all, fit.parameters);
   SetShared(fit);
-  fit.whole.solver.evaluations = work.joint.cost->traces();
+  fit.whole.solver.evaluations = state.joint.cost->traces();
   return fit;
 }
 

@@ -17,7 +17,7 @@ JointCost::JointCost(std::vector<JointTerm> terms, int parameters, std::vector<P
   }
 }
 
-std::vector<double> JointCost::Own(std::size_t k, std::span<const double> parameters) const {
+std::vector<double> JointCost::OwnParameters(std::size_t k, std::span<const double> parameters) const {
   std::vector<double> own;
   for (const int i : terms_[k].at) own.push_back(parameters[i]);
   return own;
@@ -27,7 +27,7 @@ bool JointCost::SumOfSquares(std::span<const double> parameters, double* sum) co
   *sum = PriorSum(priors_, parameters);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     double own = 0;
-    if (!terms_[k].cost->SumOfSquares(Own(k, parameters), &own)) return false;
+    if (!terms_[k].cost->SumOfSquares(OwnParameters(k, parameters), &own)) return false;
     *sum += own;
   }
   return true;
@@ -38,7 +38,7 @@ bool JointCost::Sums(std::span<const double> parameters, Eigen::MatrixXd* sums) 
   AddPriors(priors_, parameters, sums);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     Eigen::MatrixXd own;
-    if (!terms_[k].cost->Sums(Own(k, parameters), &own)) return false;
+    if (!terms_[k].cost->Sums(OwnParameters(k, parameters), &own)) return false;
     std::vector<int> at = terms_[k].at;
     at.push_back(parameters_);  // the residual's row
     (*sums)(at, at) += own;
@@ -61,13 +61,13 @@ void JointCost::AddTo(ceres::Problem& problem, const std::vector<double*>& param
 
 int JointCost::Reversals(std::span<const double> parameters) const {
   int reversals = 0;
-  for (std::size_t k = 0; k < terms_.size(); ++k) reversals += terms_[k].cost->Reversals(Own(k, parameters));
+  for (std::size_t k = 0; k < terms_.size(); ++k) reversals += terms_[k].cost->Reversals(OwnParameters(k, parameters));
   return reversals;
 }
 
 bool JointCost::ComesToRest(std::span<const double> parameters, double torque_change) const {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (terms_[k].cost->ComesToRest(Own(k, parameters), torque_change)) return true;
+    if (terms_[k].cost->ComesToRest(OwnParameters(k, parameters), torque_change)) return true;
   }
   return false;
 }

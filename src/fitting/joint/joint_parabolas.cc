@@ -70,7 +70,7 @@ Parabola ParabolaOf(const JointMember& member) {
 CombinedParabolas CombineParabolas(const JointProblem& joint) {
   const auto size = static_cast<Index>(joint.solve.fixed.size());
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(size + 1, size + 1);
-  std::vector<double> parameters = joint.AloneParameters();
+  std::vector<double> parameters = joint.SeparateParameters();
   const Eigen::VectorXd start = Eigen::Map<const Eigen::VectorXd>(parameters.data(), size);
   AddPriors(joint.cost->priors(), parameters, &sums);
   Eigen::VectorXd pull = -sums.col(size).head(size);

@@ -72,7 +72,7 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
 
 /// Checks that all runs have the same model and rig, because shared parameters are in units of the rig's gravity
 /// torque.
-Result<void> CheckAlike(std::span<const JointRun> runs) {
+Result<void> CheckSameModelAndRig(std::span<const JointRun> runs) {
   const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
   for (std::size_t k = 1; k < runs.size(); ++k) {
     if (runs[k].alone.model.name != runs[0].alone.model.name) {
@@ -86,10 +86,10 @@ Result<void> CheckAlike(std::span<const JointRun> runs) {
 }
 
 /// The model's parameters that the user asked to share, in the model's order.
-std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<std::string>& asked) {
+std::vector<std::string> SharedOf(const MotionModel& model, const std::vector<std::string>& requested) {
   std::vector<std::string> shared;
   for (const ParameterInfo& info : PhysicalParameters(model)) {
-    if (std::ranges::find(asked, info.name) != asked.end()) shared.emplace_back(info.name);
+    if (std::ranges::find(requested, info.name) != requested.end()) shared.emplace_back(info.name);
   }
   return shared;
 }
@@ -154,7 +154,7 @@ void Assemble(JointProblem& joint) {
 
 }  // namespace
 
-std::vector<int> JointMember::Own(const std::vector<int>& of_all) const {
+std::vector<int> JointMember::OwnIndices(const std::vector<int>& of_all) const {
   std::vector<int> own;
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (std::ranges::find(of_all, at[i]) != of_all.end()) own.push_back(static_cast<int>(i));
@@ -178,10 +178,10 @@ double JointProblem::samples() const {
 }
 
 void JointProblem::Distribute(const std::vector<double>& parameters) {
-  for (std::size_t k = 0; k < members.size(); ++k) members[k].solution.parameters = cost->Own(k, parameters);
+  for (std::size_t k = 0; k < members.size(); ++k) members[k].solution.parameters = cost->OwnParameters(k, parameters);
 }
 
-std::vector<double> JointProblem::AloneParameters() const {
+std::vector<double> JointProblem::SeparateParameters() const {
   std::vector<double> all(solve.fixed.size());
   for (const JointMember& member : members) {
     for (std::size_t i = 0; i < member.at.size(); ++i) {
@@ -207,7 +207,7 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
     return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
                                                    std::string(runs.empty() ? "there is none" : "there is one"));
   }
-  if (Result<void> checked = CheckAlike(runs); !checked) return tl::unexpected(checked.error());
+  if (Result<void> checked = CheckSameModelAndRig(runs); !checked) return tl::unexpected(checked.error());
   JointProblem joint;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     Result<JointMember> member = MakeMember(runs[k], k);

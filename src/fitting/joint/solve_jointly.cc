@@ -25,7 +25,7 @@ using Eigen::Index;
 double ShareOf(const JointMember& member, const Optimum& optimum) {
   Eigen::MatrixXd sums;
   if (!member.cost->Sums(member.solution.parameters, &sums)) return 0;
-  const std::vector<int> own = member.Own(optimum.free);
+  const std::vector<int> own = member.OwnIndices(optimum.free);
   const std::vector<Index> rows = member.RowsAmong(optimum.free, own);
   return optimum.inverse.matrix(rows, rows).cwiseProduct(sums(own, own)).sum();
 }
@@ -35,9 +35,9 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   const FitProblem& problem = *member.problem;
   const NoiseModel& noise = member.solution.noise;
   const double smallest = problem.negligible_sigma();
-  if (!noise.IsPlain()) {
+  if (!noise.IsUncensoredGaussian()) {
     const double of_levels = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
-    return LikeliestSigma(noise, problem.data.values(), member.solution.readings, std::max(of_levels, smallest));
+    return MostLikelySigma(noise, problem.data.values(), member.solution.readings, std::max(of_levels, smallest));
   }
   const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
   return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
@@ -64,7 +64,7 @@ bool UpdateNoise(JointProblem& joint, const Solution& solution) {
     const double sigma = SigmaOf(member, *optimum);
     const bool changed = std::abs(std::log(sigma / member.cost_sigma)) > kSame;
     member.solution.noise.sigma = sigma;
-    if (!changed && !member.solution.noise.IsPlain()) continue;
+    if (!changed && !member.solution.noise.IsUncensoredGaussian()) continue;
     member.cost_sigma = sigma;
     member.cost->set_noise(member.solution.noise);
   }
@@ -72,10 +72,10 @@ bool UpdateNoise(JointProblem& joint, const Solution& solution) {
 }
 
 /// Estimates parameters and σ in turn.
-void Settle(JointProblem& joint, Solution& solution) {
-  constexpr int kMostRounds = 30;
+void SolveAlternately(JointProblem& joint, Solution& solution) {
+  constexpr int kMaxRounds = 30;
   constexpr double kSettled = 0.01;  // standard errors
-  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+  for (int round = 0; round < kMaxRounds && solution.usable; ++round) {
     solution.usable = UpdateNoise(joint, solution);
     const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
     if (!optimum || !optimum->inverse.identifiable || RemainingShift(*optimum) < kSettled) return;
@@ -108,13 +108,13 @@ Solution SolveJointly(JointProblem& joint) {
   solution.parameters = CombineParabolas(joint).parameters;
   solution = Refine(*joint.cost, solution, joint.solve);
   if (!solution.usable) {  // with a likelihood that is not parabolic, that point may have no trajectory
-    solution.parameters = joint.AloneParameters();
+    solution.parameters = joint.SeparateParameters();
     solution = Refine(*joint.cost, solution, joint.solve);
   }
-  Settle(joint, solution);
-  for (int refinement = 0; !AreAccurate(joint, solution, refinement == kMostTraceRefinements); ++refinement) {
+  SolveAlternately(joint, solution);
+  for (int refinement = 0; !AreAccurate(joint, solution, refinement == kMaxTraceRefinements); ++refinement) {
     solution = Continue(*joint.cost, solution, joint.solve);
-    Settle(joint, solution);
+    SolveAlternately(joint, solution);
   }
   for (JointMember& member : joint.members) {
     member.solution.usable = solution.usable;

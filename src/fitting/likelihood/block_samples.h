@@ -87,10 +87,10 @@ class BlockSamples {
   /// Works on all full blocks once there are enough of them, and on the remainder after the last sample.
   template <typename Work, typename Add>
   void Share(const Work& work, const Add& add) {
-    constexpr std::size_t kMostKept = 4096;
+    constexpr std::size_t kMaxKept = 4096;
     const std::size_t ready = is_complete() ? (next_ - done_ + kBlock - 1) / kBlock : (next_ - done_) / kBlock;
     const std::size_t wanted = kShare * static_cast<std::size_t>(threads_);
-    if (ready == 0 || (!is_complete() && ready < wanted && kept_ < kMostKept)) return;
+    if (ready == 0 || (!is_complete() && ready < wanted && kept_ < kMaxKept)) return;
     if (parts_.size() < ready) parts_.resize(ready);
     const auto one = [&](int b) {
       const std::size_t first = done_ + static_cast<std::size_t>(b) * kBlock;

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "pendulum/recording/ticks.h"
+#include "pendulum/recording/encoder_edges.h"
 
 namespace pendulum {
 namespace {
@@ -40,10 +40,11 @@ Differences DifferencesOf(const NoiseModel& noise, const Eigen::Ref<const Eigen:
 
 Recording WithEdges(Recording recording, std::optional<NoiseFamily> noise) {
   const bool wanted = noise.value_or(NoiseFamily::kEdges) == NoiseFamily::kEdges;
-  return wanted && !recording.edge && IsEventDriven(recording) ? TakeEdges(std::move(recording)) : recording;
+  return wanted && !recording.edge && IsEventDriven(recording) ? ConvertToEdges(std::move(recording)) : recording;
 }
 
-std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero) {
+std::vector<double> ZeroMotionFactors(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times,
+                                      ZeroMotion zero) {
   if (zero == ZeroMotion::kNone) return {};
   if (zero == ZeroMotion::kDrifts) return {times.begin(), times.end()};
   const Eigen::VectorXd against = -EdgeDirections(recording);
@@ -69,14 +70,14 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
 }
 
 /// Fisher scoring: squared normal differences about their variances v; the variance of a square is 2 v².
-double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
-                           const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates) {
+double MostLikelyStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                            const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates) {
   constexpr int kSteps = 30;
-  constexpr Index kFewest = 20;
-  constexpr double kLeastShare = 1e-4;  // smallest share of the variance left to an edge
+  constexpr Index kMin = 20;
+  constexpr double kMinShare = 1e-4;  // smallest share of the variance left to an edge
   constexpr double kSure = 2;
   const Differences of = DifferencesOf(noise, value, readings, rates);
-  if (of.square.size() < kFewest || !(of.square.sum() > 0) || !(of.stamps.sum() > 0)) return 0;
+  if (of.square.size() < kMin || !(of.square.sum() > 0) || !(of.stamps.sum() > 0)) return 0;
   const double all = of.square.mean() / 2;
   Eigen::Vector2d variance(all, 0);  // of an edge, of a stamp
   double error = 0;                  // standard error of the variance of a stamp
@@ -91,7 +92,7 @@ double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen
     if (!inverse.allFinite()) return 0;
     variance = inverse * target;
     if (variance[1] < 0) variance = {target[0] / information(0, 0), 0};
-    variance[0] = std::max(variance[0], kLeastShare * all);
+    variance[0] = std::max(variance[0], kMinShare * all);
     error = std::sqrt(2 * inverse(1, 1));
   }
   return variance[1] > kSure * error ? std::sqrt(variance[1] / variance[0]) : 0;
@@ -100,7 +101,7 @@ double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen
 void SetSpread(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& value,
                const Eigen::Ref<const Eigen::VectorXd>& readings, NoiseModel& noise) {
   const Eigen::VectorXd rates = RatesOf(time, readings);
-  noise.stamp_ratio = LikeliestStampRatio(noise, value, readings, rates);
+  noise.stamp_ratio = MostLikelyStampRatio(noise, value, readings, rates);
   noise.spread = nullptr;
   if (noise.stamp_ratio == 0) return;
   const Eigen::ArrayXd spread = (1 + (noise.stamp_ratio * rates.array()).square()).sqrt();

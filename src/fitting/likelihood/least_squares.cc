@@ -30,8 +30,8 @@ void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parame
 
 namespace {
 
-using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCompressed, 1>;
-using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostCompressed, kMostCompressed>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCompressed, 1>;
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCompressed, kMaxCompressed>;
 
 }  // namespace
 

@@ -55,7 +55,7 @@ IntervalProbability AroundZero(double a, double b) {
 /// The probability is then density times length, with an error of fourth order in either.
 constexpr double kShort = 4e-3;
 
-IntervalProbability Short(double a, double b) {
+IntervalProbability ShortInterval(double a, double b) {
   const double length = b - a;
   const double middle = 0.5 * (a + b);
   const double curvature = (middle * middle - 1) * length * length / 24;
@@ -84,7 +84,7 @@ IntervalProbability GaussianInterval(double a, double b) {
     const IntervalProbability mirrored = GaussianInterval(-b, -a);
     return {mirrored.log, mirrored.upper, mirrored.lower};
   }
-  if ((b - a) * std::max(a, 10.0) < kShort) return Short(a, b);
+  if ((b - a) * std::max(a, 10.0) < kShort) return ShortInterval(a, b);
   return a >= 0 ? UpperTail(a, b) : AroundZero(a, b);
 }
 
@@ -115,16 +115,16 @@ Interval IntervalOf(const NoiseModel& noise, double y) {
 }
 
 /// b · density, or 0 if b is infinite.
-double Times(double b, double density) { return std::isinf(b) ? 0 : b * density; }
+double ProductOrZero(double b, double density) { return std::isinf(b) ? 0 : b * density; }
 
 /// Log-probability of an interval and its derivatives (MODEL.md eq. (7.2)).
-NoiseLikelihood OfInterval(const Interval& interval, double m, double sigma) {
+NoiseLikelihood IntervalLikelihood(const Interval& interval, double m, double sigma) {
   const double a = (interval.from - m) / sigma;
   const double b = (interval.to - m) / sigma;
   const IntervalProbability p = GaussianInterval(a, b);
-  const double first = Times(a, p.lower) - Times(b, p.upper);
-  const double second = Times(a * a, p.lower) - Times(b * b, p.upper);
-  const double third = Times(a * a * a, p.lower) - Times(b * b * b, p.upper);
+  const double first = ProductOrZero(a, p.lower) - ProductOrZero(b, p.upper);
+  const double second = ProductOrZero(a * a, p.lower) - ProductOrZero(b * b, p.upper);
+  const double third = ProductOrZero(a * a * a, p.lower) - ProductOrZero(b * b * b, p.upper);
   NoiseLikelihood l;
   l.log = p.log;
   const double slope = p.lower - p.upper;  // σ ∂l/∂m
@@ -136,7 +136,7 @@ NoiseLikelihood OfInterval(const Interval& interval, double m, double sigma) {
   return l;
 }
 
-NoiseLikelihood OfGaussian(double residual, double sigma) {
+NoiseLikelihood GaussianLikelihood(double residual, double sigma) {
   const double z = residual / sigma;
   NoiseLikelihood l;
   l.log = -0.5 * z * z - kLogRootTwoPi - std::log(sigma);
@@ -148,7 +148,7 @@ NoiseLikelihood OfGaussian(double residual, double sigma) {
   return l;
 }
 
-NoiseLikelihood OfStudent(double residual, double sigma) {
+NoiseLikelihood StudentLikelihood(double residual, double sigma) {
   constexpr double kFreedom = NoiseModel::kStudentFreedom;
   static const double constant = LogStudentConstant(kFreedom);
   const double z = residual / sigma;
@@ -163,7 +163,7 @@ NoiseLikelihood OfStudent(double residual, double sigma) {
   return l;
 }
 
-NoiseLikelihood OfHuber(double residual, double sigma) {
+NoiseLikelihood HuberLikelihood(double residual, double sigma) {
   constexpr double kWidth = NoiseModel::kHuberWidth;
   static const double log_constant = std::log(HuberConstant(kWidth));
   const double z = residual / sigma;
@@ -212,7 +212,7 @@ Tail RobustBelow(NoiseFamily family, double u) {
 }
 
 /// A reading at an end of the range: the value is at that end or beyond it.
-NoiseLikelihood OfRobustEnd(const NoiseModel& noise, double y, double m) {
+NoiseLikelihood RobustEndLikelihood(const NoiseModel& noise, double y, double m) {
   const double side = y >= noise.high ? 1 : -1;
   const double u = side * (m - (side > 0 ? noise.high : noise.low)) / noise.sigma;
   const Tail tail = RobustBelow(noise.family, u);
@@ -232,11 +232,11 @@ NoiseLikelihood OfRobustEnd(const NoiseModel& noise, double y, double m) {
 
 NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
   if (IsRobust()) {
-    if (IsCensored(y)) return OfRobustEnd(*this, y, m);
-    return family == NoiseFamily::kHuber ? OfHuber(y - m, sigma) : OfStudent(y - m, sigma);
+    if (IsCensored(y)) return RobustEndLikelihood(*this, y, m);
+    return family == NoiseFamily::kHuber ? HuberLikelihood(y - m, sigma) : StudentLikelihood(y - m, sigma);
   }
-  if (IsInterval(y)) return OfInterval(IntervalOf(*this, y), m, sigma);
-  return OfGaussian(y - m, sigma);
+  if (IsInterval(y)) return IntervalLikelihood(IntervalOf(*this, y), m, sigma);
+  return GaussianLikelihood(y - m, sigma);
 }
 
 SampleLikelihood NoiseModel::At(double y, double m) const {
@@ -245,7 +245,7 @@ SampleLikelihood NoiseModel::At(double y, double m) const {
     return {z * z, z / sigma, 1 / (sigma * sigma)};
   }
   if (IsRobust() && IsCensored(y)) {
-    const NoiseLikelihood l = OfRobustEnd(*this, y, m);
+    const NoiseLikelihood l = RobustEndLikelihood(*this, y, m);
     return {-2 * l.log, l.score, l.information > 0 ? l.information : l.score * l.score};
   }
   if (IsRobust()) {
@@ -262,7 +262,7 @@ SampleLikelihood NoiseModel::At(double y, double m) const {
   const IntervalProbability p = GaussianInterval(a, b);
   const double best = std::log(std::erf(0.5 * kRootHalf * (b - a)));  // 0 if censored
   const double slope = p.lower - p.upper;
-  const double first = Times(a, p.lower) - Times(b, p.upper);
+  const double first = ProductOrZero(a, p.lower) - ProductOrZero(b, p.upper);
   return {std::max(2 * (best - p.log), 0.0), slope / sigma, std::max(slope * slope - first, 0.0) / (sigma * sigma)};
 }
 
@@ -317,15 +317,15 @@ SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vector
 
 }  // namespace
 
-double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
-                      const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest) {
-  constexpr int kMostSteps = 60;
+double MostLikelySigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                       const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest) {
+  constexpr int kMaxSteps = 60;
   constexpr double kLongestStep = 1;   // in λ
   constexpr double kConverged = 0.01;  // the error after a step is of the order of its square
   double below = std::log(smallest);
   double above = std::log(1e6 * noise.sigma);
   double lambda = std::max(std::log(noise.sigma), below);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     noise.sigma = std::exp(lambda);
     const SigmaSums sums = SumsOver(noise, value, readings);
     (sums.score > 0 ? below : above) = lambda;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fitting/likelihood/known_at.h"
+#include "fitting/likelihood/cached_result.h"
 
 namespace pendulum {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// The data without its sensor: the readings are the angle, with zero 0.
-TrajectoryData Unsensed(const TrajectoryData& data) {
+TrajectoryData WithoutSensor(const TrajectoryData& data) {
   TrajectoryData unsensed = data;
   unsensed.quantity = Quantity::kAngle;
   unsensed.sensor = {};
@@ -27,8 +27,8 @@ class SensedCost final : public TrajectoryCost {
   SensedCost(int count, const TrajectoryData& data, const MotionModel& model, StartKind start)
       : TrajectoryCost(count),
         data_(data),
-        unsensed_(Unsensed(data)),
-        motion_(MakeTrajectoryCost(model, start, unsensed_)),
+        data_without_sensor_(WithoutSensor(data)),
+        motion_(MakeTrajectoryCost(model, start, data_without_sensor_)),
         used_samples_(data.time.size()) {
     noise_.sigma = data.scale;
   }
@@ -48,20 +48,20 @@ class SensedCost final : public TrajectoryCost {
   void set_threads(int threads) override { motion_->set_threads(threads); }
 
   bool Readings(std::span<const double> p, VectorXd* readings, MatrixXd* jacobian) const override {
-    if (jacobian == nullptr && read_.IsAt(Asking(p))) {
+    if (jacobian == nullptr && read_.IsAt(EvaluationKeyAt(p))) {
       *readings = read_.value;
       return true;
     }
     MotionStates states;
-    if (!motion_->Motion(OfMotion(p), jacobian != nullptr, &states)) return false;
+    if (!motion_->Motion(MotionParameters(p), jacobian != nullptr, &states)) return false;
     traces_ = motion_->traces();
-    See(states, p, readings, jacobian);
-    read_.SetAt(Asking(p), *readings);
+    ApplySensor(states, p, readings, jacobian);
+    read_.SetAt(EvaluationKeyAt(p), *readings);
     return readings->allFinite();
   }
 
   bool Motion(std::span<const double> p, bool with_jacobian, MotionStates* states) const override {
-    return motion_->Motion(OfMotion(p), with_jacobian, states);
+    return motion_->Motion(MotionParameters(p), with_jacobian, states);
   }
 
   bool SumOfSquares(std::span<const double> p, double* sum) const override {
@@ -73,32 +73,32 @@ class SensedCost final : public TrajectoryCost {
   }
 
   bool Sums(std::span<const double> p, MatrixXd* sums) const override {
-    if (!last_.IsAt(Asking(p))) {
+    if (!last_.IsAt(EvaluationKeyAt(p))) {
       VectorXd readings;
       MatrixXd jacobian;
       if (!Readings(p, &readings, &jacobian)) return false;
       AddUp(readings, std::move(jacobian), sums);
       if (!sums->allFinite()) return false;
-      last_.SetAt(Asking(p), *sums);
+      last_.SetAt(EvaluationKeyAt(p), *sums);
     }
     *sums = last_.value;
     AddPriors(priors(), p, sums);
     return true;
   }
 
-  TraceSummary Trace(std::span<const double> p) const override { return motion_->Trace(OfMotion(p)); }
+  TraceSummary Trace(std::span<const double> p) const override { return motion_->Trace(MotionParameters(p)); }
 
   bool ComesToRest(std::span<const double> p, double torque_change) const override {
-    return motion_->ComesToRest(OfMotion(p), torque_change);
+    return motion_->ComesToRest(MotionParameters(p), torque_change);
   }
 
   bool is_stopped() const override { return motion_->is_stopped(); }
 
  private:
-  Question Asking(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
+  EvaluationKey EvaluationKeyAt(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
 
   /// Parameters of the motion, with 0 for its zero.
-  std::vector<double> OfMotion(std::span<const double> p) const {
+  std::vector<double> MotionParameters(std::span<const double> p) const {
     const auto motion = p.first(p.size() - static_cast<std::size_t>(data_.sensor.size()));
     std::vector<double> parameters(motion.begin(), motion.end());
     parameters.push_back(0);
@@ -106,7 +106,8 @@ class SensedCost final : public TrajectoryCost {
   }
 
   /// Computes the readings and, unless null, their derivatives by the chain rule.
-  void See(const MotionStates& states, std::span<const double> p, VectorXd* readings, MatrixXd* jacobian) const {
+  void ApplySensor(const MotionStates& states, std::span<const double> p, VectorXd* readings,
+                   MatrixXd* jacobian) const {
     const Index samples = states.value[0].size();
     const int sensor_size = data_.sensor.size();
     const auto motion_size = static_cast<Index>(p.size()) - sensor_size;
@@ -144,13 +145,13 @@ class SensedCost final : public TrajectoryCost {
   }
 
   const TrajectoryData& data_;
-  const TrajectoryData unsensed_;
+  const TrajectoryData data_without_sensor_;
   std::unique_ptr<TrajectoryCost> motion_;
   std::size_t used_samples_;
   double tolerance_ = 1e-10;
   NoiseModel noise_;
-  mutable KnownAt<MatrixXd> last_;  // sums without priors
-  mutable KnownAt<VectorXd> read_;
+  mutable CachedResult<MatrixXd> last_;  // sums without priors
+  mutable CachedResult<VectorXd> read_;
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <type_traits>
 
 #include "fitting/likelihood/block_samples.h"
+#include "fitting/likelihood/cached_result.h"
 #include "fitting/likelihood/depth_table.h"
-#include "fitting/likelihood/known_at.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/model/dual.h"
 #include "pendulum/model/friction/friction_model.h"
@@ -22,7 +22,7 @@ namespace pendulum {
 /// A trial that needs more steps than this has a time scale far from that of the start values. A period takes some 12
 /// steps.
 inline constexpr double kStepsPerRadian = 20;
-inline constexpr double kMostSteps = 10'000;
+inline constexpr double kMaxSteps = 10'000;
 
 /// The cost of one friction law and start, with the number of parameters known at compile time.
 template <FrictionModel F, StartKind kStart>
@@ -30,7 +30,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   static constexpr int kFriction = kFrictionParameters<F>;
   static constexpr int kParameters = kFriction + 4;
   static constexpr int kZero = kParameters - 1;
-  static_assert(kParameters + 1 <= kMostCompressed);
+  static_assert(kParameters + 1 <= kMaxCompressed);
   static constexpr int kModel = kZero;  ///< Row of the model's reading, after its derivatives.
   /// Derivatives by release time and zero need no dual number.
   using Dual = std::conditional_t<kStart == StartKind::kRelease, ReleaseDual<F>, MovingDual<F>>;
@@ -40,7 +40,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
  public:
   TrajectoryCostFor(Gravity gravity, const TrajectoryData& data)
-      : TrajectoryCost(kParameters + (data.moves.empty() ? 0 : 1)),
+      : TrajectoryCost(kParameters + (data.zero_motion_factors.empty() ? 0 : 1)),
         gravity_(gravity),
         data_(data),
         used_samples_(data.time.size()) {
@@ -52,7 +52,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   void set_used_samples(std::size_t count) override { used_samples_ = count; }
 
   void set_noise(const NoiseModel& noise) override {
-    if (noise_.IsPlain() && noise.IsPlain()) {
+    if (noise_.IsUncensoredGaussian() && noise.IsUncensoredGaussian()) {
       last_.value *= std::pow(noise_.sigma / noise.sigma, 2);
     } else {
       last_.parameters.clear();
@@ -66,7 +66,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     const auto work = [&](SampleBlock<1>& block, std::size_t first, int count, double& part) {
       auto& row = block.row[0];
       Read(p, row.data(), first, count, row.data());
-      if (noise_.IsPlain()) {
+      if (noise_.IsUncensoredGaussian()) {
         RowProducts<1> square;
         FindResiduals(row.data(), first, count, row.data());
         SumProducts(block, count, square);
@@ -77,17 +77,17 @@ class TrajectoryCostFor final : public TrajectoryCost {
       for (int i = 0; i < count; ++i) part += At(first + i, row[i]).deviance;
     };
     if (!VisitSamples(values_, p, work, [&](double part) { deviance += part; })) return false;
-    if (noise_.IsPlain()) deviance /= noise_.sigma * noise_.sigma;
+    if (noise_.IsUncensoredGaussian()) deviance /= noise_.sigma * noise_.sigma;
     *sum = deviance + PriorSum(p);
     return std::isfinite(*sum);
   }
 
   bool Sums(std::span<const double> p, Eigen::MatrixXd* sums) const override {
     if (is_stopped()) return false;
-    if (!last_.IsAt(Asking(p))) {
-      if (!(data_.moves.empty() ? AddUp<1>(steady_, p, sums) : AddUp<2>(moving_, p, sums))) return false;
+    if (!last_.IsAt(EvaluationKeyAt(p))) {
+      if (!(data_.zero_motion_factors.empty() ? AddUp<1>(steady_, p, sums) : AddUp<2>(moving_, p, sums))) return false;
       last_.value = *sums;  // reuses the allocated memory
-      last_.SetAt(Asking(p));
+      last_.SetAt(EvaluationKeyAt(p));
     }
     *sums = last_.value;
     AddPriors(priors(), p, sums);
@@ -102,7 +102,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     };
     const auto add = [](double /*part*/) {};
     if (jacobian == nullptr) {
-      if (read_.IsAt(Asking(p))) {
+      if (read_.IsAt(EvaluationKeyAt(p))) {
         *readings = read_.value;
         return true;
       }
@@ -116,7 +116,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
       read(block.row[kModel].data(), first, count);
       for (int j = 0; j < kZero; ++j) std::copy_n(block.row[j].data(), count, &(*jacobian)(first, j));
       jacobian->col(kZero).segment(first, count).setOnes();
-      if (!data_.moves.empty()) std::copy_n(&data_.moves[first], count, &(*jacobian)(first, kZero + 1));
+      if (!data_.zero_motion_factors.empty())
+        std::copy_n(&data_.zero_motion_factors[first], count, &(*jacobian)(first, kZero + 1));
     };
     Samples<Dual, kParameters, double> columns;
     return VisitSamples(columns, p, work, add);
@@ -129,11 +130,11 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// The search asks whether the motion comes to rest, and the judge asks when. Both ask at a point already evaluated.
   TraceSummary Trace(std::span<const double> p) const override {
     if (is_stopped()) return {};
-    if (traced_.IsAt(Asking(p))) return traced_.value;
+    if (traced_.IsAt(EvaluationKeyAt(p))) return traced_.value;
     ++traces_;
     TraceOptions options = Options();
-    const SegmentVisitor<double> nothing = [&](const Segment<double>&) { GiveUpIfStopped(options); };
-    traced_.SetAt(Asking(p), TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
+    const SegmentVisitor<double> nothing = [&](const Segment<double>&) { LimitStepsIfStopped(options); };
+    traced_.SetAt(EvaluationKeyAt(p), TraceTrajectory(MakePendulum<double>(p), MakeStart<double>(p), options, nothing));
     return traced_.value;
   }
 
@@ -153,8 +154,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
   void Read(std::span<const double> p, const double* row, std::size_t first, int count, double* readings) const {
     const double zero = p[kZero];
     for (int i = 0; i < count; ++i) readings[i] = row[i] + zero;
-    if (data_.moves.empty()) return;
-    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.moves[first + i];
+    if (data_.zero_motion_factors.empty()) return;
+    for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.zero_motion_factors[first + i];
   }
 
   /// Same result as noise_.At, without an exponential and an error function for every quantized sample.
@@ -192,8 +193,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     constexpr int kResidual = kZero + kBaseline;
     auto& residual = block.row[kResidual];
     std::fill_n(block.row[kZero].begin(), count, 1.0);
-    if constexpr (kBaseline == 2) std::copy_n(&data_.moves[first], count, block.row[kZero + 1].begin());
-    if (noise_.IsPlain()) {
+    if constexpr (kBaseline == 2) std::copy_n(&data_.zero_motion_factors[first], count, block.row[kZero + 1].begin());
+    if (noise_.IsUncensoredGaussian()) {
       FindResiduals(readings, first, count, residual.data());
       return 0;
     }
@@ -227,8 +228,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
       for (std::size_t k = 0; k < total.products.size(); ++k) total.products[k] += part.products[k];
     };
     if (!VisitSamples(samples, p, work, add)) return false;
-    read_.SetAt(Asking(p));
-    const double scale = noise_.IsPlain() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
+    read_.SetAt(EvaluationKeyAt(p));
+    const double scale = noise_.IsUncensoredGaussian() ? 1 / (noise_.sigma * noise_.sigma) : 1.0;
     sums->resize(kResidual + 1, kResidual + 1);
     for (int i = 0, k = 0; i <= kResidual; ++i) {
       for (int j = 0; j <= i; ++j, ++k) {
@@ -236,7 +237,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         (*sums)(i, j) = (*sums)(j, i) = sign * scale * total.products[k];
       }
     }
-    if (!noise_.IsPlain()) (*sums)(kResidual, kResidual) = total.deviance;
+    if (!noise_.IsUncensoredGaussian()) (*sums)(kResidual, kResidual) = total.deviance;
     return sums->allFinite();
   }
 
@@ -272,13 +273,13 @@ class TrajectoryCostFor final : public TrajectoryCost {
     options.end = std::nextafter(data_.time[used_samples_ - 1], kUnbounded);
     options.tolerance = tolerance_;
     options.max_steps =
-        static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMostSteps, 1e9));
+        static_cast<int>(std::min(kStepsPerRadian * data_.natural_frequency * options.end + kMaxSteps, 1e9));
     return options;
   }
 
   /// A motion with a short period and few samples can take minutes. The tracer gives up as soon as no more steps are
   /// allowed.
-  void GiveUpIfStopped(TraceOptions& options) const {
+  void LimitStepsIfStopped(TraceOptions& options) const {
     if (is_stopped()) options.max_steps = 0;
   }
 
@@ -292,14 +293,14 @@ class TrajectoryCostFor final : public TrajectoryCost {
   bool Follow(std::span<const double> p, const TakeSegment& take) const {
     TraceOptions options = Options();
     const auto visit = [&](const Segment<T>& segment) {
-      GiveUpIfStopped(options);
+      LimitStepsIfStopped(options);
       take(segment);
     };
     ++traces_;
     const SegmentVisitor<T> visitor = std::ref(visit);
     const TraceSummary summary = TraceTrajectory(MakePendulum<T>(p), MakeStart<T>(p), options, visitor);
     if (summary.outcome != TraceSummary::Outcome::kComplete) return false;
-    if constexpr (DualNumber<T>) traced_.SetAt(Asking(p), summary);
+    if constexpr (DualNumber<T>) traced_.SetAt(EvaluationKeyAt(p), summary);
     return true;
   }
 
@@ -348,7 +349,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return Follow<T>(p, take) && samples.is_complete();
   }
 
-  Question Asking(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
+  EvaluationKey EvaluationKeyAt(std::span<const double> p) const { return {p, tolerance_, used_samples_}; }
 
   Gravity gravity_;
   const TrajectoryData& data_;
@@ -356,10 +357,10 @@ class TrajectoryCostFor final : public TrajectoryCost {
   double tolerance_ = 1e-10;
   int threads_ = 1;
   NoiseModel noise_;
-  DepthTable levels_{1};                   // for quantized noise_
-  mutable KnownAt<Eigen::MatrixXd> last_;  // sums without priors
-  mutable KnownAt<TraceSummary> traced_;
-  mutable KnownAt<Eigen::VectorXd> read_;
+  DepthTable levels_{1};                        // for quantized noise_
+  mutable CachedResult<Eigen::MatrixXd> last_;  // sums without priors
+  mutable CachedResult<TraceSummary> traced_;
+  mutable CachedResult<Eigen::VectorXd> read_;
   // Memory that each evaluation reuses.
   mutable Samples<double, 1, double> values_;
   mutable Samples<Dual, kZero + 2, Part<1>> steady_;

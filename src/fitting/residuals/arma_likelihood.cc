@@ -10,11 +10,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "fitting/residuals/arma_family.h"
+#include "fitting/residuals/arma_filter.h"
 #include "fitting/residuals/burg.h"
-#include "fitting/residuals/memory_family.h"
-#include "fitting/residuals/memory_filter.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/residuals/box_least_squares.h"
+#include "pendulum/fitting/residuals/bounded_least_squares.h"
 
 namespace pendulum {
 namespace {
@@ -25,7 +25,7 @@ using Kind = Autocorrelation::Kind;
 // ---- Likelihood and its slope --------------------------------------------------------------------------------------
 
 /// The log-likelihood of residuals at a place, with its gradient and expected information.
-struct Slope {
+struct LikelihoodDerivatives {
   double log_likelihood = -std::numeric_limits<double>::infinity();
   double mean_square = 0;  // of the standardized innovations
   Eigen::VectorXd gradient;
@@ -35,7 +35,7 @@ struct Slope {
 /// Filters for several places in parallel, and their results for one series, block by block.
 class FilterRow {
  public:
-  FilterRow(const MemoryFamily& family, const std::vector<Eigen::VectorXd>& places) {
+  FilterRow(const ArmaFamily& family, const std::vector<Eigen::VectorXd>& places) {
     std::vector<FilteredProcess> processes;
     processes.reserve(places.size());
     for (const Eigen::VectorXd& place : places) processes.push_back(FilteredAt(family, place));
@@ -74,19 +74,19 @@ class FilterRow {
     log_variance[i] = last_log_;
   }
 
-  std::vector<MemoryFilter> filters_;
+  std::vector<ArmaFilter> filters_;
   double last_variance_ = 1, last_log_ = 0;
 };
 
 /// Gradient Σ u v'/√F + (1 - u²) F'/2F and information Σ v'v'/F + F'F'/2F² of innovations v = u √F (Harvey, section
 /// 3.4.5), with derivatives by finite differences. If `step` is 0, only the likelihood.
-Slope SlopeAt(const MemoryFamily& family, const Eigen::VectorXd& place, const Eigen::VectorXd& time,
-              const Eigen::VectorXd& residual, double step) {
+LikelihoodDerivatives DerivativesAt(const ArmaFamily& family, const Eigen::VectorXd& place, const Eigen::VectorXd& time,
+                                    const Eigen::VectorXd& residual, double step) {
   const Index size = step > 0 ? place.size() : 0;
   std::vector<Eigen::VectorXd> places(static_cast<std::size_t>(size + 1), place);
   for (Index k = 0; k < size; ++k) places[k + 1][k] += step;
   FilterRow row(family, places);
-  Slope slope{0, 0, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  LikelihoodDerivatives slope{0, 0, Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
   double squares = 0;
   for (Index begin = 0; begin < residual.size(); begin += FilterRow::kBlock) {
     const Index count = std::min(FilterRow::kBlock, residual.size() - begin);
@@ -113,31 +113,31 @@ Slope SlopeAt(const MemoryFamily& family, const Eigen::VectorXd& place, const Ei
 }
 
 /// Fisher scoring, damped as in the Levenberg-Marquardt method.
-class Climb {
+class FisherScoring {
  public:
-  Climb(const MemoryFamily& family, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-        const std::stop_token& stop)
+  FisherScoring(const ArmaFamily& family, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                const std::stop_token& stop)
       : family_(family), time_(time), residual_(residual), stop_(stop) {}
 
   /// After a stop request: a log-likelihood of -infinity.
-  Slope At(const Eigen::VectorXd& place) const {
-    return is_stopped() ? Slope{} : SlopeAt(family_, place, time_, residual_, 0);
+  LikelihoodDerivatives At(const Eigen::VectorXd& place) const {
+    return is_stopped() ? LikelihoodDerivatives{} : DerivativesAt(family_, place, time_, residual_, 0);
   }
 
   bool is_stopped() const { return stop_.stop_requested(); }
 
-  Eigen::VectorXd Highest(Eigen::VectorXd place) const {
-    constexpr int kMostSteps = 30;
+  Eigen::VectorXd Maximize(Eigen::VectorXd place) const {
+    constexpr int kMaxSteps = 30;
     constexpr double kEnough = 1e-7;  // gain in log-likelihood
     constexpr double kLongest = 1;    // step
     if (is_stopped()) return place;
-    Slope here = SlopeAt(family_, place, time_, residual_, kDifference);
+    LikelihoodDerivatives here = DerivativesAt(family_, place, time_, residual_, kDifference);
     double damping = 1e-4;
-    for (int i = 0; i < kMostSteps && damping < 1e6 && !is_stopped(); ++i) {
+    for (int i = 0; i < kMaxSteps && damping < 1e6 && !is_stopped(); ++i) {
       Eigen::VectorXd step = StepOf(here, damping);
       if (!(step.dot(here.gradient) > kEnough)) break;
       step /= std::max(1.0, step.cwiseAbs().maxCoeff() / kLongest);
-      const Slope next = SlopeAt(family_, place + step, time_, residual_, kDifference);
+      const LikelihoodDerivatives next = DerivativesAt(family_, place + step, time_, residual_, kDifference);
       const bool higher = next.log_likelihood > here.log_likelihood;
       damping *= higher ? 0.1 : 10;
       if (!higher) continue;
@@ -150,14 +150,14 @@ class Climb {
  private:
   static constexpr double kDifference = 1e-5;  // shifts the maximum by half of it
 
-  static Eigen::VectorXd StepOf(const Slope& slope, double damping) {
+  static Eigen::VectorXd StepOf(const LikelihoodDerivatives& slope, double damping) {
     Eigen::MatrixXd damped = slope.information;
     const double least = 1e-10 * slope.information.diagonal().maxCoeff();  // for parameters without influence
     damped.diagonal() += damping * slope.information.diagonal() + Eigen::VectorXd::Constant(damped.rows(), least);
     return damped.ldlt().solve(slope.gradient);
   }
 
-  const MemoryFamily& family_;
+  const ArmaFamily& family_;
   const Eigen::VectorXd& time_;
   const Eigen::VectorXd& residual_;
   const std::stop_token& stop_;
@@ -167,27 +167,28 @@ class Climb {
 
 using Places = std::vector<Eigen::VectorXd>;
 
-std::vector<Stretch> StretchesOf(const Eigen::VectorXd& time, double interval) {
-  std::vector<Stretch> stretches = {{0, 1}};
+std::vector<GapFreeSpan> GapFreeSpansOf(const Eigen::VectorXd& time, double interval) {
+  std::vector<GapFreeSpan> spans = {{0, 1}};
   for (Index i = 1; i < time.size(); ++i) {
     if (time[i] - time[i - 1] > kGapIntervals * interval) {
-      stretches.push_back({i, 1});
+      spans.push_back({i, 1});
     } else {
-      ++stretches.back().size;
+      ++spans.back().size;
     }
   }
-  return stretches;
+  return spans;
 }
 
 void AddAutoregressive(const Autocorrelation& like, const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                        Places* places) {
   const auto order = like.autoregressive.size();
   const auto longest = static_cast<int>(order);
-  for (std::vector<double> reflection : {ReflectionOf(like.autoregressive),
-                                         ReflectionCoefficients(residual, StretchesOf(time, like.interval), longest)}) {
+  for (std::vector<double> reflection :
+       {ReflectionOf(like.autoregressive),
+        ReflectionCoefficients(residual, GapFreeSpansOf(time, like.interval), longest)}) {
     reflection.resize(order, 0);
     Eigen::VectorXd place = Eigen::VectorXd::Zero(longest + 1);
-    for (Index i = 0; i < longest; ++i) place[i + 1] = PlaceOf(reflection[i]);
+    for (Index i = 0; i < longest; ++i) place[i + 1] = UnboundedFromPartial(reflection[i]);
     places->push_back(place);
   }
 }
@@ -197,7 +198,7 @@ void AddMixed(const Autocorrelation& like, Places* places) {
   for (const auto [phi, theta] :
        {Pair{like.autoregressive[0], like.moving_average}, Pair{0.5, 0.3}, Pair{0.5, -0.2}, Pair{-0.5, 0.2},
         Pair{0.8, -0.4}, Pair{0.95, -0.6}, Pair{0.99, -0.8}, Pair{0.998, -0.95}}) {
-    places->emplace_back(Eigen::Vector3d(0, PlaceOf(phi), PlaceOf(theta)));
+    places->emplace_back(Eigen::Vector3d(0, UnboundedFromPartial(phi), UnboundedFromPartial(theta)));
   }
 }
 
@@ -215,8 +216,8 @@ void AddContinuous(const Autocorrelation& like, const Eigen::VectorXd& time, Pla
 }
 
 /// The likeliest of the places suggested by `like` and by the moments of the residuals, each at its own scale.
-Eigen::VectorXd LikeliestStart(const MemoryFamily& family, const Autocorrelation& like, const Eigen::VectorXd& time,
-                               const Eigen::VectorXd& residual, const Climb& climb) {
+Eigen::VectorXd MostLikelyStart(const ArmaFamily& family, const Autocorrelation& like, const Eigen::VectorXd& time,
+                                const Eigen::VectorXd& residual, const FisherScoring& scoring) {
   Places places;
   if (family.kind == Kind::kAutoregressive) AddAutoregressive(like, time, residual, &places);
   if (family.kind == Kind::kMixed) AddMixed(like, &places);
@@ -228,7 +229,7 @@ Eigen::VectorXd LikeliestStart(const MemoryFamily& family, const Autocorrelation
   for (Eigen::VectorXd& place : places) {
     place[0] = std::log(variance / ProcessAt(family, place).variance) / 2;
     for (int look = 0; look < 2; ++look) {
-      const Slope slope = climb.At(place);
+      const LikelihoodDerivatives slope = scoring.At(place);
       if (slope.log_likelihood > highest) {
         highest = slope.log_likelihood;
         best = place;
@@ -246,7 +247,7 @@ Eigen::MatrixXd Whitened(const FilteredProcess& process, const Eigen::VectorXd& 
   Eigen::MatrixXd white(columns.rows(), columns.cols());
   for (Index first = 0; first < columns.cols(); first += kLanes) {
     const Index count = std::min<Index>(kLanes, columns.cols() - first);
-    MemoryFilter filter({process});
+    ArmaFilter filter({process});
     Lanes value{};
     for (Index t = 0; t < columns.rows(); ++t) {
       if (t > 0) filter.Advance(time[t] - time[t - 1]);
@@ -260,17 +261,17 @@ Eigen::MatrixXd Whitened(const FilteredProcess& process, const Eigen::VectorXd& 
 }
 
 /// The maximum likelihood shift for a given process.
-Eigen::VectorXd ShiftUnder(const FilteredProcess& process, const CorrelatedResiduals& data) {
+Eigen::VectorXd MostLikelyShift(const FilteredProcess& process, const CorrelatedResiduals& data) {
   const Index size = data.jacobian.cols();
   Eigen::MatrixXd columns(data.time.size(), size + 1);
   columns << data.jacobian, data.residual;
   const Eigen::MatrixXd white = Whitened(process, data.time, columns);
-  return BoxLeastSquares(white.leftCols(size), white.col(size), data.lowest, data.highest);
+  return BoundedLeastSquares(white.leftCols(size), white.col(size), data.lowest, data.highest);
 }
 
 // ---- Shift and autocorrelation -------------------------------------------------------------------------------------
 
-bool IsSound(const CorrelatedResiduals& data, const Autocorrelation& like) {
+bool HasUsableData(const CorrelatedResiduals& data, const Autocorrelation& like) {
   const Index size = data.jacobian.cols();
   const bool has_shapes = data.time.size() == data.residual.size() && data.jacobian.rows() == data.residual.size() &&
                           data.lowest.size() == size && data.highest.size() == size && data.residual.size() > 0;
@@ -289,32 +290,35 @@ CorrelatedLikelihood White(const CorrelatedResiduals& data, Eigen::VectorXd shif
   return {log_likelihood, {}, sigma, std::move(shift), 1, data.jacobian.transpose() * data.jacobian / variance};
 }
 
-CorrelatedLikelihood AlternateShiftAndMemory(const MemoryFamily& family, const Autocorrelation& like,
-                                             const CorrelatedResiduals& data, Eigen::VectorXd shift,
-                                             const std::stop_token& stop) {
-  constexpr int kMostRounds = 6;
+CorrelatedLikelihood AlternateShiftAndAutocorrelation(const ArmaFamily& family, const Autocorrelation& like,
+                                                      const CorrelatedResiduals& data, Eigen::VectorXd shift,
+                                                      const std::stop_token& stop) {
+  constexpr int kMaxRounds = 6;
   // Gain in log-likelihood by the shift; the gain by the autocorrelation that follows is smaller.
   constexpr double kEnough = 1e-3;
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
-  const Climb climb(family, data.time, left, stop);
-  Eigen::VectorXd place = LikeliestStart(family, like, data.time, left, climb);
+  const FisherScoring scoring(family, data.time, left, stop);
+  Eigen::VectorXd place = MostLikelyStart(family, like, data.time, left, scoring);
   if (place.size() == 0) return {std::numeric_limits<double>::quiet_NaN(), {}, 0, shift, 0, {}};
-  place = climb.Highest(place);
-  double log_likelihood = climb.At(place).log_likelihood;
-  for (int round = 0; round < kMostRounds && data.jacobian.cols() > 0 && !climb.is_stopped(); ++round) {
-    const Eigen::VectorXd next = ShiftUnder(FilteredAt(family, place), data);
+  place = scoring.Maximize(place);
+  double log_likelihood = scoring.At(place).log_likelihood;
+  for (int round = 0; round < kMaxRounds && data.jacobian.cols() > 0 && !scoring.is_stopped(); ++round) {
+    const Eigen::VectorXd next = MostLikelyShift(FilteredAt(family, place), data);
     left = data.residual - data.jacobian * next;
-    const double gain = climb.At(place).log_likelihood - log_likelihood;
+    const double gain = scoring.At(place).log_likelihood - log_likelihood;
     shift = next;
-    place = climb.Highest(place);
-    log_likelihood = climb.At(place).log_likelihood;
+    place = scoring.Maximize(place);
+    log_likelihood = scoring.At(place).log_likelihood;
     if (!(gain > kEnough)) break;
   }
-  const MemoryProcess process = ProcessAt(family, place);
+  const ArmaProcess process = ProcessAt(family, place);
   const Eigen::MatrixXd white = Whitened(FilteredAt(family, place), data.time, data.jacobian);
-  return {
-      log_likelihood,           process.memory, std::sqrt(process.variance), shift, static_cast<int>(family.parameters),
-      white.transpose() * white};
+  return {log_likelihood,
+          process.autocorrelation,
+          std::sqrt(process.variance),
+          shift,
+          static_cast<int>(family.parameters),
+          white.transpose() * white};
 }
 
 }  // namespace
@@ -323,14 +327,14 @@ std::optional<CorrelatedLikelihood> MaximizeCorrelatedLikelihood(const Correlate
                                                                  const Autocorrelation& like,
                                                                  const std::stop_token& stop) {
   constexpr double kNothing = 1e-20;  // relative to the residuals' sum of squares: rounding error
-  if (!IsSound(data, like)) return std::nullopt;
-  Eigen::VectorXd shift = BoxLeastSquares(data.jacobian, data.residual, data.lowest, data.highest);
+  if (!HasUsableData(data, like)) return std::nullopt;
+  Eigen::VectorXd shift = BoundedLeastSquares(data.jacobian, data.residual, data.lowest, data.highest);
   const double squares = (data.residual - data.jacobian * shift).squaredNorm();
   if (data.rounding_variance == 0 && !(squares > kNothing * data.residual.squaredNorm())) return std::nullopt;
-  const MemoryFamily family = FamilyOf(like, data.rounding_variance);
+  const ArmaFamily family = FamilyOf(like, data.rounding_variance);
   CorrelatedLikelihood best = family.kind == Kind::kWhite
                                   ? White(data, std::move(shift))
-                                  : AlternateShiftAndMemory(family, like, data, std::move(shift), stop);
+                                  : AlternateShiftAndAutocorrelation(family, like, data, std::move(shift), stop);
   if (stop.stop_requested()) return std::nullopt;
   if (!std::isfinite(best.log_likelihood) || !best.shift.allFinite() || !std::isfinite(best.sigma)) return std::nullopt;
   return best;

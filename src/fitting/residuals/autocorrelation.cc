@@ -26,8 +26,8 @@ double Autocorrelation::VarianceInflation() const {
     return 1 + 2 * (1 - white_share) / std::expm1(interval / decay_time);  // a geometric series
   }
   // The spectrum at frequency 0.
-  const double memory = std::accumulate(autoregressive.begin(), autoregressive.end(), 0.0);
-  return innovation_variance * std::pow((1 + moving_average) / (1 - memory), 2);
+  const double autoregression = std::accumulate(autoregressive.begin(), autoregressive.end(), 0.0);
+  return innovation_variance * std::pow((1 + moving_average) / (1 - autoregression), 2);
 }
 
 double Autocorrelation::SquaredInflation() const {
@@ -40,9 +40,9 @@ double Autocorrelation::SquaredInflation() const {
   double sum = 0;
   for (int i = 0; i < kFrequencies; ++i) {
     const std::complex<double> back = std::polar(1.0, -kPi * (i + 0.5) / kFrequencies);
-    std::complex<double> memory = 0;
-    for (std::size_t j = autoregressive.size(); j-- > 0;) memory = back * (memory + autoregressive[j]);
-    sum += std::pow(innovation_variance * std::norm(1.0 + moving_average * back) / std::norm(1.0 - memory), 2);
+    std::complex<double> autoregression = 0;
+    for (std::size_t j = autoregressive.size(); j-- > 0;) autoregression = back * (autoregression + autoregressive[j]);
+    sum += std::pow(innovation_variance * std::norm(1.0 + moving_average * back) / std::norm(1.0 - autoregression), 2);
   }
   return sum / kFrequencies;
 }
@@ -58,7 +58,7 @@ class BackwardFilter {
       : order_(static_cast<Eigen::Index>(correlation.autoregressive.size())),
         moving_average_(correlation.moving_average),
         head_(kBlock),
-        memory_(Eigen::Map<const Eigen::VectorXd>(correlation.autoregressive.data(), order_)),
+        autoregression_(Eigen::Map<const Eigen::VectorXd>(correlation.autoregressive.data(), order_)),
         response_(Eigen::MatrixXd::Zero(columns, kBlock + order_)),
         later_(Eigen::VectorXd::Zero(columns)),
         sum_(Eigen::MatrixXd::Zero(columns, columns)) {}
@@ -67,7 +67,7 @@ class BackwardFilter {
     if (head_ == 0) Flush();
     --head_;
     response_.col(head_).noalias() = weight + moving_average_ * later_;
-    response_.col(head_).noalias() += response_.middleCols(head_ + 1, order_) * memory_;
+    response_.col(head_).noalias() += response_.middleCols(head_ + 1, order_) * autoregression_;
     later_ = weight;
   }
 
@@ -110,10 +110,10 @@ class BackwardFilter {
 
   Eigen::Index order_;
   double moving_average_;
-  Eigen::Index head_;         // column of the newest response; older ones follow
-  Eigen::VectorXd memory_;    // φ
-  Eigen::MatrixXd response_;  // K x (kBlock + p)
-  Eigen::VectorXd later_;     // w_{k+1}
+  Eigen::Index head_;               // column of the newest response; older ones follow
+  Eigen::VectorXd autoregression_;  // φ
+  Eigen::MatrixXd response_;        // K x (kBlock + p)
+  Eigen::VectorXd later_;           // w_{k+1}
   Eigen::MatrixXd sum_;
 };
 

@@ -11,7 +11,7 @@
 namespace pendulum {
 
 /// Samples begin..begin + size - 1 of a recording without gaps, one per interval of its clock.
-struct Stretch {
+struct GapFreeSpan {
   Eigen::Index begin = 0;
   Eigen::Index size = 0;
 };
@@ -23,11 +23,11 @@ struct Stretch {
 /// stretches  within 0..N - 1; no sample predicts a sample of another stretch.
 /// Returns at most `longest` coefficients, each in (-1, 1), so the process is stationary. Returns fewer if the
 /// prediction is already exact with fewer. Costs O(N longest).
-std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<Stretch>& stretches,
+std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<GapFreeSpan>& spans,
                                            int longest);
 
 /// The coefficients φ of the autoregression with these reflection coefficients (Levinson 1947, Durbin 1960).
-std::vector<double> FromReflection(const std::vector<double>& reflection);
+std::vector<double> CoefficientsFromReflection(const std::vector<double>& reflection);
 
 // -----------------------------------------------------------------------------------------------------------------
 
@@ -38,21 +38,21 @@ struct Lattice {
 };
 
 /// Returns the reflection coefficient of this order, and advances the lattice to it.
-inline double Reflect(const std::vector<Stretch>& stretches, Eigen::Index order, Lattice* lattice) {
+inline double Reflect(const std::vector<GapFreeSpan>& spans, Eigen::Index order, Lattice* lattice) {
   double product = 0;
   double energy = 0;
-  for (const Stretch& stretch : stretches) {
-    const Eigen::Index size = std::max<Eigen::Index>(stretch.size - order, 0);
-    const auto forward = lattice->forward.segment(stretch.begin + stretch.size - size, size);
-    const auto backward = lattice->backward.segment(stretch.begin, size);
+  for (const GapFreeSpan& span : spans) {
+    const Eigen::Index size = std::max<Eigen::Index>(span.size - order, 0);
+    const auto forward = lattice->forward.segment(span.begin + span.size - size, size);
+    const auto backward = lattice->backward.segment(span.begin, size);
     product += 2 * forward.dot(backward);
     energy += forward.squaredNorm() + backward.squaredNorm();
   }
   const double reflection = energy > 0 ? product / energy : 0;
-  for (const Stretch& stretch : stretches) {
-    for (Eigen::Index i = 0; i < stretch.size - order; ++i) {
-      double& forward = lattice->forward[stretch.begin + i + order];
-      double& backward = lattice->backward[stretch.begin + i];
+  for (const GapFreeSpan& span : spans) {
+    for (Eigen::Index i = 0; i < span.size - order; ++i) {
+      double& forward = lattice->forward[span.begin + i + order];
+      double& backward = lattice->backward[span.begin + i];
       const double before = forward;
       forward -= reflection * backward;
       backward -= reflection * before;
@@ -61,26 +61,26 @@ inline double Reflect(const std::vector<Stretch>& stretches, Eigen::Index order,
   return reflection;
 }
 
-inline std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<Stretch>& stretches,
+inline std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<GapFreeSpan>& spans,
                                                   int longest) {
   Lattice lattice{value, value};
   std::vector<double> reflection;
   for (int order = 1; order <= longest; ++order) {
-    const double next = Reflect(stretches, order, &lattice);
+    const double next = Reflect(spans, order, &lattice);
     if (!(std::abs(next) < 1)) break;
     reflection.push_back(next);
   }
   return reflection;
 }
 
-inline std::vector<double> FromReflection(const std::vector<double>& reflection) {
-  std::vector<double> memory;
+inline std::vector<double> CoefficientsFromReflection(const std::vector<double>& reflection) {
+  std::vector<double> autoregression;
   for (const double last : reflection) {
-    const std::vector<double> before = memory;
-    for (std::size_t j = 0; j < before.size(); ++j) memory[j] -= last * before[before.size() - 1 - j];
-    memory.push_back(last);
+    const std::vector<double> before = autoregression;
+    for (std::size_t j = 0; j < before.size(); ++j) autoregression[j] -= last * before[before.size() - 1 - j];
+    autoregression.push_back(last);
   }
-  return memory;
+  return autoregression;
 }
 
 }  // namespace pendulum

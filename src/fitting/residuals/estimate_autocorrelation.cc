@@ -27,7 +27,7 @@ using Kind = Autocorrelation::Kind;
 struct Clock {
   bool even = false;
   double interval = 0;  // s, the median one
-  std::vector<Stretch> stretches;
+  std::vector<GapFreeSpan> spans;
 };
 
 Clock FindClock(const Eigen::VectorXd& time) {
@@ -37,19 +37,19 @@ Clock FindClock(const Eigen::VectorXd& time) {
   const Eigen::VectorXd steps = time.tail(count - 1) - time.head(count - 1);
   Clock clock;
   clock.interval = Median({steps.begin(), steps.end()});
-  clock.stretches.push_back({0, 1});
+  clock.spans.push_back({0, 1});
   double jitter = 0;
   for (Eigen::Index i = 1; i < count; ++i) {
     const double step = steps[i - 1] / clock.interval;
     if (step > kGapIntervals) {
-      clock.stretches.push_back({i, 1});
+      clock.spans.push_back({i, 1});
     } else {
-      ++clock.stretches.back().size;
+      ++clock.spans.back().size;
       jitter += std::abs(step - 1);
     }
   }
   const auto samples = static_cast<double>(count);
-  const auto gaps = static_cast<double>(clock.stretches.size() - 1);
+  const auto gaps = static_cast<double>(clock.spans.size() - 1);
   clock.even = jitter < kJitter * samples && samples >= kShortest * gaps;
   return clock;
 }
@@ -73,8 +73,8 @@ struct Autoregression {
 /// The best of AR(1), AR(2), ... (J. P. Burg, Maximum entropy spectral analysis, 1975).
 Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& residual) {
   const auto samples = static_cast<double>(residual.size());
-  const auto stretches = static_cast<double>(clock.stretches.size());
-  const std::vector<double> reflection = ReflectionCoefficients(residual, clock.stretches, LongestOrder(samples));
+  const auto spans = static_cast<double>(clock.spans.size());
+  const std::vector<double> reflection = ReflectionCoefficients(residual, clock.spans, LongestOrder(samples));
   constexpr double kRounding = 1e-8;  // of the variance left to innovations: a smoother curve is not noise
   Autoregression best;
   double criterion = 0;
@@ -83,7 +83,7 @@ Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& res
     left *= 1 - reflection[order - 1] * reflection[order - 1];
     if (left < kRounding) break;
     // Samples at the start of a stretch have fewer than p predecessors: `order` of them do not have this one.
-    const double predicted = samples - stretches * static_cast<double>(order);
+    const double predicted = samples - spans * static_cast<double>(order);
     criterion += predicted * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
     if (criterion < best.criterion) best = {{reflection.begin(), reflection.begin() + order}, criterion};
   }
@@ -94,7 +94,7 @@ Autocorrelation FromBurg(const Clock& clock, const std::vector<double>& reflecti
   Autocorrelation correlation;
   correlation.kind = Kind::kAutoregressive;
   correlation.interval = clock.interval;
-  correlation.autoregressive = FromReflection(reflection);
+  correlation.autoregressive = CoefficientsFromReflection(reflection);
   for (const double last : reflection) correlation.innovation_variance *= 1 - last * last;
   return correlation;
 }
@@ -118,11 +118,11 @@ void PredictMixed(const Clock& clock, double phi, double theta, Innovations* inn
   innovations->gain.setConstant(phi + theta);
   innovations->variance.setOnes();
   innovations->log_determinant = 0;
-  for (const Stretch& stretch : clock.stretches) {
-    innovations->keep[stretch.begin] = innovations->gain[stretch.begin] = 0;
+  for (const GapFreeSpan& span : clock.spans) {
+    innovations->keep[span.begin] = innovations->gain[span.begin] = 0;
     double variance = (1 + 2 * phi * theta + theta * theta) / (1 - phi * phi);
-    const Eigen::Index end = stretch.begin + stretch.size;
-    for (Eigen::Index i = stretch.begin; i < end && std::abs(variance - 1) > kSettled; ++i) {
+    const Eigen::Index end = span.begin + span.size;
+    for (Eigen::Index i = span.begin; i < end && std::abs(variance - 1) > kSettled; ++i) {
       innovations->variance[i] = variance;
       innovations->log_determinant += std::log(variance);
       if (i + 1 < end) innovations->gain[i + 1] = phi + theta / variance;
@@ -183,14 +183,14 @@ double Deviance(const Innovations& innovations, const Eigen::MatrixXd& columns) 
 /// white residuals each score is χ² with one degree of freedom. It approximates the gain in likelihood by ARMA(1,1).
 double LargestScore(const Eigen::VectorXd& residual) {
   using Scores = Eigen::Array<double, 8, 1>;
-  const Scores memory{{-0.9, -0.5, 0.0, 0.5, 0.8, 0.95, 0.99, 0.998}};
+  const Scores autocorrelation{{-0.9, -0.5, 0.0, 0.5, 0.8, 0.95, 0.99, 0.998}};
   Scores past = Scores::Zero();
   Scores product = Scores::Zero();
   Scores energy = Scores::Constant(std::numeric_limits<double>::min());
   for (const double now : residual) {
     product += now * past;
     energy += past.square();
-    past = memory * past + now;
+    past = autocorrelation * past + now;
   }
   return (product.square() / energy).maxCoeff() * static_cast<double>(residual.size()) / residual.squaredNorm();
 }
@@ -212,13 +212,13 @@ struct Vertex {
 
 /// Nelder and Mead's simplex (Computer Journal 7:308, 1965), to 1e-3 in height: some hundredths of a standard error.
 Vertex Lowest(const Surface& surface, const Eigen::Vector2d& start, double size) {
-  constexpr int kMostSteps = 150;
+  constexpr int kMaxSteps = 150;
   constexpr double kFlat = 1e-3;
   const auto at = [&](const Eigen::Vector2d& place) { return Vertex{place, surface(place)}; };
   const auto lower = [](const Vertex& a, const Vertex& b) { return a.height < b.height; };
   std::array<Vertex, 3> simplex = {at(start), at(start + Eigen::Vector2d(size, 0)),
                                    at(start + Eigen::Vector2d(0, size))};
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     std::sort(simplex.begin(), simplex.end(), lower);
     if (simplex[2].height - simplex[0].height < kFlat) break;
     const Eigen::Vector2d middle = (simplex[0].place + simplex[1].place) / 2;
@@ -262,22 +262,22 @@ Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::
 // ---- ARMA(1,1) -----------------------------------------------------------------------------------------------------
 
 /// The plane's coordinates are artanh of φ and θ: every point is a stationary and invertible process.
-constexpr double kMostMemory = 0.99999;
+constexpr double kMaxCoefficient = 0.99999;
 
-double MemoryAt(double place) { return kMostMemory * std::tanh(place); }
+double CoefficientFromUnbounded(double place) { return kMaxCoefficient * std::tanh(place); }
 
 Surface MixedSurface(const Clock& clock, const Eigen::MatrixXd& columns, const std::stop_token& stop) {
   return [&clock, &columns, &stop, innovations = Innovations(columns.rows())](const Eigen::Vector2d& place) mutable {
     if (stop.stop_requested()) return kStopped;
-    PredictMixed(clock, MemoryAt(place[0]), MemoryAt(place[1]), &innovations);
+    PredictMixed(clock, CoefficientFromUnbounded(place[0]), CoefficientFromUnbounded(place[1]), &innovations);
     return Deviance(innovations, columns);
   };
 }
 
 Autocorrelation Mixed(const Clock& clock, const Eigen::Vector2d& place) {
   Autocorrelation mixed;
-  const double phi = MemoryAt(place[0]);
-  const double theta = MemoryAt(place[1]);
+  const double phi = CoefficientFromUnbounded(place[0]);
+  const double theta = CoefficientFromUnbounded(place[1]);
   mixed.kind = Kind::kMixed;
   mixed.interval = clock.interval;
   mixed.autoregressive = {phi};
@@ -383,8 +383,8 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
 
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  constexpr Eigen::Index kFewest = 30;
-  if (residual.size() < kFewest || !(residual.squaredNorm() > 0)) return {};
+  constexpr Eigen::Index kMin = 30;
+  if (residual.size() < kMin || !(residual.squaredNorm() > 0)) return {};
   const Clock clock = FindClock(time);
   return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
 }

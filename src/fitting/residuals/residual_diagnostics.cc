@@ -22,13 +22,13 @@ double Lag1Correlation(const Eigen::VectorXd& residual) {
 
 /// Tests whether N Σ ρ_k², over lags k spaced as squares, exceeds its mean by six standard deviations. Autocorrelated
 /// noise shows at the first lags, a misfit that oscillates with the pendulum at some lag within one period.
-bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag) {
-  constexpr int kMostLags = 50;
+bool AreAutocorrelated(const Eigen::VectorXd& residual, int longest_lag) {
+  constexpr int kMaxLags = 50;
   constexpr double kDeviations = 6;
   const Eigen::Index n = residual.size();
   const double sum = residual.squaredNorm();
   const Eigen::Index longest = std::clamp<Eigen::Index>(longest_lag, 1, n / 4);
-  const auto count = std::min<Eigen::Index>(longest, kMostLags);
+  const auto count = std::min<Eigen::Index>(longest, kMaxLags);
   if (!(sum > 0)) return false;
   double portmanteau = 0;
   Eigen::Index lag = 0;
@@ -48,14 +48,14 @@ using PeriodError = Eigen::Vector2d;
 
 std::vector<PeriodError> PeriodErrors(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted,
                                       const Eigen::VectorXd& residual, double period) {
-  constexpr Eigen::Index kFewest = 6;
+  constexpr Eigen::Index kMin = 6;
   const double sigma = std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
   std::vector<PeriodError> errors;
-  for (Eigen::Index first = 0; first + kFewest < time.size();) {
+  for (Eigen::Index first = 0; first + kMin < time.size();) {
     Eigen::Index end = first;
     while (end < time.size() && time[end] - time[first] < period) ++end;
     const Eigen::Index count = end - first;
-    if (count >= kFewest && end < time.size()) {
+    if (count >= kMin && end < time.size()) {
       const Eigen::ArrayXd rise = fitted.segment(first + 1, count).array() - fitted.segment(first, count).array();
       const Eigen::ArrayXd step = time.segment(first + 1, count).array() - time.segment(first, count).array();
       Eigen::MatrixX2d basis(count, 2);
@@ -79,8 +79,8 @@ bool Exceeds(double sum, double freedom) {
 
 }  // namespace
 
-bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
-                double period) {
+bool HavePhaseOrAmplitudeErrors(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted,
+                                const Eigen::VectorXd& residual, double period) {
   constexpr int kSlowest = 6;
   if (!(residual.squaredNorm() > 0)) return false;
   const std::vector<PeriodError> errors = PeriodErrors(time, fitted, residual, period);
@@ -102,7 +102,7 @@ bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, cons
 /// jumps; a random point within the jump is used.
 Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                                   const Eigen::Ref<const Eigen::VectorXd>& readings) {
-  if (noise.IsPlain()) return (value - readings) / noise.sigma;
+  if (noise.IsUncensoredGaussian()) return (value - readings) / noise.sigma;
   constexpr double kFarthest = 1e-15;  // from 0 and 1: eight standard deviations
   std::mt19937_64 generator(1);
   boost::random::uniform_01<double> uniform;
@@ -117,9 +117,9 @@ Eigen::VectorXd QuantileResiduals(const NoiseModel& noise, const Eigen::Ref<cons
 }
 
 double LjungBoxP(const Eigen::VectorXd& residual) {
-  constexpr Eigen::Index kMostLags = 20;
+  constexpr Eigen::Index kMaxLags = 20;
   const Eigen::Index n = residual.size();
-  const Eigen::Index lags = std::min(kMostLags, n / 5);
+  const Eigen::Index lags = std::min(kMaxLags, n / 5);
   const double sum = residual.squaredNorm();
   if (!(sum > 0) || !std::isfinite(sum) || lags < 1) return 1;
   double portmanteau = 0;

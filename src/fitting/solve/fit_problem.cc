@@ -8,7 +8,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/extrema.h"
-#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/start/sensor_start.h"
 #include "pendulum/model/friction/registry.h"
@@ -51,7 +51,7 @@ Result<std::size_t> FindParameter(const FitProblem& problem, const std::string& 
 }
 
 /// Sets the start value of parameter i. Returns an error if the value is not permitted.
-Result<void> BeginAt(double value, std::size_t i, const std::string& what, FitProblem& problem) {
+Result<void> SetStartValue(double value, std::size_t i, const std::string& what, FitProblem& problem) {
   const double internal = problem.Internal(i, value);
   const bool too_small = problem.infos[i].name == kInertia.name && !(internal > kSmallestInertia);
   const bool outside = internal < problem.solve.lower[i] || internal > problem.solve.upper[i];
@@ -99,12 +99,12 @@ Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sens
   for (const auto& [name, value] : options.initial) {
     const Result<std::size_t> i = FindParameter(problem, name, "begin");
     if (!i) return tl::unexpected(i.error());
-    if (Result<void> done = BeginAt(value, *i, "begun at", problem); !done) return done;
+    if (Result<void> done = SetStartValue(value, *i, "begun at", problem); !done) return done;
   }
   for (const auto& [name, value] : options.fixed) {
     const Result<std::size_t> i = FindParameter(problem, name, "fix");
     if (!i) return tl::unexpected(i.error());
-    if (Result<void> done = BeginAt(value, *i, "fixed at", problem); !done) return done;
+    if (Result<void> done = SetStartValue(value, *i, "fixed at", problem); !done) return done;
     problem.solve.fixed[*i] = true;
   }
   if (Result<void> done = ApplyPriors(options.priors, problem); !done) return done;
@@ -240,7 +240,7 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
   if (Result<void> checked = CheckSensorOptions(sensor, options); !checked) return checked;
   if (recording.quantity != Quantity::kAcceleration) return {};
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
-  if (sensor.kind == SensorKind::kDirect && IsRadial(recording)) {
+  if (sensor.kind == SensorKind::kDirect && IsAlongRod(recording)) {
     return Error(StatusCode::kDataLoss,
                  where + "an acceleration along the rod swings twice as fast as the pendulum, which " +
                      "--model linear cannot tell; choose the axis across the rod, or another model");
@@ -260,7 +260,8 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
     const auto choice = timed.quantity == Quantity::kAcceleration ? StartKind::kMoving : options.start;
     return EstimateStartValues(IsRobust(options.noise) ? WithoutOutliers(view) : view, model, choice);
   };
-  if (sensor.kind == SensorKind::kDirect) return HasOtherView(timed) ? estimate(TurnsView(timed)) : estimate(timed);
+  if (sensor.kind == SensorKind::kDirect)
+    return HasTurningPointView(timed) ? estimate(TurningPointView(timed)) : estimate(timed);
   const Result<std::vector<SensorStart>> starts = SensorStarts(timed, sensor, options);
   if (!starts) return tl::unexpected(starts.error());
   if (starts->empty())
@@ -288,7 +289,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
     return tl::unexpected(checked.error());
   }
   std::optional<Recording> scaled;
-  if (recording.clock_scale != 1) scaled = InTrueTime(recording);
+  if (recording.clock_scale != 1) scaled = InTrueSeconds(recording);
   const Recording& timed = scaled ? *scaled : recording;
   FitProblem problem;
   const Result<StartValues> start = options.search.start_values
@@ -302,14 +303,15 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.start = *start;
   problem.zero_motion = ZeroMotionOf(recording, sensor, options);
   problem.infos = FitParameters(*model, start->start, recording.quantity, problem.zero_motion, sensor);
-  const bool moves = problem.zero_motion != ZeroMotion::kNone;
-  if (moves && problem.start.parameters.size() < problem.infos.size()) problem.start.parameters.push_back(0);
+  const bool zero_motion_factors = problem.zero_motion != ZeroMotion::kNone;
+  if (zero_motion_factors && problem.start.parameters.size() < problem.infos.size())
+    problem.start.parameters.push_back(0);
   if (problem.start.parameters.size() != problem.infos.size()) {
     return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
   }
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, sensor, *start);
-  problem.data.moves = Moves(recording, problem.data.times(), problem.zero_motion);
+  problem.data.zero_motion_factors = ZeroMotionFactors(recording, problem.data.times(), problem.zero_motion);
   problem.data.stop = options.stop;
   SetCensoring(recording, problem);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
@@ -324,8 +326,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.fixed.assign(problem.infos.size(), false);
   problem.solve.holding_parameter = HoldingParameter(*model);
   problem.solve.last_friction = static_cast<int>(PhysicalParameters(*model).size()) - 1;
-  if (const OrderedPair order = OrderOf(*model); order.larger >= 0) {
-    problem.solve.late = {order.larger, problem.solve.last_friction};
+  if (const OrderedPair order = FindOrderedPair(*model); order.larger >= 0) {
+    problem.solve.small_swing_parameters = {order.larger, problem.solve.last_friction};
   }
   if (start->start == StartKind::kRelease) problem.solve.release_time = problem.solve.last_friction + 2;
   problem.restricted = !options.fixed.empty() || !options.bounds.empty() || !options.priors.empty();

@@ -31,10 +31,10 @@ double GaussianSigma(const TrajectoryCost& cost, const FitProblem& problem, cons
 }
 
 /// Estimates σ of Gaussian noise, which has a closed form.
-void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
-  constexpr int kMostRounds = 20;
+void SetGaussianSigma(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMaxRounds = 20;
   constexpr double kSame = 1e-4;
-  for (int round = 0; round < kMostRounds && solution.usable; ++round) {
+  for (int round = 0; round < kMaxRounds && solution.usable; ++round) {
     const double before = std::exchange(solution.noise.sigma, GaussianSigma(cost, problem, solution));
     const double ratio = before / solution.noise.sigma;
     cost.set_noise(solution.noise);
@@ -50,22 +50,22 @@ void SettleGaussian(TrajectoryCost& cost, const FitProblem& problem, Solution& s
 }
 
 /// Alternates between estimating σ and solving for the parameters.
-void Alternate(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
-  constexpr int kMostRounds = 15;
-  constexpr int kSpreadRounds = 3;   // in which the time stamps' errors are estimated
-  constexpr double kMostLead = 0.4;  // of a count: leaves room for the silences
-  constexpr double kSame = 3e-3;     // of σ: at most some tenths of its standard error
+void AlternateSigmaAndParameters(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+  constexpr int kMaxRounds = 15;
+  constexpr int kSpreadRounds = 3;         // in which the time stamps' errors are estimated
+  constexpr double kMaxNegativeLag = 0.4;  // of a count: leaves room for the silences
+  constexpr double kSame = 3e-3;           // of σ: at most some tenths of its standard error
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
   const bool lags = problem.zero_motion == ZeroMotion::kLags;
   const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
     if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
-    const double lag = lags ? std::max(solution.parameters.back(), -kMostLead * problem.resolution) : 0.0;
+    const double lag = lags ? std::max(solution.parameters.back(), -kMaxNegativeLag * problem.resolution) : 0.0;
     const bool same_lag = std::abs(lag - solution.noise.lag) <= kSame * solution.noise.sigma;
     if (!same_lag) solution.noise.lag = lag;
-    const double sigma = LikeliestSigma(solution.noise, value, solution.readings, smallest);
+    const double sigma = MostLikelySigma(solution.noise, value, solution.readings, smallest);
     const double change = std::abs(std::log(sigma / solution.noise.sigma));
     solution.noise.sigma = sigma;
     if (round > 0 && change < kSame && same_lag) break;
@@ -93,18 +93,18 @@ void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::v
 std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   // In -2 log L by least squares; if noise is small, the likelihood of quantized readings differs from it.
   constexpr double kNear = 60;
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMax = 4;
   std::vector<Minimum> near;
   for (const Minimum& minimum : solution.other_minima) {
     if (samples * std::log(minimum.sum / solution.sum) < kNear) near.push_back(minimum);
   }
   std::ranges::sort(near, {}, &Minimum::sum);
-  if (near.size() > kMost) near.resize(kMost);
+  if (near.size() > kMax) near.resize(kMax);
   return near;
 }
 
 /// Recomputes the deviances of all minima under the final noise, so that they are comparable.
-void SumAgain(TrajectoryCost& cost, Solution& solution) {
+void RecomputeDeviances(TrajectoryCost& cost, Solution& solution) {
   cost.set_noise(solution.noise);
   // Computes all sums, because the judge asks for them next.
   Eigen::MatrixXd sums;
@@ -127,7 +127,7 @@ double GaussianLogLikelihood(double rss, double samples) {
 double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
   const auto value = problem.data.values();
   const auto samples = static_cast<double>(value.size());
-  if (solution.noise.IsPlain()) {
+  if (solution.noise.IsUncensoredGaussian()) {
     return GaussianLogLikelihood((value - solution.readings).squaredNorm(), samples) +
            samples * std::log(DensityUnit(problem.resolution));
   }
@@ -140,11 +140,11 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
 /// If the residuals are smaller than one resolution, rounding errors are not white noise (Widrow & Kollár, Quantization
 /// Noise, Cambridge 2008, section 5.1).
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
-  constexpr double kDrowned = 1;  // in resolutions
+  constexpr double kMaxQuantizedSigma = 1;  // in resolutions
   if (options.noise) return {*options.noise, IsRobust(options.noise) ? "asked for by --loss" : "asked for by --noise"};
   if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
   const double ratio = residual_std_dev / resolution;
-  if (ratio < kDrowned) {
+  if (ratio < kMaxQuantizedSigma) {
     return {NoiseFamily::kQuantized,
             "the residuals are " + NumberText(ratio, 2) + " resolutions: the readings are levels, not numbers"};
   }
@@ -178,8 +178,8 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   solution.noise_reason = std::move(chosen.why);
   const bool quantized = solution.noise.family == NoiseFamily::kQuantized;
   solution.noise.resolution = quantized || solution.noise.family == NoiseFamily::kEdges ? problem.resolution : 0;
-  if (solution.noise.IsPlain()) {
-    SettleGaussian(cost, problem, solution);
+  if (solution.noise.IsUncensoredGaussian()) {
+    SetGaussianSigma(cost, problem, solution);
   } else {
     const std::vector<Minimum> near = NearMinima(solution, samples);
     const double rounding = quantized ? solution.noise.resolution / std::sqrt(12.0) : 0;
@@ -187,10 +187,10 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
     solution.noise.sigma = std::max(solution.noise.sigma, problem.negligible_sigma());
     cost.set_noise(solution.noise);
     solution.other_minima.clear();
-    Alternate(cost, problem, solution);
+    AlternateSigmaAndParameters(cost, problem, solution);
     CompareMinima(cost, problem, near, solution);
-    if (!near.empty()) Alternate(cost, problem, solution);
-    SumAgain(cost, solution);
+    if (!near.empty()) AlternateSigmaAndParameters(cost, problem, solution);
+    RecomputeDeviances(cost, solution);
   }
   // The cost has these readings cached, unless the trajectory cannot be computed.
   solution.usable = solution.usable && cost.Readings(solution.parameters, &solution.readings, nullptr);

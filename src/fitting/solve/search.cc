@@ -26,13 +26,13 @@ std::size_t SamplesBefore(const TrajectoryData& data, double time) {
 
 /// Solves over the samples before each of the times in turn, each from the previous solution. Afterwards the cost uses
 /// all samples again.
-Solution SolveGrowing(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
-                      const std::vector<double>& times) {
-  for (const int k : options.late) options.fixed[k] = true;
-  constexpr std::size_t kFewest = 16;
+Solution SolveOnGrowingPart(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
+                            const std::vector<double>& times) {
+  for (const int k : options.small_swing_parameters) options.fixed[k] = true;
+  constexpr std::size_t kMin = 16;
   for (const double time : times) {
     const std::size_t count = SamplesBefore(data, time);
-    if (count < kFewest || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
+    if (count < kMin || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
     cost.set_used_samples(count);
     solution = Continue(cost, solution, options);
   }
@@ -45,7 +45,7 @@ double MotionStart(const std::vector<double>& parameters, const SolveOptions& op
   return options.release_time >= 0 ? parameters[options.release_time] : 0.0;
 }
 
-std::vector<double> GrowingTimes(double begin, double end, double cycle) {
+std::vector<double> GrowingPartEnds(double begin, double end, double cycle) {
   std::vector<double> times;
   if (!(cycle > 0)) return times;
   for (double length = 3 * cycle; begin + length < end; length *= 2) times.push_back(begin + length);
@@ -83,8 +83,8 @@ std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift,
 
 /// A start beyond the next change in the number of reversals. It lies along the profile of dry friction, on the weaker
 /// (side -1) or stronger (+1) side of a local minimum. Empty if there is none within 20 %.
-std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double>& from, double side,
-                              const SolveOptions& options) {
+std::vector<double> NextLocalMinimumStart(const LeastSquares& cost, const std::vector<double>& from, double side,
+                                          const SolveOptions& options) {
   constexpr double kFirstShift = 1e-3;
   constexpr double kLargestShift = 0.2;
   constexpr double kGrowth = 1.15;
@@ -100,12 +100,12 @@ std::vector<double> NextBasin(const LeastSquares& cost, const std::vector<double
 }
 
 /// Continues to the neighbouring local minima of a recording that reaches rest, on both sides, while they are lower.
-Solution DescendBasins(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
+Solution DescendToLowerMinima(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
   for (const double side : {-1.0, 1.0}) {
     for (bool better = true; better && cost.traces() < options.max_traces;) {
       Solution trial = best;
-      trial.parameters = NextBasin(cost, best.parameters, side, options);
+      trial.parameters = NextLocalMinimumStart(cost, best.parameters, side, options);
       if (trial.parameters.empty()) break;
       trial = Continue(cost, trial, options);
       if (!trial.usable) break;
@@ -151,30 +151,31 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   const double stop = may_rest ? std::min(cost.Trace(start).stop_time, data.time.back()) : data.time.back();
   if (!traced || sums(sums.rows() - 1, sums.cols() - 1) > kExplained * Variance(data)) {
     const double cycle = 2 * kPi * std::sqrt(start[0]);
-    solution = SolveGrowing(cost, data, solution, options, GrowingTimes(begin, data.time.back(), cycle));
+    solution = SolveOnGrowingPart(cost, data, solution, options, GrowingPartEnds(begin, data.time.back(), cycle));
   } else if (stop < data.time.back()) {
     const double motion = stop - begin;
-    solution = SolveGrowing(cost, data, solution, options,
-                            {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
+    solution = SolveOnGrowingPart(cost, data, solution, options,
+                                  {begin + 0.3 * motion, begin + 0.6 * motion, begin + 0.85 * motion});
   }
   return Refine(cost, solution, options);
 }
 
 /// Limits the trajectories of one stage of the search, so that some remain for the others.
 SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
-  constexpr int kMostTraces = 500;
-  options.max_traces = std::min(options.max_traces, cost.traces() + kMostTraces);
+  constexpr int kMaxTraces = 500;
+  options.max_traces = std::min(options.max_traces, cost.traces() + kMaxTraces);
   return options;
 }
 
 /// Friction parameters that can be fixed at their bound to give a simpler law.
-std::vector<int> Removable(const SolveOptions& options) {
-  std::vector<int> removable;
+std::vector<int> RemovableFriction(const SolveOptions& options) {
+  std::vector<int> removable_friction;
   for (int k = 1; k <= options.last_friction; ++k) {
-    const bool is_late = std::ranges::find(options.late, k) != options.late.end();
-    if (!options.fixed[k] && options.lower[k] == 0 && !is_late) removable.push_back(k);
+    const bool needs_small_swings =
+        std::ranges::find(options.small_swing_parameters, k) != options.small_swing_parameters.end();
+    if (!options.fixed[k] && options.lower[k] == 0 && !needs_small_swings) removable_friction.push_back(k);
   }
-  return removable.size() > 1 ? removable : std::vector<int>{};
+  return removable_friction.size() > 1 ? removable_friction : std::vector<int>{};
 }
 
 /// Solves with friction parameter k fixed, then frees it.
@@ -182,7 +183,7 @@ Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const St
                       const SolveOptions& options) {
   SolveOptions simpler = options;
   simpler.fixed[k] = true;
-  const bool search = k == Removable(options).back();
+  const bool search = k == RemovableFriction(options).back();
   Solution solution = search ? Search(cost, data, guess, simpler) : Solve(cost, guess(simpler.fixed), simpler);
   solution.other_minima.clear();  // they belong to the simpler law
   return Continue(cost, solution, options);
@@ -200,14 +201,14 @@ Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& op
   const int holding = options.holding_parameter;
   if (!solution.usable || holding < 0 || options.fixed[holding]) return solution;
   if (!MayReachRest(cost, solution.parameters, options)) return solution;
-  return DescendBasins(cost, solution, options);
+  return DescendToLowerMinima(cost, solution, options);
 }
 
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
   Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
   if (IsSmall(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
-  for (const int k : Removable(options)) {
+  for (const int k : RemovableFriction(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);
     std::vector<Minimum> others = std::move(best.other_minima);

@@ -53,10 +53,10 @@ NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, con
 /// Ends a solve as soon as a step reaches a bound. Ceres shortens its steps there, and shortened steps move slowly
 /// along the bound. Also ends it as soon as the next step would be the last. That follows from the sums that Ceres just
 /// asked for; Ceres itself would need one more trajectory to find out.
-class EndEarly final : public ceres::IterationCallback {
+class EarlyStop final : public ceres::IterationCallback {
  public:
-  EndEarly(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
-           const std::vector<bool>& held)
+  EarlyStop(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
+            const std::vector<bool>& held)
       : cost_(cost), parameters_(parameters), options_(options), held_(held) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
@@ -64,12 +64,12 @@ class EndEarly final : public ceres::IterationCallback {
     const bool begins = summary.iteration == 0;
     if (!begins && !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
     const bool at_bound = !AtBound(parameters_, options_, held_).empty();
-    const bool done = at_bound ? !begins : IsThere();
+    const bool done = at_bound ? !begins : HasConverged();
     return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  bool IsThere() const { return StepFrom(cost_, held_, parameters_).is_last; }
+  bool HasConverged() const { return StepFrom(cost_, held_, parameters_).is_last; }
 
   const LeastSquares& cost_;
   const std::vector<double>& parameters_;
@@ -112,7 +112,7 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
     if (std::isfinite(options.lower[i])) problem.SetParameterLowerBound(blocks[i], 0, options.lower[i]);
     if (std::isfinite(options.upper[i])) problem.SetParameterUpperBound(blocks[i], 0, options.upper[i]);
   }
-  EndEarly stop(cost, solution.parameters, options, held);
+  EarlyStop stop(cost, solution.parameters, options, held);
   ceres::Solver::Options solver = SolverOptions(options.max_iterations, cost.runs() > 1);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
@@ -125,8 +125,10 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
 
 /// Parameters that the next Gauss-Newton step would move to a bound, and which bound. Ceres does not make a step that
 /// is too small, and so leaves them short of it.
-std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& cost, const SolveOptions& options,
-                                                           const std::vector<bool>& held, const Solution& solution) {
+std::vector<std::pair<std::size_t, double>> ParametersReachingBound(const LeastSquares& cost,
+                                                                    const SolveOptions& options,
+                                                                    const std::vector<bool>& held,
+                                                                    const Solution& solution) {
   const NewtonStep newton = StepFrom(cost, held, solution.parameters);
   std::vector<std::pair<std::size_t, double>> carried;
   for (Eigen::Index k = 0; k < newton.step.size(); ++k) {
@@ -138,8 +140,8 @@ std::vector<std::pair<std::size_t, double>> CarriedToBound(const LeastSquares& c
 }
 
 /// Among the parameters held at their bound, the one that the cost pulls inwards most; -1 if there is none.
-int PulledInwards(const LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held,
-                  const Solution& solution) {
+int ParameterLeavingBound(const LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held,
+                          const Solution& solution) {
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return -1;
   int pulled = -1;
@@ -180,14 +182,14 @@ Solution Solve(LeastSquares& cost, const std::vector<double>& start, const Solve
     const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
     for (const std::size_t i : landed) held[i] = true;
     if (!landed.empty()) continue;
-    const auto carried = CarriedToBound(cost, options, held, solution);
+    const auto carried = ParametersReachingBound(cost, options, held, solution);
     for (const auto& [i, bound] : carried) {
       solution.parameters[i] = bound;
       held[i] = true;
     }
     if (!carried.empty()) continue;
     if (held == options.fixed) break;
-    const int pulled = PulledInwards(cost, options, held, solution);
+    const int pulled = ParameterLeavingBound(cost, options, held, solution);
     if (pulled < 0) break;
     held[pulled] = false;
   }

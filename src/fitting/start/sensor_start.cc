@@ -11,7 +11,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/half_swings.h"
 #include "pendulum/closed_form/period.h"
-#include "pendulum/closed_form/turns_view.h"
+#include "pendulum/closed_form/turning_point_view.h"
 
 namespace pendulum {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::array kAmplitudes = {0.15, 0.4, 0.8, 1.3};
 constexpr double kLargestView = 1.5;
 
 /// The value that the options give for a parameter: fixed, initial, or the mean of a prior.
-std::optional<double> Known(const FitOptions& options, const ParameterInfo& info) {
+std::optional<double> KnownValue(const FitOptions& options, const ParameterInfo& info) {
   if (const auto found = options.fixed.find(info.name); found != options.fixed.end()) return found->second;
   if (const auto found = options.initial.find(info.name); found != options.initial.end()) return found->second;
   if (const auto found = options.priors.find(info.name); found != options.priors.end()) return found->second.mean;
@@ -31,7 +31,7 @@ std::optional<double> Known(const FitOptions& options, const ParameterInfo& info
 }
 
 /// Nominal direction of an accelerometer's axis: across the rod, or along it.
-double AxisOf(const Recording& recording) { return IsRadial(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
+double AxisOf(const Recording& recording) { return IsAlongRod(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
 
 /// The readings' view and the results from its turning points.
 struct Turns {
@@ -45,7 +45,7 @@ struct Turns {
 };
 
 Result<Turns> FindTurnsOf(const Recording& recording) {
-  Turns turns{TurnsView(recording)};
+  Turns turns{TurningPointView(recording)};
   Result<HalfSwingTable> table = TabulateHalfSwings(turns.view);
   if (!table) return tl::unexpected(table.error());
   table->gravity = Gravity::kLinear;
@@ -73,21 +73,21 @@ Recording AsSine(Recording view, double zero, double unit) {
 }
 
 std::vector<SensorStart> StartsOfCoordinate(const Turns& turns, const FitOptions& options) {
-  const std::optional<double> radius = Known(options, kRadius);
+  const std::optional<double> radius = KnownValue(options, kRadius);
   std::optional<double> amplitude;
   if (radius) amplitude = std::asin(std::min(turns.amplitude / *radius, std::sin(kLargestView)));
   std::vector<SensorStart> starts;
   for (const double angle : AmplitudesOf(amplitude)) {
     const double length = radius.value_or(turns.amplitude / std::sin(angle));
-    const double pivot = Known(options, kPivotX).value_or(turns.zero);
-    const double zero = Known(options, kZeroAngle).value_or(0);
+    const double pivot = KnownValue(options, kPivotX).value_or(turns.zero);
+    const double zero = KnownValue(options, kZeroAngle).value_or(0);
     starts.push_back({{zero, pivot, length}, AsSine(turns.view, turns.zero, length)});
   }
   return starts;
 }
 
 std::vector<SensorStart> StartsOfRate(const Recording& recording, const Turns& turns, const FitOptions& options) {
-  const std::optional<double> known = Known(options, kRateScale);
+  const std::optional<double> known = KnownValue(options, kRateScale);
   std::vector<SensorStart> starts;
   for (const double angle : known ? std::vector{0.0} : AmplitudesOf({})) {
     const double peak = 2 * turns.NaturalFrequency(angle) * std::sin(0.5 * angle);
@@ -103,9 +103,9 @@ std::vector<SensorStart> StartsOfRate(const Recording& recording, const Turns& t
 
 /// Across the rod: k ((g - r ω0²) sin θ - r friction), where friction is neglected.
 std::vector<SensorStart> StartsAcross(const SensorModel& sensor, const Turns& turns, const FitOptions& options) {
-  const std::optional<double> known = Known(options, kRadius);
-  const double scale = Known(options, kAccelerationScale).value_or(1);
-  const double axis = Known(options, kAxis).value_or(0);
+  const std::optional<double> known = KnownValue(options, kRadius);
+  const double scale = KnownValue(options, kAccelerationScale).value_or(1);
+  const double axis = KnownValue(options, kAxis).value_or(0);
   std::vector<SensorStart> starts;
   const auto add = [&](double unit, double radius) {
     starts.push_back(
@@ -130,9 +130,9 @@ std::vector<SensorStart> StartsAcross(const SensorModel& sensor, const Turns& tu
 /// Along the rod, unfolded: |view| = sqrt(2 k (g + 2 r ω0²)) sin(θ/2).
 std::vector<SensorStart> StartsAlong(const SensorModel& sensor, const Turns& turns, double upright,
                                      const FitOptions& options) {
-  const std::optional<double> known = Known(options, kRadius);
-  const double scale = Known(options, kAccelerationScale).value_or(1);
-  const double axis = Known(options, kAxis).value_or(upright);
+  const std::optional<double> known = KnownValue(options, kRadius);
+  const double scale = KnownValue(options, kAccelerationScale).value_or(1);
+  const double axis = KnownValue(options, kAxis).value_or(upright);
   std::vector<SensorStart> starts;
   for (const double angle : AmplitudesOf({})) {
     const double square = std::pow(turns.NaturalFrequency(angle), 2);
@@ -195,7 +195,7 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
   for (const ParameterInfo& info : sensor.Parameters()) {
     const bool is_size =
         info.name == kRadius.name || info.name == kRateScale.name || info.name == kAccelerationScale.name;
-    const std::optional<double> value = Known(options, info);
+    const std::optional<double> value = KnownValue(options, info);
     if (!is_size || !value) continue;
     const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity is measured at the pivot too
     if (*value == 0 ? shows_at_0 : *value >= info.lower) continue;
@@ -218,8 +218,8 @@ Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const 
   if (!turns) return tl::unexpected(turns.error());
   if (sensor.kind == SensorKind::kCoordinate) return StartsOfCoordinate(*turns, options);
   if (sensor.kind == SensorKind::kScaledRate) return StartsOfRate(recording, *turns, options);
-  return IsRadial(recording) ? StartsAlong(sensor, *turns, AxisOf(recording), options)
-                             : StartsAcross(sensor, *turns, options);
+  return IsAlongRod(recording) ? StartsAlong(sensor, *turns, AxisOf(recording), options)
+                               : StartsAcross(sensor, *turns, options);
 }
 
 }  // namespace pendulum

@@ -86,28 +86,28 @@ std::optional<Fall> FirstFall(const Centred& data) {
 }
 
 /// The held part at the start, if there is one. The first fall dates the release. Until then, for at least a tenth of a
-/// period, the reading must stay within 5 % of the amplitude plus five standard deviations of the noise. If `asked` is
-/// true, any samples before the release are accepted.
-std::optional<Hold> FindHold(const Centred& data, bool asked) {
+/// period, the reading must stay within 5 % of the amplitude plus five standard deviations of the noise. If
+/// `is_requested` is true, any samples before the release are accepted.
+std::optional<Hold> FindHold(const Centred& data, bool is_requested) {
   const std::optional<Fall> fall = FirstFall(data);
   if (!fall) return std::nullopt;
   const Recording& recording = data.recording;
   const double release = fall->time - fall->periods * data.Period(fall->amplitude);
   const Index held = SampleAt(recording, release);
-  constexpr Index kFewest = 3;
-  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kFewest;
-  if (held < 1 || (is_short && !asked)) return std::nullopt;
+  constexpr Index kMin = 3;
+  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kMin;
+  if (held < 1 || (is_short && !is_requested)) return std::nullopt;
   // Strong friction makes the release appear later than it was, so only the first part of the hold is used.
-  const Index surely_held = std::max<Index>(7 * held / 10, 1);
-  const auto [mean, spread] = MeanAndSpread(data, surely_held);
+  const Index certainly_held = std::max<Index>(7 * held / 10, 1);
+  const auto [mean, spread] = MeanAndSpread(data, certainly_held);
   const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
   const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
-  if (spread > band && !asked) return std::nullopt;
+  if (spread > band && !is_requested) return std::nullopt;
   // A pushed pendulum is not released: the held angle must be close to the amplitude of the first swing.
   const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
-  if (is_push && !asked) return std::nullopt;
+  if (is_push && !is_requested) return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
-  while (moving > surely_held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
+  while (moving > certainly_held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
   return Hold{recording.quantity == Quantity::kAngle ? mean : fall->amplitude, release, recording.time[moving]};
 }
 

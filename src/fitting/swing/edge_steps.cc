@@ -9,7 +9,7 @@
 #include <Eigen/QR>
 
 #include "pendulum/base/median.h"
-#include "pendulum/recording/ticks.h"
+#include "pendulum/recording/encoder_edges.h"
 
 namespace pendulum {
 namespace {
@@ -20,7 +20,7 @@ using Eigen::Index;
 struct Run {
   std::vector<Index> edges;
   double direction = 0;
-  double zero = 0;  // unit of the residuals
+  double offset = 0;  // unit of the residuals
 };
 
 /// Whether rows are missing between edges i - 1 and i: the interval is far longer than its two neighbours.
@@ -32,7 +32,7 @@ bool IsGap(const Eigen::VectorXd& time, const std::vector<Index>& edges, std::si
 }
 
 std::vector<Run> RunsOf(const Recording& recording) {
-  constexpr std::size_t kFewest = 3;  // edges needed to determine a zero
+  constexpr std::size_t kMin = 3;  // edges needed to determine a zero
   const Eigen::VectorXd directions = EdgeDirections(recording);
   std::vector<Index> edges;
   for (Index i = 0; i < directions.size(); ++i) {
@@ -47,7 +47,7 @@ std::vector<Run> RunsOf(const Recording& recording) {
       runs.push_back({{}, direction, 0});
     runs.back().edges.push_back(edges[k]);
   }
-  std::erase_if(runs, [](const Run& run) { return run.edges.size() < kFewest; });
+  std::erase_if(runs, [](const Run& run) { return run.edges.size() < kMin; });
   return runs;
 }
 
@@ -73,10 +73,10 @@ RunRegression Regress(const FitResiduals& data, const std::vector<Run>& runs) {
 }
 
 /// The mean residual of each run, after the parameters are fitted to the differences within runs.
-void FindZeros(const FitResiduals& data, std::vector<Run>& runs) {
+void FindRunOffsets(const FitResiduals& data, std::vector<Run>& runs) {
   const Eigen::VectorXd change = Regress(data, runs).change;
   for (Run& run : runs) {
-    run.zero = data.residual(run.edges).mean() - data.jacobian(run.edges, Eigen::all).colwise().mean().dot(change);
+    run.offset = data.residual(run.edges).mean() - data.jacobian(run.edges, Eigen::all).colwise().mean().dot(change);
   }
 }
 
@@ -86,12 +86,12 @@ struct Step {
   double difference = 0;
   double lag = 0, whole = 0;
 
-  double Off() const { return difference - turn * lag - whole; }
+  double Remainder() const { return difference - turn * lag - whole; }
 };
 
 /// The lag near each step: half of the difference between the zeros of upward and downward runs, minus the lost counts.
 /// A law that does not quite fit makes the motion late relative to the readings, so the lag changes slowly.
-void FindLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
+void EstimateLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
   std::vector<double> lags(steps.size(), 0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     std::vector<double> around;
@@ -112,10 +112,10 @@ std::vector<Step> CountSteps(const std::vector<Run>& runs, double resolution) {
   constexpr int kPasses = 4;
   std::vector<Step> steps;
   for (std::size_t k = 1; k < runs.size(); ++k) {
-    steps.push_back({runs[k].direction - runs[k - 1].direction, (runs[k].zero - runs[k - 1].zero) / resolution});
+    steps.push_back({runs[k].direction - runs[k - 1].direction, (runs[k].offset - runs[k - 1].offset) / resolution});
   }
   for (int pass = 0; pass < kPasses; ++pass) {
-    FindLags(pass == 0 ? kNear : kNearer, pass > 0, steps);
+    EstimateLags(pass == 0 ? kNear : kNearer, pass > 0, steps);
     for (Step& step : steps) step.whole = std::round(step.difference - step.turn * step.lag);
   }
   return steps;
@@ -129,19 +129,19 @@ RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& 
   return Regress(residuals, runs);
 }
 
-std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges) {
+std::vector<OffsetStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges) {
   constexpr double kWithin = 0.35;   // counts
   constexpr double kStdError = 0.1;  // counts, for steps that are not within kWithin
   std::vector<Run> runs = RunsOf(edges);
   if (runs.size() < 2) return {};
-  FindZeros(residuals, runs);
+  FindRunOffsets(residuals, runs);
   const std::vector<Step> counted = CountSteps(runs, edges.resolution);
-  std::vector<ZeroStep> steps;
+  std::vector<OffsetStep> steps;
   for (std::size_t k = 0; k < counted.size(); ++k) {
     const Step& step = counted[k];
-    const bool is_whole = std::abs(step.Off()) < kWithin;
+    const bool is_whole = std::abs(step.Remainder()) < kWithin;
     if (is_whole && step.whole == 0) continue;
-    const double counts = is_whole ? step.whole : step.whole + step.Off();
+    const double counts = is_whole ? step.whole : step.whole + step.Remainder();
     steps.push_back({runs[k + 1].edges.front(), edges.resolution * counts, kStdError * edges.resolution});
   }
   return steps;

@@ -22,15 +22,15 @@ namespace pendulum {
 namespace {
 
 /// So many samples are enough to compare windows, and so many in a half swing.
-constexpr Eigen::Index kMostTrialSamples = 3000;
+constexpr Eigen::Index kMaxTrialSamples = 3000;
 constexpr double kPerHalfSwing = 12;
-constexpr int kMostTrialTraces = 60;
+constexpr int kMaxTrialTraces = 60;
 
 /// Fits to parts of one recording by its richest law, compared by what they leave of another part.
 class WindowTrials {
  public:
   WindowTrials(Recording recording, const FitOptions& options)
-      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMostTrialTraces)) {}
+      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMaxTrialTraces)) {}
 
   /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
   double Rms(double begin, double end, double from, double to) {
@@ -71,7 +71,7 @@ class WindowTrials {
 };
 
 /// How many turning points may be left out at an edge: none, one, two, four and so on, and a quarter of them.
-std::vector<std::size_t> Steps(std::size_t turns) {
+std::vector<std::size_t> TrimCandidates(std::size_t turns) {
   const std::size_t most = std::max<std::size_t>(turns / 4, 1);
   std::vector<std::size_t> steps = {0};
   for (std::size_t k = 1; k < most; k *= 2) steps.push_back(k);
@@ -82,14 +82,15 @@ std::vector<std::size_t> Steps(std::size_t turns) {
 /// The fewest turning points to leave out at an edge such that leaving out more makes the rest fit not much better; all
 /// the steps allow where that is never so. window(k) is the window without k of them.
 template <typename Window>
-std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps, const Window& window) {
+std::size_t CountDisturbedTurningPoints(WindowTrials& trials, const std::vector<std::size_t>& steps,
+                                        const Window& window) {
   // No law is exact: a shorter window fits a little better, the more so the shorter it is.
-  constexpr double kDisturbed = 1.1;
-  constexpr double kInexact = 0.02;  // per turning point
+  constexpr double kAllowedRatio = 1.1;
+  constexpr double kAllowedPerTurningPoint = 0.02;  // per turning point
   const auto fits = [&](std::size_t less, std::size_t more) {
     const auto [from, to] = window(less);
     const auto [inner_from, inner_to] = window(more);
-    const double allowed = kDisturbed + kInexact * static_cast<double>(more - less - 1);
+    const double allowed = kAllowedRatio + kAllowedPerTurningPoint * static_cast<double>(more - less - 1);
     return trials.Rms(from, to, inner_from, inner_to) <=
            allowed * trials.Rms(inner_from, inner_to, inner_from, inner_to);
   };
@@ -102,7 +103,7 @@ std::size_t LeaveOut(WindowTrials& trials, const std::vector<std::size_t>& steps
 }
 
 /// Turning points that may begin or end a window: not the hold, nor the first sample.
-std::vector<double> InnerTurns(const FreeSwing& swing) {
+std::vector<double> InnerTurningPoints(const FreeSwing& swing) {
   std::vector<double> turns;
   for (const double turn : swing.turns) {
     if (turn > swing.from + 0.6 * swing.half_period && turn < swing.to) turns.push_back(turn);
@@ -112,11 +113,11 @@ std::vector<double> InnerTurns(const FreeSwing& swing) {
 
 /// Leaves out what disturbs the swing at one of its ends.
 void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
-  const Recording excerpt = Excerpt(recording, kMostTrialSamples, kPerHalfSwing / swing.half_period, at_end);
+  const Recording excerpt = Excerpt(recording, kMaxTrialSamples, kPerHalfSwing / swing.half_period, at_end);
   const double from = excerpt.time[0];
   const double to = excerpt.time[excerpt.size() - 1];
   std::vector<double> turns;
-  for (const double turn : InnerTurns(swing)) {
+  for (const double turn : InnerTurningPoints(swing)) {
     if (turn > from && turn < to) turns.push_back(turn);
   }
   if (turns.size() < 2) return;
@@ -125,20 +126,20 @@ void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end,
     return at_end ? std::pair(from, turns[turns.size() - k]) : std::pair(turns[k - 1], to);
   };
   WindowTrials trials(excerpt, options);
-  const std::size_t k = LeaveOut(trials, Steps(turns.size()), window);
+  const std::size_t k = CountDisturbedTurningPoints(trials, TrimCandidates(turns.size()), window);
   if (k == 0) return;
   const auto [inner_from, inner_to] = window(k);
   if (at_end) {
     swing.to = inner_to;
-    swing.ends = {WindowEnd::Reason::kDisturbed};
+    swing.ends = {WindowEnd::Reason::kAllowedRatio};
   } else {
     swing.from = inner_from;
-    swing.begins = {WindowBegin::Reason::kDisturbed};
+    swing.begins = {WindowBegin::Reason::kAllowedRatio};
   }
 }
 
 /// A value of the start belongs to the first sample, or to the release, that the user meant.
-bool NamesStart(const FitOptions& options) {
+bool ConstrainsStart(const FitOptions& options) {
   const auto names = [](const auto& map) {
     return std::ranges::any_of(map, [](const auto& entry) {
       return entry.first == kReleaseAngle.name || entry.first == kReleaseTime.name ||
@@ -151,7 +152,7 @@ bool NamesStart(const FitOptions& options) {
 /// Leaves out what disturbs the swing at its two ends, unless the user chose them.
 void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
   if (!(swing.half_period > 0)) return;
-  if (!swing.from_given && !NamesStart(options)) TrimEnd(recording, options, false, swing);
+  if (!swing.from_given && !ConstrainsStart(options)) TrimEnd(recording, options, false, swing);
   if (!swing.to_given) TrimEnd(recording, options, true, swing);
 }
 
@@ -173,10 +174,10 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
-  const std::string turned = UnwrapOffset(*used);
+  const std::string turns_message = UnwrapOffset(*used);
   Result<FitReport> fit = FitRecording(*used, options);
   if (!fit) return tl::unexpected(fit.error());
-  if (!turned.empty()) fit->warnings.push_back({"turns_taken_out", turned});
+  if (!turns_message.empty()) fit->warnings.push_back({"turns_taken_out", turns_message});
   SwingFit result{*std::move(used), swing, *std::move(fit)};
   // The fit decides how the swing began.
   const bool released = result.fit.start == StartKind::kRelease;
@@ -188,18 +189,18 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
 
 /// Ends the window earlier until the fit converges: near a stop it may have no minimum.
 SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
-  const std::vector<double> turns = InnerTurns(result.swing);
-  const Recording thinned = Thinned(
-      result.used,
-      std::max(kMostTrialSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
+  const std::vector<double> turns = InnerTurningPoints(result.swing);
+  const Recording thinned =
+      Thinned(result.used,
+              std::max(kMaxTrialSamples, static_cast<Eigen::Index>(kPerHalfSwing * static_cast<double>(turns.size()))));
   FitOptions quick = options;
-  quick.search.max_traces = 5 * kMostTrialTraces;
+  quick.search.max_traces = 5 * kMaxTrialTraces;
   if (!IsRobust(quick.noise)) quick.noise = NoiseFamily::kGaussian;
   quick.interval = IntervalMethod::kCovariance;
   const auto converges = [](const Result<SwingFit>& trial) {
     return trial && trial->fit.termination == Termination::kConverged;
   };
-  for (const std::size_t k : Steps(turns.size())) {
+  for (const std::size_t k : TrimCandidates(turns.size())) {
     if (k == 0) continue;
     FreeSwing shorter = result.swing;
     shorter.to = turns[turns.size() - k];
@@ -221,7 +222,7 @@ void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
 }
 
 /// A pendulum's errors are none of something else.
-void Withdraw(const std::string& why, FitReport& fit) {
+void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = "this is not a free pendulum's swing: " + why;
   fit.warnings.push_back({"not_a_pendulum", fit.reason});
@@ -230,21 +231,21 @@ void Withdraw(const std::string& why, FitReport& fit) {
 
 /// Ends a window before counts are lost that cannot be told, if more than half of it is left and all that were lost in
 /// that can be.
-void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& result, ZeroJumps& jumps) {
-  constexpr int kMostTrials = 6;
-  constexpr double kLeast = 0.5, kStep = 0.05;  // of the window
+void EndBeforeUncertainJump(const FitOptions& options, FreeSwing& swing, SwingFit& result, OffsetJumps& jumps) {
+  constexpr int kMaxTrials = 6;
+  constexpr double kMinLength = 0.5, kStep = 0.05;  // of the window
   FreeSwing shorter = swing;
-  std::optional<double> doubtful = jumps.doubtful_from;
+  std::optional<double> uncertain = jumps.uncertain_from;
   const double length = swing.to - swing.from;
-  for (int trial = 0; trial < kMostTrials && doubtful; ++trial) {
-    shorter.to = std::min(std::nexttoward(*doubtful, swing.from), shorter.to - kStep * length);
+  for (int trial = 0; trial < kMaxTrials && uncertain; ++trial) {
+    shorter.to = std::min(std::nexttoward(*uncertain, swing.from), shorter.to - kStep * length);
     shorter.ends = {WindowEnd::Reason::kCountsLost};
-    if (shorter.to - swing.from < kLeast * length) return;
+    if (shorter.to - swing.from < kMinLength * length) return;
     Result<SwingFit> part = FitBetween(result.used, shorter, options);
-    std::optional<ZeroJumps> found = part ? FindZeroJumps(part->used, options) : std::nullopt;
+    std::optional<OffsetJumps> found = part ? FindOffsetJumps(part->used, options) : std::nullopt;
     if (!found) return;
-    doubtful = found->doubtful_from;
-    if (doubtful) continue;
+    uncertain = found->uncertain_from;
+    if (uncertain) continue;
     swing = shorter;
     result = *std::move(part);
     jumps = *std::move(found);
@@ -252,32 +253,34 @@ void EndBeforeDoubt(const FitOptions& options, FreeSwing& swing, SwingFit& resul
 }
 
 /// Moves back the readings that counts were lost before, and fits them; says what was found.
-std::optional<ZeroJumps> MendZero(FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
-  std::optional<ZeroJumps> jumps = FindZeroJumps(result->used, options);
-  if (jumps && !swing.to_given) EndBeforeDoubt(options, swing, *result, *jumps);
-  if (jumps && jumps->AreMended()) result = FitBetween(std::exchange(jumps->corrected, {}), swing, options);
+std::optional<OffsetJumps> CorrectOffset(FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
+  std::optional<OffsetJumps> jumps = FindOffsetJumps(result->used, options);
+  if (jumps && !swing.to_given) EndBeforeUncertainJump(options, swing, *result, *jumps);
+  if (jumps && jumps->AreCorrected()) result = FitBetween(std::exchange(jumps->corrected, {}), swing, options);
   return jumps;
 }
 
-std::optional<std::string> WhyNoPendulum(const SwingFit& result, const std::stop_token& stop) {
-  if (result.swing.beats) return "its amplitude grows again and again, as that of two pendulums that are coupled does";
-  return WhyLinear(result.used, result.fit, stop);
+std::optional<std::string> NotAPendulumReason(const SwingFit& result, const std::stop_token& stop) {
+  if (result.swing.has_beats)
+    return "its amplitude grows again and again, as that of two pendulums that are coupled does";
+  return LinearOscillatorReason(result.used, result.fit, stop);
 }
 
 // ---- Rescues -------------------------------------------------------------------------------------------------------
 
 /// A fit of a swing, and what the rescues have found so far.
 struct SwingState {
-  FreeSwing swing;                 ///< The window of the next fit.
-  SwingFit result;                 ///< Of the last fit.
-  std::optional<ZeroJumps> jumps;  ///< Of the readings' zero; std::nullopt: not looked for.
-  bool was_trimmed = false;        ///< Disturbed ends were left out.
+  FreeSwing swing;                   ///< The window of the next fit.
+  SwingFit result;                   ///< Of the last fit.
+  std::optional<OffsetJumps> jumps;  ///< Of the readings' zero; std::nullopt: not looked for.
+  bool was_trimmed = false;          ///< Disturbed ends were left out.
   bool is_pendulum = true;
 
   /// Whether the fit leaves more than noise.
   bool IsLacking() const {
     const FitReport& fit = result.fit;
-    return fit.termination != Termination::kConverged || fit.Warns("lack_of_fit") || fit.Warns("correlated_residuals");
+    return fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
+           fit.HasWarning("correlated_residuals");
   }
   bool IsTrimmed() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
 };
@@ -292,20 +295,20 @@ struct WindowRescue {
 bool IsLacking(const SwingState& state) { return state.IsLacking(); }
 
 /// Lost counts move the zero by steps, which leave residuals that are no noise.
-bool MayHaveJumped(const SwingState& state) { return state.IsLacking() || MayJump(state.result.fit); }
+bool MayHaveJumped(const SwingState& state) { return state.IsLacking() || MayHaveOffsetJump(state.result.fit); }
 
 Result<bool> CorrectJumps(const FitOptions& options, SwingState& state) {
   Result<SwingFit> result = std::move(state.result);
   const double from = result->swing.from, to = result->swing.to;
-  state.jumps = MendZero(state.swing, options, result);
+  state.jumps = CorrectOffset(state.swing, options, result);
   if (!result) return tl::unexpected(result.error());
   state.result = *std::move(result);
-  return (state.jumps && state.jumps->AreMended()) || state.result.swing.from != from || state.result.swing.to != to;
+  return (state.jumps && state.jumps->AreCorrected()) || state.result.swing.from != from || state.result.swing.to != to;
 }
 
 Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
-  const auto why = WhyNoPendulum(state.result, options.stop);
-  if (why) Withdraw(*why, state.result.fit);
+  const auto why = NotAPendulumReason(state.result, options.stop);
+  if (why) RejectAsNotAPendulum(*why, state.result.fit);
   state.is_pendulum = !why;
   return why.has_value();
 }
@@ -323,7 +326,7 @@ Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
 
 /// Jumps that a disturbed end had hidden.
 bool MayHaveJumpedInside(const SwingState& state) {
-  return state.was_trimmed && !(state.jumps && state.jumps->AreMended());
+  return state.was_trimmed && !(state.jumps && state.jumps->AreCorrected());
 }
 
 /// Near its stop a swing may have no minimum.
@@ -366,9 +369,9 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
                           " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
   }
   WarnOfLargerMotion(state.swing, fit);
-  WarnOfJumps(state.jumps, state.IsLacking(), fit);
-  const auto why = state.IsLacking() ? WhyTwoModes(state.result.used, fit, options.stop) : std::nullopt;
-  if (why) Withdraw(*why, fit);
+  WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);
+  const auto why = state.IsLacking() ? TwoModesReason(state.result.used, fit, options.stop) : std::nullopt;
+  if (why) RejectAsNotAPendulum(*why, fit);
 }
 
 /// Once a stop is requested, the result means nothing.

@@ -21,10 +21,10 @@ double NaturalFrequencyOf(const FitReport& report) {
 
 /// The first and largest swings, with enough samples to identify a mode with a tenth of the period.
 Recording FirstSwings(const Recording& recording, const FitReport& report) {
-  constexpr Eigen::Index kMostSamples = 3000;
+  constexpr Eigen::Index kMaxSamples = 3000;
   constexpr double kPerPeriod = 24;
   const double periods_per_second = NaturalFrequencyOf(report) * recording.clock_scale / (2 * kPi);
-  return Excerpt(recording, kMostSamples, std::max(kPerPeriod * periods_per_second, 1e-9), false);
+  return Excerpt(recording, kMaxSamples, std::max(kPerPeriod * periods_per_second, 1e-9), false);
 }
 
 /// A fit of the richest friction with one law of gravity. Returns std::nullopt if it fails.
@@ -81,13 +81,13 @@ struct Line {
 /// (Astrophys. J. 263:835, 1982). The share includes all lines within a fifth of it, because a decaying mode is not a
 /// sharp line.
 Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
-  constexpr int kMostFrequencies = 1000;
+  constexpr int kMaxFrequencies = 1000;
   constexpr double kWidth = 0.2;
   const Eigen::ArrayXd t = time.array() - time[0];
   const Eigen::ArrayXd& r = residual.array();
   const Eigen::Index count = time.size();
   const double independent = 2 * kPi / t[count - 1];
-  const double spacing = std::max(independent, 10 * natural / kMostFrequencies);
+  const double spacing = std::max(independent, 10 * natural / kMaxFrequencies);
   std::vector<Line> lines;
   // Above half the sampling rate there are only mirror images.
   const double highest = std::min(10 * natural, 0.5 * independent * static_cast<double>(count - 1));
@@ -106,7 +106,7 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
 }
 
 std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
-  constexpr double kMostOfIt = 0.4;
+  constexpr double kMinShare = 0.4;
   constexpr double kSmallest = 0.03;  // of the swing's rms
   const double natural = NaturalFrequencyOf(report);
   if (!(natural > 0)) return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
   const Line line = StrongestLine(recording.clock_scale * recording.time, report.residual, natural);
   const double ratio = line.frequency / natural;
   const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);
-  if (own || line.share < kMostOfIt) return std::nullopt;
+  if (own || line.share < kMinShare) return std::nullopt;
   return Percent(line.share) + " of what the fit leaves is an oscillation with a period of " +
          NumberText(2 * kPi / line.frequency, 4) + " s beside the pendulum's " + NumberText(2 * kPi / natural, 4) +
          " s: two modes, of a second pendulum, a string or a loose support";
@@ -123,15 +123,16 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
 
 }  // namespace
 
-std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report, const std::stop_token& stop) {
+std::optional<std::string> LinearOscillatorReason(const Recording& recording, const FitReport& report,
+                                                  const std::stop_token& stop) {
   if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
   return richest ? IsLinear(some, *richest, stop) : std::nullopt;
 }
 
-std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report,
-                                       const std::stop_token& stop) {
+std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,
+                                          const std::stop_token& stop) {
   if (report.termination == Termination::kFailed) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest =

@@ -12,7 +12,7 @@
 #include <Eigen/QR>
 
 #include "fitting/residuals/burg.h"
-#include "pendulum/fitting/swing/zero_steps.h"
+#include "pendulum/fitting/swing/offset_steps.h"
 
 namespace pendulum {
 
@@ -21,7 +21,7 @@ struct Bins {
   std::vector<Eigen::Index> first;       // M + 1: bin i has samples first[i]..first[i + 1] - 1
   Eigen::VectorXd time, residual, rate;  // M, as in FitResiduals
   Eigen::MatrixXd jacobian;              // M x P
-  std::vector<Stretch> stretches;        // of bins, without gaps in time
+  std::vector<GapFreeSpan> spans;        // of bins, without gaps in time
 };
 
 /// Divides the samples into bins, and groups the bins into stretches without a gap in time.
@@ -36,8 +36,8 @@ inline Bins DivideIntoBins(const FitResiduals& data) {
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool gap = i == 0 || data.time[i] - data.time[i - 1] > kGap * data.period;
     if (!gap && i < bins.first.back() + width) continue;
-    if (gap) bins.stretches.push_back({static_cast<Eigen::Index>(bins.first.size()), 0});
-    ++bins.stretches.back().size;
+    if (gap) bins.spans.push_back({static_cast<Eigen::Index>(bins.first.size()), 0});
+    ++bins.spans.back().size;
     bins.first.push_back(i);
   }
   bins.first.push_back(count);
@@ -74,12 +74,12 @@ inline Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::
 
 /// The result of a regression of residuals on K columns with an autoregression.
 struct Explained {
-  std::vector<double> memory;       // φ_1..φ_p
-  Eigen::MatrixXd basis;            // M x K, orthonormal: spans the whitened columns
-  Eigen::VectorXd rest;             // M, whitened remaining residuals; 0 where a stretch begins
-  Eigen::VectorXd size, std_error;  // K
-  double sigma = 0;                 // of `rest`
-  double criterion = 0;             // -2 log L plus the penalty for the order
+  std::vector<double> autoregression;  // φ_1..φ_p
+  Eigen::MatrixXd basis;               // M x K, orthonormal: spans the whitened columns
+  Eigen::VectorXd rest;                // M, whitened remaining residuals; 0 where a stretch begins
+  Eigen::VectorXd size, std_error;     // K
+  double sigma = 0;                    // of `rest`
+  double criterion = 0;                // -2 log L plus the penalty for the order
 };
 
 /// Generalized least squares with the residuals' own autocorrelation.
@@ -89,8 +89,8 @@ class StepRegression {
     const auto samples = static_cast<double>(size());
     longest_ = static_cast<int>(std::min({30.0, samples / 20, 10 * std::log10(samples)}));
     kept_ = Eigen::VectorXd::Zero(size());
-    for (const Stretch& stretch : bins_.stretches) {
-      for (Eigen::Index i = longest_; i < stretch.size; ++i) kept_[stretch.begin + i] = 1;
+    for (const GapFreeSpan& span : bins_.spans) {
+      for (Eigen::Index i = longest_; i < span.size; ++i) kept_[span.begin + i] = 1;
     }
   }
 
@@ -105,13 +105,13 @@ class StepRegression {
     Explained explained;
     Eigen::VectorXd left = bins_.residual - columns * columns.colPivHouseholderQr().solve(bins_.residual);
     for (int pass = 0; pass < 2; ++pass) {
-      explained.memory = BestMemory(left);
+      explained.autoregression = FitAutoregression(left);
       Regress(columns, &explained);
       left = bins_.residual - columns * explained.size;
     }
     const double kept = kept_.sum();
     explained.criterion =
-        2 * kept * std::log(explained.sigma) + static_cast<double>(explained.memory.size()) * std::log(kept);
+        2 * kept * std::log(explained.sigma) + static_cast<double>(explained.autoregression.size()) * std::log(kept);
     return explained;
   }
 
@@ -124,20 +124,21 @@ class StepRegression {
   }
 
   /// The bin where one additional step explains most, for the given autocorrelation; -1: none.
-  Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> memory) const {
-    constexpr Eigen::Index kEdge = 3;    // excluded bins at either end of the recording
-    constexpr double kToldApart = 1e-6;  // share of a step that the columns do not explain
-    constexpr double kClearly = 6;       // in -2 log L
+  Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> autoregression) const {
+    constexpr Eigen::Index kEdge = 3;           // excluded bins at either end of the recording
+    constexpr double kMinDistinctShare = 1e-6;  // share of a step that the columns do not explain
+    constexpr double kMargin = 6;               // in -2 log L
     Explained explained;
-    explained.memory = std::move(memory);
+    explained.autoregression = std::move(autoregression);
     Regress(columns, &explained);
-    const std::vector<double> rise = Rise(explained.memory);
-    const Eigen::VectorXd product = Along(rise, explained.rest);
-    std::vector<double> squares = rise;
+    const std::vector<double> response = StepResponse(explained.autoregression);
+    const Eigen::VectorXd product = CorrelateWithResponse(response, explained.rest);
+    std::vector<double> squares = response;
     for (double& value : squares) value *= value;
-    Eigen::VectorXd norm = Along(squares, kept_);
-    const Eigen::VectorXd smallest = kToldApart * norm;
-    for (Eigen::Index k = 0; k < explained.basis.cols(); ++k) norm -= Along(rise, explained.basis.col(k)).cwiseAbs2();
+    Eigen::VectorXd norm = CorrelateWithResponse(squares, kept_);
+    const Eigen::VectorXd smallest = kMinDistinctShare * norm;
+    for (Eigen::Index k = 0; k < explained.basis.cols(); ++k)
+      norm -= CorrelateWithResponse(response, explained.basis.col(k)).cwiseAbs2();
     Eigen::Index best = -1;
     double most = 0;
     for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
@@ -146,19 +147,19 @@ class StepRegression {
       best = i;
     }
     // Samples, and counts with them, are lost in gaps. Such a place is preferred unless another is clearly better.
-    for (const Stretch& stretch : bins_.stretches) {
-      const Eigen::Index i = stretch.begin;
-      const bool holds_best = i >= kEdge && i < best && best < i + stretch.size;
+    for (const GapFreeSpan& span : bins_.spans) {
+      const Eigen::Index i = span.begin;
+      const bool holds_best = i >= kEdge && i < best && best < i + span.size;
       if (!holds_best || !(norm[i] > smallest[i])) continue;
-      if (most - product[i] * product[i] / norm[i] < kClearly * explained.sigma * explained.sigma) best = i;
+      if (most - product[i] * product[i] / norm[i] < kMargin * explained.sigma * explained.sigma) best = i;
     }
     return best;
   }
 
  private:
   /// The autoregression with the smallest Schwarz criterion, by Burg's method.
-  std::vector<double> BestMemory(const Eigen::VectorXd& residual) const {
-    const std::vector<double> reflection = ReflectionCoefficients(residual, bins_.stretches, longest_);
+  std::vector<double> FitAutoregression(const Eigen::VectorXd& residual) const {
+    const std::vector<double> reflection = ReflectionCoefficients(residual, bins_.spans, longest_);
     const double samples = kept_.sum();
     double criterion = 0;
     double least = 0;
@@ -167,21 +168,21 @@ class StepRegression {
       criterion += samples * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
       if (criterion < least) least = criterion, best = order;
     }
-    return FromReflection({reflection.begin(), reflection.begin() + static_cast<std::ptrdiff_t>(best)});
+    return CoefficientsFromReflection({reflection.begin(), reflection.begin() + static_cast<std::ptrdiff_t>(best)});
   }
 
-  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& columns, const std::vector<double>& memory) const {
+  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& columns, const std::vector<double>& autoregression) const {
     Eigen::MatrixXd white = columns;
-    for (std::size_t j = 0; j < memory.size(); ++j) {
+    for (std::size_t j = 0; j < autoregression.size(); ++j) {
       const auto lag = static_cast<Eigen::Index>(j) + 1;
-      white.bottomRows(size() - lag) -= memory[j] * columns.topRows(size() - lag);
+      white.bottomRows(size() - lag) -= autoregression[j] * columns.topRows(size() - lag);
     }
     return kept_.asDiagonal() * white;
   }
 
   void Regress(const Eigen::MatrixXd& columns, Explained* explained) const {
-    const Eigen::MatrixXd white = Whiten(columns, explained->memory);
-    const Eigen::VectorXd value = Whiten(bins_.residual, explained->memory);
+    const Eigen::MatrixXd white = Whiten(columns, explained->autoregression);
+    const Eigen::VectorXd value = Whiten(bins_.residual, explained->autoregression);
     const Eigen::VectorXd scale = white.colwise().norm().cwiseMax(1e-300);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(white * scale.cwiseInverse().asDiagonal());
     explained->basis = qr.householderQ() * Eigen::MatrixXd::Identity(size(), qr.rank());
@@ -202,22 +203,22 @@ class StepRegression {
   }
 
   /// The whitened step of an autoregression: 1, 1 - φ_1, 1 - φ_1 - φ_2, ...
-  static std::vector<double> Rise(const std::vector<double>& memory) {
-    std::vector<double> rise = {1};
-    for (const double phi : memory) rise.push_back(rise.back() - phi);
-    return rise;
+  static std::vector<double> StepResponse(const std::vector<double>& autoregression) {
+    std::vector<double> response = {1};
+    for (const double phi : autoregression) response.push_back(response.back() - phi);
+    return response;
   }
 
-  /// Σ_t rise(t - i) value_t for each i; the rise stays at its last value.
-  Eigen::VectorXd Along(const std::vector<double>& rise, const Eigen::VectorXd& value) const {
+  /// Σ_t response(t - i) value_t for each i; the rise stays at its last value.
+  Eigen::VectorXd CorrelateWithResponse(const std::vector<double>& response, const Eigen::VectorXd& value) const {
     Eigen::VectorXd sum(size());
     double after = 0;
-    const auto length = static_cast<Eigen::Index>(rise.size()) - 1;
+    const auto length = static_cast<Eigen::Index>(response.size()) - 1;
     for (Eigen::Index i = size() - 1; i >= 0; --i) {
       if (i + length < size()) after += value[i + length];
-      sum[i] = rise.back() * after;
+      sum[i] = response.back() * after;
       for (Eigen::Index k = 0; k < std::min(length, size() - i); ++k)
-        sum[i] += rise[static_cast<std::size_t>(k)] * value[i + k];
+        sum[i] += response[static_cast<std::size_t>(k)] * value[i + k];
     }
     return sum;
   }

@@ -11,7 +11,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/sampling.h"
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/fitting/start/phase_scan.h"
+#include "pendulum/fitting/start/frequency_scan.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -26,15 +26,15 @@ constexpr double kFastestHz = 3;
 constexpr double kNearlyAsWell = 9;
 
 /// A difference that even the misfit of a slightly wrong law does not cause: ten standard deviations.
-constexpr double kFar = 100;
+constexpr double kMinDevianceGap = 100;
 
 constexpr double kTurn = 2 * kPi;
 
 /// For fits that are only compared: fits that explain the readings need tens.
-constexpr int kMostAliasTraces = 300;
+constexpr int kMaxAliasTraces = 300;
 
 /// The frequencies that a recording may have.
-struct Allowed {
+struct AllowedFrequencies {
   FrequencyRange range;  ///< rad/s
   bool bounded = false;  ///< By the rig or the user; otherwise by the range of real pendulums.
 };
@@ -52,8 +52,8 @@ double SampleRateOf(const Recording& recording) {
   return DescribeSampling(recording, std::nullopt, std::nullopt).rate_hz / recording.clock_scale;
 }
 
-Allowed AllowedFrequencies(const Recording& used, const FitOptions& options) {
-  Allowed allowed{{kTurn / DurationOf(used), kTurn * kFastestHz}, false};
+AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOptions& options) {
+  AllowedFrequencies allowed{{kTurn / DurationOf(used), kTurn * kFastestHz}, false};
   if (const auto expected = ExpectedFrequency(options.rig)) {
     allowed = {{(1 - kExpectedWithin) * kTurn * *expected, (1 + kExpectedWithin) * kTurn * *expected}, true};
   }
@@ -73,7 +73,7 @@ Allowed AllowedFrequencies(const Recording& used, const FitOptions& options) {
 
 /// Removes constant readings at the start, because a release between two samples cannot be dated. The first reading may
 /// belong to the hold even if the second does not.
-void LeaveOutHold(Recording& used, FreeSwing& swing) {
+void RemoveHold(Recording& used, FreeSwing& swing) {
   const double range = used.value.maxCoeff() - used.value.minCoeff();
   const double band = 0.05 * range + 2 * used.resolution;
   Index held = 1;
@@ -101,7 +101,7 @@ struct Alias {
 };
 
 /// Fits from all local minima with a permitted frequency, the likeliest first, without duplicates.
-Result<std::vector<Alias>> FitAliases(const Recording& used, const Allowed& allowed, FitOptions options) {
+Result<std::vector<Alias>> FitAliases(const Recording& used, const AllowedFrequencies& allowed, FitOptions options) {
   constexpr double kSame = 0.1;     // cycles over the recording
   constexpr double kBeyond = 1.02;  // the limits of a range are not exact bounds
   Result<MotionModel> model = FindMotionModel(options.model);
@@ -155,31 +155,31 @@ std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double
 }
 
 /// With few samples per period, a misfit may look like noise, because successive residuals are independent.
-std::optional<std::string> WhyNotDescribed(const Recording& used, const FitReport& fit) {
-  constexpr double kMostUnexplained = 0.02;
-  constexpr Index kFewestPerParameter = 2;
+std::optional<std::string> NotDescribedReason(const Recording& used, const FitReport& fit) {
+  constexpr double kMaxUnexplained = 0.02;
+  constexpr Index kMinPerParameter = 2;
   const double variance = (used.value.array() - used.value.mean()).square().sum();
   const double left = fit.residual.squaredNorm() / variance;
-  if (left > kMostUnexplained) {
+  if (left > kMaxUnexplained) {
     return "the best trajectory leaves " + NumberText(100 * left, 2) +
            " % of the reading's variance unexplained, and samples so far apart cannot tell noise from another motion";
   }
   const auto parameters = static_cast<Index>(fit.parameters.size());
-  if (used.size() >= kFewestPerParameter * parameters) return std::nullopt;
+  if (used.size() >= kMinPerParameter * parameters) return std::nullopt;
   return std::to_string(used.size()) + " samples are too few for " + std::to_string(parameters) +
          " parameters and a choice among frequencies; record for longer";
 }
 
 /// If nothing bounds the frequency, only the slowest pendulum is accepted, and only if it is well sampled and no faster
 /// one is possible.
-std::optional<std::string> WhyUnbounded(const std::vector<Alias>& aliases, double rate) {
+std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& aliases, double rate) {
   constexpr double kWell = 8;         // samples a period
   constexpr double kTurnsShow = 4.5;  // if no pendulum could alias to this frequency
   const double frequency = aliases.front().frequency;
   const bool slowest = frequency < 0.5 * rate;
-  const bool alone = NearlyAsGood(aliases, kFar).size() == 1;
-  const bool cannot_alias = rate - frequency > kFastestHz;
-  if (slowest && alone && rate > (cannot_alias ? kTurnsShow : kWell) * frequency) return std::nullopt;
+  const bool alone = NearlyAsGood(aliases, kMinDevianceGap).size() == 1;
+  const bool is_unambiguous = rate - frequency > kFastestHz;
+  if (slowest && alone && rate > (is_unambiguous ? kTurnsShow : kWell) * frequency) return std::nullopt;
   return "sampled at " + Hz(rate) + " the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
          " or, seen too seldom, faster; the readings suggest " + Hz(frequency) +
          ", but only a rig's inertia bounds it: give --rig with rod and bob or with \"inertia\", --bounds of inertia, "
@@ -187,7 +187,7 @@ std::optional<std::string> WhyUnbounded(const std::vector<Alias>& aliases, doubl
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
-bool StandsStill(const Recording& used, double frequency) {
+bool SamplesTwoPhasesOnly(const Recording& used, double frequency) {
   constexpr double kTooNear = 1;  // cycles over the recording
   constexpr double kEven = 0.02;  // cycles; time stamps with more jitter show other phases
   const double jitter = used.clock_scale * DescribeSampling(used, std::nullopt, std::nullopt).jitter;
@@ -196,24 +196,24 @@ bool StandsStill(const Recording& used, double frequency) {
 }
 
 /// The reason for an ambiguous result, or std::nullopt.
-std::optional<std::string> WhyAmbiguous(const Recording& used, const std::vector<Alias>& aliases,
-                                        const Allowed& allowed) {
+std::optional<std::string> AmbiguityReason(const Recording& used, const std::vector<Alias>& aliases,
+                                           const AllowedFrequencies& allowed) {
   const double rate = SampleRateOf(used);
   const auto near = NearlyAsGood(aliases, kNearlyAsWell);
   if (near.size() > 1) {
     return "several inertias explain the readings nearly as well, for samples at " + Hz(rate) +
            " look alike: " + ListOf(near) + "; sample faster";
   }
-  if (const double frequency = aliases.front().frequency; StandsStill(used, frequency)) {
+  if (const double frequency = aliases.front().frequency; SamplesTwoPhasesOnly(used, frequency)) {
     return "sampled at " + Hz(rate) + ", once or twice a swing of " + Hz(frequency) +
            ", all readings of the pendulum come at nearly the same two phases: a frequency a little lower and one a "
            "little higher look the same; sample at another rate";
   }
-  return allowed.bounded ? std::nullopt : WhyUnbounded(aliases, rate);
+  return allowed.bounded ? std::nullopt : UnboundedFrequencyReason(aliases, rate);
 }
 
 /// The assumption on which an unambiguous result depends.
-std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed, double rate) {
+std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate) {
   const std::string chosen = ListOf({&aliases.front()});
   if (!allowed.bounded) {
     return "sampled at " + Hz(rate) + " a pendulum faster than " + Hz(0.5 * rate) +
@@ -225,45 +225,46 @@ std::string Assumption(const std::vector<Alias>& aliases, const Allowed& allowed
 }
 
 /// Whether the readings fit far better at a frequency that contradicts the rig.
-std::optional<std::string> WhyBeyondTheRig(const Recording& used, const FitReport& fit, const FitOptions& options) {
+std::optional<std::string> RigMismatchReason(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const auto expected = ExpectedFrequency(options.rig);
   if (!expected || options.bounds.contains(kInertia.name) || options.fixed.contains(kInertia.name)) return std::nullopt;
-  const Allowed wide{{0.5 * kTurn * *expected, 2 * kTurn * *expected}, false};
+  const AllowedFrequencies wide{{0.5 * kTurn * *expected, 2 * kTurn * *expected}, false};
   const Result<std::vector<Alias>> aliases = FitAliases(used, wide, options);
   if (!aliases || aliases->empty()) return std::nullopt;
   const Alias& best = aliases->front();
-  if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kFar) return std::nullopt;
+  if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kMinDevianceGap) return std::nullopt;
   return "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " + Hz(*expected) +
          " that the rig lets expect; check the rig, or give --bounds of inertia";
 }
 
 /// The reason to reject a fit, independent of its own errors.
-struct Refusal {
+struct Rejection {
   Termination termination;
   std::string why;
 };
 
-std::optional<Refusal> RefusalOf(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
-                                 const FitOptions& options) {
-  if (const auto why = WhyNotDescribed(used, aliases.front().fit)) return Refusal{Termination::kNotConverged, *why};
-  auto why = WhyAmbiguous(used, aliases, allowed);
-  if (!why) why = WhyBeyondTheRig(used, aliases.front().fit, options);
-  return why ? std::optional(Refusal{Termination::kNotIdentifiable, *why}) : std::nullopt;
+std::optional<Rejection> RejectionOf(const Recording& used, const std::vector<Alias>& aliases,
+                                     const AllowedFrequencies& allowed, const FitOptions& options) {
+  if (const auto why = NotDescribedReason(used, aliases.front().fit))
+    return Rejection{Termination::kNotConverged, *why};
+  auto why = AmbiguityReason(used, aliases, allowed);
+  if (!why) why = RigMismatchReason(used, aliases.front().fit, options);
+  return why ? std::optional(Rejection{Termination::kNotIdentifiable, *why}) : std::nullopt;
 }
 
 /// Sets the termination and warnings of a fit from the information in the samples.
-void Conclude(const Recording& used, const std::vector<Alias>& aliases, const Allowed& allowed,
-              const std::optional<Refusal>& refusal, FitReport& fit) {
+void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, const AllowedFrequencies& allowed,
+                    const std::optional<Rejection>& rejection, FitReport& fit) {
   const double rate = SampleRateOf(used);
-  const bool mirrors = HoldsMirror(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
-  const bool ambiguous = refusal && refusal->termination == Termination::kNotIdentifiable;
-  if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", refusal->why});
-  if (!refusal && mirrors) fit.warnings.push_back({"ambiguous_frequency", Assumption(aliases, allowed, rate)});
+  const bool mirrors = CanAliasWithinRange(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
+  const bool ambiguous = rejection && rejection->termination == Termination::kNotIdentifiable;
+  if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", rejection->why});
+  if (!rejection && mirrors) fit.warnings.push_back({"ambiguous_frequency", AssumptionText(aliases, allowed, rate)});
   // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
-  if (!refusal) return;
-  fit.termination = refusal->termination;
-  fit.reason = refusal->why;
+  if (!rejection) return;
+  fit.termination = rejection->termination;
+  fit.reason = rejection->why;
   WithdrawErrors("the fit is " + std::string(TerminationName(fit.termination)), fit);
 }
 
@@ -280,7 +281,7 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
 }
 
 /// The reason why a recording with well-sampled swings looks undersampled; empty if it may be undersampled.
-std::string AbsurdPeriod(const Recording& recording) {
+std::string ImplausiblePeriodText(const Recording& recording) {
   constexpr double kLongest = 300;  // s: a string of twenty kilometres
   constexpr double kSeen = 20;      // samples per period; aliasing rarely looks this smooth
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
@@ -302,15 +303,15 @@ std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
   // Measured from 0.1 to 1.2 rad: with 7.2 samples per period of the reference rig FindFreeSwings finds 600 of 600
   // swings. With 6.6 it misses 31, with 5.9 most of them.
-  constexpr double kFewestPerPeriod = 7;
+  constexpr double kMinPerPeriod = 7;
   const auto expected = ExpectedFrequency(rig);
   const double rate = SampleRateOf(recording);
-  if (expected) return rate < kFewestPerPeriod * (1 + kExpectedWithin) * *expected;
+  if (expected) return rate < kMinPerPeriod * (1 + kExpectedWithin) * *expected;
   if (rate >= 2 * kFastestHz) return false;
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
   return !swings || std::ranges::any_of(*swings, [&](const FreeSwing& swing) {
     const double seen = 0.5 / (swing.half_period * recording.clock_scale);
-    return rate < kFewestPerPeriod * seen || rate - seen <= kFastestHz;
+    return rate < kMinPerPeriod * seen || rate - seen <= kFastestHz;
   });
 }
 
@@ -330,8 +331,8 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
                  "sampled too slowly to date a release; --start moving fits what follows it");
   }
   if (!ExpectedFrequency(options.rig)) {
-    if (const std::string absurd = AbsurdPeriod(recording); !absurd.empty()) {
-      return Error(StatusCode::kFailedPrecondition, absurd);
+    if (const std::string implausible = ImplausiblePeriodText(recording); !implausible.empty()) {
+      return Error(StatusCode::kFailedPrecondition, implausible);
     }
   }
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
@@ -340,12 +341,12 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   if (used->value.maxCoeff() == used->value.minCoeff()) {
     return Error(StatusCode::kFailedPrecondition, "the reading is constant: no swing");
   }
-  LeaveOutHold(*used, swing);
-  const Allowed allowed = AllowedFrequencies(*used, options);
+  RemoveHold(*used, swing);
+  const AllowedFrequencies allowed = FindAllowedFrequencies(*used, options);
   FitOptions moving = options;
   moving.start = StartKind::kMoving;
   moving.interval = IntervalMethod::kCovariance;
-  moving.search.max_traces = std::min(options.search.max_traces, kMostAliasTraces);
+  moving.search.max_traces = std::min(options.search.max_traces, kMaxAliasTraces);
   Result<std::vector<Alias>> aliases = FitAliases(*used, allowed, moving);
   if (!aliases) return tl::unexpected(aliases.error());
   if (aliases->empty()) {
@@ -353,9 +354,9 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
                                                       Hz(allowed.range.high / kTurn) +
                                                       " swings as the readings do; look at --rig, or sample faster");
   }
-  const std::optional<Refusal> refusal = RefusalOf(*used, *aliases, allowed, moving);
+  const std::optional<Rejection> rejection = RejectionOf(*used, *aliases, allowed, moving);
   FitReport fit = aliases->front().fit;
-  if (!refusal) {
+  if (!rejection) {
     moving = options;
     moving.start = StartKind::kMoving;
     moving.search.start_values = aliases->front().start;
@@ -365,7 +366,7 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   }
   const double frequency = aliases->front().frequency;
   swing.half_period = 0.5 / (frequency * used->clock_scale);
-  Conclude(*used, *aliases, allowed, refusal, fit);
+  CompleteReport(*used, *aliases, allowed, rejection, fit);
   WarnOfSampling(*used, frequency, options, fit);
   return SwingFit{*std::move(used), std::move(swing), std::move(fit)};
 }

@@ -68,7 +68,7 @@ class Replicas {
     const Eigen::VectorXd noise = Draw(generator).cwiseProduct(spread);
     for (Index i = 0; i < noise.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      replica.data.value[at] = Shown(solution_.readings[i] + noise[i], problem_.data.value[at]);
+      replica.data.value[at] = QuantizedReading(solution_.readings[i] + noise[i], problem_.data.value[at]);
     }
     const auto cost = MakeTrajectoryCost(replica.model, replica.start.start, replica.data);
     cost->set_tolerance(tolerance_);
@@ -77,7 +77,7 @@ class Replicas {
     Solution solution = Solve(*cost, FirstStep(replica), replica.solve);
     if (!solution.usable) solution = Solve(*cost, solution_.parameters, replica.solve);
     // If least squares is the exact likelihood, σ does not change the estimates.
-    if (!solution_.noise.IsPlain() || !replica.priors.empty()) {
+    if (!solution_.noise.IsUncensoredGaussian() || !replica.priors.empty()) {
       MaximizeLikelihood(*cost, replica, options_, solution);
     }
     return solution.usable ? solution.parameters : std::vector<double>{};
@@ -137,7 +137,7 @@ class Replicas {
 
   /// The reading that the sensor shows for a value: rounded to its levels, of which `other` is one, and within its
   /// range.
-  double Shown(double value, double other) const {
+  double QuantizedReading(double value, double other) const {
     const double q = problem_.resolution;
     const bool edges = solution_.noise.family == NoiseFamily::kEdges;
     if (q > 0 && (edges ? solution_.noise.IsSilence(other) : parametric_))

@@ -69,13 +69,13 @@ struct Frame {
 /// Computes the frame from the information of the readings at a σ of at least a tenth of a count. At the fitted values
 /// the information may be almost zero, so a small weight is added for every level.
 Result<Frame> FirstFrame(const LinearizedFit& fit) {
-  constexpr double kLeastSigma = 0.1;
-  constexpr double kLeastWeight = 0.01;
+  constexpr double kMinSigma = 0.1;
+  constexpr double kMinWeight = 0.01;
   NoiseModel noise = fit.noise;
-  noise.sigma = std::max(noise.sigma, kLeastSigma * noise.resolution);
+  noise.sigma = std::max(noise.sigma, kMinSigma * noise.resolution);
   Eigen::VectorXd weight(fit.value.size());
   for (Eigen::Index i = 0; i < weight.size(); ++i) {
-    const double least = noise.IsCensored(fit.value[i]) ? 0 : kLeastWeight / (noise.resolution * noise.resolution);
+    const double least = noise.IsCensored(fit.value[i]) ? 0 : kMinWeight / (noise.resolution * noise.resolution);
     weight[i] = noise.LikelihoodAt(fit.value[i], fit.readings[i]).information + least;
   }
   Eigen::MatrixXd information = fit.jacobian.transpose() * weight.asDiagonal() * fit.jacobian;
@@ -93,7 +93,7 @@ Result<Frame> FirstFrame(const LinearizedFit& fit) {
 }
 
 /// An interval of a line, and the start point in it.
-struct Stretch {
+struct LineSpan {
   double from = -kInfinity;
   double to = kInfinity;
   double start = 0;
@@ -109,32 +109,32 @@ struct Point {
 
 /// One step of slice sampling. For a density below `floor`, density(x, floor) may return any value below `floor`.
 template <typename LogDensity>
-Point Slice(const Stretch& stretch, double log_here, Generator& generator, LogDensity density) {
-  constexpr int kMostSteps = 40;
+Point Slice(const LineSpan& span, double log_here, Generator& generator, LogDensity density) {
+  constexpr int kMaxSteps = 40;
   boost::random::uniform_01<double> uniform;
   const double level = log_here - boost::random::exponential_distribution<double>()(generator);
-  double left = stretch.start - uniform(generator) * stretch.width;
-  double right = left + stretch.width;
-  int steps_left = static_cast<int>(kMostSteps * uniform(generator));
-  int steps_right = kMostSteps - 1 - steps_left;
-  while (left > stretch.from && steps_left-- > 0 && density(left, level) >= level) left -= stretch.width;
-  while (right < stretch.to && steps_right-- > 0 && density(right, level) >= level) right += stretch.width;
-  left = std::max(left, stretch.from);
-  right = std::min(right, stretch.to);
-  constexpr int kMostHalvings = 200;  // rounding may hide the slice
-  for (int k = 0; k < kMostHalvings; ++k) {
+  double left = span.start - uniform(generator) * span.width;
+  double right = left + span.width;
+  int steps_left = static_cast<int>(kMaxSteps * uniform(generator));
+  int steps_right = kMaxSteps - 1 - steps_left;
+  while (left > span.from && steps_left-- > 0 && density(left, level) >= level) left -= span.width;
+  while (right < span.to && steps_right-- > 0 && density(right, level) >= level) right += span.width;
+  left = std::max(left, span.from);
+  right = std::min(right, span.to);
+  constexpr int kMaxHalvings = 200;  // rounding may hide the slice
+  for (int k = 0; k < kMaxHalvings; ++k) {
     const double x = left + uniform(generator) * (right - left);
     const double log = density(x, level);
     if (log >= level) return {x, log};
-    (x < stretch.start ? left : right) = x;
+    (x < span.start ? left : right) = x;
   }
-  return {stretch.start, log_here};
+  return {span.start, log_here};
 }
 
 /// R x (F + 1): draws of δ and of σ, σ in units of the resolution.
 using Draws = Eigen::MatrixXd;
 
-constexpr double kMostSigma = 2;  // prior: flat up to here, in units of the resolution
+constexpr double kMaxSigma = 2;  // prior: flat up to here, in units of the resolution
 
 /// The Markov chain. It uses slice sampling along orthogonal directions, which are rotated at random before every
 /// round, and then along log σ. The coordinates are those in which earlier draws are white, because without noise the
@@ -154,7 +154,7 @@ class Chain {
   void Round();
   void MoveAlong(const Eigen::VectorXd& direction);
   void MoveSigma();
-  Stretch WithinBounds(const Eigen::VectorXd& step) const;
+  LineSpan WithinBounds(const Eigen::VectorXd& step) const;
   Eigen::VectorXd Delta() const { return frame_.centre + frame_.root * w_; }
   double LogPrior(const Eigen::VectorXd& delta) const;
   double LogEverywhere(const Eigen::VectorXd& w, double floor);
@@ -165,10 +165,10 @@ class Chain {
   Generator generator_;
   LevelSamples samples_;  // derivatives by δ
   Frame frame_;
-  LevelSamples whitened_;       // derivatives by w
-  LevelSamples active_;         // the samples that may leave their level within these limits:
-  double most_distance_ = 1e9;  // norm of w
-  double most_sigma_ = kMostSigma;
+  LevelSamples whitened_;      // derivatives by w
+  LevelSamples active_;        // the samples that may leave their level within these limits:
+  double max_distance_ = 1e9;  // norm of w
+  double max_sigma_ = kMaxSigma;
   LineLikelihood likelihood_;
   Eigen::VectorXd w_;
   double log_sigma_;
@@ -181,8 +181,8 @@ Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const st
       stop_(stop),
       generator_(seed),
       samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
-  constexpr double kLeastStart = 0.05;  // from a smaller one, the chain would hardly move
-  log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kLeastStart, kMostSigma));
+  constexpr double kMinStart = 0.05;  // from a smaller one, the chain would hardly move
+  log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kMinStart, kMaxSigma));
   EnterFrame(std::move(frame), Eigen::VectorXd::Zero(fit.jacobian.cols()));
 }
 
@@ -193,7 +193,7 @@ void Chain::EnterFrame(Frame frame, const Eigen::VectorXd& delta) {
   whitened_.position += samples_.slope * frame_.centre;
   whitened_.slope = samples_.slope * frame_.root;
   constexpr double kCertain = 8.5;  // in σ inside the edge: the probability is 1 to rounding
-  active_ = whitened_.Near(kCertain * most_sigma_, most_distance_);
+  active_ = whitened_.Near(kCertain * max_sigma_, max_distance_);
   likelihood_.SetSigma(std::exp(log_sigma_));
   log_ = LogEverywhere(w_, -kInfinity);
 }
@@ -208,31 +208,31 @@ double Chain::LogEverywhere(const Eigen::VectorXd& w, double floor) {
   return prior + likelihood_.Sum(whitened_, positions, positions, 0, floor - prior);
 }
 
-Stretch Chain::WithinBounds(const Eigen::VectorXd& step) const {
+LineSpan Chain::WithinBounds(const Eigen::VectorXd& step) const {
   constexpr double kWidth = 3;  // standard deviations
-  Stretch stretch;
-  stretch.width = kWidth;
+  LineSpan span;
+  span.width = kWidth;
   const Eigen::VectorXd delta = Delta();
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     if (step[j] == 0) continue;
     const double to_lower = (fit_.lower[j] - delta[j]) / step[j];
     const double to_upper = (fit_.upper[j] - delta[j]) / step[j];
-    stretch.from = std::max(stretch.from, std::min(to_lower, to_upper));
-    stretch.to = std::min(stretch.to, std::max(to_lower, to_upper));
+    span.from = std::max(span.from, std::min(to_lower, to_upper));
+    span.to = std::min(span.to, std::max(to_lower, to_upper));
   }
-  stretch.from = std::min(stretch.from, 0.0);  // rounding may put δ past its bound
-  stretch.to = std::max(stretch.to, 0.0);
-  return stretch;
+  span.from = std::min(span.from, 0.0);  // rounding may put δ past its bound
+  span.to = std::max(span.to, 0.0);
+  return span;
 }
 
 void Chain::MoveAlong(const Eigen::VectorXd& direction) {
   const Eigen::VectorXd step = frame_.root * direction;
   const Eigen::VectorXd delta = Delta();
   const Eigen::VectorXd slope = active_.slope * direction;
-  const bool quiet = std::exp(log_sigma_) <= most_sigma_;
+  const bool quiet = std::exp(log_sigma_) <= max_sigma_;
   const auto density = [&](double x, double floor) {
     const Eigen::VectorXd w = w_ + x * direction;
-    if (!quiet || w.norm() > most_distance_) return LogEverywhere(w, floor);
+    if (!quiet || w.norm() > max_distance_) return LogEverywhere(w, floor);
     const double prior = LogPrior(delta + x * step);
     return prior + likelihood_.Sum(active_, positions_, slope, x, floor - prior);
   };
@@ -244,18 +244,18 @@ void Chain::MoveAlong(const Eigen::VectorXd& direction) {
 
 void Chain::MoveSigma() {
   const double prior = LogPrior(Delta());
-  const bool near = w_.norm() <= most_distance_;
+  const bool near = w_.norm() <= max_distance_;
   double log = log_;
   const auto density = [&](double log_sigma, double floor) {
     const double sigma = std::exp(log_sigma);
     likelihood_.SetSigma(sigma);
     floor -= log_sigma;  // a flat prior in σ has density σ in log σ
-    log = near && sigma <= most_sigma_ ? prior + likelihood_.Sum(active_, positions_, positions_, 0, floor - prior)
-                                       : LogEverywhere(w_, floor);
+    log = near && sigma <= max_sigma_ ? prior + likelihood_.Sum(active_, positions_, positions_, 0, floor - prior)
+                                      : LogEverywhere(w_, floor);
     return log + log_sigma;
   };
-  Stretch stretch{-kInfinity, std::log(kMostSigma), log_sigma_, 1};
-  const Point next = Slice(stretch, log_ + log_sigma_, generator_, density);
+  LineSpan span{-kInfinity, std::log(kMaxSigma), log_sigma_, 1};
+  const Point next = Slice(span, log_ + log_sigma_, generator_, density);
   log_sigma_ = next.x;
   log_ = next.log - next.x;
   likelihood_.SetSigma(std::exp(log_sigma_));
@@ -292,8 +292,8 @@ void Chain::Whiten(const Draws& draws) {
   const double scale = covariance.trace() / static_cast<double>(parameters * draws.rows());
   covariance.diagonal().array() += kAsDraws * scale;
   covariance /= static_cast<double>(draws.rows()) + kAsDraws;
-  most_distance_ = 4 * std::sqrt(static_cast<double>(parameters));
-  most_sigma_ = 1.5 * draws.col(parameters).maxCoeff();
+  max_distance_ = 4 * std::sqrt(static_cast<double>(parameters));
+  max_sigma_ = 1.5 * draws.col(parameters).maxCoeff();
   const Eigen::MatrixXd turn = covariance.llt().matrixL();
   const Eigen::MatrixXd root = frame_.root * turn;
   EnterFrame({mean, root}, Delta());
@@ -359,7 +359,7 @@ Posterior Summarize(Draws draws, double resolution) {
 
 // Maximum number of samples evaluated. For 1e5 samples with few certain ones it is low, but then the posterior is
 // normal and needs no sampling.
-constexpr double kMostWork = 1e9;
+constexpr double kMaxWork = 1e9;
 
 /// Runs of increasing length, each followed by whitening, until the coordinates fit. These draws are discarded.
 void WarmUp(Chain& chain) {
@@ -367,7 +367,7 @@ void WarmUp(Chain& chain) {
     const Draws draws = chain.Run(rounds);
     if (chain.is_stopped()) return;
     chain.Whiten(draws.bottomRows(rounds * 3 / 4));
-    if (chain.work() > kMostWork / 8) break;  // with so many samples, the first coordinates are good
+    if (chain.work() > kMaxWork / 8) break;  // with so many samples, the first coordinates are good
   }
 }
 
@@ -375,7 +375,7 @@ Draws RunUntilEnough(Chain& chain) {
   constexpr int kRounds = 150;
   constexpr double kEnoughDraws = 500;
   Draws draws = chain.Run(kRounds);
-  while (!chain.is_stopped() && LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMostWork) {
+  while (!chain.is_stopped() && LeastEffectiveDraws(draws) < kEnoughDraws && chain.work() < kMaxWork) {
     draws.conservativeResize(draws.rows() + kRounds, Eigen::NoChange);
     draws.bottomRows(kRounds) = chain.Run(kRounds);
   }

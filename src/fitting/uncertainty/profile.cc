@@ -40,7 +40,7 @@ class Profile {
   bool is_defined() const { return threshold_ > 0 && std::isfinite(threshold_); }
 
   /// Distance to the end of the interval on a side (-1 or 1). Returns std::nullopt if there is no end.
-  std::optional<double> Reach(double side) {
+  std::optional<double> FindReach(double side) {
     const auto index = static_cast<std::size_t>(k_);
     const double bound = side < 0 ? options_.lower[index] : options_.upper[index];
     const double farthest = std::min(std::abs(bound - At()), kFarthest * length_);
@@ -67,7 +67,7 @@ class Profile {
   }
 
   /// The largest distance that the search on a side reached.
-  double Sought(double side) const {
+  double SearchedDistance(double side) const {
     double farthest = 0;
     for (const ProfilePoint& point : points_) farthest = std::max(farthest, side * (point.value - At()));
     return farthest;
@@ -124,7 +124,7 @@ class Profile {
   /// Finds the distance where RootAt is 1, by regula falsi between points on both sides. Returns std::nullopt if it
   /// stays below 1.
   std::optional<double> Find(double side, double farthest) {
-    constexpr int kMostSolves = 25;
+    constexpr int kMaxSolves = 25;
     constexpr double kAccuracy = 0.01;
     constexpr double kLongestStretch = 4;
     double inside = 0;
@@ -132,7 +132,7 @@ class Profile {
     double outside = kUnbounded;
     double root_outside = kUnbounded;
     double distance = std::min(length_, farthest);
-    for (int solve = 0; solve < kMostSolves && !is_exhausted(); ++solve) {
+    for (int solve = 0; solve < kMaxSolves && !is_exhausted(); ++solve) {
       const double root = RootAt(distance, side);
       if (std::abs(root - 1) < kAccuracy) return distance;
       if (root < 1) {
@@ -184,8 +184,8 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   }
   const double lower = options.lower[index];
   const double upper = options.upper[index];
-  const std::optional<double> down = profile.Reach(-1);
-  const std::optional<double> up = profile.Reach(1);
+  const std::optional<double> down = profile.FindReach(-1);
+  const std::optional<double> up = profile.FindReach(1);
   if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
   if (up || std::isfinite(upper)) interval.upper = up ? profile.At() + *up : upper;
   if (!interval.lower || !interval.upper) {
@@ -200,7 +200,8 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
     interval.open = OpenInterval::kBetterMinimum;
   }
   if (profile.is_exhausted() || profile.found_lower()) return interval;
-  interval.points = profile.SpreadPoints(down.value_or(profile.Sought(-1)), up.value_or(profile.Sought(1)));
+  interval.points =
+      profile.SpreadPoints(down.value_or(profile.SearchedDistance(-1)), up.value_or(profile.SearchedDistance(1)));
   // There is no curve, but the ends are valid.
   if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();
   interval.threshold = profile.threshold();

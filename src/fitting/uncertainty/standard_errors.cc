@@ -91,16 +91,16 @@ Eigen::MatrixXd InformationOf(const FitProblem& problem, const NoiseModel& noise
 bool IsWhite(const FittedRun& run) { return run.correlation.kind == Autocorrelation::Kind::kWhite; }
 
 /// Whether least squares is the exact likelihood: normal noise without autocorrelation.
-bool IsSimple(const FittedRun& run) { return run.solution.noise.IsPlain() && IsWhite(run); }
+bool IsWhiteGaussian(const FittedRun& run) { return run.solution.noise.IsUncensoredGaussian() && IsWhite(run); }
 
 /// The contribution of one recording to the information about its F free parameters.
 struct Part {
-  std::vector<Index> rows;       // F: indices among all free parameters
-  Eigen::MatrixXd bread, meat;   // F x F, of the sandwich: information, and covariance of the scores
-  Eigen::VectorXd mixed;         // F: information of a parameter and log σ
-  double sigma_information = 0;  // of log σ
-  bool beside_sigma = false;     // whether the bread is the information after log σ is eliminated
-  double samples = 0;            // N
+  std::vector<Index> rows;           // F: indices among all free parameters
+  Eigen::MatrixXd bread, meat;       // F x F, of the sandwich: information, and covariance of the scores
+  Eigen::VectorXd mixed;             // F: information of a parameter and log σ
+  double sigma_information = 0;      // of log σ
+  bool is_sigma_eliminated = false;  // whether the bread is the information after log σ is eliminated
+  double samples = 0;                // N
 };
 
 /// The free parameters of a recording; `rows` receives their indices among all free parameters.
@@ -117,17 +117,17 @@ std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std
 
 /// Sets a part without information. The trajectory at the optimum was computed before, so this happens only after a
 /// stop.
-void SetNothing(const std::vector<Index>& columns, Part& part) {
+void SetNoInformation(const std::vector<Index>& columns, Part& part) {
   const auto size = static_cast<Index>(columns.size());
   part.bread = part.meat = Eigen::MatrixXd::Zero(size, size);
   part.mixed = Eigen::VectorXd::Zero(size);
 }
 
 /// Takes the information from the sums, which the cost has cached.
-void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
+void SetFromSums(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
   Eigen::MatrixXd sums, priors;
   if (!run.cost.Sums(run.solution.parameters, &sums)) {
-    SetNothing(columns, part);
+    SetNoInformation(columns, part);
     return;
   }
   priors.setZero(sums.rows(), sums.cols());
@@ -138,7 +138,7 @@ void SetSimple(const FittedRun& run, const std::vector<Index>& columns, Part& pa
 /// The meat, enlarged so that it is not below the bread in any direction. A slow misfit that is taken for continuous
 /// noise has almost no power at the swing's frequency. Without the limit, such readings would carry more information
 /// than independent readings with the same scatter.
-Eigen::MatrixXd NoLessThan(const Eigen::MatrixXd& bread, const Eigen::MatrixXd& meat) {
+Eigen::MatrixXd AtLeast(const Eigen::MatrixXd& bread, const Eigen::MatrixXd& meat) {
   const Eigen::VectorXd scale = bread.diagonal().cwiseSqrt();
   if (!(scale.array() > 0).all()) return meat;
   const Eigen::VectorXd unit = scale.cwiseInverse();
@@ -155,15 +155,15 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
   Part part;
   part.samples = static_cast<double>(run.problem.data.time.size());
   const std::vector<Index> columns = FreeColumns(run, optimum, part.rows);
-  if (IsSimple(run)) {
-    SetSimple(run, columns, part);
+  if (IsWhiteGaussian(run)) {
+    SetFromSums(run, columns, part);
     return part;
   }
   const NoiseModel& noise = run.solution.noise;
   Eigen::VectorXd readings;
   Eigen::MatrixXd all;
   if (!run.cost.Readings(run.solution.parameters, &readings, &all)) {
-    SetNothing(columns, part);
+    SetNoInformation(columns, part);
     return part;
   }
   const Eigen::MatrixXd jacobian = all(Eigen::all, columns);
@@ -173,11 +173,11 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
   part.sigma_information = terms.sigma_information;
   if (!IsWhite(run) || noise.IsRobust()) {
     part.meat = MeatOf(run.problem, noise, terms, jacobian, run.correlation);
-    if (run.correlation.kind == Autocorrelation::Kind::kContinuous) part.meat = NoLessThan(part.bread, part.meat);
+    if (run.correlation.kind == Autocorrelation::Kind::kContinuous) part.meat = AtLeast(part.bread, part.meat);
   } else {
     // σ is estimated together with the parameters.
-    part.beside_sigma = !noise.IsPlain();
-    if (part.beside_sigma) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
+    part.is_sigma_eliminated = !noise.IsUncensoredGaussian();
+    if (part.is_sigma_eliminated) part.bread -= part.mixed * part.mixed.transpose() / part.sigma_information;
     part.meat = part.bread;
   }
   return part;
@@ -189,7 +189,7 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
            " noise does, and its autocovariance stands between two inverses of the information";
   }
   if (noise.IsRobust()) return "sandwich of the robust score, residuals taken as independent";
-  if (noise.IsPlain()) return "covariance sigma^2 (J'J)^-1, residuals taken as independent";
+  if (noise.IsUncensoredGaussian()) return "covariance sigma^2 (J'J)^-1, residuals taken as independent";
   return "inverse observed information of the parameters and sigma, readings taken as independent";
 }
 
@@ -214,7 +214,7 @@ std::optional<double> SigmaError(const FittedRun& run, const Part& part, const E
   if (noise.IsRobust()) return RobustSigmaError(noise, run.problem.data.values(), run.solution.readings);
   const double traded = part.mixed.dot(inverse(part.rows, part.rows) * part.mixed);
   const double s = part.sigma_information;
-  return noise.sigma * std::sqrt(part.beside_sigma ? 1 / s + traded / (s * s) : 1 / (s - traded));
+  return noise.sigma * std::sqrt(part.is_sigma_eliminated ? 1 / s + traded / (s * s) : 1 / (s - traded));
 }
 
 NoiseErrors NoiseErrorsOf(const FittedRun& run) {
@@ -236,9 +236,9 @@ void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& par
     const Part& part = parts[k];
     const Eigen::MatrixXd own = inverse(part.rows, part.rows);
     const double lost = (own * part.meat).trace();
-    const double counted = runs[k].solution.noise.IsPlain() ? (own * part.bread).trace() : 0;
+    const double counted = runs[k].solution.noise.IsUncensoredGaussian() ? (own * part.bread).trace() : 0;
     meat(part.rows, part.rows) += (part.samples - counted) / std::max(part.samples - lost, 1.0) * part.meat;
-    if (!runs[k].solution.noise.IsPlain()) errors.runs[k].sigma = SigmaError(runs[k], part, inverse);
+    if (!runs[k].solution.noise.IsUncensoredGaussian()) errors.runs[k].sigma = SigmaError(runs[k], part, inverse);
   }
   errors.covariance = inverse * meat * inverse;
 }
@@ -255,7 +255,7 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     errors.runs.push_back(NoiseErrorsOf(run));
   }
   errors.covariance = optimum.inverse.matrix;
-  const bool simple = std::ranges::all_of(runs, IsSimple) || optimum.free.empty();
+  const bool simple = std::ranges::all_of(runs, IsWhiteGaussian) || optimum.free.empty();
   if (!simple) {
     std::vector<Part> parts;
     parts.reserve(runs.size());
@@ -270,7 +270,7 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     const auto count = static_cast<double>(runs[k].problem.data.time.size());
     const double free = static_cast<double>(optimum.free.size()) / static_cast<double>(runs.size());
     const NoiseModel& noise = runs[k].solution.noise;
-    if (noise.IsPlain()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
+    if (noise.IsUncensoredGaussian()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
     if (own.sigma) *own.sigma *= std::sqrt(runs[k].correlation.SquaredInflation());
     // Alternating autocorrelation can make the variance in a direction negative.
     if (!sound) own.method = "inverse information, residuals taken as independent: with their memory it has no inverse";

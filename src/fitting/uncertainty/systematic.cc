@@ -29,8 +29,8 @@ int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
 }
 
 /// Derivatives of the scores (P) by the calibration's K coefficients: Σ w ∇m ∂value/∂c.
-Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem& problem, const TrajectoryCost& cost,
-                                const Solution& solution) {
+Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitProblem& problem,
+                                    const TrajectoryCost& cost, const Solution& solution) {
   const auto size = static_cast<Index>(calibration.coefficients.size());
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(static_cast<Index>(problem.infos.size()), size);
   Eigen::VectorXd readings;
@@ -48,7 +48,7 @@ Eigen::MatrixXd CalibrationPull(const Calibration& calibration, const FitProblem
 
 /// Derivative of the scores by ε if parameter i is multiplied by 1 + n_i ε: A n p, where A is the information of the
 /// samples alone.
-Eigen::VectorXd ScalePull(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
+Eigen::VectorXd ScoresByScale(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
   const Index size = powers.size();
   Eigen::MatrixXd sums;
   if (!cost.Sums(solution.parameters, &sums)) return Eigen::VectorXd::Zero(size);
@@ -60,7 +60,7 @@ Eigen::VectorXd ScalePull(const Eigen::VectorXd& powers, const TrajectoryCost& c
 
 /// Change of the estimates with a scale factor common to all recordings: n_i p_i if all parameters are free. A value
 /// that is fixed or has a prior in reported units does not scale, and changes the others as well.
-Eigen::VectorXd FollowScale(const Eigen::VectorXd& powers, const SourceContext& context) {
+Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SourceContext& context) {
   const auto size = static_cast<Index>(context.parameters.size());
   const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
   const Optimum& optimum = context.optimum;
@@ -98,8 +98,8 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   std::vector<SystematicSource> sources;
   const auto add_scale = [&](const std::string& identity, const Eigen::VectorXd& powers, double relative) {
     if (!(relative > 0)) return;
-    sources.push_back(
-        {identity, powers, ScalePull(powers, cost, solution), Eigen::MatrixXd::Constant(1, 1, relative * relative)});
+    sources.push_back({identity, powers, ScoresByScale(powers, cost, solution),
+                       Eigen::MatrixXd::Constant(1, 1, relative * relative)});
   };
   if (options.rig) add_scale("rig", gravity, options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value);
   add_scale("clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
@@ -108,7 +108,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   if (calibration && calibration->covariance.size() > 0) {
     sources.push_back({"calibration " + calibration->source.dump(),
                        {},
-                       CalibrationPull(*calibration, problem, cost, solution),
+                       ScoresByCalibration(*calibration, problem, cost, solution),
                        calibration->covariance});
   }
   return sources;
@@ -119,7 +119,7 @@ Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, co
   const Optimum& optimum = context.optimum;
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(size, source.pull.cols());
   if (of_all && source.powers.size() > 0) {
-    moved = FollowScale(source.powers, context);
+    moved = EstimatesByScale(source.powers, context);
   } else if (!optimum.free.empty()) {
     moved(optimum.free, Eigen::all) = optimum.inverse.matrix * source.pull(optimum.free, Eigen::all);
   }

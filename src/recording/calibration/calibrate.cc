@@ -193,9 +193,9 @@ Check CheckNumbers(const CalibrationTable& table, const CalibrationFit& fit) {
                                std::to_string(fit.order) + " in powers of the reading; check them, or lower the order");
 }
 
-Check CheckTurn(const CalibrationTable& table, const CalibrationFit& fit) {
+Check CheckCurveIsMonotonic(const CalibrationTable& table, const CalibrationFit& fit) {
   const double low = table.reading.minCoeff(), high = table.reading.maxCoeff();
-  const std::optional<double> turn = TurningReading(fit.calibration, low, high);
+  const std::optional<double> turn = FindTurningReading(fit.calibration, low, high);
   if (!turn) return {};
   return FaultAtEnd(table, "the curve of order " + std::to_string(fit.order) + " turns at about " +
                                NumberText(*turn, 4) + " " + table.input +
@@ -209,7 +209,7 @@ std::optional<double> CalibrationFit::LeaveOneOutRms() const {
   return std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size()));
 }
 
-std::optional<double> TurningReading(const Calibration& calibration, double low, double high) {
+std::optional<double> FindTurningReading(const Calibration& calibration, double low, double high) {
   constexpr int kSteps = 1000;
   const bool rises = calibration.Angle(high) > calibration.Angle(low);
   for (int i = 0; i <= kSteps; ++i) {
@@ -248,7 +248,7 @@ Result<CalibrationFit> CalibrateSensor(const CalibrationTable& table, int order,
                                  std::to_string(order) + "; check them, or lower the order");
   }
   CalibrationFit fit = FitOf(table, best, scale);
-  for (const auto check : {CheckNumbers, CheckTurn}) {
+  for (const auto check : {CheckNumbers, CheckCurveIsMonotonic}) {
     if (Check checked = check(table, fit); !checked) return tl::unexpected(std::move(checked).error());
   }
   fit.rounding = TestRounding(fit.resolution, best.Rss(), table.size() - order - 1);

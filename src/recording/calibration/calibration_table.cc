@@ -130,8 +130,8 @@ Check TableReader::FindColumn(const std::vector<csv::Name>& names, Kind kind, cs
 }
 
 Check TableReader::ReadRow() {
-  if (static_cast<Index>(readings_.size()) == kMostCalibrationPoints) {
-    return line_.Fault(line_.text.data(), "here are more than " + std::to_string(kMostCalibrationPoints) +
+  if (static_cast<Index>(readings_.size()) == kMaxCalibrationPoints) {
+    return line_.Fault(line_.text.data(), "here are more than " + std::to_string(kMaxCalibrationPoints) +
                                               " rows; a calibration table has one row for each angle that was set");
   }
   double reading = 0, angle = 0;
@@ -162,7 +162,7 @@ Check TableReader::ReadRow() {
 Check TableReader::ReadField(std::string_view field, const csv::Column& column, double& number) {
   const std::string_view text = Unquote(field);
   if (numbers_.Parse(text, number)) return {};
-  return line_.Fault(Trim(field).data(), "column " + column.name + " " + numbers_.WhyNot(text));
+  return line_.Fault(Trim(field).data(), "column " + column.name + " " + numbers_.NumberFault(text));
 }
 
 Check TableReader::CheckEnd() const {
@@ -188,11 +188,11 @@ tl::unexpected<Status> FaultAt(const CalibrationTable& table, Index point, const
 }
 
 /// Of two points, the one later in the file, then the other.
-std::pair<Index, Index> LaterFirst(Index one, Index other) { return {std::max(one, other), std::min(one, other)}; }
+std::pair<Index, Index> LaterPointFirst(Index one, Index other) { return {std::max(one, other), std::min(one, other)}; }
 
 Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index>& order) {
   for (std::size_t i = 1; i < order.size(); ++i) {
-    const auto [later, earlier] = LaterFirst(order[i - 1], order[i]);
+    const auto [later, earlier] = LaterPointFirst(order[i - 1], order[i]);
     if (table.reading[later] != table.reading[earlier]) continue;
     const bool same = table.angle[later] == table.angle[earlier];
     return FaultAt(table, later,
@@ -216,7 +216,7 @@ Check CheckAnglesRiseOrFall(const CalibrationTable& table, const std::vector<Ind
   const bool rises = balance >= 0;
   for (std::size_t i = 1; i < order.size(); ++i) {
     if (rises ? step(i) >= 0 : step(i) <= 0) continue;
-    const auto [later, earlier] = LaterFirst(order[i - 1], order[i]);
+    const auto [later, earlier] = LaterPointFirst(order[i - 1], order[i]);
     return FaultAt(table, later,
                    "the angle is " + NumberText(table.angle[later]) + " " + table.angle_unit + " at " +
                        ReadingAt(table, later) + " and " + NumberText(table.angle[earlier]) + " at " +

@@ -16,7 +16,7 @@ namespace pendulum {
 namespace {
 
 /// Packed files are read completely; a larger file is not a recording.
-constexpr std::size_t kMostBytes = std::size_t{1} << 29;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 29;
 
 /// Reads the rest of a file after its first bytes.
 Result<std::string> ReadRest(InputFile& file, std::string bytes) {
@@ -28,8 +28,8 @@ Result<std::string> ReadRest(InputFile& file, std::string bytes) {
     if (!got) return tl::unexpected(got.error());
     const bool is_end = used + *got < bytes.size();
     bytes.resize(used + *got);
-    if (bytes.size() > kMostBytes) {
-      return Fault(file.name(), "the file has more than " + std::to_string(kMostBytes) +
+    if (bytes.size() > kMaxBytes) {
+      return Fault(file.name(), "the file has more than " + std::to_string(kMaxBytes) +
                                     " bytes, too many for a zip or a MAT-file; export the recording as CSV");
     }
     if (is_end) return bytes;

@@ -24,14 +24,14 @@ namespace {
 using Member = ZipMembers::Member;
 
 /// Information on a member from its first lines.
-struct Look {
+struct MemberSummary {
   const Member* member = nullptr;
   std::vector<std::string> candidates;  // Names of columns; one empty name for a MAT-file, which is not examined.
   std::optional<Status> fault;          // Why the member cannot be read.
 };
 
 /// "MEMBER/COLUMN", each shortened as for a message.
-std::string QuotedPair(const std::string& member, const std::string& column) {
+std::string QuotedMemberAndColumn(const std::string& member, const std::string& column) {
   std::string pair = Quoted(member);
   if (column.empty()) return pair;
   pair.back() = '/';
@@ -54,21 +54,21 @@ std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& colum
   return candidates;
 }
 
-Look LookAt(const ZipMembers& zip, const Member& member, const ReadOptions& options) {
+MemberSummary SummarizeMember(const ZipMembers& zip, const Member& member, const ReadOptions& options) {
   constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
-  Look look{&member, {}, {}};
+  MemberSummary summary{&member, {}, {}};
   const Result<std::string> begin = zip.Unpack(member, kHeadBytes);
   if (!begin) {
-    look.fault = begin.error();
-    return look;
+    summary.fault = begin.error();
+    return summary;
   }
   const Content content = ContentOf(begin->substr(0, kContentBytes));
-  if (content == Content::kMat) look.candidates.emplace_back();
-  if (content != Content::kText) return look;
+  if (content == Content::kMat) summary.candidates.emplace_back();
+  if (content != Content::kText) return summary;
   const std::string_view lines(begin->data(), begin->size() < kHeadBytes ? begin->size() : begin->rfind('\n') + 1);
   const auto columns = ReadColumnNames(LineReader(lines, zip.NameOf(member)));
-  if (columns) look.candidates = CandidatesIn(*columns, options);
-  return look;
+  if (columns) summary.candidates = CandidatesIn(*columns, options);
+  return summary;
 }
 
 /// The member that --value_column names before a slash or completely; its name is removed from the option. Whole paths
@@ -114,24 +114,26 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
 /// Chooses the member to read.
 Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options,
                                    std::vector<Warning>& warnings) {
-  constexpr std::size_t kMostMembers = 1000, kMostWarnings = 8;  // A malicious zip file may contain a million members.
+  constexpr std::size_t kMaxMembers = 1000, kMaxWarnings = 8;  // A malicious zip file may contain a million members.
   Result<const Member*> named = TakeNamed(zip, name, options);
   if (!named || *named != nullptr) return named;
   if (zip.members().size() == 1) return &zip.members().front();
-  std::vector<Look> looks;
+  std::vector<MemberSummary> summaries;
   std::vector<std::string> candidates;
   std::optional<Status> fault;  // For the first unreadable member.
-  for (std::size_t i = 0; i < std::min(zip.members().size(), kMostMembers); ++i) {
-    Look look = LookAt(zip, zip.members()[i], options);
-    if (look.fault && warnings.size() < kMostWarnings) warnings.push_back({"unreadable_member", look.fault->message});
-    if (look.fault && !fault) fault = look.fault;
-    if (look.candidates.empty()) continue;
-    for (const std::string& column : look.candidates) candidates.push_back(QuotedPair(look.member->path, column));
-    looks.push_back(std::move(look));
+  for (std::size_t i = 0; i < std::min(zip.members().size(), kMaxMembers); ++i) {
+    MemberSummary summary = SummarizeMember(zip, zip.members()[i], options);
+    if (summary.fault && warnings.size() < kMaxWarnings)
+      warnings.push_back({"unreadable_member", summary.fault->message});
+    if (summary.fault && !fault) fault = summary.fault;
+    if (summary.candidates.empty()) continue;
+    for (const std::string& column : summary.candidates)
+      candidates.push_back(QuotedMemberAndColumn(summary.member->path, column));
+    summaries.push_back(std::move(summary));
   }
-  if (looks.size() == 1) return looks.front().member;
-  if (looks.empty() && fault) return tl::unexpected(*std::move(fault));
-  if (looks.empty()) return NoMember(zip, name);
+  if (summaries.size() == 1) return summaries.front().member;
+  if (summaries.empty() && fault) return tl::unexpected(*std::move(fault));
+  if (summaries.empty()) return NoMember(zip, name);
   return pendulum::Fault(name, "columns " + SeveralQuantities(candidates));
 }
 

@@ -75,15 +75,15 @@ void ExpectTrueErrors(const SyntheticOptions& run) {
   }
 }
 
-TEST(StandardErrors, AreTheScatterOfEstimatesOfAHeldSwing) {
+TEST(StandardErrors, MatchTheScatterForAHeldSwing) {
   ExpectTrueErrors(ShortRun("coulomb", StartKind::kRelease, Quantity::kAngle));
 }
 
-TEST(StandardErrors, AreTheScatterOfEstimatesOfAMovingStart) {
+TEST(StandardErrors, MatchTheScatterForAMovingStart) {
   ExpectTrueErrors(ShortRun("coulomb", StartKind::kMoving, Quantity::kAngle));
 }
 
-TEST(StandardErrors, AreTheScatterOfEstimatesOfARateSensor) {
+TEST(StandardErrors, MatchTheScatterForARateSensor) {
   ExpectTrueErrors(ShortRun("coulomb", StartKind::kRelease, Quantity::kRate));
 }
 
@@ -137,9 +137,9 @@ Eigen::MatrixXd CovarianceOfCeres(PlainResiduals& residuals, std::vector<double>
   return sigma * sigma * matrix;
 }
 
-TEST(StandardErrors, AreThoseOfCeresFromTheSameResidualsOneByOne) {
+TEST(StandardErrors, MatchCeresForTheSameResiduals) {
   for (const MotionModel& model : MotionModels()) {
-    if (IsHardlyTold(model)) continue;
+    if (IsHardlyDetermined(model)) continue;
     for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) {
       SCOPED_TRACE(std::string(model.name) + (start == StartKind::kRelease ? ", released" : ", moving"));
       const SyntheticOptions run = ShortRun(model.name, start, Quantity::kAngle);

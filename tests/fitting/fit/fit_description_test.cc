@@ -40,7 +40,7 @@ TEST(Describe, HasResidualsAndTheirStatistics) {
   EXPECT_NEAR(report.noise.sigma, 0.002, 4 * 0.002 / std::sqrt(2 * 394));  // σ's error is σ / sqrt(2 (N - P))
 }
 
-TEST(Describe, SaysWhatWasFittedAndFromWhere) {
+TEST(Describe, ReportsModelAndStart) {
   const Fitted fitted = FitShortSwing();
   const FitReport report = DescriptionOf(fitted).report;
   EXPECT_EQ(report.model.name, "coulomb");
@@ -50,11 +50,11 @@ TEST(Describe, SaysWhatWasFittedAndFromWhere) {
   EXPECT_GT(report.solver.evaluations, 0);
 }
 
-TEST(Describe, TellsWhetherResidualsFollowEachOther) {
+TEST(Describe, DetectsAutocorrelatedResiduals) {
   EXPECT_FALSE(DescriptionOf(FitShortSwing()).correlated);
   SyntheticOptions silent = ShortSwing();
   silent.noise = 0;
-  const Recording remembering = WithNoise(Must(SimulateRecording(silent)), 1, RememberingNoise(0.8, 0.002));
+  const Recording remembering = WithNoise(Must(SimulateRecording(silent)), 1, AutocorrelatedNoise(0.8, 0.002));
   EXPECT_TRUE(DescriptionOf(FitOpenly(remembering, ModelOptions("coulomb"))).correlated);
 }
 
@@ -78,7 +78,7 @@ std::vector<ParameterEstimate> ParametersOf(Termination termination, const std::
   return report.parameters;
 }
 
-TEST(SetParameters, FlagsWhatIsFixedOrAtABoundAndSaysSo) {
+TEST(SetParameters, MarksFixedAndBoundedParameters) {
   const auto parameters = ParametersOf(Termination::kConverged, "rad", false);
   ASSERT_EQ(parameters.size(), 6);
   EXPECT_TRUE(parameters[1].fixed);
@@ -91,7 +91,7 @@ TEST(SetParameters, FlagsWhatIsFixedOrAtABoundAndSaysSo) {
   EXPECT_TRUE(parameters[0].closed_form);
 }
 
-TEST(SetParameters, GivesTheTerminationAsReasonWhereThereAreNoErrors) {
+TEST(SetParameters, GivesTheTerminationAsReasonForMissingErrors) {
   const auto parameters = ParametersOf(Termination::kNotConverged, "rad", false);
   EXPECT_EQ(parameters[0].reason, "the fit is not_converged");
   EXPECT_EQ(parameters[1].reason, "fixed");
@@ -121,7 +121,7 @@ struct ByHand {
   }
 };
 
-TEST(SetCovariance, ScalesWithTheUnitsOfWhatIsFree) {
+TEST(SetCovariance, ScalesWithTheUnitsOfFreeParameters) {
   ByHand fit;
   Optimum optimum;
   optimum.free = {0, 2};
@@ -136,7 +136,7 @@ TEST(SetCovariance, ScalesWithTheUnitsOfWhatIsFree) {
   EXPECT_EQ(fit.report.std_error_method, "by hand");
 }
 
-TEST(SetSystematicErrors, NamesOnlyWhatTheyConcern) {
+TEST(SetSystematicErrors, ListsAffectedParametersOnly) {
   ByHand fit;
   SetSystematicErrors(fit.problem, Eigen::Matrix3d{{4, 0, 1}, {0, 0, 0}, {1, 0, 9}}, fit.report);
   EXPECT_THAT(fit.report.systematic_names, ElementsAre("inertia", "release_time"));

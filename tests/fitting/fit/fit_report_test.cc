@@ -14,7 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(OptionsLike, TakesStartAndNoiseFamilyOfTheFit) {
+TEST(OptionsLike, CopiesStartAndNoiseFamily) {
   FitReport fit;
   fit.start = StartKind::kMoving;
   fit.noise.family = NoiseFamily::kQuantized;
@@ -37,7 +37,7 @@ TEST(Termination, HasANameAndAnExitCode) {
   EXPECT_EQ(ExitCode(Termination::kFailed), 1);
 }
 
-TEST(WithdrawErrors, LeavesEstimatesWithAReasonInPlaceOfErrors) {
+TEST(WithdrawErrors, KeepsEstimatesAndGivesAReasonForMissingErrors) {
   FitReport fit;
   fit.parameters.resize(2);
   ParameterEstimate& inertia = fit.parameters[0];
@@ -72,11 +72,11 @@ TEST(Correlation, IsCovarianceOverBothStandardErrors) {
   EXPECT_EQ(Correlation(fit, 0, 2), 0);
 }
 
-TEST(FitReport, KnowsItsWarningsByTheirCodes) {
+TEST(FitReport, FindsWarningsByCode) {
   FitReport fit;
   fit.warnings.push_back({"lack_of_fit", "the residuals are not noise"});
-  EXPECT_TRUE(fit.Warns("lack_of_fit"));
-  EXPECT_FALSE(fit.Warns("lack"));
+  EXPECT_TRUE(fit.HasWarning("lack_of_fit"));
+  EXPECT_FALSE(fit.HasWarning("lack"));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ void ExpectConverged(const FitReport& report) {
 }
 
 /// Accuracy of a noise-free fit: a Stribeck rate is hardly distinguishable from other friction.
-double Nearness(const MotionModel& model) { return OrderOf(model).larger < 0 ? 1e-7 : 1e-4; }
+double Nearness(const MotionModel& model) { return FindOrderedPair(model).larger < 0 ? 1e-7 : 1e-4; }
 
 void ExpectTruth(const FitReport& report, const std::vector<double>& truth, double relative) {
   ASSERT_EQ(report.parameters.size(), truth.size());
@@ -74,7 +74,7 @@ TEST(FitRecording, RecoversTheTruthOfEveryModelFromNoiseFreeData) {
 TEST(FitRecording, RecoversTheTruthAtLargeAmplitudes) {
   for (SyntheticOptions run : EveryKindOfRun()) {
     if (run.model.gravity == Gravity::kLinear) continue;
-    if (OrderOf(run.model).larger >= 0) continue;  // friction of slow motion: large swings hardly determine it
+    if (FindOrderedPair(run.model).larger >= 0) continue;  // friction of slow motion: large swings hardly determine it
     for (const double degrees : {90.0, 150.0}) {
       SCOPED_TRACE(Describe(run) + ", " + std::to_string(degrees) + " deg");
       run.release_angle = run.initial_angle = degrees * kRadFromDeg;
@@ -86,9 +86,9 @@ TEST(FitRecording, RecoversTheTruthAtLargeAmplitudes) {
   }
 }
 
-TEST(FitRecording, EstimatesOfNoisyDataAreWithinFourStandardErrors) {
+TEST(FitRecording, IsWithinFourStandardErrorsForNoisyData) {
   for (SyntheticOptions run : EveryKindOfRun()) {
-    if (IsHardlyTold(run.model)) continue;
+    if (IsHardlyDetermined(run.model)) continue;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       run.seed = seed;
       run.release_angle = run.initial_angle = 1.0;
@@ -104,7 +104,7 @@ TEST(FitRecording, EstimatesOfNoisyDataAreWithinFourStandardErrors) {
   }
 }
 
-TEST(FitRecording, ConvergesWhereARateIsReleasedAtTheInstantOfASample) {
+TEST(FitRecording, ConvergesForAReleaseAtTheInstantOfASample) {
   // A rate's first moving sample causes a kink of the cost when the release passes it; the minimum may lie there.
   SyntheticOptions run = TextbookRun("coulomb");
   run.quantity = Quantity::kRate;
@@ -121,7 +121,7 @@ TEST(FitRecording, ConvergesWhereARateIsReleasedAtTheInstantOfASample) {
   }
 }
 
-TEST(FitRecording, TakesASwingInADeepGapOfTheData) {
+TEST(FitRecording, FitsASwingWithALongGapInTheData) {
   const SyntheticOptions run = NoisyRun();
   Recording recording = Must(SimulateRecording(run));
   std::vector<Eigen::Index> kept;
@@ -137,7 +137,7 @@ TEST(FitRecording, TakesASwingInADeepGapOfTheData) {
 
 // ---- Clock and units -----------------------------------------------------------------------------------------------
 
-TEST(FitRecording, GivesTheReleaseTimeOnTheFilesClock) {
+TEST(FitRecording, ReportsTheReleaseTimeOnTheFilesClock) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitReport at_zero = Fit(recording, ModelOptions("coulomb"));
   const std::map<double, double> clocks = {
@@ -155,7 +155,7 @@ TEST(FitRecording, GivesTheReleaseTimeOnTheFilesClock) {
   }
 }
 
-TEST(FitRecording, ARigScalesWhatIsATorqueAndNothingElse) {
+TEST(FitRecording, ScalesOnlyTorquesWithARig) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   FitOptions options = ModelOptions("coulomb");
   const FitReport relative = Fit(recording, options);
@@ -186,7 +186,7 @@ TEST(FitRecording, ARigScalesWhatIsATorqueAndNothingElse) {
   }
 }
 
-TEST(FitRecording, ARigWithoutAStandardDeviationGivesNoSystematicError) {
+TEST(FitRecording, GivesNoSystematicErrorWithoutRigErrors) {
   FitOptions options = ModelOptions("coulomb");
   options.rig = Must(ParseRig(R"({"gravity_torque": 2.5})", "rig.json"));
   for (const ParameterEstimate& p : Fit(Must(SimulateRecording(NoisyRun())), options).parameters) {
@@ -212,7 +212,7 @@ TEST(FitRecording, ReportsSeriesAndStatisticsOfTheSameResiduals) {
   EXPECT_EQ(report.Find("drag"), nullptr);
 }
 
-TEST(FitRecording, FittedReadingsAreTheTrajectoryOfTheEstimates) {
+TEST(FitRecording, GivesReadingsOfTheEstimatedTrajectory) {
   const FitReport report = FitOwnModel(NoisyRun());
   SyntheticOptions fitted = NoisyRun();
   for (int k = 0; k < 3; ++k) fitted.parameters[k] = report.parameters[k].estimate;
@@ -223,7 +223,7 @@ TEST(FitRecording, FittedReadingsAreTheTrajectoryOfTheEstimates) {
   EXPECT_LT((Must(SimulateRecording(fitted)).value - report.fitted).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(FitRecording, TracesToTheAccuracyAskedFor) {
+TEST(FitRecording, TracesToTheRequestedAccuracy) {
   FitOptions options = ModelOptions("coulomb");
   SyntheticOptions run = NoisyRun();
   run.release_angle = 150 * kRadFromDeg;
@@ -233,7 +233,7 @@ TEST(FitRecording, TracesToTheAccuracyAskedFor) {
   }
 }
 
-TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
+TEST(FitRecording, ReportsClosedFormStartValues) {
   const FitReport report = FitOwnModel(NoisyRun());
   EXPECT_NEAR(*report.Find("inertia")->closed_form, 0.079 / kTextbookTorque, 2e-4);
   EXPECT_NEAR(*report.Find("release_time")->closed_form, 1.9, 0.02);
@@ -242,7 +242,7 @@ TEST(FitRecording, ShowsStartValuesThatAreClosedForms) {
   EXPECT_FALSE(FitOwnModel(moving).Find("initial_rate")->closed_form);
 }
 
-TEST(FitRecording, TakesATurningPointAtTheStartForNoRelease) {
+TEST(FitRecording, DoesNotTreatATurningPointAsARelease) {
   // In motion just before a turning point and sampled slowly: for a sixth of a period the reading hardly changes.
   SyntheticOptions run;
   run.parameters = {0.48493, 0.069953, 0.003533};
@@ -278,14 +278,14 @@ TEST(FitRecording, GivesTheZeroWithoutWholeTurns) {
   EXPECT_GE(converged, 8);
 }
 
-TEST(FitRecording, RefusesAModelThatThereIsNot) {
+TEST(FitRecording, RefusesAnUnknownModel) {
   const auto refused = FitRecording(Must(SimulateRecording(NoisyRun())), ModelOptions("columb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(refused.error().message, "there is no model 'columb'; the models are " + MotionModelNames());
 }
 
-TEST(FitRecording, NamesTheFileThatHasNoSwing) {
+TEST(FitRecording, NamesTheFileWithoutASwing) {
   Recording constant = Must(SimulateRecording(NoisyRun()));
   constant.path = "run.csv";
   constant.value.setConstant(0.3);

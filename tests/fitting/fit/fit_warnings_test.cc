@@ -31,7 +31,7 @@ double NumberAfter(const std::string& words, const std::string& message) {
   return found == std::string::npos ? 0 : std::stod(message.substr(found + words.size()));
 }
 
-TEST(FitWarnings, SayNothingOfAGoodFit) {
+TEST(FitWarnings, AreEmptyForAGoodFit) {
   for (const std::string model : {"linear", "viscous", "coulomb", "drag"}) {
     SyntheticOptions run = NoisyRun(model);
     run.duration = 60;
@@ -40,7 +40,7 @@ TEST(FitWarnings, SayNothingOfAGoodFit) {
   }
 }
 
-TEST(FitWarnings, CountSaturatedReadingsInTheWindowOnly) {
+TEST(FitWarnings, CountSaturatedReadingsWithinTheWindow) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.range = SensorRange{-0.42, 0.42};  // held at 0.435 until 1.9 s; the next turning points are -0.40 and 0.40
   const Recording recording = Must(SimulateRecording(run));
@@ -53,7 +53,7 @@ TEST(FitWarnings, CountSaturatedReadingsInTheWindowOnly) {
               testing::Not(testing::Contains("saturated")));
 }
 
-TEST(FitWarnings, TellAModelThatDoesNotDescribeTheData) {
+TEST(FitWarnings, ReportAModelThatDoesNotDescribeTheData) {
   SyntheticOptions run = TextbookRun("drag");
   run.release_angle = 1.5;
   run.noise = 0.002;
@@ -69,7 +69,7 @@ TEST(FitWarnings, TellAModelThatDoesNotDescribeTheData) {
               testing::DoubleNear(1, 0.05));
 }
 
-TEST(FitWarnings, TellResidualsThatFollowEachOther) {
+TEST(FitWarnings, ReportAutocorrelatedResiduals) {
   SyntheticOptions run = NoisyRun();
   run.duration = 30;
   Recording recording = Must(SimulateRecording(run));
@@ -85,7 +85,7 @@ TEST(FitWarnings, TellResidualsThatFollowEachOther) {
   EXPECT_THAT(Codes(Fit(recording, ModelOptions("coulomb"))), ElementsAre("correlated_residuals"));
 }
 
-TEST(FitWarnings, TellASensorWhoseNoiseDoesNotReachItsResolution) {
+TEST(FitWarnings, ReportASensorWithLessNoiseThanItsResolution) {
   for (const double counts : {0.0, 0.1, 0.25, 0.5, 1.0}) {
     SyntheticOptions run = TextbookRun("coulomb");
     run.resolution = kCount;
@@ -101,7 +101,7 @@ TEST(FitWarnings, TellASensorWhoseNoiseDoesNotReachItsResolution) {
   }
 }
 
-TEST(FitWarnings, TellATrajectoryThatIsNotComputedWellEnoughForItsNoise) {
+TEST(FitWarnings, ReportATrajectoryTooInaccurateForTheNoise) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitProblem problem = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   FitReport report = Fit(recording, ModelOptions("coulomb"));
@@ -114,7 +114,7 @@ TEST(FitWarnings, TellATrajectoryThatIsNotComputedWellEnoughForItsNoise) {
   }
 }
 
-TEST(FitWarnings, TellAFrictionAtItsBound) {
+TEST(FitWarnings, ReportAFrictionAtItsBound) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const FitReport report = Fit(Must(SimulateRecording(NoisyRun("viscous", seed))), ModelOptions("coulomb"));
     if (!report.Find("coulomb")->at_bound) {
@@ -126,7 +126,7 @@ TEST(FitWarnings, TellAFrictionAtItsBound) {
   }
 }
 
-TEST(FitWarnings, TellAReleaseAtAnEndOfTheHold) {
+TEST(FitWarnings, ReportAReleaseAtAnEndOfTheHold) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitProblem problem = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   FitReport report = Fit(recording, ModelOptions("coulomb"));
@@ -142,7 +142,7 @@ TEST(FitWarnings, TellAReleaseAtAnEndOfTheHold) {
   EXPECT_THAT(warnings[1].message, HasSubstr("at the bound 0: viscous;"));
 }
 
-TEST(FitWarnings, TellAnotherMinimumAndAStopOnAKink) {
+TEST(FitWarnings, ReportAnotherMinimumAndAStopOnAKink) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitProblem problem = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   const FitReport report = [&] {
@@ -173,7 +173,7 @@ TEST(FitWarnings, TellAnotherMinimumAndAStopOnAKink) {
   EXPECT_THAT(codes(), IsEmpty());
 }
 
-TEST(FitWarnings, TellAZeroThatDriftsByHowMuchAndWhichWay) {
+TEST(FitWarnings, ReportSizeAndDirectionOfADriftingZero) {
   for (const double drift : {0.001, -0.001}) {  // rad/s or rad/s²
     for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
       SCOPED_TRACE(std::to_string(drift) + (quantity == Quantity::kAngle ? " of an angle" : " of a rate"));
@@ -198,7 +198,7 @@ TEST(FitWarnings, TellAZeroThatDriftsByHowMuchAndWhichWay) {
   }
 }
 
-TEST(FitWarnings, TellNoDriftThatIsAParameterOfTheFit) {
+TEST(FitWarnings, OmitADriftThatIsFitted) {
   SyntheticOptions run = NoisyRun();
   run.duration = 30;
   Recording recording = Must(SimulateRecording(run));

@@ -27,7 +27,7 @@ using Verdict = Identifiability::Verdict;
 
 // ---- The method ----------------------------------------------------------------------------------------------------
 
-TEST(SetIntervals, AreOfTheCovarianceFarFromBounds) {
+TEST(SetIntervals, UsesTheCovarianceFarFromBounds) {
   const FitReport report = FitOwnModel(ShortSwing());
   EXPECT_EQ(report.interval_method, "estimate ± 1.966 standard errors");  // Student's t, 394 degrees of freedom
   for (const ParameterEstimate& parameter : report.parameters) {
@@ -45,7 +45,7 @@ FitReport OfNoDryFriction(bool at_bound, const FitOptions& options) {
   throw std::runtime_error("no seed does it");
 }
 
-TEST(SetIntervals, AreProfilesForAllWhereAnyIsAtABoundOrNearIt) {
+TEST(SetIntervals, UsesProfilesForAllNearABound) {
   for (const bool at_bound : {false, true}) {
     const FitReport report = OfNoDryFriction(at_bound, ModelOptions("coulomb"));
     EXPECT_EQ(report.interval_method, "profile likelihood");
@@ -58,7 +58,7 @@ TEST(SetIntervals, AreProfilesForAllWhereAnyIsAtABoundOrNearIt) {
   }
 }
 
-TEST(SetIntervals, ReportProfilesInTheUnitsAndOrderOfTheParameters) {
+TEST(SetIntervals, ReportsProfilesInTheParametersUnitsAndOrder) {
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kProfile;
   options.rig = Must(ParseRig(R"({"gravity_torque": 2})", "rig"));
@@ -81,7 +81,7 @@ TEST(SetIntervals, ReportProfilesInTheUnitsAndOrderOfTheParameters) {
   EXPECT_THAT(FitOwnModel(ShortSwing()).profiles, IsEmpty());
 }
 
-TEST(SetIntervals, OfTheCovarianceLeaveTheOtherEndOfABoundOpenAndSayWhatGivesIt) {
+TEST(SetIntervals, LeavesTheOtherEndOpenAtABoundAndSuggestsAMethod) {
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kCovariance;
   const FitReport report = OfNoDryFriction(true, options);
@@ -103,7 +103,7 @@ SyntheticOptions Counted(int take, double noise) {
   return run;
 }
 
-TEST(UsePosterior, TakesEstimatesOfCountsThatHardlyScatterFromTheirPosterior) {
+TEST(UsePosterior, IsUsedForCountsWithLittleScatter) {
   for (int take = 1; take <= 10; ++take) {
     SCOPED_TRACE(take);
     const SyntheticOptions run = Counted(take, 0);
@@ -111,11 +111,11 @@ TEST(UsePosterior, TakesEstimatesOfCountsThatHardlyScatterFromTheirPosterior) {
     ASSERT_EQ(report.interval_method, "quantiles of the posterior");
     EXPECT_THAT(report.std_error_method, StartsWith("posterior of the quantized likelihood"));
     EXPECT_THAT(Deviations(report, Truth(run)), Each(testing::DoubleNear(0, 4)));
-    EXPECT_LT(report.noise.sigma, kQuietSigma * kCount);
+    EXPECT_LT(report.noise.sigma, kSmallSigma * kCount);
   }
 }
 
-TEST(UsePosterior, IsNotForCountsThatScatterNorWhereAnotherMethodIsAskedFor) {
+TEST(UsePosterior, IsNotUsedForScatteredCountsOrAnotherMethod) {
   EXPECT_THAT(FitOwnModel(Counted(1, 0.4)).interval_method, StartsWith("estimate ± "));
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kProfile;
@@ -125,7 +125,7 @@ TEST(UsePosterior, IsNotForCountsThatScatterNorWhereAnotherMethodIsAskedFor) {
 
 // ---- Identifiability -----------------------------------------------------------------------------------------------
 
-TEST(SetIdentifiability, OfTwentySecondsOfTheTextbookRigIsThatOfAll) {
+TEST(SetIdentifiability, IsGivenForAllParametersOfTheTextbookRig) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 0.002;
   const FitReport report = FitOwnModel(run);
@@ -134,7 +134,7 @@ TEST(SetIdentifiability, OfTwentySecondsOfTheTextbookRigIsThatOfAll) {
   EXPECT_THAT(report.identifiability, Each(Field(&Identifiability::advice, IsEmpty())));
 }
 
-TEST(SetIdentifiability, IsWeakOfWhatReachesABound) {
+TEST(SetIdentifiability, IsWeakForAnIntervalAtABound) {
   for (const bool at_bound : {false, true}) {
     const FitReport report = OfNoDryFriction(at_bound, ModelOptions("coulomb"));
     for (const Identifiability& known : report.identifiability) {
@@ -146,7 +146,7 @@ TEST(SetIdentifiability, IsWeakOfWhatReachesABound) {
   }
 }
 
-TEST(SetIdentifiability, IsWeakOfWhatReachesTheUsersUpperBound) {
+TEST(SetIdentifiability, IsWeakForAnIntervalAtTheUsersUpperBound) {
   const FitReport free = FitOwnModel(ShortSwing());
   FitOptions options = ModelOptions("coulomb");
   options.bounds["zero_angle"] = {-1, free.Find("zero_angle")->estimate + *free.Find("zero_angle")->std_error};
@@ -171,7 +171,7 @@ std::vector<Identifiability> VerdictsAt(double correlation) {
   return {report.identifiability.end() - 6, report.identifiability.end()};
 }
 
-TEST(SetIdentifiability, NamesTheCombinationThatLeavesNoTrace) {
+TEST(SetIdentifiability, NamesAnUndeterminedCombination) {
   const std::vector<Identifiability> verdicts = VerdictsAt(1);
   for (const int i : {1, 2}) {
     EXPECT_EQ(verdicts[i].verdict, Verdict::kNotIdentifiable);
@@ -182,7 +182,7 @@ TEST(SetIdentifiability, NamesTheCombinationThatLeavesNoTrace) {
 }
 
 /// Correlation multiplies the variance by 1 / (1 - ρ²): 100 at ρ = .995.
-TEST(SetIdentifiability, IsWeakOfWhatCanBeTradedForAnother) {
+TEST(SetIdentifiability, IsWeakForTradedParameters) {
   for (const double correlation : {0.996, -0.999}) {
     const std::vector<Identifiability> verdicts = VerdictsAt(correlation);
     EXPECT_EQ(verdicts[1].verdict, Verdict::kWeakly) << correlation;

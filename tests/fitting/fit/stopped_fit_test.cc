@@ -13,14 +13,14 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/fitting/fit/judge.h"
+#include "pendulum/fitting/fit/make_fit_report.h"
 #include "pendulum/fitting/joint/fit_jointly.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/fitting/residuals/arma_likelihood.h"
 #include "pendulum/fitting/residuals/estimate_autocorrelation.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/solve/search.h"
-#include "pendulum/fitting/start/phase_scan.h"
+#include "pendulum/fitting/start/frequency_scan.h"
 #include "pendulum/fitting/uncertainty/posterior.h"
 #include "tests/fitting/fit_support.h"
 #include "tests/fitting/joint_recordings.h"
@@ -108,7 +108,7 @@ struct HandmadeFit {
     const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
     Solution solution = Search(cost, problem.data, guess, problem.solve);
     MaximizeLikelihood(cost, problem, options, solution);
-    report = Judge(recording, options, problem, cost, std::move(solution));
+    report = MakeFitReport(recording, options, problem, cost, std::move(solution));
     is_stopped = stop.stop_requested();
     asked = cost.evaluations();
   }
@@ -124,8 +124,8 @@ void StopEverywhere(const Recording& recording, const FitOptions& options) {
   const HandmadeFit whole(recording, options, std::numeric_limits<int>::max());
   ASSERT_FALSE(whole.is_stopped);
   ASSERT_EQ(whole.report.termination, Termination::kConverged) << whole.report.reason;
-  constexpr int kMost = 300;
-  const int step = whole.asked / kMost + 1;
+  constexpr int kMax = 300;
+  const int step = whole.asked / kMax + 1;
   for (int k = 0; k < whole.asked; k += step) {
     const HandmadeFit fit(recording, options, k);
     EXPECT_TRUE(fit.is_stopped) << k;
@@ -134,37 +134,37 @@ void StopEverywhere(const Recording& recording, const FitOptions& options) {
   }
 }
 
-TEST(StoppedFit, EndsWhereverItIsStopped) {
+TEST(StoppedFit, EndsAnywhere) {
   StopEverywhere(Must(SimulateRecording(NoisyRun("coulomb"))), ModelOptions("coulomb"));
 }
 
-TEST(StoppedFit, EndsWhereverItIsStoppedOnTheWayToRest) {
+TEST(StoppedFit, EndsAnywhereOnTheWayToRest) {
   SyntheticOptions run = NoisyRun("coulomb");
   run.duration = 40;  // 0.004 N m of dry friction stop it after some 25 s
   run.parameters[2] *= 3;
   StopEverywhere(Must(SimulateRecording(run)), ModelOptions("coulomb"));
 }
 
-TEST(StoppedFit, EndsWhereverItIsStoppedOnCoarseLevelsWithoutNoise) {
+TEST(StoppedFit, EndsAnywhereOnCoarseLevelsWithoutNoise) {
   SyntheticOptions run = NoisyRun("viscous");
   run.noise = 0;
   run.resolution = kCount;
   StopEverywhere(Must(SimulateRecording(run)), ModelOptions("viscous"));
 }
 
-TEST(StoppedFit, EndsWhereverItIsStoppedInAProfile) {
+TEST(StoppedFit, EndsAnywhereInAProfile) {
   FitOptions options = ModelOptions("viscous");
   options.interval = IntervalMethod::kProfile;
   StopEverywhere(Must(SimulateRecording(NoisyRun("viscous"))), options);
 }
 
-TEST(StoppedFit, EndsWhereverARobustOneIsStopped) {
+TEST(StoppedFit, EndsAnywhereForARobustFit) {
   FitOptions options = ModelOptions("viscous");
   options.noise = NoiseFamily::kStudent;
   StopEverywhere(Must(SimulateRecording(NoisyRun("viscous"))), options);
 }
 
-TEST(StoppedFit, IsAnErrorThatSaysSo) {
+TEST(StoppedFit, IsAnErrorWithAMessage) {
   FitOptions options = ModelOptions("coulomb");
   options.stop = Requested();
   const Result<FitReport> fit = FitRecording(Must(SimulateRecording(NoisyRun())), options);
@@ -192,7 +192,7 @@ TEST(StoppedFit, IsAnErrorInABootstrapToo) {
   }
 }
 
-TEST(StoppedFit, OfSeveralRecordingsIsAnError) {
+TEST(StoppedFit, IsAnErrorForSeveralRecordings) {
   const TwoRuns two;
   FitOptions options = two.options;
   options.stop = Requested();
@@ -201,7 +201,7 @@ TEST(StoppedFit, OfSeveralRecordingsIsAnError) {
   EXPECT_EQ(fit.error().code, StatusCode::kTryAgain);
 }
 
-TEST(StoppedCost, HasNoAnswerEvenWhereItHadOne) {
+TEST(StoppedCost, HasNoAnswerEvenIfCached) {
   FitOptions options = ModelOptions("coulomb");
   std::stop_source stop;
   options.stop = stop.get_token();
@@ -223,7 +223,7 @@ TEST(StoppedCost, HasNoAnswerEvenWhereItHadOne) {
   EXPECT_EQ(cost->traces(), traces);
 }
 
-TEST(StoppedPieces, SayNothing) {
+TEST(StoppedPieces, ReturnNoResult) {
   SyntheticOptions slow = NoisyRun("viscous");
   slow.sample_rate = 2;
   const Recording recording = Must(SimulateRecording(slow));
@@ -245,7 +245,7 @@ TEST(StoppedPieces, SayNothing) {
   EXPECT_EQ(posterior.error().code, StatusCode::kTryAgain);
 }
 
-TEST(StoppedPieces, SayNothingOfMemory) {
+TEST(StoppedPieces, ReturnNoAutocorrelation) {
   Autocorrelation like;
   like.kind = Autocorrelation::Kind::kAutoregressive;
   like.interval = 1;

@@ -66,7 +66,7 @@ TEST(FitJointly, RecoversTheTruthFromNoiseFreeRecordingsOfDifferentKinds) {
   ExpectTruth(fit.runs[2], third, 1e-7);
 }
 
-TEST(FitJointly, EstimatesOfNoisyRecordingsAreWithinFourStandardErrors) {
+TEST(FitJointly, IsWithinFourStandardErrorsForNoisyRecordings) {
   for (const std::uint64_t seed : {1, 11, 21}) {
     const JointFit fit = FitAllJointly(MixedRecordings(seed), RigOptions());
     ExpectConverged(fit);
@@ -74,7 +74,7 @@ TEST(FitJointly, EstimatesOfNoisyRecordingsAreWithinFourStandardErrors) {
   }
 }
 
-TEST(FitJointly, RecoversAZeroThatDriftsInEachRecordingAsItDoes) {
+TEST(FitJointly, RecoversADriftingZeroInEachRecording) {
   Recordings recordings = NoiseFreeRecordings();
   const double drifts[] = {2e-4, -1e-3, 5e-4};  // rad/s, rad/s², in true seconds
   for (std::size_t k = 0; k < 3; ++k) {
@@ -131,7 +131,7 @@ TEST(FitJointly, IsTheWeightedMeanOfSeparateFits) {
 
 // A recording used twice has the information of twice as many samples: errors of shared parameters shrink by √2, those
 // of the others do not.
-TEST(FitJointly, OfARecordingTwiceHasErrorsSmallerByTheRootOfTwo) {
+TEST(FitJointly, ReducesErrorsBySqrtTwoForARepeatedRecording) {
   const Recording recording = Must(SimulateRecording(Released(0.5, 3)));
   const FitReport alone = Fit(recording, RigOptions());
   const JointFit fit = FitAllJointly({recording, recording}, RigOptions());
@@ -145,7 +145,7 @@ TEST(FitJointly, OfARecordingTwiceHasErrorsSmallerByTheRootOfTwo) {
 }
 
 // σ² = RSS / (N - share): together, all recordings lose one degree of freedom per parameter.
-TEST(FitJointly, LosesADegreeOfFreedomForEachParameter) {
+TEST(FitJointly, LosesOneDegreeOfFreedomPerParameter) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2))),
                                  Must(SimulateRecording(Released(0.7, 3)))};
   const JointFit fit = FitAllJointly(recordings, RigOptions());
@@ -185,7 +185,7 @@ TEST(FitJointly, AddsUpLikelihoodsAndCountsParameters) {
 
 // By hand: (3 · 2² + 1 · 4²) / 4 = 7. With k = 2 and N = 5, AIC is 4 - 2 L, AICc is larger by 12 / (5 - 3), BIC is 2 ln
 // 5 - 2 L.
-TEST(SumStatistics, WeighsResidualsThatAreNotCensoredAndCountsAllSamples) {
+TEST(SumStatistics, WeighsUncensoredResidualsAndCountsAllSamples) {
   FitReport first, second;
   first.residual = Eigen::VectorXd::Zero(3);
   first.statistics.rms_residual = 2;
@@ -206,7 +206,7 @@ TEST(SumStatistics, WeighsResidualsThatAreNotCensoredAndCountsAllSamples) {
   EXPECT_DOUBLE_EQ(all.bic, 2 * std::log(5) + 16);
 }
 
-TEST(SumStatistics, OfNothingAreFinite) {
+TEST(SumStatistics, AreFiniteWithoutFits) {
   const FitStatistics none = SumStatistics({}, 0);
   EXPECT_EQ(none.rms_residual, 0);
   EXPECT_EQ(none.bic, 0);
@@ -214,7 +214,7 @@ TEST(SumStatistics, OfNothingAreFinite) {
 
 // If only inertia is shared, each recording's friction follows it according to its own covariance: f + C_fI / C_II (I -
 // I_k). Inertia is the mean with weights 1 / C_II.
-TEST(FitJointly, LeavesEachRecordingWhatIsNotShared) {
+TEST(FitJointly, KeepsUnsharedParametersSeparate) {
   const Recordings recordings = MixedRecordings(5);
   const std::vector<FitReport> alone = FitAlone(recordings, RigOptions());
   const JointFit fit = Must(TryJointly(recordings, alone, RigOptions(), {"inertia"}));
@@ -256,7 +256,7 @@ Estimates WithPrior(const Estimates& combined, const ParameterPrior& prior) {
   return {precision.inverse() * sum, precision.inverse()};
 }
 
-TEST(FitJointly, CountsAPriorOnWhatIsSharedOnce) {
+TEST(FitJointly, CountsAPriorOnASharedParameterOnce) {
   const Recordings recordings = MixedRecordings(7);
   std::vector<Estimates> parts;
   for (const FitReport& fit : FitAlone(recordings, RigOptions())) parts.push_back(EstimatesOf(fit, kPhysical));
@@ -268,7 +268,7 @@ TEST(FitJointly, CountsAPriorOnWhatIsSharedOnce) {
 
 // Each separate fit includes its own prior on a parameter that is not shared; their weighted mean needs no further
 // prior.
-TEST(FitJointly, CountsAPriorOnWhatIsNotSharedOnceInEachRecording) {
+TEST(FitJointly, CountsAPriorOnAnOwnParameterOncePerRecording) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions options = RigOptions();
   options.priors = {{"release_time", {1.9005, 2e-4}}};
@@ -278,7 +278,7 @@ TEST(FitJointly, CountsAPriorOnWhatIsNotSharedOnceInEachRecording) {
 }
 
 // Released at 1.9 s (fit_support.h), which the second prior contradicts.
-TEST(FitJointly, WarnsOfEachRecordingsPriorsThatDoNotFit) {
+TEST(FitJointly, WarnsOfPriorsThatContradictARecording) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions near = RigOptions(), far = near;
   near.priors = {{"release_time", {1.9, 0.001}}};
@@ -286,11 +286,11 @@ TEST(FitJointly, WarnsOfEachRecordingsPriorsThatDoNotFit) {
   const std::vector<FitReport> alone = {Fit(recordings[0], near), Fit(recordings[1], far)};
   const std::vector<JointRun> runs = {{recordings[0], alone[0], near}, {recordings[1], alone[1], far}};
   const JointFit fit = Must(FitJointly(runs, kPhysical));
-  EXPECT_FALSE(fit.runs[0].Warns("prior_conflict"));
-  EXPECT_TRUE(fit.runs[1].Warns("prior_conflict"));
+  EXPECT_FALSE(fit.runs[0].HasWarning("prior_conflict"));
+  EXPECT_TRUE(fit.runs[1].HasWarning("prior_conflict"));
 }
 
-TEST(FitJointly, KeepsWhatIsFixed) {
+TEST(FitJointly, KeepsFixedParameters) {
   FitOptions options = RigOptions();
   options.fixed = {{"viscous", 0.0031}};
   const JointFit fit = FitAllJointly(MixedRecordings(), options);
@@ -344,7 +344,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
 
 // ---- Recordings that cannot be fitted ------------------------------------------------------------------------------
 
-TEST(FitJointly, OfRigsOfDifferentInertiaDoesNotConvergeAndSaysSo) {
+TEST(FitJointly, DoesNotConvergeForRigsOfDifferentInertia) {
   SyntheticOptions heavy = Released(0.5, 2);
   heavy.parameters[0] *= 2;
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(heavy))};
@@ -372,7 +372,7 @@ TEST(FitJointly, RefusesFewerThanTwoRecordings) {
                 "a joint fit needs two recordings or more; there is none");
 }
 
-TEST(FitJointly, RefusesToShareWhatTheModelHasNot) {
+TEST(FitJointly, RefusesSharingAParameterTheModelLacks) {
   const Recordings recordings = MixedRecordings();
   ExpectRefused(TryJointly(recordings, FitAlone(recordings, RigOptions()), RigOptions(), {"drag", "release_angle"}),
                 StatusCode::kInvalidArgument, "model coulomb has none of the parameters that are to be shared");

@@ -81,7 +81,7 @@ void ExpectSums(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected, 
   EXPECT_LT(error.cwiseAbs().maxCoeff(), relative) << error;
 }
 
-TEST(JointCost, HasTheSumsOfAllResidualsAndOfEachPriorOnce) {
+TEST(JointCost, SumsAllResidualsAndEachPriorOnce) {
   const Case joint;
   const Eigen::MatrixXd expected = ExpectedSums(joint, joint.trial);
   Eigen::MatrixXd sums;
@@ -93,7 +93,7 @@ TEST(JointCost, HasTheSumsOfAllResidualsAndOfEachPriorOnce) {
 }
 
 // No residual depends on own parameters of two different recordings.
-TEST(JointCost, HasNothingBetweenOwnParametersOfDifferentRecordings) {
+TEST(JointCost, HasNoTermsBetweenOwnParameters) {
   const Case joint;
   Eigen::MatrixXd sums;
   ASSERT_TRUE(joint.cost.Sums(joint.trial, &sums));
@@ -130,7 +130,7 @@ TEST(JointCost, GivesCeresTheSameCostAndGradient) {
 }
 
 // The gradient by the shared inertia is half the slope of the total sum, by finite differences.
-TEST(JointCost, MovesAllRecordingsWithWhatTheyShare) {
+TEST(JointCost, ChangesAllRecordingsWithSharedParameters) {
   const Case joint;
   Eigen::MatrixXd sums;
   ASSERT_TRUE(joint.cost.Sums(joint.trial, &sums));
@@ -144,7 +144,7 @@ TEST(JointCost, MovesAllRecordingsWithWhatTheyShare) {
   EXPECT_THAT((above - below) / (2 * step) / (2 * sums(0, kParameters)), DoubleNear(1, 1e-4));
 }
 
-TEST(JointCost, IsNoneWhereOneMotionCannotBeTraced) {
+TEST(JointCost, FailsIfAMotionCannotBeTraced) {
   Case joint;
   joint.trial[kOwnRelease] = 1e3;  // released after the first recording's last sample
   double sum = 0;
@@ -161,14 +161,14 @@ TEST(JointCost, GivesEachRecordingItsOwnParameters) {
   const Case joint;
   std::vector<double> numbers;
   for (int i = 0; i < kParameters; ++i) numbers.push_back(i);
-  EXPECT_THAT(joint.cost.Own(0, numbers), ElementsAre(0, 2, 1, 4, 5, 3));
-  EXPECT_THAT(joint.cost.Own(1, numbers), ElementsAre(0, 6, 1, 7, 8, 9));
+  EXPECT_THAT(joint.cost.OwnParameters(0, numbers), ElementsAre(0, 2, 1, 4, 5, 3));
+  EXPECT_THAT(joint.cost.OwnParameters(1, numbers), ElementsAre(0, 6, 1, 7, 8, 9));
 }
 
 TEST(JointCost, CountsReversalsTracesAndRecordingsOfAll) {
   const Case joint;
-  const int first = joint.released.cost->Reversals(joint.cost.Own(0, joint.trial));
-  const int second = joint.moving.cost->Reversals(joint.cost.Own(1, joint.trial));
+  const int first = joint.released.cost->Reversals(joint.cost.OwnParameters(0, joint.trial));
+  const int second = joint.moving.cost->Reversals(joint.cost.OwnParameters(1, joint.trial));
   EXPECT_GT(first, 5);
   EXPECT_GT(second, 5);
   EXPECT_EQ(joint.cost.Reversals(joint.trial), first + second);
@@ -181,7 +181,7 @@ TEST(JointCost, CountsReversalsTracesAndRecordingsOfAll) {
 }
 
 // Dry friction τ reduces the amplitude by 4 τ / G per swing: 0.01 rad is soon lost, a radian is not.
-TEST(JointCost, ComesToRestWhereAnyRecordingDoes) {
+TEST(JointCost, ReachesRestIfAnyRecordingDoes) {
   const Case joint;
   EXPECT_FALSE(joint.cost.ComesToRest(joint.trial, 0));
   std::vector<double> short_swing = joint.trial;

@@ -45,7 +45,7 @@ double DevianceRise(const Recordings& recordings, const JointFit& best, const st
 
 // For independent residuals the interval ends where the deviance has risen by 1.96² = 3.8415. Fits with a fixed
 // parameter still estimate σ, which makes the rise for 1000 samples larger by less than a hundredth.
-TEST(JointProfile, EndsWhereTheJointDevianceHasRisenByChiSquare) {
+TEST(JointProfile, EndsAtTheChiSquareRiseOfTheJointDeviance) {
   const Recordings recordings = SeveralReleases(2);
   const JointFit best = FitAllJointly(recordings, ProfileOptions());
   ExpectConverged(best);
@@ -78,7 +78,7 @@ double RelativeSystematic(const JointFit& fit, const std::string& name) {
 }
 
 // Torques and inertia are computed in units of G: 1 % in G is 1 % of each, for any number of recordings.
-TEST(JointSystematic, OfARigIsItsCommonFactor) {
+TEST(JointSystematic, IsACommonFactorForARig) {
   FitOptions options = RigOptions();
   options.rig = RigOfTorque(0.01 * kTextbookTorque);
   for (const std::size_t count : {2, 5}) {
@@ -101,7 +101,7 @@ Recordings WithClocks(Recordings recordings, bool apart) {
 }
 
 // Inertia scales with time squared, viscous friction with time, dry friction not at all: 2, 1 and 0 thousandths.
-TEST(JointSystematic, OfACommonClockIsThatOfTime) {
+TEST(JointSystematic, FollowsThePowerOfTimeForACommonClock) {
   for (const std::size_t count : {2, 4}) {
     const JointFit fit = FitAllJointly(WithClocks(SeveralReleases(count), false), RigOptions());
     EXPECT_THAT(RelativeSystematic(fit, "inertia"), DoubleNear(2e-3, 1e-8)) << count;
@@ -111,7 +111,7 @@ TEST(JointSystematic, OfACommonClockIsThatOfTime) {
 }
 
 // Two clocks have independent errors: for two recordings of about equal weight, the error of inertia is 2e-3 / √2.
-TEST(JointSystematic, OfTwoClocksIsSmallerThanOfOne) {
+TEST(JointSystematic, IsSmallerForTwoClocks) {
   const Recording recording = Must(SimulateRecording(Released(0.5, 3)));
   const JointFit fit = FitAllJointly(WithClocks({recording, recording}, true), RigOptions());
   EXPECT_THAT(RelativeSystematic(fit, "inertia") / 2e-3, DoubleNear(std::sqrt(0.5), 0.01));
@@ -141,7 +141,7 @@ Recordings AngleAndRate(double scale, bool rate_first) {
 
 // A gyro's rate does not depend on the clock, an angle does. Their estimates therefore follow a wrong clock
 // differently, as fits with a faster and a slower clock do. The order of the recordings does not matter.
-TEST(JointSystematic, OfOneClockOfAngleAndRateIsThatOfFitsByFasterAndSlowerClocks) {
+TEST(JointSystematic, MatchesFitsWithOtherClocksForAngleAndRate) {
   for (const bool rate_first : {false, true}) {
     SCOPED_TRACE(rate_first ? "rate first" : "angle first");
     const JointFit fit = FitAllJointly(AngleAndRate(1, rate_first), RigOptions());
@@ -180,7 +180,7 @@ FitOptions QuietOptions() {
   return options;
 }
 
-TEST(JointPosterior, CombinesThoseOfQuietRecordings) {
+TEST(JointPosterior, CombinesPosteriorsOfQuietRecordings) {
   for (const std::uint64_t seed : {1, 4}) {
     const JointFit fit = FitAllJointly(QuietRecordings(3, seed), QuietOptions());
     ExpectConverged(fit);
@@ -214,7 +214,7 @@ TEST(JointPosterior, IsTheWeightedMeanOfPosteriors) {
 }
 
 // A prior as narrow as the joint error of inertia, at the joint estimate, reduces the error by √2, not by √(1 + K).
-TEST(JointPosterior, CountsAPriorOnWhatIsSharedOnce) {
+TEST(JointPosterior, CountsAPriorOnASharedParameterOnce) {
   const Recordings recordings = QuietRecordings(3, 1);
   const Estimates combined = Combine(PartsOf(FitAlone(recordings, QuietOptions())));
   const double error = std::sqrt(combined.covariance(0, 0));

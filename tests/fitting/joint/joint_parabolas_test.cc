@@ -14,7 +14,7 @@ namespace pendulum::joint_parabolas_test {
 namespace {
 
 // For independent estimates with normal errors, the best combination is the mean weighted with inverse covariances.
-TEST(CombineParabolas, IsTheWeightedMeanOfTheFitsAlone) {
+TEST(CombineParabolas, GivesTheWeightedMeanOfSeparateFits) {
   const TwoRuns runs;
   const Estimates mean = Combine({EstimatesOf(runs.alone[0], kPhysical), EstimatesOf(runs.alone[1], kPhysical)});
   const CombinedParabolas combined = CombineParabolas(runs.Problem());
@@ -27,7 +27,7 @@ TEST(CombineParabolas, IsTheWeightedMeanOfTheFitsAlone) {
   }
 }
 
-TEST(CombineParabolas, KeepsToTheBounds) {
+TEST(CombineParabolas, RespectsBounds) {
   FitOptions options = RigOptions();
   options.bounds["inertia"] = {0.0795, 0.09};  // the truth is 0.079
   const TwoRuns runs(options);

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-TEST(MakeJointProblem, PutsWhatIsSharedOnceAndFirst) {
+TEST(MakeJointProblem, PlacesSharedParametersOnceAndFirst) {
   const TwoRuns runs;
   const JointProblem joint = runs.Problem({"coulomb", "viscous", "inertia"});
   EXPECT_EQ(joint.shared, kPhysical);  // in the model's order
@@ -26,14 +26,14 @@ TEST(MakeJointProblem, PutsWhatIsSharedOnceAndFirst) {
   EXPECT_EQ(joint.samples(), 2000);  // 10 s at 100 Hz, twice
 }
 
-TEST(MakeJointProblem, GivesEachRecordingWhatIsNotShared) {
+TEST(MakeJointProblem, KeepsUnsharedParametersPerRecording) {
   const TwoRuns runs;
   const JointProblem joint = runs.Problem({"coulomb"});
   EXPECT_THAT(joint.members[0].at, ElementsAre(1, 2, 0, 3, 4, 5));
   EXPECT_THAT(joint.members[1].at, ElementsAre(6, 7, 0, 8, 9, 10));
 }
 
-TEST(MakeJointProblem, CountsAPriorOfWhatIsSharedOnce) {
+TEST(MakeJointProblem, CountsAPriorOnASharedParameterOnce) {
   FitOptions options = RigOptions();
   options.priors["inertia"] = {0.079, 0.001};
   options.priors["zero_angle"] = {0.012, 0.01};
@@ -44,7 +44,7 @@ TEST(MakeJointProblem, CountsAPriorOfWhatIsSharedOnce) {
   EXPECT_THAT(places, UnorderedElementsAre(0, 5, 8));
 }
 
-TEST(MakeJointProblem, RefusesOneRecordingAndWhatSharesNothing) {
+TEST(MakeJointProblem, RefusesOneRecordingAndNothingShared) {
   const TwoRuns runs;
   const std::vector<JointRun> one = {{runs.recordings[0], runs.alone[0], runs.options}};
   const auto single = MakeJointProblem(one, kPhysical);
@@ -57,13 +57,13 @@ TEST(MakeJointProblem, RefusesOneRecordingAndWhatSharesNothing) {
   EXPECT_EQ(nothing.error().message, "model coulomb has none of the parameters that are to be shared");
 }
 
-TEST(JointProblem, NamesTheRecordingOfWhatIsNotShared) {
+TEST(JointProblem, NamesTheRecordingOfAnOwnParameter) {
   const TwoRuns runs;
   const JointProblem joint = runs.Problem();
   EXPECT_EQ(joint.NameOf(0), "inertia");
   EXPECT_EQ(joint.NameOf(3), "release_angle of recording 1");
   EXPECT_EQ(joint.NameOf(8), "zero_angle of recording 2");
-  EXPECT_THAT(joint.members[1].Own({2, 4, 7}), ElementsAre(2, 4));
+  EXPECT_THAT(joint.members[1].OwnIndices({2, 4, 7}), ElementsAre(2, 4));
 }
 
 }  // namespace

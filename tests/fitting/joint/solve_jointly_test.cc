@@ -13,7 +13,7 @@
 namespace pendulum::solve_jointly_test {
 namespace {
 
-TEST(SolveJointly, EndsWithNoStepWorthMaking) {
+TEST(SolveJointly, EndsWithANegligibleStep) {
   const TwoRuns runs;
   JointProblem joint = runs.Problem();
   const Solution solution = SolveJointly(joint);
@@ -24,7 +24,7 @@ TEST(SolveJointly, EndsWithNoStepWorthMaking) {
   EXPECT_EQ(optimum->free.size(), 9);
 }
 
-TEST(SolveJointly, GivesTheMembersWhatTheyShareAndTheirOwnNoise) {
+TEST(SolveJointly, GivesMembersSharedParametersAndTheirOwnNoise) {
   const TwoRuns runs;
   JointProblem joint = runs.Problem();
   const Solution solution = SolveJointly(joint);

@@ -59,7 +59,7 @@ std::vector<double> Line(const std::vector<double>& time) {
   return line;
 }
 
-TEST(BlockSamples, ReadsEachSampleFromItsSegmentWhateverTheSegments) {
+TEST(BlockSamples, EvaluatesEachSampleWithItsOwnSegment) {
   for (const std::size_t count : {1UL, 255UL, 256UL, 257UL, 1000UL}) {
     const std::vector<double> time = Times(count);
     for (const double length : {0.003, 0.01, 0.37, 2.56, 100.0}) {
@@ -85,7 +85,7 @@ TEST(BlockSamples, SumsInTheSameOrderOnAnyNumberOfThreads) {
   }
 }
 
-TEST(BlockSamples, BeginsAnewAfterATraceThatWasGivenUp) {
+TEST(BlockSamples, RestartsAfterAnAbandonedTrace) {
   for (const std::size_t count : {1'000UL, 150'000UL}) {  // the second is shared among threads
     const std::vector<double> time = Times(count);
     Samples samples;

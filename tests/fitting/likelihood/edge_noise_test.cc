@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/recording/ticks.h"
+#include "pendulum/recording/encoder_edges.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::edge_noise_test {
@@ -46,7 +46,7 @@ TEST(EdgeNoise, IsNormalAtAnEdgeAndAnIntervalInASilence) {
   }
 }
 
-TEST(EdgeNoise, OfASampleHasItsOwnSpread) {
+TEST(EdgeNoise, HasItsOwnSpreadForEachSample) {
   NoiseModel edges = Edges(2e-4);
   edges.spread = std::make_shared<const std::vector<double>>(std::vector<double>{1, 3});
   EXPECT_DOUBLE_EQ(edges.ForSample(1).sigma, 6e-4);
@@ -70,27 +70,30 @@ struct Wave {
   }
 };
 
-TEST(EdgeNoise, TellsErrorsOfStampsFromThoseOfEdges) {
+TEST(EdgeNoise, SeparatesStampErrorsFromEdgeErrors) {
   NoiseModel noise = Edges(1);
   noise.edge.reset();  // every value is an edge
   for (const double stamp : {5e-5, 1e-4, 4e-4}) {
     const Wave wave(1e-4, stamp);
     // The error of each variance is some 4 % (2 / sqrt(N) and their correlation), and so is that of the ratio's root;
     // four times that is allowed.
-    EXPECT_THAT(LikeliestStampRatio(noise, wave.value, wave.readings, RatesOf(wave.time, wave.readings)) / stamp * 1e-4,
-                DoubleNear(1, 0.16))
+    EXPECT_THAT(
+        MostLikelyStampRatio(noise, wave.value, wave.readings, RatesOf(wave.time, wave.readings)) / stamp * 1e-4,
+        DoubleNear(1, 0.16))
         << stamp;
   }
   const Wave none(1e-4, 0);
-  EXPECT_EQ(LikeliestStampRatio(noise, none.value, none.readings, RatesOf(none.time, none.readings)), 0);
+  EXPECT_EQ(MostLikelyStampRatio(noise, none.value, none.readings, RatesOf(none.time, none.readings)), 0);
 }
 
-TEST(EdgeNoise, LeavesASlowMisfitToTheEdges) {
+TEST(EdgeNoise, DoesNotAttributeASlowMisfitToTheStamps) {
   NoiseModel noise = Edges(1);
   noise.edge.reset();
   const Wave wave(1e-4, 0);
-  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // late by 2 ms
-  EXPECT_LT(LikeliestStampRatio(noise, wave.value, late, RatesOf(wave.time, late)), 0.5);
+  const Eigen::VectorXd small_swing_parameters =
+      wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // late by 2 ms
+  EXPECT_LT(MostLikelyStampRatio(noise, wave.value, small_swing_parameters, RatesOf(wave.time, small_swing_parameters)),
+            0.5);
 }
 
 SyntheticOptions Encoder(std::uint64_t seed) {
@@ -110,7 +113,7 @@ SyntheticOptions Encoder(std::uint64_t seed) {
   return run;
 }
 
-TEST(EdgeNoise, IsFoundByAFit) {
+TEST(EdgeNoise, IsEstimatedByAFit) {
   const SyntheticOptions run = Encoder(5);
   const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
   ASSERT_TRUE(edges.edge);
@@ -127,7 +130,7 @@ TEST(EdgeNoise, IsFoundByAFit) {
   }
 }
 
-TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
+TEST(EdgeNoise, GivesSmallerErrorsFromEventsThanFromSamples) {
   constexpr int kRuns = 8;
   Eigen::Vector3d events = Eigen::Vector3d::Zero(), sampled = Eigen::Vector3d::Zero(), counts = events;
   for (int k = 0; k < kRuns; ++k) {
@@ -156,7 +159,7 @@ TEST(EdgeNoise, MakesSmallerErrorsOfEventsThanSamplesOfTheSameEncoderHave) {
 }
 
 /// A lag of a third of a count, if ignored, would look like friction; the fit distinguishes them.
-TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
+TEST(EdgeNoise, SeparatesTheLagOfEdgesFromFriction) {
   SyntheticOptions run = Encoder(7);
   run.edge_lag = 0.35 * kResolution;
   const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
@@ -176,7 +179,7 @@ TEST(EdgeNoise, TellsTheLagOfEdgesFromFriction) {
   EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
 
-TEST(RatesOf, AreFiniteWhereStampsAreAllButTheSame) {
+TEST(RatesOf, AreFiniteForNearlyEqualStamps) {
   Eigen::VectorXd time(6), readings(6);
   time << 0, 1e-16, 0.1, 0.2, std::nextafter(0.2, 1.0), 0.3;
   readings << 0, 0.001, 0.2, 0.4, 0.401, 0.6;
@@ -185,7 +188,7 @@ TEST(RatesOf, AreFiniteWhereStampsAreAllButTheSame) {
 }
 
 /// An encoder records only one row during a hold.
-TEST(EdgeNoise, OfACoarseEncoderFindsTheReleaseBehindOneRow) {
+TEST(EdgeNoise, FindsTheReleaseBehindOneRowOfACoarseEncoder) {
   SyntheticOptions run = Encoder(7);
   run.start = StartKind::kRelease;
   run.release_angle = 0.5;
@@ -200,7 +203,7 @@ TEST(EdgeNoise, OfACoarseEncoderFindsTheReleaseBehindOneRow) {
   EXPECT_LT(fit.noise.sigma, 0.05 * run.resolution);
 }
 
-TEST(EdgeNoise, IsRefusedForRowsThatAreNoEvents) {
+TEST(EdgeNoise, IsRefusedForRowsThatAreNotEvents) {
   SyntheticOptions run = Encoder(1);
   run.rows = RowTiming::kEvenOfEvents;
   run.time_noise = 0;

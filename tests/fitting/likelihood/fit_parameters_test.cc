@@ -28,7 +28,7 @@ TEST(FitParameters, AreInTheDocumentedOrder) {
               ElementsAre("inertia", "viscous", "coulomb", "drag", "initial_angle", "initial_rate", "rate_bias"));
 }
 
-TEST(FitParameters, EndWithTheMotionOfADirectSensorsZero) {
+TEST(FitParameters, EndWithTheZeroMotionOfADirectSensor) {
   const MotionModel viscous = Must(FindMotionModel("viscous"));
   EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kDrifts).back().name,
             "zero_drift");
@@ -36,7 +36,7 @@ TEST(FitParameters, EndWithTheMotionOfADirectSensorsZero) {
   EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kLags).back().name, "edge_lag");
 }
 
-TEST(IsDrift, NamesThoseOfAnglesAndRates) {
+TEST(IsDrift, IsTrueForDriftsOfAnglesAndRates) {
   EXPECT_TRUE(IsDrift("zero_drift"));
   EXPECT_TRUE(IsDrift("bias_drift"));
   EXPECT_FALSE(IsDrift("zero_angle"));

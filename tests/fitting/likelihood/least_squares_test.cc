@@ -16,7 +16,7 @@ namespace {
 const std::vector<PriorTerm> kPriors = {{0, 2.0, 3.0}, {2, -1.0, 0.5}};
 const std::vector<double> kParameters = {1, 7, 3};
 
-TEST(PriorSum, IsTheSumOfSquaredDistancesInStandardDeviations) {
+TEST(PriorSum, IsTheSumOfSquaredStandardizedDistances) {
   EXPECT_DOUBLE_EQ(PriorSum(kPriors, kParameters), 9.0 + 4.0);
   const std::vector<double> means = {2, 7, -1};
   EXPECT_EQ(PriorSum(kPriors, means), 0);
@@ -39,7 +39,7 @@ TEST(AddPriors, AddsNothingWithoutPriors) {
 
 // Two measurements of one quantity, 2 ± 1/3 and 1 ± 1/4, evaluated at 0: information 9 + 16, gradients -3 · 6 and -4 ·
 // 4.
-TEST(AddPriors, AddsUpWhatIsSaidTwiceOfAParameter) {
+TEST(AddPriors, AddsRepeatedPriorsOfOneParameter) {
   const std::vector<PriorTerm> twice = {{0, 2.0, 3.0}, {0, 1.0, 4.0}};
   const std::vector<double> at = {0};
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(2, 2);
@@ -86,10 +86,10 @@ Eigen::MatrixXd SumsOf(const Compressed& of) {
   return rows.transpose() * rows;
 }
 
-TEST(CompressResiduals, HaveTheSameProductsAsAllResidualsOfAnyScale) {
+TEST(CompressResiduals, PreservesProductsOfResidualsAtAnyScale) {
   std::mt19937_64 generator(20261123);
   std::normal_distribution<double> normal;
-  for (const Eigen::Index size : {1, 3, kMostCompressed}) {
+  for (const Eigen::Index size : {1, 3, kMaxCompressed}) {
     Compressed all{Eigen::VectorXd(40), Eigen::MatrixXd(40, size)};
     for (Eigen::Index i = 0; i < 40; ++i) {
       all.residuals[i] = normal(generator);
@@ -103,14 +103,14 @@ TEST(CompressResiduals, HaveTheSameProductsAsAllResidualsOfAnyScale) {
 }
 
 // The second parameter has twice the effect of the first; the third has no effect.
-TEST(CompressResiduals, OfWhatTheDataDoNotTellHaveTheSameProductsAndNoInfinity) {
+TEST(CompressResiduals, StaysFiniteForUndeterminedParameters) {
   Compressed all{Eigen::Vector3d(1, 2, 4), Eigen::Matrix3d{{1, 2, 0}, {3, 6, 0}, {-1, -2, 0}}};
   const Compressed compressed = Compress(SumsOf(all));
   EXPECT_TRUE(SumsOf(compressed).isApprox(SumsOf(all), 1e-12)) << SumsOf(compressed);
 }
 
 // A gradient too large for the deviance, as the information of a likelihood can produce: 4² / 1 > 9.
-TEST(CompressResiduals, KeepDevianceAndGradientAndShortenTheStepWhereTheyDoNotFit) {
+TEST(CompressResiduals, PreservesDevianceAndGradientForInconsistentSums) {
   const Compressed compressed = Compress(Eigen::Matrix2d{{1, 4}, {4, 9}});
   const Eigen::MatrixXd sums = SumsOf(compressed);
   EXPECT_NEAR(sums(1, 1), 9, 1e-14);
@@ -118,7 +118,7 @@ TEST(CompressResiduals, KeepDevianceAndGradientAndShortenTheStepWhereTheyDoNotFi
   EXPECT_NEAR(sums(0, 0), 16.0 / 9, 1e-14);
 }
 
-TEST(CompressResiduals, LeavesOutColumnsThatAreNotAskedFor) {
+TEST(CompressResiduals, SkipsColumnsThatAreNotRequested) {
   Eigen::Vector3d residuals;
   Eigen::Vector3d column;
   double* columns[] = {nullptr, column.data()};

@@ -32,7 +32,7 @@ void ExpectNear(const NoiseLikelihood& actual, const NoiseLikelihood& exact, dou
   EXPECT_THAT(actual.mixed * sigma, DoubleNear(exact.mixed * sigma, 1e-5));
 }
 
-TEST(LevelLikelihoods, AreTheNoisesOnBothSidesOfALevelAndBeyondTheTable) {
+TEST(LevelLikelihoods, MatchTheNoiseModelInsideAndOutsideTheTable) {
   for (const double counts : {0.05, 0.25, 1.0, 3.0}) {
     const NoiseModel noise = Levels(counts * 0.0035);
     const LevelLikelihoods likelihoods(noise, kMany);
@@ -44,14 +44,14 @@ TEST(LevelLikelihoods, AreTheNoisesOnBothSidesOfALevelAndBeyondTheTable) {
   }
 }
 
-TEST(LevelLikelihoods, OfAReadingAtAnEndOfTheRangeAreExact) {
+TEST(LevelLikelihoods, AreExactAtAnEndOfTheRange) {
   NoiseModel noise = Levels(0.001);
   noise.high = kLevel;
   const LevelLikelihoods likelihoods(noise, kMany);
   EXPECT_EQ(likelihoods.At(kLevel, kLevel - 0.0004).log, noise.LikelihoodAt(kLevel, kLevel - 0.0004).log);
 }
 
-TEST(LevelLikelihoods, OfFewReadingsAreExact) {
+TEST(LevelLikelihoods, AreExactForFewReadings) {
   const NoiseModel noise = Levels(0.001);
   const LevelLikelihoods likelihoods(noise, 100);
   EXPECT_EQ(likelihoods.At(kLevel, kLevel + 0.0007).score, noise.LikelihoodAt(kLevel, kLevel + 0.0007).score);

@@ -74,7 +74,7 @@ TEST(MergeSamples, CountsEqualSamplesAndPutsCensoredOnesLast) {
   EXPECT_LT((samples.slope - slope).norm(), 1e-12);
 }
 
-TEST(LevelSamples, NearAreThoseThatMayComeNearAnEdgeTheNearestFirst) {
+TEST(LevelSamples, NearListsSamplesNearAnEdgeNearestFirst) {
   // Depths .2, .2, -.2; for the censored samples .2, -.3.
   const LevelSamples none_moves = Samples().Near(0.1, 0);
   EXPECT_EQ(none_moves.levels, 1);
@@ -84,7 +84,7 @@ TEST(LevelSamples, NearAreThoseThatMayComeNearAnEdgeTheNearestFirst) {
   EXPECT_EQ(some_move.count, (Eigen::VectorXd(4) << 1, 2, 1, 1).finished());
 }
 
-TEST(LineLikelihood, SumsWhatTheNoiseModelSays) {
+TEST(LineLikelihood, MatchesTheSumOfTheNoiseModel) {
   const LevelSamples samples = Samples();
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;

@@ -91,14 +91,14 @@ void ForEachNoiseAndPhase(const std::function<void(double sigma, double phase)>&
   }
 }
 
-TEST(QuantizedLikelihood, HasScoresOfMeanZeroWhoseVarianceIsTheInformation) {
+TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformation) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
     const int reach = static_cast<int>(std::ceil(12 * sigma)) + 2;  // 12 σ: the probability beyond is 1e-33
     ExpectKernel(SumOver(sigma, phase, -reach, reach));
   });
 }
 
-TEST(QuantizedLikelihood, HasTheKernelOfASensorThatEndsNearby) {
+TEST(QuantizedLikelihood, HasTheKernelOfASensorWithANearbyEnd) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
     ExpectKernel(SumOver(sigma, phase, -1, 1));
     ExpectKernel(SumOver(sigma, phase, 0, 4));   // often at its lower end
@@ -107,7 +107,7 @@ TEST(QuantizedLikelihood, HasTheKernelOfASensorThatEndsNearby) {
 }
 
 /// With a wrong σ the sums must not hold.
-TEST(QuantizedLikelihood, DoesNotHaveTheKernelOfAnotherNoise) {
+TEST(QuantizedLikelihood, DiffersFromTheKernelOfOtherNoise) {
   const boost::math::normal normal(0.3, 0.5);
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
@@ -156,40 +156,40 @@ double SigmaOfBrent(const Sample& sample, double low, double high) {
   return std::exp(boost::math::tools::brent_find_minima(minus_log, std::log(low), std::log(high), 40).first);
 }
 
-TEST(LikeliestSigma, OfGaussianNoiseIsTheRootOfTheMeanSquare) {
+TEST(MostLikelySigma, IsTheRmsForGaussianNoise) {
   Sample sample = Drawn(NoiseFamily::kGaussian, 0.37, 0, Normal());
   const double expected = std::sqrt((sample.value - sample.readings).squaredNorm() / 600);
   for (const double start : {1e-3, 0.3, 1.0, 50.0}) {
     sample.noise.sigma = start;
-    EXPECT_NEAR(LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-6) / expected, 1, 1e-3) << start;
+    EXPECT_NEAR(MostLikelySigma(sample.noise, sample.value, sample.readings, 1e-6) / expected, 1, 1e-3) << start;
   }
 }
 
-TEST(LikeliestSigma, OfLevelsIsWhereBrentFindsTheLargestLikelihood) {
+TEST(MostLikelySigma, MatchesBrentOnLevels) {
   for (const double sigma : {0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 3.0}) {
     SCOPED_TRACE(sigma);
     Sample sample = Drawn(NoiseFamily::kQuantized, sigma, 1, Normal());
     const double expected = SigmaOfBrent(sample, 0.3 * sigma, 3 * sigma);
     for (const double start : {0.06, 0.3, 2.0}) {
       sample.noise.sigma = start;
-      EXPECT_NEAR(LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-3) / expected, 1, 1e-3) << start;
+      EXPECT_NEAR(MostLikelySigma(sample.noise, sample.value, sample.readings, 1e-3) / expected, 1, 1e-3) << start;
     }
     // Four standard errors. Of 600 readings, only a share of σ / q lies near an edge and carries information about σ.
     EXPECT_NEAR(expected / sigma, 1, 4 / std::sqrt(600 * std::min(2 * sigma, 1.0)));
   }
 }
 
-TEST(LikeliestSigma, OfStudentsNoiseIsWhereBrentFindsTheLargestLikelihood) {
+TEST(MostLikelySigma, MatchesBrentForStudentsNoise) {
   Sample sample = Drawn(NoiseFamily::kStudent, 0.2, 0, boost::random::student_t_distribution<double>(4));
   const double expected = SigmaOfBrent(sample, 0.02, 2);
   for (const double start : {0.01, 0.2, 5.0}) {
     sample.noise.sigma = start;
-    EXPECT_NEAR(LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-6) / expected, 1, 1e-3) << start;
+    EXPECT_NEAR(MostLikelySigma(sample.noise, sample.value, sample.readings, 1e-6) / expected, 1, 1e-3) << start;
   }
   EXPECT_NEAR(expected / 0.2, 1, 4 / std::sqrt(600));
 }
 
-TEST(LikeliestSigma, OfHubersNoiseIsHisProposalTwo) {
+TEST(MostLikelySigma, IsProposalTwoForHubersNoise) {
   const double width = NoiseModel::kHuberWidth;
   const boost::math::normal normal;
   const auto square = [&](double z) { return std::min(z * z, width * width) * boost::math::pdf(normal, z); };
@@ -199,17 +199,17 @@ TEST(LikeliestSigma, OfHubersNoiseIsHisProposalTwo) {
   Sample sample = Drawn(NoiseFamily::kHuber, 0.2, 0, Normal());
   for (const double start : {0.05, 0.2, 2.0}) {
     sample.noise.sigma = start;
-    const double sigma = LikeliestSigma(sample.noise, sample.value, sample.readings, 1e-6);
+    const double sigma = MostLikelySigma(sample.noise, sample.value, sample.readings, 1e-6);
     const Eigen::ArrayXd z = (sample.value - sample.readings).array() / sigma;
     EXPECT_NEAR(z.square().min(width * width).mean() / expected, 1, 1e-3) << start;
     EXPECT_NEAR(sigma / 0.2, 1, 4 / std::sqrt(2 * 600 * 0.8)) << start;  // its efficiency for normal noise is above .8
   }
 }
 
-TEST(LikeliestSigma, OfLevelsThatExplainEverySampleIsTheSmallest) {
+TEST(MostLikelySigma, IsTheSmallestIfLevelsExplainEverySample) {
   Sample sample = Drawn(NoiseFamily::kQuantized, 0, 1, Normal());
   for (const double smallest : {0.05, 0.01}) {
-    EXPECT_NEAR(LikeliestSigma(sample.noise, sample.value, sample.readings, smallest) / smallest, 1, 0.01);
+    EXPECT_NEAR(MostLikelySigma(sample.noise, sample.value, sample.readings, smallest) / smallest, 1, 0.01);
   }
 }
 

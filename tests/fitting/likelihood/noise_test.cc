@@ -66,7 +66,7 @@ double Relative(double value, double expected) {
   return expected == 0 ? std::abs(value) : std::abs(value / expected - 1);
 }
 
-TEST(GaussianInterval, HasTheProbabilityAndDensitiesOfFiveHundredDigits) {
+TEST(GaussianInterval, MatchesFiveHundredDigitValues) {
   for (const KnownInterval& known : KnownIntervals()) {
     SCOPED_TRACE(std::to_string(known.a) + " to " + std::to_string(known.b));
     const IntervalProbability interval = GaussianInterval(known.a, known.b);
@@ -76,7 +76,7 @@ TEST(GaussianInterval, HasTheProbabilityAndDensitiesOfFiveHundredDigits) {
   }
 }
 
-TEST(GaussianInterval, IsItsOwnMirrorImage) {
+TEST(GaussianInterval, IsSymmetric) {
   for (const KnownInterval& known : KnownIntervals()) {
     const IntervalProbability interval = GaussianInterval(known.a, known.b);
     const IntervalProbability mirrored = GaussianInterval(-known.b, -known.a);
@@ -87,7 +87,7 @@ TEST(GaussianInterval, IsItsOwnMirrorImage) {
 }
 
 /// The log-probability and its slope are continuous where two formulas meet: ∂log/∂b = upper.
-TEST(GaussianInterval, HasNoStepsWhereItsFormulasMeet) {
+TEST(GaussianInterval, IsContinuousWhereFormulasMeet) {
   for (const double a : {-1.0, -1e-9, 0.0, 0.3, 9.0, 10.0, 11.0, 20.0, 40.0}) {
     for (double length = 1e-5; length < 2; length *= 1.01) {
       const double b = a + length;
@@ -191,7 +191,7 @@ double BestLog(const Case& at) {
   return std::log(std::erf(0.5 * noise.resolution / noise.sigma / std::sqrt(2.0)));
 }
 
-TEST(NoiseModel, HasADevianceOfTwiceWhatTheLogLikelihoodLacks) {
+TEST(NoiseModel, HasTwiceTheLogLikelihoodDeficitAsDeviance) {
   for (const Case& at : Cases()) {
     SCOPED_TRACE(at.what + ", sigma " + std::to_string(at.noise.sigma) + ", m " + std::to_string(at.m));
     const NoiseLikelihood l = at.noise.LikelihoodAt(at.y, at.m);
@@ -204,7 +204,7 @@ TEST(NoiseModel, HasADevianceOfTwiceWhatTheLogLikelihoodLacks) {
   }
 }
 
-TEST(NoiseModel, HasNoDevianceWhereTheModelIsTheReading) {
+TEST(NoiseModel, HasNoDevianceIfTheModelMatchesTheReading) {
   for (const auto family :
        {NoiseFamily::kGaussian, NoiseFamily::kQuantized, NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     const SampleLikelihood sample = Noise(family, 0.3, 1).At(2, 2);
@@ -222,7 +222,7 @@ double Integral(const Function& f, const std::vector<double>& corners) {
   return sum;
 }
 
-TEST(NoiseModel, OfADensityIsOneInSumAndItsScoresVarianceIsItsInformation) {
+TEST(NoiseModel, HasUnitIntegralAndScoreVarianceOfItsInformation) {
   const double corner = NoiseModel::kHuberWidth;
   for (const auto family : {NoiseFamily::kGaussian, NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     SCOPED_TRACE(std::string(NoiseFamilyName(family)));
@@ -247,7 +247,7 @@ TEST(NoiseModel, OfADensityIsOneInSumAndItsScoresVarianceIsItsInformation) {
   }
 }
 
-TEST(NoiseModel, HasADistributionThatItsProbabilitiesAddUpTo) {
+TEST(NoiseModel, HasADistributionThatSumsItsProbabilities) {
   for (const Case& at : Cases()) {
     if (at.noise.family != NoiseFamily::kQuantized && !at.noise.IsCensored(at.y)) continue;
     const auto [below, up_to] = at.noise.DistributionAt(at.y, at.m);
@@ -269,7 +269,7 @@ TEST(LogLikelihood, IsTheSumOverSamples) {
   EXPECT_NEAR(LogLikelihood(Noise(NoiseFamily::kGaussian, 0.5), value, readings), expected, 1e-14);
 }
 
-TEST(NoiseModel, ACensoredReadingOfARobustFamilyIsTheRestOfItsDensity) {
+TEST(NoiseModel, IntegratesTheDensityForRobustCensoredReadings) {
   for (const auto family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     NoiseModel open = Noise(family, 0.1);
     NoiseModel ended = open;
@@ -290,7 +290,7 @@ TEST(NoiseModel, ACensoredReadingOfARobustFamilyIsTheRestOfItsDensity) {
   }
 }
 
-TEST(NoiseModel, ACensoredReadingOfARobustFamilyHasTheDerivativesOfItsLogarithm) {
+TEST(NoiseModel, HasTheDerivativesOfRobustCensoredReadings) {
   constexpr double kSmall = 1e-5;
   for (const auto family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     NoiseModel noise = Noise(family, 0.1);

@@ -90,14 +90,14 @@ void ExpectColumns() {
   }
 }
 
-TEST(EvaluateAt, IsTheSegmentAtEverySampleOfAnyCount) {
+TEST(EvaluateAt, MatchesTheSegmentForAnyNumberOfSamples) {
   ExpectColumns<double, false>();
   ExpectColumns<double, true>();
   ExpectColumns<Dual<4>, true>();
   ExpectColumns<Dual<5>, false>();
 }
 
-TEST(SumProducts, AreTheSumsOverTheSamplesAlone) {
+TEST(SumProducts, SumsOnlyTheGivenSamples) {
   for (const int count : {1, 3, 4, 30, kFull}) {
     const auto at = std::make_unique<Block>();
     EvaluateAt<true>(Swing<Dual<4>>(), at->time.data(), count, at->rows());
@@ -144,7 +144,7 @@ void Narrow(Block& at, int count, RowProducts<kRows>& sums) {
   baseline::SumProducts<kRows>(at.rows(), count, sums.data());
 }
 
-TEST(InstructionSets, OfAvx2AgreeUpToRounding) {
+TEST(InstructionSets, Avx2AgreesUpToRounding) {
   if (kInstructionSet < InstructionSet::kAvx2) GTEST_SKIP() << "this processor has no AVX2";
   ExpectAgreement(Narrow, [](Block& at, int count, RowProducts<kRows>& sums) {
     avx2::Evaluate<true>(Swing<Dual<4>>(), at.time.data(), count, at.rows());
@@ -153,7 +153,7 @@ TEST(InstructionSets, OfAvx2AgreeUpToRounding) {
   });
 }
 
-TEST(InstructionSets, OfAvx512AgreeUpToRounding) {
+TEST(InstructionSets, Avx512AgreesUpToRounding) {
   if (kInstructionSet < InstructionSet::kAvx512) GTEST_SKIP() << "this processor has no AVX-512";
   ExpectAgreement(Narrow, [](Block& at, int count, RowProducts<kRows>& sums) {
     avx512::Evaluate<true>(Swing<Dual<4>>(), at.time.data(), count, at.rows());

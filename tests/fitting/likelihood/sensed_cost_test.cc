@@ -48,7 +48,7 @@ double ColumnError(const Eigen::VectorXd& column, const Eigen::VectorXd& differe
   return (column - difference)(quiet).lpNorm<Eigen::Infinity>() / column.lpNorm<Eigen::Infinity>();
 }
 
-TEST(Motion, HasTheJacobianOfCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
+TEST(Motion, MatchesCentralDifferencesForEveryModel) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
     if (quantity == Quantity::kRate) return;
     const TrajectoryData data = Samples(quantity, kSamples);
@@ -71,7 +71,7 @@ TEST(Motion, HasTheJacobianOfCentralDifferencesForEveryModelThroughReversalsAndT
   });
 }
 
-TEST(SensedReadings, HaveTheJacobianOfCentralDifferencesForEverySensorThroughReversalsAndTheStop) {
+TEST(SensedReadings, HaveTheJacobianOfCentralDifferencesForEverySensor) {
   for (const Example& example : Examples()) {
     ForEachCase([&](const MotionModel& model, StartKind start, Quantity quantity) {
       if (quantity == Quantity::kRate) return;
@@ -105,7 +105,7 @@ TEST(SensedReadings, HaveTheJacobianOfCentralDifferencesForEverySensorThroughRev
 }
 
 /// J'J, minus J'r and r'r, computed from the readings and derivatives above and the noise's standard deviation.
-TEST(SensedSums, AreThoseOfReadingsAndJacobian) {
+TEST(SensedSums, MatchReadingsAndJacobian) {
   const MotionModel model = FindMotionModel("coulomb").value();
   for (const Example& example : Examples()) {
     TrajectoryData data = Samples(example.quantity, 500);

@@ -36,7 +36,7 @@ void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const 
   EXPECT_THAT(error, Le(1e-6 * scale)) << "column " << column;
 }
 
-TEST(Readings, HaveTheJacobianOfCentralDifferencesForEveryModelThroughReversalsAndTheStop) {
+TEST(Readings, HaveTheJacobianOfCentralDifferences) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
     const TrajectoryData data = Samples(quantity, 5000);
     const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(model, start, data);
@@ -58,12 +58,12 @@ TEST(Readings, HaveTheJacobianOfCentralDifferencesForEveryModelThroughReversalsA
   });
 }
 
-TEST(Readings, OfAZeroThatDriftsHaveTheJacobianOfCentralDifferences) {
+TEST(Readings, HaveTheJacobianForADriftingZero) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
     TrajectoryData data = Samples(quantity, 500);
     const auto steady = MakeTrajectoryCost(model, start, data);
     TrajectoryData drifting = data;
-    drifting.moves = drifting.time;
+    drifting.zero_motion_factors = drifting.time;
     const auto cost = MakeTrajectoryCost(model, start, drifting);
     std::vector<double> p = TypicalParameters(model, start);
     Eigen::VectorXd readings;
@@ -88,7 +88,7 @@ TEST(Readings, OfAZeroThatDriftsHaveTheJacobianOfCentralDifferences) {
 }
 
 // Undamped and linear: A cos(ω0 (t - t_r)) + zero, and its derivatives, calculated by hand.
-TEST(Readings, AreThoseOfTheUndampedLinearPendulum) {
+TEST(Readings, MatchTheUndampedLinearPendulum) {
   for (const Quantity quantity : kQuantities) {
     const TrajectoryData data = Samples(quantity, 1001);
     const auto cost = MakeTrajectoryCost({"linear", "viscous", Gravity::kLinear}, StartKind::kRelease, data);

@@ -55,7 +55,7 @@ void ExpectSums(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected, 
   }
 }
 
-TEST(Sums, AreThoseOfReadingsAndJacobian) {
+TEST(Sums, MatchReadingsAndJacobian) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
     const Example example(model, start, quantity);
     const Eigen::MatrixXd expected = ExpectedSums(*example.cost, example.data, example.trial);
@@ -103,7 +103,7 @@ TEST(Evaluate, GivesTheCostGradientAndGaussNewtonMatrixOfAllSamples) {
   });
 }
 
-TEST(Evaluate, LeavesOutTheJacobiansThatAreNotAskedFor) {
+TEST(Evaluate, SkipsJacobiansThatAreNotRequested) {
   const Example example(FindMotionModel("drag").value(), StartKind::kRelease, Quantity::kAngle);
   const std::size_t size = example.trial.size();
   const Evaluation whole = Evaluate(*example.cost, example.trial, std::vector<bool>(size, true));
@@ -121,7 +121,7 @@ TEST(Evaluate, LeavesOutTheJacobiansThatAreNotAskedFor) {
   }
 }
 
-TEST(Evaluate, AskedForResidualsAloneGivesTheirNorm) {
+TEST(Evaluate, GivesTheNormOfResidualsWithoutJacobians) {
   const Example example(FindMotionModel("coulomb").value(), StartKind::kMoving, Quantity::kRate);
   std::vector<const double*> blocks;
   for (const double& p : example.trial) blocks.push_back(&p);
@@ -158,7 +158,7 @@ void ExpectRank(double moving, Eigen::Index rank) {
 
 // During the hold only the sum of release angle and zero is determined. One later sample determines one combination of
 // all others.
-TEST(Evaluate, GivesADirectionThatTheDataDoNotSeeARowOfZeros) {
+TEST(Evaluate, GivesAZeroRowForAnUndeterminedDirection) {
   ExpectRank(0, 1);
   for (int i = 1; i <= 30; ++i) ExpectRank(0.003 * i, 2);
 }
@@ -184,7 +184,7 @@ int AcceptancesOfARelease(const std::vector<double>& p, Quantity quantity = Quan
   return Acceptances(*MakeTrajectoryCost(FindMotionModel("coulomb").value(), StartKind::kRelease, data), p);
 }
 
-TEST(TrajectoryCost, RefusesAnInertiaThatIsNotPositive) {
+TEST(TrajectoryCost, RefusesANonPositiveInertia) {
   EXPECT_EQ(AcceptancesOfARelease({0.04, 0.001, 0.01, 0.4, 0.5, 0}), 5);
   for (const double inertia : {0.0, -0.04, kNan}) {
     EXPECT_EQ(AcceptancesOfARelease({inertia, 0.001, 0.01, 0.4, 0.5, 0}), 0) << inertia;
@@ -205,7 +205,7 @@ TEST(TrajectoryCost, RefusesATrialThatNeverMoves) {
   EXPECT_EQ(Acceptances(*moving, {0.04, 0.001, 0.5, 0.4, 1, 0}), 5);
 }
 
-TEST(TrajectoryCost, RefusesAReleaseOutsideTheTimesGiven) {
+TEST(TrajectoryCost, RefusesAReleaseOutsideTheGivenTimes) {
   for (const double time : {0.0, 0.5, 2.0}) {  // latest_release is 2
     EXPECT_EQ(AcceptancesOfARelease({0.04, 0.001, 0.01, 0.4, time, 0}), 5) << time;
   }
@@ -214,7 +214,7 @@ TEST(TrajectoryCost, RefusesAReleaseOutsideTheTimesGiven) {
   }
 }
 
-TEST(TrajectoryCost, RefusesNumbersThatAreNotFinite) {
+TEST(TrajectoryCost, RefusesNonFiniteNumbers) {
   for (const Quantity quantity : kQuantities) {
     EXPECT_EQ(AcceptancesOfARelease({0.04, 1e300, 0.01, 0.4, 0.5, 0}, quantity), 0);
     EXPECT_EQ(AcceptancesOfARelease({0.04, kNan, 0.01, 0.4, 0.5, 0}, quantity), 0);
@@ -223,7 +223,7 @@ TEST(TrajectoryCost, RefusesNumbersThatAreNotFinite) {
 
 // ---- Samples in use ----------------------------------------------------------------------------------------------
 
-TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
+TEST(TrajectoryCost, UsesOnlyTheFirstSamplesOnRequest) {
   Example example(FindMotionModel("coulomb").value(), StartKind::kRelease, Quantity::kAngle);
   Eigen::MatrixXd whole, part, again;
   ASSERT_TRUE(example.cost->Sums(example.trial, &whole));
@@ -246,7 +246,7 @@ TEST(TrajectoryCost, UsesOnlyTheFirstSamplesWhenAskedTo) {
 }
 
 // A sample may coincide with the release, and several with one step boundary of the trace.
-TEST(TrajectoryCost, TakesSamplesWhereverTheyFall) {
+TEST(TrajectoryCost, AcceptsSamplesAtAnyTime) {
   TrajectoryData data = Samples(Quantity::kAngle, 0);
   data.time = {0, 0.2, 0.5, std::nextafter(0.5, 1.0), 0.50001, 0.7, 3, 3.5, 3.50001, 20};
   data.value.assign(data.time.size(), 0);
@@ -259,7 +259,7 @@ TEST(TrajectoryCost, TakesSamplesWhereverTheyFall) {
   }
 }
 
-TEST(TrajectoryCost, GivesTheTraceOfItsParameters) {
+TEST(TrajectoryCost, ReturnsTheTraceOfItsParameters) {
   const TrajectoryData data = Samples(Quantity::kAngle, 1000);
   const auto cost = MakeTrajectoryCost({"coulomb", "coulomb", Gravity::kLinear}, StartKind::kRelease, data);
   // Amplitudes 0.43, 0.37, ..., 0.01 < τ_c = 0.03, half swings of π/5 s.
@@ -338,7 +338,7 @@ double FitAcrossTheChange(std::size_t samples, double truth, double from) {
   return FittedCoulomb(*cost, change * (1 + from)) / change - 1;
 }
 
-TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChangeWhenItEndsSoonAfterTheStop) {
+TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChange) {
   for (const double truth : {-3e-4, 3e-4}) {
     for (const double from : {-2e-3, 2e-3}) {
       EXPECT_THAT(FitAcrossTheChange(1980, truth, from), DoubleNear(truth, 1e-8)) << from;  // stop after 1962 samples
@@ -348,7 +348,7 @@ TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChangeWhenItEndsSoonAfterThe
 
 // The reason for Search in search.h: during 5 s of rest at the wrong angle the true number of half swings is not the
 // lower minimum at once.
-TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwingsWhenItEndsLongAfterTheStop) {
+TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwings) {
   for (const double side : {-1.0, 1.0}) {
     EXPECT_THAT(side * FitAcrossTheChange(2500, side * 3e-4, side * 2e-3), DoubleNear(3e-4, 1e-8));
     EXPECT_THAT(side * FitAcrossTheChange(2500, side * 3e-4, -side * 2e-3), Le(0));

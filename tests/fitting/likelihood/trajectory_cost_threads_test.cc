@@ -78,7 +78,7 @@ TEST(Threads, ChangeNoBitOfLeastSquares) {
   ExpectSameOnAnyNumberOfThreads(noise);
 }
 
-TEST(Threads, ChangeNoBitForARateOfAMotionThatWasOnItsWay) {
+TEST(Threads, ChangeNoBitForARateInMotion) {
   NoiseModel noise;
   noise.sigma = 0.002;
   ExpectSameOnAnyNumberOfThreads(noise, StartKind::kMoving, Quantity::kRate);

@@ -13,26 +13,27 @@ namespace {
 using testing::DoubleNear;
 
 /// Residuals of AR(p) noise of variance 1 from its recursion, for large sample numbers.
-Eigen::VectorXd Recursion(const Autocorrelation& memory, Eigen::Index count, std::uint64_t seed) {
+Eigen::VectorXd Recursion(const Autocorrelation& autocorrelation, Eigen::Index count, std::uint64_t seed) {
   constexpr Eigen::Index kBefore = 2000;
-  Eigen::VectorXd noise = std::sqrt(memory.innovation_variance) * NormalNumbers(count + kBefore, seed);
-  const auto order = static_cast<Eigen::Index>(memory.autoregressive.size());
+  Eigen::VectorXd noise = std::sqrt(autocorrelation.innovation_variance) * NormalNumbers(count + kBefore, seed);
+  const auto order = static_cast<Eigen::Index>(autocorrelation.autoregressive.size());
   for (Eigen::Index t = order; t < noise.size(); ++t) {
-    for (Eigen::Index j = 1; j <= order; ++j) noise[t] += memory.autoregressive[j - 1] * noise[t - j];
+    for (Eigen::Index j = 1; j <= order; ++j) noise[t] += autocorrelation.autoregressive[j - 1] * noise[t - j];
   }
   return noise.tail(count);
 }
 
-TEST(MaximizeCorrelatedLikelihood, RecoversASecondOrderMemoryWithinItsErrors) {
+TEST(MaximizeCorrelatedLikelihood, RecoversASecondOrderProcessWithinItsErrors) {
   constexpr int kSeeds = 1000;
   constexpr Eigen::Index kSamples = 1000;
-  const Autocorrelation memory = Autoregressive({1.5, -0.8});
+  const Autocorrelation autocorrelation = Autoregressive({1.5, -0.8});
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const CorrelatedResiduals data = Residuals(EvenTimes(kSamples), Recursion(memory, kSamples, seed), 0);
+    const CorrelatedResiduals data = Residuals(EvenTimes(kSamples), Recursion(autocorrelation, kSamples, seed), 0);
     const auto found = MaximizeCorrelatedLikelihood(data, Autoregressive({0.1, 0.1}));
     ASSERT_TRUE(found);
-    for (int j : {0, 1}) squares[j] += std::pow(found->memory.autoregressive[j] - memory.autoregressive[j], 2);
+    for (int j : {0, 1})
+      squares[j] += std::pow(found->autocorrelation.autoregressive[j] - autocorrelation.autoregressive[j], 2);
   }
   // Box & Jenkins, section 7.2: var φ_1 = var φ_2 = (1 - φ_2²) / N; the tolerance is three of its own errors.
   const double expected = (1 - 0.8 * 0.8) / kSamples;
@@ -42,7 +43,7 @@ TEST(MaximizeCorrelatedLikelihood, RecoversASecondOrderMemoryWithinItsErrors) {
 }
 
 /// With noise of half a count, rounding reduces the correlation of neighbours by a fourth: 0.9 / (1 + 1/3) = 0.675.
-TEST(MaximizeCorrelatedLikelihood, SeesTheMemoryUnderRounding) {
+TEST(MaximizeCorrelatedLikelihood, FindsTheCorrelationBelowRounding) {
   constexpr int kSeeds = 40;
   constexpr Eigen::Index kSamples = 2000;
   constexpr double kCount = 2;
@@ -54,7 +55,7 @@ TEST(MaximizeCorrelatedLikelihood, SeesTheMemoryUnderRounding) {
     const CorrelatedResiduals data = Residuals(time, (reading / kCount).round() * kCount - swing, kCount * kCount / 12);
     const auto found = MaximizeCorrelatedLikelihood(data, Autoregressive({0.6}));
     ASSERT_TRUE(found);
-    phi += found->memory.autoregressive[0] / kSeeds;
+    phi += found->autocorrelation.autoregressive[0] / kSeeds;
     sigma += found->sigma / kSeeds;
   }
   // Errors of one recording are some 0.014 and 0.06, of the mean 0.002 and 0.01. Allowed: three of these plus a bias of
@@ -64,21 +65,21 @@ TEST(MaximizeCorrelatedLikelihood, SeesTheMemoryUnderRounding) {
 }
 
 /// S. S. Wilks, Annals of Mathematical Statistics 9:60, 1938.
-TEST(MaximizeCorrelatedLikelihood, GainsAsChiSquaredByAShiftThatIsKnown) {
+TEST(MaximizeCorrelatedLikelihood, GainsChiSquareForAKnownShift) {
   constexpr int kSeeds = 1000;
   constexpr Eigen::Index kSamples = 1000;
-  const Autocorrelation memory = Autoregressive({0.7});
+  const Autocorrelation autocorrelation = Autoregressive({0.7});
   const Eigen::Vector3d truth(0.5, -0.3, 0.2);
   const Eigen::MatrixXd columns = SwingColumns(EvenTimes(kSamples));
   double statistic = 0;
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    CorrelatedResiduals data = Residuals(EvenTimes(kSamples), Recursion(memory, kSamples, seed), 0.2);
+    CorrelatedResiduals data = Residuals(EvenTimes(kSamples), Recursion(autocorrelation, kSamples, seed), 0.2);
     data.residual += std::sqrt(0.2) * NormalNumbers(kSamples, kSeeds + seed);
-    const auto at_truth = MaximizeCorrelatedLikelihood(data, memory);
+    const auto at_truth = MaximizeCorrelatedLikelihood(data, autocorrelation);
     data.residual += columns * truth;
     AddColumns(columns, &data);
-    const auto found = MaximizeCorrelatedLikelihood(data, memory);
+    const auto found = MaximizeCorrelatedLikelihood(data, autocorrelation);
     ASSERT_TRUE(at_truth && found);
     statistic += 2 * (found->log_likelihood - at_truth->log_likelihood) / kSeeds;
     shift += found->shift / kSeeds;

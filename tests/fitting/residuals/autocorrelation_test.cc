@@ -103,7 +103,7 @@ void ExpectDenseSum(const Process& process, const Eigen::VectorXd& time) {
 
 // ---- CorrelatedSum -------------------------------------------------------------------------------------------------
 
-TEST(CorrelatedSum, IsThatOfTheCorrelationsWrittenOut) {
+TEST(CorrelatedSum, MatchesTheFullCorrelationMatrix) {
   for (const Process& process : EvenProcesses()) ExpectDenseSum(process, EvenTimes(700));
 }
 
@@ -116,7 +116,7 @@ TEST(CorrelatedSum, BridgesShortAndLongGapsByWholeIntervals) {
   for (const Process& process : EvenProcesses()) ExpectDenseSum(process, WithSomeMissing(EvenTimes(800), 0.2, 1));
 }
 
-TEST(CorrelatedSum, TakesStretchesFarApartAsIndependent) {
+TEST(CorrelatedSum, TreatsDistantPartsAsIndependent) {
   const Process process = FirstOrder(0.98);
   Eigen::VectorXd time = EvenTimes(600);
   time.tail(300).array() += 1e9;
@@ -126,7 +126,7 @@ TEST(CorrelatedSum, TakesStretchesFarApartAsIndependent) {
   EXPECT_THAT((CorrelatedSum(process.model, time, weights) - apart).norm() / apart.norm(), DoubleNear(0, 1e-9));
 }
 
-TEST(CorrelatedSum, TakesJitterAsEven) {
+TEST(CorrelatedSum, TreatsJitterAsEvenSampling) {
   Eigen::VectorXd time = EvenTimes(300);
   const Eigen::MatrixXd weights = SwingColumns(time);
   const Process process = FirstOrder(0.9);
@@ -135,7 +135,7 @@ TEST(CorrelatedSum, TakesJitterAsEven) {
   EXPECT_EQ(CorrelatedSum(process.model, time, weights), expected);
 }
 
-TEST(CorrelatedSum, OfAContinuousProcessHoldsAtAnyStamps) {
+TEST(CorrelatedSum, AcceptsAnyTimeStampsForAContinuousProcess) {
   for (const double decay_time : {0.001, 0.1, 3.0, 1e4}) {
     for (const double white_share : {0.0, 0.4, 1.0}) {
       ExpectDenseSum(Continuous(decay_time, white_share), EventTimes(700, 3));
@@ -143,18 +143,18 @@ TEST(CorrelatedSum, OfAContinuousProcessHoldsAtAnyStamps) {
   }
 }
 
-TEST(CorrelatedSum, OfWhiteResidualsIsTheInformation) {
+TEST(CorrelatedSum, IsTheInformationForWhiteResiduals) {
   const Eigen::MatrixXd weights = SwingColumns(EvenTimes(100));
   EXPECT_EQ(CorrelatedSum({}, EvenTimes(100), weights), weights.transpose() * weights);
 }
 
-TEST(CorrelatedSum, IsPositiveDefiniteForAMemoryBeyondTheRecording) {
+TEST(CorrelatedSum, IsPositiveDefiniteForAVeryLongCorrelation) {
   const Eigen::MatrixXd sum = CorrelatedSum(FirstOrder(0.99999).model, EvenTimes(500), SwingColumns(EvenTimes(500)));
   EXPECT_THAT(sum(2, 2), DoubleNear(500.0 * 500, 500));  // all samples are nearly equal: R = 1 within 500 / 1e5
   EXPECT_GT(sum.determinant(), 0);
 }
 
-TEST(CorrelatedSum, TakesNoColumns) {
+TEST(CorrelatedSum, AcceptsZeroColumns) {
   for (const Process& process : {FirstOrder(0.5), MixedOrder(0.5, 0.2), Continuous(0.1, 0)}) {
     EXPECT_EQ(CorrelatedSum(process.model, EvenTimes(50), Eigen::MatrixXd(50, 0)).size(), 0);
   }

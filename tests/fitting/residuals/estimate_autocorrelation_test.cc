@@ -25,8 +25,8 @@ Autocorrelation Estimate(const Eigen::VectorXd& time, const Eigen::VectorXd& res
 
 /// Means over seeds.
 struct Summary {
-  double memory = 0;  // φ, or exp(-10 ms / τ)
-  double next = 0;    // ρ of the next sample, 10 ms later
+  double coefficient = 0;  // φ, or exp(-10 ms / τ)
+  double next = 0;         // ρ of the next sample, 10 ms later
   double inflation = 0;
   std::map<std::string, int> names;
 };
@@ -50,8 +50,8 @@ Summary Summarize(int seeds, const std::function<Autocorrelation(std::uint64_t)>
   for (int seed = 1; seed <= seeds; ++seed) {
     const Autocorrelation model = estimate(static_cast<std::uint64_t>(seed));
     const bool continuous = model.kind == Autocorrelation::Kind::kContinuous;
-    const double memory = model.autoregressive.empty() ? 0 : model.autoregressive[0];
-    summary.memory += (continuous ? std::exp(-0.01 / model.decay_time) : memory) / seeds;
+    const double coefficient = model.autoregressive.empty() ? 0 : model.autoregressive[0];
+    summary.coefficient += (continuous ? std::exp(-0.01 / model.decay_time) : coefficient) / seeds;
     summary.next += NextCorrelation(model) / seeds;
     summary.inflation += model.VarianceInflation() / seeds;
     ++summary.names[model.Name()];
@@ -90,7 +90,7 @@ TEST(EstimateAutocorrelation, CallsFewOrNoResidualsWhite) {
   EXPECT_EQ(Estimate(EventTimes(500, 1), Eigen::VectorXd::Zero(500)).Name(), "white");
 }
 
-TEST(EstimateAutocorrelation, StaysStationaryForResidualsThatAreNoNoise) {
+TEST(EstimateAutocorrelation, StaysStationaryForResidualsThatAreNotNoise) {
   const Eigen::VectorXd time = EvenTimes(500);
   const std::vector<Eigen::VectorXd> residuals = {Eigen::VectorXd::Ones(500), Eigen::VectorXd::Unit(500, 499),
                                                   Eigen::VectorXd::Unit(500, 0), time,
@@ -122,7 +122,7 @@ TEST(EstimateAutocorrelation, FindsTheOrderOfAThirdOrderProcess) {
 
 // ---- Autocorrelation ------------------------------------------------------------------------------------------------
 
-TEST(EstimateAutocorrelation, FindsTheMemoryOfAFirstOrderProcess) {
+TEST(EstimateAutocorrelation, RecoversAFirstOrderProcess) {
   for (const double phi : {0.5, 0.9, 0.98}) {
     const Eigen::VectorXd time = EvenTimes(2000);
     const Summary summary =
@@ -130,21 +130,21 @@ TEST(EstimateAutocorrelation, FindsTheMemoryOfAFirstOrderProcess) {
     EXPECT_GE(summary.names.at("AR(1)"), 57) << phi;
     // Bias -2φ/N, and four standard errors sqrt((1 - φ²) / N) of the mean of 60 (Brockwell & Davis, example 8.10.1).
     const double tolerance = 4 * std::sqrt((1 - phi * phi) / 2000 / 60);
-    EXPECT_THAT(summary.memory, DoubleNear(phi * (1 - 2.0 / 2000), tolerance)) << phi;
+    EXPECT_THAT(summary.coefficient, DoubleNear(phi * (1 - 2.0 / 2000), tolerance)) << phi;
   }
 }
 
-TEST(EstimateAutocorrelation, TellsWhiteNoiseOverAFirstOrderProcess) {
+TEST(EstimateAutocorrelation, SeparatesWhiteNoiseFromAFirstOrderProcess) {
   const Eigen::VectorXd time = EvenTimes(2000);
   const Summary summary =
       Summarize(60, [&](std::uint64_t seed) { return Estimate(time, FirstOrderNoise(2000, 0.9, 0.5, seed)); });
   EXPECT_GE(summary.names.at("ARMA(1,1)"), 57);
-  EXPECT_THAT(summary.memory, DoubleNear(0.9, 0.015));     // scatters by 0.018
-  EXPECT_THAT(summary.next, DoubleNear(0.5 * 0.9, 0.02));  // scatters by 0.035
-  EXPECT_THAT(summary.inflation, DoubleNear(10, 0.8));     // 1 + 2 · 0.5 · 9; scatters by 1.8
+  EXPECT_THAT(summary.coefficient, DoubleNear(0.9, 0.015));  // scatters by 0.018
+  EXPECT_THAT(summary.next, DoubleNear(0.5 * 0.9, 0.02));    // scatters by 0.035
+  EXPECT_THAT(summary.inflation, DoubleNear(10, 0.8));       // 1 + 2 · 0.5 · 9; scatters by 1.8
 }
 
-TEST(EstimateAutocorrelation, TakesEachStretchByItself) {
+TEST(EstimateAutocorrelation, TreatsSeparatePartsIndependently) {
   // Three recordings in sequence, with a step of the level between them that no single process has.
   const Summary summary = Summarize(60, [](std::uint64_t seed) {
     Eigen::VectorXd time = EvenTimes(2100);
@@ -156,10 +156,10 @@ TEST(EstimateAutocorrelation, TakesEachStretchByItself) {
     return Estimate(time, noise);
   });
   EXPECT_GE(summary.names.at("AR(1)"), 57);
-  EXPECT_THAT(summary.memory, DoubleNear(0.9, 0.006));
+  EXPECT_THAT(summary.coefficient, DoubleNear(0.9, 0.006));
 }
 
-TEST(EstimateAutocorrelation, ReadsThroughMissingSamplesJitterAndUnevenStamps) {
+TEST(EstimateAutocorrelation, HandlesGapsJitterAndUnevenStamps) {
   using Stamps = std::function<Eigen::VectorXd(std::uint64_t)>;
   const std::vector<std::pair<std::string, Stamps>> kinds = {
       {"1 % missing", [](std::uint64_t seed) { return WithSomeMissing(EvenTimes(2000), 0.01, seed); }},
@@ -178,7 +178,7 @@ TEST(EstimateAutocorrelation, ReadsThroughMissingSamplesJitterAndUnevenStamps) {
         return Estimate(time, CorrelatedNoise(time, 0.1, white_share, seed));
       });
       // They scatter by 0.013 and 0.035; four standard errors of the mean of 40.
-      EXPECT_THAT(summary.memory, DoubleNear(std::exp(-0.1), 0.009)) << name << ", " << white_share;
+      EXPECT_THAT(summary.coefficient, DoubleNear(std::exp(-0.1), 0.009)) << name << ", " << white_share;
       EXPECT_THAT(summary.next, DoubleNear((1 - white_share) * std::exp(-0.1), 0.025)) << name << ", " << white_share;
     }
   }
@@ -195,7 +195,7 @@ TEST(EstimateAutocorrelation, DoesNotDependOnTheScaleOfResidualsAndWeights) {
   }
 }
 
-TEST(EstimateAutocorrelation, GivesBackTheMemoryThatAFitTook) {
+TEST(EstimateAutocorrelation, RestoresTheCorrelationRemovedByTheFit) {
   // 500 samples with an autocorrelation time of 50 samples. The three columns remove its slowest part, so φ appears
   // smaller.
   const Eigen::VectorXd time = EvenTimes(500);
@@ -207,11 +207,11 @@ TEST(EstimateAutocorrelation, GivesBackTheMemoryThatAFitTook) {
   const Summary plain = Summarize(200, [&](std::uint64_t seed) { return Estimate(time, residual(seed)); });
   const Summary restricted =
       Summarize(200, [&](std::uint64_t seed) { return EstimateAutocorrelation(time, residual(seed), columns); });
-  EXPECT_LT(plain.memory, 0.973);
-  EXPECT_THAT(restricted.memory, DoubleNear(0.98, 0.007));
+  EXPECT_LT(plain.coefficient, 0.973);
+  EXPECT_THAT(restricted.coefficient, DoubleNear(0.98, 0.007));
 }
 
-TEST(EstimateAutocorrelation, TakesColumnsThatDependOnEachOther) {
+TEST(EstimateAutocorrelation, AcceptsLinearlyDependentColumns) {
   const Eigen::VectorXd time = EvenTimes(500);
   const Eigen::VectorXd noise = FirstOrderNoise(500, 0.9, 0, 2);
   Eigen::MatrixXd columns(500, 5);

@@ -35,7 +35,7 @@ FitStatistics StatisticsOf(const Eigen::VectorXd& quantile_residual, double log_
   return ComputeStatistics(0.01 * quantile_residual, quantile_residual, log_likelihood, free_parameters);
 }
 
-TEST(ComputeStatistics, AgreesWithFourResidualsReckonedByHand) {
+TEST(ComputeStatistics, MatchesFourResidualsComputedByHand) {
   // The likelihood of these four residuals is -4/2 (ln(2 π 6/4) + 1); k = 2: one parameter and sigma.
   const FitStatistics statistics = ComputeStatistics(kFour, kFour, -6.486684349035020, 1);
   EXPECT_THAT(statistics.rms_residual, DoubleNear(1.224744871391589, 1e-15));  // sqrt(6 / 4)
@@ -47,7 +47,7 @@ TEST(ComputeStatistics, AgreesWithFourResidualsReckonedByHand) {
   EXPECT_EQ(statistics.effective_samples, 4);
 }
 
-TEST(ComputeStatistics, TakesTheSizeOfTheResidualsAndTheOrderOfTheQuantileResiduals) {
+TEST(ComputeStatistics, UsesResidualSizesAndQuantileResidualOrder) {
   const Eigen::Vector4d still(0.5, 0.5, 0.5, 0.5);
   const FitStatistics statistics = ComputeStatistics(still, kFour, 0, 1);
   EXPECT_EQ(statistics.rms_residual, 0.5);
@@ -66,7 +66,7 @@ TEST(ComputeStatistics, EachFreeParameterCostsTwoInAicAndLogNInBic) {
   EXPECT_EQ(six.log_likelihood, five.log_likelihood);
 }
 
-TEST(ComputeStatistics, DurbinWatsonTellsAlternatingFromConstantFromScattered) {
+TEST(ComputeStatistics, DurbinWatsonDistinguishesAlternatingConstantAndRandom) {
   Eigen::VectorXd alternating = Eigen::VectorXd::Ones(1000);
   for (Eigen::Index i = 1; i < 1000; i += 2) alternating[i] = -1;
   EXPECT_THAT(StatisticsOf(alternating, 0, 1).durbin_watson, DoubleNear(4, 0.01));
@@ -83,7 +83,7 @@ TEST(ComputeStatistics, StaysFiniteForAPerfectFit) {
   EXPECT_EQ(statistics.runs_p, 1);
 }
 
-TEST(Lag1Correlation, OfKnownSequences) {
+TEST(Lag1Correlation, MatchesKnownSequences) {
   EXPECT_EQ(Lag1Correlation(kFour), -0.5);
   EXPECT_THAT(Lag1Correlation(Eigen::VectorXd::Ones(1000)), DoubleNear(0.999, 1e-12));
   EXPECT_EQ(Lag1Correlation(Eigen::VectorXd::Zero(10)), 0);
@@ -112,19 +112,19 @@ double RejectedShare(const std::function<double(const Eigen::VectorXd&)>& test) 
   return static_cast<double>(rejected) / kSeries;
 }
 
-TEST(LjungBoxP, AgreesWithTenResidualsReckonedByHand) {
+TEST(LjungBoxP, MatchesTenResidualsComputedByHand) {
   // N (N + 2) (ρ₁² / 9 + ρ₂² / 8) = 120 (0.01 / 9 + 0.64 / 8), and χ² with two degrees of freedom is exponential.
   const double portmanteau = 120 * (0.01 / 9 + 0.64 / 8);
   EXPECT_THAT(LjungBoxP(Pairs()), DoubleNear(std::exp(-portmanteau / 2), 1e-14));
   EXPECT_THAT(LjungBoxP(-7 * Pairs()), DoubleNear(std::exp(-portmanteau / 2), 1e-14));
 }
 
-TEST(LjungBoxP, RejectsWhiteNoiseAsOftenAsItsLevelSays) {
+TEST(LjungBoxP, RejectsWhiteNoiseAtItsLevel) {
   // Four standard deviations about .0524, the value for NumPy's normal noise in 20000 series with 20 lags.
   EXPECT_THAT(RejectedShare(LjungBoxP), DoubleNear(0.0524, 0.014));
 }
 
-TEST(LjungBoxP, IsSmallForNoiseThatRemembersWithinTwentyLags) {
+TEST(LjungBoxP, IsSmallForCorrelationWithinTwentyLags) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd noise = WhiteNoise(2000, seed);
     Eigen::VectorXd echo = noise;
@@ -136,12 +136,12 @@ TEST(LjungBoxP, IsSmallForNoiseThatRemembersWithinTwentyLags) {
   }
 }
 
-TEST(LjungBoxP, IsOneOfNothing) {
+TEST(LjungBoxP, IsOneWithoutResiduals) {
   EXPECT_EQ(LjungBoxP(Eigen::VectorXd::Zero(100)), 1);
   EXPECT_EQ(LjungBoxP(kFour), 1);  // N / 5 lags is 0
 }
 
-TEST(RunsP, AgreesWithSequencesReckonedByHand) {
+TEST(RunsP, MatchesSequencesComputedByHand) {
   // 5 runs; mean 2 · 6 · 4 / 10 + 1 = 5.8, variance 48 · 38 / (100 · 9) = 2.0267: 0.56195 standard deviations.
   EXPECT_THAT(RunsP(Pairs()), DoubleNear(0.5741491, 1e-7));
   Eigen::VectorXd halves = Eigen::VectorXd::Ones(20);
@@ -153,12 +153,12 @@ TEST(RunsP, AgreesWithSequencesReckonedByHand) {
   EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, equally far above the mean
 }
 
-TEST(RunsP, IsOneWhenAllHaveOneSign) {
+TEST(RunsP, IsOneIfAllHaveOneSign) {
   EXPECT_EQ(RunsP(Eigen::VectorXd::Ones(100)), 1);
   EXPECT_EQ(RunsP(-Eigen::VectorXd::Ones(100)), 1);
 }
 
-TEST(RunsP, RejectsWhiteNoiseAsOftenAsItsLevelSays) {
+TEST(RunsP, RejectsWhiteNoiseAtItsLevel) {
   // The number of runs is an integer, so the level is met only to 0.009, the probability of one number at its edge.
   EXPECT_THAT(RejectedShare(RunsP), DoubleNear(0.05, 0.015));
 }
@@ -212,7 +212,7 @@ Eigen::VectorXd Rounded(const Eigen::VectorXd& value, double resolution) {
   return (resolution * (value.array() / resolution).round()).matrix();
 }
 
-TEST(QuantileResiduals, AreStandardNormalAndIndependentWhateverTheRounding) {
+TEST(QuantileResiduals, AreStandardNormalForAnyRounding) {
   for (const double sigma : {0.1, 0.3, 1.0}) {  // in resolutions
     SCOPED_TRACE(sigma);
     const double q = 1 / sigma;
@@ -222,7 +222,7 @@ TEST(QuantileResiduals, AreStandardNormalAndIndependentWhateverTheRounding) {
   }
 }
 
-TEST(QuantileResiduals, AreStandardNormalAndIndependentOfCensoredReadings) {
+TEST(QuantileResiduals, AreStandardNormalForCensoredReadings) {
   for (const double q : {0.0, 1.0, 10.0}) {  // in σ; 0: not rounded
     SCOPED_TRACE(q);
     const double amplitude = 45 * std::max(q, 1.0);
@@ -238,7 +238,7 @@ TEST(QuantileResiduals, AreStandardNormalAndIndependentOfCensoredReadings) {
   }
 }
 
-TEST(QuantileResiduals, OfStudentsNoiseAreNormalToo) {
+TEST(QuantileResiduals, AreNormalForStudentsNoise) {
   NoisyReadings run(45, 3);
   std::mt19937_64 generator(4);
   boost::random::student_t_distribution<double> student(NoiseModel::kStudentFreedom);
@@ -249,14 +249,14 @@ TEST(QuantileResiduals, OfStudentsNoiseAreNormalToo) {
   ExpectStandardNormalAndIndependent(QuantileResiduals(noise, run.value, run.readings));
 }
 
-TEST(QuantileResiduals, OfPlainNoiseAreResidualsOverSigma) {
+TEST(QuantileResiduals, AreResidualsOverSigmaForPlainNoise) {
   NoiseModel noise;
   noise.sigma = 0.5;
   const Eigen::VectorXd z = QuantileResiduals(noise, kFour, Eigen::Vector4d(1, 1, 1, 1));
   EXPECT_EQ(z, Eigen::VectorXd(Eigen::Vector4d(0, -4, 2, -2)));
 }
 
-TEST(QuantileResiduals, AreTheSameTwice) {
+TEST(QuantileResiduals, AreReproducible) {
   const NoisyReadings run(45, 1);
   const Eigen::VectorXd value = Rounded(run.value, 5);
   EXPECT_EQ(QuantileResiduals(Quantized(5), value, run.readings), QuantileResiduals(Quantized(5), value, run.readings));
@@ -275,33 +275,33 @@ TEST(QuantileResiduals, StayFiniteFarFromTheModel) {
 
 // ---- Autocorrelated residuals ---------------------------------------------------------------------------------------
 
-TEST(FollowEachOther, IsNotSaidOfWhiteNoise) {
+TEST(AreAutocorrelated, IsFalseForWhiteNoise) {
   int said = 0;
-  for (std::uint64_t seed = 1; seed <= 500; ++seed) said += FollowEachOther(WhiteNoise(1000, seed), 130) ? 1 : 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) said += AreAutocorrelated(WhiteNoise(1000, seed), 130) ? 1 : 0;
   // χ² with 50 degrees of freedom is six standard deviations above its mean in 2e-6 of all cases.
   EXPECT_EQ(said, 0);
 }
 
-TEST(FollowEachOther, IsSaidOfNoiseThatRemembers) {
+TEST(AreAutocorrelated, IsTrueForAutocorrelatedNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Eigen::VectorXd noise = WhiteNoise(2000, seed);
     for (Eigen::Index i = 1; i < noise.size(); ++i) noise[i] += 0.3 * noise[i - 1];
-    EXPECT_TRUE(FollowEachOther(noise, 130)) << seed;
+    EXPECT_TRUE(AreAutocorrelated(noise, 130)) << seed;
   }
 }
 
-TEST(FollowEachOther, IsSaidOfAMisfitThatSwingsUnderTheNoise) {
+TEST(AreAutocorrelated, IsTrueForAMisfitBelowTheNoise) {
   // Period 130 samples, a third of the variance.
   const Eigen::ArrayXd phase = Eigen::ArrayXd::LinSpaced(2000, 0, 2000 * 2 * kPi / 130);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_TRUE(FollowEachOther(WhiteNoise(2000, seed) + phase.sin().matrix(), 130)) << seed;
+    EXPECT_TRUE(AreAutocorrelated(WhiteNoise(2000, seed) + phase.sin().matrix(), 130)) << seed;
   }
 }
 
-TEST(FollowEachOther, TakesAnyNumberOfResidualsAndLags) {
+TEST(AreAutocorrelated, AcceptsAnyNumberOfResidualsAndLags) {
   for (const int lags : {-1, 0, 1, 130, 1'000'000'000}) {
-    EXPECT_FALSE(FollowEachOther(Eigen::VectorXd::Zero(100), lags)) << lags;
-    EXPECT_FALSE(FollowEachOther(Eigen::VectorXd::Unit(8, 3), lags)) << lags;
+    EXPECT_FALSE(AreAutocorrelated(Eigen::VectorXd::Zero(100), lags)) << lags;
+    EXPECT_FALSE(AreAutocorrelated(Eigen::VectorXd::Unit(8, 3), lags)) << lags;
   }
 }
 
@@ -315,42 +315,45 @@ struct SwingExample {
   Eigen::VectorXd rate = (-(5 * time.array()).sin() / std::sqrt(0.5 * 100 * kPeriod)).matrix();
 };
 
-TEST(SwingAlong, IsSaidOfWhiteNoiseAsSeldomAsItSays) {
+TEST(HavePhaseOrAmplitudeErrors, HasTheStatedFalseAlarmRate) {
   const SwingExample swing;
   int said = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
-    said += SwingAlong(swing.time, swing.fitted, WhiteNoise(2000, seed), SwingExample::kPeriod) ? 1 : 0;
+    said += HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, WhiteNoise(2000, seed), SwingExample::kPeriod) ? 1 : 0;
   }
   // Two sums at 1e-4 each: 0.4 are expected, and more than three have p < 0.001.
   EXPECT_LE(said, 3);
 }
 
-TEST(SwingAlong, IsSaidOfAPhaseErrorThatGrows) {
+TEST(HavePhaseOrAmplitudeErrors, DetectsAGrowingPhaseError) {
   // It grows by 0.3 standard errors per period: 4.5 in the last period, where each sample's error is 0.03 of the noise.
   const SwingExample swing;
   const Eigen::VectorXd error = (0.3 * swing.time.array() / SwingExample::kPeriod * swing.rate.array()).matrix();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_TRUE(SwingAlong(swing.time, swing.fitted, WhiteNoise(2000, seed) + error, SwingExample::kPeriod)) << seed;
+    EXPECT_TRUE(
+        HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, WhiteNoise(2000, seed) + error, SwingExample::kPeriod))
+        << seed;
   }
 }
 
-TEST(SwingAlong, IsSaidOfAKick) {
+TEST(HavePhaseOrAmplitudeErrors, DetectsAKick) {
   // From the middle on the phase is wrong by three standard errors in each period.
   const SwingExample swing;
   Eigen::VectorXd error = 3 * swing.rate;
   error.head(1000).setZero();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd residual = WhiteNoise(2000, seed) + error;
-    EXPECT_TRUE(SwingAlong(swing.time, swing.fitted, residual, SwingExample::kPeriod)) << seed;
+    EXPECT_TRUE(HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, residual, SwingExample::kPeriod)) << seed;
   }
 }
 
-TEST(SwingAlong, IsNotSaidOfTooLittleOrOfNothing) {
+TEST(HavePhaseOrAmplitudeErrors, IsFalseForTooFewSamples) {
   const SwingExample swing;
-  EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, Eigen::VectorXd::Zero(2000), SwingExample::kPeriod));
-  EXPECT_FALSE(SwingAlong(swing.time, swing.fitted, 100 * swing.rate, 6.0));  // three periods
-  const Eigen::VectorXd still = Eigen::VectorXd::Constant(2000, 0.3);         // a constant has no phase
-  EXPECT_FALSE(SwingAlong(swing.time, still, swing.rate, SwingExample::kPeriod));
+  EXPECT_FALSE(
+      HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, Eigen::VectorXd::Zero(2000), SwingExample::kPeriod));
+  EXPECT_FALSE(HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, 100 * swing.rate, 6.0));  // three periods
+  const Eigen::VectorXd still = Eigen::VectorXd::Constant(2000, 0.3);                         // a constant has no phase
+  EXPECT_FALSE(HavePhaseOrAmplitudeErrors(swing.time, still, swing.rate, SwingExample::kPeriod));
 }
 
 }  // namespace

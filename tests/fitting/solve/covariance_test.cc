@@ -45,7 +45,7 @@ TEST(InvertInformation, IsTheInverse) {
   EXPECT_THAT(inverse.direction, IsEmpty());
 }
 
-TEST(InvertInformation, OfSomeParametersHoldsTheOthersFixed) {
+TEST(InvertInformation, HoldsOtherParametersFixed) {
   const Eigen::MatrixXd jacobian = Jacobian(5);
   const InformationInverse inverse = InvertInformation(jacobian.transpose() * jacobian, {1, 3});
   Eigen::MatrixXd two(50, 2);
@@ -57,13 +57,13 @@ TEST(InvertInformation, OfSomeParametersHoldsTheOthersFixed) {
   }
 }
 
-TEST(InvertInformation, OfNothingIsEmpty) {
+TEST(InvertInformation, IsEmptyWithoutParameters) {
   const InformationInverse inverse = InvertInformation(Eigen::MatrixXd::Identity(3, 3), {});
   EXPECT_TRUE(inverse.identifiable);
   EXPECT_EQ(inverse.matrix.size(), 0);
 }
 
-TEST(InvertInformation, NamesTheParametersOfACombinationTheDataDoNotSee) {
+TEST(InvertInformation, NamesTheParametersOfAnUndeterminedCombination) {
   Eigen::MatrixXd jacobian = Jacobian(5);
   jacobian.col(3) = 1e6 * jacobian.col(1) - 2e3 * jacobian.col(2);
   const InformationInverse inverse = InvertAll(jacobian);
@@ -72,7 +72,7 @@ TEST(InvertInformation, NamesTheParametersOfACombinationTheDataDoNotSee) {
   EXPECT_THAT(inverse.direction, ElementsAre(1, 2, 3));
 }
 
-TEST(InvertInformation, NamesThemByTheirPlaceAmongAllParameters) {
+TEST(InvertInformation, ReportsIndicesAmongAllParameters) {
   Eigen::MatrixXd jacobian = Jacobian(5);
   jacobian.col(4) = 7 * jacobian.col(2);
   const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
@@ -80,7 +80,7 @@ TEST(InvertInformation, NamesThemByTheirPlaceAmongAllParameters) {
   EXPECT_TRUE(InvertInformation(information, {0, 1, 2, 3}).identifiable);
 }
 
-TEST(InvertInformation, NamesParametersWithoutAnyTrace) {
+TEST(InvertInformation, NamesUndeterminedParameters) {
   Eigen::MatrixXd jacobian = Jacobian(4);
   jacobian.col(2).setZero();
   jacobian.col(0).setZero();
@@ -99,7 +99,7 @@ TEST(InvertInformation, AcceptsACorrelationOfTenNines) {
   EXPECT_FALSE(InvertInformation(information, without_quadratic).identifiable);  // 5e-15: lost to rounding in the sums
 }
 
-TEST(InvertInformation, RefusesNotANumber) {
+TEST(InvertInformation, RefusesNaN) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(3, 3);
   information(1, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(InvertInformation(information, {0, 1, 2}).identifiable);

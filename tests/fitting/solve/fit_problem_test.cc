@@ -43,14 +43,14 @@ Rig RigOf(double gravity_torque) {
 
 // ---- Parameters ----------------------------------------------------------------------------------------------------
 
-TEST(MakeFitProblem, ListsTheModelsWhenThereIsNoSuchOne) {
+TEST(MakeFitProblem, ListsTheModelsForAnUnknownName) {
   const Status status = RefusalOf(TextbookRun("coulomb"), ModelOptions("columb"));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message, HasSubstr("columb"));
   for (const MotionModel& model : MotionModels()) EXPECT_THAT(status.message, HasSubstr(std::string(model.name)));
 }
 
-TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheReleaseWithinTheHold) {
+TEST(MakeFitProblem, BoundsFrictionAtZeroAndTheReleaseByTheHold) {
   const FitProblem problem = ProblemOf(TextbookRun("drag"), ModelOptions("drag"));
   EXPECT_THAT(problem.solve.lower, ElementsAre(-kUnbounded, 0, 0, 0, -kUnbounded, 0, -kUnbounded));
   const std::vector<double>& upper = problem.solve.upper;
@@ -59,7 +59,7 @@ TEST(MakeFitProblem, KeepsFrictionAtZeroOrMoreAndTheReleaseWithinTheHold) {
   EXPECT_THAT(problem.solve.fixed, Each(false));
 }
 
-TEST(MakeFitProblem, KnowsTheParameterThatHoldsAtRest) {
+TEST(MakeFitProblem, FindsTheParameterThatHoldsAtRest) {
   const std::map<std::string_view, int> expected = {{"linear", -1}, {"viscous", -1}, {"coulomb", 2}, {"drag", 2}};
   for (const auto& [model, holding] : expected) {
     EXPECT_EQ(ProblemOf(TextbookRun(model), ModelOptions(model)).solve.holding_parameter, holding) << model;
@@ -68,7 +68,7 @@ TEST(MakeFitProblem, KnowsTheParameterThatHoldsAtRest) {
 
 // ---- Data and units ------------------------------------------------------------------------------------------------
 
-TEST(MakeFitProblem, CountsTimeFromTheFirstSampleAndReportsItOnTheFilesClock) {
+TEST(MakeFitProblem, MeasuresTimeFromTheFirstSampleButReportsFileTime) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.start_time = 1000;
   run.release_time = 1001.9;
@@ -79,7 +79,7 @@ TEST(MakeFitProblem, CountsTimeFromTheFirstSampleAndReportsItOnTheFilesClock) {
   EXPECT_THAT(problem.first_guess[4], DoubleNear(1.9, 0.02));
 }
 
-TEST(MakeFitProblem, ScalesWithTheGravityTorqueWhatScalesWithIt) {
+TEST(MakeFitProblem, ScalesOnlyTorqueParametersWithGravity) {
   FitOptions options = ModelOptions("drag");
   EXPECT_THAT(ProblemOf(TextbookRun("drag"), options).si_per_internal, Each(1.0));
   options.rig = RigOf(2.5);
@@ -95,7 +95,7 @@ TEST(MakeFitProblem, MeasuresResidualsInUnitsOfTheNoise) {
   EXPECT_GT(ProblemOf(run, ModelOptions("coulomb")).data.scale, 0);  // also without noise
 }
 
-TEST(MakeFitProblem, HandsTheIterationLimitOn) {
+TEST(MakeFitProblem, PassesTheIterationLimit) {
   FitOptions options = ModelOptions("coulomb");
   options.search.max_iterations = 7;
   EXPECT_EQ(ProblemOf(TextbookRun("coulomb"), options).solve.max_iterations, 7);
@@ -110,7 +110,7 @@ TEST(MakeFitProblem, HoldsAFixedParameterAtItsValue) {
   EXPECT_NE(problem.start.parameters[2], 0.0031);  // the estimate from the data is kept too
 }
 
-TEST(MakeFitProblem, TakesFixedValuesInTheUnitsOfTheReport) {
+TEST(MakeFitProblem, AcceptsFixedValuesInReportUnits) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.start_time = 1000;
   run.release_time = 1001.9;
@@ -122,7 +122,7 @@ TEST(MakeFitProblem, TakesFixedValuesInTheUnitsOfTheReport) {
   EXPECT_EQ(problem.first_guess[5], 0.02);
 }
 
-TEST(MakeFitProblem, RefusesToFixWhatTheModelDoesNotHaveAndListsWhatItHas) {
+TEST(MakeFitProblem, RefusesAndListsForAParameterTheModelLacks) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"coulomb", 0.001}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message, AllOf(HasSubstr("viscous has no parameter 'coulomb'"),
@@ -198,7 +198,7 @@ TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {
   recording.range = SensorRange{-1, 1};  // no reading comes near
   const FitProblem whole = Must(MakeFitProblem(recording, ModelOptions("coulomb")));
   EXPECT_EQ(whole.censored, 0);
-  EXPECT_TRUE(whole.noise.IsPlain());
+  EXPECT_TRUE(whole.noise.IsUncensoredGaussian());
 }
 
 }  // namespace

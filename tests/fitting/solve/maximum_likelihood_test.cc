@@ -33,7 +33,7 @@ void ExpectChoice(const FitOptions& options, double resolution, double residual_
   EXPECT_EQ(chosen.why, why);
 }
 
-TEST(ChooseNoise, TakesWhatIsAskedFor) {
+TEST(ChooseNoise, UsesTheRequestedFamily) {
   FitOptions options;
   options.noise = NoiseFamily::kQuantized;
   ExpectChoice(options, 0.01, 1, NoiseFamily::kQuantized, "asked for by --noise");
@@ -93,7 +93,7 @@ struct LikelihoodCase {
   Solution least_squares, solution;
 };
 
-TEST(MaximizeLikelihood, OfGaussianNoiseLeavesTheLeastSquaresAndFindsSigma) {
+TEST(MaximizeLikelihood, KeepsLeastSquaresAndFindsSigmaForGaussianNoise) {
   const LikelihoodCase fit(Must(SimulateRecording(NoisyRun())));
   EXPECT_EQ(fit.solution.noise.family, NoiseFamily::kGaussian);
   EXPECT_EQ(fit.solution.parameters, fit.least_squares.parameters);
@@ -107,7 +107,7 @@ TEST(MaximizeLikelihood, OfGaussianNoiseLeavesTheLeastSquaresAndFindsSigma) {
   EXPECT_THAT(sum, DoubleNear(994, 1e-6));  // the cost keeps the noise
 }
 
-TEST(MaximizeLikelihood, OfGaussianNoiseIsTheSumOfNormalLogDensities) {
+TEST(MaximizeLikelihood, IsTheSumOfNormalLogDensities) {
   const LikelihoodCase fit(Must(SimulateRecording(NoisyRun())));
   const Eigen::VectorXd residual = fit.Residual();
   const boost::math::normal normal(0, std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size())));
@@ -116,7 +116,7 @@ TEST(MaximizeLikelihood, OfGaussianNoiseIsTheSumOfNormalLogDensities) {
   EXPECT_THAT(fit.solution.log_likelihood, DoubleNear(expected, 1e-8));
 }
 
-TEST(MaximizeLikelihood, OfADensityIsTimesTheResolution) {
+TEST(MaximizeLikelihood, MultipliesADensityByTheResolution) {
   Recording recording = Must(SimulateRecording(NoisyRun()));
   const LikelihoodCase density(recording);
   recording.resolution = 3e-4;
@@ -134,7 +134,7 @@ TEST(MaximizeLikelihood, StaysFiniteForAPerfectFit) {
   EXPECT_GT(fit.solution.noise.sigma, 0);
 }
 
-TEST(MaximizeLikelihood, GivesAPriorTheWeightOfTheNoiseThatWasFound) {
+TEST(MaximizeLikelihood, WeighsAPriorByTheFinalNoise) {
   // With a resolution of twenty times the noise, the search begins with six times the noise.
   Recording recording = Must(SimulateRecording(NoisyRun()));
   recording.resolution = 20 * 0.002;
@@ -169,7 +169,7 @@ double Slope(const F& f, double x, double step) {
   return (f(x + step) - f(x - step)) / (2 * step);
 }
 
-TEST(MaximizeLikelihood, OfRoundedReadingsIsStationaryInParametersAndSigma) {
+TEST(MaximizeLikelihood, IsStationaryForRoundedReadings) {
   for (const double counts : {0.25, 0.5}) {
     SCOPED_TRACE(counts);
     const LikelihoodCase fit(Must(SimulateRecording(CountsRun(counts, 1))));
@@ -193,7 +193,7 @@ TEST(MaximizeLikelihood, OfRoundedReadingsIsStationaryInParametersAndSigma) {
   }
 }
 
-TEST(MaximizeLikelihood, OfRoundedReadingsFindsParametersAndSigmaWithinTheirErrors) {
+TEST(MaximizeLikelihood, FindsParametersAndSigmaOfRoundedReadings) {
   for (const double counts : {0.25, 0.5}) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(std::to_string(counts) + " counts, seed " + std::to_string(seed));
@@ -214,7 +214,7 @@ TEST(MaximizeLikelihood, OfRoundedReadingsFindsParametersAndSigmaWithinTheirErro
   }
 }
 
-TEST(MaximizeLikelihood, OfReadingsWithoutNoiseHasTheSmallestSigma) {
+TEST(MaximizeLikelihood, HasTheSmallestSigmaWithoutNoise) {
   const LikelihoodCase fit(Must(SimulateRecording(CountsRun(0, 1))));
   EXPECT_EQ(fit.solution.noise.family, NoiseFamily::kQuantized);
   EXPECT_THAT(fit.solution.noise.sigma, DoubleNear(kSmallestSigma * kCount, 1e-3 * kCount));
@@ -240,7 +240,7 @@ double LargestDeviation(const FitReport& report, const SyntheticOptions& run) {
   return largest;
 }
 
-TEST(MaximizeLikelihood, TakesSaturatedReadingsForWhatTheySay) {
+TEST(MaximizeLikelihood, UsesSaturatedReadingsAsBounds) {
   for (const double resolution : {0.0, kCount}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(std::to_string(resolution) + " rad, seed " + std::to_string(seed));
@@ -263,7 +263,7 @@ TEST(MaximizeLikelihood, TakesSaturatedReadingsForWhatTheySay) {
 
 // ---- Several minima ------------------------------------------------------------------------------------------------
 
-TEST(MaximizeLikelihood, KeepsTheOtherMinimaOfARunToRestUnderTheSameNoise) {
+TEST(MaximizeLikelihood, KeepsOtherMinimaUnderTheSameNoise) {
   // At 0.5 and 0.9 counts the neighbouring minimum is higher by 43 and 3.6 in -2 log L.
   for (const double counts : {0.5, 0.9}) {
     SCOPED_TRACE(counts);
@@ -286,7 +286,7 @@ TEST(MaximizeLikelihood, KeepsTheOtherMinimaOfARunToRestUnderTheSameNoise) {
   }
 }
 
-TEST(MaximizeLikelihood, LeavesWhatCannotBeTracedAlone) {
+TEST(MaximizeLikelihood, KeepsASolutionThatCannotBeTraced) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitOptions options = ModelOptions("coulomb");
   const FitProblem problem = Must(MakeFitProblem(recording, options));

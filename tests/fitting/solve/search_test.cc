@@ -35,7 +35,7 @@ StartGuess Always(const std::vector<double>& start) {
   };
 }
 
-TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
+TEST(Search, RecoversAStartThatIsCyclesOff) {
   // Five percent of frequency over 40 cycles is two cycles.
   for (const double factor : {0.6, 0.9}) {
     SyntheticOptions run = NoisyRun("coulomb");
@@ -52,7 +52,7 @@ TEST(Search, FindsTheTruthFromAStartThatIsCyclesOffAtTheEnd) {
   }
 }
 
-TEST(Search, LeavesAllSamplesInUse) {
+TEST(Search, UsesAllSamplesAtTheEnd) {
   SyntheticOptions run = NoisyRun("coulomb");
   run.duration = 35;
   SolveCase c(run, "coulomb");
@@ -64,7 +64,7 @@ TEST(Search, LeavesAllSamplesInUse) {
   EXPECT_EQ(readings.size(), 3500);
 }
 
-TEST(Search, TriesTheNeighbouringNumbersOfHalfSwingsOfARecordingThatReachesRest) {
+TEST(Search, TriesNeighbouringNumbersOfHalfSwings) {
   SolveCase c(RunToRest(), "coulomb");
   const Solution solution = Search(*c.cost, c.problem.data, c.Guess(), c.problem.solve);
   ASSERT_LT(c.cost->Trace(solution.parameters).stop_time, 30);
@@ -73,12 +73,12 @@ TEST(Search, TriesTheNeighbouringNumbersOfHalfSwingsOfARecordingThatReachesRest)
   EXPECT_LE(solution.sum, Solve(*c.cost, c.truth, c.problem.solve).sum * (1 + 1e-8));
 }
 
-TEST(Search, FindsOneMinimumWhereNothingComesToRest) {
+TEST(Search, FindsOneMinimumWithoutRest) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   EXPECT_TRUE(Search(*c.cost, c.problem.data, c.Guess(), c.problem.solve).other_minima.empty());
 }
 
-TEST(Search, EndsNoHigherThanTheSimplerLawsWithinALaw) {
+TEST(Search, IsNeverWorseThanASimplerLaw) {
   // A start with ten times the friction stops the pendulum early, where it fits only the rest at the end.
   SyntheticOptions run = NoisyRun("viscous");
   run.duration = 60;
@@ -91,7 +91,7 @@ TEST(Search, EndsNoHigherThanTheSimplerLawsWithinALaw) {
   EXPECT_LE(Search(*rich.cost, rich.problem.data, Always(start), rich.problem.solve).sum, expected.sum * (1 + 1e-8));
 }
 
-TEST(Search, StaysWithinTheBoundsOnItsWayToTheNextNumberOfHalfSwings) {
+TEST(Search, StaysWithinBounds) {
   SolveCase c(RunToRest(), "coulomb");
   SolveOptions options = c.problem.solve;
   options.upper[4] = c.truth[4] - 0.002;

@@ -30,7 +30,7 @@ TEST(Solve, ReturnsToTheTruthFromNearby) {
   ExpectNear(solution.parameters, c.truth, 1e-7);
 }
 
-TEST(Solve, ReportsTheSumOfSquaresItReached) {
+TEST(Solve, ReportsTheReachedSumOfSquares) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   const Solution solution = Solve(*c.cost, c.problem.first_guess, c.problem.solve);
   EXPECT_THAT(solution.sum, DoubleNear(c.SumAt(solution.parameters), 1e-6));
@@ -38,7 +38,7 @@ TEST(Solve, ReportsTheSumOfSquaresItReached) {
   EXPECT_THAT(c.SumAt(c.truth) - solution.sum, AllOf(Gt(0.38), Lt(22.5)));
 }
 
-TEST(Solve, NoNeighbourIsLowerThanTheMinimum) {
+TEST(Solve, EndsAtALocalMinimum) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   const Solution solution = Solve(*c.cost, c.problem.first_guess, c.problem.solve);
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
@@ -50,7 +50,7 @@ TEST(Solve, NoNeighbourIsLowerThanTheMinimum) {
   }
 }
 
-TEST(Solve, LeavesFixedParametersAlone) {
+TEST(Solve, KeepsFixedParameters) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   std::vector<double> start = c.problem.first_guess;
   start[1] = 0.0021;
@@ -86,7 +86,7 @@ TEST(Solve, IsNotUsableFromAStartThatCannotBeTraced) {
   EXPECT_FALSE(Solve(*c.cost, start, c.problem.solve).usable);
 }
 
-TEST(Solve, HoldsAReleaseThatTheDataWantLaterAtTheEndOfTheHold) {
+TEST(Solve, HoldsALateReleaseAtTheEndOfTheHold) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   SolveOptions options = c.problem.solve;
   options.upper[4] = c.truth[4] - 0.002;
@@ -106,7 +106,7 @@ TEST(Solve, HoldsAReleaseThatTheDataWantLaterAtTheEndOfTheHold) {
   }
 }
 
-TEST(Solve, StopsAtTheIterationLimitAndSaysSo) {
+TEST(Solve, StopsAndReportsTheIterationLimit) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   SolveOptions options = c.problem.solve;
   options.max_iterations = 1;
@@ -128,7 +128,7 @@ double StepLeft(const SolveCase& c, const std::vector<double>& parameters) {
   return std::sqrt(drop / variance);
 }
 
-TEST(Solve, StopsWithinItsShareOfAStandardError) {
+TEST(Solve, StopsWithinAFractionOfAStandardError) {
   for (const double duration : {10.0, 40.0, 640.0}) {
     SyntheticOptions run = NoisyRun("viscous");
     run.duration = duration;
@@ -139,7 +139,7 @@ TEST(Solve, StopsWithinItsShareOfAStandardError) {
   }
 }
 
-TEST(Solve, BeginsNoRunBeyondItsTrajectories) {
+TEST(Solve, StartsNoRunBeyondItsBudget) {
   SolveCase c(NoisyRun("viscous"), "drag");
   SolveOptions options = c.problem.solve;
   options.max_traces = 1;
@@ -158,7 +158,7 @@ TEST(Solve, CountsItsWork) {
   EXPECT_THAT(c.cost->traces(), Gt(solution.iterations));
 }
 
-TEST(Continue, GoesOnFromWhereASolutionEndedAndAddsTheWork) {
+TEST(Continue, ContinuesASolutionAndAddsTheWork) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   SolveOptions options = c.problem.solve;
   options.max_iterations = 1;

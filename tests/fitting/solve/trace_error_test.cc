@@ -19,17 +19,17 @@ double MaxErrorOf(double scale, double asked) {
   return MaxTraceError(problem, options);
 }
 
-TEST(MaxTraceError, IsTheSmallerOfWhatIsAskedAndAThousandthOfTheNoise) {
+TEST(MaxTraceError, IsTheRequestedErrorOrAThousandthOfTheNoise) {
   EXPECT_DOUBLE_EQ(MaxErrorOf(0.002, 1e-8), 1e-8);
   EXPECT_DOUBLE_EQ(MaxErrorOf(2e-6, 1e-8), 2e-9);
 }
 
-TEST(MaxTraceError, IsNoSmallerThanRounding) {
+TEST(MaxTraceError, IsAtLeastRounding) {
   EXPECT_DOUBLE_EQ(MaxErrorOf(1e-15, 1e-8), 1e-12);
   EXPECT_DOUBLE_EQ(MaxErrorOf(1, 1e-20), 1e-12);
 }
 
-TEST(FinerTolerance, IsAHundredthUntilRoundingTakesOver) {
+TEST(FinerTolerance, IsAHundredthUntilRoundingDominates) {
   EXPECT_DOUBLE_EQ(FinerTolerance(1e-8), 1e-10);
   EXPECT_DOUBLE_EQ(FinerTolerance(1e-16), 1e-17);
   EXPECT_DOUBLE_EQ(FinerTolerance(1e-17), 1e-17);
@@ -50,7 +50,7 @@ struct Traced {
   double TrueError() const { return (solution.readings - recording.value).cwiseAbs().maxCoeff(); }
 };
 
-TEST(MeasureTraceError, IsTheDistanceFromTheTruth) {
+TEST(MeasureTraceError, MatchesTheDistanceFromTheTruth) {
   Traced traced;
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
     ASSERT_TRUE(traced.Measure(tolerance));
@@ -68,7 +68,7 @@ TEST(MeasureTraceError, IsSmallerAtTheFinerTolerance) {
   EXPECT_LT(traced.solution.trace_error, 0.1 * coarse);
 }
 
-TEST(MeasureTraceError, LeavesTheToleranceAndItsReadings) {
+TEST(MeasureTraceError, KeepsTheToleranceAndItsReadings) {
   Traced traced;
   ASSERT_TRUE(traced.Measure(1e-6));
   Eigen::VectorXd readings;
@@ -76,7 +76,7 @@ TEST(MeasureTraceError, LeavesTheToleranceAndItsReadings) {
   EXPECT_EQ(readings, traced.solution.readings);
 }
 
-TEST(MeasureTraceError, FailsWhereFrictionHoldsThePendulum) {
+TEST(MeasureTraceError, FailsIfFrictionHoldsThePendulum) {
   Traced traced;
   traced.solution.parameters[2] = 1;  // coulomb in units of G: more than gravity at any angle
   EXPECT_FALSE(MeasureTraceError(*traced.cost, 1e-8, traced.solution));

@@ -67,13 +67,13 @@ TEST(Prior, IsInSiWithARig) {
   ExpectCombined(Must(SimulateRecording(NoisyRun("viscous"))), options, {1, 1}, 0.03);
 }
 
-TEST(Prior, ThatIsSureDecidesAndOneThatIsVagueDoesNot) {
+TEST(Prior, DecidesOnlyIfItIsPrecise) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
   ExpectCombined(recording, ModelOptions("viscous"), {1, 0.01}, 0.03);
   ExpectCombined(recording, ModelOptions("viscous"), {10, 1000}, 0.03);
 }
 
-TEST(Prior, IsNoSample) {
+TEST(Prior, IsNotCountedAsASample) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
   FitOptions options = ModelOptions("viscous");
   options.priors = {{"viscous", {0.0016, 1e-5}}};
@@ -84,7 +84,7 @@ TEST(Prior, IsNoSample) {
   EXPECT_THAT(fit.statistics.rms_residual, DoubleNear(std::sqrt(fit.residual.squaredNorm() / 1000), 1e-15));
 }
 
-TEST(Prior, OfAReleaseTimeIsOnTheFilesClock) {
+TEST(Prior, UsesTheFilesClockForAReleaseTime) {
   SyntheticOptions run = NoisyRun("viscous");
   run.start_time = 1000;
   run.release_time = 1001.9;
@@ -93,7 +93,7 @@ TEST(Prior, OfAReleaseTimeIsOnTheFilesClock) {
   EXPECT_THAT(Fit(Must(SimulateRecording(run)), options).Find("release_time")->estimate, DoubleNear(1001.9, 1e-6));
 }
 
-TEST(Prior, IsRefusedForWhatTheModelDoesNotHave) {
+TEST(Prior, IsRefusedForAParameterTheModelLacks) {
   FitOptions options = ModelOptions("viscous");
   options.priors = {{"drag", {0.1, 0.1}}};
   const Status status = RefusalOf(options);
@@ -105,7 +105,7 @@ TEST(Prior, IsRefusedForWhatTheModelDoesNotHave) {
 
 // ---- Bounds and start values ---------------------------------------------------------------------------------------
 
-TEST(Bounds, AreKept) {
+TEST(Bounds, AreRespected) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
   const double truth = NoisyRun("viscous").parameters[1];
   FitOptions options = ModelOptions("viscous");
@@ -124,7 +124,7 @@ TEST(Bounds, AreKept) {
   EXPECT_FALSE(wide.Find("viscous")->at_bound);
 }
 
-TEST(Bounds, AreNamedInTheWarningOfAParameterThatStandsAtOne) {
+TEST(Bounds, AreNamedInTheWarningAboutAParameterAtABound) {
   FitOptions options = ModelOptions("viscous");
   options.bounds = {{"viscous", {0, 0.0015}}};
   const FitReport fit = Fit(Must(SimulateRecording(NoisyRun("viscous"))), options);
@@ -145,7 +145,7 @@ TEST(Bounds, AreInSiWithARig) {
   EXPECT_DOUBLE_EQ(Fit(Must(SimulateRecording(NoisyRun("viscous"))), options).Find("viscous")->estimate, 0.002);
 }
 
-TEST(Bounds, AreRefusedWhereTheyLeaveNoValue) {
+TEST(Bounds, AreRefusedIfTheyLeaveNoValue) {
   const std::pair<ParameterRange, std::string> refused[] = {
       {{-5, -1}, "the bounds of viscous leave it no value; it must be at least 0, and may be fixed with --fix"},
       {{0.2, 0.1}, "the bounds of viscous leave it no value; it must be at least 0, and may be fixed with --fix"}};
@@ -163,7 +163,7 @@ TEST(Bounds, AreRefusedWhereTheyLeaveNoValue) {
   EXPECT_THAT(RefusalOf(options).message, HasSubstr("model viscous has no parameter 'coulomb' to bound"));
 }
 
-TEST(Init, IsWhereTheSearchBegins) {
+TEST(Init, SetsTheStartOfTheSearch) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
   FitOptions options = ModelOptions("viscous");
   options.rig = RigOf("2.5");
@@ -201,7 +201,7 @@ Recording Drifting(const SyntheticOptions& run, double drift) {
   return recording;
 }
 
-TEST(Drift, IsRecoveredWithTheRest) {
+TEST(Drift, IsRecoveredWithTheOtherParameters) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const bool released : {true, false}) {
       for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
@@ -225,7 +225,7 @@ TEST(Drift, IsRecoveredWithTheRest) {
   }
 }
 
-TEST(Drift, IsAParameterOnlyWhereItIsNamed) {
+TEST(Drift, IsAParameterOnlyIfNamed) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   EXPECT_EQ(Fit(recording, ModelOptions("coulomb")).Find("zero_drift"), nullptr);
   FitOptions options = ModelOptions("coulomb");
@@ -260,7 +260,7 @@ SyntheticOptions DragRun() {
   return run;
 }
 
-TEST(ClockScale, UndoesAClockThatIsWrong) {
+TEST(ClockScale, CorrectsAWrongClock) {
   const Recording recording = Must(SimulateRecording(DragRun()));
   const FitReport straight = Fit(recording, ModelOptions("drag"));
   for (const double scale : {0.9, 1.002, 1.1}) {
@@ -277,7 +277,7 @@ TEST(ClockScale, UndoesAClockThatIsWrong) {
   }
 }
 
-TEST(ClockScale, ActsWithThePowerOfTimeInEachParameter) {
+TEST(ClockScale, ScalesEachParameterByItsPowerOfTime) {
   // I / G is s², b / G is s, τ_c / G is 1, c / G is s².
   const Recording recording = Must(SimulateRecording(DragRun()));
   const FitReport without = Fit(recording, ModelOptions("drag"));
@@ -292,7 +292,7 @@ TEST(ClockScale, ActsWithThePowerOfTimeInEachParameter) {
   EXPECT_THAT(with.Find("release_time")->estimate, DoubleNear(without.Find("release_time")->estimate, 1e-6));
 }
 
-TEST(ClockScale, ItsStandardDeviationIsASystematicError) {
+TEST(ClockScale, ItsErrorIsSystematic) {
   Recording recording = Must(SimulateRecording(DragRun()));
   recording.clock_scale_std_dev = 3e-4;
   FitOptions options = ModelOptions("drag");
@@ -313,7 +313,7 @@ TEST(ClockScale, ItsStandardDeviationIsASystematicError) {
   EXPECT_FALSE(clock.Find("release_angle")->systematic_std_error || clock.Find("zero_angle")->systematic_std_error);
 }
 
-TEST(ClockScale, ItsStandardDeviationCountsForRatesOfAnAngle) {
+TEST(ClockScale, ItsErrorCountsForRatesOfAnAngle) {
   Recording recording = Drifting(MovingRun("coulomb"), 0.01);
   recording.clock_scale_std_dev = 3e-4;
   FitOptions options = ModelOptions("coulomb");
@@ -347,7 +347,7 @@ TEST(Counts, AreRefusedForAModelThatNeedsAnAngle) {
   }
 }
 
-TEST(Counts, GiveTheLinearModelsPeriodAndDamping) {
+TEST(Counts, GiveThePeriodAndDampingOfTheLinearModel) {
   const Recording angles = Must(SimulateRecording(NoisyRun("linear")));
   const FitReport calibrated = Fit(angles, ModelOptions("linear"));
   const FitReport counts = Fit(InCounts(angles), ModelOptions("linear"));
@@ -377,7 +377,7 @@ std::vector<std::string> CodesWithPrior(double off, double width) {
   return codes;
 }
 
-TEST(Prior, ThatTheRecordingContradictsIsWarnedOf) {
+TEST(Prior, CausesAWarningIfTheRecordingContradictsIt) {
   using testing::Contains;
   using testing::Not;
   // Differences of 6 / sqrt(2), 6 and 2 standard deviations; a narrow prior decides the estimate in any case.

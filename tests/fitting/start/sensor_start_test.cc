@@ -57,7 +57,7 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
 }
 
 /// An acceleration sample cannot show the release: the window begins after the hold, regardless of its length.
-TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
+TEST(FitSwing, StartsAnAccelerationAfterItsHold) {
   for (const double axis : {0.02, kPi / 2 + 0.02}) {
     for (const double release : {0.5, 2.0}) {
       SCOPED_TRACE(std::to_string(axis) + " rad, held for " + std::to_string(release) + " s");
@@ -86,7 +86,7 @@ TEST(FitSwing, BeginsAnAccelerationBehindItsHold) {
 }
 
 /// With jumps of 0.13 m/s², six times the noise, a third of the searches end next to one.
-TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
+TEST(FitRecording, ReportsADiscontinuityThatStoppedTheSearch) {
   int stopped = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U, 6U, 8U, 9U, 10U}) {
     SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0.02, 0.3}, 0.02);
@@ -95,15 +95,16 @@ TEST(FitRecording, SaysWhereAJumpOfTheAccelerationStoppedTheSearch) {
     options.seed = seed;
     const FitReport fit = Fit(options);
     EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
-    const bool at_jump = fit.reason.starts_with("a jump of the acceleration's sum of squares stopped the search");
-    EXPECT_TRUE(at_jump || fit.reason == "the step left to make is below 0.1 standard errors") << fit.reason;
-    stopped += at_jump ? 1 : 0;
+    const bool at_discontinuity =
+        fit.reason.starts_with("a jump of the acceleration's sum of squares stopped the search");
+    EXPECT_TRUE(at_discontinuity || fit.reason == "the step left to make is below 0.1 standard errors") << fit.reason;
+    stopped += at_discontinuity ? 1 : 0;
   }
   EXPECT_GE(stopped, 1);
 }
 
 /// Without gravity, recorded until the pendulum rests: k r ω² along the rod and k r α across it.
-TEST(FitRecording, FindsTheRadiusOfAnAccelerometerWhoseReadingsAreWithoutGravity) {
+TEST(FitRecording, FindsTheRadiusWithoutGravityInTheReadings) {
   for (const auto& [axis, duration] :
        {std::pair(0.02, 150.0), std::pair(kPi / 2 + 0.02, 30.0), std::pair(-kPi / 2 - 0.02, 150.0)}) {
     SCOPED_TRACE(std::to_string(axis) + " rad, " + std::to_string(duration) + " s");
@@ -150,14 +151,15 @@ TEST(FitRecording, FindsThePivotOfBothCoordinates) {
 }
 
 /// Small swings are those of a linear pendulum: the scale cannot be determined, and the fit reports none.
-TEST(FitRecording, SaysWhatSmallSwingsDoNotTell) {
+TEST(FitRecording, ReportsParametersSmallSwingsCannotDetermine) {
   SyntheticOptions options = Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
   options.initial_angle = 0.05;
   options.parameters[2] = 0;
   const FitReport fit = Fit(options);
   const ParameterEstimate& scale = *fit.Find("rate_scale");
-  const bool is_told = fit.termination == Termination::kConverged && scale.std_error && *scale.std_error < 0.2 * 0.115;
-  EXPECT_FALSE(is_told) << fit.reason;
+  const bool has_identifiability =
+      fit.termination == Termination::kConverged && scale.std_error && *scale.std_error < 0.2 * 0.115;
+  EXPECT_FALSE(has_identifiability) << fit.reason;
   // A prior on the scale makes the fit possible again.
   FitOptions known;
   known.priors["rate_scale"] = {0.115, 0.001};
@@ -166,7 +168,7 @@ TEST(FitRecording, SaysWhatSmallSwingsDoNotTell) {
   EXPECT_THAT(std::abs(with_prior.Find("rate_scale")->estimate - 0.115), Le(0.003));
 }
 
-TEST(FitRecording, FitsAnyReadingByTheLinearModel) {
+TEST(FitRecording, FitsUncalibratedReadingsWithTheLinearModel) {
   FitOptions linear;
   linear.model = "linear";
   for (const SyntheticOptions& options :
@@ -182,7 +184,7 @@ TEST(FitRecording, FitsAnyReadingByTheLinearModel) {
   }
 }
 
-TEST(FitRecording, RefusesWhatAnAccelerationCannotTell) {
+TEST(FitRecording, RefusesParametersAnAccelerationCannotDetermine) {
   const Recording along =
       SimulateRecording(Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, kPi / 2, 0.3}, 0.05)).value();
   FitOptions options;

@@ -68,7 +68,7 @@ TEST(EstimateStartValues, CorrectsTheFrequencyForLargeSwings) {
   }
 }
 
-TEST(EstimateStartValues, FindTheFrequencyOfASwingThatLiesAtRestForHalfTheRecording) {
+TEST(EstimateStartValues, FindTheFrequencyIfHalfTheRecordingIsAtRest) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.parameters[2] *= 2;  // at rest after some 27 s
   options.duration = 60;
@@ -142,7 +142,7 @@ TEST(EstimateStartValues, FindTheReleaseSeenByANoisyRateSensor) {
   }
 }
 
-TEST(EstimateStartValues, TakeAnyHoldForAReleaseWhereOneIsAskedFor) {
+TEST(EstimateStartValues, AcceptAnyHoldIfAReleaseIsRequested) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.release_time = 0.05;  // 4 % of a period
   const Recording recording = Must(SimulateRecording(options));
@@ -153,7 +153,7 @@ TEST(EstimateStartValues, TakeAnyHoldForAReleaseWhereOneIsAskedFor) {
   EXPECT_TRUE(start.short_hold);
 }
 
-TEST(EstimateStartValues, CountTimeFromTheFirstSample) {
+TEST(EstimateStartValues, MeasureTimeFromTheFirstSample) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.start_time = 1000;
   options.release_time = 1001.9;
@@ -162,7 +162,7 @@ TEST(EstimateStartValues, CountTimeFromTheFirstSample) {
   EXPECT_LT(start.latest_release, 3);
 }
 
-TEST(EstimateStartValues, TakeAHoldOfATenthOfAPeriodForARelease) {
+TEST(EstimateStartValues, TreatAShortHoldAsARelease) {
   SyntheticOptions options = TextbookRun("coulomb");
   options.release_time = 0.15 * kPeriod;
   EXPECT_EQ(StartOf(options).start, StartKind::kRelease);
@@ -207,7 +207,7 @@ TEST(EstimateStartValues, FindAnAngleBeyondTheHorizontalSeenByARateSensor) {
   }
 }
 
-TEST(EstimateStartValues, AStartAtATurningPointIsInMotion) {
+TEST(EstimateStartValues, TreatAStartAtATurningPointAsMotion) {
   SyntheticOptions options = MovingRun("coulomb");
   options.initial_angle = 0.4;
   options.initial_rate = 0;
@@ -218,7 +218,7 @@ TEST(EstimateStartValues, AStartAtATurningPointIsInMotion) {
 
 // ---- A start kind that the user requests ----------------------------------------------------------------------------
 
-TEST(EstimateStartValues, RefuseAReleaseWhereNothingIsHeld) {
+TEST(EstimateStartValues, RefuseAReleaseWithoutAHold) {
   const Recording recording = Must(SimulateRecording(MovingRun("coulomb")));
   const auto start = EstimateStartValues(recording, MovingRun("coulomb").model, StartKind::kRelease);
   ASSERT_FALSE(start);
@@ -227,7 +227,7 @@ TEST(EstimateStartValues, RefuseAReleaseWhereNothingIsHeld) {
   EXPECT_THAT(start.error().message, HasSubstr("--start moving"));
 }
 
-TEST(EstimateStartValues, TakeTheStartThatWasAskedFor) {
+TEST(EstimateStartValues, UseTheRequestedStart) {
   EXPECT_EQ(StartOf(TextbookRun("coulomb"), StartKind::kRelease).start, StartKind::kRelease);
   EXPECT_EQ(StartOf(TextbookRun("coulomb"), StartKind::kMoving).start, StartKind::kMoving);
   EXPECT_EQ(StartOf(MovingRun("coulomb"), StartKind::kMoving).start, StartKind::kMoving);

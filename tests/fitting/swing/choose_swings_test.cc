@@ -55,19 +55,19 @@ SwingChoice Between(double from, double to) { return {.from = from, .to = to}; }
 
 constexpr double kOpen = std::numeric_limits<double>::quiet_NaN();
 
-TEST(ChooseSwings, TakesTheLongestUnlessAsked) {
+TEST(ChooseSwings, ChoosesTheLongestSwingByDefault) {
   const ChosenSwings swings = Choose({});
   EXPECT_THAT(swings.found, SizeIs(2));
   EXPECT_THAT(swings.chosen, ElementsAre(2));
 }
 
-TEST(ChooseSwings, TakesTheNumberAskedForOrAll) {
+TEST(ChooseSwings, ChoosesTheRequestedNumberOrAll) {
   EXPECT_THAT(Choose({.release = 1}).chosen, ElementsAre(1));
   EXPECT_THAT(Choose({.release = 2}).chosen, ElementsAre(2));
   EXPECT_THAT(Choose({.release = SwingChoice::kAll}).chosen, ElementsAre(1, 2));
 }
 
-TEST(ChooseSwings, RefusesANumberThatThereIsNot) {
+TEST(ChooseSwings, RefusesAnUnavailableNumber) {
   const auto swings = ChooseSwings(TwoReleases(), {.release = 3});
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
@@ -78,7 +78,7 @@ TEST(ChooseSwings, RefusesANumberThatThereIsNot) {
             "two.csv: there is no free swing 3 in the recording; it has 2");
 }
 
-TEST(ChooseSwings, AnEndThatIsGivenIsTheEndOfTheSwingNextToIt) {
+TEST(ChooseSwings, AGivenBoundEndsTheSwingNextToIt) {
   const FreeSwing from = ChosenOne(Between(2.5, kOpen));
   EXPECT_THAT(from.from, AllOf(Ge(2.5), Lt(2.511)));
   EXPECT_THAT(from.to, Le(9.0));
@@ -98,7 +98,7 @@ TEST(ChooseSwings, CountsReleasesWithinTheWindow) {
   EXPECT_FALSE(second.from_given);
 }
 
-TEST(ChooseSwings, LooksForNothingWhereBothEndsAreGiven) {
+TEST(ChooseSwings, SkipsTheSearchIfBothBoundsAreGiven) {
   // A hand and a second hold lie between; if both ends are given, the search ignores them.
   const ChosenSwings swings = Choose(Between(3, 20));
   ASSERT_THAT(swings.found, SizeIs(1));
@@ -117,7 +117,7 @@ TEST(ChooseSwings, RefusesAnEmptyWindow) {
   EXPECT_EQ(swings.error().message, "the window [5, 4] s is empty; its start must lie before its end");
 }
 
-TEST(ChooseSwings, NamesTheFileThatHasNoSwing) {
+TEST(ChooseSwings, NamesTheFileWithoutASwing) {
   Recording constant = Must(SimulateRecording(NoisyRun()));
   constant.path = "run.csv";
   constant.value.setConstant(0.3);

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/recording/ticks.h"
+#include "pendulum/recording/encoder_edges.h"
 
 namespace pendulum::edge_steps_test {
 namespace {
@@ -60,7 +60,7 @@ struct Edges {
 
 TEST(FindEdgeSteps, FindsEachCountThatWasLostAtATurningPoint) {
   const Edges edges(0.4 * kResolution, 0.05 * kResolution, {0, 1, 0, 0, -1, 0, 1, 1, 0, 0, -4, 0, 0, 1, 0});
-  const std::vector<ZeroStep> steps = FindEdgeSteps(edges.residuals, edges.recording);
+  const std::vector<OffsetStep> steps = FindEdgeSteps(edges.residuals, edges.recording);
   const std::vector<double> counts = {1, -1, 1, 1, -4, 1};
   const std::vector<double> half_swings = {2, 5, 7, 8, 11, 14};
   ASSERT_THAT(steps, SizeIs(counts.size()));
@@ -71,15 +71,15 @@ TEST(FindEdgeSteps, FindsEachCountThatWasLostAtATurningPoint) {
   }
 }
 
-TEST(FindEdgeSteps, FindsNoneWhereNothingWasLost) {
+TEST(FindEdgeSteps, FindsNothingIfNothingWasLost) {
   const Edges edges(0.4 * kResolution, 0.1 * kResolution, std::vector<int>(20, 0));
   EXPECT_THAT(FindEdgeSteps(edges.residuals, edges.recording), SizeIs(0));
 }
 
-TEST(FindEdgeSteps, LeavesToOthersWhatIsNoNumberOfCounts) {
+TEST(FindEdgeSteps, KeepsTheSizeOfAStepThatIsNotWholeCounts) {
   Edges edges(0, 0.05 * kResolution, std::vector<int>(10, 0));
   edges.residuals.residual.tail(edges.recording.size() / 11 * 5).array() += 1.5 * kResolution;  // five half swings
-  const std::vector<ZeroStep> steps = FindEdgeSteps(edges.residuals, edges.recording);
+  const std::vector<OffsetStep> steps = FindEdgeSteps(edges.residuals, edges.recording);
   ASSERT_FALSE(steps.empty());
   EXPECT_GT(std::abs(steps[0].size / kResolution - std::round(steps[0].size / kResolution)), 0.3);
 }

@@ -61,7 +61,7 @@ void ExpectTruthOfThePendulum(const FitReport& fit, const SyntheticOptions& run)
   }
 }
 
-TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
+TEST(FitSwing, RemovesAFirstHalfSwingGuidedByHand) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE(seed);
     SyntheticOptions run = NoisyRun("coulomb", seed);
@@ -75,7 +75,7 @@ TEST(FitSwing, LeavesAFirstHalfSwingOutThatAHandGuided) {
   }
 }
 
-TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
+TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   SyntheticOptions run = NoisyRun("coulomb", 1);
   run.duration = 1.9 + 28.5 * kHalfPeriod;
   run.noise = 0.0005;
@@ -86,7 +86,7 @@ TEST(FitSwing, LeavesALastHalfSwingOutThatAHandGuided) {
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
-TEST(FitSwing, SaysWhatItLeftOut) {
+TEST(FitSwing, ReportsWhatItRemoved) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
@@ -109,7 +109,7 @@ TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {
   }
 }
 
-TEST(FitSwing, KeepsTheWholeWindowWhereOnlyTheModelIsWrong) {
+TEST(FitSwing, KeepsTheWindowIfOnlyTheModelIsWrong) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE(seed);
     SyntheticOptions run = NoisyRun("drag", seed);
@@ -122,7 +122,7 @@ TEST(FitSwing, KeepsTheWholeWindowWhereOnlyTheModelIsWrong) {
   }
 }
 
-TEST(FitSwing, KeepsTheEndsThatTheUserChose) {
+TEST(FitSwing, KeepsTheUsersBounds) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
   const Recording recording = Guided(run, 0);
@@ -136,7 +136,7 @@ TEST(FitSwing, KeepsTheEndsThatTheUserChose) {
   EXPECT_THAT(to.used.time[0], Ge(1.9));
 }
 
-TEST(FitSwing, HandsOnWhatTheFitRefuses) {
+TEST(FitSwing, ReturnsTheErrorOfTheFit) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FreeSwing swing = Must(ChooseSwings(recording, {})).found.at(0);
   const auto refused = FitSwing(recording, swing, ModelOptions("columb"));
@@ -145,7 +145,7 @@ TEST(FitSwing, HandsOnWhatTheFitRefuses) {
   EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
 }
 
-TEST(FitSwing, TakesTurnsOverTheTopOutOfTheZero) {
+TEST(FitSwing, RemovesWholeTurnsFromTheZero) {
   SyntheticOptions truth = NoisyRun("coulomb", 3);
   truth.start = StartKind::kMoving;
   truth.release_angle = truth.release_time = 0;

@@ -57,17 +57,17 @@ double LargestDeviation(const FitReport& fit, const SyntheticOptions& run) {
   return largest;
 }
 
-TEST(FindZeroJumps, FindsNoneWhereNoneAre) {
+TEST(FindOffsetJumps, FindsNothingWithoutJumps) {
   for (const double noise : {0.1, 1.0}) {
-    EXPECT_FALSE(FindZeroJumps(Must(SimulateRecording(CountingRun(noise))), {}));
+    EXPECT_FALSE(FindOffsetJumps(Must(SimulateRecording(CountingRun(noise))), {}));
   }
 }
 
-TEST(FindZeroJumps, GivesBackTheReadingsBeforeCountsWereLost) {
+TEST(FindOffsetJumps, RestoresTheReadingsBeforeLostCounts) {
   SyntheticOptions run = CountingRun(0.25);
   const Recording whole = Must(SimulateRecording(run));
   run.lost_counts = {{5.2, 2}, {11.7, -1}};
-  const auto jumps = FindZeroJumps(Must(SimulateRecording(run)), {});
+  const auto jumps = FindOffsetJumps(Must(SimulateRecording(run)), {});
   ASSERT_TRUE(jumps);
   EXPECT_THAT(jumps->lost, ElementsAre(Field(&LostCounts::counts, 2), Field(&LostCounts::counts, -1)));
   const Eigen::ArrayXd levels = (jumps->corrected.value - whole.value).array() / kCount;
@@ -76,18 +76,18 @@ TEST(FindZeroJumps, GivesBackTheReadingsBeforeCountsWereLost) {
   EXPECT_EQ(levels.round().matrix().tail<1>()[0], 0);
 }
 
-TEST(FitSwing, MovesLostCountsBackAndSaysSo) {
+TEST(FitSwing, CorrectsAndReportsLostCounts) {
   SyntheticOptions run = CountingRun(0.5);
   run.lost_counts = {{6.5, -3}};
   const SwingFit result = Fit(Must(SimulateRecording(run)));
   EXPECT_EQ(result.fit.termination, Termination::kConverged);
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("the zero jumps by -3 counts at 6.5"));
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("moved back by as much"));
-  EXPECT_FALSE(result.fit.Warns("lack_of_fit") || result.fit.Warns("correlated_residuals"));
+  EXPECT_FALSE(result.fit.HasWarning("lack_of_fit") || result.fit.HasWarning("correlated_residuals"));
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
 
-TEST(FitSwing, MovesOneCountBackThatTheNoiseHides) {
+TEST(FitSwing, CorrectsOneLostCountBelowTheNoise) {
   SyntheticOptions run = CountingRun(1);
   run.lost_counts = {{9.1, 1}};
   const SwingFit result = Fit(Must(SimulateRecording(run)));
@@ -95,15 +95,15 @@ TEST(FitSwing, MovesOneCountBackThatTheNoiseHides) {
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
 
-TEST(FitSwing, FindsLostCountsWhateverTheLawAskedFor) {
+TEST(FitSwing, FindsLostCountsForAnyRequestedLaw) {
   SyntheticOptions run = CountingRun(0.5);
   run.lost_counts = {{6.5, 4}};
   const SwingFit result = Fit(Must(SimulateRecording(run)), "viscous");
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("by 4 counts at 6.5"));
-  EXPECT_TRUE(result.fit.Warns("lack_of_fit"));  // the data contain dry friction
+  EXPECT_TRUE(result.fit.HasWarning("lack_of_fit"));  // the data contain dry friction
 }
 
-TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
+TEST(FitSwing, LocatesCountsLostWithinAGap) {
   for (const int counts : {1, 2, 5}) {
     SyntheticOptions run = CountingRun(0.5);
     run.lost_counts = {{9.5, counts}};
@@ -122,7 +122,7 @@ TEST(FitSwing, DatesCountsThatWereLostWithinAGap) {
 
 /// Events of an encoder whose counter loses one count at some turning points, and four during the motion, where a busy
 /// logger missed rows.
-TEST(FitSwing, MovesBackWhatAnEncoderOfEventsLost) {
+TEST(FitSwing, CorrectsCountsLostByAnEventEncoder) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.start = StartKind::kMoving;
   run.initial_angle = -0.3;
@@ -139,11 +139,11 @@ TEST(FitSwing, MovesBackWhatAnEncoderOfEventsLost) {
   const SwingFit result = Fit(edges);
   EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("and 10 times more"));
-  EXPECT_FALSE(result.fit.Warns("lack_of_fit"));
+  EXPECT_FALSE(result.fit.HasWarning("lack_of_fit"));
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
 
-TEST(FitSwing, LeavesAJumpNearTheEndInTheWindow) {
+TEST(FitSwing, KeepsAJumpNearTheEndInTheWindow) {
   SyntheticOptions run = CountingRun(0.5);
   run.lost_counts = {{19.2, 2}};
   const SwingFit result = Fit(Must(SimulateRecording(run)));
@@ -151,7 +151,7 @@ TEST(FitSwing, LeavesAJumpNearTheEndInTheWindow) {
   EXPECT_THAT(result.swing.to, DoubleNear(19.99, 1e-9));
 }
 
-TEST(FitSwing, RefusesAZeroThatSlips) {
+TEST(FitSwing, RefusesASlippingZero) {
   SyntheticOptions run = CountingRun(0.5);
   for (const double resolution : {0.0, kCount}) {
     run.resolution = resolution;
@@ -167,15 +167,15 @@ TEST(FitSwing, RefusesAZeroThatSlips) {
   }
 }
 
-TEST(MayJump, SeesAMeanThatChanges) {
+TEST(MayHaveOffsetJump, DetectsAChangeOfTheMean) {
   FitReport fit;
   fit.fitted = Eigen::ArrayXd::LinSpaced(1000, 0, 99).sin();
   fit.residual = 0.01 * Eigen::ArrayXd::LinSpaced(1000, 0, 12345).sin();
-  EXPECT_FALSE(MayJump(fit));
+  EXPECT_FALSE(MayHaveOffsetJump(fit));
   fit.residual.tail(400).array() += 0.005;
-  EXPECT_TRUE(MayJump(fit));
+  EXPECT_TRUE(MayHaveOffsetJump(fit));
   fit.residual *= 1e-8;  // rounding error of the numbers
-  EXPECT_FALSE(MayJump(fit));
+  EXPECT_FALSE(MayHaveOffsetJump(fit));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ double NumberAfter(const std::string& sentence, const std::string& before) {
   return std::stod(sentence.substr(at + before.size()));
 }
 
-TEST(FitSwing, NamesALinearOscillatorWithNumbers) {
+TEST(FitSwing, ReportsALinearOscillatorWithNumbers) {
   for (const auto& [degrees, friction] :
        {std::pair(40.0, "viscous"), std::pair(80.0, "coulomb"), std::pair(40.0, "drag")}) {
     SCOPED_TRACE(std::to_string(degrees) + " deg, " + std::string(friction));
@@ -88,25 +88,25 @@ TEST(FitSwing, NamesALinearOscillatorWithNumbers) {
   }
 }
 
-TEST(FitSwing, TakesALinearOscillatorForWhatItIsByTheLinearModel) {
+TEST(FitSwing, AcceptsALinearOscillatorForTheLinearModel) {
   for (const double degrees : {40.0, 80.0}) {
     const Recording recording = LinearOscillator(degrees, "viscous", 1);
     const FitReport fit = FitLongest(recording, ModelOptions("linear")).fit;
     ExpectAPendulum(fit);
-    EXPECT_FALSE(WhyLinear(recording, fit));
+    EXPECT_FALSE(LinearOscillatorReason(recording, fit));
   }
 }
 
-TEST(WhyLinear, SaysNothingOfSmallSwings) {
+TEST(LinearOscillatorReason, IsMissingForSmallSwings) {
   const Recording recording = LinearOscillator(10, "coulomb", 1);
-  EXPECT_FALSE(WhyLinear(recording, Fit(recording, ModelOptions("coulomb"))));
+  EXPECT_FALSE(LinearOscillatorReason(recording, Fit(recording, ModelOptions("coulomb"))));
 }
 
-TEST(WhyLinear, SaysNothingOfAFitThatFailed) {
+TEST(LinearOscillatorReason, IsMissingForAFailedFit) {
   FitReport failed;
   failed.termination = Termination::kFailed;
-  EXPECT_FALSE(WhyLinear(LinearOscillator(40, "coulomb", 1), failed));
-  EXPECT_FALSE(WhyTwoModes(LinearOscillator(40, "coulomb", 1), failed));
+  EXPECT_FALSE(LinearOscillatorReason(LinearOscillator(40, "coulomb", 1), failed));
+  EXPECT_FALSE(TwoModesReason(LinearOscillator(40, "coulomb", 1), failed));
 }
 
 // ---- Two modes ----------------------------------------------------------------------------------------------------
@@ -124,7 +124,7 @@ Recording TwoModes(double share, double ratio, double duration = 25) {
   return recording;
 }
 
-TEST(FitSwing, NamesTwoModesWithTheirPeriods) {
+TEST(FitSwing, ReportsTwoModesWithTheirPeriods) {
   const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
   for (const double ratio : {0.5, 1.7, 2.4}) {
     SCOPED_TRACE(ratio);
@@ -138,7 +138,7 @@ TEST(FitSwing, NamesTwoModesWithTheirPeriods) {
   }
 }
 
-TEST(FitSwing, NamesModesOfNearlyOneFrequencyThatBeat) {
+TEST(FitSwing, ReportsBeatingModesOfNearlyOneFrequency) {
   const FitReport fit = FitLongest(TwoModes(0.6, 1.2, 60), ModelOptions("coulomb")).fit;
   ExpectWithdrawn(fit);
   EXPECT_EQ(fit.reason,
@@ -177,7 +177,7 @@ Recording PendulumWith(const Friction& torque) {
   return recording;
 }
 
-TEST(FitSwing, APendulumWithAnotherFrictionLawIsAPendulum) {
+TEST(FitSwing, AcceptsAPendulumWithAnotherFrictionLaw) {
   const Recording recordings[] = {
       PendulumWith([](double rate) { return 0.0004 * rate * rate * rate; }),
       PendulumWith([](double rate) { return 0.006 * rate / std::sqrt(std::abs(rate) + 1e-3); }),
@@ -187,8 +187,8 @@ TEST(FitSwing, APendulumWithAnotherFrictionLawIsAPendulum) {
       SCOPED_TRACE(std::string(model) + ", recording " + std::to_string(&recording - recordings));
       const FitReport fit = FitLongest(recording, ModelOptions(model)).fit;
       ExpectAPendulum(fit);
-      EXPECT_FALSE(WhyLinear(recording, fit));
-      EXPECT_FALSE(WhyTwoModes(recording, fit));
+      EXPECT_FALSE(LinearOscillatorReason(recording, fit));
+      EXPECT_FALSE(TwoModesReason(recording, fit));
     }
   }
 }

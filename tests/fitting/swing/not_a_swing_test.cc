@@ -50,7 +50,7 @@ void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make, b
   }
 }
 
-TEST(NotASwing, ARandomWalk) {
+TEST(NotASwing, RejectsARandomWalk) {
   ExpectNeverConverged(
       [](std::uint64_t seed) {
         double position = 0;
@@ -59,12 +59,12 @@ TEST(NotASwing, ARandomWalk) {
       false);
 }
 
-TEST(NotASwing, WhiteNoise) {
+TEST(NotASwing, RejectsWhiteNoise) {
   ExpectNeverConverged(
       [](std::uint64_t seed) { return Made([](double, const Noise& noise) { return 0.1 * noise(); }, seed); });
 }
 
-TEST(NotASwing, ASawtooth) {
+TEST(NotASwing, RejectsASawtooth) {
   ExpectNeverConverged([](std::uint64_t seed) {
     const double phase = 0.37 * static_cast<double>(seed);
     return Made([&](double t, const Noise& noise) { return 0.5 * std::fmod(0.8 * t + phase, 1.0) + 0.01 * noise(); },
@@ -72,7 +72,7 @@ TEST(NotASwing, ASawtooth) {
   });
 }
 
-TEST(NotASwing, ASquareWave) {
+TEST(NotASwing, RejectsASquareWave) {
   ExpectNeverConverged(
       [](std::uint64_t seed) {
         const double phase = 0.37 * static_cast<double>(seed);
@@ -85,7 +85,7 @@ TEST(NotASwing, ASquareWave) {
       false);
 }
 
-TEST(NotASwing, ASweepOfFrequency) {
+TEST(NotASwing, RejectsAFrequencySweep) {
   ExpectNeverConverged([](std::uint64_t seed) {
     return Made(
         [](double t, const Noise& noise) { return 0.3 * std::sin(2 * kPi * t * (0.5 + 0.05 * t)) + 0.01 * noise(); },
@@ -93,7 +93,7 @@ TEST(NotASwing, ASweepOfFrequency) {
   });
 }
 
-TEST(NotASwing, AnAmplitudeThatGrows) {
+TEST(NotASwing, RejectsAGrowingAmplitude) {
   ExpectNeverConverged([](std::uint64_t seed) {
     return Made(
         [](double t, const Noise& noise) { return 0.02 * std::exp(0.3 * t) * std::sin(5 * t) + 0.002 * noise(); },

@@ -49,7 +49,7 @@ class Recordings : public testing::TestWithParam<ReferenceFit> {
   }
 };
 
-TEST_P(Recordings, AreFittedAsWellAsByAnIndependentProgram) {
+TEST_P(Recordings, AreFittedAsWellAsByAnotherProgram) {
   const FitReport report = Fit(GetParam());
   EXPECT_EQ(report.termination, Termination::kConverged) << report.reason;
   const double gravity_over_inertia = 1 / report.Find("inertia")->estimate;
@@ -57,7 +57,7 @@ TEST_P(Recordings, AreFittedAsWellAsByAnIndependentProgram) {
   EXPECT_LE(report.statistics.rms_residual, 1.05 * GetParam().rms);
 }
 
-TEST_P(Recordings, AreFittedNoWorseByALawThatHasMore) {
+TEST_P(Recordings, AreFittedNoWorseByARicherLaw) {
   double simpler = kUnbounded;
   for (const std::string model : {"viscous", "coulomb", "drag"}) {
     const double rms = Fit(GetParam(), model).statistics.rms_residual;
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(ReferenceFits, Recordings,
 
 using HeldRecording = Recordings;
 
-TEST_P(HeldRecording, ItsReleaseIsFound) {
+TEST_P(HeldRecording, HasItsReleaseFound) {
   const FitReport report = Fit(GetParam());
   ASSERT_EQ(report.start, StartKind::kRelease);
   // The hold lasts 0.70 s, and samples are 0.05 s apart.

@@ -100,17 +100,17 @@ TEST(FitUndersampled, FindsTheInertiaOfATextbookRunSampledOnceASecond) {
   EXPECT_THAT(std::abs(std::log(scatter.std_dev)), Lt(std::log(1.25)));
 }
 
-TEST(FitUndersampled, FindsItAtSmallAndLargeAmplitudesAndWithDryFriction) {
+TEST(FitUndersampled, FindsSwingsOfAnyAmplitudeAndWithDryFriction) {
   EXPECT_EQ(ScatterOf(1, 0.1, "viscous", 12).far, 0);
   EXPECT_EQ(ScatterOf(1, 1.2, "viscous", 6).far, 0);
   EXPECT_EQ(ScatterOf(1, 0.423, "coulomb", 12).far, 0);
 }
 
-TEST(FitUndersampled, FindsItAtFiveThirdsOfTheFrequency) {
+TEST(FitUndersampled, FindsTheSwingAtFiveThirdsOfTheFrequency) {
   EXPECT_EQ(ScatterOf(kFrequency * 5 / 3, 0.423, "viscous", 12).far, 0);
 }
 
-TEST(FitUndersampled, LeavesTheHoldOut) {
+TEST(FitUndersampled, ExcludesTheHold) {
   SyntheticOptions run = Swing(1, 0.423, 1);
   run.start = StartKind::kRelease;
   run.release_angle = 0.423;
@@ -148,7 +148,7 @@ TEST(FitUndersampled, ExplainsTheApparentPeriod) {
   EXPECT_FALSE(result.fit.Find("inertia")->closed_form);
 }
 
-TEST(FitUndersampled, IsNotIdentifiableSampledOnceOrTwiceACycle) {
+TEST(FitUndersampled, IsNotIdentifiableAtOneOrTwoSamplesPerCycle) {
   for (const double samples : {1.0, 2.0}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const SwingFit result = FitSimulated(Swing(samples * kFrequency, 0.423, seed), TextbookRig(), "viscous");
@@ -161,7 +161,7 @@ TEST(FitUndersampled, IsNotIdentifiableSampledOnceOrTwiceACycle) {
   }
 }
 
-TEST(FitUndersampled, DoesNotTakeAnotherMotionForAPendulumsInNoise) {
+TEST(FitUndersampled, RejectsAnotherMotionInNoise) {
   Recording noise = Must(SimulateRecording(Swing(1, 0.423, 1)));
   std::mt19937_64 generator(5);
   for (double& value : noise.value) value = static_cast<double>(generator() >> 11) * 0x1p-53;
@@ -199,7 +199,7 @@ TEST(FitUndersampled, GivesNoConfidentAnswerWithoutARig) {
   }
 }
 
-TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
+TEST(FitUndersampled, FitsASlowPendulumWithoutAPlausibleAlias) {
   const SwingFit result = FitSimulated(Swing(4, 0.423, 1, kSlowInertia), std::nullopt, "viscous");
   ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
   EXPECT_NEAR(InertiaOf(result), kSlowInertia / kTextbookTorque, 4 * *result.fit.Find("inertia")->std_error);
@@ -207,7 +207,7 @@ TEST(FitUndersampled, FitsASlowPendulumThatNoPlausibleOneAliasesTo) {
 }
 
 // Milliseconds and microseconds interpreted as seconds.
-TEST(FitUndersampled, RefusesAPeriodThatNoPendulumHas) {
+TEST(FitUndersampled, RefusesAnImplausiblePeriod) {
   for (const double factor : {1e3, 1e6}) {
     Recording recording = Must(SimulateRecording(Swing(50, 0.423, 1)));
     recording.time *= factor;
@@ -225,7 +225,7 @@ TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {
   EXPECT_THAT(result.fit.reason, HasSubstr("check the rig"));
 }
 
-TEST(FitUndersampled, TakesBoundsForARig) {
+TEST(FitUndersampled, AcceptsBoundsInsteadOfARig) {
   FitOptions options = ModelOptions("viscous");
   options.bounds["inertia"] = {0.8 * kInertiaTruth / kTextbookTorque, 1.2 * kInertiaTruth / kTextbookTorque};
   const SwingFit result = FitAsTheToolDoes(Must(SimulateRecording(Swing(1, 0.423, 1))), std::nullopt, options);
@@ -235,14 +235,14 @@ TEST(FitUndersampled, TakesBoundsForARig) {
 
 // ---- IsUndersampled ------------------------------------------------------------------------------------------------
 
-TEST(IsUndersampled, BelowSevenSamplesInAPeriodFifteenPercentShorter) {
+TEST(IsUndersampled, IsTrueBelowSevenSamplesPerShortenedPeriod) {
   const double limit = 7 * 1.15 * std::sqrt(kTextbookTorque / kGeometric) / (2 * kPi);
   const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
   EXPECT_TRUE(IsUndersampled(at(0.99 * limit), TextbookRig()));
   EXPECT_FALSE(IsUndersampled(at(1.01 * limit), TextbookRig()));
 }
 
-TEST(IsUndersampled, WhereAFasterPendulumWouldLookTheSameWithoutARigsInertia) {
+TEST(IsUndersampled, IsTrueIfAFasterPendulumWouldLookTheSame) {
   Rig torque_alone = TextbookRig();
   torque_alone.inertia.reset();
   const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
@@ -253,7 +253,7 @@ TEST(IsUndersampled, WhereAFasterPendulumWouldLookTheSameWithoutARigsInertia) {
   }
 }
 
-TEST(ChooseSwings, TakesAnUndersampledRecordingWhole) {
+TEST(ChooseSwings, UsesAnUndersampledRecordingAsAWhole) {
   const Recording recording = Must(SimulateRecording(Swing(1, 0.423, 1)));
   const ChosenSwings swings = Must(ChooseSwings(recording, {}, TextbookRig()));
   ASSERT_EQ(swings.found.size(), 1U);

@@ -46,11 +46,11 @@ void ExpectIntervalsOfCovariance(const Recording& recording, FitOptions options,
 // by the normal density there. An eighth is three times that.
 constexpr double kScatter = 0.125;
 
-TEST(Bootstrap, OfWhiteNoiseGivesTheCovariancesIntervals) {
+TEST(Bootstrap, MatchesCovarianceIntervalsForWhiteNoise) {
   ExpectIntervalsOfCovariance(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"), kScatter);
 }
 
-TEST(Bootstrap, OfLevelsGivesTheCovariancesIntervals) {
+TEST(Bootstrap, MatchesCovarianceIntervalsOnLevels) {
   SyntheticOptions run = ShortSwing();
   run.resolution = kCount;
   run.noise = 0.4 * kCount;
@@ -59,11 +59,11 @@ TEST(Bootstrap, OfLevelsGivesTheCovariancesIntervals) {
   ExpectIntervalsOfCovariance(Must(SimulateRecording(run)), options, kScatter);
 }
 
-TEST(Bootstrap, OfNoiseThatRemembersGivesTheSandwichsIntervals) {
+TEST(Bootstrap, MatchesSandwichIntervalsForAutocorrelatedNoise) {
   SyntheticOptions run = ShortSwing();
   run.noise = 0;
   run.duration = 30;
-  const Recording recording = WithNoise(Must(SimulateRecording(run)), 1, RememberingNoise(0.8, 0.002));
+  const Recording recording = WithNoise(Must(SimulateRecording(run)), 1, AutocorrelatedNoise(0.8, 0.002));
   const FitReport report = Fit(recording, ModelOptions("coulomb"));
   ASSERT_THAT(report.std_error_method, StartsWith("sandwich"));
   // Blocks cut the autocorrelation at their ends, and 1500 samples give only a few blocks.
@@ -84,7 +84,7 @@ Bootstrap Bootstrapped(const Fitted& fitted, std::uint64_t seed, int threads) {
   return RunBootstrap(*fitted.problem, options, fitted.solution, fitted.residuals, fitted.correlation);
 }
 
-TEST(Bootstrap, IsTheSameForASeedWhateverTheNumberOfThreads) {
+TEST(Bootstrap, DoesNotDependOnTheNumberOfThreads) {
   const Fitted fitted = SmallFit();
   const Bootstrap one = Bootstrapped(fitted, 1, 1);
   const Bootstrap three = Bootstrapped(fitted, 1, 3);
@@ -102,7 +102,7 @@ TEST(Bootstrap, DiffersFromSeedToSeed) {
   }
 }
 
-TEST(Bootstrap, HasEstimatesAroundTheFitsOwnThatScatterAsTheyShould) {
+TEST(Bootstrap, EstimatesScatterAroundTheFitAsExpected) {
   const Fitted fitted = SmallFit();
   const Bootstrap bootstrap = Bootstrapped(fitted, 1, 2);
   const Errors errors = fitted.StandardErrors();

@@ -74,7 +74,7 @@ double PropagatedError(const std::function<double(const Eigen::VectorXd&)>& defi
   return std::sqrt(gradient.dot(Covariance() * gradient));
 }
 
-TEST(DerivedQuantities, AreThoseOfAPendulumOfFiveRadiansASecond) {
+TEST(DerivedQuantities, MatchAPendulumOfFiveRadiansPerSecond) {
   const Quantities quantities = Derived("drag", kParameters, nullptr);
   const auto is = [](double value, const std::string& unit) {
     return AllOf(Field(&DerivedQuantity::estimate, DoubleNear(value, 1e-12 * value)),
@@ -104,7 +104,7 @@ TEST(DerivedQuantities, HaveNoErrorsWithoutACovariance) {
   for (const auto& [name, quantity] : Derived("drag", kParameters, nullptr)) EXPECT_FALSE(quantity.std_error) << name;
 }
 
-TEST(DerivedQuantities, OfAParameterAtItsBoundHaveNoError) {
+TEST(DerivedQuantities, HaveNoErrorForAParameterAtItsBound) {
   Eigen::MatrixXd covariance = Covariance();
   covariance.row(2).setZero();
   covariance.col(2).setZero();
@@ -117,7 +117,7 @@ TEST(DerivedQuantities, OfAParameterAtItsBoundHaveNoError) {
   EXPECT_TRUE(quantities.at("natural_frequency").std_error);
 }
 
-TEST(DerivedQuantities, AnUndampedPendulumHasNoQualityFactorAndAFiniteErrorOfItsDampingRatio) {
+TEST(DerivedQuantities, HaveNoQualityFactorWithoutDamping) {
   std::vector<double> parameters = kParameters;
   parameters[1] = 0;
   const Eigen::MatrixXd covariance = Covariance();
@@ -127,7 +127,7 @@ TEST(DerivedQuantities, AnUndampedPendulumHasNoQualityFactorAndAFiniteErrorOfIts
   EXPECT_THAT(*quantities.at("damping_ratio").std_error, DoubleNear(0.00002 / 0.4, 1e-12));
 }
 
-TEST(DerivedQuantities, AreOnlyThoseOfTheModelsParameters) {
+TEST(DerivedQuantities, CoverOnlyTheModelsParameters) {
   const Quantities quantities = Derived("viscous", {0.04, 0.002, 0.3, -0.7, 0.01}, nullptr);
   EXPECT_THAT(quantities, Contains(Key("viscous_over_inertia")));
   EXPECT_THAT(quantities, Not(Contains(Key("coulomb_over_inertia"))));
@@ -155,7 +155,7 @@ void ExpectInterval(const DerivedQuantity& quantity, double lower, double upper)
 }
 
 /// sqrt(I) is 0.19, 0.2, 0.22 s; a larger I lowers ω0 and lengthens the period.
-TEST(SetDerivedIntervals, CarriesTheEndsOfOneParameterOver) {
+TEST(SetDerivedIntervals, PropagatesTheEndsOfOneParameter) {
   const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
   ExpectInterval(quantities.at("natural_frequency"), 1 / 0.22, 1 / 0.19);
   ExpectInterval(quantities.at("small_angle_period"), 0.38 * kPi, 0.44 * kPi);
@@ -163,7 +163,7 @@ TEST(SetDerivedIntervals, CarriesTheEndsOfOneParameterOver) {
   ExpectInterval(quantities.at("coulomb_over_inertia"), 0.003 / 0.0484, 0.003 / 0.0361);  // τ_c is fixed
 }
 
-TEST(SetDerivedIntervals, AddsTheDistancesOfTwoParametersInSquares) {
+TEST(SetDerivedIntervals, AddsDistancesOfTwoParametersInQuadrature) {
   const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
   // ζ = b / (2 sqrt(I)): 0.005; by b 0.0025 to 0.0075, by I 0.001 / 0.22 to 0.001 / 0.19.
   ExpectInterval(quantities.at("damping_ratio"), 0.005 - std::hypot(0.0025, 0.005 - 0.001 / 0.22),
@@ -175,13 +175,13 @@ TEST(SetDerivedIntervals, AddsTheDistancesOfTwoParametersInSquares) {
                  0.05 + std::hypot(0.025, 0.002 / 0.0361 - 0.05));
 }
 
-TEST(SetDerivedIntervals, AQualityFactorHasNoUpperEndWhereTheFrictionMayBeNone) {
+TEST(SetDerivedIntervals, HasNoUpperQualityFactorIfFrictionMayBeZero) {
   const DerivedQuantity quality = WithIntervals({0.0, 0.004}, {0.003, 0.003}).at("quality_factor");
   EXPECT_FALSE(quality.upper95);
   EXPECT_THAT(*quality.lower95, DoubleNear(100 - std::hypot(50, 5), 1e-9));
 }
 
-TEST(SetDerivedIntervals, AMissingEndLeavesOpenWhatItIsCarriedTo) {
+TEST(SetDerivedIntervals, LeavesEndsOpenForMissingEnds) {
   const Quantities quantities = WithIntervals({0.001, {}}, {0.003, 0.003});
   EXPECT_TRUE(quantities.at("damping_ratio").lower95);
   EXPECT_FALSE(quantities.at("damping_ratio").upper95);

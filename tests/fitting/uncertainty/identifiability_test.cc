@@ -15,14 +15,14 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(VerdictName, TellsThreeVerdictsApart) {
+TEST(VerdictName, DistinguishesThreeVerdicts) {
   using enum Identifiability::Verdict;
   const std::set<std::string_view> names = {VerdictName(kIdentifiable), VerdictName(kWeakly),
                                             VerdictName(kNotIdentifiable)};
   EXPECT_EQ(names.size(), 3);
 }
 
-TEST(MeasurementFor, IsThereForEveryParameterOfEveryModel) {
+TEST(MeasurementFor, ExistsForEveryParameterOfEveryModel) {
   for (const MotionModel& model : MotionModels()) {
     for (const StartKind start : {StartKind::kRelease, StartKind::kMoving}) {
       for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
@@ -34,7 +34,7 @@ TEST(MeasurementFor, IsThereForEveryParameterOfEveryModel) {
   }
 }
 
-TEST(MeasurementFor, OfFrictionAsksForOtherAmplitudes) {
+TEST(MeasurementFor, SuggestsOtherAmplitudesForFriction) {
   for (const char* const name : {"viscous", "coulomb", "drag"}) {
     EXPECT_THAT(MeasurementFor(name), HasSubstr("further out")) << name;
   }

@@ -125,9 +125,9 @@ void ExpectAsByQuadrature(const LinearizedFit& fit) {
   EXPECT_NEAR((posterior->sigma - expected.sigma) / posterior->sigma_std_dev, 0, kMeanError);
 }
 
-TEST(SamplePosterior, OfARampWithoutNoiseAgreesWithQuadrature) { ExpectAsByQuadrature(Ramp()); }
+TEST(SamplePosterior, MatchesQuadratureForARampWithoutNoise) { ExpectAsByQuadrature(Ramp()); }
 
-TEST(SamplePosterior, BeginsAnywhereWithinTwoCounts) {
+TEST(SamplePosterior, StartsAnywhereWithinTwoCounts) {
   LinearizedFit fit = Ramp();
   fit.readings.array() += 1.5 * kResolution;  // no level allows this
   fit.noise.sigma = 0;
@@ -145,14 +145,14 @@ TEST(SamplePosterior, StaysWithinBounds) {
   EXPECT_LE(posterior->draws.col(0).maxCoeff(), fit.upper[0]);
 }
 
-TEST(SamplePosterior, HeedsPriors) {
+TEST(SamplePosterior, UsesPriors) {
   LinearizedFit fit = Ramp();
   fit.prior_mean[0] = 0.3 * kResolution;
   fit.prior_weight[0] = 1 / (0.05 * kResolution);
   ExpectAsByQuadrature(fit);
 }
 
-TEST(SamplePosterior, OfCensoredReadingsAgreesWithQuadrature) {
+TEST(SamplePosterior, MatchesQuadratureForCensoredReadings) {
   LinearizedFit fit = Ramp();
   fit.noise.high = 2 * kResolution;
   fit.value = fit.value.cwiseMin(fit.noise.high);
@@ -168,7 +168,7 @@ TEST(SamplePosterior, CountsEqualSamples) {
   ExpectAsByQuadrature(fit);
 }
 
-TEST(SamplePosterior, IsTheSameForTheSameSeed) {
+TEST(SamplePosterior, IsReproducibleForASeed) {
   const Result<Posterior> first = SamplePosterior(Ramp(), 7);
   const Result<Posterior> second = SamplePosterior(Ramp(), 7);
   const Result<Posterior> other = SamplePosterior(Ramp(), 8);
@@ -216,7 +216,7 @@ Eigen::Matrix4d Covariance(const Eigen::Matrix4d& information) {
   return scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
 }
 
-TEST(SamplePosterior, OfMuchNoiseIsTheNormalDistributionAboutTheLikeliest) {
+TEST(SamplePosterior, IsNormalForMuchNoise) {
   const Eigen::MatrixXd jacobian = Parabola(400);
   std::mt19937_64 generator(2);
   const Eigen::Vector3d truth = kResolution * Eigen::Vector3d(0.2, 7e-5, -3e4);
@@ -243,7 +243,7 @@ TEST(SamplePosterior, OfMuchNoiseIsTheNormalDistributionAboutTheLikeliest) {
   EXPECT_NEAR(posterior->sigma_std_dev / (std::exp(point[3]) * std::sqrt(covariance(3, 3))), 1, kSpreadError);
 }
 
-TEST(SamplePosterior, RanksTheTruthUniformlyAmongItsDraws) {
+TEST(SamplePosterior, RanksTheTruthUniformly) {
   // S. Talts et al., arXiv 1804.06788: holds if the true values are drawn from the prior.
   constexpr int kProblems = 100;
   constexpr int kBins = 10;
@@ -290,7 +290,7 @@ struct Swing {
   }
 };
 
-TEST(SamplePosterior, CoversTheTruthOfSwingsWithoutNoiseAndComesFarCloserThanLeastSquares) {
+TEST(SamplePosterior, CoversTheTruthMoreCloselyThanLeastSquares) {
   constexpr int kSwings = 16;
   std::mt19937_64 generator(13);
   boost::random::uniform_01<double> uniform;
@@ -323,7 +323,7 @@ void ExpectError(const LinearizedFit& fit, StatusCode code, const std::string& m
   EXPECT_THAT(posterior.error().message, HasSubstr(message));
 }
 
-TEST(SamplePosterior, RefusesSizesThatDisagree) {
+TEST(SamplePosterior, RefusesInconsistentSizes) {
   LinearizedFit fit = Ramp();
   fit.readings.conservativeResize(19);
   ExpectError(fit, StatusCode::kInvalidArgument, "20 values, 19 readings and 20 rows");
@@ -334,7 +334,7 @@ TEST(SamplePosterior, RefusesSizesThatDisagree) {
   ExpectError(fit, StatusCode::kInvalidArgument, "there are none");
 }
 
-TEST(SamplePosterior, RefusesValuesItCannotUse) {
+TEST(SamplePosterior, RefusesInvalidValues) {
   LinearizedFit fit = Ramp();
   fit.value[3] = std::nan("");
   ExpectError(fit, StatusCode::kInvalidArgument, "finite");
@@ -349,7 +349,7 @@ TEST(SamplePosterior, RefusesValuesItCannotUse) {
   ExpectError(fit, StatusCode::kInvalidArgument, "parameter 0 is bound to 0.5");
 }
 
-TEST(SamplePosterior, SaysWhichParametersLeaveNoTrace) {
+TEST(SamplePosterior, NamesUndeterminedParameters) {
   LinearizedFit ramp = Ramp();
   LinearizedFit fit = FitOf(ramp.value, ramp.readings, Eigen::MatrixXd::Ones(20, 2));
   ExpectError(fit, StatusCode::kFailedPrecondition, "parameters 0 1 leaves no trace");

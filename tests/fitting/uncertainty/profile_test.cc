@@ -116,7 +116,7 @@ const Disguise kSaturating = {[](double p) { return p / (1 + p); }, [](double p)
                               [](double s) { return s / (1 - s); }};
 
 /// A profile does not depend on the parametrization: the result is the line's interval, transformed to the parameter.
-TEST(ProfileParameter, OfAStraightLineInDisguiseIsTheLinesIntervalInDisguise) {
+TEST(ProfileParameter, MatchesTheTransformedIntervalOfALine) {
   for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
     const Line line(0.3);
     const ProfileInterval profile =
@@ -129,7 +129,7 @@ TEST(ProfileParameter, OfAStraightLineInDisguiseIsTheLinesIntervalInDisguise) {
   }
 }
 
-TEST(ProfileParameter, IsOpenWhereTheLikelihoodDoesNotFallFarEnough) {
+TEST(ProfileParameter, IsOpenIfTheLikelihoodFallsTooLittle) {
   const Line line(0.97);
   ASSERT_GT(line.Slope() + line.HalfLength(), 1);  // no parameter value has such a slope
   const ProfileInterval profile = ProfileOfLine(line, kSaturating, 5, -0.5, kUnbounded);
@@ -139,7 +139,7 @@ TEST(ProfileParameter, IsOpenWhereTheLikelihoodDoesNotFallFarEnough) {
   EXPECT_EQ(profile.open, OpenInterval::kFlatLikelihood);
 }
 
-TEST(ProfileParameter, EndsAtABoundThatTheLikelihoodReachesAcross) {
+TEST(ProfileParameter, EndsAtABoundWithinTheInterval) {
   const Line line(0.3);
   const double bound = line.Slope() + 0.4 * line.HalfLength();
   const ProfileInterval profile = ProfileOfLine(line, kNone, 0.2, -1, bound);
@@ -150,7 +150,7 @@ TEST(ProfileParameter, EndsAtABoundThatTheLikelihoodReachesAcross) {
 
 /// If the bound excludes the line's own slope, the likelihood decreases from its value at the bound, not from its
 /// maximum.
-TEST(ProfileParameter, OfAParameterAtItsBoundFallsFromTheBound) {
+TEST(ProfileParameter, FallsFromTheBoundForAParameterAtIt) {
   const Line line(0.3);
   const double beyond = 0.5 * line.HalfLength();
   const ProfileInterval profile = ProfileOfLine(line, kNone, 1, line.Slope() + beyond, 5);
@@ -159,7 +159,7 @@ TEST(ProfileParameter, OfAParameterAtItsBoundFallsFromTheBound) {
   EXPECT_NEAR(*profile.upper - line.Slope(), std::hypot(line.HalfLength(), beyond), 0.011 * line.HalfLength());
 }
 
-TEST(ProfileParameter, OfWhatLeavesNoTraceHasNoEnds) {
+TEST(ProfileParameter, HasNoEndsForAnUndeterminedParameter) {
   const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
   const ProfileInterval profile = ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded);
   EXPECT_FALSE(profile.lower || profile.upper);
@@ -169,7 +169,7 @@ TEST(ProfileParameter, OfWhatLeavesNoTraceHasNoEnds) {
 // ---- The curve -----------------------------------------------------------------------------------------------------
 
 /// For a straight line the statistic is the parabola (t (slope - estimate) / half length)², t² at the ends.
-TEST(ProfileParameter, OfAStraightLineIsAParabola) {
+TEST(ProfileParameter, IsAParabolaForALine) {
   const Line line(0.3);
   const double threshold = TwoSided95(18) * TwoSided95(18);
   for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
@@ -185,7 +185,7 @@ TEST(ProfileParameter, OfAStraightLineIsAParabola) {
   }
 }
 
-TEST(ProfileParameter, HasPointsFromEndToEndAndTheEstimateAmongThem) {
+TEST(ProfileParameter, HasPointsFromEndToEndIncludingTheEstimate) {
   const Line line(0.3);
   const ProfileInterval profile = ProfileOfLine(line, kExponential, kExponential.parameter(0.25), -5, 5);
   const std::vector<ProfilePoint>& points = profile.points;
@@ -214,14 +214,14 @@ TEST(ProfileParameter, HasPointsOnOneSideOfABoundOnly) {
   EXPECT_EQ(profile.points.front().statistic, 0);
 }
 
-TEST(ProfileParameter, HasNoPointsOfWhatLeavesNoTrace) {
+TEST(ProfileParameter, HasNoPointsForAnUndeterminedParameter) {
   const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
   EXPECT_THAT(ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded).points, testing::IsEmpty());
 }
 
 // ---- Swings --------------------------------------------------------------------------------------------------------
 
-TEST(ProfileParameter, OfAFineRecordingIsTheCovariancesInterval) {
+TEST(ProfileParameter, MatchesTheCovarianceForAFineRecording) {
   const Recording recording = Must(SimulateRecording(ShortSwing()));
   FitOptions options = ModelOptions("coulomb");
   const FitReport covariance = Fit(recording, options);
@@ -247,7 +247,7 @@ SyntheticOptions WithoutViscous(std::uint64_t seed) {
   return run;
 }
 
-TEST(ProfileParameter, CoversATruthAtItsBoundAndTheOthersBesideIt) {
+TEST(ProfileParameter, CoversATruthAtItsBound) {
   constexpr int kSeeds = 250;
   const std::vector<double> truth = Truth(WithoutViscous(1));
   std::vector<int> covered(truth.size());
@@ -290,7 +290,7 @@ double ScannedUpper(const Recording& recording, const FitReport& report) {
   return inside;
 }
 
-TEST(ProfileParameter, AtABoundEndsWhereAScanOfWholeFitsDoes) {
+TEST(ProfileParameter, MatchesAScanOfWholeFitsAtABound) {
   int at_bound = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const Recording recording = Must(SimulateRecording(WithoutViscous(seed)));

@@ -53,19 +53,21 @@ void ExpectWithin(const Eigen::Array3d& coverage, double lowest, double highest)
   EXPECT_LE(coverage.maxCoeff(), highest) << coverage.transpose();
 }
 
-TEST(SandwichIntervals, CoverUnderWhiteNoise) { ExpectWithin(Coverage(2000, 0, 0, 3000), 0.935, 0.965); }
+TEST(SandwichIntervals, CoverForWhiteNoise) { ExpectWithin(Coverage(2000, 0, 0, 3000), 0.935, 0.965); }
 
-TEST(SandwichIntervals, CoverUnderAShortMemory) { ExpectWithin(Coverage(2000, 0.5, 0), 0.93, 0.97); }
+TEST(SandwichIntervals, CoverForAShortCorrelation) { ExpectWithin(Coverage(2000, 0.5, 0), 0.93, 0.97); }
 
-TEST(SandwichIntervals, CoverUnderAMemoryOfTenSamples) { ExpectWithin(Coverage(2000, 0.9, 0), 0.93, 0.97); }
+TEST(SandwichIntervals, CoverForCorrelationOverTenSamples) { ExpectWithin(Coverage(2000, 0.9, 0), 0.93, 0.97); }
 
-TEST(SandwichIntervals, CoverUnderAMemoryOfTenSamplesInWhiteNoise) {
+TEST(SandwichIntervals, CoverForCorrelationOverTenSamplesInWhiteNoise) {
   ExpectWithin(Coverage(2000, 0.9, 0.5), 0.93, 0.97);
 }
 
 // These recordings are only 40 and 10 autocorrelation times long, so the zero angle has only that many effective
 // readings.
-TEST(SandwichIntervals, NearlyCoverUnderAMemoryOfFiftySamples) { ExpectWithin(Coverage(2000, 0.98, 0), 0.91, 0.97); }
+TEST(SandwichIntervals, NearlyCoverForCorrelationOverFiftySamples) {
+  ExpectWithin(Coverage(2000, 0.98, 0), 0.91, 0.97);
+}
 
 TEST(SandwichIntervals, NearlyCoverInFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }
 

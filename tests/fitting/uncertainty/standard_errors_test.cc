@@ -89,7 +89,7 @@ void ExpectInverse(const Errors& errors, const Fitted& fitted, const MinusLog& m
   EXPECT_NEAR(*errors.runs[0].sigma / fitted.solution.noise.sigma / std::sqrt(expected(6, 6)), 1, allowed);
 }
 
-TEST(ComputeErrors, OfLevelsAreTheInverseOfTheNumericInformationOfParametersAndSigma) {
+TEST(ComputeErrors, MatchTheNumericInformationOnLevels) {
   for (const double noise : {0.15, 0.2, 0.5}) {
     SCOPED_TRACE(noise);
     FitOptions options = ModelOptions("coulomb");
@@ -152,7 +152,7 @@ void ExpectTrueErrors(const std::vector<Scatter>& scatter) {
 
 constexpr int kSeeds = 200;
 
-TEST(ComputeErrors, OfLevelsAreTheScatterOfEstimatesAndOfSigma) {
+TEST(ComputeErrors, MatchTheScatterOnLevels) {
   for (const double noise : {0.15, 0.5}) {
     SCOPED_TRACE(noise);
     FitOptions options = ModelOptions("coulomb");
@@ -163,7 +163,7 @@ TEST(ComputeErrors, OfLevelsAreTheScatterOfEstimatesAndOfSigma) {
   }
 }
 
-TEST(ComputeErrors, OfWhiteNoiseAreTheScatterOfSigmaToo) {
+TEST(ComputeErrors, MatchTheScatterOfSigmaForWhiteNoise) {
   const auto fit = [](std::uint64_t seed) {
     SyntheticOptions run = ShortSwing();
     run.seed = seed;
@@ -180,7 +180,7 @@ Recording QuietShortSwing(double duration = 8) {
   return Must(SimulateRecording(run));
 }
 
-TEST(ComputeErrors, OfRobustFamiliesAreTheScatterUnderNoiseWithOutliers) {
+TEST(ComputeErrors, MatchTheScatterOfRobustFitsWithOutliers) {
   const Recording quiet = QuietShortSwing();
   for (const NoiseFamily family : {NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     SCOPED_TRACE(family == NoiseFamily::kHuber ? "huber" : "student");
@@ -195,12 +195,12 @@ TEST(ComputeErrors, OfRobustFamiliesAreTheScatterUnderNoiseWithOutliers) {
   }
 }
 
-TEST(ComputeErrors, OfNoiseThatRemembersAreTheScatterOfEstimatesAndOfSigma) {
+TEST(ComputeErrors, MatchTheScatterForAutocorrelatedNoise) {
   const Recording quiet = QuietShortSwing(16);
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kCovariance;
   const auto fit = [&](std::uint64_t seed) {
-    return Fit(WithNoise(quiet, seed, RememberingNoise(0.8, 0.002)), options);
+    return Fit(WithNoise(quiet, seed, AutocorrelatedNoise(0.8, 0.002)), options);
   };
   ExpectTrueErrors(ScatterOver(kSeeds, fit));
 }

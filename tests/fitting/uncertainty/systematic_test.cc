@@ -114,7 +114,7 @@ Eigen::MatrixXd RefittedCovariance(const Calibration& calibration, const Eigen::
   return slopes * calibration.covariance * slopes.transpose();
 }
 
-TEST(SystematicCovariance, OfACalibrationIsThatOfFitsWithItsCoefficientsMoved) {
+TEST(SystematicCovariance, MatchesFitsWithChangedCoefficients) {
   for (const bool curved : {false, true}) {
     SCOPED_TRACE(curved ? "curve" : "line");
     const Calibration calibration = TextbookCalibration(curved);
@@ -124,7 +124,7 @@ TEST(SystematicCovariance, OfACalibrationIsThatOfFitsWithItsCoefficientsMoved) {
   }
 }
 
-TEST(SystematicCovariance, OfACalibrationOfCountsIsThatOfFitsWithItsCoefficientsMoved) {
+TEST(SystematicCovariance, MatchesFitsWithChangedCoefficientsForCounts) {
   const Calibration calibration = TextbookCalibration(false);
   const Eigen::VectorXd counts = Counts(calibration, 0.4 * kCount, true);
   FitOptions options = ModelOptions("coulomb");
@@ -135,7 +135,7 @@ TEST(SystematicCovariance, OfACalibrationOfCountsIsThatOfFitsWithItsCoefficients
 }
 
 /// For every noise family, an offset of all readings changes only the zero.
-TEST(SystematicCovariance, OfACalibrationsOffsetIsTheZerosAlone) {
+TEST(SystematicCovariance, AffectsOnlyTheZeroForAnOffset) {
   Calibration calibration = TextbookCalibration(false);
   calibration.covariance << 0.25, 0, 0, 0;
   const Eigen::VectorXd counts = Counts(calibration, 0.002, false);
@@ -168,7 +168,7 @@ SyntheticOptions MovingDrag(Quantity quantity) {
   return run;
 }
 
-TEST(SystematicCovariance, OfAClockIsThatOfFitsByFasterAndSlowerClocks) {
+TEST(SystematicCovariance, MatchesFitsWithOtherClocks) {
   for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
     SCOPED_TRACE(quantity == Quantity::kAngle ? "angle" : "rate");
     const Recording recording = Must(SimulateRecording(MovingDrag(quantity)));
@@ -199,7 +199,7 @@ Rig TextbookRig(double std_dev) {
 }
 
 /// MODEL.md eq. (5.3) with G = 1.803(18) N m and k = 1.02(2): 1 % in G, 2 / 1.02 % in k.
-TEST(SystematicCovariance, OfRigAndClockAddsTheSharesOfBoth) {
+TEST(SystematicCovariance, AddsTheSharesOfRigAndClock) {
   Recording recording = Must(SimulateRecording(ShortSwing()));
   recording.clock_scale = 1.02;
   recording.clock_scale_std_dev = 0.02;
@@ -220,7 +220,7 @@ TEST(SystematicCovariance, OfRigAndClockAddsTheSharesOfBoth) {
   EXPECT_THAT(report.systematic_names, ElementsAre("inertia", "viscous", "coulomb"));
 }
 
-TEST(SystematicCovariance, OfSeveralSourcesIsTheirSum) {
+TEST(SystematicCovariance, IsTheSumOfSeveralSources) {
   const Calibration calibration = TextbookCalibration(false);
   const Eigen::VectorXd counts = Counts(calibration, 1e-3, false);
   Recording recording = Calibrated(calibration, counts, false);
@@ -238,7 +238,7 @@ TEST(SystematicCovariance, OfSeveralSourcesIsTheirSum) {
   EXPECT_LT((all.systematic_covariance - expected).norm(), 1e-12 * expected.norm());
 }
 
-TEST(SystematicCovariance, IsNotThatOfWhatIsFixed) {
+TEST(SystematicCovariance, ExcludesFixedParameters) {
   const Calibration calibration = TextbookCalibration(false);
   Recording recording = Calibrated(calibration, Counts(calibration, 1e-3, false), false);
   recording.clock_scale_std_dev = 1e-3;
@@ -252,7 +252,7 @@ TEST(SystematicCovariance, IsNotThatOfWhatIsFixed) {
   EXPECT_EQ(report.systematic_covariance.rows(), 5);
 }
 
-TEST(SystematicCovariance, IsEmptyWhereNothingIsSaidOfErrors) {
+TEST(SystematicCovariance, IsEmptyWithoutErrors) {
   FitOptions options = ModelOptions("coulomb");
   options.rig = TextbookRig(0);
   const FitReport report = Fit(Must(SimulateRecording(ShortSwing())), options);

@@ -245,7 +245,7 @@ TEST(StribeckFriction, FallsFromStictionToCoulombAsTheRateGrows) {
   EXPECT_EQ(StribeckFriction::Torque(200.0, 1.0, p.data()), 100.25);
 }
 
-TEST(StribeckFriction, IsCoulombFrictionWhereStictionIsNoLarger) {
+TEST(StribeckFriction, IsCoulombFrictionIfStictionIsNotLarger) {
   const std::array p = {0.5, 0.25, 0.25, 2.0};
   for (const double rate : {0.0, 0.3, 5.0}) {
     EXPECT_EQ(StribeckFriction::Torque(rate, 1.0, p.data()), CoulombFriction::Torque(rate, 1.0, p.data())) << rate;
@@ -261,12 +261,12 @@ TEST(AsymmetricFriction, IsLargerTowardsPositiveAngles) {
 
 // ---- The list ----------------------------------------------------------------------------------------------------
 
-TEST(FrictionModels, AreNamedOnceAndNotLikeTheLinearModel) {
+TEST(FrictionModels, HaveUniqueNamesUnlikeTheLinearModel) {
   std::set<std::string_view> names = {"linear"};
   for (const std::string_view name : FrictionModels::kNames) EXPECT_TRUE(names.insert(name).second) << name;
 }
 
-TEST(FrictionModels, VisitCallsTheLawOfThatNameAndNoOther) {
+TEST(FrictionModels, VisitCallsTheNamedLawOnly) {
   for (const std::string_view name : FrictionModels::kNames) {
     std::vector<std::string_view> visited;
     EXPECT_TRUE(FrictionModels::Visit(name, [&]<typename F>() { visited.push_back(F::kName); }));
@@ -274,7 +274,7 @@ TEST(FrictionModels, VisitCallsTheLawOfThatNameAndNoOther) {
   }
 }
 
-TEST(FrictionModels, VisitCallsNothingForANameThatIsNotThere) {
+TEST(FrictionModels, VisitCallsNothingForAnUnknownName) {
   bool called = false;
   EXPECT_FALSE(FrictionModels::Visit("tar", [&]<typename F>() { called = true; }));
   EXPECT_FALSE(called);

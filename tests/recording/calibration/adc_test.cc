@@ -15,7 +15,7 @@ AdcSensor Sensor(double reference_voltage = 5, double divider = 1) {
 }
 
 // Computed by hand from ADC = V_IN 1024 / V_REF of the data sheet.
-TEST(AdcSensor, ShowsTheCountsOfTheDataSheet) {
+TEST(AdcSensor, GivesTheCountsOfTheDataSheet) {
   EXPECT_EQ(Sensor().Counts(0), 512);       // 2.5 V
   EXPECT_EQ(Sensor().Counts(-150), 0);      // 0 V
   EXPECT_EQ(Sensor().Counts(60), 716);      // 3.5 V: 716.8, truncated
@@ -48,7 +48,7 @@ TEST(AdcSensor, SaturatesWhereTheVoltagePassesTheReference) {
   EXPECT_NEAR(Sensor(1.1).SaturationAngleDeg().value(), -84, 1e-12);  // below the middle
 }
 
-TEST(AdcSensor, DoesNotSaturateWhenADividerBringsTheSupplyDown) {
+TEST(AdcSensor, DoesNotSaturateBehindADivider) {
   for (const AdcSensor& sensor : {Sensor(5), Sensor(3.3, 0.66), Sensor(3.3, 0.5)}) {
     EXPECT_FALSE(sensor.SaturationAngleDeg());
     EXPECT_EQ(sensor.UsableAnglesDeg().high, 150);
@@ -56,7 +56,7 @@ TEST(AdcSensor, DoesNotSaturateWhenADividerBringsTheSupplyDown) {
   EXPECT_DOUBLE_EQ(Sensor(3.3, 0.66).DegPerCount(), Sensor().DegPerCount());
 }
 
-TEST(AdcSensor, KnowsTheReadingsAtTheEndsOfTheTravel) {
+TEST(AdcSensor, GivesTheReadingsAtTheEndsOfTheTravel) {
   EXPECT_EQ(Sensor().ReadingRange().low, 0);
   EXPECT_EQ(Sensor().ReadingRange().high, 1023);  // 5 V is just above full scale
   EXPECT_EQ(Sensor(5, 0.5).ReadingRange().high, 512);
@@ -64,7 +64,7 @@ TEST(AdcSensor, KnowsTheReadingsAtTheEndsOfTheTravel) {
   EXPECT_EQ(Sensor().Counts(-1000), 0);
 }
 
-TEST(AdcSensor, GivesBackTheAngleWithinHalfACount) {
+TEST(AdcSensor, ReproducesTheAngleWithinHalfACount) {
   for (const AdcSensor& sensor : {Sensor(), Sensor(3.3), Sensor(5, 0.3)}) {
     const SensorRange usable = sensor.UsableAnglesDeg();
     for (double angle = usable.low; angle < usable.high; angle += 0.37) {

@@ -84,7 +84,7 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
 }
 
 /// Expected values: normal equations in rational numbers (Python's fractions); covariance from numpy.linalg.inv(XᵀX).
-TEST(CalibrateSensor, FindsThePublishedLineOfTheReferenceRig) {
+TEST(CalibrateSensor, ReproducesThePublishedLineOfTheReferenceRig) {
   const CalibrationFit fit = FitOf(TableOf(kReferenceTable), 1);
   EXPECT_EQ(fit.calibration.input, "counts");
   EXPECT_EQ(fit.calibration.angle_unit, "deg");
@@ -99,7 +99,7 @@ TEST(CalibrateSensor, FindsThePublishedLineOfTheReferenceRig) {
 
 /// Expected values from numpy.linalg.lstsq: the residuals, and for points left out seven straight lines through six
 /// points.
-TEST(CalibrateSensor, GivesResidualsAndThoseOfCurvesWithoutThePoint) {
+TEST(CalibrateSensor, GivesResidualsAndLeaveOneOutResiduals) {
   const CalibrationTable table = TableOf(kReferenceTable);
   const CalibrationFit fit = FitOf(table, 1);
   constexpr double kPrinted = 5e-9;  // accuracy of the expected numbers
@@ -111,7 +111,7 @@ TEST(CalibrateSensor, GivesResidualsAndThoseOfCurvesWithoutThePoint) {
   EXPECT_EQ(fit.largest, 3);
 }
 
-TEST(CalibrateSensor, LeavesAPointOutAsATableWithoutItDoes) {
+TEST(CalibrateSensor, LeaveOneOutMatchesARefitWithoutThePoint) {
   const CalibrationTable table = TableOf(kReferenceTable);
   for (const int order : {1, 2, 3}) {
     const CalibrationFit whole = FitOf(table, order);
@@ -155,7 +155,7 @@ TEST(CalibrateSensor, FindsNoLackOfFitInRoundedCounts) {
   EXPECT_GT(fit.higher_order->p, 0.01);
 }
 
-TEST(CalibrateSensor, SeesTheCurvatureThatIsThere) {
+TEST(CalibrateSensor, DetectsTrueCurvature) {
   std::vector<double> volts, angles;
   for (int i = 0; i < 12; ++i) {
     volts.push_back(0.4 * i);
@@ -186,7 +186,7 @@ TEST(CalibrateSensor, RecoversPolynomialsOfEveryOrder) {
   }
 }
 
-TEST(CalibrateSensor, GivesNoErrorsWhenTheCurveMeetsEveryPoint) {
+TEST(CalibrateSensor, GivesNoErrorsIfTheCurvePassesThroughEveryPoint) {
   const CalibrationFit fit = FitOf(TableOf("counts,angle_deg\n10,0\n20,20\n40,50\n"), 2);
   EXPECT_NEAR(fit.calibration.Angle(20) / fit.calibration.RadFromUnit(), 20, 1e-12);
   EXPECT_EQ(fit.calibration.covariance.size(), 0);
@@ -208,7 +208,7 @@ TEST(CalibrateSensor, DoesNotDependOnTheOrderOfRows) {
   EXPECT_EQ(other.largest, 2);
 }
 
-TEST(CalibrateSensor, WritesWhatParseCalibrationReads) {
+TEST(CalibrateSensor, WritesJsonThatParseCalibrationReads) {
   for (const int order : {1, 2, 5}) {
     const auto fit = CalibrateSensor(TableOf(kReferenceTable), order, SensorRange{0, 1023});
     ASSERT_TRUE(fit) << fit.error().message;
@@ -224,21 +224,21 @@ TEST(CalibrateSensor, WritesWhatParseCalibrationReads) {
   }
 }
 
-TEST(CalibrateSensor, NeedsAsManyPointsAsCoefficients) {
+TEST(CalibrateSensor, RequiresAsManyPointsAsCoefficients) {
   EXPECT_EQ(
       FaultOf(TableOf("counts,angle_deg\n10,0\n20,30\n"), 2),
       "table.csv:3: points found: 2; a curve of order 2 has 3 coefficients and needs as many points: measure more "
       "angles, or lower the order");
 }
 
-TEST(CalibrateSensor, KnowsOrders1To5) {
+TEST(CalibrateSensor, AcceptsOrders1To5) {
   for (const int order : {0, 6, -1}) {
     EXPECT_EQ(FaultOf(TableOf(kReferenceTable), order, StatusCode::kInvalidArgument),
               "the order of a calibration is " + std::to_string(order) + "; it must be 1 to 5");
   }
 }
 
-TEST(CalibrateSensor, RefusesAReadingTheSensorCannotShow) {
+TEST(CalibrateSensor, RefusesAReadingOutsideTheSensorsRange) {
   EXPECT_EQ(FaultOf(TableOf(kReferenceTable), 1, StatusCode::kInvalidArgument, SensorRange{0, 400}),
             "table.csv:8: the reading 475 counts lies outside the sensor's range, 0 to 400; correct the range or the "
             "row");
@@ -268,13 +268,13 @@ TEST(CalibrateSensor, RefusesNumbersItCannotComputeWith) {
   EXPECT_THAT(FaultOf(TableOf(alike), 5), HasSubstr("too large, too small or too alike for a curve of order 5"));
 }
 
-TEST(TurningReading, FindsTheVertexOfAParabola) {
+TEST(FindTurningReading, FindsTheVertexOfAParabola) {
   Calibration parabola;
   parabola.angle_unit = "rad";
   parabola.coefficients = {0, -2, 1};  // falls to 1, then rises
-  EXPECT_FALSE(TurningReading(parabola, 1.5, 4));
-  EXPECT_FALSE(TurningReading(parabola, -4, 0.5));
-  EXPECT_NEAR(TurningReading(parabola, -4, 2).value(), 1, 0.006);  // within a step of the grid
+  EXPECT_FALSE(FindTurningReading(parabola, 1.5, 4));
+  EXPECT_FALSE(FindTurningReading(parabola, -4, 0.5));
+  EXPECT_NEAR(FindTurningReading(parabola, -4, 2).value(), 1, 0.006);  // within a step of the grid
 }
 
 }  // namespace

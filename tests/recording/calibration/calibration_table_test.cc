@@ -45,14 +45,14 @@ TEST(ParseCalibrationTable, ReadsReadingsAnglesAndTheirLines) {
   EXPECT_EQ(table.Place(3), "table.csv:7");
 }
 
-TEST(ParseCalibrationTable, TellsColumnsByTheirUnitsInAnyOrder) {
+TEST(ParseCalibrationTable, IdentifiesColumnsByUnitInAnyOrder) {
   ExpectReadings("counts,angle_deg\n1.5,-3\n2.5,4\n", "counts", "deg");
   ExpectReadings("angle_rad,adc_counts\n-3,1.5\n4,2.5\n", "counts", "rad");
   ExpectReadings("Pot (volts),Angle [°]\n1.5,-3\n2.5,4\n", "volts", "deg");
   ExpectReadings("note,volts,who,deg\nfirst,1.5,A,-3\n\"second, again\",2.5,B,4\n", "volts", "deg");
 }
 
-TEST(ParseCalibrationTable, ReadsTheSeparatorsOfARecording) {
+TEST(ParseCalibrationTable, AcceptsTheSeparatorsOfRecordings) {
   ExpectReadings("counts;angle_deg\r\n1,5;-3\r\n2,5;4\r\n", "counts", "deg");
   ExpectReadings(
       "\xEF\xBB\xBF"
@@ -62,18 +62,18 @@ TEST(ParseCalibrationTable, ReadsTheSeparatorsOfARecording) {
   ExpectReadings("sep=;\n\"counts\";\"angle_deg\"\n\"1.5\";-3\n;\n2.5;4\n", "counts", "deg");
 }
 
-TEST(ParseCalibrationTable, TakesRowsInAnyOrderAndAnglesThatFall) {
+TEST(ParseCalibrationTable, AcceptsRowsInAnyOrderAndFallingAngles) {
   const CalibrationTable table = TableOf("counts,angle_deg\n300,-20\n100,20\n200,0\n");
   EXPECT_THAT(table.reading, ElementsAre(300, 100, 200));
   EXPECT_THAT(table.ByReading(), ElementsAre(1, 2, 0));
 }
 
-TEST(ParseCalibrationTable, TakesTheSameAngleTwiceAtNeighbouringReadings) {
+TEST(ParseCalibrationTable, AcceptsEqualAnglesAtAdjacentReadings) {
   EXPECT_EQ(TableOf("volts,angle_deg\n1,0\n1.01,0\n2,10\n1.99,10\n").size(), 4);  // each angle set once from below,
                                                                                   // once from above
 }
 
-TEST(ParseCalibrationTable, NamesTheColumnThatIsMissing) {
+TEST(ParseCalibrationTable, NamesTheMissingColumn) {
   EXPECT_EQ(FaultOf("counts,angle\n1,2\n"),
             "table.csv:1:1: no column's name tells that it is the angle; end it in its unit, _deg or _rad");
   EXPECT_EQ(FaultOf("# x\nreading,angle_deg\n1,2\n"),
@@ -83,7 +83,7 @@ TEST(ParseCalibrationTable, NamesTheColumnThatIsMissing) {
                          "a header above it that tells the units, such as counts,angle_deg"));
 }
 
-TEST(ParseCalibrationTable, RefusesColumnsItCannotChooseBetween) {
+TEST(ParseCalibrationTable, RefusesAmbiguousColumns) {
   EXPECT_EQ(FaultOf("counts,angle_deg,counts\n1,2,3\n"),
             "table.csv:1:18: columns \"counts\" and \"counts\" could both be the reading; delete one of them");
   EXPECT_EQ(FaultOf("counts,angle_deg,angle_rad\n1,2,3\n"),
@@ -100,7 +100,7 @@ TEST(ParseCalibrationTable, RefusesColumnsOfOtherUnits) {
   }
 }
 
-TEST(ParseCalibrationTable, NamesTheFieldAtFault) {
+TEST(ParseCalibrationTable, NamesTheFaultyField) {
   const std::string header = "counts,angle_deg\n1,2\n";
   EXPECT_EQ(FaultOf(header + "x,3\n"),
             "table.csv:3:1: column \"counts\" holds \"x\", which is not a number; correct the field or delete the row");
@@ -118,20 +118,20 @@ TEST(ParseCalibrationTable, RefusesATableWithoutRows) {
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,2\n"), "table.csv:2: points found: 1; a calibration needs at least 2 of them");
 }
 
-TEST(ParseCalibrationTable, RefusesBytesThatAreNoText) {
+TEST(ParseCalibrationTable, RefusesBytesThatAreNotText) {
   EXPECT_THAT(FaultOf(std::string("counts,angle_deg\n1,\0\n", 21)), StartsWith("table.csv:2:3: a NUL byte"));
   EXPECT_THAT(FaultOf(std::string(2'000'000, 'x')), HasSubstr("this line is longer than 1 MiB"));
 }
 
-TEST(ParseCalibrationTable, RefusesARecordingInItsPlace) {
+TEST(ParseCalibrationTable, RefusesARecording) {
   std::string text = "counts,angle_deg\n";
-  for (int i = 0; i <= kMostCalibrationPoints; ++i) text += std::to_string(i) + "," + std::to_string(i) + "\n";
+  for (int i = 0; i <= kMaxCalibrationPoints; ++i) text += std::to_string(i) + "," + std::to_string(i) + "\n";
   EXPECT_EQ(FaultOf(text),
             "table.csv:10002:1: here are more than 10000 rows; a calibration table has one row for each "
             "angle that was set");
 }
 
-TEST(ParseCalibrationTable, RefusesAReadingThatStandsTwice) {
+TEST(ParseCalibrationTable, RefusesARepeatedReading) {
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,30\n"),
             "table.csv:5: the reading 3 counts (line 3) stands here again with another angle; give their mean, or "
             "correct or delete one of "
@@ -152,13 +152,13 @@ TEST(ParseCalibrationTable, RefusesAnglesThatGoBack) {
             "table.csv:4: all angles up to here are the same; set different angles");
 }
 
-TEST(MakeCalibrationTable, RefusesNumbersThatAreNotFinite) {
+TEST(MakeCalibrationTable, RefusesNonFiniteNumbers) {
   const auto made = MakeCalibrationTable(TableOf("counts", "deg", {1, 2}, {0, std::nan("")}));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().message, "table.csv: readings and angles must be finite");
 }
 
-TEST(ReadCalibrationTable, NamesTheFileThatIsNotThere) {
+TEST(ReadCalibrationTable, NamesAMissingFile) {
   const auto table = ReadCalibrationTable("none/table.csv");
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().code, StatusCode::kNotFound);

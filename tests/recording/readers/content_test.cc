@@ -23,7 +23,7 @@ using std::string_literals::operator""s;
 
 const std::string kRows = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
 
-TEST(Content, IsToldByTheFirstBytes) {
+TEST(Content, IsDetectedFromTheFirstBytes) {
   EXPECT_EQ(ContentOf(""), Content::kText);
   EXPECT_EQ(ContentOf(kRows), Content::kText);
   EXPECT_EQ(ContentOf("MATLAB course, run 3\ntime_s,angle_deg\n"), Content::kText);
@@ -33,7 +33,7 @@ TEST(Content, IsToldByTheFirstBytes) {
   }
 }
 
-TEST(Content, SaysWhatAFileIsThatCannotBeRead) {
+TEST(Content, NamesTheFormatOfAnUnreadableFile) {
   EXPECT_THAT(FaultOf("\x89HDF\r\n\x1A\n"s), StartsWith("run.csv: this is an HDF5 file without MATLAB's header;"));
   EXPECT_THAT(FaultOf("\x1F\x8B\x08"s), StartsWith("run.csv: this is a gzip file; unpack it"));
   EXPECT_THAT(FaultOf("<?xml version=\"1.0\"?>\n"), HasSubstr("such as the project of Logger Pro or Tracker"));
@@ -57,7 +57,7 @@ Recording ReadFileOf(const std::string& bytes) {
   return recording.value_or(Recording());
 }
 
-TEST(Content, OfAFileCountsWhateverItsName) {
+TEST(Content, IgnoresTheFileName) {
   ExpectTheRows(ReadFileOf(kRows), kDegree);
   ExpectTheRows(ReadFileOf(ZipOf({{"a.csv", kRows}})), kDegree);
   std::vector<double> times, values;
@@ -65,7 +65,7 @@ TEST(Content, OfAFileCountsWhateverItsName) {
   ExpectTheRows(ReadFileOf(MatOf({Matrix("t", 8, times), Matrix("angle_deg", 8, values)})), kDegree);
 }
 
-TEST(Content, OfALargeForeignFileIsSaidByItsFirstBytes) {
+TEST(Content, DetectsALargeForeignFileFromItsFirstBytes) {
   const std::string path = testing::TempDir() + "/content_test.bag";
   std::ofstream(path, std::ios::binary) << "#ROSBAG V2.0\n";
   std::filesystem::resize_file(path, std::uintmax_t{1} << 33);  // sparse: it uses almost no disk space
@@ -76,7 +76,7 @@ TEST(Content, OfALargeForeignFileIsSaidByItsFirstBytes) {
             path + ": this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that");
 }
 
-TEST(Content, AMatFileMayBeInAZipFile) {
+TEST(Content, FindsAMatFileInAZipFile) {
   const std::string mat = MatOf({Matrix("t", 2, {1, 2}), Matrix("angle_deg", 2, {1, 2})});
   EXPECT_THAT(FaultOf(ZipOf({{"run.mat", mat}}), {}, StatusCode::kFailedPrecondition),
               StartsWith("run.csv:run.mat: column \"angle_deg\" has 2 numbers"));

@@ -36,7 +36,7 @@ class ReadDataListTest : public testing::Test {
   const fs::path list_ = folder_ / "list.txt";
 };
 
-TEST_F(ReadDataListTest, GivesThePathsFromTheListsFolder) {
+TEST_F(ReadDataListTest, ResolvesPathsAgainstTheListsFolder) {
   const auto files = Read("# runs\r\n\n  a.csv \r\nruns/b c.csv\n" + (folder_ / "runs" / ".." / "list.txt").string());
   ASSERT_TRUE(files.has_value()) << files.error().message;
   ASSERT_EQ(files->size(), 3);
@@ -46,7 +46,7 @@ TEST_F(ReadDataListTest, GivesThePathsFromTheListsFolder) {
   EXPECT_EQ((*files)[2].path, folder_ / "runs" / ".." / "list.txt");
 }
 
-TEST_F(ReadDataListTest, NamesTheLineOfAFileThatIsNotThere) {
+TEST_F(ReadDataListTest, NamesTheLineOfAMissingFile) {
   const Status fault = FaultOf("a.csv\nnowhere.csv\n");
   EXPECT_EQ(fault.code, StatusCode::kNotFound);
   EXPECT_EQ(fault.message, list_.string() + ":2: there is no file " + (folder_ / "nowhere.csv").string() +
@@ -62,12 +62,12 @@ TEST_F(ReadDataListTest, RefusesDirectoriesAndRepeatedFiles) {
                 ":1 too; keep one of them");
 }
 
-TEST_F(ReadDataListTest, RefusesAListThatNamesNothing) {
+TEST_F(ReadDataListTest, RefusesAnEmptyList) {
   EXPECT_EQ(FaultOf("# none\n").code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(FaultOf("# none\n").message, list_.string() + ": the list names no file; give one path a line");
 }
 
-TEST_F(ReadDataListTest, RefusesWhatIsNoList) {
+TEST_F(ReadDataListTest, RefusesAFileThatIsNotAList) {
   EXPECT_EQ(FaultOf(std::string("a\0b", 3)).code, StatusCode::kDataLoss);
   EXPECT_EQ(ReadDataList(folder_ / "none.txt").error().code, StatusCode::kNotFound);
   EXPECT_EQ(ReadDataList(folder_).error().message, folder_.string() + ": this is a directory; name a list file in it");

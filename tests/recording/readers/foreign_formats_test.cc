@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 // ---- Separators and decimal commas -------------------------------------------------------------------------------
 
-TEST(ForeignFormats, ReadDecimalCommasWhereTheSeparatorIsAnother) {
+TEST(ForeignFormats, ReadDecimalCommasWithAnotherSeparator) {
   ExpectTheRows(RecordingOf("time_ms;angle_rad\n" + Rows("{t},0;{v},0")));
   ExpectTheRows(RecordingOf("time_ms\tangle_rad\n" + Rows("+{t},\t\"{v},0\"")));
   ExpectTheRows(RecordingOf("time_ms angle_rad\n" + Rows("  {t}   {v},0 ")));
@@ -40,12 +40,12 @@ TEST(ForeignFormats, RefuseTwoKindsOfDecimalsInOneFile) {
   EXPECT_THAT(FaultOf("time_s;angle_rad\n0;1,234,5\n1;2\n"), HasSubstr("holds \"1,234,5\""));
 }
 
-TEST(ForeignFormats, ReadWhatASpreadsheetExports) {
+TEST(ForeignFormats, ReadSpreadsheetExports) {
   ExpectTheRows(RecordingOf("\xEF\xBB\xBFsep=;\r\nTime (ms);Angle [deg]\r\n" + Rows("{t},0;{v},0\r")), kDegree);
   ExpectTheRows(RecordingOf("sep=\t\nTime (ms)\tAngle, smoothed [deg]\n" + Rows("{t}\t{v}")), kDegree);
 }
 
-TEST(ForeignFormats, ReadColumnsThatBlanksSeparate) {
+TEST(ForeignFormats, ReadColumnsSeparatedByBlanks) {
   ExpectTheRows(RecordingOf("Time (ms)   Angle [deg]\n" + Rows(" {t}  {v}")), kDegree);
   ExpectTheRows(RecordingOf("n time_ms angle_deg\n" + Rows("{v} {t} {v}")), kDegree);
 }
@@ -66,7 +66,7 @@ TEST(ForeignFormats, TheUserChoosesAmongColumns) {
   EXPECT_EQ(RecordingOf(text, TimeAndValue("1", "4")).unit, "volts");
 }
 
-TEST(ForeignFormats, NamesThatTellNoUnitNeedOne) {
+TEST(ForeignFormats, NamesWithoutAUnitNeedOne) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
   EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
             "run.csv:1:3: column \"x\" does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
@@ -77,7 +77,7 @@ TEST(ForeignFormats, NamesThatTellNoUnitNeedOne) {
   EXPECT_EQ(RecordingOf("t,x\n" + Rows("{t},{v}"), TimeAndValue("t:ms", "x", "rad_s")).quantity, Quantity::kRate);
 }
 
-TEST(ForeignFormats, TimesWithoutAUnitAreSecondsIfTheyAreFractions) {
+TEST(ForeignFormats, FractionalTimesWithoutAUnitAreSeconds) {
   const Recording recording = RecordingOf("t,angle_rad\n" + Rows("0.{t}5,{v}"), TimeAndValue("t", ""));
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
@@ -89,7 +89,7 @@ TEST(ForeignFormats, TimesWithoutAUnitAreSecondsIfTheyAreFractions) {
       HasSubstr("column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms"));
 }
 
-TEST(ForeignFormats, RefuseColumnsThatAreNotThere) {
+TEST(ForeignFormats, RefuseMissingColumns) {
   const std::string text = "time_s,angle_deg\n" + Rows("{t},{v}");
   EXPECT_EQ(
       WrongFlag(text, TimeAndValue("", "angle")),
@@ -123,7 +123,7 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
   EXPECT_THAT(WrongFlag(text, TimeAndValue("none", "")), HasSubstr("leaves no times; give --sample_rate_hz"));
 }
 
-TEST(ForeignFormats, RefuseANameThatTellsTwoUnits) {
+TEST(ForeignFormats, RefuseANameWithTwoUnits) {
   EXPECT_EQ(
       FaultOf("time_s,angle_deg [rad]\n" + Rows("{t},{v}")),
       "run.csv:1:8: column \"angle_deg [rad]\" tells two units, deg and rad; name it by the one its values are in");
@@ -133,7 +133,7 @@ TEST(ForeignFormats, RefuseANameThatTellsTwoUnits) {
 
 // ---- Files without header, without times -------------------------------------------------------------------------
 
-TEST(ForeignFormats, SayWhichFlagsAFileWithoutHeaderNeeds) {
+TEST(ForeignFormats, NameTheFlagsAFileWithoutHeaderNeeds) {
   const std::string three = Rows("{t},{v},1");
   const std::string common =
       "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above it, "
@@ -159,19 +159,19 @@ TEST(ForeignFormats, TheOnlyColumnIsTheValue) {
   ExpectTheRows(RecordingOf("reading\n" + Rows("{v}"), Unit("deg", 100)), kDegree);
 }
 
-TEST(ForeignFormats, TheFilesOwnSampleRateCountsWhereThereIsNoTime) {
+TEST(ForeignFormats, TheFilesSampleRateReplacesMissingTimes) {
   ExpectTheRows(RecordingOf("# sample_rate_hz: 100\nangle_deg\n" + Rows("{v}")), kDegree);
   ExpectTheRows(RecordingOf("# sample_rate_hz: 7\nangle_deg\n" + Rows("{v}"), Unit("", 100)), kDegree);
   ExpectTheRows(RecordingOf("# sample_rate_hz: 7\ntime_ms,angle_deg\n" + Rows("{t},{v}")), kDegree);
 }
 
-TEST(ForeignFormats, ASampleRateReplacesTimesThatAreNotWanted) {
+TEST(ForeignFormats, ASampleRateReplacesUnwantedTimes) {
   ReadOptions options = Unit("", 100);
   options.time_column = "none";
   ExpectTheRows(RecordingOf("time_s,angle_deg\n" + Rows("0,{v}"), options), kDegree);
 }
 
-TEST(ForeignFormats, WarnOfLostSamplesWhereTimesAreCounted) {
+TEST(ForeignFormats, WarnOfLostSamplesIfTimesAreCounted) {
   const Recording counted = RecordingOf("# sample_rate_hz: 100\n# lost_samples: 3\nangle_deg\n" + Rows("{v}"));
   ASSERT_EQ(counted.warnings.size(), 1);
   EXPECT_EQ(counted.warnings[0].code, "lost_samples");
@@ -195,7 +195,7 @@ ReadOptions Calibrated(const std::string& input = "counts") {
   return options;
 }
 
-TEST(ForeignFormats, CountsAndVoltsWithoutCalibrationStayAsTheyAre) {
+TEST(ForeignFormats, CountsAndVoltsStayUncalibrated) {
   for (const std::string name : {"adc_counts", "counts", "pot_volts", "volts"}) {
     const Recording recording = RecordingOf("# range: 0,1023\ntime_ms," + name + "\n" + Rows("{t},{v}"));
     ExpectTheRows(recording);
@@ -208,7 +208,7 @@ TEST(ForeignFormats, CountsAndVoltsWithoutCalibrationStayAsTheyAre) {
   }
 }
 
-TEST(ForeignFormats, ACalibrationTurnsCountsIntoAngles) {
+TEST(ForeignFormats, ACalibrationConvertsCountsToAngles) {
   const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), Calibrated());
   EXPECT_TRUE(recording.is_calibrated());
   EXPECT_EQ(recording.unit, "counts");
@@ -219,7 +219,7 @@ TEST(ForeignFormats, ACalibrationTurnsCountsIntoAngles) {
   EXPECT_EQ(recording.calibration->source, Line().source);
 }
 
-TEST(ForeignFormats, TheFileSaysResolutionAndRangeInItsOwnUnit) {
+TEST(ForeignFormats, TheFileGivesResolutionAndRangeInItsUnit) {
   const std::string text = "# resolution: 4\n# range: 10,200\ntime_ms,adc_counts\n" + Rows("{t},{v}");
   const Recording recording = RecordingOf(text, Calibrated());
   EXPECT_DOUBLE_EQ(recording.resolution, 4 * 0.1985 * kDegree);
@@ -236,7 +236,7 @@ TEST(ForeignFormats, AFallingCalibrationHasARangeThatIncreases) {
   EXPECT_DOUBLE_EQ(recording.resolution, 0.5 * kDegree);
 }
 
-TEST(ForeignFormats, TheSpacingOfACurveIsThatAtTheMiddleOfTheData) {
+TEST(ForeignFormats, TheSpacingOfACurveIsTakenMidData) {
   ReadOptions options = Calibrated();
   options.calibration->coefficients = {0, 1, 0.01};
   const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), options);
@@ -246,7 +246,7 @@ TEST(ForeignFormats, TheSpacingOfACurveIsThatAtTheMiddleOfTheData) {
 const std::string kInline =
     "# calibration: {\"input\": \"counts\", \"angle_unit\": \"rad\", \"coefficients\": [0, 2]}\n";
 
-TEST(ForeignFormats, TheFilesOwnCalibrationCountsUnlessTheUserGivesOne) {
+TEST(ForeignFormats, TheUsersCalibrationOverridesTheFiles) {
   const std::string text = kInline + "time_ms,adc_counts\n" + Rows("{t},{v}");
   EXPECT_EQ(RecordingOf(text).value[0], 200);
   EXPECT_DOUBLE_EQ(RecordingOf(text, Calibrated()).value[0], (19.85 - 49.6077) * kDegree);
@@ -272,12 +272,12 @@ TEST(ForeignFormats, DoNotApplyTheFilesCalibrationToAnAngle) {
             "run.csv:1: the metadata calibration is not applied to column \"angle_rad\", which is in rad already");
 }
 
-TEST(ForeignFormats, RefuseAnInlineCalibrationThatIsNone) {
+TEST(ForeignFormats, RefuseAnInvalidInlineCalibration) {
   EXPECT_THAT(FaultOf("\n# calibration: {\"input\": \"px\"}\ntime_ms,adc_counts\n" + Rows("{t},{v}")),
               StartsWith("run.csv:2: # calibration: \"angle_unit\" is missing"));
 }
 
-TEST(ForeignFormats, AddsWhatCoarseStampsLeaveOpenToTheClockScale) {
+TEST(ForeignFormats, AddsTheUncertaintyOfCoarseStampsToTheClockScale) {
   std::string rows;
   for (int i = 0; i < 901; ++i) {  // 30 Hz for 30 s: the rate is uncertain by 0.1115 % each way, see clock_test.cc.
     rows += NumberText(std::round(i / 3.0) / 10, 6) + "," + NumberText(std::sin(i), 6) + "\n";

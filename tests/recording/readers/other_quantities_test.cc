@@ -40,13 +40,13 @@ TEST(ParseRecording, ReadsAccelerationsAndCoordinates) {
   EXPECT_EQ(Of("time_s,calibrated_volts\n" + kRows).quantity, Quantity::kAngle);
 }
 
-TEST(ParseRecording, TakesAnAngleWhereThereIsOneBesideCoordinates) {
+TEST(ParseRecording, PrefersAnAngleToCoordinates) {
   std::string text = "time_s,height_m,angle_rad\n";
   for (int i = 0; i < 8; ++i) text += std::to_string(i) + ",1," + std::to_string(i) + "\n";
   EXPECT_EQ(Of(text).quantity, Quantity::kAngle);
 }
 
-TEST(ParseRecording, MakesAnglesOfBothCoordinatesOfAPoint) {
+TEST(ParseRecording, ComputesAnglesFromBothCoordinates) {
   std::string text = "time_s,bob_x_px,bob_y_px\n";
   std::string metres = "time_s,y (m),x (m)\n";
   constexpr int kCount = 40;
@@ -79,7 +79,7 @@ TEST(ParseRecording, MakesAnglesOfBothCoordinatesOfAPoint) {
   EXPECT_THAT(alone.error().message, HasSubstr("does not tell the side it is on"));
 }
 
-TEST(ParseRecording, LeavesOutALastHeightThatIsCutOff) {
+TEST(ParseRecording, RemovesATruncatedLastValue) {
   std::string text = "time_s,x_px,y_px\n";
   for (int i = 0; i < 40; ++i) {
     const double angle = 0.5 * std::sin(0.3 * i);

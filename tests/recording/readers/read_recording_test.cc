@@ -80,7 +80,7 @@ TEST(ParseRecording, HashesTheBytes) {
   EXPECT_EQ(RecordingOf(kHeader + Rows()).sha256, "c515710e2595eda778ddfc7a95ac90bce7cf9d874020fd7f820e239ec47c8371");
 }
 
-TEST(ParseRecording, TakesQuantityAndUnitFromTheNameOfTheColumn) {
+TEST(ParseRecording, TakesQuantityAndUnitFromTheColumnName) {
   struct Case {
     const char* name;
     Quantity quantity;
@@ -104,7 +104,7 @@ TEST(ParseRecording, TakesQuantityAndUnitFromTheNameOfTheColumn) {
   }
 }
 
-TEST(ParseRecording, ConvertsTimeToTheSecondsOneWouldWrite) {
+TEST(ParseRecording, ConvertsTimesToRoundSeconds) {
   std::string rows;
   for (int i = 1; i <= 50; ++i) rows += std::to_string(i * 33) + ",1\n";
   for (const char* const name : {"time_ms", "Time (ms)", "time[MS]"}) {
@@ -133,7 +133,7 @@ TEST(ParseRecording, IgnoresOtherColumns) {
   ExpectTheRows("angle_rad,time_s\n0,0\n1,.5\n2,1\n3,1.5\n4,2\n5,2.5\n6,3\n7,3.5\n");
 }
 
-TEST(ParseRecording, AcceptsWhatProgramsWriteAroundTheNumbers) {
+TEST(ParseRecording, AcceptsTextThatProgramsAddToNumbers) {
   std::string crlf = kHeader + Rows();
   for (std::size_t at = 0; (at = crlf.find('\n', at)) != std::string::npos; at += 2) crlf.replace(at, 1, "\r\n");
   ExpectTheRows(crlf);
@@ -144,7 +144,7 @@ TEST(ParseRecording, AcceptsWhatProgramsWriteAroundTheNumbers) {
   ExpectTheRows("time_s,angle_rad,\n" + Rows(8, " , ") + ",,\n");
 }
 
-TEST(ParseRecording, AcceptsEveryWayToWriteANumber) {
+TEST(ParseRecording, AcceptsAllNumberFormats) {
   const Recording recording = RecordingOf(
       kHeader +
       "-1,-0\n0, +1.5\n1e0,1e-3\n 2 ,\"-.5\"\n+3,5.\n\" 4 \",+2E+2\n5,007\n6,0.1000000000000000055511151231257827\n");
@@ -153,18 +153,18 @@ TEST(ParseRecording, AcceptsEveryWayToWriteANumber) {
   EXPECT_EQ(recording.value, (Eigen::VectorXd(8) << 0, 1.5, 1e-3, -.5, 5, 200, 7, .1).finished());
 }
 
-TEST(ParseRecording, TakesAGapInTimeAndAConstantSignalAsTheyAre) {
+TEST(ParseRecording, KeepsATimeGapAndAConstantSignal) {
   EXPECT_EQ(RecordingOf(kHeader + Rows(7) + "5000,0\n").time[7], 5000);
   EXPECT_EQ(RecordingOf(kHeader + "0,1\n1,1\n2,1\n3,1\n4,1\n5,1\n6,1\n7,1\n").value, Eigen::VectorXd::Ones(8));
 }
 
-TEST(ParseRecording, ConvertsTheResolutionFromTheUnitOfTheFile) {
+TEST(ParseRecording, ConvertsTheResolutionFromTheFilesUnit) {
   EXPECT_DOUBLE_EQ(RecordingOf("# resolution: 0.5\ntime_s,angle_deg\n" + Rows()).resolution, 0.5 * kPi / 180);
   EXPECT_EQ(RecordingOf(kHeader + Rows() + "#resolution:0.5").resolution, 0.5);
   EXPECT_EQ(RecordingOf("# resolution: 0\n" + kHeader + Rows()).resolution, 0);
 }
 
-TEST(ParseRecording, CarriesMetadataThatOthersApply) {
+TEST(ParseRecording, PassesOnMetadata) {
   const Recording recording = RecordingOf(
       "# lost_samples: 3\n# operator: resolution unknown\n# range: -45, 45\n# sample_rate_hz: 100\n"
       "# clock_scale: 1.0001\n# clock_scale_std_dev: 2e-5\n# rig: {\"gravity_torque\": 1.8}\n" +
@@ -178,7 +178,7 @@ TEST(ParseRecording, CarriesMetadataThatOthersApply) {
   EXPECT_EQ(RecordingOf(kHeader + Rows()).clock_scale_std_dev, 0);
 }
 
-TEST(ParseRecording, TakesTheDeclaredRangeInSi) {
+TEST(ParseRecording, ConvertsTheDeclaredRangeToSi) {
   EXPECT_FALSE(RecordingOf(kHeader + Rows()).range);
   const std::string values = "0,-45\n1,-44\n2,0\n3,1\n4,2\n5,44\n6,45\n7,45\n";
   const Recording recording = RecordingOf("# range: -45,45\ntime_s,angle_deg\n" + values);
@@ -189,7 +189,7 @@ TEST(ParseRecording, TakesTheDeclaredRangeInSi) {
 
 // ---- Invalid files -----------------------------------------------------------------------------------------------
 
-TEST(ParseRecording, RefusesMalformedMetadataWhereItStands) {
+TEST(ParseRecording, RefusesMalformedMetadataAtItsPosition) {
   EXPECT_EQ(FaultOf("# resolution: 0.1 deg\n" + kHeader + Rows()),
             "run.csv:1:15: the metadata resolution is \"0.1 deg\"; it must be a number, 0 or more, in the unit of the "
             "file: correct or delete this line");
@@ -228,7 +228,7 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
           "run.csv:1:19: columns \"time_s\" and \"Time (ms)\" could both be the time; choose one with --time_column"));
 }
 
-TEST(ParseRecording, AsksForAHeaderWhenTheFirstRowHoldsNumbers) {
+TEST(ParseRecording, AsksForAHeaderIfTheFirstRowHasNumbers) {
   EXPECT_EQ(FaultOf(Rows()),
             "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above "
             "it, such as time_s,angle_deg, or say what the columns are: give --time_column or --sample_rate_hz and "
@@ -245,7 +245,7 @@ TEST(ParseRecording, RefusesARowOfTheWrongLength) {
       "a point");
 }
 
-TEST(ParseRecording, RefusesWhatIsNotANumberAndShowsIt) {
+TEST(ParseRecording, RefusesAndShowsTextThatIsNotANumber) {
   EXPECT_EQ(
       FaultOfRow("3.5, abc "),
       "run.csv:9:6: column \"angle_rad\" holds \"abc\", which is not a number; correct the field or delete the row");
@@ -258,19 +258,19 @@ TEST(ParseRecording, RefusesWhatIsNotANumberAndShowsIt) {
   }
 }
 
-TEST(ParseRecording, RefusesNumbersThatAreNotFinite) {
+TEST(ParseRecording, RefusesNonFiniteNumbers) {
   for (const char* const text : {"nan", "NaN", "-nan", "inf", "-Infinity", "+inf", "nan(1)"}) {
     EXPECT_THAT(FaultOfRow("3.5," + std::string(text)), HasSubstr("a sample must be finite")) << text;
   }
 }
 
-TEST(ParseRecording, RefusesNumbersBeyondTheRangeOfADouble) {
+TEST(ParseRecording, RefusesNumbersBeyondADouble) {
   for (const char* const text : {"1e999", "-1e309", "1e-400"}) {
     EXPECT_THAT(FaultOfRow("3.5," + std::string(text)), HasSubstr("beyond what a number can be")) << text;
   }
 }
 
-TEST(ParseRecording, ClipsWhatItShowsAndMakesControlCharactersVisible) {
+TEST(ParseRecording, ShortensAndEscapesShownText) {
   EXPECT_THAT(FaultOfRow("3.5,\x1B[31mred\x7F\xFF θ"), HasSubstr(R"("\x1b[31mred\x7f\xff θ")"));
   const std::string fault = FaultOfRow("3.5," + std::string(1000000, 'x'));
   EXPECT_THAT(fault, HasSubstr("\"" + std::string(40, 'x') + "...\""));
@@ -278,12 +278,12 @@ TEST(ParseRecording, ClipsWhatItShowsAndMakesControlCharactersVisible) {
   EXPECT_LT(FaultOf(std::string(1000000, ',') + "x\n").size(), 200);
 }
 
-TEST(ParseRecording, RefusesNulBytesWithTheirPlace) {
+TEST(ParseRecording, RefusesNulBytesAtTheirPosition) {
   EXPECT_THAT(FaultOf(kHeader + Rows() + std::string("8,\0\0", 4)), StartsWith("run.csv:10:3: a NUL byte stands here"));
   EXPECT_THAT(FaultOf(std::string("\xFF\xFEt\0i\0", 6)), AllOf(StartsWith("run.csv:1:4: "), HasSubstr("UTF-16")));
 }
 
-TEST(ParseRecording, SaysHowManyRowsThereAreAndHowManyAreNeeded) {
+TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
   for (const auto& [text, message] :
        {std::pair{kHeader + Rows(7), "run.csv:8:1: rows of data found: 7; at least 8 are needed: record for longer"},
         std::pair{kHeader, "run.csv:1:1: rows of data found: 0; at least 8 are needed: record for longer"},
@@ -326,7 +326,7 @@ void ExpectAValidRecordingOrAMessage(const std::string& text) {
   }
 }
 
-TEST(ParseRecording, MakesOfAnyBytesARecordingOrAMessage) {
+TEST(ParseRecording, GivesARecordingOrAMessageForAnyBytes) {
   const std::string valid = "\xEF\xBB\xBF# resolution: 0.1\n# rig: {}\r\nn,\"time_ms\" ,Angle [°]\r\n" +
                             std::string("1,0,\"-1.5\"\n2,10, +1e-1\n3,20,3\n\n# a: b\n4,30,4\n5,40,5\n") +
                             "6,50,6\n\"7,\"\"\",60,7\n8,70,8\n9,80.25,-0\n,,\n";
@@ -354,7 +354,7 @@ TEST(ReadRecording, ReadsTheBytesOfAFile) {
   EXPECT_EQ(recording->value, RecordingOf(kHeader + Rows()).value);
 }
 
-TEST(ReadRecording, SaysThatAFileIsNotThere) {
+TEST(ReadRecording, ReportsAMissingFile) {
   const Result<Recording> recording = ReadRecording("/nowhere/run.csv");
   ASSERT_FALSE(recording.has_value());
   EXPECT_EQ(recording.error().code, StatusCode::kNotFound);
@@ -369,7 +369,7 @@ TEST(ReadRecording, RefusesADirectory) {
 }
 
 /// Numbers of samples as in src/docs/examples.md.
-TEST(ReadRecording, ReadsWhatPeopleRecorded) {
+TEST(ReadRecording, ReadsTheSampleRecordings) {
   const char* const folder = std::getenv("PENDULUM_RECORDINGS");
   if (folder == nullptr) GTEST_SKIP() << "PENDULUM_RECORDINGS names no folder";
   const std::filesystem::path path(folder);

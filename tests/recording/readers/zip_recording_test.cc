@@ -37,7 +37,7 @@ ReadOptions Value(const std::string& column) { return TimeAndValue("", column); 
 
 // ---- Which member ------------------------------------------------------------------------------------------------
 
-TEST(ReadZip, ReadsTheColumnThatIsNamed) {
+TEST(ReadZip, ReadsTheNamedColumn) {
   for (const char* const name : {"Gyroscope y (rad/s)", "Gyroscope.csv/Gyroscope y (rad/s)", "Gyroscope.csv/3"}) {
     const Recording recording = RecordingOf(Phyphox(), Value(name));
     ExpectTheRows(recording);
@@ -50,7 +50,7 @@ TEST(ReadZip, HashesThePackedBytes) {
   EXPECT_EQ(RecordingOf(Phyphox(), Value("Gyroscope y (rad/s)")).sha256, Sha256(Phyphox()).value());
 }
 
-TEST(ReadZip, RefusesTwoComponentsAndNeverTakesTheLengthOfTheVector) {
+TEST(ReadZip, RefusesTwoComponentsAndIgnoresTheVectorLength) {
   EXPECT_EQ(FaultOf(Phyphox()),
             "run.csv:Gyroscope.csv:1:34: columns \"Gyroscope x (rad/s)\" and \"Gyroscope y (rad/s)\" could both be the "
             "quantity; choose one with --value_column");
@@ -62,7 +62,7 @@ TEST(ReadZip, RefusesTwoComponentsAndNeverTakesTheLengthOfTheVector) {
   ExpectTheRows(RecordingOf(ZipOf({{"Raw Data.csv", one}})));
 }
 
-TEST(ReadZip, TakesTheOnlyMemberWithACandidate) {
+TEST(ReadZip, ChoosesTheOnlyMemberWithACandidate) {
   const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
   ExpectTheRows(RecordingOf(ZipOf({{"Light.csv", kLight}, {"runs/a/angle.csv", angle}})), kDegree);
   ExpectTheRows(RecordingOf(ZipOf({{"__MACOSX/._angle.csv", "x"}, {"angle.csv", angle}, {"sub/", ""}})), kDegree);
@@ -79,7 +79,7 @@ TEST(ReadZip, RefusesTwoMembersWithCandidatesAndNamesThem) {
   ExpectTheRows(RecordingOf(two, Value("a.csv")), kDegree);
 }
 
-TEST(ReadZip, WholePathsGoBeforeNamesOfFiles) {
+TEST(ReadZip, PrefersWholePathsToFileNames) {
   const std::string other = "time_s,angle_deg\n" + Rows("0.0{t},7");
   const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
   const std::string nested = ZipOf({{"old/run.csv", other}, {"run.csv", angle}});
@@ -93,7 +93,7 @@ TEST(ReadZip, WholePathsGoBeforeNamesOfFiles) {
       "this name; give it with its folders");
 }
 
-TEST(ReadZip, TheTimeColumnMayHaveItsUnitAfterIt) {
+TEST(ReadZip, AcceptsAUnitAfterTheTimeColumn) {
   const std::string text = "tick,angle_deg\n" + Rows("{t},{v}");
   for (const char* const time : {"tick:ms", "1:ms"}) {
     ExpectTheRows(RecordingOf(ZipOf({{"Light.csv", kLight}, {"a.csv", text}}), TimeAndValue(time, "angle_deg")),
@@ -113,7 +113,7 @@ TEST(ReadZip, ReadsSemicolonsAndDecimalCommasAndLeavesOutNaN) {
 
 // ---- Not a recording ---------------------------------------------------------------------------------------------
 
-TEST(ReadZip, SaysThatNoMemberIsARecording) {
+TEST(ReadZip, ReportsThatNoMemberIsARecording) {
   EXPECT_EQ(FaultOf(ZipOf({{"Light.csv", kLight}, {"notes.txt", "hello\n"}})),
             "run.csv: none of its files \"Light.csv\" and \"notes.txt\" has a column of times and one of an angle or a "
             "rate; choose with --value_column \"FILE/COLUMN\", or name another recording");
@@ -124,27 +124,27 @@ TEST(ReadZip, SaysThatNoMemberIsARecording) {
             "run.csv:inner.zip: this is a zip file in a zip file; unpack it and name it");
 }
 
-TEST(ReadZip, SaysWhereAMemberIsAtFault) {
+TEST(ReadZip, ReportsThePlaceOfAFaultInAMember) {
   EXPECT_EQ(
       FaultOf(ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 7) + "0.07,x\n0.08,1\n"}})),
       "run.csv:a.csv:9:6: column \"angle_deg\" holds \"x\", which is not a number; correct the field or delete the "
       "row");
 }
 
-TEST(ReadZip, RefusesWhatIsCutOff) {
+TEST(ReadZip, RefusesATruncatedFile) {
   const std::string whole = Phyphox();
   for (std::size_t size = 4; size < whole.size(); size += 7) {
     EXPECT_THAT(FaultOf(whole.substr(0, size)), StartsWith("run.csv: this zip file cannot be opened")) << size;
   }
 }
 
-TEST(ReadZip, RefusesDamagedBytesOfAMember) {
+TEST(ReadZip, RefusesADamagedMember) {
   std::string bytes = ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 60)}});
   for (std::size_t i = 60; i < 100; ++i) bytes[i] = static_cast<char>(bytes[i] ^ 0x55);
   EXPECT_THAT(FaultOf(bytes), StartsWith("run.csv:a.csv: it cannot be unpacked ("));
 }
 
-TEST(ReadZip, SaysWhichMemberItCouldNotLookAt) {
+TEST(ReadZip, NamesAnUnreadableMember) {
   const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
   const auto damaged = [&](const std::string& other) {
     std::string bytes = ZipOf({{"a.csv", "time_s,angle_deg\n" + Rows("0.0{t},{v}", 60)}, {"other.csv", other}});
@@ -167,7 +167,7 @@ TEST(ReadZip, RefusesEncryptedMembers) {
             "run.csv:a.csv: it is encrypted; unpack it with its password and name the file");
 }
 
-TEST(ReadZip, RefusesABombBeforeItFillsTheMemory) {
+TEST(ReadZip, RefusesAZipBomb) {
   ReadOptions options;
   EXPECT_EQ(options.most_unpacked_bytes, 536'870'912);
   options.most_unpacked_bytes = 1'000'000;
@@ -179,7 +179,7 @@ TEST(ReadZip, RefusesABombBeforeItFillsTheMemory) {
       "run.csv:a.csv: it unpacks to more than 1000000 bytes, too many for a recording; name another, or split it");
 }
 
-TEST(ReadZip, ShowsPathsThatClimbAndNeverFollowsThem) {
+TEST(ReadZip, ShowsButNeverFollowsClimbingPaths) {
   EXPECT_THAT(FaultOf(ZipOf({{"../../etc/passwd", "a,b\n1,2\n"}})), StartsWith("run.csv:../../etc/passwd:1:1: "));
 }
 

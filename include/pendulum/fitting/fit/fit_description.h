@@ -11,13 +11,13 @@
 namespace pendulum {
 
 /// Sets model, start, units and solver: the parts of a report that do not depend on the result.
-FitReport IntroduceFit(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                       const Solution& solution);
+FitReport InitializeReport(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+                           const Solution& solution);
 
 /// Largest share of the variance that a converged fit may leave unexplained. For correlated residuals, the limit lies
 /// between the worst fits of real recordings (0.1) and recordings without a free swing (0.2 and more). Uncorrelated
 /// residuals are noise, which may be large.
-inline double MostUnexplained(bool correlated) { return correlated ? 0.12 : 0.8; }
+inline double MaxUnexplainedShare(bool correlated) { return correlated ? 0.12 : 0.8; }
 
 /// A solution compared with the readings, before it is judged.
 struct Description {

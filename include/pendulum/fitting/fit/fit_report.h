@@ -61,8 +61,8 @@ struct NoiseEstimate {
   double resolution = 0;                  ///< Of the readings, same unit; 0: none.
   Eigen::Index censored = 0;              ///< Readings at an end of the sensor's range.
   std::string why;
-  double lag1_correlation = 0;  ///< Of the quantile residuals.
-  Autocorrelation memory;       ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
+  double lag1_correlation = 0;      ///< Of the quantile residuals.
+  Autocorrelation autocorrelation;  ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
   // For kEdges, as in NoiseModel.
   double stamp_ratio = 0;  ///< s/rad: standard deviation of a time stamp over sigma.
   double lag = 0;          ///< rad: the estimate of edge_lag.
@@ -122,7 +122,7 @@ struct FitReport {
   /// The parameter with this name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 
-  bool Warns(std::string_view code) const;
+  bool HasWarning(std::string_view code) const;
 };
 
 /// Removes errors, intervals and covariance that are not valid from a report. Each free parameter gets the reason

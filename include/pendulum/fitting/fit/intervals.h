@@ -21,7 +21,7 @@ struct FittedModel {
 };
 
 /// Takes estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior). This is necessary for
-/// quantized noise below kQuietSigma resolutions with few samples near the edges of levels, because the likelihood is
+/// quantized noise below kSmallSigma resolutions with few samples near the edges of levels, because the likelihood is
 /// then not parabolic. Returns the optimum with the free parameters that `errors` then has, which include those at a
 /// bound. Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
 /// kAuto.
@@ -44,7 +44,7 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
 /// Sets how well the recording determines every parameter, from intervals, information and covariance.
 void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report);
 
-inline constexpr double kQuietSigma = 0.12;
+inline constexpr double kSmallSigma = 0.12;
 inline constexpr std::string_view kPosteriorIntervals = "quantiles of the posterior";  ///< FitReport::interval_method
 
 }  // namespace pendulum

@@ -39,7 +39,7 @@ class JointCost final : public LeastSquares {
   const std::vector<PriorTerm>& priors() const { return priors_; }
 
   /// The parameters of recording k.
-  std::vector<double> Own(std::size_t k, std::span<const double> parameters) const;
+  std::vector<double> OwnParameters(std::size_t k, std::span<const double> parameters) const;
 
  private:
   std::vector<JointTerm> terms_;

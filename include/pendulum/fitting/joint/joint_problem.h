@@ -30,7 +30,7 @@ struct JointMember {
   double samples() const { return static_cast<double>(problem->data.time.size()); }
 
   /// Selects its own parameters from a list of indices among all P; returns indices among its own.
-  std::vector<int> Own(const std::vector<int>& of_all) const;
+  std::vector<int> OwnIndices(const std::vector<int>& of_all) const;
 
   /// Positions of its own parameters in a list of indices among all P, which must contain them.
   std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
@@ -49,7 +49,7 @@ struct JointProblem {
   void Distribute(const std::vector<double>& parameters);
 
   /// The results of the separate fits, P; shared parameters are those of the last recording.
-  std::vector<double> AloneParameters() const;
+  std::vector<double> SeparateParameters() const;
 
   bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
 

@@ -12,13 +12,14 @@
 
 namespace pendulum {
 
-/// Converts an event-driven recording to its edges (TakeEdges) unless the user asks for another noise family. Other
-/// recordings are returned unchanged.
+/// Converts an event-driven recording to its edges (ConvertToEdges) unless the user asks for another noise family.
+/// Other recordings are returned unchanged.
 Recording WithEdges(Recording recording, std::optional<NoiseFamily> noise);
 
-/// Factors of the zero-motion parameter in the readings (N; TrajectoryData::moves). For a drift they are the times [s,
-/// from the first sample]; for a lag, minus the direction of each edge. Empty if the zero does not move.
-std::vector<double> Moves(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times, ZeroMotion zero);
+/// Factors of the zero-motion parameter in the readings (N; TrajectoryData::zero_motion_factors). For a drift they are
+/// the times [s, from the first sample]; for a lag, minus the direction of each edge. Empty if the zero does not move.
+std::vector<double> ZeroMotionFactors(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times,
+                                      ZeroMotion zero);
 
 /// Rate dm/dt [rad/s] of the modelled readings m [rad] at N >= 3 increasing times [s], by central differences. The
 /// interval is widened until it is at least a thousandth of the mean interval.
@@ -29,8 +30,8 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
 /// σ² (1 + (ratio · rate)²). The estimate maximizes the likelihood of the differences of successive residuals of
 /// edges, which a slow misfit does not affect (MODEL.md eq. (7.6)). 0 if the variance of the time stamps is below two
 /// of its standard errors.
-double LikeliestStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
-                           const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);
+double MostLikelyStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                            const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);
 
 /// Sets stamp_ratio and spread of the noise of edges, for the modelled readings. All arrays N x 1, times in s.
 void SetSpread(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& value,

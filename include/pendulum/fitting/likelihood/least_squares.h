@@ -22,9 +22,9 @@ double PriorSum(std::span<const PriorTerm> priors, std::span<const double> param
 void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parameters, Eigen::MatrixXd* sums);
 
 /// Maximum number of parameters of one recording's cost.
-inline constexpr int kMostCompressed = 16;
+inline constexpr int kMaxCompressed = 16;
 
-/// Replaces the N residuals by P + 1 equations with the same cost and gradient, P <= kMostCompressed. They are R, R^-T
+/// Replaces the N residuals by P + 1 equations with the same cost and gradient, P <= kMaxCompressed. They are R, R^-T
 /// J'r and the rest of |r| (MODEL.md eq. (5.2)), computed from the sums and laid out as ceres::CostFunction::Evaluate
 /// returns them. Allocates no memory.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians);

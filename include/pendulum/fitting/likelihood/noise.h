@@ -78,7 +78,9 @@ struct NoiseModel {
 
   bool IsCensored(double reading) const { return reading <= low || reading >= high; }
   /// Whether least squares is the exact likelihood: normal noise, and no reading at an end of the range.
-  bool IsPlain() const { return family == NoiseFamily::kGaussian && low == -kInfinity && high == kInfinity; }
+  bool IsUncensoredGaussian() const {
+    return family == NoiseFamily::kGaussian && low == -kInfinity && high == kInfinity;
+  }
 
   /// For events: whether a reading only states that the value lies within its level.
   bool IsSilence(double reading) const {
@@ -130,8 +132,8 @@ double LogLikelihood(const NoiseModel& noise, const Eigen::Ref<const Eigen::Vect
 
 /// The σ that maximizes the likelihood of N samples (Huber's "proposal 2" for kHuber), at most 1e6 times noise.sigma.
 /// It is at least `smallest`, which is returned when the quantization explains every sample.
-double LikeliestSigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
-                      const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest);
+double MostLikelySigma(NoiseModel noise, const Eigen::Ref<const Eigen::VectorXd>& value,
+                       const Eigen::Ref<const Eigen::VectorXd>& readings, double smallest);
 
 /// Standard error of a robust family's σ, from the scatter of the samples' scores.
 double RobustSigmaError(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,

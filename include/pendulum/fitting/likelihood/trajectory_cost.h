@@ -30,7 +30,7 @@ struct TrajectoryData {
   double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
   /// N, or empty: the factor of one additional parameter. These are the times if the zero drifts, or minus the
   /// direction of each edge if edges lag.
-  std::vector<double> moves;
+  std::vector<double> zero_motion_factors;
   double scale = 1;      ///< rad or rad/s; roughly the noise, so Ceres' numbers are near 1.
   std::stop_token stop;  ///< After a stop request nothing more is evaluated.
 
@@ -48,9 +48,9 @@ struct MotionStates {
 /// The cost of one trajectory as least squares: samples, sensitivities and likelihood. A fit evaluates it repeatedly.
 ///
 /// Parameters p (P of them), in units of G, times from the first sample: inertia, friction, then release_angle,
-/// release_time, zero or initial_angle, initial_rate, zero. The zero is zero_angle or rate_bias. If data.moves is not
-/// empty, the zero's drift [unit of the reading per s] or the edges' lag [rad] follows. If the sensor is not direct,
-/// the parameters of data.sensor replace the zero.
+/// release_time, zero or initial_angle, initial_rate, zero. The zero is zero_angle or rate_bias. If
+/// data.zero_motion_factors is not empty, the zero's drift [unit of the reading per s] or the edges' lag [rad] follows.
+/// If the sensor is not direct, the parameters of data.sensor replace the zero.
 ///
 /// The squared residual of a sample is its deviance under the noise. For Gaussian noise (the default, with σ =
 /// data.scale) that is ((value - model(p)) / σ)².

@@ -38,12 +38,12 @@ double Lag1Correlation(const Eigen::VectorXd& residual);
 
 /// Whether residuals are autocorrelated, tested at up to 50 lags from 1 to longest_lag (Box & Pierce, JASA 65:1509,
 /// 1970). False alarm rate for independent residuals: 2e-6.
-bool FollowEachOther(const Eigen::VectorXd& residual, int longest_lag);
+bool AreAutocorrelated(const Eigen::VectorXd& residual, int longest_lag);
 
 /// Whether the errors of phase and amplitude per period [s] are autocorrelated: the residuals oscillate with the
 /// pendulum (MODEL.md eq. (5.5)). False alarm rate for independent residuals: 2e-4. N samples.
-bool SwingAlong(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& residual,
-                double period);
+bool HavePhaseOrAmplitudeErrors(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted,
+                                const Eigen::VectorXd& residual, double period);
 
 /// Sets AIC, AICc (Hurvich & Tsai, Biometrika 76:297, 1989) and BIC (Schwarz, Ann. Stat. 6:461, 1978) from
 /// statistics.log_likelihood. `parameters` includes σ.

@@ -13,13 +13,13 @@ namespace pendulum {
 
 /// The parameters that may change, and how far.
 struct SolveOptions {
-  std::vector<double> lower, upper;  ///< P; -kUnbounded and kUnbounded without a bound.
-  std::vector<bool> fixed;           ///< P
-  int holding_parameter = -1;        ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
-  int last_friction = 1;             ///< The last parameter of friction; the first is 1, after inertia.
-  int release_time = -1;             ///< -1: the recording begins in motion.
-  std::vector<int> late;             ///< Determined only by small swings: held while the last part is left out.
-  int max_iterations = 100;          ///< Limit of Ceres iterations for each run.
+  std::vector<double> lower, upper;         ///< P; -kUnbounded and kUnbounded without a bound.
+  std::vector<bool> fixed;                  ///< P
+  int holding_parameter = -1;               ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
+  int last_friction = 1;                    ///< The last parameter of friction; the first is 1, after inertia.
+  int release_time = -1;                    ///< -1: the recording begins in motion.
+  std::vector<int> small_swing_parameters;  ///< Determined only by small swings: held while the last part is left out.
+  int max_iterations = 100;                 ///< Limit of Ceres iterations for each run.
   int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run starts.
 };
 

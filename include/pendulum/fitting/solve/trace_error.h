@@ -14,6 +14,6 @@ bool MeasureTraceError(TrajectoryCost& cost, double tolerance, Solution& solutio
 
 /// The next tolerance to try if the error is too large, and the maximum number of refinements.
 double FinerTolerance(double tolerance);
-inline constexpr int kMostTraceRefinements = 3;
+inline constexpr int kMaxTraceRefinements = 3;
 
 }  // namespace pendulum

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "pendulum/fitting/swing/zero_steps.h"
+#include "pendulum/fitting/swing/offset_steps.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
@@ -25,7 +25,7 @@ RunRegression RegressWithinRuns(const FitResiduals& residuals, const Recording& 
 /// Steps of zero counts are omitted; a step not within 0.35 of a whole number keeps its own size.
 ///
 /// residuals    of a fit to the edges, N
-/// edges        N, from TakeEdges
-std::vector<ZeroStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges);
+/// edges        N, from ConvertToEdges
+std::vector<OffsetStep> FindEdgeSteps(const FitResiduals& residuals, const Recording& edges);
 
 }  // namespace pendulum

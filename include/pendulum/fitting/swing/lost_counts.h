@@ -12,28 +12,28 @@
 namespace pendulum {
 
 /// Jumps of the zero within a recording.
-struct ZeroJumps {
+struct OffsetJumps {
   std::vector<LostCounts> lost;  ///< Whole counts, s on the file's clock, in time order; empty if some are not whole.
   Recording corrected;           ///< The readings after each jump are shifted back.
-  std::optional<double> doubtful_from;  ///< s on the file's clock: the first jump that is not whole or not certain.
+  std::optional<double> uncertain_from;  ///< s on the file's clock: the first jump that is not whole or not certain.
   /// One sentence: if `lost` is not empty, what was corrected, otherwise what to do.
   std::string message;
 
-  bool AreMended() const { return !lost.empty(); }
+  bool AreCorrected() const { return !lost.empty(); }
 };
 
 /// Whether the zero of an angle may have jumped: the mean of a fit's residuals changes at some sample by four standard
 /// errors of independent residuals, and by a good part of a resolution.
-bool MayJump(const FitReport& fit);
+bool MayHaveOffsetJump(const FitReport& fit);
 
 /// Finds jumps of an angle's zero (MODEL.md eq. (13.1)) in the residuals of the richest law; smaller residuals give a
 /// more accurate result. Returns std::nullopt if there are no jumps, if the recording cannot be fitted, or after a stop
 /// request.
-std::optional<ZeroJumps> FindZeroJumps(const Recording& recording, const FitOptions& options);
+std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const FitOptions& options);
 
 /// Adds warnings about jumps: `lost_counts` if they were corrected, otherwise `zero_jumps`, which invalidates the fit.
-/// Adds `zero_unsteady` for a possible jump that is too small to identify, unless the fit `lacks` so much that the
+/// Adds `zero_unsteady` for a possible jump that is too small to identify, unless the fit `has_misfit` so much that the
 /// misfit may explain it.
-void WarnOfJumps(const std::optional<ZeroJumps>& jumps, bool lacks, FitReport& fit);
+void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit, FitReport& fit);
 
 }  // namespace pendulum

@@ -12,12 +12,12 @@ namespace pendulum {
 /// Checks for a linear oscillator: linear gravity describes the recording much better than sine gravity, both with the
 /// richest friction. Returns the reason in a sentence with numbers. Returns std::nullopt otherwise, and after a stop
 /// request. `report` is a fit with lack of fit. Cost: two small fits.
-std::optional<std::string> WhyLinear(const Recording& recording, const FitReport& report,
-                                     const std::stop_token& stop = {});
+std::optional<std::string> LinearOscillatorReason(const Recording& recording, const FitReport& report,
+                                                  const std::stop_token& stop = {});
 
 /// Checks for two modes: much of the richest law's residual oscillates at one frequency different from the swing's.
-/// Returns as WhyLinear.
-std::optional<std::string> WhyTwoModes(const Recording& recording, const FitReport& report,
-                                       const std::stop_token& stop = {});
+/// Returns as LinearOscillatorReason.
+std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,
+                                          const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -60,6 +60,6 @@ nlohmann::ordered_json CalibrationJson(const Calibration& calibration);
 
 /// The first of 1001 readings from low to high at which the curve runs against its overall direction, so that two
 /// readings show one angle. std::nullopt: the curve rises or falls throughout.
-std::optional<double> TurningReading(const Calibration& calibration, double low, double high);
+std::optional<double> FindTurningReading(const Calibration& calibration, double low, double high);
 
 }  // namespace pendulum

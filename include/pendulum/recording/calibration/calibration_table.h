@@ -14,7 +14,7 @@
 namespace pendulum {
 
 /// Nobody sets more points by hand; a longer file is a recording.
-inline constexpr Eigen::Index kMostCalibrationPoints = 10'000;
+inline constexpr Eigen::Index kMaxCalibrationPoints = 10'000;
 
 /// The readings of a sensor at known angles. Invariant (MakeCalibrationTable): N >= 2, finite, no repeated reading.
 /// Sorted by reading, the angles only rise or only fall (neighbours may be equal), and not all are equal.
@@ -40,7 +40,7 @@ Result<CalibrationTable> MakeCalibrationTable(CalibrationTable table);
 /// suffix `_counts` or `_volts`, and one with `_deg` or `_rad`. As in a recording, `adc_counts`, `Pot (volts)` and
 /// `counts` are equivalent. Columns without a unit in their name are ignored. Separators, decimal commas, quotes, #
 /// comments, byte order mark and line ends are as in ReadRecording. kNotFound: no such file. kDataLoss: not readable as
-/// above, no header, a column missing or repeated, one of another unit, more than kMostCalibrationPoints rows, or not a
+/// above, no header, a column missing or repeated, one of another unit, more than kMaxCalibrationPoints rows, or not a
 /// CalibrationTable. Messages begin "path:line:".
 Result<CalibrationTable> ReadCalibrationTable(const std::filesystem::path& path);
 

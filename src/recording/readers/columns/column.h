@@ -29,7 +29,7 @@ struct Unit {
 };
 
 /// True for an acceleration or a length.
-constexpr bool IsSecondChoice(const Unit& unit) {
+constexpr bool IsFallbackQuantity(const Unit& unit) {
   return unit.kind == Kind::kAcceleration || unit.kind == Kind::kLength;
 }
 

@@ -29,7 +29,7 @@ struct Layout {
   std::size_t width = 0;
   bool has_header = false;
   std::optional<Column> time;  // std::nullopt: times come from a sample rate or from the host.
-  bool is_time_unit_told = true;
+  bool is_time_unit_known = true;
   Column value;
   std::optional<Column> second;  // The vertical coordinate of a point whose horizontal one is `value`.
 };
@@ -121,13 +121,13 @@ class ColumnChooser {
                                    const std::string& flag) const;
   Result<std::size_t> FindColumn(const std::string& flag, std::string_view name, Layout& layout) const;
   std::vector<std::size_t> Columns(Kind first, Kind last) const;
-  Check CheckSomethingIsSaid(const Layout& layout) const;
+  Check CheckHeaderOrFlags(const Layout& layout) const;
   Check ChooseTime(Layout& layout);
   Check ChooseNamedTime(Layout& layout);
   Check ChooseValue(Layout& layout);
   Result<std::size_t> FindValue(Layout& layout) const;
   Result<std::size_t> OnlyColumnWithoutUnit(const Layout& layout) const;
-  bool IsAnotherKindAsked(const std::vector<std::size_t>& columns, const Layout& layout) const;
+  bool WantsColumnWithoutUnit(const std::vector<std::size_t>& columns, const Layout& layout) const;
   std::optional<std::size_t> FindVertical(std::size_t horizontal) const;
   Check CheckCoordinate(std::size_t index) const;
   Check SetValueUnit(Layout& layout, std::size_t index);
@@ -193,7 +193,7 @@ inline std::vector<std::size_t> ColumnChooser::Columns(Kind first, Kind last) co
 
 /// A file without a header is read if options replace the header completely; otherwise the message lists the missing
 /// ones.
-inline Result<void> ColumnChooser::CheckSomethingIsSaid(const Layout& layout) const {
+inline Result<void> ColumnChooser::CheckHeaderOrFlags(const Layout& layout) const {
   if (layout.has_header) return {};
   const bool needs_time =
       options_.time_column.empty() && options_.sample_rate_hz == 0 && !has_rate_ && !(has_host_ && layout.width == 1);
@@ -216,7 +216,7 @@ inline Result<void> ColumnChooser::CheckSomethingIsSaid(const Layout& layout) co
 }
 
 inline Result<void> ColumnChooser::Choose(Layout& layout) {
-  if (Check checked = CheckSomethingIsSaid(layout); !checked) return checked;
+  if (Check checked = CheckHeaderOrFlags(layout); !checked) return checked;
   if (Check chosen = ChooseTime(layout); !chosen) return chosen;
   return ChooseValue(layout);
 }
@@ -224,22 +224,26 @@ inline Result<void> ColumnChooser::Choose(Layout& layout) {
 /// NAME or NUMBER, optionally with :s, :ms or :us.
 inline Result<void> ColumnChooser::ChooseNamedTime(Layout& layout) {
   std::string_view name = options_.time_column;
-  const Unit* told = nullptr;
+  const Unit* given_unit = nullptr;
   const std::size_t colon = name.rfind(':');
   if (colon != std::string_view::npos && std::ranges::find(names_, name, &Name::written) == names_.end()) {
-    told = UnitOfSuffix(name.substr(colon + 1));
-    if (told != nullptr && told->kind != Kind::kTime) told = nullptr;
-    if (told != nullptr) name = name.substr(0, colon);
+    given_unit = UnitOfSuffix(name.substr(colon + 1));
+    if (given_unit != nullptr && given_unit->kind != Kind::kTime) given_unit = nullptr;
+    if (given_unit != nullptr) name = name.substr(0, colon);
   }
   const Result<std::size_t> index = FindColumn("--time_column", name, layout);
   if (!index) return tl::unexpected(index.error());
   const Unit* own = layout.has_header ? FindTimeUnit(names_[*index].text) : nullptr;
-  if (told != nullptr && own != nullptr && told != own) {
+  if (given_unit != nullptr && own != nullptr && given_unit != own) {
     return WrongFlag(*index, "column " + NameOf(*index) + " is in " + std::string(own->name) + ", and --time_column " +
-                                 options_.time_column + " says " + std::string(told->name) + "; leave out the unit");
+                                 options_.time_column + " says " + std::string(given_unit->name) +
+                                 "; leave out the unit");
   }
-  layout.is_time_unit_told = told != nullptr || own != nullptr;
-  layout.time = Column{*index, NameOf(*index), told != nullptr ? told : own != nullptr ? own : UnitOfSuffix("s")};
+  layout.is_time_unit_known = given_unit != nullptr || own != nullptr;
+  layout.time = Column{*index, NameOf(*index),
+                       given_unit != nullptr ? given_unit
+                       : own != nullptr      ? own
+                                             : UnitOfSuffix("s")};
   return {};
 }
 
@@ -286,15 +290,15 @@ inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& la
 
 /// True if the user requests an angle, a rate or raw readings, the columns with units are lengths and accelerations,
 /// and there is also a column whose name has no unit.
-inline bool ColumnChooser::IsAnotherKindAsked(const std::vector<std::size_t>& columns, const Layout& layout) const {
+inline bool ColumnChooser::WantsColumnWithoutUnit(const std::vector<std::size_t>& columns, const Layout& layout) const {
   const Unit* asked = UnitOfSuffix(options_.unit);
-  if (!layout.has_header || asked == nullptr || IsSecondChoice(*asked)) return false;
+  if (!layout.has_header || asked == nullptr || IsFallbackQuantity(*asked)) return false;
   bool is_open = false;
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const bool is_time = layout.time && layout.time->index == i;
     is_open |= !is_time && !names_[i].text.empty() && FindUnit(names_[i].text) == nullptr;
   }
-  return is_open && std::ranges::all_of(columns, [&](auto i) { return IsSecondChoice(*FindUnit(names_[i].text)); });
+  return is_open && std::ranges::all_of(columns, [&](auto i) { return IsFallbackQuantity(*FindUnit(names_[i].text)); });
 }
 
 /// The column that the user chose; otherwise one whose name has the requested unit; otherwise one with any unit.
@@ -307,7 +311,8 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
     std::vector<std::size_t> asked = columns;
     std::erase_if(asked, [&](std::size_t i) { return FindUnit(names_[i].text)->suffix != options_.unit; });
     if (!asked.empty()) columns = asked;
-    if (columns.empty() || (asked.empty() && IsAnotherKindAsked(columns, layout))) return OnlyColumnWithoutUnit(layout);
+    if (columns.empty() || (asked.empty() && WantsColumnWithoutUnit(columns, layout)))
+      return OnlyColumnWithoutUnit(layout);
   }
   std::vector<std::size_t> points = columns;
   std::erase_if(points, [&](std::size_t i) { return !FindVertical(i); });

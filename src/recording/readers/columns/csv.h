@@ -111,7 +111,7 @@ class Numbers {
   }
 
   /// Why Parse refuses the field, and what to do.
-  std::string WhyNot(std::string_view text) const;
+  std::string NumberFault(std::string_view text) const;
 
  private:
   static constexpr char kUnknown = '?';
@@ -119,7 +119,7 @@ class Numbers {
   char mark_;
 };
 
-inline std::string Numbers::WhyNot(std::string_view text) const {
+inline std::string Numbers::NumberFault(std::string_view text) const {
   if (text.empty()) return "is empty where a number is needed; complete the row or delete it";
   const std::string holds = "holds " + Quoted(text);
   double number = 0;

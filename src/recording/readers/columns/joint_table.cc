@@ -9,7 +9,7 @@
 namespace pendulum::csv {
 namespace {
 
-bool Moves(const JointRows& rows) {
+bool IsMoving(const JointRows& rows) {
   const auto [low, high] = std::ranges::minmax(rows.value);
   return low < high;
 }
@@ -37,7 +37,7 @@ JointChoice ChoiceOf(const std::vector<TableColumn>& columns, const std::string&
 bool JointTable::Add(std::string_view joint, double time, double value, std::size_t line) {
   if (joints_.empty() || joints_[last_].joint != joint) {
     last_ = std::ranges::find(joints_, joint, &JointRows::joint) - joints_.begin();
-    if (last_ == kMostJoints) {
+    if (last_ == kMaxJoints) {
       last_ = 0;
       return false;
     }
@@ -55,7 +55,7 @@ Result<JointRows*> JointTable::Choose(const Line& line, const std::string& joint
   for (JointRows& rows : joints_) {
     if (rows.joint == joint) return &rows;
     all.push_back(&rows);
-    if (Moves(rows)) moving.push_back(&rows);
+    if (IsMoving(rows)) moving.push_back(&rows);
   }
   if (all.empty()) return nullptr;
   if (!joint.empty()) {

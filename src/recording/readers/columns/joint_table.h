@@ -28,9 +28,9 @@ struct JointRows {
 
 class JointTable {
  public:
-  static constexpr std::size_t kMostJoints = 1000;
+  static constexpr std::size_t kMaxJoints = 1000;
 
-  /// Adds a row. Returns false beyond kMostJoints.
+  /// Adds a row. Returns false beyond kMaxJoints.
   bool Add(std::string_view joint, double time, double value, std::size_t line);
 
   /// The requested joint, or the only one, or the only one that moves; nullptr without rows. `line` is that of the

@@ -76,7 +76,7 @@ tl::unexpected<Status> LineReader::TooLong() const {
 }
 
 /// Takes the next line if it is completely in memory.
-bool LineReader::GoOn() {
+bool LineReader::TakeBufferedLine() {
   const char* line_end = Find(at_, end_, '\n');
   if (line_end == nullptr || !has_begun_ || static_cast<std::size_t>(line_end - at_) > kLongestLine) return false;
   is_terminated_ = true;
@@ -96,7 +96,7 @@ Result<bool> LineReader::NextBlock() {
   if (!has_begun_) {
     if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
   }
-  while (!GoOn()) {
+  while (!TakeBufferedLine()) {
     if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLong();
     if (file_ == nullptr) {
       if (at_ == end_) return false;

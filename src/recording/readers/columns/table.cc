@@ -18,7 +18,7 @@ bool IsLengthOfVector(const TableColumn& column) {
   constexpr std::string_view kWord = "absolute";
   const std::string canonical = CanonicalName(column.meaning);
   const Unit* unit = FindUnit(column.meaning);
-  if (unit == nullptr || (unit->kind != Kind::kRate && !IsSecondChoice(*unit))) return false;
+  if (unit == nullptr || (unit->kind != Kind::kRate && !IsFallbackQuantity(*unit))) return false;
   return canonical.starts_with(kWord) && (canonical[kWord.size()] == '_' || IsBlank(canonical[kWord.size()]));
 }
 
@@ -64,7 +64,7 @@ std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, c
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Unit* own = FindUnit(columns[i].meaning);
     if (own == nullptr || own->kind == Kind::kTime || IsLengthOfVector(columns[i])) continue;
-    (IsSecondChoice(*own) ? others : candidates).push_back(i);
+    (IsFallbackQuantity(*own) ? others : candidates).push_back(i);
     if (own->suffix == unit) asked.push_back(i);
   }
   if (!asked.empty()) return asked;

@@ -28,7 +28,7 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
     warn("lost_samples", "the file says that " + lost +
                              " samples were lost, and times counted from the sample rate are late after each");
   }
-  if (layout.time && !layout.is_time_unit_told) {
+  if (layout.time && !layout.is_time_unit_known) {
     warn("time_unit_assumed", "column " + layout.time->name +
                                   " does not tell its unit and was taken as seconds; give "
                                   "--time_column with :s, :ms or :us after the column");
@@ -45,7 +45,7 @@ Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions&
     }
     return {};
   }
-  if (layout.time && !layout.is_time_unit_told && AllWhole(samples.time)) {
+  if (layout.time && !layout.is_time_unit_known && AllWhole(samples.time)) {
     return line.Fault(line.text.data(),
                       "column " + layout.time->name +
                           " holds whole numbers and does not tell its unit; give --time_column "

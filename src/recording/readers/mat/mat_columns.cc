@@ -39,7 +39,7 @@ std::string* complaint = nullptr;  // Where matio's messages are stored. Its cal
 
 /// Keeps serious messages of matio. A file that ends too early causes only a warning, although the following numbers
 /// are wrong. Warnings of unknown kinds of objects or text are ignored, because other variables are not affected.
-void TakeComplaint(int level, char* message) {
+void RecordMatioMessage(int level, char* message) {
   constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
   const auto says = [&](std::string_view words) {
     return std::string_view(message).find(words) != std::string_view::npos;
@@ -52,7 +52,7 @@ void TakeComplaint(int level, char* message) {
 }
 
 /// After this call the process can open no more files.
-void OpenNoMore() {
+void ForbidOpeningFiles() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_NOFILE, &none);
 }
@@ -156,10 +156,10 @@ class Collector {
     const std::size_t columns = numbers.size() / rows;
     if (columns == 1) {
       const std::string sense = MeaningOf(meaning);
-      table_.columns.push_back({{written, sense, run}, std::move(numbers), TellsUnit(meaning, sense)});
+      table_.columns.push_back({{written, sense, run}, std::move(numbers), IsTimeUnitKnown(meaning, sense)});
       return;
     }
-    if (variable.rank != 2 || columns > kMostMatColumns) return;
+    if (variable.rank != 2 || columns > kMaxMatColumns) return;
     const bool is_upright = variable.dims[0] == rows;
     const auto column = [&](std::size_t j) {
       std::vector<double> values(rows);
@@ -179,7 +179,7 @@ class Collector {
 
   /// Whether the unit of a time is certain. Simulink's times are in seconds: `tout`, and those of a structure with
   /// signals (AddStructure).
-  static bool TellsUnit(const std::string& name, const std::string& sense) {
+  static bool IsTimeUnitKnown(const std::string& name, const std::string& sense) {
     const std::string canonical = csv::CanonicalName(name);
     return sense != "time_s" || (canonical != "t" && canonical != "time");
   }
@@ -191,10 +191,10 @@ class Collector {
   /// Adds the fields of a structure and of nested ones. In Simulink's `signals` the quantity is in `values` and its
   /// name in `label`.
   void AddStructure(const matvar_t& structure, const std::string& written, const std::string& meaning) {
-    constexpr std::size_t kMostElements = 100, kDeepest = 6;
+    constexpr std::size_t kMaxElements = 100, kDeepest = 6;
     const std::size_t elements = CountOf(structure);
     const std::size_t fields = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&structure));  // NOLINT: only reads
-    if (elements == 0 || elements > kMostElements || structure.data == nullptr || depth_ == kDeepest) return;
+    if (elements == 0 || elements > kMaxElements || structure.data == nullptr || depth_ == kDeepest) return;
     ++depth_;
     const std::size_t first = table_.columns.size();
     bool has_signals = false;
@@ -209,7 +209,7 @@ class Collector {
       }
     }
     --depth_;
-    if (has_signals) SayUnit(first, written + ".time");
+    if (has_signals) MarkUnitKnown(first, written + ".time");
     GroupByTime(first, written);
   }
 
@@ -247,9 +247,9 @@ class Collector {
     return otherwise;
   }
 
-  void SayUnit(std::size_t first, const std::string& written) {
+  void MarkUnitKnown(std::size_t first, const std::string& written) {
     for (MatColumn& column : std::span(table_.columns).subspan(first)) {
-      column.is_unit_told |= column.name.written == written;
+      column.is_unit_known |= column.name.written == written;
     }
   }
 
@@ -275,12 +275,12 @@ class Collector {
 MatTable ReadMatTable(const std::string& path, std::string_view bytes) {
   MatTable table;
   complaint = &table.complaint;
-  Mat_LogInitFunc("matio", TakeComplaint);
+  Mat_LogInitFunc("matio", RecordMatioMessage);
   const std::unique_ptr<mat_t, CloseFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   const mat_ft version = file == nullptr ? MAT_FT_UNDEFINED : Mat_GetVersion(file.get());
   std::function<MatSubsystem()> in_hdf5;
   if (version == MAT_FT_MAT73) in_hdf5 = OpenHdf5(path);  // Before opening files is disabled.
-  OpenNoMore();
+  ForbidOpeningFiles();
   if (file == nullptr && (table.complaint.empty() || table.complaint == kOtherFile)) {
     table.complaint = "no MAT-file, or cut off";
   }

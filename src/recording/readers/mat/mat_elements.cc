@@ -225,7 +225,7 @@ std::optional<std::vector<std::string>> TakeFieldNames(MatElements& contents) {
 MatValue ValueOf(MatMatrix matrix, bool with_numbers) { return ValueAt(std::move(matrix), with_numbers, 0); }
 
 std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
-  constexpr std::size_t kBlock = std::size_t{1} << 16, kMostRoom = std::size_t{1} << 30;
+  constexpr std::size_t kBlock = std::size_t{1} << 16, kMaxRoom = std::size_t{1} << 30;
   std::string bytes;
   z_stream stream{};
   if (packed.size() > UINT32_MAX || inflateInit(&stream) != Z_OK) return std::nullopt;
@@ -237,7 +237,7 @@ std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
   std::size_t used = 0;
   while (state == Z_OK && used < most) {
     bytes.resize(std::min(most, std::max(2 * used, kBlock)));
-    const std::size_t room = std::min(bytes.size() - used, kMostRoom);
+    const std::size_t room = std::min(bytes.size() - used, kMaxRoom);
     stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + used);  // NOLINT
     stream.avail_out = static_cast<uInt>(room);
     state = inflate(&stream, Z_NO_FLUSH);

@@ -38,33 +38,33 @@ class Handle {
 };
 
 /// Turns off HDF5's error messages. matio listens to them, and errors here do not affect the file's other variables.
-class Silence {
+class MutedErrors {
  public:
-  Silence() {
-    H5Eget_auto2(H5E_DEFAULT, &told_, &listener_);
+  MutedErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &handler_, &listener_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  Silence(const Silence&) = delete;
-  Silence(Silence&&) = delete;
-  Silence& operator=(const Silence&) = delete;
-  Silence& operator=(Silence&&) = delete;
-  ~Silence() { H5Eset_auto2(H5E_DEFAULT, told_, listener_); }
+  MutedErrors(const MutedErrors&) = delete;
+  MutedErrors(MutedErrors&&) = delete;
+  MutedErrors& operator=(const MutedErrors&) = delete;
+  MutedErrors& operator=(MutedErrors&&) = delete;
+  ~MutedErrors() { H5Eset_auto2(H5E_DEFAULT, handler_, listener_); }
 
  private:
-  H5E_auto2_t told_ = nullptr;
+  H5E_auto2_t handler_ = nullptr;
   void* listener_ = nullptr;
 };
 
 /// The text in an attribute; empty if there is none.
 std::string TextIn(hid_t object, const char* name) {
-  constexpr std::size_t kMost = 256;
+  constexpr std::size_t kMax = 256;
   if (H5Aexists(object, name) <= 0) return "";
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!attribute || !type || !space || H5Tget_class(type.id()) != H5T_STRING) return "";
   const std::size_t size = H5Tget_size(type.id());
-  if (H5Tis_variable_str(type.id()) != 0 || size == 0 || size > kMost) return "";
+  if (H5Tis_variable_str(type.id()) != 0 || size == 0 || size > kMax) return "";
   if (H5Sget_simple_extent_npoints(space.id()) != 1) return "";
   std::string text(size, '\0');
   if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return "";
@@ -85,13 +85,13 @@ int NumberIn(hid_t object, const char* name) {
 
 /// The number of chunks of a complete dataset; 0 if it has no chunks.
 hsize_t ChunksOf(hid_t dataset) {
-  constexpr int kMostSizes = H5S_MAX_RANK;
+  constexpr int kMaxSizes = H5S_MAX_RANK;
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   const Handle space(H5Dget_space(dataset), H5Sclose);
-  std::array<hsize_t, kMostSizes> chunk{}, sizes{};
+  std::array<hsize_t, kMaxSizes> chunk{}, sizes{};
   const int rank = H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
   if (H5Pget_layout(creation.id()) != H5D_CHUNKED || rank < 1) return 0;
-  if (H5Pget_chunk(creation.id(), kMostSizes, chunk.data()) != rank) return 0;
+  if (H5Pget_chunk(creation.id(), kMaxSizes, chunk.data()) != rank) return 0;
   hsize_t chunks = 1;
   for (std::size_t i = 0; i < static_cast<std::size_t>(rank); ++i) {
     const hsize_t along = chunk[i] == 0 ? 0 : sizes[i] / chunk[i] + (sizes[i] % chunk[i] != 0 ? 1 : 0);
@@ -114,15 +114,14 @@ bool IsWritten(hid_t dataset) {
 /// A dataset. HDF5 stores its sizes in the reverse of MATLAB's order.
 struct Dataset {
   explicit Dataset(hid_t dataset) : id(dataset) {
-    constexpr int kMostSizes = 32;
+    constexpr int kMaxSizes = 32;
     const Handle type(H5Dget_type(id), H5Tclose);
     const Handle space(H5Dget_space(id), H5Sclose);
     if (!type || !space) return;
     kind = H5Tget_class(type.id());
     const int rank = H5Sget_simple_extent_ndims(space.id());
-    std::vector<hsize_t> lengths(std::clamp(rank, 0, kMostSizes));
-    if (rank <= 0 || rank > kMostSizes || H5Sget_simple_extent_dims(space.id(), lengths.data(), nullptr) != rank)
-      return;
+    std::vector<hsize_t> lengths(std::clamp(rank, 0, kMaxSizes));
+    if (rank <= 0 || rank > kMaxSizes || H5Sget_simple_extent_dims(space.id(), lengths.data(), nullptr) != rank) return;
     sizes.assign(lengths.rbegin(), lengths.rend());
     if (sizes.size() == 1) sizes.push_back(1);
     count = CountIn(sizes).value_or(0);
@@ -181,8 +180,8 @@ class Reader {
 
  private:
   MatValue ValueOf(hid_t object) {
-    constexpr int kMost = 100'000;
-    if (depth_ == kDeepestValue || ++values_ > kMost) return {};
+    constexpr int kMax = 100'000;
+    if (depth_ == kDeepestValue || ++values_ > kMax) return {};
     ++depth_;
     const H5I_type_t type = H5Iget_type(object);
     MatValue value = type == H5I_DATASET ? OfDataset(object) : type == H5I_GROUP ? OfGroup(object) : MatValue{};
@@ -297,7 +296,7 @@ void TakeCells(const std::shared_ptr<const Handle>& file, MatSubsystem& subsyste
   subsystem.objects = TableAt(file->id(), references.front(), references.size());
   subsystem.cells = references.size();
   subsystem.cell = [file, cells = std::move(references)](std::size_t i) {
-    const Silence silence;
+    const MutedErrors silence;
     return i < cells.size() ? Reader(file->id(), true).ValueAt(cells[i]) : MatValue{};
   };
 }
@@ -305,12 +304,12 @@ void TakeCells(const std::shared_ptr<const Handle>& file, MatSubsystem& subsyste
 }  // namespace
 
 std::function<MatSubsystem()> OpenHdf5(const std::string& path) {
-  const Silence silence;
+  const MutedErrors silence;
   const auto file = std::make_shared<const Handle>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   return [file] {
     MatSubsystem subsystem;
     if (!*file) return subsystem;
-    const Silence quiet;
+    const MutedErrors quiet;
     TakeReferences(file->id(), subsystem);
     TakeCells(file, subsystem);
     return subsystem;

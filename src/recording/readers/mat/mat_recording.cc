@@ -25,7 +25,7 @@
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
-#include "recording/readers/mat/in_child.h"
+#include "recording/readers/mat/child_process.h"
 #include "recording/readers/mat/mat_columns.h"
 #include "recording/readers/mat/mat_elements.h"
 #include "recording/readers/mat/mat_version_4.h"
@@ -36,7 +36,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 128, kTagBytes = 8;
 
-tl::unexpected<Status> CutOff(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
+tl::unexpected<Status> TruncationError(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
   return Fault(name, "the file is cut off: the variable at byte " + std::to_string(at) + " has " +
                          std::to_string(size) + " bytes, and " + std::to_string(left) +
                          " are left; save or copy it again");
@@ -52,7 +52,7 @@ Result<void> CheckSizesOfVersion4(std::string_view bytes, const std::string& nam
     const std::size_t left = bytes.size() - at;
     const std::optional<std::size_t> size = SizeOfVersion4(bytes.substr(at));
     if (!size) return NoVariable(name, at);
-    if (*size > left) return CutOff(name, at, *size, left);
+    if (*size > left) return TruncationError(name, at, *size, left);
     at += *size;
   }
   return {};
@@ -69,10 +69,10 @@ Result<void> CheckSizes(std::string_view bytes, const std::string& name) {
   for (std::size_t at = kHeaderBytes; at < bytes.size();) {
     const std::size_t left = bytes.size() - at;
     const auto tag = left < kTagBytes ? std::nullopt : WordsOf(bytes.substr(at, kTagBytes), is_swapped);
-    if (!tag) return CutOff(name, at, 0, 0);
+    if (!tag) return TruncationError(name, at, 0, 0);
     const std::uint32_t type = tag->front();
     const std::size_t size = tag->back();
-    if (size > left - kTagBytes) return CutOff(name, at, size, left - kTagBytes);
+    if (size > left - kTagBytes) return TruncationError(name, at, size, left - kTagBytes);
     if (type != kMatrixElement && type != kPackedElement) return NoVariable(name, at);
     at += kTagBytes + size;
   }
@@ -111,11 +111,11 @@ class TemporaryFile {
 
 /// A second is enough for a hundred megabytes, but some damaged files would take forever. Several copies of the numbers
 /// exist until the answer is complete.
-ChildLimits LimitsFor(std::size_t bytes, std::size_t most_unpacked) {
-  constexpr std::size_t kCopies = 8, kLeast = std::size_t{1} << 26;
+ChildLimits LimitsFor(std::size_t bytes, std::size_t max_unpacked) {
+  constexpr std::size_t kCopies = 8, kMin = std::size_t{1} << 26;
   ChildLimits limits;
-  limits.answer_bytes = most_unpacked;
-  limits.memory_bytes = std::min(limits.memory_bytes, kLeast + kCopies * std::max(most_unpacked, bytes));
+  limits.answer_bytes = max_unpacked;
+  limits.memory_bytes = std::min(limits.memory_bytes, kMin + kCopies * std::max(max_unpacked, bytes));
   limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
   limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Other processes also use the processors.
   return limits;
@@ -152,7 +152,7 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
                                             "); make room there, or name another folder in TMPDIR");
   }
   const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
-  const auto packed = InChild([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
+  const auto packed = RunInChildProcess([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
   if (!packed) return NoTable(packed.error(), limits, name);
   MatTable table = UnpackMatTable(*packed);
   if (table.complaint.empty()) return table;
@@ -164,37 +164,37 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
 }
 
 /// True for numbers that are not a vector, or for an object, which may contain some.
-bool MayHoldTheQuantity(const SkippedVariable& variable) {
+bool MayContainQuantity(const SkippedVariable& variable) {
   const std::array kinds = {"a cell array", "complex", "sparse"};
   return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
 }
 
 /// The variable that explains why there is no column of angles; nullptr if the columns themselves give the error.
-const SkippedVariable* WhatIsNoColumn(const MatTable& table, const std::vector<csv::TableColumn>& columns,
-                                      const ReadOptions& options) {
+const SkippedVariable* FindUnusableVariable(const MatTable& table, const std::vector<csv::TableColumn>& columns,
+                                            const ReadOptions& options) {
   const std::vector<SkippedVariable>& all = table.skipped;
-  const auto first = [&](const auto& is_it) {
-    const auto found = std::ranges::find_if(all, is_it);
+  const auto first = [&](const auto& is_match) {
+    const auto found = std::ranges::find_if(all, is_match);
     return found == all.end() ? nullptr : &*found;
   };
   if (!options.value_column.empty()) {
     return first([&](const SkippedVariable& each) { return each.name == options.value_column; });
   }
   if (!csv::CandidatesOf(columns, options.unit).empty()) return nullptr;
-  const auto tells_unit = [](const SkippedVariable& each) {
-    return MayHoldTheQuantity(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
+  const auto has_unit = [](const SkippedVariable& each) {
+    return MayContainQuantity(each) && csv::FindUnit(each.name) != nullptr && !csv::IsTime(each.name);
   };
-  if (const SkippedVariable* const named = first(tells_unit); named != nullptr) return named;
+  if (const SkippedVariable* const named = first(has_unit); named != nullptr) return named;
   const bool is_other = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
   if (is_other && !options.unit.empty()) return nullptr;  // the only other column may be the quantity
   if (const SkippedVariable* const object = first(&SkippedVariable::is_object); object != nullptr) return object;
-  return is_other || columns.empty() ? nullptr : first(MayHoldTheQuantity);
+  return is_other || columns.empty() ? nullptr : first(MayContainQuantity);
 }
 
 /// Reports what the file contains instead of a column of angles.
 Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableColumn>& columns,
                             const std::string& name, const ReadOptions& options) {
-  const SkippedVariable* const skipped = WhatIsNoColumn(table, columns, options);
+  const SkippedVariable* const skipped = FindUnusableVariable(table, columns, options);
   if (skipped != nullptr) {
     const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
     return Fault(name, which + " is " + skipped->kind +
@@ -270,7 +270,7 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
   for (const MatColumn& column : table.columns) columns.push_back(column.name);
   const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
   const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
-  if (time < columns.size() && !table.columns[time].is_unit_told)
+  if (time < columns.size() && !table.columns[time].is_unit_known)
     columns[time].meaning = "time";  // the user may give the unit
   if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
   const auto names = csv::NamesOf(line, columns, options);
@@ -281,7 +281,7 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
   csv::ColumnChooser chooser(line, *names, options, false, false);
   if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
   if (read.layout.time && read.layout.time->index != time) {
-    read.layout.is_time_unit_told = table.columns[read.layout.time->index].is_unit_told;
+    read.layout.is_time_unit_known = table.columns[read.layout.time->index].is_unit_known;
   }
   Result<RawSamples> samples = SamplesOf(table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);

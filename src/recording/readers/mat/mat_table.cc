@@ -23,9 +23,9 @@ void PutText(const std::string& text, std::string& bytes) {
 }
 
 /// Removes values from the front of bytes; returns zeros after the end.
-class Taker {
+class ByteReader {
  public:
-  explicit Taker(std::string_view bytes) : bytes_(bytes) {}
+  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 
   std::string_view Raw(std::size_t size) {
     const std::string_view raw = bytes_.substr(0, size);
@@ -70,7 +70,7 @@ std::string Pack(const MatTable& table) {
     for (const std::string* text : {&column.name.written, &column.name.meaning, &column.name.run}) {
       PutText(*text, bytes);
     }
-    PutSize(column.is_unit_told ? 1 : 0, bytes);
+    PutSize(column.is_unit_known ? 1 : 0, bytes);
     const std::size_t size = column.values.size() * sizeof(double);
     PutSize(size, bytes);
     const std::size_t used = bytes.size();
@@ -82,7 +82,7 @@ std::string Pack(const MatTable& table) {
 
 MatTable UnpackMatTable(std::string_view bytes) {
   MatTable table;
-  Taker taker(bytes);
+  ByteReader taker(bytes);
   table.complaint = taker.Text();
   for (std::size_t count = taker.Size(); count > 0 && !taker.IsEmpty(); --count) {
     SkippedVariable variable;
@@ -96,7 +96,7 @@ MatTable UnpackMatTable(std::string_view bytes) {
     column.name.written = taker.Text();
     column.name.meaning = taker.Text();
     column.name.run = taker.Text();
-    column.is_unit_told = taker.Size() != 0;
+    column.is_unit_known = taker.Size() != 0;
     column.values = taker.Numbers();
     table.columns.push_back(std::move(column));
   }

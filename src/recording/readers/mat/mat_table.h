@@ -11,13 +11,13 @@
 namespace pendulum {
 
 /// Limit for one matrix; with more columns it is not a matrix of readings.
-inline constexpr std::size_t kMostMatColumns = 100;
+inline constexpr std::size_t kMaxMatColumns = 100;
 
 /// A column of numbers in a MAT-file and its name there.
 struct MatColumn {
   csv::TableColumn name;
   std::vector<double> values;
-  bool is_unit_told = true;  // For a time: its unit is certain.
+  bool is_unit_known = true;  // For a time: its unit is certain.
 };
 
 /// A variable without columns, and its kind.

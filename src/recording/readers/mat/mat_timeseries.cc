@@ -201,7 +201,7 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
   const std::size_t rows = times->size();
   const std::optional<Spread> spread = SpreadOf(data->sizes, rows);
   if (!spread) return Unknown();
-  if (spread->columns > kMostMatColumns) return Refusal("a timeseries of more than a hundred columns");
+  if (spread->columns > kMaxMatColumns) return Refusal("a timeseries of more than a hundred columns");
   for (double& time : *times) time = time * unit->factor / unit->divisor;
   std::vector<MatColumn> columns;
   columns.push_back({{name + ".Time", std::string(unit->meaning), name}, *std::move(times), !unit->name.empty()});
@@ -216,18 +216,19 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
 // ---- All of a file -----------------------------------------------------------------------------------------------
 
 /// Adds the objects of class timeseries one by one.
-class Adder {
+class TimeseriesAdder {
  public:
-  Adder(const MatSubsystem& subsystem, MatTable& table) : subsystem_(subsystem), table_(table), properties_(subsystem) {
+  TimeseriesAdder(const MatSubsystem& subsystem, MatTable& table)
+      : subsystem_(subsystem), table_(table), properties_(subsystem) {
     for (const MatColumn& column : table.columns) names_.insert({column.name.run, column.name.written});
   }
 
   /// Returns true if there is at least one.
   bool Run() {
-    constexpr std::size_t kMost = 1000;
+    constexpr std::size_t kMax = 1000;
     const Mcos& objects = properties_.objects();
     std::size_t object = 1;
-    for (; object < objects.objects() && count_ < kMost; ++object) {
+    for (; object < objects.objects() && count_ < kMax; ++object) {
       if (objects.ClassName(objects.ClassOf(object)) == kTimeseries) Add(object);
     }
     if (object < objects.objects()) table_.skipped.push_back({"", "one of more than a thousand timeseries", true});
@@ -241,8 +242,8 @@ class Adder {
       return reference.object == object && reference.class_name == kTimeseries;
     });
     const bool is_placed = place != subsystem_.references.end();
-    const std::optional<MatValue> told = properties_.Of(object, "Name");
-    const std::string own = told && told->kind == Kind::kText ? told->text : "";
+    const std::optional<MatValue> given_name = properties_.Of(object, "Name");
+    const std::string own = given_name && given_name->kind == Kind::kText ? given_name->text : "";
     const std::string name = Unique(is_placed ? place->place : own);
     const std::string unit = UnitIn(properties_, object);
     const std::string part = is_placed ? LastPart(place->place) : own;
@@ -276,7 +277,7 @@ class Adder {
 
 void AddTimeseries(const MatSubsystem& subsystem, MatTable& table) {
   const bool is_readable = subsystem.objects && subsystem.cells > 0 && subsystem.cell;
-  const bool has_some = is_readable && Adder(subsystem, table).Run();
+  const bool has_some = is_readable && TimeseriesAdder(subsystem, table).Run();
   for (const auto& [place, class_name, object] : subsystem.references) {
     const bool is_timeseries = class_name == kTimeseries;
     const bool is_known =

@@ -27,7 +27,7 @@ struct Cells {
       return line.Fault(Trim(field).data(),
                         "a second data set begins here; export the data sets one by one, each to a file of its own");
     }
-    return line.Fault(Trim(field).data(), "column " + column.name + " " + numbers.WhyNot(text));
+    return line.Fault(Trim(field).data(), "column " + column.name + " " + numbers.NumberFault(text));
   }
 
   /// Whether the row had an empty cell. Resets this for the next row.

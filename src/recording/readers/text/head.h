@@ -66,7 +66,7 @@ inline std::size_t HeadLines(const HeadLine& first) {
   return is_name && !has_time ? 3 : 2;
 }
 
-inline Head LookAtVernier(const std::vector<HeadLine>& head, Layout& layout) {
+inline Head ParseVernierHead(const std::vector<HeadLine>& head, Layout& layout) {
   const std::size_t first = head.front().number;
   Head found;
   std::string_view units;
@@ -95,8 +95,8 @@ inline Head HeadOfNames(const std::vector<Name>& names) {
 }
 
 /// Sets separator, width and has_header from the first lines. `separator` is the one the file declares, or '\0'.
-inline Head LookAtHead(const std::vector<HeadLine>& head, bool has_host, char separator, Layout& layout) {
-  if (IsVernier(head.front().text)) return LookAtVernier(head, layout);
+inline Head ParseHead(const std::vector<HeadLine>& head, bool has_host, char separator, Layout& layout) {
+  if (IsVernier(head.front().text)) return ParseVernierHead(head, layout);
   const std::string_view first = DevicePart(head.front().text, has_host);
   const std::string_view second = DevicePart(head[std::min<std::size_t>(1, head.size() - 1)].text, has_host);
   if (head.size() > 2) {

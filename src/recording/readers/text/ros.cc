@@ -57,7 +57,7 @@ std::string_view FieldOf(std::string_view row, char separator, std::size_t index
 
 /// Whether the unit of a stamp is certain. Whole numbers with fewer digits than nanoseconds since 1970 may have any
 /// unit, which the user must give.
-bool TellsItsUnit(std::string_view stamp) {
+bool HasKnownUnit(std::string_view stamp) {
   return stamp.find('.') != std::string_view::npos || stamp.size() > kLongestSeconds;
 }
 
@@ -77,7 +77,7 @@ void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, c
   for (const std::string_view word : {"stamp", "%time", "__time"}) {
     const std::size_t found = FindLast(columns, {word});
     const std::string_view first = found == kNoColumn ? "" : FieldOf(row, separator, found);
-    if (found == kNoColumn || (word == "stamp" && !first.empty() && !TellsItsUnit(first))) continue;
+    if (found == kNoColumn || (word == "stamp" && !first.empty() && !HasKnownUnit(first))) continue;
     table.seconds = found;
     table.is_nanoseconds = word == "%time";
     return;
@@ -127,8 +127,8 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
   if (error != std::errc() || stop != whole_end) return std::nullopt;
   const bool is_long = is_whole_nanoseconds || text.size() > kLongestSeconds;
   if (point == std::string_view::npos && is_long) return seconds;
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max() / kSecond - 1;
-  if (seconds > kMost || seconds < -kMost) return std::nullopt;
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max() / kSecond - 1;
+  if (seconds > kMax || seconds < -kMax) return std::nullopt;
   if (point != std::string_view::npos) {
     std::string digits(text.substr(point + 1));
     if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
@@ -147,7 +147,7 @@ void TakeNamedTime(const std::vector<TableColumn>& columns, std::string_view row
   if (named == columns.size() || (named == table.seconds && flag.unit == nullptr)) return;
   const std::string name = PathOf(columns[named].written).last;
   const bool is_stamp = IsOneOf(name, {"%time", "__time"}) ||
-                        (IsOneOf(name, {"stamp", "time"}) && TellsItsUnit(FieldOf(row, separator, named)));
+                        (IsOneOf(name, {"stamp", "time"}) && HasKnownUnit(FieldOf(row, separator, named)));
   table.seconds = is_stamp && flag.unit == nullptr ? named : kNoColumn;
   table.nanoseconds = kNoColumn;
   table.is_nanoseconds = name == "%time";
@@ -175,7 +175,7 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
   if (table.seconds == kNoColumn && !has_time) {
     const std::size_t plain = FindLast(columns, {"time", "timestamp", "t"});
     const std::string_view first = plain == kNoColumn ? "" : FieldOf(row, separator, plain);
-    if (TellsItsUnit(first)) table.seconds = plain;
+    if (HasKnownUnit(first)) table.seconds = plain;
   }
   TakeNamedTime(columns, row, separator, options, table);
   if (table.seconds != kNoColumn) columns[table.seconds].meaning = "time_s";
@@ -194,9 +194,9 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
     if (error != std::errc() || stop != end || beyond < 0 || beyond >= kSecond) return false;
   }
   if (!stamp) {  // Written by a program that stores stamps as doubles: 1.6e+09.
-    constexpr double kMost = 9e9;
+    constexpr double kMax = 9e9;
     double number = 0;
-    if (!ParseNumber(seconds, number) || std::abs(number) > kMost) return false;
+    if (!ParseNumber(seconds, number) || std::abs(number) > kMax) return false;
     stamp = std::llround(number * kSecond);
   }
   std::int64_t now = 0;

@@ -47,7 +47,7 @@ Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& ce
   if (!has_joints()) return sample;
   if (joints_.Add(fields_[table_.joint], sample.time, sample.value, line.number)) return std::nullopt;
   return line.Fault(line.text.data(), "column " + Quoted(columns_[table_.joint].written) + " holds more than " +
-                                          std::to_string(JointTable::kMostJoints) +
+                                          std::to_string(JointTable::kMaxJoints) +
                                           " names up to here; name one joint a row");
 }
 

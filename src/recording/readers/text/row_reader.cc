@@ -19,10 +19,10 @@
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
 #include "recording/readers/text/cell.h"
-#include "recording/readers/text/cut_off.h"
 #include "recording/readers/text/head.h"
 #include "recording/readers/text/host_stamp.h"
 #include "recording/readers/text/ros_rows.h"
+#include "recording/readers/text/truncated_row.h"
 
 namespace pendulum {
 namespace {
@@ -42,7 +42,7 @@ class Reader {
 
  private:
   Check ReadLine();
-  Check LookAtHead();
+  Check ParseHead();
   Check BeginRows();
   Check ChooseColumns();
   Check TakeRow();
@@ -55,8 +55,8 @@ class Reader {
   Check Append(double time, double value, double second = 0);
   void WarnOfIncompleteRow(const Line& line);
   Check CheckEnd();
-  void LeaveOutCutStamp();
-  void LeaveOutCutValue();
+  void RemoveTruncatedStamp();
+  void RemoveTruncatedValue();
   void WarnOfEmptyCells();
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
@@ -77,9 +77,9 @@ class Reader {
   csv::Cells cells_;
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // After the last row without a gap, and before it.
-  std::optional<Status> cut_;                      // The error of a possibly cut-off row; used if another row follows.
-  Line cut_line_;
-  std::string cut_text_;
+  std::optional<Status> is_truncated_;             // The error of a possibly cut-off row; used if another row follows.
+  Line truncated_line_;
+  std::string truncated_text_;
   bool is_short_ = false;      // The current row has too few fields.
   double midnights_ = 0;       // s, added to the host's time of day.
   double last_host_time_ = 0;  // s, with midnights.
@@ -131,11 +131,11 @@ Check Reader::ReadLine() {
 // ---- Columns -----------------------------------------------------------------------------------------------------
 
 /// Finds the names of the columns and the line that contains them.
-Check Reader::LookAtHead() {
+Check Reader::ParseHead() {
   const std::vector<csv::HeadLine>& lines = lines_of_head_;
   has_layout_ = true;
   has_host_ = csv::HasHostStamps(lines);
-  head_ = csv::LookAtHead(lines, has_host_, separator_, layout_);
+  head_ = csv::ParseHead(lines, has_host_, separator_, layout_);
   line_ = {lines_.name(), lines[head_.names_line].text, lines[head_.names_line].number};
   if (head_.columns.empty() || head_.first_row >= lines.size()) return {};
   const auto table = csv::FindRos(head_.columns, lines[head_.first_row].text, layout_.separator, options_);
@@ -145,7 +145,7 @@ Check Reader::LookAtHead() {
 
 /// Examines the first lines, then reads those that are rows.
 Check Reader::BeginRows() {
-  if (Check looked = LookAtHead(); !looked || is_head_only_) return looked;
+  if (Check looked = ParseHead(); !looked || is_head_only_) return looked;
   if (Check chosen = ChooseColumns(); !chosen) return chosen;
   for (std::size_t i = head_.first_row; i < lines_of_head_.size(); ++i) {
     line_ = {lines_.name(), lines_of_head_[i].text, lines_of_head_[i].number};
@@ -177,7 +177,7 @@ Check Reader::ChooseColumns() {
 
 /// Reads a row. The first row of a paste without a header and the last row of a file may be cut off.
 Check Reader::TakeRow() {
-  if (cut_) return tl::unexpected(*cut_);
+  if (is_truncated_) return tl::unexpected(*is_truncated_);
   is_short_ = false;
   Check read = ros_ ? ReadRosRow() : ReadRow();
   if (read) return read;
@@ -188,9 +188,9 @@ Check Reader::TakeRow() {
     return {};
   }
   if (!is_short_ && lines_.is_terminated()) return read;
-  cut_ = std::move(read).error();
-  cut_text_ = line_.text;
-  cut_line_ = {lines_.name(), cut_text_, line_.number};
+  is_truncated_ = std::move(read).error();
+  truncated_text_ = line_.text;
+  truncated_line_ = {lines_.name(), truncated_text_, line_.number};
   return {};
 }
 
@@ -318,8 +318,8 @@ Check Reader::TakeJoint() {
 // ---- The end -----------------------------------------------------------------------------------------------------
 
 Check Reader::CheckEnd() {
-  if (cut_ && rows_ < kMinimumSamples) return tl::unexpected(*cut_);
-  if (cut_) WarnOfIncompleteRow(cut_line_);
+  if (is_truncated_ && rows_ < kMinimumSamples) return tl::unexpected(*is_truncated_);
+  if (is_truncated_) WarnOfIncompleteRow(truncated_line_);
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
   const std::string sentence =
@@ -331,8 +331,8 @@ Check Reader::CheckEnd() {
 }
 
 /// In a paste without a header, the first stamp may have lost its leading digits and still parse as a number.
-void Reader::LeaveOutCutStamp() {
-  if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples || !csv::IsCutStamp(samples_.time)) return;
+void Reader::RemoveTruncatedStamp() {
+  if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples || !csv::IsTruncatedStamp(samples_.time)) return;
   WarnOfIncompleteRow({lines_.name(), lines_of_head_.front().text, lines_of_head_.front().number});
   LineNumbers lines;
   for (Eigen::Index i = 1; i < rows_; ++i) lines.Add(samples_.lines.LineOf(i));
@@ -345,11 +345,11 @@ void Reader::LeaveOutCutStamp() {
 }
 
 /// A last value without a line end may have lost digits and still parse as a number.
-void Reader::LeaveOutCutValue() {
+void Reader::RemoveTruncatedValue() {
   const Eigen::Index last = rows_ - 1;
   if (lines_.is_terminated() || last < kMinimumSamples || samples_.lines.LineOf(last) != lines_.number()) return;
   const bool is_cut =
-      csv::IsCutValue(samples_.value, last) || (layout_.second && csv::IsCutValue(samples_.second, last));
+      csv::IsTruncatedValue(samples_.value, last) || (layout_.second && csv::IsTruncatedValue(samples_.second, last));
   if (!is_cut) return;
   WarnOfIncompleteRow({lines_.name(), lines_.line(), lines_.number()});
   --rows_;
@@ -364,8 +364,8 @@ void Reader::WarnOfEmptyCells() {
 Result<Recording> Reader::Finish() {
   if (Check taken = TakeJoint(); !taken) return tl::unexpected(std::move(taken).error());
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
-  LeaveOutCutValue();
-  LeaveOutCutStamp();
+  RemoveTruncatedValue();
+  RemoveTruncatedStamp();
   WarnOfEmptyCells();
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);

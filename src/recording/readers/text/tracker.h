@@ -15,7 +15,7 @@ namespace pendulum::csv {
 
 /// Tracker's `t` is in seconds. Its lengths are in metres unless the film was scaled otherwise. `r` is the length of
 /// the vector (x, y). Angles and rates are in the unit chosen in Tracker, which it does not write.
-inline std::string TrackerMeaning(const std::string& name) {
+inline std::string TrackerColumnMeaning(const std::string& name) {
   const std::string canonical = CanonicalName(name);
   if (canonical == "t") return "time_s";
   if (canonical == "t_s" || canonical == "t_ms") return "time" + canonical.substr(1);
@@ -39,7 +39,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
                                                 char separator) {
   const std::vector<Name> names = SplitHeader(second, separator);
   const auto is_name = [](const Name& name) { return name.text.empty() || IsName(name.text); };
-  const auto is_time = [](const Name& name) { return IsTime(TrackerMeaning(std::string(name.text))); };
+  const auto is_time = [](const Name& name) { return IsTime(TrackerColumnMeaning(std::string(name.text))); };
   if (names.size() < 2 || !std::ranges::all_of(names, is_name) || std::ranges::none_of(names, is_time)) return {};
   if (!HasNumber(third, separator) || HasNumber(first, separator)) return {};
   std::vector<Name> labels = SplitHeader(first, separator == ' ' ? '\t' : separator);
@@ -58,7 +58,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
     written += is_shared ? "" : ": ";
     written += name;
     columns.push_back(
-        {written, is_tracker ? TrackerMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
+        {written, is_tracker ? TrackerColumnMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
   }
   return columns;
 }

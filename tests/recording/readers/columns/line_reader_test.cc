@@ -52,7 +52,7 @@ std::string FaultOf(LineReader reader) {
   }
 }
 
-TEST_F(LineReaderTest, GivesLinesWithoutTheirEnds) {
+TEST_F(LineReaderTest, GivesLinesWithoutLineEnds) {
   EXPECT_THAT(LinesOf(LineReader("a\n\r\nb\r\n c", "x")), ElementsAre("a", "", "b", " c"));
   EXPECT_THAT(LinesOf(LineReader("\xEF\xBB\xBF"
                                  "a\n",
@@ -61,7 +61,7 @@ TEST_F(LineReaderTest, GivesLinesWithoutTheirEnds) {
   EXPECT_THAT(LinesOf(LineReader("", "x")), IsEmpty());
 }
 
-TEST_F(LineReaderTest, KnowsWhetherTheLastLineWasEnded) {
+TEST_F(LineReaderTest, ReportsWhetherTheLastLineIsTerminated) {
   LineReader reader("a\nb", "x");
   EXPECT_TRUE(reader.Next().value());
   EXPECT_TRUE(reader.is_terminated());
@@ -102,7 +102,7 @@ TEST_F(LineReaderTest, RefusesALineLongerThanAMebibyte) {
   }
 }
 
-TEST_F(LineReaderTest, RefusesANulByteWhereItStands) {
+TEST_F(LineReaderTest, RefusesANulByteAtItsPosition) {
   EXPECT_EQ(FaultOf(LineReader(std::string_view("a\nbc\0d", 6), "x")),
             "x:2:3: a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8");
   std::string text;
@@ -110,7 +110,7 @@ TEST_F(LineReaderTest, RefusesANulByteWhereItStands) {
   EXPECT_THAT(FaultOf(OpenFile(text + std::string("ab\0", 3))), StartsWith(path_.string() + ":300001:3: "));
 }
 
-TEST_F(LineReaderTest, ReadsAPipeThatIsSlow) {
+TEST_F(LineReaderTest, ReadsASlowPipe) {
   ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
   std::thread writer([&] {
     std::ofstream pipe(path_, std::ios::binary);

@@ -21,7 +21,7 @@ std::vector<std::string> Split(std::string_view name) {
   return {std::string(run), std::string(rest)};
 }
 
-TEST(SplitRun, TellsTheRunFromTheName) {
+TEST(SplitRun, SeparatesTheRunFromTheName) {
   EXPECT_THAT(Split("Latest: Time (s)"), ElementsAre("Latest", "Time (s)"));
   EXPECT_THAT(Split("Data Set 1:Time(s)"), ElementsAre("Data Set 1", "Time(s)"));
   EXPECT_THAT(Split("Angle (rad) Run #12"), ElementsAre("Run #12", "Angle (rad)"));
@@ -51,7 +51,7 @@ TEST(Runs, SeveralAreRefusedAndNamed) {
               HasSubstr("columns \"A:Angle(rad)\", \"B:Angle(rad)\" and \"C:Angle(rad)\" could all be the quantity"));
 }
 
-TEST(Runs, TheChosenOneComesWithItsOwnTime) {
+TEST(Runs, TheChosenRunHasItsOwnTime) {
   const std::string text = kTwoRuns + Rows("9{t},1,0.0{t},{v}");
   ExpectTheRows(RecordingOf(text, TimeAndValue("", "Angle (rad) Run #2")));
   ExpectTheRows(RecordingOf(text, TimeAndValue("", "4")));
@@ -71,7 +71,7 @@ TEST(Runs, TheShorterOneEndsInEmptyCells) {
   EXPECT_EQ(trimmed.size(), 8);
 }
 
-TEST(Runs, AnEmptyCellInTheMiddleIsLeftOutWithAWarning) {
+TEST(Runs, RowsWithAnEmptyCellAreRemovedWithAWarning) {
   const Recording recording =
       RecordingOf("Latest: Time (s),Latest: Angle (rad)\n" + Rows("0.0{t},{v}") + "0.08,\n0.09,109\n");
   EXPECT_EQ(recording.size(), 9);
@@ -82,7 +82,7 @@ TEST(Runs, AnEmptyCellInTheMiddleIsLeftOutWithAWarning) {
   EXPECT_THAT(FaultOf("time_s,angle_rad\n" + Rows("0.0{t},{v}") + "0.08,\n0.09,109\n"), HasSubstr("is empty where"));
 }
 
-TEST(Runs, ALineOfRunsMayStandAboveTheNames) {
+TEST(Runs, ALineOfRunsMayPrecedeTheNames) {
   const std::string text = "Run 1,,Run 2,\nTime (s),Angle (rad),Time (s),Angle (rad)\n" + Rows("7,1,0.0{t},{v}");
   EXPECT_THAT(FaultOf(text), HasSubstr("columns \"Run 1: Angle (rad)\" and \"Run 2: Angle (rad)\" could both"));
   ExpectTheRows(RecordingOf(text, TimeAndValue("", "Run 2: Angle (rad)")));
@@ -95,7 +95,7 @@ std::string Vernier(const std::string& units, const std::string& rows) {
          "\n\n" + rows;
 }
 
-TEST(Vernier, NamesUnitsAndRowsAreFound) {
+TEST(Vernier, FindsNamesUnitsAndRows) {
   ExpectTheRows(RecordingOf(Vernier("s\trad\t", Rows("0.0{t}\t{v}\t1"))));
   ExpectTheRows(RecordingOf(Vernier("s\t\u00B0\t", Rows("0.0{t}\t{v}\t1"))), kDegree);
   ExpectTheRows(RecordingOf(Vernier("s\t\t", Rows("0.0{t}\t{v}\t1")), TimeAndValue("", "Angle", "deg")), kDegree);
@@ -103,7 +103,7 @@ TEST(Vernier, NamesUnitsAndRowsAreFound) {
   ExpectTheRows(RecordingOf(Vernier("ms\trad\t", Rows("{t}\t{v}\t1"))));
 }
 
-TEST(Vernier, SaysWhereARowIsAtFault) {
+TEST(Vernier, ReportsTheLineOfAFaultyRow) {
   EXPECT_EQ(
       FaultOf(Vernier("s\trad\t", Rows("0.0{t}\tx\t1"))),
       "run.csv:8:6: column \"Angle (rad)\" holds \"x\", which is not a number; correct the field or delete the row");

@@ -29,7 +29,7 @@ MatValue ValueOfMatio(matvar_t* variable) {
   return open ? ValueOf(*std::move(open), true) : MatValue{};
 }
 
-TEST(MatElements, AreTakenOneByOne) {
+TEST(MatElements, AreReadOneByOne) {
   const std::string_view bytes =
       "\1\0\0\0\3\0\0\0abc\0\0\0\0\0"  // three bytes and five of padding
       "\1\0\2\0xy\0\0"                 // two bytes in one word with their size
@@ -45,13 +45,13 @@ TEST(MatElements, AreTakenOneByOne) {
   EXPECT_FALSE(elements.Next());
 }
 
-TEST(MatElements, OfTheOtherOrderAreTakenToo) {
+TEST(MatElements, AreReadInTheOtherByteOrder) {
   MatElements elements("\0\0\0\1\0\0\0\3abc\0\0\0\0\0\0\2\0\1xy\0\0"sv, true);
   EXPECT_EQ(elements.Next(1), "abc");
   EXPECT_EQ(elements.Next(1), "xy");
 }
 
-TEST(MatElements, ThatDoNotFitAreNone) {
+TEST(MatElements, EndAtAnElementThatDoesNotFit) {
   EXPECT_FALSE(MatElements("\1\0\0\0\3\0\0"sv, false).Next());
   EXPECT_FALSE(MatElements("\1\0\0\0\3\0\0\0ab"sv, false).Next());
   EXPECT_FALSE(MatElements("\1\0\0\0\xFF\xFF\xFF\xFF"
@@ -62,7 +62,7 @@ TEST(MatElements, ThatDoNotFitAreNone) {
   EXPECT_FALSE(MatElements("\1\0\2\0xy\0\0"sv, false).Next(2));
 }
 
-TEST(ValueOf, AMatrixHasItsNumbersAndSizes) {
+TEST(ValueOf, ReadsNumbersAndSizesOfAMatrix) {
   const MatValue value = ValueOfMatio(Matrix("m", 2, {1, 2, 3, 4, 5, 6.5}));
   EXPECT_EQ(value.kind, Kind::kNumbers);
   EXPECT_THAT(value.sizes, ElementsAre(2, 3));
@@ -72,7 +72,7 @@ TEST(ValueOf, AMatrixHasItsNumbersAndSizes) {
   EXPECT_THAT(ValueOfMatio(Vector<std::uint64_t>("u", MAT_C_UINT64, MAT_T_UINT64, {7})).numbers, ElementsAre(7));
 }
 
-TEST(ValueOf, AStructureHasItsFieldsAndATextItsLetters) {
+TEST(ValueOf, ReadsFieldsOfAStructureAndLettersOfAText) {
   const MatValue value = ValueOfMatio(Structure("s", {{"a", Matrix("a", 1, {3})}, {"text", Text("text", "rad/s")}}));
   EXPECT_THAT(value.names, ElementsAre("a", "text"));
   EXPECT_THAT(value.Field("a")->numbers, ElementsAre(3));
@@ -80,7 +80,7 @@ TEST(ValueOf, AStructureHasItsFieldsAndATextItsLetters) {
   EXPECT_EQ(value.Field("none"), nullptr);
 }
 
-TEST(ValueOf, ComplexAndCutOffIsNone) {
+TEST(ValueOf, RejectsComplexAndTruncatedValues) {
   std::vector<double> values(2);
   mat_complex_split_t complex{values.data(), values.data()};
   std::size_t sizes[] = {2, 1};
@@ -93,7 +93,7 @@ TEST(ValueOf, ComplexAndCutOffIsNone) {
   }
 }
 
-TEST(OpenMatrix, OfNothingIsAnEmptyOne) {
+TEST(OpenMatrix, IsEmptyForNoBytes) {
   auto open = OpenMatrix("", false);
   ASSERT_TRUE(open);
   EXPECT_TRUE(ValueOf(*std::move(open), true).IsEmpty());
@@ -106,7 +106,7 @@ std::string Packed(const std::string& bytes) {
   return packed.substr(0, size);
 }
 
-TEST(Unpacked, IsWhatWasPackedOrItsBeginning) {
+TEST(Unpacked, RestoresThePackedBytesOrTheirBeginning) {
   const std::string bytes = std::string(200'000, 'a') + "end";
   const std::string packed = Packed(bytes);
   EXPECT_EQ(Unpacked(packed, 1'000'000), bytes);
@@ -114,7 +114,7 @@ TEST(Unpacked, IsWhatWasPackedOrItsBeginning) {
   EXPECT_EQ(Unpacked(packed, bytes.size()), bytes);
 }
 
-TEST(Unpacked, OfDamageIsNone) {
+TEST(Unpacked, IsMissingForDamagedBytes) {
   const std::string packed = Packed("some letters");
   for (std::size_t size = 0; size < packed.size(); ++size) EXPECT_FALSE(Unpacked(packed.substr(0, size), 1000)) << size;
   std::string changed = packed;

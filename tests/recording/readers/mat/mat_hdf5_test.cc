@@ -35,7 +35,7 @@ class Written {
   std::string path_;
 };
 
-TEST(OpenHdf5, HasTheObjectsOfAFileAndWhereTheyStand) {
+TEST(OpenHdf5, FindsTheObjectsOfAFileAndTheirPlaces) {
   objects::File file;
   const std::size_t own = file.AddClass("my", "class");
   const std::size_t one =
@@ -57,13 +57,13 @@ TEST(OpenHdf5, HasTheObjectsOfAFileAndWhereTheyStand) {
   EXPECT_EQ(subsystem.cell(99).kind, MatValue::Kind::kOther);
 }
 
-TEST(OpenHdf5, OfWhatIsNoneHasNothing) {
+TEST(OpenHdf5, IsEmptyForAnotherFile) {
   const Written written("no HDF5");
   EXPECT_FALSE(OpenHdf5(written.path())().objects);
   EXPECT_FALSE(OpenHdf5("/nowhere/at/all")().objects);
 }
 
-TEST(OpenHdf5, WithAByteChangedIsTheSameNumbersOrARefusal) {
+TEST(OpenHdf5, GivesTheSameNumbersOrAnErrorAfterAChangedByte) {
   objects::Series series;
   series.data_unit = "rad";
   const std::string whole = objects::Version73(objects::FileOf(series));

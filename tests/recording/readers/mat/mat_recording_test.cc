@@ -50,7 +50,7 @@ ReadOptions Value(const std::string& column, const std::string& unit = "") { ret
 
 class OfEveryVersion : public testing::TestWithParam<mat_ft> {};
 
-TEST_P(OfEveryVersion, TwoVectorsAreReadByTheirNames) {
+TEST_P(OfEveryVersion, ReadsTwoVectorsByName) {
   for (const char* const time : {"t", "time", "tout", "Time", "t_s"}) {
     for (const bool is_packed : {false, true}) {
       const std::string bytes = MatOf(
@@ -63,7 +63,7 @@ TEST_P(OfEveryVersion, TwoVectorsAreReadByTheirNames) {
       RecordingOf(MatOf({Matrix("t_ms", 1, Times(1000)), Matrix("y", 1, Values())}, GetParam()), Unit("rad")));
 }
 
-TEST_P(OfEveryVersion, AMatrixWhoseFirstColumnIncreasesHasItsTimeThere) {
+TEST_P(OfEveryVersion, AMatrixWithAnIncreasingFirstColumnHasTime) {
   ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 8, Both())}, GetParam())));
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Unit("deg")), kDegree);
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Value("run(:,2)", "deg")), kDegree);
@@ -85,7 +85,7 @@ TEST_P(OfEveryVersion, AStructureWithTimeIsOneRun) {
   ExpectTheRows(RecordingOf(two, Value("b.signals.values")));
 }
 
-TEST_P(OfEveryVersion, WhatIsNoColumnIsSaidByItsKind) {
+TEST_P(OfEveryVersion, NamesTheKindOfAVariableThatIsNotAColumn) {
   EXPECT_EQ(
       FaultOf(MatOf({Text("note", "hello")}, GetParam())),
       "run.csv: no variable of this MAT-file is a vector or a matrix of real numbers (\"note\" is text); save the "
@@ -98,7 +98,7 @@ TEST_P(OfEveryVersion, WhatIsNoColumnIsSaidByItsKind) {
   EXPECT_THAT(FaultOf(MatOf({Matrix("x", 0, {})}, GetParam())), HasSubstr("no variable of this MAT-file"));
 }
 
-TEST_P(OfEveryVersion, WhatIsCutOffIsNeverARecording) {
+TEST_P(OfEveryVersion, NeverReadsATruncatedFile) {
   const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, GetParam());
   for (std::size_t size = 128; size < whole.size(); size += 1 + whole.size() / 40) {
     const Result<Recording> recording = ParseRecording(whole.substr(0, size), "run.csv");
@@ -121,7 +121,7 @@ TEST(ReadMat, NumbersMayBeOfAnyType) {
                          Matrix("angle_rad", 8, Values())})));
 }
 
-TEST(ReadMat, LeavesOutRowsThatAreNoNumbers) {
+TEST(ReadMat, RemovesRowsWithNaN) {
   std::vector<double> times = Times(), values = Values();
   times.insert(times.begin(), -1);
   values.insert(values.begin(), std::numeric_limits<double>::quiet_NaN());
@@ -147,7 +147,7 @@ TEST(ReadMat, WholeNumbersOfATimeNeedAUnit) {
   ExpectTheRows(RecordingOf(MatOf({Matrix("t_ms", 8, Times(1000)), Matrix("angle_rad", 8, Values())})));
 }
 
-TEST(ReadMat, SaysThatATimeIsTakenAsSeconds) {
+TEST(ReadMat, WarnsThatATimeIsTakenAsSeconds) {
   const auto codes = [](const MatVariables& variables) {
     std::string list;
     for (const Warning& warning : RecordingOf(MatOf(variables)).warnings) list += warning.code + ' ';
@@ -223,7 +223,7 @@ TEST_P(OfEveryVersion, CellsComplexAndSparseNumbersAreNoColumns) {
             sentence("z_rad", "complex"));
 }
 
-TEST_P(OfEveryVersion, CellsBesideAColumnAreNotInTheWay) {
+TEST_P(OfEveryVersion, IgnoresCellsBesideAColumn) {
   ExpectTheRows(
       RecordingOf(MatOf({Matrix("t", 8, Times()), CellArray("phi"), Matrix("y_rad", 8, Values())}, GetParam())));
   ExpectTheRows(RecordingOf(MatOf({Matrix("t", 8, Times()), CellArray("phi"), Matrix("y", 8, Values())}, GetParam()),
@@ -253,7 +253,7 @@ std::string Timeseries(const std::string& name) {
                               element(kInt8, "timeseries") + element(kMatrix, numbers));
 }
 
-TEST(ReadMat, SaysHowToSaveATimeseries) {
+TEST(ReadMat, ExplainsHowToSaveATimeseries) {
   const std::string advice =
       "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
       "save('run.mat', 't', 'angle_deg')";
@@ -270,7 +270,7 @@ TEST(ReadMat, SaysHowToSaveATimeseries) {
   EXPECT_EQ(FaultOf(object, Value("ts", "deg")), "run.csv: variable \"ts\" is an object" + advice);
 }
 
-TEST(ReadMat, AnObjectBesideVectorsIsNoDamage) {
+TEST(ReadMat, AcceptsAnObjectBesideVectors) {
   const MatVariables vectors = {Matrix("odd", 8, Values()), Matrix("t_s", 8, Times()),
                                 Matrix("angle_deg", 8, Values())};
   std::string bytes = MatOf(vectors, MAT_FT_MAT5, false);
@@ -280,7 +280,7 @@ TEST(ReadMat, AnObjectBesideVectorsIsNoDamage) {
                 kDegree);
 }
 
-TEST(ReadMat, UnpacksNoMoreThanItMay) {
+TEST(ReadMat, LimitsTheUnpackedSize) {
   std::vector<double> times, zeros(100'000);
   for (int i = 0; i < 100'000; ++i) times.push_back(i + 0.5);
   const std::string bytes = MatOf({Matrix("t_s", 100'000, times), Matrix("angle_deg", 100'000, zeros)});
@@ -305,14 +305,14 @@ TEST(ReadMat, RefusesFlagsThatContradictTheFile) {
 
 // ---- Damage ------------------------------------------------------------------------------------------------------
 
-TEST(ReadMat, SaysWhereItIsCutOff) {
+TEST(ReadMat, ReportsTheTruncationPoint) {
   const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, MAT_FT_MAT5, false);
   EXPECT_THAT(
       FaultOf(whole.substr(0, whole.size() - 5)),
       AllOf(StartsWith("run.csv: the file is cut off: the variable at byte "), HasSubstr("save or copy it again")));
 }
 
-TEST(ReadMat, SurvivesBytesThatAreChanged) {
+TEST(ReadMat, AcceptsChangedBytesWithoutACrash) {
   for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
     const std::string whole = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())}, version, false);
     for (std::size_t at = 128; at < whole.size(); at += 1 + whole.size() / 30) {
@@ -326,7 +326,7 @@ TEST(ReadMat, SurvivesBytesThatAreChanged) {
   }
 }
 
-TEST(ReadMat, SaysWhyThereIsNoCopyForMatio) {
+TEST(ReadMat, ExplainsAMissingCopyForMatio) {
   const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
   const char* const before = std::getenv("TMPDIR");
   const std::string folder = before == nullptr ? "" : before;
@@ -361,7 +361,7 @@ TEST(ReadMat, ReadsNoOtherFile) {
   }
 }
 
-TEST(ReadMat, WaitsForNoPipeThatAFileNames) {
+TEST(ReadMat, IgnoresAPipeNamedInAFile) {
   const std::string pipe = (std::filesystem::temp_directory_path() / ("pipe_" + std::to_string(::getpid()))).string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {

@@ -23,7 +23,7 @@ objects::File Example() {
   return file;
 }
 
-TEST(SubsystemOf, HasTheObjectsOfAFileAndWhereTheyStand) {
+TEST(SubsystemOf, FindsTheObjectsOfAFileAndTheirPlaces) {
   for (const bool is_big : {false, true}) {
     for (const bool is_packed : {false, true}) {
       const MatSubsystem subsystem = SubsystemOf(objects::Version5(Example(), {is_big, is_packed}));
@@ -39,7 +39,7 @@ TEST(SubsystemOf, HasTheObjectsOfAFileAndWhereTheyStand) {
   }
 }
 
-TEST(SubsystemOf, AFileWithoutObjectsHasNone) {
+TEST(SubsystemOf, IsEmptyForAFileWithoutObjects) {
   for (const bool is_packed : {false, true}) {
     const MatSubsystem subsystem = SubsystemOf(MatOf({Matrix("t", 2, {1, 2})}, MAT_FT_MAT5, is_packed));
     EXPECT_FALSE(subsystem.objects);
@@ -49,7 +49,7 @@ TEST(SubsystemOf, AFileWithoutObjectsHasNone) {
   EXPECT_FALSE(SubsystemOf(std::string(200, ' ')).objects);
 }
 
-TEST(SubsystemOf, WhereTheHeaderPointsElsewhereThereIsNone) {
+TEST(SubsystemOf, IsEmptyIfTheHeaderPointsElsewhere) {
   const std::string whole = objects::Version5(Example());
   for (const std::string& place : {std::string(8, ' '), std::string(8, '\0'), objects::Bytes(128, 8, false),
                                    objects::Bytes(129, 8, false), std::string(8, '\xFF')}) {

@@ -18,15 +18,15 @@ MatTable Example() {
   return table;
 }
 
-TEST(UnpackMatTable, GivesWhatWasPacked) {
+TEST(UnpackMatTable, RestoresThePackedTable) {
   const MatTable table = UnpackMatTable(Pack(Example()));
   ASSERT_EQ(table.columns.size(), 2);
   EXPECT_EQ(table.columns[0].name.written, "ts.Time");
   EXPECT_EQ(table.columns[0].name.meaning, "time_s");
   EXPECT_EQ(table.columns[0].name.run, "ts");
   EXPECT_THAT(table.columns[0].values, testing::ElementsAre(0, 0.5));
-  EXPECT_TRUE(table.columns[0].is_unit_told);
-  EXPECT_FALSE(table.columns[1].is_unit_told);
+  EXPECT_TRUE(table.columns[0].is_unit_known);
+  EXPECT_FALSE(table.columns[1].is_unit_known);
   ASSERT_EQ(table.skipped.size(), 2);
   EXPECT_FALSE(table.skipped[0].is_object);
   EXPECT_EQ(table.skipped[1].name, "b");
@@ -35,7 +35,7 @@ TEST(UnpackMatTable, GivesWhatWasPacked) {
   EXPECT_EQ(table.complaint, "none");
 }
 
-TEST(UnpackMatTable, OfWhatIsCutOffIsATable) {
+TEST(UnpackMatTable, GivesATableForTruncatedBytes) {
   const std::string whole = Pack(Example());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_LE(UnpackMatTable(whole.substr(0, size)).columns.size(), 2);

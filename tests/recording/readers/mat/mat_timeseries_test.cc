@@ -47,11 +47,11 @@ class OfEveryWay : public testing::TestWithParam<Way> {
   }
 };
 
-TEST_P(OfEveryWay, ATimeseriesIsReadWhateverTheVersionOfItsTable) {
+TEST_P(OfEveryWay, ReadsATimeseriesForAnyTableVersion) {
   for (const int version : {2, 3, 4}) ExpectTheRows(RecordingOf(BytesOf(FileOf(Angle(), "ts", version))));
 }
 
-TEST_P(OfEveryWay, TheUnitIsThatOfTheDataOrOfAName) {
+TEST_P(OfEveryWay, TakesTheUnitFromTheDataOrAName) {
   Series series;
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "angle_deg"))), kDegree);
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "ts")), Unit("deg")), kDegree);
@@ -69,7 +69,7 @@ TEST_P(OfEveryWay, TheUnitIsThatOfTheDataOrOfAName) {
   EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("is an angle, a rate or another"));
 }
 
-TEST_P(OfEveryWay, TimesAreListedOrUniformInTheirUnit) {
+TEST_P(OfEveryWay, ReadsListedAndUniformTimes) {
   const auto expect = [](double second, const std::string& unit) {
     Series series = Angle();
     series.time_unit = unit;
@@ -95,7 +95,7 @@ TEST_P(OfEveryWay, TimesAreListedOrUniformInTheirUnit) {
   expect(1.0 / 604'800, "weeks");
 }
 
-TEST_P(OfEveryWay, AnEmptiedUnitOfTimeIsNotTold) {
+TEST_P(OfEveryWay, AnEmptyTimeUnitIsUnknown) {
   Series series = Angle();
   series.is_unit_emptied = true;
   const Recording recording = RecordingOf(BytesOf(FileOf(series)));
@@ -106,7 +106,7 @@ TEST_P(OfEveryWay, AnEmptiedUnitOfTimeIsNotTold) {
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series)), TimeAndValue("ts.Time:ms", "ts.Data")));
 }
 
-TEST_P(OfEveryWay, WholeNumbersOfATimeThatTellsItsUnitAreRead) {
+TEST_P(OfEveryWay, ReadsWholeNumbersOfATimeWithAUnit) {
   Series series = Angle();
   series.start = 5;
   series.increment = 2;
@@ -114,7 +114,7 @@ TEST_P(OfEveryWay, WholeNumbersOfATimeThatTellsItsUnitAreRead) {
   EXPECT_DOUBLE_EQ(recording.time[7] - recording.time[0], 14);
 }
 
-TEST_P(OfEveryWay, TimeIsTheLastOfThreeSizesElseTheOneOfItsLength) {
+TEST_P(OfEveryWay, TimeIsTheThirdOrMatchingDimension) {
   Series series = Angle();
   series.sizes = {1, 1, 8};
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series))));
@@ -136,7 +136,7 @@ TEST_P(OfEveryWay, TimeIsTheLastOfThreeSizesElseTheOneOfItsLength) {
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series)), Value("ts.Data(2,:)")));
 }
 
-TEST_P(OfEveryWay, OneOfTwoIsChosen) {
+TEST_P(OfEveryWay, ReadsTheChosenOfTwo) {
   File file;
   const Classes classes(file);
   const std::size_t first = AddSeries(file, classes, Angle());
@@ -151,7 +151,7 @@ TEST_P(OfEveryWay, OneOfTwoIsChosen) {
   EXPECT_DOUBLE_EQ(RecordingOf(bytes, Value("slow.Data")).time[7], 7);
 }
 
-TEST_P(OfEveryWay, ItMayBeInAStructureAnArrayOrAnotherObject) {
+TEST_P(OfEveryWay, ReadsATimeseriesInAStructureArrayOrObject) {
   File file;
   const Classes classes(file);
   const std::size_t one = AddSeries(file, classes, Angle()), two = AddSeries(file, classes, Angle());
@@ -171,7 +171,7 @@ TEST_P(OfEveryWay, ItMayBeInAStructureAnArrayOrAnotherObject) {
   EXPECT_EQ(four, 12);
 }
 
-TEST_P(OfEveryWay, WhatCannotBeReadSaysWhy) {
+TEST_P(OfEveryWay, ExplainsAnUnreadableTimeseries) {
   const std::string advice =
       "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
       "save('run.mat', 't', 'angle_deg')";
@@ -208,7 +208,7 @@ TEST_P(OfEveryWay, WhatCannotBeReadSaysWhy) {
   EXPECT_EQ(fault(series), unknown);
 }
 
-TEST_P(OfEveryWay, OtherObjectsAreNamedByTheirClass) {
+TEST_P(OfEveryWay, NamesOtherObjectsByClass) {
   File file;
   const std::size_t table = file.AddClass("", "timetable");
   file.AddVariable("angles", file.Reference({file.AddObject(table, {{"any", objects::Nothing()}})}, true));
@@ -219,14 +219,14 @@ TEST_P(OfEveryWay, OtherObjectsAreNamedByTheirClass) {
   EXPECT_THAT(FaultOf(BytesOf(file), Value("angles", "deg")), HasSubstr(sentence));
 }
 
-TEST_P(OfEveryWay, VectorsBesideItAreReadToo) {
+TEST_P(OfEveryWay, ReadsVectorsBesideATimeseries) {
   File file = FileOf({}, "other");
   file.AddVariable("t_s", objects::Numbers({8, 1}, {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07}));
   file.AddVariable("angle_deg", objects::Numbers({8, 1}, {100, 101, 102, 103, 104, 105, 106, 107}));
   ExpectTheRows(RecordingOf(BytesOf(file), TimeAndValue("t_s", "angle_deg")), kDegree);
 }
 
-TEST_P(OfEveryWay, ANameThatOthersHaveIsNotTaken) {
+TEST_P(OfEveryWay, DoesNotReuseAName) {
   Series series = Angle();
   series.name = "run";
   File file;
@@ -240,7 +240,7 @@ TEST_P(OfEveryWay, ANameThatOthersHaveIsNotTaken) {
 }
 
 // Numbers in an array of structures are read in the same way if the array also contains an object.
-TEST(AddTimeseries, LeavesNumbersBesideOtherObjects) {
+TEST(AddTimeseries, KeepsNumbersBesideOtherObjects) {
   File file;
   const std::size_t label = file.AddObject(file.AddClass("", "string"), {{"any", objects::Nothing()}});
   Array runs = objects::Struct({{"label", file.Reference({label}, true)},
@@ -270,7 +270,7 @@ MatTable TableOf(const std::string& bytes) {
   return table;
 }
 
-TEST(AddTimeseries, WithAByteChangedGivesTheSameNumbersOrNone) {
+TEST(AddTimeseries, GivesTheSameNumbersOrNoneAfterAChangedByte) {
   for (const bool is_big : {false, true}) {
     const std::string whole = objects::Version5(FileOf(Angle()), {is_big, false});
     const std::vector<double> values = Angle().data;
@@ -289,7 +289,7 @@ TEST(AddTimeseries, WithAByteChangedGivesTheSameNumbersOrNone) {
   }
 }
 
-TEST(AddTimeseries, OfWhatIsCutOffIsNothing) {
+TEST(AddTimeseries, ReturnsNothingForATruncatedFile) {
   for (const bool is_packed : {false, true}) {
     const std::string whole = objects::Version5(FileOf(Angle()), {false, is_packed});
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -298,7 +298,7 @@ TEST(AddTimeseries, OfWhatIsCutOffIsNothing) {
   }
 }
 
-TEST(AddTimeseries, WithAByteOfPackedOnesChangedGivesTheSameNumbersOrNone) {
+TEST(AddTimeseries, GivesTheSameNumbersOrNoneAfterAChangedPackedByte) {
   const std::string whole = objects::Version5(FileOf(Angle()), {false, true});
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::string bytes = whole;

@@ -20,14 +20,14 @@ MatValue Column(const std::vector<double>& numbers) {
   return {Kind::kNumbers, {numbers.size(), 1}, numbers, {}, {}, {}};
 }
 
-TEST(CountIn, IsTheProductUnlessThatIsTooLarge) {
+TEST(CountIn, IsTheProductUnlessTooLarge) {
   EXPECT_EQ(CountIn({2, 3, 4}), 24);
   EXPECT_EQ(CountIn({std::numeric_limits<std::size_t>::max(), 0, 7}), 0);
   EXPECT_FALSE(CountIn({std::numeric_limits<std::size_t>::max(), 2}));
   EXPECT_FALSE(CountIn({std::size_t{1} << 32, std::size_t{1} << 32, 1}));
 }
 
-TEST(ObjectsOf, AreThoseBehindTheSizes) {
+TEST(ObjectsOf, ListsTheObjectsAfterTheSizes) {
   const auto one = ObjectsOf(Column({kMark, 2, 1, 1, 7, 3}));
   ASSERT_TRUE(one);
   EXPECT_THAT(one->objects, ElementsAre(7));
@@ -36,7 +36,7 @@ TEST(ObjectsOf, AreThoseBehindTheSizes) {
   EXPECT_THAT(ObjectsOf(Column({kMark, 2, 0, 0, 3}))->objects, ElementsAre());
 }
 
-TEST(ObjectsOf, WhatDoesNotFitAreNone) {
+TEST(ObjectsOf, IsEmptyIfTheContentDoesNotFit) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::vector<double>& numbers : {std::vector<double>{},
                                              {kMark},
@@ -59,7 +59,7 @@ TEST(ObjectsOf, WhatDoesNotFitAreNone) {
   EXPECT_FALSE(ObjectsOf(text));
 }
 
-TEST(AddReferences, NamesPlacesAsMatlabDoes) {
+TEST(AddReferences, UsesMatlabNotationForPlaces) {
   const auto object = [](double number) {
     return MatValue{Kind::kObject, {}, {kMark, 2, 1, 1, number, 1}, "A", {}, {}};
   };
@@ -77,7 +77,7 @@ TEST(AddReferences, NamesPlacesAsMatlabDoes) {
   EXPECT_EQ(references[4].class_name, "B");
 }
 
-TEST(MatValue, IsEmptyWhereASizeIsNone) {
+TEST(MatValue, IsEmptyIfASizeIsZero) {
   EXPECT_TRUE((MatValue{Kind::kNumbers, {0, 0}, {}, {}, {}, {}}.IsEmpty()));
   EXPECT_FALSE((MatValue{Kind::kNumbers, {1, 1}, {0}, {}, {}, {}}.IsEmpty()));
   EXPECT_FALSE(MatValue{}.IsEmpty());  // unknown

@@ -46,7 +46,7 @@ std::string Column(const std::string& name, const std::vector<double>& values, b
 std::vector<double> Times() { return {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07}; }
 std::vector<double> Values() { return {100, 101, 102, 103, 104, 105, 106, 107}; }
 
-TEST(ReadMat, OfVersion4IsRead) {
+TEST(ReadMat, ReadsVersion4) {
   for (const bool is_big : {false, true}) {
     for (const bool is_short : {false, true}) {
       ExpectTheRows(RecordingOf(Column("t_s", Times(), is_big) + Column("angle_deg", Values(), is_big, is_short)),
@@ -57,7 +57,7 @@ TEST(ReadMat, OfVersion4IsRead) {
                 kDegree);
 }
 
-TEST(ReadMat, OfVersion4ThatIsCutOffIsNone) {
+TEST(ReadMat, RejectsATruncatedVersion4File) {
   const std::string whole = Column("t_s", Times(), false) + Column("angle_deg", Values(), false);
   const std::size_t first = Column("t_s", Times(), false).size();
   for (std::size_t size = 30; size < whole.size(); ++size) {
@@ -68,7 +68,7 @@ TEST(ReadMat, OfVersion4ThatIsCutOffIsNone) {
   EXPECT_THAT(FaultOf(whole + "more"), HasSubstr("at byte 182 no variable begins"));
 }
 
-TEST(SizeOfVersion4, OfOtherBytesIsNone) {
+TEST(SizeOfVersion4, IsMissingForOtherBytes) {
   const std::string whole = Column("t_s", Times(), false);
   EXPECT_EQ(SizeOfVersion4(whole), whole.size());
   EXPECT_EQ(SizeOfVersion4(whole.substr(0, 30)), whole.size());

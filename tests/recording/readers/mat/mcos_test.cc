@@ -27,7 +27,7 @@ std::string FileOfMatlab(const std::string& name) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(Mcos, OfMatlabsOwnFilesHasItsObjectsAndTheirProperties) {
+TEST(Mcos, ListsObjectsAndPropertiesOfMatlabsFiles) {
   for (const auto& [name, handles] : {std::pair{"sqr.mat", 1}, {"parabola.mat", 1}, {"some_functions.mat", 2}}) {
     const MatSubsystem subsystem = SubsystemOf(FileOfMatlab(name));
     ASSERT_TRUE(subsystem.objects) << name;
@@ -47,7 +47,7 @@ TEST(Mcos, OfMatlabsOwnFilesHasItsObjectsAndTheirProperties) {
   }
 }
 
-TEST(Mcos, OfMatlabsOwnFilesHasTheValuesOfProperties) {
+TEST(Mcos, ReadsPropertyValuesOfMatlabsFiles) {
   const MatSubsystem subsystem = SubsystemOf(FileOfMatlab("some_functions.mat"));
   ASSERT_TRUE(subsystem.objects);
   const MatValue value = subsystem.cell(subsystem.objects->Find(2, "any")->value);
@@ -81,7 +81,7 @@ std::string TableOf(const objects::File& file, bool is_big) {
 
 constexpr std::size_t kCells = 7;  // In Several: table, empty, two values, two of version 4, defaults.
 
-TEST(Mcos, OfEitherOrderOfBytesIsRead) {
+TEST(Mcos, IsReadInBothByteOrders) {
   for (const bool is_big : {false, true}) {
     const auto objects = Mcos::Read(TableOf(Several(), is_big), kCells);
     ASSERT_TRUE(objects);
@@ -98,7 +98,7 @@ TEST(Mcos, OfEitherOrderOfBytesIsRead) {
   }
 }
 
-TEST(Mcos, ThatContradictsItselfIsNone) {
+TEST(Mcos, IsRejectedIfInconsistent) {
   const std::string whole = TableOf(Several(), false);
   EXPECT_FALSE(Mcos::Read(whole, kCells - 1));  // one value has no cell
   EXPECT_FALSE(Mcos::Read("", kCells));
@@ -117,7 +117,7 @@ TEST(Mcos, ThatContradictsItselfIsNone) {
   }
 }
 
-TEST(Mcos, SurvivesAnyByte) {
+TEST(Mcos, AcceptsAnyBytesWithoutACrash) {
   const std::string whole = TableOf(Several(), false);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const int change : {0x01, 0x80, 0xFF}) {

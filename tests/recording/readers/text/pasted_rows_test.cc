@@ -25,7 +25,7 @@ TEST(PastedRows, ReadAPasteOfASerialMonitor) {
   EXPECT_EQ(recording.warnings[0].message, "run.csv:10: the row \"14:03:22.203 -> 80\" is cut off; it was left out");
 }
 
-TEST(PastedRows, TakeTheHostsTimeWhereThereIsNoOther) {
+TEST(PastedRows, UseTheHostsTimeIfThereIsNoOther) {
   std::string text = "99.990 -> 7\n";
   for (int i = 0; i < 8; ++i)
     text += (i < 4 ? "23:59:59.9" + std::to_string(6 + i) : "00:00:00.0" + std::to_string(i - 4)) + "0 -> " +
@@ -41,11 +41,11 @@ TEST(PastedRows, TakeTheHostsTimeWhereThereIsNoOther) {
             "better, name it with --time_column");
 }
 
-TEST(PastedRows, ReadAHeaderBehindTheHostsStamp) {
+TEST(PastedRows, ReadAHeaderAfterTheHostsStamp) {
   ExpectTheRows(RecordingOf("14:03:22.123 -> time_ms,adc_counts\n" + Rows("14:03:22.123 -> {t},{v}")));
 }
 
-TEST(PastedRows, RefuseALineWithoutTheHostsStampWhereItIsTheTime) {
+TEST(PastedRows, RefuseALineWithoutTheHostsStamp) {
   EXPECT_EQ(
       FaultOf(Rows("14:03:22.1{t} -> {v}") + "5\n14:03:23.000 -> 7\n", Unit("counts")),
       "run.csv:9:1: this line does not begin with the host's time, such as 14:03:22.123 ->, as others do; complete "
@@ -54,7 +54,7 @@ TEST(PastedRows, RefuseALineWithoutTheHostsStampWhereItIsTheTime) {
 
 // ---- Rows that are cut off ---------------------------------------------------------------------------------------
 
-TEST(PastedRows, LeaveOutACutFirstRowOfAFileWithoutHeader) {
+TEST(PastedRows, RemoveATruncatedFirstRowWithoutAHeader) {
   for (const std::string cut : {"5", ",5", "-,5", "> 90,5", "e-5,5"}) {
     const Recording recording = RecordingOf(cut + "\n" + Rows("{t},{v}"), TimeAndValue("1:ms", "", "deg"));
     ExpectTheRows(recording, kDegree);
@@ -63,7 +63,7 @@ TEST(PastedRows, LeaveOutACutFirstRowOfAFileWithoutHeader) {
   }
 }
 
-TEST(PastedRows, LeaveOutAFirstRowWhoseTimeLostItsFirstDigits) {
+TEST(PastedRows, RemoveAFirstRowWithATruncatedTime) {
   std::string text = "90,99\n";  // Of 11990.
   for (int i = 0; i < 10; ++i) text += std::to_string(12000 + 10 * i) + ",5\n";
   const Recording recording = RecordingOf(text, TimeAndValue("1:ms", "", "deg"));
@@ -72,7 +72,7 @@ TEST(PastedRows, LeaveOutAFirstRowWhoseTimeLostItsFirstDigits) {
   EXPECT_EQ(recording.warnings.at(0).code, "incomplete_row");
 }
 
-TEST(PastedRows, LeaveOutACutLastRow) {
+TEST(PastedRows, RemoveATruncatedLastRow) {
   const std::string text = "time_ms,angle_deg\n" + Rows("{t},{v}");
   for (const std::string cut : {"80", "80\n", "80,", "80,-", "80,1e", "80,1.5x"}) {
     const Recording recording = RecordingOf(text + cut);
@@ -84,7 +84,7 @@ TEST(PastedRows, LeaveOutACutLastRow) {
   EXPECT_EQ(RecordingOf(text + "80,108").size(), 9);
 }
 
-TEST(PastedRows, LeaveOutALastValueThatLostDigits) {
+TEST(PastedRows, RemoveATruncatedLastValue) {
   const std::string text = "time_ms,adc_counts\n" + Rows("{t},{v}") + "80,107\n";
   const Recording recording = RecordingOf(text + "90,10");
   EXPECT_EQ(recording.size(), 9);
@@ -102,7 +102,7 @@ TEST(PastedRows, RefuseAnIncompleteRowInTheMiddle) {
   EXPECT_THAT(FaultOf(text + "80,1.5x\n"), StartsWith("run.csv:10:4: column \"angle_deg\" holds \"1.5x\""));
 }
 
-TEST(PastedRows, RepairsOfTheClockNameTheLine) {
+TEST(PastedRows, NameTheLineOfClockRepairs) {
   const std::string text = "# a\ntime_ms,angle_deg\n" + Rows("{t},{v}");
   const Recording recording = RecordingOf(text + "\n\n70,5\n80,5\n90,5\n100,5\n110,5\n");
   ASSERT_EQ(recording.warnings.size(), 1);

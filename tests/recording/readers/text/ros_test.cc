@@ -26,7 +26,7 @@ double Since(const std::string& first, const std::string& second) {
   return time;
 }
 
-TEST(StampClock, KeepsNanosecondsThatADoubleLoses) {
+TEST(StampClock, KeepsNanosecondsLostInADouble) {
   EXPECT_DOUBLE_EQ(Since("1700000000000000000", "1700000000000000001"), 1e-9);
   EXPECT_DOUBLE_EQ(Since("1700000000.000000001", "1700000000.000000004"), 3e-9);
   EXPECT_DOUBLE_EQ(Since("1700000000.5", "1700000001"), 0.5);
@@ -34,7 +34,7 @@ TEST(StampClock, KeepsNanosecondsThatADoubleLoses) {
   EXPECT_DOUBLE_EQ(Since("5", "3.25"), -1.75);
 }
 
-TEST(StampClock, RefusesWhatIsNoStamp) {
+TEST(StampClock, RefusesInvalidStamps) {
   csv::StampClock clock;
   double time = 0;
   for (const char* const text : {"", "x", "1.2.3", "1e300", "99999999999999999999", "1.5x"}) {
@@ -68,7 +68,7 @@ std::string Stamped(const std::string& header, const std::string& pattern) {
   return text;
 }
 
-TEST(Ros, ReadsStampsOfEveryForm) {
+TEST(Ros, ReadsStampsInAnyFormat) {
   ExpectTheRows(RecordingOf(Stamped("%time,field.position0,field.velocity0", "{s}{9},{v},1")));
   ExpectTheRows(RecordingOf(Stamped("Time,header.stamp.secs,header.stamp.nsecs,position_0", "7,{s},{n},{v}")));
   ExpectTheRows(RecordingOf(Stamped("header.stamp.sec,header.stamp.nanosec,position[0]", "{s},{n},{v}")));
@@ -77,7 +77,7 @@ TEST(Ros, ReadsStampsOfEveryForm) {
   ExpectTheRows(RecordingOf(Stamped("%time,field.header.stamp,field.position", "{s}{n}99,{s}{9},{v}")));
 }
 
-TEST(Ros, StampsOfASimulationAreSmallAndInNanosecondsAllTheSame) {
+TEST(Ros, SimulationStampsAreSmallButInNanoseconds) {
   ExpectTheRows(RecordingOf("%time,field.position\n" + Rows("{t}000000,{v}")));
 }
 
@@ -91,7 +91,7 @@ TEST(Ros, SmallWholeNumbersOfAStampNeedAUnit) {
   ExpectTheRows(RecordingOf("stamp,angle_rad\n" + Rows("0.0{t},{v}")));
 }
 
-TEST(Ros, AStampBesideATimeIsNotLookedAt) {
+TEST(Ros, AStampBesideATimeIsIgnored) {
   ExpectTheRows(RecordingOf("time_ms,stamp,angle_rad\n" + Rows("{t},7,{v}")));
   ExpectTheRows(RecordingOf("time_ms,sec,nsec,angle_rad\n" + Rows("{t},7,8,{v}")));
 }
@@ -103,7 +103,7 @@ TEST(Ros, WholeNumbersOfAPlainTimeNeedAUnit) {
   EXPECT_THAT(FaultOf("time stamp,angle_rad\n" + Rows("{t},{v}")), HasSubstr("is a time; name the column"));
 }
 
-TEST(Ros, OfAJointTakesTheAngleUnlessTheRateIsAskedFor) {
+TEST(Ros, AJointGivesTheAngleUnlessTheRateIsRequested) {
   const std::string text = Stamped("__time,/js/a/position,/js/a/velocity,/js/a/effort", "{s}.{9},1,{v},2");
   EXPECT_EQ(RecordingOf(text).quantity, Quantity::kAngle);
   ExpectTheRows(RecordingOf(text, Value("/js/a/velocity")));
@@ -112,7 +112,7 @@ TEST(Ros, OfAJointTakesTheAngleUnlessTheRateIsAskedFor) {
 }
 
 /// REP 145: drivers publish under this name the specific force, which includes gravity.
-TEST(Ros, AccelerationsOfAnImuShowGravity) {
+TEST(Ros, ImuAccelerationsIncludeGravity) {
   const Recording recording = RecordingOf(Stamped("%time,field.linear_acceleration.x", "{s}{9},{v}"));
   ExpectTheRows(recording);
   EXPECT_EQ(recording.quantity, Quantity::kAcceleration);
@@ -143,7 +143,7 @@ TEST(Ros, RefusesTwoJointsAndAxes) {
                             Value("field.angular_velocity.y")));
 }
 
-TEST(Ros, LeavesOutRowsOfOtherTopics) {
+TEST(Ros, RemovesRowsOfOtherTopics) {
   std::string text = Stamped("__time,/js/a/position,/temperature", "{s}.{9},{v},\n{s}.{9},,20");
   const Recording recording = RecordingOf(text);
   ExpectTheRows(recording);
@@ -151,7 +151,7 @@ TEST(Ros, LeavesOutRowsOfOtherTopics) {
   EXPECT_EQ(recording.warnings[0].code, "empty_cells");
 }
 
-TEST(Ros, SaysWhereAStampIsNone) {
+TEST(Ros, ReportsAnInvalidStamp) {
   EXPECT_EQ(
       FaultOf("%time,field.position\nnow,1\n" + Rows("170000000{t},{v}")),
       "run.csv:2:1: column \"%time\" holds \"now\", which is no stamp of ROS; correct the field or delete the row");
@@ -161,13 +161,13 @@ TEST(Ros, SaysWhereAStampIsNone) {
 
 const std::string kJoints = "header.stamp.sec,header.stamp.nanosec,name,position,velocity,effort";
 
-TEST(JointTable, TakesTheOnlyJointThatMoves) {
+TEST(JointTable, ChoosesTheOnlyMovingJoint) {
   ExpectTheRows(RecordingOf(Stamped(kJoints, "{s},{n},pendulum,{v},1,0")));
   ExpectTheRows(RecordingOf(Stamped(kJoints, "{s},{n},arm,0.5,0,0\n{s},{n},pendulum,{v},1,0")));
   ExpectTheRows(RecordingOf("time_s,joint,angle_deg\n" + Rows("0.0{t},a,1\n0.0{t},b,{v}")), kDegree);
 }
 
-TEST(JointTable, RefusesSeveralThatMoveAndNamesThem) {
+TEST(JointTable, RefusesSeveralMovingJointsAndNamesThem) {
   const std::string text = Stamped(kJoints, "{s},{n},elbow,{v},1,0\n{s},{n},pendulum,{v},{v},0");
   EXPECT_EQ(FaultOf(text),
             "run.csv:1:1: \"elbow/position\" and \"pendulum/position\" could both be the quantity; choose one with "
@@ -191,13 +191,13 @@ TEST(JointTable, RefusesBothCoordinatesOfAPoint) {
   EXPECT_EQ(RecordingOf(text, Value("x_px")).quantity, Quantity::kPosition);
 }
 
-TEST(JointTable, RefusesAColumnOfTextThatNamesNoJoints) {
+TEST(JointTable, RefusesATextColumnWithoutJoints) {
   std::string text = "time_s,name,angle_deg\n";
   for (int i = 0; i < 1001; ++i) text += std::to_string(i) + ",n" + std::to_string(i) + ",1\n";
   EXPECT_THAT(FaultOf(text), HasSubstr("run.csv:1002:1: column \"name\" holds more than 1000 names up to here"));
 }
 
-TEST(JointTable, AColumnOfNamesBesideNumbersInAnOrdinaryTableIsNone) {
+TEST(JointTable, IgnoresANameColumnInAnOrdinaryTable) {
   ExpectTheRows(RecordingOf("time_ms,name,angle_rad\n" + Rows("{t},7,{v}")));
 }
 

@@ -15,14 +15,14 @@ using testing::HasSubstr;
 
 ReadOptions Value(const std::string& column, const std::string& unit) { return TimeAndValue("", column, unit); }
 
-TEST(TrackerMeaning, GivesTimesAndLengthsTheirUnits) {
-  EXPECT_EQ(csv::TrackerMeaning("t"), "time_s");
-  EXPECT_EQ(csv::TrackerMeaning("t (s)"), "time_s");
-  EXPECT_EQ(csv::TrackerMeaning("x"), "x (m)");
-  EXPECT_EQ(csv::TrackerMeaning("\u03B8"), "\u03B8");
+TEST(TrackerColumnMeaning, AssignsUnitsToTimesAndLengths) {
+  EXPECT_EQ(csv::TrackerColumnMeaning("t"), "time_s");
+  EXPECT_EQ(csv::TrackerColumnMeaning("t (s)"), "time_s");
+  EXPECT_EQ(csv::TrackerColumnMeaning("x"), "x (m)");
+  EXPECT_EQ(csv::TrackerColumnMeaning("\u03B8"), "\u03B8");
 }
 
-TEST(Tracker, NeverTakesTheLengthOfTheVector) {
+TEST(Tracker, IgnoresTheLengthOfTheVector) {
   const std::string text = "mass_A\nt\tr\t\u03B8\n" + Rows("0.0{t}\t1\t{v}");
   EXPECT_THAT(WrongFlag(text, Value("r", "")), HasSubstr("column \"r\" is the length of a vector"));
   EXPECT_THAT(FaultOf(text), HasSubstr("none of the columns \"t\", \"r\", \"\u03B8\" is an angle"));
@@ -30,7 +30,7 @@ TEST(Tracker, NeverTakesTheLengthOfTheVector) {
   ExpectTheRows(RecordingOf("mass_A\nt\tx\tr\n" + Rows("0.0{t}\t{v}\t1")));
 }
 
-TEST(Tracker, TakesTheAngleThatIsAskedForBesideCoordinates) {
+TEST(Tracker, ReadsTheRequestedAngleBesideCoordinates) {
   const std::string text = "mass_A\nt\tx\ty\t\u03B8\n" + Rows("0.0{t}\t0.1\t0.2\t{v}");
   ExpectTheRows(RecordingOf(text, Unit("deg")), kDegree);
   EXPECT_THAT(FaultOf("mass_A\nt\tx\t\u03B8\t\u03C9\n" + Rows("0.0{t}\t0.1\t1\t2"), Unit("deg")),
@@ -39,7 +39,7 @@ TEST(Tracker, TakesTheAngleThatIsAskedForBesideCoordinates) {
               HasSubstr("column \"x\" is in m, so --unit deg contradicts it"));
 }
 
-TEST(Tracker, ReadsOneTrackUnderItsName) {
+TEST(Tracker, ReadsOneTrackByItsName) {
   const std::string text = "mass_A\nt\tx\ty\t\u03B8\n" + Rows("0.0{t}\t0.1\t0.2\t{v}");
   ExpectTheRows(RecordingOf(text, Value("\u03B8", "deg")), kDegree);
   ExpectTheRows(RecordingOf(text, Value("\u03B8", "rad")));
@@ -47,7 +47,7 @@ TEST(Tracker, ReadsOneTrackUnderItsName) {
   ExpectTheRows(RecordingOf("mass_A\nt  \u03B8\n" + Rows("0.0{t}  {v}"), Unit("rad")));
 }
 
-TEST(Tracker, DoesNotGuessTheUnitOfAnAngle) {
+TEST(Tracker, RequiresTheUnitOfAnAngle) {
   EXPECT_THAT(
       FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
       HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, "
@@ -60,14 +60,14 @@ TEST(Tracker, ChoosesAmongSeveralTracks) {
   EXPECT_EQ(RecordingOf(text, Value("bob: \u03B8", "rad")).value[3], 2);
 }
 
-TEST(Tracker, LeavesOutRowsWithoutAVelocity) {
+TEST(Tracker, RemovesRowsWithoutAVelocity) {
   const std::string text = "mass_A\nt\t\u03B8\t\u03C9\n-0.01\t1\t\n" + Rows("0.0{t}\t1\t{v}") + "0.08\t1\t\n";
   const Recording recording = RecordingOf(text, Value("\u03C9", "rad_s"));
   ExpectTheRows(recording);
   EXPECT_TRUE(recording.warnings.empty());
 }
 
-TEST(Tracker, ALineAboveTheNamesMustBeOneOfLabels) {
+TEST(Tracker, ALineAboveTheNamesMustContainLabels) {
   EXPECT_THAT(FaultOf("a recording of mine\nangle\trate\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: none of the"));
   EXPECT_THAT(FaultOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: the first row holds numbers"));
 }

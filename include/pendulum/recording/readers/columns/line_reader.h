@@ -35,7 +35,7 @@ class LineReader {
 
   /// Advances to the next line; false if there is none. kDataLoss: as above, or the file cannot be read.
   Result<bool> Next() {
-    if (GoOn()) return true;
+    if (TakeBufferedLine()) return true;
     return NextBlock();
   }
 
@@ -53,7 +53,7 @@ class LineReader {
   /// Room for the longest permitted line with its end. A longer line fills the block.
   using Block = std::array<char, kLongestLine + 2>;
 
-  bool GoOn();
+  bool TakeBufferedLine();
   Result<bool> NextBlock();
   void TakeLine(const char* line_end);
   Result<void> Begin();

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+
+namespace pendulum {
+
+/// The result of a search from another start.
+struct AlternativeMinimum {
+  std::vector<double> parameters;  ///< P, the problem's units.
+  double log_posterior = 0;        ///< Log-likelihood of samples and priors.
+};
+
+/// For an accelerometer across the rod, the mirrored solution: another radius, with the motion to the other side.
+/// Except for friction it gives the same readings (MODEL.md eq. (14.6)). Returns std::nullopt if there is none, or if
+/// fixed values or bounds exclude it.
+std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters);
+
+/// Ends a converged fit kNotIdentifiable if an alternative solution explains the data nearly as well, within 9 of -2
+/// log L. It must differ by more than three standard errors in a parameter of the pendulum, or in a scale or position
+/// of the sensor (warning `ambiguous_sensor`). The sign of the motion does not count as a difference. log_posterior: of
+/// the fit.
+void CheckAlternativeMinima(const FitProblem& problem, std::span<const AlternativeMinimum> alternatives,
+                            double log_posterior, FitReport& report);
+
+}  // namespace pendulum

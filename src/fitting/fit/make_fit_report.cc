@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/fit/make_fit_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/fit/fit_description.h"
+#include "pendulum/fitting/fit/fit_warnings.h"
+#include "pendulum/fitting/fit/intervals.h"
+#include "pendulum/fitting/solve/escape_discontinuities.h"
+#include "pendulum/fitting/uncertainty/standard_errors.h"
+#include "pendulum/fitting/uncertainty/systematic.h"
+
+namespace pendulum {
+namespace {
+
+using Eigen::Index;
+
+std::string JoinNames(const FitProblem& problem, const std::vector<int>& indices) {
+  std::string names;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (i > 0) names += i + 1 == indices.size() ? " and " : ", ";
+    names += problem.infos[static_cast<std::size_t>(indices[i])].name;
+  }
+  return names;
+}
+
+/// Whether the pendulum comes to rest where gravity and the holding friction are nearly equal at some reversal. With
+/// slightly less friction it would continue to swing.
+bool IsAtKink(const FitProblem& problem, const TraceSummary& trace, const Solution& solution) {
+  constexpr double kNear = 1e-4;
+  const int holding = problem.solve.holding_parameter;
+  return holding >= 0 && trace.stop_time < problem.data.time.back() &&
+         trace.smallest_reversal_margin < kNear * solution.parameters[holding];
+}
+
+std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<int>& direction) {
+  const std::string names = JoinNames(problem, direction);
+  return direction.size() == 1 ? "the recording does not depend on " + names + "; fix it"
+                               : "the recording tells only a combination of " + names + "; fix one of them";
+}
+
+std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
+  const std::string what = problem.restricted ? "not with the values, bounds and priors that were given, not a free "
+                                                "pendulum's swing, or not one of this model: "
+                                              : "this is not a free pendulum's swing, or not one of this model: ";
+  const std::string leaves = unexplained < 1
+                                 ? "the best trajectory leaves " + std::to_string(std::lround(100 * unexplained)) +
+                                       " % of the reading's variance unexplained"
+                                 : std::string("the best trajectory explains the readings no better than a constant");
+  return what + leaves + (problem.restricted ? "; look at --fix, --bounds and --prior, or" : ";") +
+         " choose a window of free swing with --from and --to";
+}
+
+/// RemainingShift, corrected for a kink of the sum of squares: it occurs if the release coincides with a sample of a
+/// rate. If the sum rises on both sides, the release is at its optimum despite the slope on one side. Then only the
+/// step of the other parameters counts.
+double RemainingShiftBesideKink(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                                const Optimum& optimum) {
+  constexpr double kBeside = 1e-5;  // standard errors
+  const double shift = RemainingShift(optimum);
+  const bool may_have_a_kink = problem.data.quantity == Quantity::kRate && problem.start.start == StartKind::kRelease;
+  if (shift <= kLargestShift || !may_have_a_kink) return shift;
+  const auto release = std::ranges::find(optimum.free, static_cast<int>(*problem.Find(kReleaseTime.name)));
+  if (release == optimum.free.end()) return shift;
+  const auto k = release - optimum.free.begin();
+  double least = 0;
+  if (!cost.SumOfSquares(solution.parameters, &least)) return shift;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> beside = solution.parameters;
+    beside[static_cast<std::size_t>(*release)] += side * kBeside * std::sqrt(optimum.inverse.matrix(k, k));
+    double sum = 0;
+    if (!cost.SumOfSquares(beside, &sum) || sum < least) return shift;
+  }
+  Optimum others = optimum;
+  others.free.erase(others.free.begin() + k);
+  others.inverse = InvertInformation(others.information, others.free);
+  return others.inverse.identifiable ? RemainingShift(others) : shift;
+}
+
+/// Whether a step remains only because the sum of squares jumps: the sum is nowhere smaller along the step, down to 0.1
+/// standard errors.
+bool IsStoppedByDiscontinuity(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
+                              const Optimum& optimum) {
+  return HasDiscontinuities(problem) && optimum.inverse.identifiable && RemainingShift(optimum) > kLargestShift &&
+         !FindLowerAlongNewtonStep(optimum, problem.solve, cost, solution);
+}
+
+/// Duration of the solution's motion in the recording, in small-angle periods.
+double PeriodsOf(const FitProblem& problem, const Solution& solution) {
+  const double period = 2 * kPi * std::sqrt(solution.parameters[0]);
+  const std::optional<std::size_t> release = problem.Find(kReleaseTime.name);
+  return (problem.data.time.back() - (release ? solution.parameters[*release] : 0.0)) / period;
+}
+
+/// The quantities that decide the termination.
+struct SolutionChecks {
+  double shift = 0;               ///< RemainingShiftBesideKink
+  bool at_discontinuity = false;  ///< IsStoppedByDiscontinuity
+  double periods = 0;             ///< PeriodsOf
+  bool correlated = false;
+  bool at_kink = false;
+};
+
+void SetTermination(const FitProblem& problem, const Optimum& optimum, const SolutionChecks& checks,
+                    FitReport& report) {
+  if (!optimum.inverse.identifiable) {
+    report.termination = Termination::kNotIdentifiable;
+    report.reason = NotIdentifiableReason(problem, optimum.inverse.direction);
+    return;
+  }
+  constexpr double kMinPeriods = 0.5;
+  const double unexplained = problem.UnexplainedShare(report.fitted);
+  report.termination = Termination::kNotConverged;
+  if (unexplained > MaxUnexplainedShare(checks.correlated)) {
+    report.reason = UnexplainedReason(problem, unexplained);
+  } else if (checks.periods < kMinPeriods) {
+    report.reason = "the motion lasts " + NumberText(checks.periods, 2) +
+                    " of a period of the best trajectory: that is no swing, and hardly anything of the pendulum can be "
+                    "told; record several periods, or choose a window of free swing with --from and --to";
+  } else if (checks.at_discontinuity) {
+    report.termination = Termination::kConverged;
+    report.reason = "a jump of the acceleration's sum of squares stopped the search: nowhere along the step of " +
+                    NumberText(checks.shift, 2) +
+                    " standard errors left to make is it less; the errors are those of the parabola";
+  } else if (!(checks.shift <= kLargestShift)) {
+    report.reason = checks.at_kink
+                        ? "the best trajectory stops just where one half swing more would begin, and there the sum "
+                          "of squares has a kink; end the window before the stop (--to) or choose another model"
+                        : "a step of " +
+                              (checks.shift < 10 ? NumberText(checks.shift, 2)
+                                                 : std::to_string(std::lround(std::min(checks.shift, 1e6)))) +
+                              " standard errors is left to make; a shorter window or another model may converge";
+  } else if (optimum.free.empty() && optimum.at_bound.empty()) {
+    report.termination = Termination::kConverged;
+    report.reason = "every parameter is fixed: nothing was fitted";
+  } else {
+    report.termination = Termination::kConverged;
+    report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
+  }
+}
+
+FitReport FailedReport(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                       const TrajectoryCost& cost, const Solution& solution) {
+  FitReport report = InitializeReport(recording, problem, cost, solution);
+  report.termination = Termination::kFailed;
+  report.reason =
+      "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
+      "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
+  SetParameters(recording, options, problem, Optimum{}, solution, report);
+  return report;
+}
+
+/// Sets estimates, errors and intervals of a converged fit, and the quantities they are based on.
+void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
+               Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
+               FitReport& report) {
+  // Computed first, because the posterior changes σ, on which the optimum's information depends.
+  SetSystematicErrors(problem, SystematicCovariance(recording, options, problem, cost, solution, optimum), report);
+  const Autocorrelation autocorrelation = AutocorrelationOf(problem, cost, solution, optimum, z, correlated);
+  Errors errors = ComputeErrors(problem, cost, solution, optimum, autocorrelation);
+  report.noise.autocorrelation = autocorrelation;
+  report.statistics.effective_samples = errors.runs[0].effective_samples;
+  const FittedModel fitted{options, problem, cost, solution, optimum, autocorrelation, z};
+  const std::optional<Optimum> sampled = UsePosterior(fitted, errors, report);
+  report.noise.sigma = solution.noise.sigma;
+  report.noise.sigma_std_error = errors.runs[0].sigma;
+  SetCovariance(problem, sampled.value_or(optimum), errors, report);
+  if (!sampled) SetIntervals(fitted, errors, report);
+  SetDerived(problem, sampled.value_or(optimum), errors, solution, report);
+}
+
+}  // namespace
+
+FitReport MakeFitReport(const Recording& recording, const FitOptions& options, const FitProblem& problem,
+                        TrajectoryCost& cost, Solution solution) {
+  const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
+  if (!optimum) return FailedReport(recording, options, problem, cost, solution);
+  Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
+  FitReport& report = described.report;
+  const double shift =
+      optimum->inverse.identifiable ? RemainingShiftBesideKink(problem, cost, solution, *optimum) : 0.0;
+  const bool at_discontinuity = IsStoppedByDiscontinuity(problem, cost, solution, *optimum);
+  const bool at_kink = IsAtKink(problem, described.trace, solution);
+  SetTermination(problem, *optimum,
+                 {shift, at_discontinuity, PeriodsOf(problem, solution), described.correlated, at_kink}, report);
+  SetParameters(recording, options, problem, *optimum, solution, report);
+  if (report.termination == Termination::kConverged && options.interval != IntervalMethod::kNone) {
+    SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
+              report);
+  } else {
+    report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
+  }
+  const bool has_identifiability = report.termination == Termination::kConverged || !optimum->inverse.identifiable;
+  if (has_identifiability) SetIdentifiability(problem, *optimum, report);
+  report.warnings = FitWarnings(recording, problem, solution, described.trace, described.quantile_residuals,
+                                described.correlated, report);
+  report.solver.evaluations = cost.traces();
+  return std::move(report);
+}
+
+}  // namespace pendulum

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two solutions of an accelerometer across the rod: both are reported, and prior knowledge of the radius decides.
+#include "pendulum/fitting/fit/alternative_minima.h"
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/base/physics.h"
+#include "pendulum/fitting/joint/fit_jointly.h"
+#include "tests/fitting/fit_support.h"
+
+namespace pendulum::alternative_minima_test {
+namespace {
+
+using testing::HasSubstr;
+
+FitReport Fit(const SyntheticOptions& options, const FitOptions& fit) {
+  return Must(FitRecording(Must(SimulateRecording(options)), fit));
+}
+
+/// MODEL.md eq. (14.6): 2 g / ω0² - 0.3 m = 0.5915 m gives the same readings except for friction, which is small here.
+SyntheticOptions WithLittleFriction(std::uint64_t seed) {
+  SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
+  options.model = FindMotionModel("viscous").value();
+  options.parameters = {1 / 22.0, 0.0003};
+  options.duration = 20;
+  options.seed = seed;
+  return options;
+}
+
+TEST(RivalSolutions, ReportBothRadiiOfAnAccelerationAcrossTheRod) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    FitOptions viscous;
+    viscous.model = "viscous";
+    const FitReport fit = Fit(WithLittleFriction(seed), viscous);
+    EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
+    EXPECT_TRUE(fit.HasWarning("ambiguous_sensor"));
+    std::smatch said;
+    ASSERT_TRUE(std::regex_search(fit.reason, said, std::regex("with radius (\\S+) m instead of (\\S+) m")));
+    const auto [nearer, farther] = std::minmax({std::stod(said[1]), std::stod(said[2])});
+    EXPECT_NEAR(nearer, 0.3, 0.02);
+    EXPECT_NEAR(nearer + farther, 2 * kStandardGravity / 22, 0.01);
+    EXPECT_THAT(fit.reason, HasSubstr("give --prior radius=r:std_dev"));
+    EXPECT_FALSE(fit.Find("radius")->std_error);
+    EXPECT_FALSE(fit.Find("viscous")->std_error);
+    for (const Identifiability& known : fit.identifiability) {
+      EXPECT_EQ(known.verdict == Identifiability::Verdict::kNotIdentifiable, known.parameter == "radius");
+    }
+  }
+}
+
+TEST(RivalSolutions, AreResolvedByAPriorOnTheRadius) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    FitOptions known;
+    known.model = "viscous";
+    known.priors["radius"] = {0.31, 0.02};
+    ExpectTruth(WithLittleFriction(seed), Fit(WithLittleFriction(seed), known));
+    // A prior wide enough for both radii does not decide.
+    known.priors["radius"] = {0.45, 0.2};
+    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kNotIdentifiable);
+    known.priors.clear();
+    known.fixed["radius"] = 0.3;
+    EXPECT_EQ(Fit(WithLittleFriction(seed), known).termination, Termination::kConverged);
+  }
+}
+
+// The other radius has the same small-angle frequency, so a second recording with the same ambiguity does not decide.
+TEST(RivalSolutions, AreNotResolvedByASimilarSecondRecording) {
+  FitOptions viscous;
+  viscous.model = "viscous";
+  const Recording first = Must(SimulateRecording(WithLittleFriction(1)));
+  const Recording second = Must(SimulateRecording(WithLittleFriction(2)));
+  const FitReport first_alone = Must(FitRecording(first, viscous)), second_alone = Must(FitRecording(second, viscous));
+  const std::vector<JointRun> runs = {{first, first_alone, viscous}, {second, second_alone, viscous}};
+  const JointFit fit = Must(FitJointly(runs, {"inertia", "viscous"}));
+  EXPECT_EQ(fit.whole.termination, Termination::kNotIdentifiable) << fit.whole.reason;
+  EXPECT_THAT(fit.whole.reason, HasSubstr("recording 1: with radius"));
+}
+
+}  // namespace
+}  // namespace pendulum::alternative_minima_test
