@@ -85,10 +85,10 @@ bool IsAtLocalMinimum(const Attempt& attempt) {
 /// Keeps the better of two attempts. The local minimum of the other one is remembered.
 void KeepBetter(Attempt other, Attempt& best) {
   if (IsBetter(other, best)) {
-    other.rivals = std::move(best.rivals);
+    other.alternatives = std::move(best.alternatives);
     std::swap(best, other);
   }
-  if (IsAtLocalMinimum(other)) best.rivals.push_back({other.solution.parameters, LogPosterior(other)});
+  if (IsAtLocalMinimum(other)) best.alternatives.push_back({other.solution.parameters, LogPosterior(other)});
 }
 
 }  // namespace

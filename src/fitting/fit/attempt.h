@@ -19,7 +19,7 @@ struct Attempt {
   std::unique_ptr<FitProblem> problem;
   std::unique_ptr<TrajectoryCost> cost;
   Solution solution;
-  std::vector<AlternativeMinimum> rivals;  ///< Local minima at which the searches from other starts ended.
+  std::vector<AlternativeMinimum> alternatives;  ///< Local minima at which the searches from other starts ended.
 };
 
 /// Solves from the start values, from each of the sensor's starts (SensorStarts) and from the mirror image of the

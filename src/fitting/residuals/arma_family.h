@@ -148,7 +148,7 @@ inline FilteredProcess FilteredAt(const ArmaFamily& family, const Eigen::VectorX
         innovations * Eigen::Matrix2d{{1 / autocorrelation.innovation_variance, theta}, {theta, theta * theta}};
   } else {
     process.response.resize(autocorrelation.autoregressive.size(), 0);
-    process.stationary = variance * StateCovariance(autoregression.autoregressive, ReflectionAt(place));
+    process.stationary = variance * StateCovariance(autocorrelation.autoregressive, ReflectionAt(place));
   }
   return process;
 }

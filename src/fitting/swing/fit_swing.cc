@@ -131,10 +131,10 @@ void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end,
   const auto [inner_from, inner_to] = window(k);
   if (at_end) {
     swing.to = inner_to;
-    swing.ends = {WindowEnd::Reason::kAllowedRatio};
+    swing.ends = {WindowEnd::Reason::kDisturbed};
   } else {
     swing.from = inner_from;
-    swing.begins = {WindowBegin::Reason::kAllowedRatio};
+    swing.begins = {WindowBegin::Reason::kDisturbed};
   }
 }
 

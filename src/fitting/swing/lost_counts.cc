@@ -82,7 +82,7 @@ std::optional<CorrectedFit> FitCorrected(const Recording& recording, const Recor
   CorrectedFit corrected_fit{
       fit->statistics.rms_residual, fit->HasWarning("lack_of_fit") || fit->HasWarning("correlated_residuals"), {}};
   if (!ComputeResiduals(recording, *problem, *cost, parameters, corrected_fit.residuals)) return std::nullopt;
-  if (recording.edge) RefineWithinRuns(recording, *problem, *cost, std::move(parameters), next_residuals.residuals);
+  if (recording.edge) RefineWithinRuns(recording, *problem, *cost, std::move(parameters), corrected_fit.residuals);
   return corrected_fit;
 }
 
