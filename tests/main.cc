@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     const std::string filter = file.ends_with(".cc") ? TestsIn(file) : "";
     if (filter.empty()) {
       std::cerr << argv[0] << ": no test in this build is in a file whose path ends in '" << file
-                << "'; a file is named like /fitting/judge_test.cc\n";
+                << "'; a file is named like /fitting/fit/fit_test.cc\n";
       return 1;
     }
     GTEST_FLAG_SET(filter, filter);

@@ -3,7 +3,7 @@
 // The protocol between the logger and its host, used by both: src/docs/hardware.md, "The protocol". Written in C++11
 // without a standard library, because avr-g++ has none.
 //
-// A frame is a payload of at most kMostPayload bytes and its CRC, encoded by COBS so that it contains no 0, and a final
+// A frame is a payload of at most kMaxPayload bytes and its CRC, encoded by COBS so that it contains no 0, and a final
 // 0. Numbers are little endian. The first byte of the payload identifies the message.
 #pragma once
 
@@ -17,14 +17,14 @@ constexpr uint8_t kProtocol = 1;
 constexpr uint16_t kFirmware = 0x0100;  // version 1.0
 constexpr uint32_t kTickHz = 2000000;   // Timer 1: 16 MHz / 8
 constexpr uint8_t kAdcBits = 10;
-constexpr uint8_t kMostBlock = 16;                      // samples in a frame
-constexpr uint8_t kMaxOversample = 64;                 // conversions in a sample: their sum fits in 16 bits
-constexpr uint16_t kLeastPeriod = 250;                  // ticks between conversions; one takes 216
-constexpr uint16_t kMostPeriod = 62500;                 // ticks: a late interrupt must be distinguishable from an early
-                                                        // one
-constexpr uint8_t kMostPayload = 48;                    // bytes
-constexpr uint8_t kMostEncoded = kMostPayload + 2 + 1;  // bytes, including the CRC and the overhead of COBS, without
-                                                        // the 0
+constexpr uint8_t kMaxBlock = 16;                     // samples in a frame
+constexpr uint8_t kMaxOversample = 64;                // conversions in a sample: their sum fits in 16 bits
+constexpr uint16_t kMinPeriod = 250;                  // ticks between conversions; one takes 216
+constexpr uint16_t kMaxPeriod = 62500;                // ticks: a late interrupt must be distinguishable from an early
+                                                      // one
+constexpr uint8_t kMaxPayload = 48;                   // bytes
+constexpr uint8_t kMaxEncoded = kMaxPayload + 2 + 1;  // bytes, including the CRC and the overhead of COBS, without
+                                                      // the 0
 
 // Frames of the logger, and commands of the host. An Ack answers a command; an Info answers kAskInfo.
 constexpr uint8_t kInfo = 'I', kData = 'D', kAck = 'A', kEnd = 'E';
@@ -92,7 +92,7 @@ struct Data {
   uint16_t dropped;   // samples since the start that had no room; 65535 means at least so many
   uint16_t late;      // conversions since the start that could not start in time; 65535 means at least so many
   uint8_t count;
-  uint16_t sums[kMostBlock];
+  uint16_t sums[kMaxBlock];
 
   template <class Archive>
   void Fields(Archive& archive) {
@@ -101,8 +101,8 @@ struct Data {
     archive(dropped);
     archive(late);
     archive(count);
-    if (count > kMostBlock) archive.Fail();
-    for (uint8_t i = 0; i < count && i < kMostBlock; ++i) archive(sums[i]);
+    if (count > kMaxBlock) archive.Fail();
+    for (uint8_t i = 0; i < count && i < kMaxBlock; ++i) archive(sums[i]);
   }
 };
 
@@ -111,9 +111,9 @@ constexpr int DataFrameSize(int count) { return 12 + 2 * count + 2 + 1 + 1; }
 
 // The number of samples in a frame when samples come every `step` ticks: about 25 frames per second, if they have room.
 constexpr int BlockSize(uint32_t step) {
-  return kTickHz / 25 / step < 1            ? 1
-         : kTickHz / 25 / step > kMostBlock ? kMostBlock
-                                            : static_cast<int>(kTickHz / 25 / step);
+  return kTickHz / 25 / step < 1           ? 1
+         : kTickHz / 25 / step > kMaxBlock ? kMaxBlock
+                                           : static_cast<int>(kTickHz / 25 / step);
 }
 
 // The end of a run: how much was sent, so that the host can detect losses at the end.
@@ -268,12 +268,12 @@ inline size_t CobsDecode(uint8_t* bytes, size_t count) {
   return count - 1;
 }
 
-// Builds the frame of a message. `frame` must have room for kMostEncoded + 1 bytes. Returns the number of bytes.
+// Builds the frame of a message. `frame` must have room for kMaxEncoded + 1 bytes. Returns the number of bytes.
 template <class Message>
 size_t MakeFrame(Message message, uint8_t* frame) {
-  uint8_t payload[kMostPayload + 2];
+  uint8_t payload[kMaxPayload + 2];
   payload[0] = Message::kKind;
-  Writer writer(payload + 1, kMostPayload - 1);
+  Writer writer(payload + 1, kMaxPayload - 1);
   message.Fields(writer);
   const size_t size = 1 + writer.size();
   const uint16_t crc = Crc16(payload, size);
@@ -286,7 +286,7 @@ size_t MakeFrame(Message message, uint8_t* frame) {
 
 // A message as it is sent over the line.
 struct Frame {
-  uint8_t bytes[kMostEncoded + 1];
+  uint8_t bytes[kMaxEncoded + 1];
   size_t size;
 
   template <class Message>
@@ -301,7 +301,7 @@ class Receiver {
   // kFrame: payload() is that of a frame with the right CRC. kRejected: the bytes before this 0 are not a frame.
   Event Take(uint8_t byte) {
     if (byte != 0) {
-      if (received_ <= kMostEncoded)
+      if (received_ <= kMaxEncoded)
         bytes_[received_++] = byte;  // one byte beyond the limit marks the frame as too
                                      // long
       return kNothing;
@@ -309,7 +309,7 @@ class Receiver {
     const uint8_t received = received_;
     received_ = 0;
     if (received == 0) return kNothing;
-    if (received > kMostEncoded) return kRejected;
+    if (received > kMaxEncoded) return kRejected;
     const size_t decoded = CobsDecode(bytes_, received);
     if (decoded < 3) return kRejected;
     size_ = static_cast<uint8_t>(decoded - 2);
@@ -339,7 +339,7 @@ class Receiver {
   }
 
  private:
-  uint8_t bytes_[kMostEncoded + 1];
+  uint8_t bytes_[kMaxEncoded + 1];
   uint8_t received_ = 0, size_ = 0;
 };
 

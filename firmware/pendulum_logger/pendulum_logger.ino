@@ -297,8 +297,8 @@ static void Stop() {
 
 static AckStatus TakeRate(const SetRate& rate) {
   if (is_running) return kRunning;
-  if (rate.period < kLeastPeriod || rate.period > kMostPeriod) return kOutOfRange;
-  if (rate.oversample < 1 || rate.oversample > kMostOversample) return kOutOfRange;
+  if (rate.period < kMinPeriod || rate.period > kMaxPeriod) return kOutOfRange;
+  if (rate.oversample < 1 || rate.oversample > kMaxOversample) return kOutOfRange;
   period = rate.period;
   oversample = rate.oversample;
   return kDone;

@@ -26,7 +26,7 @@ constexpr std::uint16_t kSaturated = 65535;  // largest value of the counters in
 std::optional<SamplingRate> NearestRate(double hz, int oversample) {
   if (oversample < 1 || oversample > wire::kMaxOversample || !(hz > 0)) return std::nullopt;
   const double period = std::round(wire::kTickHz / (hz * oversample));
-  if (!(period >= wire::kLeastPeriod && period <= wire::kMostPeriod)) return std::nullopt;
+  if (!(period >= wire::kMinPeriod && period <= wire::kMaxPeriod)) return std::nullopt;
   return SamplingRate{static_cast<std::uint16_t>(period), static_cast<std::uint8_t>(oversample)};
 }
 

@@ -63,8 +63,8 @@ Result<SamplingRate> ChooseRate(const RecordPendulumFlags& flags) {
     return NumberText(static_cast<double>(wire::kTickHz) / period / flags.oversample, 4);
   };
   return BadFlag("--rate_hz is " + NumberText(flags.rate_hz) + "; with --oversample " +
-                 std::to_string(flags.oversample) + " it must be " + ends(wire::kMostPeriod) + " to " +
-                 ends(wire::kLeastPeriod));
+                 std::to_string(flags.oversample) + " it must be " + ends(wire::kMaxPeriod) + " to " +
+                 ends(wire::kMinPeriod));
 }
 
 Result<void> ChooseEnd(const RecordPendulumFlags& flags, RecordPendulumOptions& options) {

@@ -194,7 +194,7 @@ TEST(Logger, RepeatsACommandWhoseAnswerIsLost) {
 // For example an answer to a command of an earlier program.
 TEST(Logger, IgnoresAnswersToOtherCommands) {
   LoggerScript script;
-  script.greeting.resize(wire::kMostEncoded + 1);
+  script.greeting.resize(wire::kMaxEncoded + 1);
   script.greeting.resize(wire::MakeFrame(wire::Ack{'X', wire::kUnknown}, script.greeting.data()));
   Connection connection(script);
   const auto set = connection.logger.SetRate({10000, 1});

@@ -40,7 +40,7 @@ Bytes Text(std::string_view text) { return {text.begin(), text.end()}; }
 
 template <class Message>
 Bytes FrameOf(const Message& message) {
-  Bytes frame(wire::kMostEncoded + 1);
+  Bytes frame(wire::kMaxEncoded + 1);
   frame.resize(wire::MakeFrame(message, frame.data()));
   return frame;
 }

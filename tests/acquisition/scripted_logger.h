@@ -203,7 +203,7 @@ class ScriptedLogger {
 
   template <class Message>
   void Send(const Message& message) {
-    std::vector<std::uint8_t> frame(pendulum_logger::kMostEncoded + 1);
+    std::vector<std::uint8_t> frame(pendulum_logger::kMaxEncoded + 1);
     frame.resize(pendulum_logger::MakeFrame(message, frame.data()));
     Write(frame);
   }

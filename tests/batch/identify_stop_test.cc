@@ -56,7 +56,7 @@ void StopEverywhere(IdentifyOptions options, const PreparedRecording& swings, in
     });
     const Result<Identification> run = FitFirst(options, swings);
     if (run) {
-      EXPECT_EQ(ToJsonText(run->report), whole) << i;
+      EXPECT_EQ(ToJsonText(*run), whole) << i;
     } else {
       ExpectStopped(run);
     }

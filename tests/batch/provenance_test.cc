@@ -118,10 +118,10 @@ TEST(OptionsJson, DependsOnEveryOption) {
 
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. `model`
 // is the first of `models`; rig and calibration are hashed separately; users cannot set `start_values` and
-// `sensor_start`.
+// `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
-  [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only] = options;
+  [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only, shared] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
                           most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;

@@ -46,11 +46,11 @@ class RefitTest : public testing::Test {
 /// The library's result of one recording, fitted alone, with the path as in the manifest.
 inline std::string ResultAlone(const IdentifyOptions& options, const std::filesystem::path& file,
                                const std::optional<Rig>& rig, const std::string& path) {
-  auto one = ReadOne(options, file.string(), rig);
+  auto one = PrepareFile(file.string(), options, rig);
   if (!one) return one.error().message;
   const auto runs = IdentifyEach(options, *std::move(one));
   if (runs.size() != 1 || !runs.front()) return "not one run";
-  nlohmann::ordered_json json = ToJson(runs.front()->report);
+  nlohmann::ordered_json json = ToJson(*runs.front());
   EXPECT_EQ(json["data"]["path"], file.string());
   json["data"]["path"] = path;
   return json.dump();

@@ -57,7 +57,7 @@ std::vector<std::uint8_t> Repaired(std::span<const std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) {
     if (byte != 0 || piece.empty()) {
       piece.push_back(byte);
-      if (piece.size() < pendulum_logger::kMostPayload) continue;
+      if (piece.size() < pendulum_logger::kMaxPayload) continue;
     }
     const std::uint16_t crc = pendulum_logger::Crc16(piece.data(), piece.size());
     piece.push_back(static_cast<std::uint8_t>(crc));

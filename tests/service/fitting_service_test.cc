@@ -47,7 +47,7 @@ Identification FitOf(const std::vector<std::string>& models, RunFiles files) {
 }
 
 std::string ResultOf(const Identification& run) {
-  Json json = ToJson(run.report);
+  Json json = ToJson(run);
   json["data"]["path"] = nullptr;
   return json.dump(2) + "\n";
 }

@@ -157,8 +157,8 @@ TEST(FitAll, AddsClosedFormsAndSamplingToEachRecording) {
     EXPECT_EQ(own.constancy.size(), 1);
     ASSERT_TRUE(own.sampling);
     EXPECT_NEAR(own.sampling->rate_hz, 100, 1e-6);
-    EXPECT_EQ(own.data.used_samples, run->used[k].size());
-    EXPECT_EQ(own.fits[0].residual.size(), run->used[k].size());
+    EXPECT_EQ(own.data.used_samples, own.used.size());
+    EXPECT_EQ(own.fits[0].residual.size(), own.used.size());
   }
 }
 

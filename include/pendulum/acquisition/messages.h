@@ -41,7 +41,7 @@ class MessageDecoder {
 /// The bytes of a command, preceded by a 0 that ends anything received before it.
 template <class Command>
 std::vector<std::uint8_t> CommandBytes(const Command& command) {
-  std::vector<std::uint8_t> bytes(1 + pendulum_logger::kMostEncoded + 1);
+  std::vector<std::uint8_t> bytes(1 + pendulum_logger::kMaxEncoded + 1);
   bytes.resize(1 + pendulum_logger::MakeFrame(command, bytes.data() + 1));
   return bytes;
 }
