@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Records a potentiometer at exact intervals, for record_pendulum; src/docs/hardware.md shows the wiring. Timer 1 starts
-// each conversion in hardware, and its count is the time stamp of the sample. Delays of the program affect neither.
+// Records a potentiometer at exact intervals, for record_pendulum; src/docs/hardware.md shows the wiring. Timer 1
+// starts each conversion in hardware, and its count is the time stamp of the sample. Delays of the program affect
+// neither.
 //
 // analogRead(), Servo and PWM on the pins of Timers 1 and 2 cannot be used at the same time.
 #include <Arduino.h>
