@@ -75,10 +75,14 @@ bool Provenance::Agrees(const Provenance& other) const {
 
 std::string OptionsJson(const IdentifyOptions& options) {
   const SwingChoice& swing = options.swing;
-  const Json json = {
-      {"models", options.models},   {"from_s", NumberOrNull(swing.from)},           {"to_s", NumberOrNull(swing.to)},
-      {"release", swing.release},   {"closed_form_only", options.closed_form_only}, {"read", ReadJson(options.read)},
-      {"fit", FitJson(options.fit)}};
+  const Json json = {{"models", options.models},
+                     {"from_s", NumberOrNull(swing.from)},
+                     {"to_s", NumberOrNull(swing.to)},
+                     {"release", swing.release},
+                     {"closed_form_only", options.closed_form_only},
+                     {"checks", static_cast<int>(options.checks)},
+                     {"read", ReadJson(options.read)},
+                     {"fit", FitJson(options.fit)}};
   return JsonText(json);
 }
 

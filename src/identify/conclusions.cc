@@ -24,12 +24,14 @@ void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Ident
   one.closed_forms_model = model.name;
 }
 
-/// A fit that failed has an empty check.
-void AddChecks(const std::stop_token& stop, Identification& one) {
+/// A fit that failed or is not to be checked has an empty check.
+void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
+               Identification& one) {
   if (!one.closed_forms) return;
-  for (const FitReport& fit : one.fits) {
+  for (std::size_t m = 0; m < one.fits.size(); ++m) {
+    const FitReport& fit = one.fits[m];
     one.checks.emplace_back();
-    if (fit.termination == Termination::kFailed) continue;
+    if (fit.termination == Termination::kFailed || !is_checked(m)) continue;
     const bool same = fit.model.name == one.closed_forms_model;
     const auto own = same ? Result<ClosedForms>(*one.closed_forms) : EstimateClosedForms(one.used, fit.model, stop);
     if (own) one.checks.back() = CheckClosedForms(one.used, *own, fit, one.rig, stop);
@@ -65,14 +67,12 @@ void AddSampling(const FreeSwing& swing, Identification& one) {
 
 }  // namespace
 
-void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model, const std::stop_token& stop,
+void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model,
+                    const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
                     Identification& one) {
   if (model) {
     AddClosedForms(*model, stop, one);
-    AddChecks(stop, one);
-  } else {
-    one.no_closed_forms =
-        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+    AddChecks(is_checked, stop, one);
   }
   AddSampling(swing, one);
 }

@@ -60,21 +60,32 @@ Result<FittedModels> SelectSwing(Recording recording, const FreeSwing& swing) {
   return FittedModels{*std::move(used), swing, {}};
 }
 
-/// Fits every model to one swing and tests whether each fit holds over the whole of it. The samples move into the
-/// result.
+/// Fits every model to one swing. The samples move into the result.
 Result<RunModels> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
   if (options.fit.stop.stop_requested()) return FitStopped();
   auto models = options.closed_form_only
                     ? SelectSwing(std::move(swing.recording), swing.found)
                     : FitModels(std::move(swing.recording), swing.found, fit_options, options.models);
   if (!models) return tl::unexpected(models.error());
-  RunModels run{{}, *std::move(models), {}};
-  for (const FitReport& fit : run.alone.fits) {
-    const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
-    run.constancy.push_back(TestConstancy(run.alone.used, fit, own));
-  }
   if (options.fit.stop.stop_requested()) return FitStopped();
-  return run;
+  return RunModels{{}, *std::move(models), {}};
+}
+
+/// Whether fit m is checked, by itself.
+bool IsChecked(Checks checks, std::size_t m, std::size_t main) {
+  return checks == Checks::kFull || (checks == Checks::kStandard && m == main);
+}
+
+/// Tests whether a fit holds over the whole swing, if `is_checked`.
+Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options, const Recording& used,
+                  const FitReport& fit, bool is_checked) {
+  if (!is_checked) {
+    Constancy untested;
+    untested.reason = options.checks == Checks::kNone ? "not tested (--checks none)"
+                                                      : "only the recommended model is tested; --checks full tests all";
+    return untested;
+  }
+  return TestConstancy(used, fit, ForModel(fit_options, std::string(fit.model.name), options.models).options);
 }
 
 /// The model whose closed forms are computed without a fit. Readings in an unknown unit have only those of small
@@ -96,8 +107,16 @@ void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::
   one.used = std::move(run.alone.used);
   one.constancy = std::move(run.constancy);
   std::optional<MotionModel> model;
-  if (!run.alone.swing.undersampled) model = one.fits.empty() ? ClosedFormModel(options, one) : one.fits[main].model;
-  AddConclusions(run.alone.swing, model, options.fit.stop, one);
+  if (run.alone.swing.undersampled) {
+    one.no_closed_forms =
+        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+  } else if (options.checks == Checks::kNone && !one.fits.empty()) {
+    one.no_closed_forms = "not computed (--checks none)";
+  } else {
+    model = one.fits.empty() ? ClosedFormModel(options, one) : one.fits[main].model;
+  }
+  const auto is_checked = [&](std::size_t m) { return IsChecked(options.checks, m, main); };
+  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, one);
 }
 
 Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) {
@@ -108,8 +127,13 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
   Identification one = std::move(swing.known);
   if (run->alone.fits.size() > 1) one.comparison = CompareModels(run->alone, fit_options);
   one.fits = std::move(run->alone.fits);
-  for (std::size_t m = 0; m < one.fits.size(); ++m) AddInconstancyError(run->constancy[m], one.fits[m]);
-  CompleteIdentification(options, *std::move(run), one.MainFit(), one);
+  const std::size_t main = one.MainFit();
+  for (std::size_t m = 0; m < one.fits.size(); ++m) {
+    const bool is_checked = IsChecked(options.checks, m, main);
+    run->constancy.push_back(TestFit(options, fit_options, run->alone.used, one.fits[m], is_checked));
+    AddInconstancyError(run->constancy.back(), one.fits[m]);
+  }
+  CompleteIdentification(options, *std::move(run), main, one);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !one.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, one.no_closed_forms);
@@ -199,7 +223,13 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   ParallelFor(static_cast<int>(swings.size()), fit_options.threads, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     fitted[k] = FitAlone(options, each, swings[k]);
-    if (fitted[k]) fitted[k]->label = labels[k];
+    if (!fitted[k]) return;
+    fitted[k]->label = labels[k];
+    // Whether recordings agree is judged with the constancy of each.
+    for (const FitReport& fit : fitted[k]->alone.fits) {
+      const bool is_checked = options.checks != Checks::kNone;
+      fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->alone.used, fit, is_checked));
+    }
   });
   std::vector<RunModels> runs;
   for (std::size_t k = 0; k < fitted.size(); ++k) {

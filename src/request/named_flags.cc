@@ -21,33 +21,23 @@ struct NamedFlag {
 };
 
 template <typename Value>
-using RunFlag = NamedFlag<RunFlags, Value>;
-template <typename Value>
 using SimulationFlag = NamedFlag<SimulationFlags, Value>;
 template <typename Value>
 using CalibrationFlag = NamedFlag<CalibrationFlags, Value>;
 
-constexpr std::array<RunFlag<std::string>, 20> kRunTexts = {{{"model", &RunFlags::model},
-                                                             {"models", &RunFlags::model},
-                                                             {"start", &RunFlags::start},
-                                                             {"release", &RunFlags::release},
-                                                             {"from", &RunFlags::from},
-                                                             {"to", &RunFlags::to},
-                                                             {"fix", &RunFlags::fix},
-                                                             {"init", &RunFlags::init},
-                                                             {"bounds", &RunFlags::bounds},
-                                                             {"prior", &RunFlags::prior},
-                                                             {"time_column", &RunFlags::time_column},
-                                                             {"value_column", &RunFlags::value_column},
-                                                             {"unit", &RunFlags::unit},
-                                                             {"sample_rate_hz", &RunFlags::sample_rate_hz},
-                                                             {"resolution", &RunFlags::resolution},
-                                                             {"range", &RunFlags::range},
-                                                             {"noise", &RunFlags::noise},
-                                                             {"loss", &RunFlags::loss},
-                                                             {"interval", &RunFlags::interval},
-                                                             {"seed", &RunFlags::seed}}};
-constexpr std::array<RunFlag<bool>, 1> kRunSwitches = {{{"closed_form_only", &RunFlags::closed_form_only}}};
+constexpr std::array<NamedFlag<RunFlags, bool>, 1> kRunSwitches = {{{"closed_form_only", &RunFlags::closed_form_only}}};
+
+/// The texts of RunFlagTable that requests may give; `models` is another name of `model`.
+const std::vector<NamedFlag<RunFlags, std::string>>& RunTexts() {
+  static const auto texts = [] {
+    std::vector<NamedFlag<RunFlags, std::string>> all = {{"models", &RunFlags::model}};
+    for (const RunFlag& flag : RunFlagTable()) {
+      if (!flag.is_local) all.push_back({flag.name, flag.value});
+    }
+    return all;
+  }();
+  return texts;
+}
 
 constexpr std::array<SimulationFlag<std::string>, 7> kSimulationTexts = {{{"model", &SimulationFlags::model},
                                                                           {"gravity", &SimulationFlags::gravity},
@@ -149,7 +139,7 @@ Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
 
 }  // namespace
 
-std::vector<std::string_view> RunFlagNames() { return NamesOf(kRunTexts, kRunSwitches); }
+std::vector<std::string_view> RunFlagNames() { return NamesOf(RunTexts(), kRunSwitches); }
 std::vector<std::string_view> SimulationFlagNames() {
   return NamesOf(kSimulationTexts, kSimulationNumbers, kSimulationSwitches, kSimulationWholes);
 }
@@ -166,7 +156,7 @@ Result<RunFlags> RunFlagsOf(const FlagTexts& texts) {
   if (texts.contains("model") && texts.contains("models")) {
     return BadFlag("--model and --models are one flag, and both are given; leave one of them out");
   }
-  return FlagsOf<RunFlags>(texts, kRunTexts, kRunSwitches);
+  return FlagsOf<RunFlags>(texts, RunTexts(), kRunSwitches);
 }
 
 Result<SimulationFlags> SimulationFlagsOf(const FlagTexts& texts) {

@@ -24,13 +24,6 @@ Result<int> ParseRelease(const RunFlags& flags) {
   return BadFlag("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
-Result<std::optional<StartKind>> ParseStart(const std::string& start) {
-  if (start == "auto") return std::nullopt;
-  if (start == "release") return StartKind::kRelease;
-  if (start == "moving") return StartKind::kMoving;
-  return BadFlag("--start is '" + start + "'; it must be auto, release or moving");
-}
-
 /// A word and its meaning.
 template <typename Meaning>
 struct Word {
@@ -49,6 +42,9 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
   return BadFlag(std::string(flag) + " is '" + value + "'; it must be one of " + NameList(names));
 }
 
+using StartWord = Word<std::optional<StartKind>>;
+constexpr std::array<StartWord, 3> kStarts = {
+    {{"auto", std::nullopt}, {"release", StartKind::kRelease}, {"moving", StartKind::kMoving}}};
 using NoiseWord = Word<std::optional<NoiseFamily>>;
 constexpr std::array<NoiseWord, 4> kNoises = {{{"auto", std::nullopt},
                                                {"gaussian", NoiseFamily::kGaussian},
@@ -60,6 +56,11 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMe
                                                              {"covariance", IntervalMethod::kCovariance},
                                                              {"profile", IntervalMethod::kProfile},
                                                              {"bootstrap", IntervalMethod::kBootstrap}}};
+constexpr std::array<Word<Checks>, 3> kChecks = {
+    {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
+
+constexpr std::array<std::string_view, 11> kUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
+                                                     "m_s2", "px",  "m",     "cm",    "mm"};
 
 /// Parses an integer value of a flag, at least `least`.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
@@ -148,7 +149,7 @@ Result<void> CheckContradictions(const FitOptions& options) {
 }
 
 Result<void> ParseFitOptions(const RunFlags& flags, const std::vector<MotionModel>& models, FitOptions& options) {
-  const auto start = ParseStart(flags.start);
+  const auto start = ParseWord("--start", flags.start, kStarts);
   if (!start) return tl::unexpected(start.error());
   const std::vector<ParameterInfo> parameters = NameableParameters(models);
   auto fixed = ParseSettings("--fix", flags.fix, flags.model, parameters);
@@ -178,8 +179,6 @@ Result<void> CheckReadFlags(const RunFlags& flags) {
   if (is_time_chosen && flags.time_column == flags.value_column) {
     return BadFlag("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
   }
-  constexpr std::array<std::string_view, 11> kUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
-                                                       "m_s2", "px",  "m",     "cm",    "mm"};
   if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
     return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
   }
@@ -229,23 +228,157 @@ Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
 Result<void> CheckClosedFormOnly(const RunFlags& flags) {
   if (!flags.closed_form_only) return {};
   const RunFlags none;
-  const std::array<std::pair<std::string_view, bool>, 10> of_a_fit = {{{"--start", flags.start != none.start},
-                                                                       {"--fix", flags.fix != none.fix},
-                                                                       {"--init", flags.init != none.init},
-                                                                       {"--bounds", flags.bounds != none.bounds},
-                                                                       {"--prior", flags.prior != none.prior},
-                                                                       {"--noise", flags.noise != none.noise},
-                                                                       {"--loss", flags.loss != none.loss},
-                                                                       {"--interval", flags.interval != none.interval},
-                                                                       {"--seed", flags.seed != none.seed},
-                                                                       {"--threads", flags.threads != none.threads}}};
-  for (const auto& [flag, given] : of_a_fit) {
-    if (given) return NeedsFitError(flag);
+  for (const RunFlag& flag : RunFlagTable()) {
+    if (flag.needs_fit && flags.*flag.value != none.*flag.value) return NeedsFitError("--" + std::string(flag.name));
   }
   return {};
 }
 
+// ---- The table -----------------------------------------------------------------------------------------------------
+
+using Json = nlohmann::ordered_json;
+
+Json TextSchema() { return {{"type", "string"}}; }
+
+template <typename Meaning, std::size_t kWords>
+Json WordSchema(const std::array<Word<Meaning>, kWords>& words, const std::string& word_by_default) {
+  Json names = Json::array();
+  for (const auto& [word, meaning] : words) names.push_back(word);
+  return {{"enum", names}, {"type", "string"}, {"default", word_by_default}};
+}
+
+std::vector<RunFlag> MakeTable() {
+  const RunFlags by_default;
+  Json model = TextSchema();
+  model["default"] = by_default.model;
+  const Json seed = {{"type", "integer"}, {"minimum", 0}, {"maximum", 1'000'000'000'000'000}, {"default", 1}};
+  const Json number = {{"type", "number"}};
+  const std::string models = "Model of the motion, one of " + MotionModelNames() +
+                             ", several of them between commas to compare, or all; default coulomb.";
+  return {
+      {.name = "rig",
+       .value = &RunFlags::rig,
+       .help = "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.",
+       .is_local = true},
+      {.name = "calibration",
+       .value = &RunFlags::calibration,
+       .help = "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.",
+       .is_local = true},
+      {.name = "model", .value = &RunFlags::model, .help = models, .schema = model, .example = "viscous,coulomb"},
+      {.name = "start",
+       .value = &RunFlags::start,
+       .help = "How the recording begins: auto (decided from the data), release or moving; default auto.",
+       .schema = WordSchema(kStarts, by_default.start),
+       .needs_fit = true},
+      {.name = "release",
+       .value = &RunFlags::release,
+       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the longest.",
+       .schema = {{"type", "integer"}, {"minimum", 1}}},
+      {.name = "from",
+       .value = &RunFlags::from,
+       .help = "Start of the window to fit, s on the file's clock; default where the free swing begins.",
+       .schema = number,
+       .example = "1.5"},
+      {.name = "to",
+       .value = &RunFlags::to,
+       .help = "End of the window to fit, s on the file's clock; default where the free swing ends.",
+       .schema = number,
+       .example = "12.5"},
+      {.name = "fix",
+       .value = &RunFlags::fix,
+       .help = "Parameters to hold, name=value,... in SI (rad, s; torques as in the report); default none.",
+       .schema = TextSchema(),
+       .example = "zero_angle=0",
+       .needs_fit = true},
+      {.name = "init",
+       .value = &RunFlags::init,
+       .help = "Initial values of parameters, name=value,... as in --fix; default estimated from the data.",
+       .schema = TextSchema(),
+       .example = "viscous=0.004",
+       .needs_fit = true},
+      {.name = "bounds",
+       .value = &RunFlags::bounds,
+       .help = "Bounds of parameters, name=low:high,... as in --fix, either may be left out; default none.",
+       .schema = TextSchema(),
+       .example = "coulomb=0:0.1",
+       .needs_fit = true},
+      {.name = "prior",
+       .value = &RunFlags::prior,
+       .help = "Prior knowledge, name=mean:std_dev,... as in --fix; default none.",
+       .schema = TextSchema(),
+       .example = "inertia=0.079:0.001",
+       .needs_fit = true},
+      {.name = "time_column",
+       .value = &RunFlags::time_column,
+       .help = "Column of times, name or number from 1 on, with :s, :ms or :us where the name has no unit; none uses "
+               "--sample_rate_hz instead; default by name.",
+       .schema = TextSchema(),
+       .example = "1:ms"},
+      {.name = "value_column",
+       .value = &RunFlags::value_column,
+       .help = "Column of the angle or rate, name or number from 1 on; default by the unit in its name.",
+       .schema = TextSchema(),
+       .example = "angle_deg"},
+      {.name = "unit",
+       .value = &RunFlags::unit,
+       .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default that in the "
+               "column's name.",
+       .schema = {{"enum", kUnits}, {"type", "string"}}},
+      {.name = "sample_rate_hz",
+       .value = &RunFlags::sample_rate_hz,
+       .help = "Samples per second of a file without times; default its line # sample_rate_hz.",
+       .schema = {{"type", "number"}, {"exclusiveMinimum", 0}}},
+      {.name = "resolution",
+       .value = &RunFlags::resolution,
+       .help = "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.",
+       .schema = {{"type", "number"}, {"minimum", 0}}},
+      {.name = "range",
+       .value = &RunFlags::range,
+       .help = "Smallest and largest value of the sensor, low,high in the file's unit; readings there are censored.",
+       .schema = TextSchema(),
+       .example = "0,1023"},
+      {.name = "noise",
+       .value = &RunFlags::noise,
+       .help = "Noise of the readings: gaussian, quantized (rounded to levels), edges (rows that come when a count "
+               "changes) or auto (edges of such rows, else quantized where rounding matters); default auto.",
+       .schema = WordSchema(kNoises, by_default.noise),
+       .needs_fit = true},
+      {.name = "loss",
+       .value = &RunFlags::loss,
+       .help = "Robust alternative for recordings with outliers: huber, student or none; default none.",
+       .schema = WordSchema(kLosses, by_default.loss),
+       .needs_fit = true},
+      {.name = "interval",
+       .value = &RunFlags::interval,
+       .help = "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.",
+       .schema = WordSchema(kIntervals, by_default.interval),
+       .needs_fit = true},
+      {.name = "checks",
+       .value = &RunFlags::checks,
+       .help = "Which fits are checked against closed forms and for constancy: none, standard (the recommended one; of "
+               "several recordings constancy of all) or full (all); default standard.",
+       .schema = WordSchema(kChecks, by_default.checks),
+       .needs_fit = true},
+      {.name = "seed",
+       .value = &RunFlags::seed,
+       .help = "Seed of the bootstrap and of posterior draws; default 1.",
+       .schema = seed,
+       .needs_fit = true},
+      {.name = "threads",
+       .value = &RunFlags::threads,
+       .help = "Threads of the bootstrap, of long recordings and of several, 0 for all cores; the result does not "
+               "depend on it; default 0.",
+       .needs_fit = true,
+       .is_local = true},
+  };
+}
+
 }  // namespace
+
+const std::vector<RunFlag>& RunFlagTable() {
+  static const std::vector<RunFlag> table = MakeTable();
+  return table;
+}
 
 tl::unexpected<Status> NeedsFitError(std::string_view flag) {
   return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
@@ -255,6 +388,9 @@ Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags) {
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   IdentifyOptions options;
   options.closed_form_only = flags.closed_form_only;
+  const auto checks = ParseWord("--checks", flags.checks, kChecks);
+  if (!checks) return tl::unexpected(checks.error());
+  options.checks = *checks;
   const auto models = FindMotionModels(flags.model);
   if (!models) return BadFlag("--model: " + models.error().message);
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);

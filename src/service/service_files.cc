@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/version.h"
+#include "pendulum/request/run_flags.h"
 
 namespace pendulum {
 
@@ -25,6 +28,49 @@ std::span<const Example> Examples() {
   return examples;
 }
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A flag as requests have it: without dashes.
+std::string DescriptionOf(const RunFlag& flag) {
+  std::string text = flag.help;
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.erase(at, 2);
+  return text;
+}
+
+Json ReferenceTo(std::string_view parameter) { return {{"$ref", "#/components/parameters/" + std::string(parameter)}}; }
+
+/// Puts the flags of RunFlagTable in place of parameter RunFlags of each operation, and describes them.
+void AddRunFlags(Json& document) {
+  Json references = Json::array();
+  for (const RunFlag& flag : RunFlagTable()) {
+    if (flag.is_local) continue;
+    const std::string name(flag.name);
+    Json parameter = {{"name", name}, {"in", "query"}, {"description", DescriptionOf(flag)}, {"schema", flag.schema}};
+    if (!flag.example.empty())
+      parameter["example"] = flag.schema["type"] == "number" ? Json::parse(flag.example) : Json(flag.example);
+    document["components"]["parameters"][name] = std::move(parameter);
+    document["components"]["schemas"]["FitOptions"]["properties"][name] = {{"$ref", "#/components/schemas/FlagText"}};
+    references.push_back(ReferenceTo(name));
+  }
+  for (Json& path : document["paths"]) {
+    for (Json& operation : path) {
+      if (!operation.is_object() || !operation.contains("parameters")) continue;
+      Json parameters = Json::array();
+      for (Json& parameter : operation["parameters"]) {
+        if (parameter != ReferenceTo("RunFlags"))
+          parameters.push_back(std::move(parameter));
+        else
+          parameters.insert(parameters.end(), references.begin(), references.end());
+      }
+      operation["parameters"] = std::move(parameters);
+    }
+  }
+}
+
+}  // namespace
+
 std::string OpenApiDocument() {
   // References in the schema point to its own definitions; they must work inside the document.
   std::string schema(ResultSchema());
@@ -37,6 +83,7 @@ std::string OpenApiDocument() {
   result.erase("$id");
   auto document = nlohmann::ordered_json::parse(OpenApiTemplate());
   document["components"]["schemas"]["Result"] = std::move(result);
+  AddRunFlags(document);
   document["info"]["version"] = kVersion;
   constexpr int kIndent = 2;
   return document.dump(kIndent) + "\n";

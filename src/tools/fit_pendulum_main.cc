@@ -21,7 +21,7 @@
 #include "tools/fit_runs.h"
 #include "tools/gnuplot.h"
 #include "tools/output.h"
-#include "tools/run_flag_definitions.h"
+#include "tools/registered_run_flags.h"
 #include "tools/run_tool.h"
 #include "tools/terminal.h"
 
@@ -65,7 +65,7 @@ constexpr const char* kUsage =
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   FitPendulumFlags flags;
-  static_cast<RunFlags&>(flags) = CurrentRunFlags();
+  static_cast<RunFlags&>(flags) = RegisteredRunFlags();
   flags.data = FLAGS_data;
   flags.data_list = FLAGS_data_list;
   flags.shared = FLAGS_shared;
@@ -193,5 +193,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
+  pendulum::RegisterRunFlags();
   return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
 }

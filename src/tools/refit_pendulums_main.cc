@@ -8,7 +8,7 @@
 #include "tools/flags.h"
 #include "tools/refit_commands.h"
 #include "tools/refit_pendulums_options.h"
-#include "tools/run_flag_definitions.h"
+#include "tools/registered_run_flags.h"
 #include "tools/run_tool.h"
 
 DEFINE_string(
@@ -74,7 +74,7 @@ std::vector<std::string> GivenFlags() {
 
 RefitFlags CurrentFlags(const std::vector<std::string>& positional) {
   RefitFlags flags;
-  static_cast<RunFlags&>(flags) = CurrentRunFlags();
+  static_cast<RunFlags&>(flags) = RegisteredRunFlags();
   flags.manifest = FLAGS_manifest;
   flags.data = FLAGS_data;
   flags.store = FLAGS_store;
@@ -103,5 +103,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
+  pendulum::RegisterRunFlags();
   return pendulum::RunTool({pendulum::kRefitToolName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
 }

@@ -62,6 +62,8 @@ std::vector<Change> ChangesOfTheRun() {
        [](IdentifyOptions& o) {
          o.models = {o.fit.model = "viscous", "coulomb"};
        }},
+      {"checks none", [](IdentifyOptions& o) { o.checks = Checks::kNone; }},
+      {"checks full", [](IdentifyOptions& o) { o.checks = Checks::kFull; }},
       {"closed_form_only", [](IdentifyOptions& o) { o.closed_form_only = true; }},
   };
 }
@@ -121,7 +123,7 @@ TEST(OptionsJson, DependsOnEveryOption) {
 // `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
-  [[maybe_unused]] auto& [read, swing, models, fit, closed_form_only, shared] = options;
+  [[maybe_unused]] auto& [read, swing, models, fit, checks, closed_form_only, shared] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
                           most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;

@@ -25,7 +25,7 @@ TEST(AddConclusions, DerivesTheFrequencyFromTheHalfPeriod) {
   swing.half_period = 0.625;
   Identification report;
   report.used = EvenSamples(1);
-  AddConclusions(swing, std::nullopt, {}, report);
+  AddConclusions(swing, std::nullopt, nullptr, {}, report);
   ASSERT_TRUE(report.sampling);
   EXPECT_NEAR(report.sampling->rate_hz, 50, 1e-9);
   EXPECT_DOUBLE_EQ(report.sampling->frequency_hz, 0.8);  // 1 / (2 · 0.625)
@@ -40,7 +40,7 @@ TEST(AddConclusions, PredictsTheFrequencyFromTheRigOnTheFilesClock) {
   Identification report;
   report.rig = Rig{{1.8, 0}, RigValue{0.05, 0}, {}};
   report.used = EvenSamples(1.1);
-  AddConclusions(swing, std::nullopt, {}, report);
+  AddConclusions(swing, std::nullopt, nullptr, {}, report);
   ASSERT_TRUE(report.sampling && report.sampling->expected_frequency_hz);
   EXPECT_NEAR(*report.sampling->expected_frequency_hz, 1.1 * 6 / (2 * 3.14159265358979), 1e-12);
 }
@@ -48,7 +48,7 @@ TEST(AddConclusions, PredictsTheFrequencyFromTheRigOnTheFilesClock) {
 TEST(AddConclusions, HasNoFrequencyWithoutTurningPoints) {
   Identification report;
   report.used = EvenSamples(1);
-  AddConclusions(FreeSwing(), std::nullopt, {}, report);
+  AddConclusions(FreeSwing(), std::nullopt, nullptr, {}, report);
   ASSERT_TRUE(report.sampling);
   EXPECT_EQ(report.sampling->frequency_hz, 0);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -99,6 +100,23 @@ TEST(IdentifyEach, ComparesSeveralModelsInTheOrderAskedFor) {
   EXPECT_EQ(report.fits[1].model.name, "viscous");
   ASSERT_TRUE(report.comparison);
   EXPECT_EQ(report.closed_forms_model, report.fits[report.MainFit()].model.name);
+}
+
+TEST(IdentifyEach, ChecksTheMainFitAllFitsOrNone) {
+  for (const auto& [checks, tested, compared] :
+       {std::tuple(Checks::kNone, 0, 0), std::tuple(Checks::kStandard, 1, 1), std::tuple(Checks::kFull, 2, 2)}) {
+    IdentifyOptions options = OptionsFor({"coulomb", "viscous"});
+    options.checks = checks;
+    const auto runs = FitTextbook(options);
+    ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+    const Identification& one = *runs[0];
+    const auto is_tested = [](const Constancy& constancy) { return constancy.halves_p.has_value(); };
+    const auto is_compared = [](const ClosedFormCheck& check) { return !check.rows.empty(); };
+    EXPECT_EQ(std::ranges::count_if(one.constancy, is_tested), tested);
+    EXPECT_EQ(std::ranges::count_if(one.checks, is_compared), compared);
+    EXPECT_EQ(one.closed_forms.has_value(), checks != Checks::kNone);
+    if (checks == Checks::kStandard) EXPECT_TRUE(is_tested(one.constancy[one.MainFit()]));
+  }
 }
 
 TEST(IdentifyEach, MakesClosedFormsWithoutAFit) {

@@ -32,7 +32,7 @@ TEST(FlagNames, MatchTheFlagsOfTheTools) {
   EXPECT_THAT(RunFlagNames(),
               UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
                                    "prior", "time_column", "value_column", "unit", "sample_rate_hz", "resolution",
-                                   "range", "noise", "loss", "interval", "seed", "closed_form_only"));
+                                   "range", "noise", "loss", "interval", "checks", "seed", "closed_form_only"));
   EXPECT_THAT(SimulationFlagNames(),
               IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
                             "noise_correlation", "noise_freedom", "resolution", "range", "lose", "event_driven",

@@ -3,6 +3,9 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "pendulum/base/status.h"
 #include "pendulum/identify/identify_options.h"
@@ -32,10 +35,26 @@ struct RunFlags {
   std::string noise = "auto";
   std::string loss = "none";
   std::string interval = "auto";
+  std::string checks = "standard";
   std::string seed;
   std::string threads;
   bool closed_form_only = false;
 };
+
+/// A flag for reading and fitting a recording.
+struct RunFlag {
+  std::string_view name;
+  std::string RunFlags::*value;
+  std::string help;  ///< What it is, its unit, and what the default means. Other flags appear as --name.
+  nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request.
+  std::string example = "";                 ///< A value for the description of the service; empty: none.
+  bool needs_fit = false;                   ///< It cannot be combined with --closed_form_only.
+  bool is_local = false;                    ///< It names a file or threads; requests do not have it.
+};
+
+/// All members of RunFlags that are texts. The command line, --help, the parameters of requests and openapi.json are
+/// made from this table.
+const std::vector<RunFlag>& RunFlagTable();
 
 /// The error for a flag that cannot be combined with --closed_form_only.
 tl::unexpected<Status> NeedsFitError(std::string_view flag);

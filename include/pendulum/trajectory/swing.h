@@ -45,7 +45,7 @@ struct Segment {
 };
 
 /// Partial derivatives of coefficient n of a segment's angle at a fixed absolute time t: θ_p - θ' start_p (MODEL.md
-/// eq. (4.6)). For many samples, fitting/sample_kernel.h applies the same correction at each sample.
+/// eq. (4.6)). For many samples, fitting/likelihood/sample_kernel.h applies the same correction at each sample.
 template <DualNumber T>
 PartialsFor<T> PartialsAtFixedTime(const Segment<T>& segment, int n) {
   const double rate = n < segment.order ? (n + 1) * segment.angle[n + 1] : 0.0;
