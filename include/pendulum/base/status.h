@@ -34,8 +34,9 @@ inline tl::unexpected<Status> Error(StatusCode code, std::string message) {
   return tl::unexpected<Status>(Status{code, std::move(message)});
 }
 
-/// The process exit code of an error. Codes 0 and 1 belong to fits that ran (see ExitCode(Termination) in fit_report.h).
-/// kInvalidArgument 2, kNotFound 3, kDataLoss 4, kFailedPrecondition 5, kCannotWrite 73, kTryAgain 75, kInternal 70.
+/// The process exit code of an error. Codes 0 and 1 belong to fits that ran (see ExitCode(Termination) in
+/// fit_report.h). kInvalidArgument 2, kNotFound 3, kDataLoss 4, kFailedPrecondition 5, kCannotWrite 73, kTryAgain 75,
+/// kInternal 70.
 int ExitCode(StatusCode code);
 
 /// Something a user should know about a valid result: a stable code and a sentence.
