@@ -22,7 +22,7 @@ std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   return names;
 }
 
-/// The model that determines the window: the one with most parameters, without any that may have no meaning in a
+/// The model that determines the window: the model with the most parameters, all of which have a meaning in every
 /// recording.
 std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t richest = 0;

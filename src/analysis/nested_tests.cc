@@ -200,7 +200,7 @@ std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vect
       const MotionModel& richer = compared.runs.front().fits[r]->model;
       const std::optional<Nesting> nesting = FindNesting(simpler, richer);
       if (!nesting) continue;
-      // Two added terms, one of which is tested alone, have no known distribution and would take long to simulate.
+      // If a second term is added too, the statistic has no known distribution, and a simulation would take long.
       if (!nesting->unidentified.empty() && LargestNestedModel(richer)->name != simpler.name) continue;
       NestedTest test;
       test.simpler = rows[s].model;

@@ -38,7 +38,7 @@ struct Scatter {
   double BetweenAt(double statistic) const {
     if (!(Statistic(0) > statistic)) return 0;
     double highest = (value.array() - center.value_or(value.mean())).square().sum() / statistic;
-    while (Statistic(highest) >= statistic) highest *= 2;  // rounding, if errors are nearly 0
+    while (Statistic(highest) >= statistic) highest *= 2;  // needed because of rounding if errors are nearly 0
     std::uintmax_t most_steps = 200;
     const auto [low, high] =
         boost::math::tools::toms748_solve([&](double between) { return Statistic(between) - statistic; }, 0.0, highest,

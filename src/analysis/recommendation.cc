@@ -94,7 +94,7 @@ class RankedRows {
     return std::abs(rows_[i].log_likelihood.value_or(0) - rows_[k].log_likelihood.value_or(kUnbounded)) < kSame;
   }
 
-  /// Models whose BIC is as near as that of the chosen one.
+  /// The other models whose BIC is also near the smallest one.
   std::vector<std::string> UndecidedModels(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {

@@ -47,7 +47,7 @@ struct Quantity {
 /// Its values, and the names of its runs.
 struct QuantityRuns {
   RunValues values;
-  std::vector<std::string> ids, groups;  ///< One per run; one per group.
+  std::vector<std::string> ids, groups;  ///< `ids`: one per run; `groups`: one per group.
   bool dates = false;
 };
 

@@ -12,10 +12,9 @@
 
 namespace pendulum {
 
-/// Adds what is concluded from the used samples and the fits of one swing: closed forms with the friction of `model`
-/// (std::nullopt: none are possible), the check of those fits that are to be checked, each against closed
-/// forms with its own friction, and how the
-/// swing was sampled. Once a stop is requested it ends soon, with conclusions that mean nothing.
+/// Adds the conclusions from the used samples and the fits of one swing: closed forms with the friction of `model`
+/// (std::nullopt: none), the check of those fits for which is_checked(fit), against closed forms with their own
+/// friction, and how the swing was sampled. After a stop request it ends soon, and the conclusions are meaningless.
 void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model,
                     const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
                     Identification& one);

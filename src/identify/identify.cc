@@ -31,11 +31,11 @@ struct Swing {
   Recording recording;
   FreeSwing found;
   Identification known;
-  int release = 0;  ///< Number of the swing if several of its recording were chosen, else 0.
+  int release = 0;  ///< Number of the swing if several swings of its recording were chosen, otherwise 0.
 };
 
-/// Takes the swing of that number (from 1) out of a prepared recording. The last chosen one takes the samples, for a
-/// copy of a long recording is large.
+/// Takes the swing with that number (from 1) out of a prepared recording. The last chosen swing takes over the samples,
+/// because a copy of a long recording is large.
 Swing TakeSwing(PreparedRecording& from, int release) {
   const bool last = release == from.swings.chosen.back();
   Swing swing;
@@ -88,8 +88,8 @@ Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options,
   return TestConstancy(used, fit, ForModel(fit_options, std::string(fit.model.name), options.models).options);
 }
 
-/// The model whose closed forms are computed without a fit. Readings in an unknown unit have only those of small
-/// angles.
+/// The model whose closed forms are computed without a fit. For readings in an unknown unit it is the linear model,
+/// because only small-angle formulas apply.
 MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one) {
   const MotionModel asked = *FindMotionModel(options.fit.model);
   const MotionModel linear = *FindMotionModel("linear");
@@ -100,8 +100,8 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one)
   return linear;
 }
 
-/// Completes what is known of a swing by its samples, fits and constancy, and by what is concluded from these. Closed
-/// forms have the friction of the model of fit `main`.
+/// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
+/// friction of the model of fit `main`.
 void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::size_t main, Identification& one) {
   SummarizeUsed(run.alone.used, run.alone.swing, one.data);
   one.used = std::move(run.alone.used);
@@ -239,7 +239,8 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   return runs;
 }
 
-/// The warnings of a fit alone that the joint fit does not repeat: of its window, its sampling, other minima.
+/// Adds the warnings of the separate fit that the joint fit does not repeat: about window, sampling, other local
+/// minima.
 void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& one) {
   constexpr std::array<std::string_view, 8> kOfTheFit = {"lack_of_fit",  "correlated_residuals", "zero_drift",
                                                          "quiet_sensor", "trace_accuracy",       "prior_conflict",
@@ -263,7 +264,7 @@ JointPart PartOf(const JointModels& joint, std::size_t m) {
   return part;
 }
 
-/// What holds for all recordings together.
+/// The results common to all recordings.
 Identification CombineRecordings(const JointModels& joint, const FitOptions& options) {
   Identification whole;
   whole.rig = options.rig;
@@ -284,7 +285,7 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
   const std::string path = recording.recording.path;
   for (const int release : chosen) {
     auto one = IdentifyOne(options, TakeSwing(recording, release));
-    if (!one && options.fit.stop.stop_requested()) one = FitStopped();  // whatever the stop made of it
+    if (!one && options.fit.stop.stop_requested()) one = FitStopped();  // a stop may have caused another error
     if (!one && chosen.size() > 1) one = ErrorOfRun(one.error(), path, release);
     all.push_back(std::move(one));
   }
@@ -331,7 +332,7 @@ Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
   }
   auto read = ParseRecording(files.data.bytes, files.data.name, options.read);
   if (!read) return tl::unexpected(read.error());
-  files.data.bytes = {};  // a long one takes much memory
+  files.data.bytes = {};  // a long recording takes much memory
   auto prepared = PrepareRecording(*std::move(read), options, std::move(rig));
   if (!prepared) return tl::unexpected(prepared.error());
   return std::move(IdentifyEach(options, *std::move(prepared)).front());

@@ -26,7 +26,7 @@ class BatchProgress {
  public:
   struct Run {
     std::string id, name;
-    std::optional<int> exit_code;  ///< std::nullopt: it waits.
+    std::optional<int> exit_code;  ///< std::nullopt: the run waits.
     std::string reason;
     bool is_removed = false;  ///< It was deleted before it was fitted.
   };

@@ -32,7 +32,7 @@ bool IsOutputClosed() {
   return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
-/// Whether so many seconds have passed since it was last due.
+/// Whether this many seconds have passed since it was last due.
 class PeriodicTimer {
  public:
   explicit PeriodicTimer(double seconds) : seconds_(seconds) {}

@@ -111,7 +111,8 @@ TEST(FitDeviceClock, HasTheRightErrorOnAGrid) {
   }
 }
 
-/// In the middle of the minute the host's clock, or a bridge, falls behind by some milliseconds permanently.
+/// In the second half of the minute all arrivals are some milliseconds late: the host's clock jumped ahead, or a USB
+/// bridge became slower.
 TEST(FitDeviceClock, HasALargerErrorAfterAStep) {
   for (const double step : {1e-3, 5e-3, 20e-3}) {
     Random random(7);

@@ -83,7 +83,7 @@ TEST(Losses, AreSummedOverSeveralKinds) {
   EXPECT_EQ(run.Losses().on_line, 8);
 }
 
-/// A logger whose counter stops at 65535 dropped three times as many samples, as its ticks show.
+/// The logger dropped 200 000 samples, as its ticks show, but its counter stops at 65535.
 TEST(Losses, AreNotCountedTwiceForASaturatedFrameCounter) {
   ReceivedRun run(kRate);
   run.Take(Frame(0), 0);

@@ -77,7 +77,7 @@ TEST(AmplitudeDependence, FollowsThePeriodForALinearTorque) {
 }
 
 // The span between recordings follows eq. (6.1) at the mean amplitudes of the motion. The estimates weight early swings
-// more than these means do, hence the tolerance of a tenth.
+// more than these means do, so a difference of a tenth is allowed.
 TEST(AmplitudeDependence, ReportsPeriodsOfSmallestAndLargestSwings) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();

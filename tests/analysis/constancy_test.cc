@@ -117,7 +117,7 @@ TEST(Constancy, RejectsFrictionOfAnotherLaw) {
   EXPECT_THAT(constancy.verdict, HasSubstr("viscous rises by"));
 }
 
-// Linear gravity's period does not grow with amplitude by 1 + A²/16. Its inertia must grow by A²/8 instead.
+// The period of linear gravity lacks the factor 1 + A²/16 of a real swing, so its inertia must grow by A²/8.
 TEST(Constancy, RejectsAPeriodThatDependsOnAmplitude) {
   FitOptions options = ModelOptions("viscous");
   options.gravity = Gravity::kLinear;

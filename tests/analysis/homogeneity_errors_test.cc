@@ -70,7 +70,8 @@ Set MakeSet(const CoverageScenario& scenario, int number, int other = -1, double
   return set;
 }
 
-/// Errors from added information: of (Σ C⁻¹)⁻¹. Empty if a recording alone has no such covariance.
+/// Standard errors from the sum of the information, (Σ C⁻¹)⁻¹. Empty if a separate fit has no covariance of all shared
+/// parameters.
 Eigen::VectorXd AddedErrors(const Set& set) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const FitReport& fit : set.alone) {

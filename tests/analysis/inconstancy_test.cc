@@ -116,7 +116,7 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
 TEST(Inconstancy, UsesTheHalvesWithoutWindows) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   Constancy constancy;
-  // Friction differs by two of its errors, which may be chance.
+  // Friction differs by two standard errors, which may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   constancy.halves_p = 0;
   const double whole = fit.Find("inertia")->estimate;

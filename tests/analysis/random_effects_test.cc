@@ -100,7 +100,7 @@ TEST(SummarizeScatter, HasAnErrorForEqualValues) {
   EXPECT_DOUBLE_EQ(effects.mean, 2.5);
   EXPECT_THAT(effects.std_error, DoubleNear(0.01 / std::sqrt(3.0), 1e-15));
   EXPECT_EQ(effects.between, 0);
-  EXPECT_TRUE(std::isnan(effects.between_upper95));  // scatter this small excludes no upper end
+  EXPECT_TRUE(std::isnan(effects.between_upper95));  // the values are too close together to determine it
 }
 
 // Two runs with errors s at a distance d: Q = (d² / 2) / (s² + between²) = 1, so between² = d²/2 - s².

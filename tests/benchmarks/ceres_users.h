@@ -114,7 +114,8 @@ class LocatedSwing {
     Advance(T(step - reversal));
   }
 
-  /// Newton's method for the rate at the end of a shortened step, in doubles, starting from the chord.
+  /// The length of a step that ends when the rate is 0, by Newton's method in doubles. The first value extrapolates the
+  /// present deceleration.
   double TimeToReversal(double step) const {
     const auto law = [&](double angle, double rate) {
       return -(Value(ratios_.gravity) * std::sin(angle) + Value(ratios_.viscous) * rate +

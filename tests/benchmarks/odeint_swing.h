@@ -129,7 +129,7 @@ class OdeintSwing {
     if (direction_ * stepper_.current_state()[kRate] <= 0) LocateReversal();
   }
 
-  /// Newton's method for the dense output's rate, starting from the chord.
+  /// Finds the zero of the dense output's rate by Newton's method, starting from the chord.
   void LocateReversal() {
     const double before = stepper_.previous_time();
     const double after = stepper_.current_time();

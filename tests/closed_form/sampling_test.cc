@@ -87,7 +87,7 @@ TEST(DescribeSampling, MeasuresAnEvenRecording) {
 
 TEST(DescribeSampling, CountsLevelsAtTheEnd) {
   const Sampling sampling = DescribeSampling(Cosine(0.5, 20, 400, 5), 1.0, std::nullopt);
-  // Peak to peak of the last period, from 18 s on: less than 2 exp(-18/5), 5.5 levels.
+  // The last period begins at 18 s. Its peak-to-peak value is less than 2 exp(-18/5) rad, which is 5.5 levels.
   EXPECT_EQ(sampling.start_counts, 100 + std::round(100 * std::exp(-1.0 / 5)));
   EXPECT_THAT(sampling.end_counts, DoubleNear(5, 1));
   EXPECT_THAT(Codes(sampling), IsEmpty());  // coming to rest causes no warning

@@ -37,11 +37,11 @@ std::string FaultOf(const std::string& text) {
 
 TEST(ParseRig, ReproducesTheTextbookRig) {
   const Rig rig = RigOf(kTextbookRig);
-  // Published: center of mass 0.387 m, therefore G = 0.475 kg 0.387 m 9.81 m/s^2; inertia 0.076 kg m^2.
+  // Published: center of mass 0.387 m, therefore G = 0.475 kg · 0.387 m · 9.81 m/s^2; inertia 0.076 kg m^2.
   EXPECT_NEAR(rig.gravity_torque.value / (0.475 * 9.81), 0.387, 0.0005);
   ASSERT_TRUE(rig.inertia.has_value());
   EXPECT_NEAR(rig.inertia->value, 0.076, 0.0005);
-  // Computed by hand: 0.4275 kg 4.2183 m^2/s^2, and 0.095 0.1849 / 3 + 0.380 0.1849.
+  // Computed by hand: 0.4275 kg · 4.2183 m^2/s^2, and 0.095 · 0.1849 / 3 + 0.380 · 0.1849.
   EXPECT_NEAR(rig.gravity_torque.value, 1.80332325, 1e-12);
   EXPECT_NEAR(rig.inertia->value, 0.076117166666666667, 1e-15);
   EXPECT_EQ(rig.gravity_torque.std_dev, 0);

@@ -19,8 +19,8 @@ SOURCES = empty_root.TOP / "src"
 PLACES = [pathlib.Path("/usr/include" + folder) for folder in ("", "/eigen3", "/hdf5/serial")]
 # Parts of the compiler, in every program: their licences permit that without a notice (GCC Runtime Library Exception).
 COMPILERS = {"gcc-12", "glibc", "linux"}
-# Shared libraries that Ceres, a static library, needs. A sentence names them; they are separate packages with their own
-# licences, and the tarball includes each of these.
+# Shared libraries that the static library Ceres needs. The copyright file names them in a sentence. They are separate
+# packages with their own licences, which the tarball includes.
 CERES = {"suitesparse", "lapack", "atlas", "openblas"}
 
 

@@ -98,7 +98,8 @@ class Metrics(Served):
                          3, changes)
 
     def settled(self):
-        """Counters when only the scrapes still increase them; an answer is counted after its last byte."""
+        """The counters once only scrapes change them. This takes a moment, because an answer is counted after its last
+        byte."""
         last = []
 
         def still():

@@ -192,7 +192,7 @@ TEST(RecordWarnings, ReportALostLogger) {
   recorded.loss_reason = "/dev/ttyACM0 is gone";
   recorded.description.losses->is_end_known = false;
   const auto warnings = RecordWarnings(recorded);
-  ASSERT_THAT(warnings, SizeIs(1));  // the End frame is missing, too
+  ASSERT_THAT(warnings, SizeIs(1));  // none for the End frame, which is missing too
   EXPECT_EQ(warnings[0].code, "cut_short");
   EXPECT_THAT(warnings[0].message, HasSubstr("/dev/ttyACM0 is gone"));
   EXPECT_FALSE(IsComplete(recorded));

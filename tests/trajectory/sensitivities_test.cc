@@ -209,8 +209,7 @@ TEST(Derivatives, MatchCentralDifferencesThroughReversalsAndStop) {
 TEST(Derivatives, MatchTheStaircaseThroughTheStop) {
   using Dual = pendulum::Dual<4>;  // of a release; the derivative by viscous friction is not tested here
   constexpr double kOmega = 5, kInertia = 0.04, kDry = 0.007, kAngle = 0.5;
-  constexpr int kHalfSwings = 36;  // 0.5 - 72 · 0.007 = -0.004: a turning point within the 0.007 at which friction
-                                   // holds
+  constexpr int kHalfSwings = 36;  // the last turning point is at 0.5 - 72 · 0.007 = -0.004; friction holds up to 0.007
   const Pendulum<CoulombFriction, Dual> pendulum{Gravity::kLinear, Dual(kInertia, 0), {Dual(0), Dual(kDry, 1)}};
   const auto curve = Trace(pendulum, Start<Dual>{StartKind::kRelease, 0, Dual(kAngle, 2), Dual(0)}, 30, 1e-17);
   ASSERT_THAT(curve.reversals, SizeIs(kHalfSwings));

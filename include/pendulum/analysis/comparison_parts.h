@@ -32,7 +32,7 @@ Autocorrelation SharedAutocorrelation(const FitReport& best);
 /// Describes the likelihood behind the criteria, in words.
 std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best);
 
-/// Chooses by the noise of the best fit. `resolution` is that of its readings, in their unit.
+/// Chooses the likelihood that suits the noise of the best fit. `resolution`: of the readings, in their unit.
 Likelihood ChooseLikelihood(const FitReport& best, double resolution);
 
 /// Sets AIC and AICc with `samples`, and BIC with `effective_samples`, for a row that has a log-likelihood.

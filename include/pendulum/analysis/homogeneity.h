@@ -51,7 +51,7 @@ struct AmplitudeDependence {
   double slope_std_error = 0;
   double p = 1;       ///< Probability that no slope explains as much, by the F test against the remaining scatter.
   double span = 0;    ///< slope · (largest - smallest amplitude² of a recording) / mean.
-  double rest_p = 1;  ///< p of the differences that remain beside the slope, by χ².
+  double rest_p = 1;  ///< p of the differences that the slope does not explain, by χ².
 
   bool explains() const;
 };

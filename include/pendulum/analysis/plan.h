@@ -34,9 +34,9 @@ struct Plan {
   std::size_t physical = 0;               ///< Number of inertia and friction parameters; these come first.
   std::vector<PlanRow> rows;              ///< Factor by factor, values increasing; each has the base case.
   std::optional<double> noise_of_levels;  ///< q/√12 [rad or rad/s], used as the noise if there is none.
-  /// The amplitude where |linear_bias| equals the relative error of inertia; rad, to 1e-4 of itself, the rest as in the
-  /// base. Above it the bias is larger, except where the effects of friction and finite amplitude cancel. Below it the
-  /// bias is smaller, or there is no whole period. May be absent.
+  /// The amplitude [rad] where |linear_bias| equals the relative error of inertia, to 1e-4 of itself; the other factors
+  /// are those of the base. Above it the bias is larger, except where the effects of friction and finite amplitude
+  /// cancel. Below it the bias is smaller, or there is no whole period. May be absent.
   std::optional<double> amplitude_of_equal_bias;
 };
 
@@ -49,7 +49,7 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
 /// Predicts standard errors for `base` with release angle × 1/4, 1/2, 1, 2 (at most 2.5 rad; a moving start keeps its
 /// phase), duration × 1/2, 1, 2, 4, rate × 1/4, 1, 4 and, if there is one, resolution × 1/4, 1, 4. Levels without noise
 /// have no Cramér-Rao bound; they count as white noise of q/√12, and a hold counts as one reading. kInvalidArgument:
-/// neither noise nor resolution. Both codes of SimulateRecording, for the base. Cost: 40 ms for 2000 samples.
+/// neither noise nor resolution. Other errors as SimulateRecording, for the base. Cost: 40 ms for 2000 samples.
 Result<Plan> MakePlan(const SyntheticOptions& base);
 
 }  // namespace pendulum

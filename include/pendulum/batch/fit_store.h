@@ -35,25 +35,25 @@ struct KnownAnswer {
   std::string location;  ///< "/v1/fits/ID"
 };
 
-/// One parameter of a fit in a list.
+/// One parameter of a fit, as a list shows it.
 struct ListedParameter {
   std::string name, unit;
   std::optional<double> estimate, std_error;
 };
 
-/// One model of a run in a list.
+/// The fit of one model to a run, as a list shows it.
 struct ListedModel {
   std::string model, status, reason, residual_unit;
   std::optional<double> rms_residual;
   std::vector<ListedParameter> parameters;
 };
 
-/// One run in a list.
+/// One run, as a list shows it.
 struct ListedFit {
   std::int64_t run = 0;  ///< Its number; later runs have larger numbers.
   std::string id, name, created;
   std::optional<std::string> batch;  ///< The id of its batch.
-  std::optional<int> exit_code;      ///< std::nullopt: it waits.
+  std::optional<int> exit_code;      ///< std::nullopt: the run waits.
   std::string reason;                ///< Why it could not be fitted.
   std::optional<std::string> recommended;
   std::vector<ListedModel> models;

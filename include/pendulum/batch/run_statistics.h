@@ -45,7 +45,7 @@ std::vector<Outlier> FindOutliers(const RunValues& values);
 /// Repeatability of one group: the observed scatter compared with the scatter expected from the errors.
 struct GroupRepeatability {
   std::size_t group = 0, runs = 0;
-  double mean = 0, std_error = 0;  ///< Weighted by the errors; from the errors alone.
+  double mean = 0, std_error = 0;  ///< Mean weighted by the errors, and its error from these errors alone.
   double chi2 = 0;                 ///< χ² of the values about the mean, with runs - 1 degrees of freedom.
   double between = 0;              ///< Standard deviation beyond the errors (random_effects.h).
 

@@ -62,9 +62,10 @@ struct StoreMeta {
 
 /// Numbers of a store's runs and fits.
 struct StoreCounts {
-  std::int64_t runs = 0, pending = 0, unfitted = 0;  ///< All; not refitted yet; could not be fitted.
-  std::int64_t earlier = 0;                          ///< Not in the last manifest.
-  std::int64_t fits = 0, failed = 0;                 ///< Rows (run, model); of these with status failed.
+  /// All runs, those not refitted yet, and those that could not be fitted.
+  std::int64_t runs = 0, pending = 0, unfitted = 0;
+  std::int64_t earlier = 0;           ///< Not in the last manifest.
+  std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
 };
 
 /// The results of a batch in an SQLite file with self-explaining tables (store_schema.h). Data is durable after the

@@ -8,8 +8,8 @@
 
 namespace pendulum {
 
-/// A rig's inertia from masses and lengths is accurate to some ten percent; the predicted frequency is accurate to this
-/// share.
+/// Relative error allowed for the frequency predicted from a rig. A rig's inertia from masses and lengths has an error
+/// of some ten percent.
 inline constexpr double kExpectedWithin = 0.15;
 
 /// How a recording was sampled compared with the motion of the pendulum. Times and frequencies are on its own clock.
@@ -18,14 +18,14 @@ struct Sampling {
   double jitter = 0;        ///< s, scatter of the intervals: 1.4826 times their median deviation.
   int gaps = 0;             ///< Intervals in which readings are missing.
   double longest_gap = 0;   ///< s
-  double frequency_hz = 0;  ///< Of the swing: the expected one if that aliases, otherwise the seen one; 0: unknown.
+  double frequency_hz = 0;  ///< Of the swing: as the rig predicts if that aliases, otherwise as seen; 0: unknown.
   /// 0 if the frequency is unknown. nyquist_margin is (rate / 2) / frequency; below 1 the swing aliases.
   double samples_per_period = 0, nyquist_margin = 0;
-  /// Peak to peak in resolutions of the largest swing and of the last period (at least 8 samples). 0 without a
+  /// Peak-to-peak values of the largest swing and of the last period (at least 8 samples), in resolutions. 0 without a
   /// resolution.
   double start_counts = 0, end_counts = 0;
   Eigen::Index saturated = 0;                                      ///< Readings at an end of the sensor's range.
-  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< From the turning points; from the rig.
+  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< From the turning points, and from the rig.
 };
 
 /// The frequency [Hz] that samples of an oscillation appear to have: |f - k rate| for the nearest k, at most rate / 2

@@ -12,9 +12,9 @@ namespace pendulum {
 /// All M turning points of a recording, disturbed or not. Half swing i goes from turning point i to i + 1.
 struct TurningPointTable {
   const Recording& recording;        ///< Must outlive the table.
-  double noise = 0, threshold = 0;   ///< rad or rad/s: noise between neighbours; least height of a turning point
+  double noise = 0, threshold = 0;   ///< rad or rad/s: noise between neighbours, and least height of a turning point
   std::vector<Extremum> turns = {};  ///< M
-  /// M, rad or rad/s: zero near each turning point, since it may drift, and distance from it; empty if M < 3
+  /// M, rad or rad/s: the zero near each turning point (it may drift), and the distance from this zero; empty if M < 3
   std::vector<double> zero = {}, amplitude = {};
   double half_period = 0;  ///< s, typical, for small swings
 

@@ -18,7 +18,7 @@ struct WindowBegin {
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
-    kDisturbed,               ///< What is before does not fit the rest.
+    kDisturbed,               ///< The motion before it does not fit the rest.
     kUndersampled,            ///< The whole recording.
     kUndersampledAfterFirst,  ///< The whole recording without its first reading.
     kUndersampledAfterHold,   ///< The whole recording without the hold.
@@ -36,8 +36,8 @@ struct WindowEnd {
     kAtRest,         ///< The pendulum is at rest from about `time`.
     kBeforeMove,     ///< The last turning point before the pendulum is moved.
     kBeforeStop,     ///< The last turning point before the pendulum is stopped.
-    kDisturbed,      ///< What follows does not fit the rest.
-    kNotConverging,  ///< With what follows the fit does not converge.
+    kDisturbed,      ///< The motion after it does not fit the rest.
+    kNotConverging,  ///< A fit that includes the later motion does not converge.
     kCountsLost,     ///< After it an unknown number of counts was lost.
   };
   Reason reason = Reason::kUnknown;

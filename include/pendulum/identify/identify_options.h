@@ -17,11 +17,11 @@ enum class Checks {
   kFull,      ///< All fits.
 };
 
-/// What is asked of recordings: how to read them, which swings to use, which models to fit, and how.
+/// How to read recordings, which swings to use, which models to fit, and how to fit them.
 struct IdentifyOptions {
   ReadOptions read;
   SwingChoice swing;
-  std::vector<std::string> models;  ///< In the order asked for; several are compared.
+  std::vector<std::string> models;  ///< In the requested order; several models are compared.
   FitOptions fit;                   ///< Its model is the first of `models`; its rig is replaced by the recording's.
   Checks checks = Checks::kStandard;
   bool closed_form_only = false;    ///< No fit is made; of `fit`, only the model and the stop token are used.

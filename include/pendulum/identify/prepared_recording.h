@@ -20,11 +20,11 @@ struct PreparedRecording {
   Recording recording;
   ChosenSwings swings;
   Eigen::Index samples = 0;  ///< As read, before repairs.
-  Identification known;      ///< What the identifications of all its swings have in common: rig, calibration, warnings.
+  Identification known;      ///< Common to the identifications of all its swings: rig, calibration, warnings.
 };
 
-/// Repairs a recording, takes the edges of an event-driven one (unless options.fit.noise asks otherwise), and chooses
-/// its swings. `rig` replaces the rig that the recording describes. Errors as ParseRig and ChooseSwings.
+/// Repairs a recording, converts an event-driven one to edges (unless options.fit.noise requests otherwise), and
+/// chooses its swings. `rig` replaces the rig that the recording describes. Errors as ParseRig and ChooseSwings.
 Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions& options, std::optional<Rig> rig);
 
 /// The same from a file; "-" is standard input. Errors as ReadRecording too.

@@ -20,8 +20,8 @@ struct ReportedEstimate {
   std::string unit;    ///< Unit; inertia and torques are in SI with a rig, in units of G without.
 };
 
-/// Quantities from the linear pendulum's formulas, in the order of LogDecrement; without corrected ones for linear
-/// gravity.
+/// Quantities from the linear pendulum's formulas, in the order of LogDecrement. For linear gravity the corrected
+/// inertia is left out.
 std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravity gravity,
                                               const std::optional<Rig>& rig);
 

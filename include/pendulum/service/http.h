@@ -30,7 +30,7 @@ struct HttpRequest {
 
 /// The new text of a stream of server-sent events since the last call.
 struct EventText {
-  std::string text;      ///< Complete events, each with its empty line; may be empty.
+  std::string text;  ///< Complete events, each with the empty line that ends it. No text if there are no new events.
   bool is_last = false;  ///< No more events follow.
 };
 

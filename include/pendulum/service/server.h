@@ -43,7 +43,7 @@ struct ServerCounts {
   std::size_t waiting = 0, running = 0;      ///< Requests in the lanes.
   std::size_t streams = 0;                   ///< Streams of events.
   std::size_t buffered = 0;                  ///< Bytes of bodies in memory.
-  std::uint64_t accepted = 0, answered = 0;  ///< Total connections; total answers.
+  std::uint64_t accepted = 0, answered = 0;  ///< Total numbers of connections and of answers.
   std::uint64_t refused = 0;                 ///< Answers made by the server itself, with HttpHandler::Refusal.
 };
 

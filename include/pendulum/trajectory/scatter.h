@@ -21,7 +21,7 @@ struct ScatteredParameter {
 /// bounds and `order` holds. `order` contains indices into `parameters`, as FindOrderedPair gives them; negative means
 /// no order. The draws depend only on the seed and differ from the noise that SimulateRecording makes with the same
 /// seed. kInvalidArgument: none of a thousand draws was admissible; the message gives the seed and the rule that the
-/// last broke.
+/// last draw violated.
 Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter> parameters, OrderedPair order,
                                               std::uint64_t seed);
 

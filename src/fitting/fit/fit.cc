@@ -25,7 +25,7 @@ namespace {
 
 // ---- Rescues -------------------------------------------------------------------------------------------------------
 
-/// A rescue of a fit: where it applies, attempts are made with other options, and the best acceptable one replaces the
+/// A rescue of a fit. If it applies, attempts are made with other options, and the best acceptable one replaces the
 /// attempt so far.
 struct Rescue {
   std::string_view name;  ///< As in SolverSummary::attempts.

@@ -44,7 +44,7 @@ using Vector [[gnu::vector_size(16)]] = double;
 }  // namespace baseline
 
 #ifdef PENDULUM_HAS_AVX
-#pragma GCC push_options  // the targets of instruction_set.h
+#pragma GCC push_options  // the same targets as in instruction_set.h
 #pragma GCC target("avx2,fma")
 namespace avx2 {
 inline constexpr std::size_t kLanes = 4;

@@ -13,7 +13,7 @@
 namespace pendulum {
 namespace {
 
-/// The swing's window as FindFreeSwings would have it, for ends that the user chose.
+/// The swing between two ends that the user chose, in the form that FindFreeSwings returns.
 FreeSwing GivenSwing(const Recording& part) {
   FreeSwing swing;
   swing.from = part.time[0];
@@ -59,7 +59,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   const auto longest =
       std::ranges::max_element(swings.found, {}, [](const FreeSwing& swing) { return swing.to - swing.from; });
-  // An end that the user gave belongs to the swing next to it.
+  // If the user gave an end, the swing next to that end is chosen.
   int k = from_given ? 1 : to_given ? count : static_cast<int>(longest - swings.found.begin()) + 1;
   if (choice.release > 0) k = choice.release;
   FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];

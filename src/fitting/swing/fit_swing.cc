@@ -21,18 +21,18 @@
 namespace pendulum {
 namespace {
 
-/// So many samples are enough to compare windows, and so many in a half swing.
+/// Limits of the fits that compare windows: samples, samples per half swing, and trajectories.
 constexpr Eigen::Index kMaxTrialSamples = 3000;
 constexpr double kPerHalfSwing = 12;
 constexpr int kMaxTrialTraces = 60;
 
-/// Fits to parts of one recording by its richest law, compared by what they leave of another part.
+/// Fits the richest law to windows of one recording, and compares the residuals of these fits in a part of it.
 class WindowTrials {
  public:
   WindowTrials(Recording recording, const FitOptions& options)
       : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMaxTrialTraces)) {}
 
-  /// rms over [from, to] of a fit to [begin, end], all in s; infinite when there is none.
+  /// rms of the residuals in [from, to] of a fit to [begin, end], all in s; infinite if there are none.
   double Rms(double begin, double end, double from, double to) {
     const Trial& trial = Fit(begin, end);
     double sum = 0;
@@ -70,7 +70,7 @@ class WindowTrials {
   std::vector<Trial> trials_;
 };
 
-/// How many turning points may be left out at an edge: none, one, two, four and so on, and a quarter of them.
+/// Numbers of turning points that may be left out at an edge: 0, 1, 2, 4 and so on, and a quarter of all.
 std::vector<std::size_t> TrimCandidates(std::size_t turns) {
   const std::size_t most = std::max<std::size_t>(turns / 4, 1);
   std::vector<std::size_t> steps = {0};
@@ -79,12 +79,12 @@ std::vector<std::size_t> TrimCandidates(std::size_t turns) {
   return steps;
 }
 
-/// The fewest turning points to leave out at an edge such that leaving out more makes the rest fit not much better; all
-/// the steps allow where that is never so. window(k) is the window without k of them.
+/// The smallest number in `steps` of turning points to leave out at an edge. It is enough if leaving out more hardly
+/// improves the fit of the rest; if none is enough, the largest number is returned. window(k) leaves out k of them.
 template <typename Window>
 std::size_t CountDisturbedTurningPoints(WindowTrials& trials, const std::vector<std::size_t>& steps,
                                         const Window& window) {
-  // No law is exact: a shorter window fits a little better, the more so the shorter it is.
+  // No law is exact: the shorter a window is, the better it fits.
   constexpr double kAllowedRatio = 1.1;
   constexpr double kAllowedPerTurningPoint = 0.02;  // per turning point
   const auto fits = [&](std::size_t less, std::size_t more) {
@@ -111,7 +111,7 @@ std::vector<double> InnerTurningPoints(const FreeSwing& swing) {
   return turns;
 }
 
-/// Leaves out what disturbs the swing at one of its ends.
+/// Leaves out a disturbed part at one end of the swing.
 void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
   const Recording excerpt = Excerpt(recording, kMaxTrialSamples, kPerHalfSwing / swing.half_period, at_end);
   const double from = excerpt.time[0];
@@ -138,7 +138,8 @@ void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end,
   }
 }
 
-/// A value of the start belongs to the first sample, or to the release, that the user meant.
+/// Whether the user gave a value of the start. It belongs to the first sample or the release of the present window,
+/// whose beginning must then stay.
 bool ConstrainsStart(const FitOptions& options) {
   const auto names = [](const auto& map) {
     return std::ranges::any_of(map, [](const auto& entry) {
@@ -149,7 +150,7 @@ bool ConstrainsStart(const FitOptions& options) {
   return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
 }
 
-/// Leaves out what disturbs the swing at its two ends, unless the user chose them.
+/// Leaves out disturbed parts at both ends of the swing, unless the user chose the end.
 void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
   if (!(swing.half_period > 0)) return;
   if (!swing.from_given && !ConstrainsStart(options)) TrimEnd(recording, options, false, swing);
@@ -157,7 +158,7 @@ void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swin
 }
 
 /// Removes whole turns over the top from the readings, so that the zero angle is near the sensor's zero. Returns a
-/// sentence that says how many, or an empty one.
+/// sentence with the number of turns, or an empty one.
 std::string UnwrapOffset(Recording& used) {
   if (used.quantity != Quantity::kAngle || !used.is_calibrated()) return "";
   const double mean = used.value.mean();
@@ -187,7 +188,7 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
   return result;
 }
 
-/// Ends the window earlier until the fit converges: near a stop it may have no minimum.
+/// Ends the window earlier until the fit converges. Near a stop of the pendulum the cost may have no minimum.
 SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
   const std::vector<double> turns = InnerTurningPoints(result.swing);
   const Recording thinned =
@@ -211,7 +212,7 @@ SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
   return result;
 }
 
-/// A swing smaller than what was left out may be the quiet end of something else.
+/// If the motion outside the window is larger, the swing may be only the quiet end of another motion.
 void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
   constexpr double kLarger = 1.3;
   if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
@@ -221,7 +222,7 @@ void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
                        "recording, and choose with --from and --to if this is not the part you want"});
 }
 
-/// A pendulum's errors are none of something else.
+/// Also removes the errors, because they are valid only for a pendulum.
 void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = "this is not a free pendulum's swing: " + why;
@@ -229,8 +230,8 @@ void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
   WithdrawErrors("not a pendulum", fit);
 }
 
-/// Ends a window before counts are lost that cannot be told, if more than half of it is left and all that were lost in
-/// that can be.
+/// If the number of counts lost at a jump is uncertain, ends the window before that jump. At least half of the window
+/// must remain, and all losses in it must be certain.
 void EndBeforeUncertainJump(const FitOptions& options, FreeSwing& swing, SwingFit& result, OffsetJumps& jumps) {
   constexpr int kMaxTrials = 6;
   constexpr double kMinLength = 0.5, kStep = 0.05;  // of the window
@@ -252,7 +253,7 @@ void EndBeforeUncertainJump(const FitOptions& options, FreeSwing& swing, SwingFi
   }
 }
 
-/// Moves back the readings that counts were lost before, and fits them; says what was found.
+/// Shifts the readings after lost counts back and fits them again. Returns the jumps that were found.
 std::optional<OffsetJumps> CorrectOffset(FreeSwing& swing, const FitOptions& options, Result<SwingFit>& result) {
   std::optional<OffsetJumps> jumps = FindOffsetJumps(result->used, options);
   if (jumps && !swing.to_given) EndBeforeUncertainJump(options, swing, *result, *jumps);
@@ -272,7 +273,7 @@ std::optional<std::string> NotAPendulumReason(const SwingFit& result, const std:
 struct SwingState {
   FreeSwing swing;                   ///< The window of the next fit.
   SwingFit result;                   ///< Of the last fit.
-  std::optional<OffsetJumps> jumps;  ///< Of the readings' zero; std::nullopt: not looked for.
+  std::optional<OffsetJumps> jumps;  ///< Of the readings' zero; std::nullopt: not searched.
   bool was_trimmed = false;          ///< Disturbed ends were left out.
   bool is_pendulum = true;
 
@@ -285,16 +286,16 @@ struct SwingState {
   bool IsTrimmed() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
 };
 
-/// A rescue of a swing's fit: where it applies, it may change the window, the readings or the verdict.
+/// A rescue of a swing's fit. If it applies, it may change the window, the readings or the verdict.
 struct WindowRescue {
   std::string_view name;  ///< As in SolverSummary::attempts.
   bool (*applies)(const SwingState& state);
-  Result<bool> (*run)(const FitOptions& options, SwingState& state);  ///< Returns whether the fit is another one now.
+  Result<bool> (*run)(const FitOptions& options, SwingState& state);  ///< Returns whether the fit has changed.
 };
 
 bool IsLacking(const SwingState& state) { return state.IsLacking(); }
 
-/// Lost counts move the zero by steps, which leave residuals that are no noise.
+/// Lost counts shift the zero in steps, so the residuals are more than noise.
 bool MayHaveJumped(const SwingState& state) { return state.IsLacking() || MayHaveOffsetJump(state.result.fit); }
 
 Result<bool> CorrectJumps(const FitOptions& options, SwingState& state) {
@@ -313,7 +314,7 @@ Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
   return why.has_value();
 }
 
-/// A hand at the beginning or the end of a swing does not fit the rest.
+/// A part that a hand disturbed at the beginning or the end of a swing does not fit the rest.
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   Trim(state.result.used, options, state.swing);
   if (!state.IsTrimmed()) return false;
@@ -324,12 +325,12 @@ Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   return true;
 }
 
-/// Jumps that a disturbed end had hidden.
+/// A disturbed end may have hidden jumps inside the window.
 bool MayHaveJumpedInside(const SwingState& state) {
   return state.was_trimmed && !(state.jumps && state.jumps->AreCorrected());
 }
 
-/// Near its stop a swing may have no minimum.
+/// Near a stop of the pendulum the cost may have no minimum.
 bool MayConvergeEarlier(const SwingState& state) {
   return state.result.fit.termination != Termination::kConverged && !state.swing.to_given;
 }
@@ -348,7 +349,7 @@ constexpr std::array<WindowRescue, 5> kWindowRescues = {{
     {"earlier_end", MayConvergeEarlier, TryEarlierEnd},
 }};
 
-/// Applies the rescues in turn, until the fit leaves noise alone or is no pendulum's.
+/// Applies the rescues in order, until the fit leaves only noise or the motion is not a pendulum's.
 Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, SwingState& state) {
   std::vector<AttemptRecord> records;
   for (const WindowRescue& rescue : kWindowRescues) {
@@ -374,7 +375,7 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
   if (why) RejectAsNotAPendulum(*why, fit);
 }
 
-/// Once a stop is requested, the result means nothing.
+/// After a stop request the result is meaningless.
 Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
   if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
   Result<SwingFit> first = FitBetween(std::move(recording), swing, options);

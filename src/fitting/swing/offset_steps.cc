@@ -83,7 +83,7 @@ class StepSearch {
     return size() > 0 && now_.autoregression.empty() && ExplainsMoreThanDrift();
   }
 
-  /// Adds the step that explains most, if it is significant.
+  /// Adds the step that explains most of the residuals, if it is significant.
   bool Add() {
     const std::optional<Trial> best = BestTrial();
     if (!best) return false;
@@ -127,7 +127,8 @@ class StepSearch {
     return columns;
   }
 
-  /// Adds the steps that explain most one after the other. Returns false if `most` steps are not enough.
+  /// Adds steps one by one, each the one that explains most of the residuals. Returns false if `most` steps are not
+  /// enough.
   bool AddAssumingWhiteNoise(int most) {
     Explained white = regression_.ExplainAsWhite(Columns(places_));
     while (static_cast<int>(size()) < most) {
@@ -144,7 +145,7 @@ class StepSearch {
     return false;
   }
 
-  /// Removes, one by one, steps that are not significant in the presence of the others.
+  /// Removes, one by one, steps that are not significant if the other steps are kept.
   void RemoveInsignificantSteps() {
     now_ = regression_.Explain(Columns(places_));
     while (size() > 0) {
@@ -191,7 +192,7 @@ class StepSearch {
     return best;
   }
 
-  /// Moves the newest step and its neighbours to the places where they explain most in the presence of the others.
+  /// Moves steps one by one to better places, with the other steps kept, until none moves or kMaxPasses are done.
   void RefinePlaces() {
     constexpr int kMaxPasses = 3;
     for (int pass = 0; pass < kMaxPasses; ++pass) {

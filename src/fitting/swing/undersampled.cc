@@ -282,7 +282,7 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
 
 /// The reason why a recording with well-sampled swings looks undersampled; empty if it may be undersampled.
 std::string ImplausiblePeriodText(const Recording& recording) {
-  constexpr double kLongest = 300;  // s: a string of twenty kilometres
+  constexpr double kLongest = 300;  // s: the period of a pendulum 22 km long
   constexpr double kSeen = 20;      // samples per period; aliasing rarely looks this smooth
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
   if (!swings || swings->empty()) return "";

@@ -106,7 +106,7 @@ async function assertJoint(t, ...files) {
   const recommended = result.comparison.recommended;
   const shown = result.fits.find((one) => one.model === recommended) ?? result.fits.find((one) => one.status === 'converged');
   assert.equal(await page.locator('[data-forest]').count(), shown.shared.length);
-  // Values are rounded to the last digit of their error, which is at most 1 / 3.55 of the error.
+  // Values are rounded to the last digit of their error. A unit of that digit is at most 1 / 3.55 of the error.
   for (const name of shown.shared) {
     const { runs } = shown.homogeneity.parameters[name];
     const told = [...runs, shown.parameters[name]].filter((one) => one.std_error !== null && one.estimate > 1e-4);

@@ -110,7 +110,7 @@ TEST(Bootstrap, EstimatesScatterAroundTheFitAsExpected) {
     const Eigen::ArrayXd deviation =
         (bootstrap.estimates.col(i).array() - fitted.At(i)) / std::sqrt(errors.covariance(i, i));
     EXPECT_NEAR(deviation.mean(), 0, 4 / std::sqrt(999)) << i;
-    // Noise is drawn with σ from N - F, as in the standard errors.
+    // The noise is drawn with the σ for N - F degrees of freedom, as in the standard errors.
     EXPECT_NEAR(std::sqrt(deviation.square().mean()), 1, 4 / std::sqrt(2 * 999)) << i;
   }
 }

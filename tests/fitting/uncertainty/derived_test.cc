@@ -165,12 +165,12 @@ TEST(SetDerivedIntervals, PropagatesTheEndsOfOneParameter) {
 
 TEST(SetDerivedIntervals, AddsDistancesOfTwoParametersInQuadrature) {
   const Quantities quantities = WithIntervals({0.001, 0.003}, {0.003, 0.003});
-  // ζ = b / (2 sqrt(I)): 0.005; by b 0.0025 to 0.0075, by I 0.001 / 0.22 to 0.001 / 0.19.
+  // ζ = b / (2 sqrt(I)) = 0.005. The ends of b give 0.0025 and 0.0075, those of I 0.001 / 0.22 and 0.001 / 0.19.
   ExpectInterval(quantities.at("damping_ratio"), 0.005 - std::hypot(0.0025, 0.005 - 0.001 / 0.22),
                  0.005 + std::hypot(0.0025, 0.001 / 0.19 - 0.005));
-  // Q = sqrt(I) / b: 100; by b 66.7 to 200, by I 95 to 110.
+  // Q = sqrt(I) / b = 100. The ends of b give 66.7 and 200, those of I 95 and 110.
   ExpectInterval(quantities.at("quality_factor"), 100 - std::hypot(100 - 200.0 / 3, 5), 100 + std::hypot(100, 10));
-  // b / I: 0.05; by b 0.025 to 0.075.
+  // b / I = 0.05. The ends of b give 0.025 and 0.075.
   ExpectInterval(quantities.at("viscous_over_inertia"), 0.05 - std::hypot(0.025, 0.05 - 0.002 / 0.0484),
                  0.05 + std::hypot(0.025, 0.002 / 0.0361 - 0.05));
 }

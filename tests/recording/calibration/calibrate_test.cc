@@ -60,7 +60,8 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfNorris) {
   ExpectRelative(*fit.calibration.residual_std_dev, 0.884796396144373, kDigits);
 }
 
-/// NIST StRD, linear least squares, Pontius: a load cell. Squares of its readings reach 9e12 beside a constant of 7e-4.
+/// NIST StRD, linear least squares, Pontius: a load cell. Squares of its readings reach 9e12, but the constant of the
+/// curve is only 7e-4.
 TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
   const std::vector<double> y = {.11019,  .21956,  .32949,  .43899,  .54803,  .65694,  .76562,  .87487,
                                  .98292,  1.09146, 1.20001, 1.30822, 1.41599, 1.52399, 1.63194, 1.73947,

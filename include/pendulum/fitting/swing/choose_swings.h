@@ -17,21 +17,22 @@ struct SwingChoice {
   static constexpr int kLongest = 0;
   static constexpr int kAll = -1;
 
-  /// The window's first and last time; NaN: as the data say.
+  /// The window's first and last time; NaN: chosen from the data.
   double from = std::numeric_limits<double>::quiet_NaN();
   double to = std::numeric_limits<double>::quiet_NaN();
   int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
 };
 
-/// The free swings of a recording, and those of them that were asked for.
+/// The free swings of a recording, and the chosen ones.
 struct ChosenSwings {
   std::vector<FreeSwing> found;
   std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
 };
 
-/// Finds the free swings and chooses. An end the user gave is the end of the window; with both nothing is looked for.
-/// What is sampled too slowly for a pendulum such as the rig's (IsUndersampled) is one swing from end to end.
-/// kInvalidArgument: no swing of that number, or an empty window. kFailedPrecondition: as FindFreeSwings.
+/// Finds the free swings and chooses among them. A bound given by the user is used as it is; if both are given and no
+/// release is chosen, there is no search. A recording sampled too slowly for a pendulum such as the rig's
+/// (IsUndersampled) is one swing from end to end. kInvalidArgument: no swing of that number, or an empty window.
+/// kFailedPrecondition: as FindFreeSwings.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
                                   const std::optional<Rig>& rig = std::nullopt);
 

@@ -11,17 +11,17 @@ namespace pendulum {
 
 struct SwingFit {
   Recording used;   ///< The samples that were fitted, without warnings.
-  FreeSwing swing;  ///< What was fitted and why: `from` and `to` may lie further in than what was asked for.
+  FreeSwing swing;  ///< The fitted window, with reasons; it may be shorter than the requested one.
   FitReport fit;
 };
 
-/// Fits a free swing. Where more than noise is left, turning points at its ends are left out as long as the rest then
-/// fits clearly better by the richest law (warning `disturbed`), or until the fit converges; ends that the user chose
-/// stay. A swing that is undersampled goes to FitUndersampled. Warns `left_out` of larger motion outside. What is no
-/// pendulum's swing ends kNotConverged, `not_a_pendulum`. Readings before which an angle's zero jumped by whole counts
-/// are moved back, in `used` too (`lost_counts`); a zero that jumps otherwise ends kNotConverged, `zero_jumps`, and one
-/// that may have jumped is said, `zero_unsteady`. Errors as FitRecording. Cost: that of FitRecording, and where
-/// something is wrong some tens of small fits more.
+/// Fits a free swing. If the fit leaves more than noise, turning points at the ends are left out as long as the richest
+/// law then fits the rest clearly better (warning `disturbed`), or until the fit converges. Ends chosen by the user
+/// stay. FitUndersampled fits an undersampled swing. Larger motion outside the window gives the warning `left_out`. A
+/// motion that is not a pendulum's ends kNotConverged, with `not_a_pendulum`. If an angle's zero jumps by whole counts,
+/// the later readings are shifted back, also in `used` (`lost_counts`). If it jumps by another amount, the fit ends
+/// kNotConverged, with `zero_jumps`; a possible jump gives `zero_unsteady`. Errors as FitRecording. Cost: as
+/// FitRecording, and some tens of small fits if something is wrong.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

@@ -16,9 +16,10 @@ namespace pendulum {
 /// the wiper. Preconditions: 1 <= bits <= 32, voltages and travel positive, 0 < divider <= 1.
 struct AdcSensor {
   int bits = 10;
-  double reference_voltage = 5, supply_voltage = 5;  ///< V: just above full scale; across the potentiometer.
-  double travel_deg = 270;                           ///< Deg, electrical travel of the potentiometer.
-  double divider = 1;  ///< V at the converter for 1 V at the wiper: R2 / (R1 + R2), 1 without a divider.
+  /// V. The reference is one step above full scale; the supply is across the potentiometer.
+  double reference_voltage = 5, supply_voltage = 5;
+  double travel_deg = 270;  ///< Deg, electrical travel of the potentiometer.
+  double divider = 1;       ///< V at the converter for 1 V at the wiper: R2 / (R1 + R2), 1 without a divider.
 
   /// The largest count, 2ᵇⁱᵗˢ - 1.
   double FullScale() const;

@@ -30,7 +30,7 @@ struct FreeVariable {
   void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
 };
 
-/// The run of variables outside any structure or matrix with its own time.
+/// The run of all variables that do not belong to a structure or a matrix with its own time.
 constexpr const char* kTopLevel = "top level";
 
 constexpr const char* kObject = "an object";

@@ -33,8 +33,8 @@ function uncover(field: HTMLElement): void {
 }
 
 /**
- * Appends a problem and marks the fields that it names. Returns the element for the focus: the first of them, or the
- * problem.
+ * Appends a problem and marks the fields that it names. Returns the element for the focus: the first of these fields,
+ * or the problem if it names none.
  */
 export function tellProblem(place: HTMLElement, error: unknown, again?: () => void): HTMLElement {
   const main = place.closest('main') ?? document;
