@@ -91,7 +91,7 @@ def run(commands, bin_dir):
             raise Broken(f"exit code {code} of: {command}\n{done.stderr}")
     if len(outputs) != 2 * len(commands) + 1:
         raise Broken(f"the shell ended early:\n{done.stderr}")
-    return [output.replace(port, PORT) for output in outputs[0:-1:2]]
+    return [re.sub(rf"(?<=:){port}\b", PORT, output) for output in outputs[0:-1:2]]
 
 
 def executed(text, bin_dir):

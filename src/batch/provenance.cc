@@ -39,10 +39,11 @@ Json ReadJson(const ReadOptions& read) {
   return json;
 }
 
-/// Enumerations are stored by number. New values must be appended, otherwise the hash of unchanged options changes.
+/// Enumerations without names are stored by number. New values must be appended, otherwise the hash of unchanged
+/// options changes.
 Json FitJson(const FitOptions& fit) {
   return {{"gravity", fit.gravity ? Json(static_cast<int>(*fit.gravity)) : Json(nullptr)},
-          {"start", fit.start ? Json(static_cast<int>(*fit.start)) : Json(nullptr)},
+          {"start", fit.start ? Json(*fit.start == StartKind::kRelease ? "release" : "moving") : Json(nullptr)},
           {"fix", fit.fixed},
           {"init", fit.initial},
           {"bounds", RangesJson(fit.bounds)},

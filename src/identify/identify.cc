@@ -233,6 +233,7 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   });
   std::vector<RunModels> runs;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
+    if (!fitted[k] && options.fit.stop.stop_requested()) return FitStopped();
     if (!fitted[k]) return ErrorOfRun(fitted[k].error(), swings[k].path, swings[k].release);
     runs.push_back(*std::move(fitted[k]));
   }
@@ -293,6 +294,10 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
 }
 
 Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings) {
+  if (options.closed_form_only) {
+    return Error(StatusCode::kInvalidArgument,
+                 "several recordings are identified together by fits; closed forms are of each");
+  }
   auto swings = TakeAllSwings(std::move(recordings));
   if (!swings) return tl::unexpected(swings.error());
   if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());

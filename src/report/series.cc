@@ -110,7 +110,7 @@ bool HidesMotion(const Recording& used, const std::optional<Sampling>& sampling)
 /// Null where there is no motion, or it cannot be traced.
 Json MotionJson(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, SeriesDetail detail) {
   constexpr double kPointsPerPeriod = 60;  // straight lines between them are off by at most 0.14 % of the amplitude
-  constexpr double kMaxSteps = 1e5;
+  const double max_steps = detail == SeriesDetail::kAll ? 1e5 : 2e4;
   if (fit.termination == Termination::kFailed || fit.parameters.empty()) return nullptr;
   const double first = used.time[0], last = used.time[used.size() - 1];
   const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
@@ -119,7 +119,7 @@ Json MotionJson(const Recording& used, const FitReport& fit, const std::optional
   const std::optional<Trajectory> trajectory = motion.Trace();
   if (!trajectory || !(start < last)) return nullptr;
   const double duration = used.clock_scale * (last - start);  // true s
-  const double steps = std::ceil(std::min(kMaxSteps, kPointsPerPeriod * duration / motion.small_angle_period()));
+  const double steps = std::ceil(std::min(max_steps, kPointsPerPeriod * duration / motion.small_angle_period()));
   const double from_first = used.clock_scale * (start - first);
   const Eigen::VectorXd instants =
       Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(steps) + 1, from_first, from_first + duration);

@@ -30,7 +30,9 @@ HttpResponse Guarded(HttpResponse response) {
   const bool is_file =
       std::ranges::find(response.fields, "Content-Disposition", &HttpField::name) != response.fields.end();
   const bool is_page = type != response.fields.end() && type->value.starts_with("text/html") && !is_file;
-  response.fields.push_back({"Content-Security-Policy", is_page ? kPagePolicy : kDataPolicy});
+  if (std::ranges::find(response.fields, "Content-Security-Policy", &HttpField::name) == response.fields.end()) {
+    response.fields.push_back({"Content-Security-Policy", is_page ? kPagePolicy : kDataPolicy});
+  }
   response.fields.push_back({"X-Content-Type-Options", "nosniff"});
   response.fields.push_back({"Referrer-Policy", "no-referrer"});
   response.fields.push_back({"Cross-Origin-Resource-Policy", "same-origin"});

@@ -267,7 +267,12 @@ HttpResponse GetGuide(ServiceState& /*state*/, const Call& /*call*/) {
 HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
   const auto file = ReadGuideFile(state.options.docs, call.id);
   if (!file) return ProblemAnswer(file.error());
-  return PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));
+  HttpResponse response = PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));
+  // The guide needs no script, and its files are those of a folder that the operator chooses.
+  response.fields.push_back({"Content-Security-Policy",
+                             "default-src 'none'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action "
+                             "'none'; frame-ancestors 'none'"});
+  return response;
 }
 
 }  // namespace pendulum

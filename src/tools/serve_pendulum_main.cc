@@ -164,7 +164,8 @@ Result<int> Work(const std::vector<std::string>& positional) {
   options->service.say = LogWithTime;
   if (options->service.docs.empty()) {
     std::error_code fault;
-    options->service.docs = InstalledGuide(std::filesystem::read_symlink("/proc/self/exe", fault));
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", fault);
+    if (!fault) options->service.docs = InstalledGuide(program);
   }
   const sigset_t signals = EndingSignals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread starts, so all threads inherit it

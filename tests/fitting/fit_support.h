@@ -157,4 +157,13 @@ inline void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
   }
 }
 
+/// The names of the attempts whose result the fit is.
+inline std::vector<std::string> KeptAttempts(const FitReport& fit) {
+  std::vector<std::string> names;
+  for (const AttemptRecord& attempt : fit.solver.attempts) {
+    if (attempt.kept) names.push_back(attempt.name);
+  }
+  return names;
+}
+
 }  // namespace pendulum

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +67,33 @@ TEST(IdentifyJointly, RefusesOneSwing) {
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
   EXPECT_THAT(run.error().message, HasSubstr("there is one swing"));
+}
+
+TEST(IdentifyJointly, RefusesClosedFormsOnly) {
+  IdentifyOptions options;
+  options.models = {"coulomb"};
+  options.closed_form_only = true;
+  const auto run = IdentifyJointly(options, {});
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(run.error().message, HasSubstr("closed forms are of each"));
+}
+
+TEST(IdentifyJointly, BlamesNoRecordingForAStop) {
+  std::stop_source stop;
+  stop.request_stop();
+  IdentifyOptions options;
+  options.models = {"coulomb"};
+  options.fit.stop = stop.get_token();
+  options.shared = {"inertia"};
+  std::vector<PreparedRecording> recordings;
+  for (const char* path : {"datasets/runs_1.csv", "datasets/runs_2.csv"}) {
+    recordings.push_back(Must(PrepareFile(path, options, std::nullopt)));
+  }
+  const auto run = IdentifyJointly(options, std::move(recordings));
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, StatusCode::kTryAgain);
+  EXPECT_THAT(run.error().message, StartsWith("the fit was stopped"));
 }
 
 /// Copies of two recordings, each with a different rig.

@@ -115,5 +115,12 @@ TEST(IdentifiabilityJson, HasNullForNoAdvice) {
   EXPECT_EQ(all[1]["advice"], "let it swing for longer");
 }
 
+TEST(SolverJson, ListsTheAttemptsInTheirOrder) {
+  const SolverSummary solver{7, 15, "done", {{"moving_start", false}, {"earlier_end", true}}};
+  EXPECT_EQ(SolverJson(solver).dump(),
+            R"({"iterations":7,"evaluations":15,"termination":"done","attempts":[{"name":"moving_start","kept":false},)"
+            R"({"name":"earlier_end","kept":true}]})");
+}
+
 }  // namespace
 }  // namespace pendulum::fit_json_test

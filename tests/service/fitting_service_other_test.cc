@@ -26,6 +26,7 @@ using asked_service::Fields;
 using asked_service::FileText;
 using asked_service::Json;
 using asked_service::Recording;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -313,7 +314,9 @@ TEST_F(FittingServiceOtherTest, ServesTheGuide) {
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.body, "<p>Guide</p>");
   EXPECT_THAT(FieldOf(page, "Content-Type"), StartsWith("text/html"));
-  EXPECT_THAT(FieldOf(page, "Content-Security-Policy"), HasSubstr("script-src 'self'"));
+  const std::string policy = FieldOf(page, "Content-Security-Policy");
+  EXPECT_THAT(policy,
+              AllOf(StartsWith("default-src 'none'"), Not(HasSubstr("script-src")), HasSubstr("style-src 'self'")));
   EXPECT_EQ(FieldOf(Get("/docs/pictures/report.png"), "Content-Type"), "image/png");
   const HttpResponse again = Ask("GET", "/docs/index.html", {{"If-None-Match", FieldOf(page, "ETag")}});
   EXPECT_EQ(again.status, 304);

@@ -38,9 +38,9 @@ enum class SeriesDetail { kAll, kPage };
 /// turning point on its side. For a joint identification: an array with such an object per recording, in order.
 ///
 /// "motions" are the fitted motions at equal steps from the release, or from the first sample, to the last sample,
-/// about 60 per period, at most 100 001. Point i is at start_s + i interval_s on the file's clock: "angle" from the
-/// equilibrium [angle_unit], "rate" [angle_unit per true s], "reading" of the sensor [unit]. "motions" is null if the
-/// samples themselves show the motion: readings of an angle, without gaps, at least 12 per period.
+/// about 60 per period, at most 100 001, of kPage 20 001. Point i is at start_s + i interval_s on the file's clock:
+/// "angle" from the equilibrium [angle_unit], "rate" [angle_unit per true s], "reading" of the sensor [unit]. "motions"
+/// is null if the samples themselves show the motion: readings of an angle, without gaps, at least 12 per period.
 nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail = SeriesDetail::kAll);
 
 /// SeriesJson as one line of UTF-8 text.

@@ -23,6 +23,7 @@ const formulas = JSON.parse(require('fs').readFileSync(0));
 const render = ([text, displayMode]) => katex.renderToString(text, {displayMode, output: 'mathml', strict: 'ignore'});
 console.log(JSON.stringify(formulas.map(render)));
 """
+INLINE = re.compile(r"""<script\b|<[a-z]+\b[^>]*\sstyle=""")
 EXTERNAL = re.compile(r"""<(?:script|link|img|source|iframe|font)\b[^>]*(?:src|href)=["']?(?:https?:)?//|url\(["']?https?:""")
 
 
@@ -95,3 +96,5 @@ def on_post_build(config):
     for file in [*site.rglob("*.html"), *site.rglob("*.css")]:
         if found := EXTERNAL.search(file.read_text()):
             raise PluginError(f"{file.name} refers to the network: {found[0]}")
+        if found := INLINE.search(file.read_text()):
+            raise PluginError(f"{file.name} has {found[0]}, which the service's content security policy blocks")

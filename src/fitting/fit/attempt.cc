@@ -67,12 +67,6 @@ Attempt SolveProblem(std::unique_ptr<FitProblem> problem, const FitOptions& opti
   return attempt;
 }
 
-Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options) {
-  Result<FitProblem> problem = MakeFitProblem(recording, options);
-  if (!problem) return tl::unexpected(problem.error());
-  return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
-}
-
 /// Whether a search ended at a local minimum, and not because of one of its limits.
 bool IsAtLocalMinimum(const Attempt& attempt) {
   constexpr double kNear = 1, kNearDiscontinuity = 3;  // standard errors
@@ -92,6 +86,12 @@ void KeepBetter(Attempt other, Attempt& best) {
 }
 
 }  // namespace
+
+Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options) {
+  Result<FitProblem> problem = MakeFitProblem(recording, options);
+  if (!problem) return tl::unexpected(problem.error());
+  return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
+}
 
 double LogPosterior(const Attempt& attempt) {
   return attempt.solution.log_likelihood - 0.5 * attempt.cost->PriorSum(attempt.solution.parameters);

@@ -31,6 +31,7 @@ struct Rescue {
   std::string_view name;  ///< As in SolverSummary::attempts.
   bool (*applies)(const Attempt& attempt, const FitOptions& options);
   std::vector<FitOptions> (*alternatives)(const Attempt& attempt, const FitOptions& options);
+  Result<Attempt> (*solve)(const Recording& recording, const FitOptions& options);
   bool (*accepts)(const Attempt& other, const Attempt& attempt);
 };
 
@@ -61,7 +62,7 @@ bool ViolatesOrder(const Attempt& attempt, const FitOptions& /*options*/) {
 }
 
 template <StartKind kStart>
-std::vector<FitOptions> StartingSo(const Attempt& /*attempt*/, const FitOptions& options) {
+std::vector<FitOptions> WithStart(const Attempt& /*attempt*/, const FitOptions& options) {
   std::vector<FitOptions> alternatives = {options};
   alternatives.front().start = kStart;
   return alternatives;
@@ -88,9 +89,9 @@ bool KeepsOrder(const Attempt& other, const Attempt& /*attempt*/) {
 }
 
 constexpr std::array<Rescue, 3> kRescues = {{
-    {"moving_start", MayStartInMotion, StartingSo<StartKind::kMoving>, IsBetter},
-    {"release_start", MayStartHeld, StartingSo<StartKind::kRelease>, IsBetter},
-    {"other_reference_rates", ViolatesOrder, FromOtherReferenceRates, KeepsOrder},
+    {"moving_start", MayStartInMotion, WithStart<StartKind::kMoving>, MakeAttempt, IsBetter},
+    {"release_start", MayStartHeld, WithStart<StartKind::kRelease>, MakeAttempt, IsBetter},
+    {"other_reference_rates", ViolatesOrder, FromOtherReferenceRates, SolveFromOneStart, KeepsOrder},
 }};
 
 /// Applies the rescues in turn. Returns what was tried.
@@ -99,12 +100,13 @@ std::vector<AttemptRecord> ApplyRescues(const Recording& recording, const FitOpt
   for (const Rescue& rescue : kRescues) {
     if (!rescue.applies(attempt, options)) continue;
     std::optional<Attempt> best;
-    for (const FitOptions& alternative : rescue.alternatives(attempt, options)) {
-      Result<Attempt> other = MakeAttempt(recording, alternative);
+    const std::vector<FitOptions> alternatives = rescue.alternatives(attempt, options);
+    for (const FitOptions& alternative : alternatives) {
+      Result<Attempt> other = rescue.solve(recording, alternative);
       if (!other || !rescue.accepts(*other, attempt)) continue;
       if (!best || IsBetter(*other, *best)) best = *std::move(other);
     }
-    records.push_back({std::string(rescue.name), best.has_value()});
+    if (!alternatives.empty()) records.push_back({std::string(rescue.name), best.has_value()});
     if (best) attempt = *std::move(best);
   }
   return records;
@@ -152,7 +154,7 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
     report = ReportSimplerLaw(recording, options, *attempt->problem, violation);
     records.push_back({"simpler_law", true});
   }
-  if (report) report->solver.attempts = std::move(records);
+  if (report) report->solver.attempts.insert(report->solver.attempts.begin(), records.begin(), records.end());
   return report;
 }
 

@@ -303,9 +303,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.start = *start;
   problem.zero_motion = ZeroMotionOf(recording, sensor, options);
   problem.infos = FitParameters(*model, start->start, recording.quantity, problem.zero_motion, sensor);
-  const bool zero_motion_factors = problem.zero_motion != ZeroMotion::kNone;
-  if (zero_motion_factors && problem.start.parameters.size() < problem.infos.size())
-    problem.start.parameters.push_back(0);
+  const bool has_zero_motion = problem.zero_motion != ZeroMotion::kNone;
+  if (has_zero_motion && problem.start.parameters.size() < problem.infos.size()) problem.start.parameters.push_back(0);
   if (problem.start.parameters.size() != problem.infos.size()) {
     return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
   }

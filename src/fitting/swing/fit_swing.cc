@@ -283,7 +283,7 @@ struct SwingState {
     return fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
            fit.HasWarning("correlated_residuals");
   }
-  bool IsTrimmed() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
+  bool HasNewWindow() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
 };
 
 /// A rescue of a swing's fit. If it applies, it may change the window, the readings or the verdict.
@@ -291,6 +291,7 @@ struct WindowRescue {
   std::string_view name;  ///< As in SolverSummary::attempts.
   bool (*applies)(const SwingState& state);
   Result<bool> (*run)(const FitOptions& options, SwingState& state);  ///< Returns whether the fit has changed.
+  bool is_attempt = true;                                             ///< False: it may only reject the fit.
 };
 
 bool IsLacking(const SwingState& state) { return state.IsLacking(); }
@@ -317,7 +318,7 @@ Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
 /// A part that a hand disturbed at the beginning or the end of a swing does not fit the rest.
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   Trim(state.result.used, options, state.swing);
-  if (!state.IsTrimmed()) return false;
+  if (!state.HasNewWindow()) return false;
   Result<SwingFit> result = FitBetween(std::move(state.result.used), state.swing, options);
   if (!result) return tl::unexpected(result.error());
   state.result = *std::move(result);
@@ -343,7 +344,7 @@ Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
 
 constexpr std::array<WindowRescue, 5> kWindowRescues = {{
     {"offset_jumps", MayHaveJumped, CorrectJumps},
-    {"not_a_pendulum", IsLacking, RejectIfNoPendulum},
+    {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
     {"disturbed_ends", IsLacking, TrimDisturbedEnds},
     {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
     {"earlier_end", MayConvergeEarlier, TryEarlierEnd},
@@ -356,7 +357,8 @@ Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, Swing
     if (!state.is_pendulum || !rescue.applies(state)) continue;
     const Result<bool> changed = rescue.run(options, state);
     if (!changed) return tl::unexpected(changed.error());
-    records.push_back({std::string(rescue.name), *changed});
+    // A check that finds nothing is no attempt.
+    if (*changed || rescue.is_attempt) records.push_back({std::string(rescue.name), *changed});
   }
   return records;
 }

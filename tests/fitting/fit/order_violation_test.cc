@@ -41,6 +41,7 @@ TEST(FitRecording, NeverReportsAStictionBelowCoulomb) {
     ++tied;
     EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
     EXPECT_THAT(fit.reason, HasSubstr("which it never is"));
+    EXPECT_EQ(KeptAttempts(fit).back(), "simpler_law") << seed;
     EXPECT_EQ(fit.statistics.rms_residual, Fit(recording, ModelOptions("coulomb")).statistics.rms_residual) << seed;
   }
   EXPECT_GT(tied, 0);

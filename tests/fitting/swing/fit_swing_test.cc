@@ -23,6 +23,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Ge;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Le;
 using testing::Lt;
 using testing::Not;
@@ -91,6 +92,7 @@ TEST(FitSwing, ReportsWhatItRemoved) {
   run.duration = 20;
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
   ASSERT_THAT(Codes(result.fit), ElementsAre("disturbed"));
+  EXPECT_THAT(KeptAttempts(result.fit), ElementsAre("disturbed_ends"));
   EXPECT_EQ(
       result.fit.warnings[0].message,
       "left out as disturbed: the window begins at " + NumberText(result.swing.from, 4) +
@@ -104,6 +106,7 @@ TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {
     const Recording recording = Must(SimulateRecording(run));
     const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
     EXPECT_EQ(result.used.time, recording.time);
+    EXPECT_THAT(result.fit.solver.attempts, IsEmpty());
     EXPECT_THAT(Codes(result.fit), Not(Contains("disturbed")));
     ExpectTruthOfThePendulum(result.fit, run);
   }

@@ -83,6 +83,7 @@ TEST(FitSwing, CorrectsAndReportsLostCounts) {
   EXPECT_EQ(result.fit.termination, Termination::kConverged);
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("the zero jumps by -3 counts at 6.5"));
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("moved back by as much"));
+  EXPECT_EQ(KeptAttempts(result.fit).front(), "offset_jumps");
   EXPECT_FALSE(result.fit.HasWarning("lack_of_fit") || result.fit.HasWarning("correlated_residuals"));
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
