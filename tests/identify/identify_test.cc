@@ -115,7 +115,9 @@ TEST(IdentifyEach, ChecksTheMainFitAllFitsOrNone) {
     EXPECT_EQ(std::ranges::count_if(one.constancy, is_tested), tested);
     EXPECT_EQ(std::ranges::count_if(one.checks, is_compared), compared);
     EXPECT_EQ(one.closed_forms.has_value(), checks != Checks::kNone);
-    if (checks == Checks::kStandard) EXPECT_TRUE(is_tested(one.constancy[one.MainFit()]));
+    if (checks == Checks::kStandard) {
+      EXPECT_TRUE(is_tested(one.constancy[one.MainFit()]));
+    }
   }
 }
 
