@@ -47,7 +47,7 @@ struct RunFlag {
   std::string RunFlags::*value;
   std::string help;  ///< What it is, its unit, and what the default means. Other flags appear as --name.
   nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request.
-  std::string example = "";                 ///< A value for the description of the service; empty: none.
+  std::string example = {};                 ///< A value for the description of the service; empty: none.
   bool needs_fit = false;                   ///< It cannot be combined with --closed_form_only.
   bool is_local = false;                    ///< It names a file or threads; requests do not have it.
 };
