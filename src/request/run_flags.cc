@@ -59,8 +59,8 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMe
 constexpr std::array<Word<Checks>, 3> kChecks = {
     {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
 
-constexpr std::array<std::string_view, 11> kUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
-                                                     "m_s2", "px",  "m",     "cm",    "mm"};
+constexpr std::array<std::string_view, 11> kReadingUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
+                                                            "m_s2", "px",  "m",     "cm",    "mm"};
 
 /// Parses an integer value of a flag, at least `least`.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
@@ -179,8 +179,8 @@ Result<void> CheckReadFlags(const RunFlags& flags) {
   if (is_time_chosen && flags.time_column == flags.value_column) {
     return BadFlag("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
   }
-  if (!flags.unit.empty() && std::ranges::find(kUnits, flags.unit) == kUnits.end()) {
-    return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kUnits));
+  if (!flags.unit.empty() && std::ranges::find(kReadingUnits, flags.unit) == kReadingUnits.end()) {
+    return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kReadingUnits));
   }
   if (!flags.calibration.empty() && !flags.unit.empty() && flags.unit != "counts" && flags.unit != "volts") {
     return BadFlag("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
@@ -323,7 +323,7 @@ std::vector<RunFlag> MakeTable() {
        .value = &RunFlags::unit,
        .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default that in the "
                "column's name.",
-       .schema = {{"enum", kUnits}, {"type", "string"}}},
+       .schema = {{"enum", kReadingUnits}, {"type", "string"}}},
       {.name = "sample_rate_hz",
        .value = &RunFlags::sample_rate_hz,
        .help = "Samples per second of a file without times; default its line # sample_rate_hz.",
