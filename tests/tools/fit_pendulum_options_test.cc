@@ -159,7 +159,7 @@ TEST(MakeFitPendulumOptions, AcceptsParametersOfSomeModelsOnly) {
 TEST(MakeFitPendulumOptions, AcceptsThreeKindsOfStart) {
   FitPendulumFlags flags = WithData();
   flags.start = "held";
-  EXPECT_EQ(Refusal(flags), "--start is 'held'; it must be auto, release or moving");
+  EXPECT_EQ(Refusal(flags), "--start is 'held'; it must be one of auto, release, moving");
   flags.start = "release";
   EXPECT_EQ(MakeFitPendulumOptions(flags)->fit.start, StartKind::kRelease);
 }
