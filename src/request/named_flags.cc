@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <variant>
 
 #include "pendulum/request/flag_values.h"
 
@@ -25,18 +26,22 @@ using SimulationFlag = NamedFlag<SimulationFlags, Value>;
 template <typename Value>
 using CalibrationFlag = NamedFlag<CalibrationFlags, Value>;
 
-constexpr std::array<NamedFlag<RunFlags, bool>, 1> kRunSwitches = {{{"closed_form_only", &RunFlags::closed_form_only}}};
+/// A flag of a fit, whose member is of one of several types.
+struct NamedRunFlag {
+  std::string_view name;
+  decltype(RunFlag::value) member;
+};
 
-/// The texts of RunFlagTable that requests may give; `models` is another name of `model`.
-const std::vector<NamedFlag<RunFlags, std::string>>& RunTexts() {
-  static const auto texts = [] {
-    std::vector<NamedFlag<RunFlags, std::string>> all = {{"models", &RunFlags::model}};
+/// The flags of RunFlagTable that requests may give; `models` is another name of `model`.
+const std::vector<NamedRunFlag>& NamedRunFlags() {
+  static const auto flags = [] {
+    std::vector<NamedRunFlag> all = {{"models", &RunFlags::model}};
     for (const RunFlag& flag : RunFlagTable()) {
       if (!flag.is_local) all.push_back({flag.name, flag.value});
     }
     return all;
   }();
-  return texts;
+  return flags;
 }
 
 constexpr std::array<SimulationFlag<std::string>, 7> kSimulationTexts = {{{"model", &SimulationFlags::model},
@@ -98,11 +103,20 @@ Result<void> Parse(std::string_view flag, const std::string& text, std::uint64_t
   return ParseWhole(flag, text, value);
 }
 
+template <typename Flags, typename Value>
+Result<void> Set(Value Flags::*member, std::string_view name, const std::string& text, Flags& flags) {
+  return Parse("--" + std::string(name), text, flags.*member);
+}
+
+Result<void> Set(decltype(RunFlag::value) member, std::string_view name, const std::string& text, RunFlags& flags) {
+  return std::visit([&](auto one) { return Set(one, name, text, flags); }, member);
+}
+
 /// Sets the member with this name, if the table has it.
 template <typename Flags, typename Table>
 Result<void> SetIfNamed(const Table& table, std::string_view name, const std::string& text, Flags& flags) {
   for (const auto& flag : table) {
-    if (flag.name == name) return Parse("--" + std::string(name), text, flags.*flag.member);
+    if (flag.name == name) return Set(flag.member, name, text, flags);
   }
   return {};
 }
@@ -139,7 +153,7 @@ Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
 
 }  // namespace
 
-std::vector<std::string_view> RunFlagNames() { return NamesOf(RunTexts(), kRunSwitches); }
+std::vector<std::string_view> RunFlagNames() { return NamesOf(NamedRunFlags()); }
 std::vector<std::string_view> SimulationFlagNames() {
   return NamesOf(kSimulationTexts, kSimulationNumbers, kSimulationSwitches, kSimulationWholes);
 }
@@ -156,7 +170,7 @@ Result<RunFlags> RunFlagsOf(const FlagTexts& texts) {
   if (texts.contains("model") && texts.contains("models")) {
     return BadFlag("--model and --models are one flag, and both are given; leave one of them out");
   }
-  return FlagsOf<RunFlags>(texts, RunTexts(), kRunSwitches);
+  return FlagsOf<RunFlags>(texts, NamedRunFlags());
 }
 
 Result<SimulationFlags> SimulationFlagsOf(const FlagTexts& texts) {

@@ -229,7 +229,8 @@ Result<void> CheckClosedFormOnly(const RunFlags& flags) {
   if (!flags.closed_form_only) return {};
   const RunFlags none;
   for (const RunFlag& flag : RunFlagTable()) {
-    if (flag.needs_fit && flags.*flag.value != none.*flag.value) return NeedsFitError("--" + std::string(flag.name));
+    const bool is_given = std::visit([&](auto member) { return flags.*member != none.*member; }, flag.value);
+    if (flag.needs_fit && is_given) return NeedsFitError("--" + std::string(flag.name));
   }
   return {};
 }
@@ -308,6 +309,11 @@ std::vector<RunFlag> MakeTable() {
        .schema = TextSchema(),
        .example = "inertia=0.079:0.001",
        .needs_fit = true},
+      {.name = "closed_form_only",
+       .value = &RunFlags::closed_form_only,
+       .help = "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
+               "volts without a calibration.",
+       .schema = {{"type", "boolean"}, {"default", false}}},
       {.name = "time_column",
        .value = &RunFlags::time_column,
        .help = "Column of times, name or number from 1 on, with :s, :ms or :us where the name has no unit; none uses "

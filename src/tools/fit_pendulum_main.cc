@@ -33,9 +33,6 @@ DEFINE_string(data_list, "", "File that lists recordings, one path a line, inste
 DEFINE_string(shared, "",
               "What several recordings have in common: all of inertia and friction, some of their names, or none (each "
               "is then fitted by itself); default all of several recordings, none of one recording's releases.");
-DEFINE_bool(closed_form_only, false,
-            "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
-            "volts without a calibration.");
 DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
 DEFINE_string(series, "",
@@ -75,7 +72,6 @@ FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
   flags.report = FLAGS_report;
   flags.markdown = FLAGS_markdown;
   flags.terminal_plot = FLAGS_terminal_plot;
-  flags.closed_form_only = FLAGS_closed_form_only;
   flags.positional = positional;
   return flags;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/registered_run_flags.h"
 
-#include <string>
+#include <variant>
 
 #include <gflags/gflags.h>
 
@@ -23,8 +23,12 @@ RunFlags& Defaults() {
 
 void RegisterRunFlags() {
   for (const RunFlag& flag : RunFlagTable()) {
-    gflags::FlagRegisterer(flag.name.data(), flag.help.c_str(), __FILE__, &(Values().*flag.value),
-                           &(Defaults().*flag.value));
+    std::visit(
+        [&](auto member) {
+          gflags::FlagRegisterer(flag.name.data(), flag.help.c_str(), __FILE__, &(Values().*member),
+                                 &(Defaults().*member));
+        },
+        flag.value);
   }
 }
 

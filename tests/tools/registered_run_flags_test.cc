@@ -2,6 +2,7 @@
 #include "tools/registered_run_flags.h"
 
 #include <string>
+#include <variant>
 
 #include <gflags/gflags.h>
 #include <gtest/gtest.h>
@@ -14,9 +15,11 @@ TEST(RegisterRunFlags, MakesEachFlagOfTheTableKnownToGflagsOnce) {
   for (const RunFlag& flag : RunFlagTable()) {
     gflags::CommandLineFlagInfo info;
     ASSERT_TRUE(gflags::GetCommandLineFlagInfo(flag.name.data(), &info)) << flag.name;
-    EXPECT_EQ(info.type, "string");
+    EXPECT_EQ(info.type, flag.name == "closed_form_only" ? "bool" : "string");
     EXPECT_EQ(info.description, flag.help);
-    EXPECT_EQ(info.default_value, RunFlags().*flag.value);
+    if (const auto* text = std::get_if<std::string RunFlags::*>(&flag.value)) {
+      EXPECT_EQ(info.default_value, RunFlags().**text);
+    }
   }
   gflags::SetCommandLineOption("noise", "quantized");
   EXPECT_EQ(RegisteredRunFlags().noise, "quantized");

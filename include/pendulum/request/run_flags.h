@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -44,7 +45,7 @@ struct RunFlags {
 /// A flag for reading and fitting a recording.
 struct RunFlag {
   std::string_view name;
-  std::string RunFlags::*value;
+  std::variant<std::string RunFlags::*, bool RunFlags::*> value;
   std::string help;  ///< What it is, its unit, and what the default means. Other flags appear as --name.
   nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request.
   std::string example = {};                 ///< A value for the description of the service; empty: none.
@@ -52,7 +53,7 @@ struct RunFlag {
   bool is_local = false;                    ///< It names a file or threads; requests do not have it.
 };
 
-/// All members of RunFlags that are texts. The command line, --help, the parameters of requests and openapi.json are
+/// All members of RunFlags. The command line, --help, the parameters of requests and openapi.json are
 /// made from this table.
 const std::vector<RunFlag>& RunFlagTable();
 
