@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -24,18 +25,19 @@ Result<int> ParseRelease(const RunFlags& flags) {
   return BadFlag("--release is '" + flags.release + "'; it must be all, or the number of a release from 1 on");
 }
 
-/// A word and its meaning.
+/// A word, its meaning, and its label in the form of the service.
 template <typename Meaning>
 struct Word {
   std::string_view word;
   Meaning meaning;
+  std::string_view label = {};
 };
 
 template <typename Meaning, std::size_t kWords>
 Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
                           const std::array<Word<Meaning>, kWords>& words) {
   std::vector<std::string_view> names;
-  for (const auto& [word, meaning] : words) {
+  for (const auto& [word, meaning, label] : words) {
     if (word == value) return meaning;
     names.push_back(word);
   }
@@ -43,24 +45,38 @@ Result<Meaning> ParseWord(std::string_view flag, const std::string& value,
 }
 
 using StartWord = Word<std::optional<StartKind>>;
-constexpr std::array<StartWord, 3> kStarts = {
-    {{"auto", std::nullopt}, {"release", StartKind::kRelease}, {"moving", StartKind::kMoving}}};
+constexpr std::array<StartWord, 3> kStarts = {{{"auto", std::nullopt, "found in the recording"},
+                                               {"release", StartKind::kRelease, "held at rest, then released"},
+                                               {"moving", StartKind::kMoving, "already swinging"}}};
 using NoiseWord = Word<std::optional<NoiseFamily>>;
-constexpr std::array<NoiseWord, 4> kNoises = {{{"auto", std::nullopt},
-                                               {"gaussian", NoiseFamily::kGaussian},
-                                               {"quantized", NoiseFamily::kQuantized},
-                                               {"edges", NoiseFamily::kEdges}}};
-constexpr std::array<NoiseWord, 3> kLosses = {
-    {{"none", std::nullopt}, {"huber", NoiseFamily::kHuber}, {"student", NoiseFamily::kStudent}}};
-constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {{{"auto", IntervalMethod::kAuto},
-                                                             {"covariance", IntervalMethod::kCovariance},
-                                                             {"profile", IntervalMethod::kProfile},
-                                                             {"bootstrap", IntervalMethod::kBootstrap}}};
+constexpr std::array<NoiseWord, 4> kNoises = {
+    {{"auto", std::nullopt, "found in the recording"},
+     {"gaussian", NoiseFamily::kGaussian, "even scatter"},
+     {"quantized", NoiseFamily::kQuantized, "rounding to the steps of the sensor"},
+     {"edges", NoiseFamily::kEdges, "edges of an encoder’s counts, a row for each change"}}};
+constexpr std::array<NoiseWord, 3> kLosses = {{{"none", std::nullopt, "there are none"},
+                                               {"huber", NoiseFamily::kHuber, "count less (Huber)"},
+                                               {"student", NoiseFamily::kStudent, "are expected (Student’s t)"}}};
+constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {
+    {{"auto", IntervalMethod::kAuto, "chosen by the fit"},
+     {"covariance", IntervalMethod::kCovariance, "from the covariance (fast)"},
+     {"profile", IntervalMethod::kProfile, "from the likelihood"},
+     {"bootstrap", IntervalMethod::kBootstrap, "from simulated repetitions (slow)"}}};
 constexpr std::array<Word<Checks>, 3> kChecks = {
     {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
 
-constexpr std::array<std::string_view, 11> kReadingUnits = {"rad",  "deg", "rad_s", "deg_s", "counts", "volts",
-                                                            "m_s2", "px",  "m",     "cm",    "mm"};
+constexpr std::array<FlagWord, 12> kReadingUnits = {{{"", "in the column’s name"},
+                                                     {"rad", "radians"},
+                                                     {"deg", "degrees"},
+                                                     {"rad_s", "radians per second"},
+                                                     {"deg_s", "degrees per second"},
+                                                     {"counts", "counts of a converter"},
+                                                     {"volts", "volts"},
+                                                     {"m_s2", "metres per second squared"},
+                                                     {"px", "pixels"},
+                                                     {"m", "metres"},
+                                                     {"cm", "centimetres"},
+                                                     {"mm", "millimetres"}}};
 
 /// Parses an integer value of a flag, at least `least`.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
@@ -179,8 +195,9 @@ Result<void> CheckReadFlags(const RunFlags& flags) {
   if (is_time_chosen && flags.time_column == flags.value_column) {
     return BadFlag("--time_column and --value_column are both '" + flags.time_column + "'; choose two columns");
   }
-  if (!flags.unit.empty() && std::ranges::find(kReadingUnits, flags.unit) == kReadingUnits.end()) {
-    return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(kReadingUnits));
+  if (std::ranges::find(kReadingUnits, flags.unit, &FlagWord::word) == kReadingUnits.end()) {
+    const auto units = kReadingUnits | std::views::drop(1) | std::views::transform(&FlagWord::word);
+    return BadFlag("--unit is '" + flags.unit + "'; it must be one of " + NameList(units));
   }
   if (!flags.calibration.empty() && !flags.unit.empty() && flags.unit != "counts" && flags.unit != "volts") {
     return BadFlag("--calibration turns counts or volts into an angle, and --unit says that the values are in " +
@@ -242,16 +259,25 @@ using Json = nlohmann::ordered_json;
 Json TextSchema() { return {{"type", "string"}}; }
 
 template <typename Meaning, std::size_t kWords>
-Json WordSchema(const std::array<Word<Meaning>, kWords>& words, const std::string& word_by_default) {
-  Json names = Json::array();
-  for (const auto& [word, meaning] : words) names.push_back(word);
-  return {{"enum", names}, {"type", "string"}, {"default", word_by_default}};
+std::vector<FlagWord> WordsOf(const std::array<Word<Meaning>, kWords>& all) {
+  std::vector<FlagWord> words;
+  for (const auto& [word, meaning, label] : all) words.push_back({word, label});
+  return words;
+}
+
+Json WordSchema(const RunFlag& flag) {
+  Json schema = {{"enum", Json::array()}, {"type", "string"}};
+  for (const auto& [word, label] : flag.words) {
+    if (!word.empty()) schema["enum"].push_back(word);
+  }
+  const auto member = std::get<std::string RunFlags::*>(flag.value);
+  if (const std::string word = RunFlags().*member; !word.empty()) schema["default"] = word;
+  return schema;
 }
 
 std::vector<RunFlag> MakeTable() {
-  const RunFlags by_default;
   Json model = TextSchema();
-  model["default"] = by_default.model;
+  model["default"] = RunFlags().model;
   const Json seed = {{"type", "integer"}, {"minimum", 0}, {"maximum", 1'000'000'000'000'000}, {"default", 1}};
   const Json number = {{"type", "number"}};
   const std::string models = "Model of the motion, one of " + MotionModelNames() +
@@ -260,29 +286,42 @@ std::vector<RunFlag> MakeTable() {
       {.name = "rig",
        .value = &RunFlags::rig,
        .help = "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.",
+       .label = "What I know of the pendulum",
        .is_local = true},
       {.name = "calibration",
        .value = &RunFlags::calibration,
        .help = "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.",
+       .label = "Calibration file",
        .is_local = true},
-      {.name = "model", .value = &RunFlags::model, .help = models, .schema = model, .example = "viscous,coulomb"},
+      {.name = "model",
+       .value = &RunFlags::model,
+       .help = models,
+       .label = "Kind of friction",
+       .schema = model,
+       .example = "viscous,coulomb"},
       {.name = "start",
        .value = &RunFlags::start,
        .help = "How the recording begins: auto (decided from the data), release or moving; default auto.",
-       .schema = WordSchema(kStarts, by_default.start),
+       .label = "How the recording begins",
+       .words = WordsOf(kStarts),
        .needs_fit = true},
       {.name = "release",
        .value = &RunFlags::release,
        .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the longest.",
+       .label = "Which free swing",
        .schema = {{"type", "integer"}, {"minimum", 1}}},
       {.name = "from",
        .value = &RunFlags::from,
        .help = "Start of the window to fit, s on the file's clock; default where the free swing begins.",
+       .label = "From",
+       .unit = "s",
        .schema = number,
        .example = "1.5"},
       {.name = "to",
        .value = &RunFlags::to,
        .help = "End of the window to fit, s on the file's clock; default where the free swing ends.",
+       .label = "To",
+       .unit = "s",
        .schema = number,
        .example = "12.5"},
       {.name = "fix",
@@ -318,21 +357,25 @@ std::vector<RunFlag> MakeTable() {
        .value = &RunFlags::time_column,
        .help = "Column of times, name or number from 1 on, with :s, :ms or :us where the name has no unit; none uses "
                "--sample_rate_hz instead; default by name.",
+       .label = "Column of times",
        .schema = TextSchema(),
        .example = "1:ms"},
       {.name = "value_column",
        .value = &RunFlags::value_column,
        .help = "Column of the angle or rate, name or number from 1 on; default by the unit in its name.",
+       .label = "Column of the angle",
        .schema = TextSchema(),
        .example = "angle_deg"},
       {.name = "unit",
        .value = &RunFlags::unit,
        .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default that in the "
                "column's name.",
-       .schema = {{"enum", kReadingUnits}, {"type", "string"}}},
+       .label = "Unit of the values",
+       .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",
        .value = &RunFlags::sample_rate_hz,
        .help = "Samples per second of a file without times; default its line # sample_rate_hz.",
+       .label = "Samples per second",
        .schema = {{"type", "number"}, {"exclusiveMinimum", 0}}},
       {.name = "resolution",
        .value = &RunFlags::resolution,
@@ -347,23 +390,26 @@ std::vector<RunFlag> MakeTable() {
        .value = &RunFlags::noise,
        .help = "Noise of the readings: gaussian, quantized (rounded to levels), edges (rows that come when a count "
                "changes) or auto (edges of such rows, else quantized where rounding matters); default auto.",
-       .schema = WordSchema(kNoises, by_default.noise),
+       .label = "Noise of the sensor",
+       .words = WordsOf(kNoises),
        .needs_fit = true},
       {.name = "loss",
        .value = &RunFlags::loss,
        .help = "Robust alternative for recordings with outliers: huber, student or none; default none.",
-       .schema = WordSchema(kLosses, by_default.loss),
+       .label = "Outliers",
+       .words = WordsOf(kLosses),
        .needs_fit = true},
       {.name = "interval",
        .value = &RunFlags::interval,
        .help = "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.",
-       .schema = WordSchema(kIntervals, by_default.interval),
+       .label = "95 % intervals",
+       .words = WordsOf(kIntervals),
        .needs_fit = true},
       {.name = "checks",
        .value = &RunFlags::checks,
        .help = "Which fits are checked against closed forms and for constancy: none, standard (the recommended one; of "
                "several recordings constancy of all) or full (all); default standard.",
-       .schema = WordSchema(kChecks, by_default.checks),
+       .words = WordsOf(kChecks),
        .needs_fit = true},
       {.name = "seed",
        .value = &RunFlags::seed,
@@ -382,7 +428,13 @@ std::vector<RunFlag> MakeTable() {
 }  // namespace
 
 const std::vector<RunFlag>& RunFlagTable() {
-  static const std::vector<RunFlag> table = MakeTable();
+  static const std::vector<RunFlag> table = [] {
+    std::vector<RunFlag> flags = MakeTable();
+    for (RunFlag& flag : flags) {
+      if (!flag.words.empty()) flag.schema = WordSchema(flag);
+    }
+    return flags;
+  }();
   return table;
 }
 

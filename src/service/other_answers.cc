@@ -243,8 +243,8 @@ HttpResponse GetOpenApi(ServiceState& /*state*/, const Call& /*call*/) {
 }
 
 HttpResponse GetPage(ServiceState& /*state*/, const Call& call) {
-  static const std::string tag = EntityTagOf(ServicePage());
-  return PageFile(call, "text/html; charset=utf-8", ServicePage(), tag);
+  static const std::string tag = EntityTagOf(FilledServicePage());
+  return PageFile(call, "text/html; charset=utf-8", FilledServicePage(), tag);
 }
 
 HttpResponse GetScript(ServiceState& /*state*/, const Call& call) {

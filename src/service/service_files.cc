@@ -11,6 +11,8 @@
 
 #include "pendulum/base/version.h"
 #include "pendulum/request/run_flags.h"
+#include "pendulum/web/page_parts.h"
+#include "pendulum/web/service_page.h"
 
 namespace pendulum {
 
@@ -69,7 +71,31 @@ void AddRunFlags(Json& document) {
   }
 }
 
+/// The flags that have a field in the form of the page.
+Json FieldsJson() {
+  Json fields = Json::array();
+  for (const RunFlag& flag : RunFlagTable()) {
+    if (flag.label.empty()) continue;
+    Json words = Json::array();
+    for (const auto& [word, label] : flag.words) words.push_back(Json::array({word, label}));
+    const Json schema = flag.is_local ? Json{{"type", "file"}} : flag.schema;
+    fields.push_back({{"name", flag.name},
+                      {"label", flag.label},
+                      {"help", flag.help},
+                      {"unit", flag.unit},
+                      {"type", schema["type"]},
+                      {"default", schema.value("default", Json(""))},
+                      {"words", std::move(words)}});
+  }
+  return fields;
+}
+
 }  // namespace
+
+const std::string& FilledServicePage() {
+  static const std::string page = FillPage(ServicePage(), {{"@FLAGS@", FieldsJson()}});
+  return page;
+}
 
 std::string OpenApiDocument() {
   // References in the schema point to its own definitions; they must work inside the document.

@@ -23,6 +23,9 @@ std::span<const Example> Examples();
 /// openapi.json with the schema of results inserted.
 std::string OpenApiDocument();
 
+/// ServicePage with the flags of RunFlagTable that have a field in its form.
+const std::string& FilledServicePage();
+
 // Bytes of embedded files (embed_file.cmake): openapi.json and the schema it refers to, recordings and rigs of
 // datasets/.
 std::string_view OpenApiTemplate();

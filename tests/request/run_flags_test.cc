@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/request/run_flags.h"
 
+#include <set>
 #include <string>
+#include <variant>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/batch/provenance.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 
 namespace pendulum::run_flags_test {
@@ -19,6 +22,29 @@ std::string Refusal(const RunFlags& flags) {
   if (options) return "";
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
   return options.error().message;
+}
+
+/// The default flags but for a valid value of this one.
+RunFlags With(const RunFlag& flag) {
+  RunFlags flags;
+  if (const auto* is_on = std::get_if<bool RunFlags::*>(&flag.value)) {
+    flags.** is_on = true;
+    return flags;
+  }
+  const std::string word = flag.words.empty() ? "2" : std::string(flag.words.back().word);
+  flags.*std::get<std::string RunFlags::*>(flag.value) = flag.example.empty() ? word : flag.example;
+  return flags;
+}
+
+// Otherwise a run would not be fitted again after the flag was changed.
+TEST(RunFlagTable, HasNoFlagThatStoredOptionsLack) {
+  std::set<std::string> known = {OptionsJson(*MakeRunOptions({}))};
+  for (const RunFlag& flag : RunFlagTable()) {
+    if (flag.is_local) continue;
+    const auto options = MakeRunOptions(With(flag));
+    ASSERT_TRUE(options) << options.error().message;
+    EXPECT_TRUE(known.insert(OptionsJson(*options)).second) << flag.name;
+  }
 }
 
 TEST(MakeRunOptions, FitsCoulombToTheLongestSwingByDefault) {

@@ -42,19 +42,27 @@ struct RunFlags {
   bool closed_form_only = false;
 };
 
+/// A value that a flag may have, and its label in the form of the service.
+struct FlagWord {
+  std::string_view word, label;
+};
+
 /// A flag for reading and fitting a recording.
 struct RunFlag {
   std::string_view name;
   std::variant<std::string RunFlags::*, bool RunFlags::*> value;
-  std::string help;  ///< What it is, its unit, and what the default means. Other flags appear as --name.
-  nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request.
+  std::string help;             ///< What it is, its unit, and what the default means. Other flags appear as --name.
+  std::string_view label = {};  ///< Of its field in the form of the service; empty: it has no field.
+  std::string_view unit = {};   ///< Of its number, for the label.
+  std::vector<FlagWord> words = {};         ///< All its values if they are words; an empty word is no value.
+  nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request; of words it is made.
   std::string example = {};                 ///< A value for the description of the service; empty: none.
   bool needs_fit = false;                   ///< It cannot be combined with --closed_form_only.
   bool is_local = false;                    ///< It names a file or threads; requests do not have it.
 };
 
-/// All members of RunFlags. The command line, --help, the parameters of requests and openapi.json are
-/// made from this table.
+/// All members of RunFlags. The command line, --help, the parameters of requests, openapi.json and the form of the
+/// service are made from this table.
 const std::vector<RunFlag>& RunFlagTable();
 
 /// The error for a flag that cannot be combined with --closed_form_only.

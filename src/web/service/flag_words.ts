@@ -5,83 +5,61 @@ import { kResidualsTitle } from '../report/sections/residual_section';
 
 export type Options = [value: string, words: string][];
 
-interface FlagWords {
+/** A flag of a fit that has a field, as the service describes it in the page. */
+export interface FormFlag {
+  name: string;
   label: string;
-  options?: Options;
+  help: string;
+  /** Of its number; may be empty. */
+  unit: string;
+  type: 'string' | 'number' | 'integer' | 'file';
+  default: string;
+  /** All its values, if they are words; otherwise empty. */
+  words: Options;
 }
 
-const kStarts: Options = [
-  ['', 'found in the recording'],
-  ['release', 'held at rest, then released'],
-  ['moving', 'already swinging'],
-];
-const kNoises: Options = [
-  ['', 'found in the recording'],
-  ['gaussian', 'even scatter'],
-  ['quantized', 'rounding to the steps of the sensor'],
-  ['edges', 'edges of an encoder’s counts, a row for each change'],
-];
-const kIntervals: Options = [
-  ['', 'chosen by the fit'],
-  ['covariance', 'from the covariance (fast)'],
-  ['profile', 'from the likelihood'],
-  ['bootstrap', 'from simulated repetitions (slow)'],
-];
-const kLosses: Options = [
-  ['', 'there are none'],
-  ['huber', 'count less (Huber)'],
-  ['student', 'are expected (Student’s t)'],
-];
-const kUnits: Options = [
-  ['', 'in the column’s name'],
-  ['deg', 'degrees'],
-  ['rad', 'radians'],
-  ['deg_s', 'degrees per second'],
-  ['rad_s', 'radians per second'],
-  ['counts', 'counts of a converter'],
-  ['volts', 'volts'],
-  ['m_s2', 'metres per second squared'],
-  ['px', 'pixels'],
-  ['m', 'metres'],
-  ['cm', 'centimetres'],
-  ['mm', 'millimetres'],
-];
-const kOfModel: FlagWords = { label: 'Kind of friction', options: [['all', 'all']] };
+/** Labels of what is not a flag of a fit: flags of a calibration, and a section of the report. */
+const kOthers: Record<string, string> = {
+  order: 'Order of the curve',
+  bits: 'Bits of the converter',
+  residuals: kResidualsTitle,
+};
 
-const kFlags = {
-  from: { label: 'From' },
-  to: { label: 'To' },
-  start: { label: 'How the recording begins', options: kStarts },
-  release: { label: 'Which free swing' },
-  time_column: { label: 'Column of times', options: [['none', 'none']] },
-  value_column: { label: 'Column of the angle' },
-  unit: { label: 'Unit of the values', options: kUnits },
-  sample_rate_hz: { label: 'Samples per second' },
-  noise: { label: 'Noise of the sensor', options: kNoises },
-  interval: { label: '95 % intervals', options: kIntervals },
-  loss: { label: 'Outliers', options: kLosses },
-  calibration: { label: 'Calibration file' },
-  model: kOfModel,
-  models: kOfModel,
-  rig: { label: 'What I know of the pendulum' },
-  order: { label: 'Order of the curve' },
-  bits: { label: 'Bits of the converter' },
-  residuals: { label: kResidualsTitle }, // not a flag of a request but a section of the report
-} satisfies Record<string, FlagWords>;
+let flags: FormFlag[] = [];
 
-export type FieldFlag = keyof typeof kFlags;
+/** Sets the flags that have a field. */
+export function setFlags(described: FormFlag[]): void {
+  flags = described;
+}
 
-const wordsOf = (flag: string): FlagWords | null => (Object.hasOwn(kFlags, flag) ? kFlags[flag as FieldFlag] : null);
+/** The flags that have a field, in the order of the form. */
+export const formFlags = (): readonly FormFlag[] => flags;
+
+const flagOf = (name: string): FormFlag | undefined =>
+  flags.find((flag) => flag.name === (name === 'models' ? 'model' : name));
+
+const knownLabel = (name: string): string | undefined =>
+  flagOf(name)?.label ?? (Object.hasOwn(kOthers, name) ? kOthers[name] : undefined);
 
 /** Label of the field for a flag. */
-export const labelOf = (flag: FieldFlag): string => kFlags[flag].label;
+export const labelOf = (name: string): string => knownLabel(name) ?? name;
 
-/** The options of a flag. The first is the default. */
-export const optionsOf = (flag: FieldFlag): Options => wordsOf(flag)?.options ?? [];
+/** The label with the unit: "From [s]". */
+export function labelWithUnit(name: string): string {
+  const unit = flagOf(name)?.unit ?? '';
+  return unit === '' ? labelOf(name) : `${labelOf(name)} [${unit}]`;
+}
+
+/** What a flag means, in the words of the page. */
+export const helpOf = (name: string): string => inFields(flagOf(name)?.help ?? '');
+
+/** The options of a flag. */
+export const optionsOf = (name: string): Options => flagOf(name)?.words ?? [];
 
 /** Sets the names that the page uses for the friction laws. */
 export function nameModels(models: readonly { name: string; label: string }[]): void {
-  kOfModel.options = [['all', 'all'], ...models.map(({ name, label }): Options[number] => [name, label])];
+  const model = flagOf('model');
+  if (model) model.words = [['all', 'all'], ...models.map(({ name, label }): Options[number] => [name, label])];
 }
 
 /** Labels of the options in "viscous,drag"; null if one is not an option. */
@@ -98,10 +76,10 @@ const kFlag = /--([a-z][a-z_]*)(?:( )([a-z_,]*[a-z_]))?/g;
  */
 export function inFields(sentence: string): string {
   const told = sentence.replace(kFlag, (all: string, flag: string, space = '', next = '') => {
-    const field = wordsOf(flag);
-    if (!field) return all;
-    const chosen = next === '' ? null : chosenWords(next, field.options ?? []);
-    return chosen === null ? `“${field.label}”${space}${next}` : `“${field.label}: ${chosen}”`;
+    const label = knownLabel(flag);
+    if (label === undefined) return all;
+    const chosen = next === '' ? null : chosenWords(next, optionsOf(flag));
+    return chosen === null ? `“${label}”${space}${next}` : `“${label}: ${chosen}”`;
   });
   return told === sentence
     ? sentence

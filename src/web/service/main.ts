@@ -5,9 +5,9 @@ import '../shared/style.css';
 import './service.css';
 import 'uplot/dist/uPlot.min.css';
 
-import { start } from '../shared/embedded';
+import { embedded, start } from '../shared/embedded';
 import { wordWith } from '../shared/prose';
-import { inFields } from './flag_words';
+import { inFields, setFlags, type FormFlag } from './flag_words';
 import { missing, startRouter } from './router';
 import type { Route } from './routes';
 import type { View } from './shell';
@@ -41,4 +41,7 @@ function viewOf(route: Route): View {
 }
 
 wordWith(inFields);
-start('service', 'page', (root) => startRouter(root, viewOf));
+start('service', 'page', (root) => {
+  setFlags(embedded<FormFlag[]>('flags') ?? []);
+  startRouter(root, viewOf);
+});

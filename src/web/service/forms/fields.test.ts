@@ -2,11 +2,34 @@
 import { describe, expect, test, vi } from 'vitest';
 
 import { kept, keep } from '../../shared/kept';
-import { flagsIn, inFields, labelOf, nameModels, optionsOf } from '../flag_words';
+import { flagsIn, helpOf, inFields, labelOf, labelWithUnit, nameModels, optionsOf, setFlags, type Options } from '../flag_words';
 import { FieldError, ProblemError, problemOf, titleOf } from '../server/problem';
 import { isHeadless } from './numbers';
 import { headlessFlags } from './paste_form';
 import { asFieldError } from './problem_fields';
+
+const flag = (name: string, label: string, unit = '', words: Options = []) => {
+  const help = `What it is; default --from.`;
+  return { name, label, help, unit, type: 'string' as const, default: '', words };
+};
+setFlags([
+  flag('from', 'From', 's'),
+  flag('to', 'To', 's'),
+  flag('time_column', 'Column of times'),
+  flag('sample_rate_hz', 'Samples per second'),
+  flag('unit', 'Unit of the values', '', [['deg', 'degrees']]),
+  flag('noise', 'Noise of the sensor', '', [['quantized', 'rounding']]),
+  flag('calibration', 'Calibration file'),
+  flag('model', 'Kind of friction'),
+]);
+
+describe('labels and help of fields', () => {
+  test('have the unit of a number, and labels instead of flags', () => {
+    expect([labelWithUnit('from'), labelWithUnit('unit')]).toEqual(['From [s]', 'Unit of the values']);
+    expect(helpOf('to')).toBe('What it is; default “From”.');
+    expect([labelOf('bits'), labelOf('new'), helpOf('new')]).toEqual(['Bits of the converter', 'new', '']);
+  });
+});
 
 describe('flags in sentences', () => {
   test('become the labels of their fields', () => {

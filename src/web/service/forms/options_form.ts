@@ -3,13 +3,22 @@
 
 import { button, el, text } from '../../shared/dom';
 import type { Loose } from '../../shared/result_types';
-import { labelOf, optionsOf, type FieldFlag } from '../flag_words';
+import { formFlags, helpOf, labelOf, labelWithUnit, type FormFlag } from '../flag_words';
 import type { Flags } from '../types';
 import { fileField, numberField, numberIn, selectField, textField, type Field } from './forms';
 
+const kWindow = ['from', 'to'];
+
 type Input = HTMLInputElement | HTMLSelectElement;
 
-const chosenField = (flag: FieldFlag): Field<HTMLSelectElement> => selectField(labelOf(flag), optionsOf(flag));
+const isNumber = ({ type }: FormFlag): boolean => type === 'number' || type === 'integer';
+
+/** The field of a flag: a list of its words, or an input with what it means below. */
+function fieldOf(flag: FormFlag): Field<Input> {
+  const label = labelWithUnit(flag.name);
+  if (flag.words.length > 0) return selectField(label, flag.words);
+  return (isNumber(flag) ? numberField : textField)(label, helpOf(flag.name));
+}
 
 /** A calibration for the next fit. */
 export interface ReadyCalibration {
@@ -19,49 +28,22 @@ export interface ReadyCalibration {
 
 export class OptionsForm {
   readonly element: HTMLDetailsElement;
-  private readonly numbers: Record<string, Field<HTMLInputElement>> = {
-    from: numberField(`${labelOf('from')} [s]`, 'Else from where the free swing begins.'),
-    to: numberField(`${labelOf('to')} [s]`, 'Else to where it ends.'),
-    release: numberField(labelOf('release'), 'A number from 1; else the longest.'),
-    sample_rate_hz: numberField(labelOf('sample_rate_hz'), 'Only of a file without times.'),
-  };
-  private readonly words: Record<string, Field<Input>> = {
-    start: chosenField('start'),
-    time_column: textField(labelOf('time_column'), 'Its name, or its number from 1; else found by name.'),
-    value_column: textField(labelOf('value_column'), 'Its name, or its number from 1; else found by unit.'),
-    unit: chosenField('unit'),
-    noise: chosenField('noise'),
-    interval: chosenField('interval'),
-    loss: chosenField('loss'),
-  };
+  private readonly fields: { flag: FormFlag; field: Field<Input> }[] = [];
   private readonly calibration = fileField(
     labelOf('calibration'),
-    'Turns counts or volts into an angle; the Calibration page makes one.',
+    `${helpOf('calibration')} The Calibration page makes one.`,
   );
   private readonly ready = el('div', { class: 'ready' });
   private given: ReadyCalibration | null = null;
 
   constructor(withWindow = true) {
-    if (!withWindow) for (const name of ['from', 'to']) delete this.numbers[name];
     const fields = el('div', { class: 'fields' });
-    const all: Record<string, Field<Input>> = { ...this.numbers, ...this.words };
-    const order = [
-      'from',
-      'to',
-      'start',
-      'release',
-      'value_column',
-      'time_column',
-      'unit',
-      'sample_rate_hz',
-      'noise',
-      'interval',
-      'loss',
-    ];
-    for (const name of order) {
-      if (!all[name]) continue;
-      all[name].input.dataset.flag = name;
-      fields.append(all[name].element);
+    for (const flag of formFlags()) {
+      if (flag.type === 'file' || flag.name === 'model' || (!withWindow && kWindow.includes(flag.name))) continue;
+      const field = fieldOf(flag);
+      field.input.dataset.flag = flag.name;
+      fields.append(field.element);
+      this.fields.push({ flag, field });
     }
     this.calibration.input.dataset.flag = 'calibration';
     fields.append(el('div', {}, this.calibration.element, this.ready));
@@ -88,7 +70,7 @@ export class OptionsForm {
 
   /** Fills the form with the options of a fit. */
   fill(flags: Flags, calibration: Loose | null): void {
-    for (const [name, { input }] of Object.entries({ ...this.numbers, ...this.words })) input.value = flags[name] ?? '';
+    for (const { flag, field } of this.fields) field.input.value = flags[flag.name] ?? (flag.words.length > 0 ? flag.default : '');
     this.use(calibration ? { name: 'the calibration of this fit', json: JSON.stringify(calibration) } : null);
     this.element.open = false;
   }
@@ -96,18 +78,17 @@ export class OptionsForm {
   /** Flags that differ from their defaults. FieldError: a value is not a number. */
   flags(): Flags {
     const flags: Flags = {};
-    for (const [name, { input, element }] of Object.entries(this.numbers)) {
-      const value = numberIn(input, element.querySelector('label')?.textContent ?? name);
-      if (value !== null) flags[name] = String(value);
+    for (const { flag, field } of this.fields) {
+      const number = isNumber(flag) ? numberIn(field.input as HTMLInputElement, labelWithUnit(flag.name)) : null;
+      const value = number === null ? field.input.value.trim() : String(number);
+      if (value !== '' && value !== flag.default) flags[flag.name] = value;
     }
-    for (const [name, { input }] of Object.entries(this.words))
-      if (input.value.trim() !== '') flags[name] = input.value.trim();
     return flags;
   }
 
   /** Names of all flags in this form. */
   get names(): string[] {
-    return [...Object.keys(this.numbers), ...Object.keys(this.words)];
+    return this.fields.map(({ flag }) => flag.name);
   }
 
   /** JSON text of the calibration; null for none. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Problems reported by the service (RFC 9457) or found by the page, and what to do about them. */
 
-import { labelOf } from '../flag_words';
+import { inFields } from '../flag_words';
 
 export interface Problem {
   title: string;
@@ -40,7 +40,7 @@ const kAdvice: Record<string, string> = {
   too_large: 'Send a shorter recording, or the part of it that matters.',
   unsupported_media_type: 'Choose a text file with columns of numbers, such as the CSV of a logger or a spreadsheet.',
   unusable_data: 'Mend the file there, or tell columns, units and calibration under “Further options”.',
-  no_swing: `Choose a window that holds a free swing, “${labelOf('from')}” and “${labelOf('to')}”, or another recording.`,
+  no_swing: 'Choose a window that holds a free swing, --from and --to, or another recording.',
   key_reused: 'Try again: this counts as a new request.',
   too_many_requests: 'Wait a moment, then try again.',
   headers_too_large: 'Shorten the name or the options.',
@@ -52,7 +52,7 @@ const kAdvice: Record<string, string> = {
 };
 
 /** What to do, in a sentence; empty if there is no advice. */
-export const adviceFor = ({ code }: Problem): string => kAdvice[code] ?? '';
+export const adviceFor = ({ code }: Problem): string => inFields(kAdvice[code] ?? '');
 
 /** The title from the service, except for problems of an address. */
 export const titleOf = ({ code, title }: Problem): string =>

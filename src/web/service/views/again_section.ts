@@ -4,7 +4,7 @@
 import { button, el, text } from '../../shared/dom';
 import type { Loose, Result } from '../../shared/result_types';
 import { figure, section } from '../../shared/section';
-import { labelOf } from '../flag_words';
+import { labelOf, labelWithUnit } from '../flag_words';
 import { numberField, numberIn, type Field } from '../forms/forms';
 import { knownModels, ModelForm } from '../forms/model_form';
 import { OptionsForm } from '../forms/options_form';
@@ -33,8 +33,8 @@ function parsedFile(name: string, content: string): Loose {
 
 export class AgainSection {
   readonly element: HTMLElement;
-  private readonly from: Field<HTMLInputElement> = numberField(`${labelOf('from')} [s]`);
-  private readonly to: Field<HTMLInputElement> = numberField(`${labelOf('to')} [s]`);
+  private readonly from: Field<HTMLInputElement> = numberField(labelWithUnit('from'));
+  private readonly to: Field<HTMLInputElement> = numberField(labelWithUnit('to'));
   private readonly models = new ModelForm();
   private readonly rig = new RigForm();
   private readonly options = new OptionsForm(false);
