@@ -20,18 +20,18 @@ struct PowerProduct {
   int other_power;
 };
 
-double Estimate(const PowerProduct& product, const std::vector<double>& p) {
+double ValueOf(const PowerProduct& product, const std::vector<double>& p) {
   return product.factor * std::pow(p[0], product.inertia_power) * std::pow(p[product.other], product.other_power);
 }
 
 double StdError(const PowerProduct& product, const std::vector<double>& p, const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance.rows());
-  gradient[0] = product.inertia_power * Estimate(product, p) / p[0];
+  gradient[0] = product.inertia_power * ValueOf(product, p) / p[0];
   if (product.other_power != 0) {
     PowerProduct lowered = product;
     lowered.factor *= product.other_power;
     lowered.other_power -= 1;
-    gradient[product.other] = Estimate(lowered, p);
+    gradient[product.other] = ValueOf(lowered, p);
   }
   return std::sqrt(gradient.dot(covariance * gradient));
 }
@@ -64,12 +64,12 @@ class Distances {
  public:
   /// Propagates both ends of parameter i's interval. A missing end is at infinite distance on its side.
   void Add(const PowerProduct& product, std::vector<double> p, int i, const IntervalEnds& ends) {
-    const double at = Estimate(product, p);
+    const double at = ValueOf(product, p);
     const double power = i == 0 ? product.inertia_power : product.other_power;
     for (const bool low : {true, false}) {
       const std::optional<double>& end = low ? ends.lower : ends.upper;
       p[i] = end.value_or(0);
-      const double distance = end ? Estimate(product, p) - at : kUnbounded;
+      const double distance = end ? ValueOf(product, p) - at : kUnbounded;
       double& square = (power > 0) == low ? below_ : above_;
       square += distance * distance;
     }
@@ -94,7 +94,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
                                                const std::vector<int>& at_bound) {
   std::vector<DerivedQuantity> derived;
   for (const PowerProduct& product : PowerProducts(infos, parameters)) {
-    derived.push_back({product.name, product.unit, Estimate(product, parameters), {}, {}, {}});
+    derived.push_back({product.name, product.unit, ValueOf(product, parameters), {}, {}, {}});
     const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
     if (covariance == nullptr || bounded) continue;
     const double error = StdError(product, parameters, *covariance);
