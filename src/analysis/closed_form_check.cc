@@ -11,6 +11,7 @@
 #include "pendulum/analysis/difference_causes.h"
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/base/format.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
 #include "pendulum/model/friction/viscous.h"
 #include "pendulum/model/geometric_inertia.h"
@@ -40,9 +41,9 @@ struct FormulaGroup {
 
 constexpr std::string_view kDampingRatio = "damping_ratio";
 
-std::optional<std::size_t> PeakAt(const PeakTable& table, double time) {
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    if (std::abs(table.peaks[i].time - time) < 0.5 * table.half_period) return i;
+std::optional<std::size_t> TurningPointAt(const TurningPointTable& table, double time) {
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if (std::abs(table.points[i].time - time) < 0.5 * table.half_period) return i;
   }
   return std::nullopt;
 }
@@ -68,12 +69,12 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
   group.error = Eigen::Vector4d(linear.damping_ratio.std_error, linear.inertia.std_error, linear.viscous.std_error,
                                 linear.corrected_inertia.std_error);
   group.gradient = linear.gradient;
-  const double first = used.clock_scale * (forms.table.peaks[linear.first].time - used.time[0]);
+  const double first = used.clock_scale * (forms.table.points[linear.first].time - used.time[0]);
   const int periods = linear.periods;
   const Kink kink = forms.table.kink;
   group.apply = [=](const Recording& recording, Gravity gravity) -> std::optional<VectorXd> {
-    const Result<PeakTable> table = LocatePeaks(recording, kink);
-    const std::optional<std::size_t> from = table ? PeakAt(*table, first) : std::nullopt;
+    const Result<TurningPointTable> table = LocateTurningPoints(recording, kink);
+    const std::optional<std::size_t> from = table ? TurningPointAt(*table, first) : std::nullopt;
     if (!from) return std::nullopt;
     std::optional<LogDecrement> there = ApplyLogDecrement(*table, gravity, *from, periods);
     if (!there)

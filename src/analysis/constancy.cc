@@ -13,7 +13,7 @@
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
 
@@ -38,11 +38,12 @@ double BeginOfMotion(const Recording& used, const FitReport& fit) {
 std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
   constexpr double kFirst = 0.5;  // of a half swing: an earlier turning point is the start itself
   const Result<Recording> moving = SelectWindow(used, begin, std::numeric_limits<double>::quiet_NaN());
-  const auto turns = moving ? FindExtrema(*moving) : tl::unexpected(moving.error());
+  const auto turns = moving ? FindTurningPoints(*moving) : tl::unexpected(moving.error());
   std::vector<double> ends = {begin};
   if (!turns) return ends;
-  const double half_swing = (turns->back().time - turns->front().time) / static_cast<double>(turns->size() - 1);
-  for (const Extremum& turn : *turns) {
+  const double half_swing =
+      (turns->points.back().time - turns->points.front().time) / static_cast<double>(turns->half_swings());
+  for (const TurningPoint& turn : turns->points) {
     if (turn.time > begin + kFirst * half_swing) ends.push_back(turn.time);
   }
   return ends;
@@ -94,7 +95,7 @@ std::string Join(const std::string& first, const std::string& second, const std:
   return first.empty() || second.empty() ? first + second : first + between + second;
 }
 
-std::string Estimate(double value, double error) {
+std::string EstimateText(double value, double error) {
   const auto power = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
   const bool is_number = value != 0 && error > 0 && std::isfinite(error);
   const int digits = is_number ? std::clamp(power(value) - power(error) + 2, 2, 15) : 3;
@@ -108,9 +109,9 @@ std::string DescribeHalves(const Constancy& result) {
   const bool alone = TwoSidedP(row->z) < kNotConstant;
   const std::string what =
       alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
-  return what + " between the halves: " + Estimate(row->first, row->first_std_error) + " then " +
-         Estimate(row->second, row->second_std_error) + " " + row->unit + " (p " + ProbabilityText(*result.halves_p) +
-         ")";
+  return what + " between the halves: " + EstimateText(row->first, row->first_std_error) + " then " +
+         EstimateText(row->second, row->second_std_error) + " " + row->unit + " (p " +
+         ProbabilityText(*result.halves_p) + ")";
 }
 
 std::string DescribeTrend(const AmplitudeTrend& trend) {

@@ -9,6 +9,7 @@
 
 #include "pendulum/analysis/cramer_rao.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/friction/registry.h"
 
@@ -19,13 +20,8 @@ constexpr std::array kAmplitudeFactors = {0.25, 0.5, 1.0, 2.0};
 constexpr std::array kDurationFactors = {0.5, 1.0, 2.0, 4.0};
 constexpr std::array kOtherFactors = {0.25, 1.0, 4.0};
 
-struct TurningPoint {
-  double time = 0;   ///< s
-  double angle = 0;  ///< rad
-};
-
-/// Turning points from the release, or from the first one of a moving start, until `end` [s]. Swings begin at a rate of
-/// exactly 0.
+/// Time [s] and angle [rad] of the turning points from the release, or from the first one of a moving start, until
+/// `end` [s]. Swings begin at a rate of exactly 0.
 std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end) {
   const bool released = run.start == StartKind::kRelease;
   const Start<double> start{run.start, released ? run.release_time : run.start_time,
@@ -169,10 +165,10 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
   if (turns.size() < 3) return std::nullopt;
   const std::size_t periods = (turns.size() - 1) / 2;
   const TurningPoint &first = turns.front(), &last = turns[2 * periods];
-  if (std::abs(first.angle) >= kPi) return std::nullopt;  // after an escape the angle counts from another turn
+  if (std::abs(first.value) >= kPi) return std::nullopt;  // after an escape the angle counts from another turn
   const auto n = static_cast<double>(periods);
   const double damped_frequency = 2 * kPi * n / (last.time - first.time);
-  const double decrement = std::log(first.angle / last.angle) / n;
+  const double decrement = std::log(first.value / last.value) / n;
   const double damping_ratio = decrement / std::hypot(2 * kPi, decrement);
   const double inertia = (1 - damping_ratio * damping_ratio) / (damped_frequency * damped_frequency);
   return inertia / run.parameters.front() - 1;

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/recording/window.h"
 
@@ -55,9 +56,9 @@ std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeCompariso
 }
 
 /// If turning points scatter about every law, their errors are too small. This enlarges them.
-void Inflate(double scatter, PeakTable& table) {
+void Inflate(double scatter, TurningPointTable& table) {
   const double factor = std::max(scatter, 1.0);
-  for (Peak& peak : table.peaks) peak.covariance *= factor;
+  for (TurningPoint& point : table.points) point.covariance *= factor;
   table.zero.std_error *= std::sqrt(factor);
 }
 
@@ -86,7 +87,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     forms.decrement = *std::move(decrement);
   } else {
     forms.no_decrement = decrement.error().message;
-    Result<PeakTable> table = LocatePeaks(timed);
+    Result<TurningPointTable> table = LocateTurningPoints(timed);
     if (!table) return tl::unexpected(table.error());
     forms.table = *std::move(table);
   }
@@ -102,7 +103,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
   forms.decay = TabulateDecay(forms.table, stop);
   forms.linear = ApplyLogDecrement(forms.table, model.gravity, stop);
   if (stop.stop_requested()) return Stopped();
-  for (Peak& peak : forms.table.peaks) peak.time = origin + (peak.time - origin) / recording.clock_scale;
+  for (TurningPoint& point : forms.table.points) point.time = origin + (point.time - origin) / recording.clock_scale;
   return forms;
 }
 

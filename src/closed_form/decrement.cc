@@ -12,6 +12,7 @@
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/half_swing_map.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/period.h"
 #include "pendulum/model/friction/registry.h"
 
@@ -22,46 +23,29 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Turning points that follow each other: [first, first + count) in the table.
-struct PeakRun {
-  std::size_t first;
-  std::size_t count;
-  Index row = 0;  // of its first residual
-};
-
-/// Runs of at least two turning points; a single one only determines the zero.
-std::vector<PeakRun> Runs(const PeakTable& table) {
-  std::vector<PeakRun> runs;
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    if (i == 0 || !table.peaks[i].continues) runs.push_back({i, 0, 0});
-    ++runs.back().count;
-  }
-  std::erase_if(runs, [](const PeakRun& run) { return run.count < 2; });
-  return runs;
-}
-
 /// The least-squares problem for x = (zero, natural frequency, friction (K), amplitude and time of each run).
 ///
-/// Amplitude and time of a run are those of its first turning point. For a rate sensor, whose readings peak between
-/// turning points, they are those of the turning point before its first peak.
+/// A turning point outside the runs only determines the zero. Amplitude and time of a run are those of its first
+/// turning point. For a rate sensor, whose readings peak between turning points, they are those of the turning point
+/// before its first peak.
 class DecrementProblem {
  public:
-  DecrementProblem(const PeakTable& table, const MotionModel& model, std::vector<bool> included,
+  DecrementProblem(const TurningPointTable& table, const MotionModel& model, std::vector<bool> included,
                    const std::stop_token& stop)
-      : table_(table), model_(model), stop_(stop), included_(std::move(included)), runs_(Runs(table)) {
-    for (PeakRun& run : runs_) {
-      run.row = 2 * peaks_;
-      peaks_ += static_cast<Index>(run.count);
+      : table_(table), model_(model), stop_(stop), included_(std::move(included)), runs_(table.Runs()) {
+    for (const auto& [first, last] : runs_) {
+      rows_.push_back(2 * points_);
+      points_ += static_cast<Index>(last - first + 1);
     }
-    for (const Peak& peak : table.peaks) {
-      const Eigen::Matrix2d root = peak.covariance.llt().matrixL();
+    for (const TurningPoint& point : table.points) {
+      const Eigen::Matrix2d root = point.covariance.llt().matrixL();
       whitening_.emplace_back(root.inverse());
     }
   }
 
   Index friction() const { return static_cast<Index>(included_.size()); }
   Index unknowns() const { return 2 + friction() + 2 * static_cast<Index>(runs_.size()); }
-  Index observations() const { return 2 * peaks_; }
+  Index observations() const { return 2 * points_; }
 
   /// The unknowns that are fitted.
   std::vector<Index> Free() const {
@@ -87,7 +71,7 @@ class DecrementProblem {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Index at = 2 + friction() + 2 * static_cast<Index>(r);
       x[at] = AngleAmplitude(table_.quantity, table_.Amplitude(runs_[r].first), x[1], model_.gravity);
-      x[at + 1] = table_.peaks[runs_[r].first].time - (is_rate ? 0.5 * table_.half_period : 0.0);
+      x[at + 1] = table_.points[runs_[r].first].time - (is_rate ? 0.5 * table_.half_period : 0.0);
     }
     return x;
   }
@@ -100,18 +84,17 @@ class DecrementProblem {
     return residuals;
   }
 
-  /// Converts derivatives (F x observations) by the residuals to derivatives by (time, value) of each peak in the
-  /// table.
-  MatrixXd ByPeaks(const MatrixXd& by_residuals) const {
-    MatrixXd by_peaks = MatrixXd::Zero(by_residuals.rows(), 2 * static_cast<Index>(table_.peaks.size()));
-    for (const PeakRun& run : runs_) {
-      for (std::size_t i = 0; i < run.count; ++i) {
-        const auto peak = static_cast<Index>(run.first + i);
-        by_peaks.middleCols<2>(2 * peak) =
-            by_residuals.middleCols<2>(run.row + 2 * static_cast<Index>(i)) * whitening_[run.first + i];
+  /// Converts derivatives (F x observations) by the residuals to derivatives by (time, value) of each turning point in
+  /// the table.
+  MatrixXd ByPoints(const MatrixXd& by_residuals) const {
+    MatrixXd by_points = MatrixXd::Zero(by_residuals.rows(), 2 * static_cast<Index>(table_.points.size()));
+    Index row = 0;
+    for (const auto& [first, last] : runs_) {
+      for (std::size_t i = first; i <= last; ++i, row += 2) {
+        by_points.middleCols<2>(2 * static_cast<Index>(i)) = by_residuals.middleCols<2>(row) * whitening_[i];
       }
     }
-    return by_peaks;
+    return by_points;
   }
 
   /// Forward differences. Their relative error of 1e-6 does not matter to Gauss-Newton.
@@ -172,40 +155,40 @@ class DecrementProblem {
 
   /// The residuals of one run. Returns false if the model does not swing so far, or when stopped.
   bool SetRun(std::size_t r, const VectorXd& x, VectorXd& residuals) const {
-    Index row = runs_[r].row;
+    Index row = rows_[r];
     const std::span<const double> friction_parameters(x.data() + 2, included_.size());
     double amplitude = x[2 + friction() + 2 * static_cast<Index>(r)];
     double time = x[2 + friction() + 2 * static_cast<Index>(r) + 1];
     const bool is_rate = table_.quantity == Quantity::kRate;
-    for (std::size_t i = 0; i < runs_[r].count; ++i) {
-      const std::size_t peak = runs_[r].first + i;
+    for (std::size_t i = runs_[r].first; i <= runs_[r].last; ++i) {
       if (stop_.stop_requested() || !(amplitude > 0 && x[1] > 0)) return false;
       if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
-      if (!is_rate) Add(peak, time, x[0] + table_.Side(peak) * amplitude, row, residuals);
-      if (!is_rate && i + 1 == runs_[r].count) break;
-      const double direction = is_rate ? table_.Side(peak) : -table_.Side(peak);
+      if (!is_rate) Add(i, time, x[0] + table_.Side(i) * amplitude, row, residuals);
+      if (!is_rate && i == runs_[r].last) break;
+      const double direction = is_rate ? table_.Side(i) : -table_.Side(i);
       const auto end = ComputeHalfSwing(model_, friction_parameters, amplitude, x[1], direction, is_rate);
       if (!end) return false;
-      if (is_rate) Add(peak, time + end->peak_delay, x[0] + table_.Side(peak) * end->peak_rate, row, residuals);
+      if (is_rate) Add(i, time + end->peak_delay, x[0] + table_.Side(i) * end->peak_rate, row, residuals);
       amplitude = end->amplitude;
       time += end->duration;
     }
     return true;
   }
 
-  void Add(std::size_t peak, double time, double value, Index& row, VectorXd& residuals) const {
-    const Peak& seen = table_.peaks[peak];
-    residuals.segment<2>(row) = whitening_[peak] * Eigen::Vector2d(seen.time - time, seen.value - value);
+  void Add(std::size_t point, double time, double value, Index& row, VectorXd& residuals) const {
+    const TurningPoint& seen = table_.points[point];
+    residuals.segment<2>(row) = whitening_[point] * Eigen::Vector2d(seen.time - time, seen.value - value);
     row += 2;
   }
 
-  const PeakTable& table_;
+  const TurningPointTable& table_;
   const MotionModel& model_;
   const std::stop_token& stop_;
   std::vector<bool> included_;
-  std::vector<PeakRun> runs_;
-  std::vector<Eigen::Matrix2d> whitening_;  // for each peak in the table
-  Index peaks_ = 0;                         // number of peaks in the runs
+  std::vector<TurningPointRun> runs_;
+  std::vector<Index> rows_;                 // of the first residual of each run
+  std::vector<Eigen::Matrix2d> whitening_;  // for each turning point in the table
+  Index points_ = 0;                        // number of turning points in the runs
 };
 
 /// The result of a least-squares fit with the unknowns `free`.
@@ -272,7 +255,7 @@ void Report(const DecrementProblem& problem, const LeastSquares& solution, const
       if (a < size && b < size) decrement.covariance(a, b) = scale * solution.inverse(i, j) * factor[a] * factor[b];
     }
   }
-  const MatrixXd follow = problem.ByPeaks(-solution.inverse * solution.jacobian.transpose());
+  const MatrixXd follow = problem.ByPoints(-solution.inverse * solution.jacobian.transpose());
   decrement.gradient = MatrixXd::Zero(size, follow.cols());
   for (Index i = 0; i < static_cast<Index>(free.size()); ++i) {
     const Index a = free[static_cast<std::size_t>(i)];
@@ -309,7 +292,7 @@ std::string_view EnvelopeShape(std::string_view term) {
   return term == kDrag.name ? "hyperbola" : "";
 }
 
-Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
+Result<Decrement> FitFrom(const TurningPointTable& table, const MotionModel& model, const std::vector<bool>& included,
                           const std::stop_token& stop, std::optional<VectorXd>& start) {
   Decrement decrement{model, table, {}, {}, std::vector<Estimate>(included.size()), {}, {}, 0, 0};
   const DecrementProblem problem(table, model, included, stop);
@@ -340,8 +323,8 @@ Result<Decrement> FitFrom(const PeakTable& table, const MotionModel& model, cons
 
 double Decrement::Probability() const { return ProbabilityBeyond(chi_square, freedom); }
 
-Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
-                               const std::stop_token& stop) {
+Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel& model,
+                               const std::vector<bool>& included, const std::stop_token& stop) {
   std::optional<VectorXd> start;
   return FitFrom(table, model, included, stop, start);
 }
@@ -352,7 +335,7 @@ Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& mo
                                                       " friction is not linear in its parameters, which the least "
                                                       "squares of the turning points takes for granted");
   }
-  Result<PeakTable> table = LocatePeaks(recording);
+  Result<TurningPointTable> table = LocateTurningPoints(recording);
   if (!table) return tl::unexpected(table.error());
   const std::vector<bool> all(PhysicalParameters(model).size() - 1, true);
   std::optional<VectorXd> start;
@@ -361,14 +344,15 @@ Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& mo
   for (int round = 0; round < kRounds && decrement; ++round) {
     const Kink kink{RestTorque(*decrement), 1 / std::sqrt(decrement->inertia.value)};
     if (kink.sticking_angle == 0) break;
-    table = LocatePeaks(recording, kink);
+    table = LocateTurningPoints(recording, kink);
     if (!table) return tl::unexpected(table.error());
     decrement = FitFrom(*table, model, all, stop, start);
   }
   return decrement;
 }
 
-Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity, const std::stop_token& stop) {
+Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Gravity gravity,
+                                            const std::stop_token& stop) {
   const MotionModel richest = {"drag", "drag", gravity};
   const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
   const std::size_t terms = infos.size() - 1;

@@ -48,7 +48,6 @@ class LossEquations {
   explicit LossEquations(int size) : normal(Eigen::MatrixXd::Zero(size, size)), right(Eigen::VectorXd::Zero(size)) {}
 
   void StartRun(double energy) {
-    FinishRun();
     rows_.assign(1, Eigen::RowVectorXd::Zero(right.size()));
     energies_.assign(1, energy);
   }
@@ -82,16 +81,23 @@ class LossEquations {
 };
 
 template <FrictionModel F>
-EnergyBalance BalanceAt(const HalfSwingTable& table, double natural_frequency, double reference_rate) {
+EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double natural_frequency,
+                        double reference_rate) {
   LossEquations equations(kFrictionParameters<F>);
-  for (const HalfSwing& half : table.half_swings) {
-    const double before = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
-    const double after = AngleAmplitude(table.quantity, half.after, natural_frequency, table.gravity);
-    if (!half.continues) equations.StartRun(Potential(table.gravity, before));
-    equations.Add(LossPerParameter<F>(table.gravity, 0.5 * (before + after), natural_frequency, reference_rate),
-                  Potential(table.gravity, after));
+  const auto amplitude_at = [&](std::size_t point) {
+    return AngleAmplitude(table.quantity, table.Amplitude(point), natural_frequency, gravity);
+  };
+  for (const auto& [first, last] : table.Runs()) {
+    double before = amplitude_at(first);
+    equations.StartRun(Potential(gravity, before));
+    for (std::size_t i = first + 1; i <= last; ++i) {
+      const double after = amplitude_at(i);
+      equations.Add(LossPerParameter<F>(gravity, 0.5 * (before + after), natural_frequency, reference_rate),
+                    Potential(gravity, after));
+      before = after;
+    }
+    equations.FinishRun();
   }
-  equations.FinishRun();
   return {equations.normal, equations.right, reference_rate};
 }
 
@@ -104,11 +110,13 @@ double ExplainedShare(const EnergyBalance& balance) {
   return gain;
 }
 
-double LargestRate(const HalfSwingTable& table, double natural_frequency) {
+double LargestRate(Gravity gravity, const TurningPointTable& table, double natural_frequency) {
   double largest = 0;
-  for (const HalfSwing& half : table.half_swings) {
-    const double amplitude = AngleAmplitude(table.quantity, half.before, natural_frequency, table.gravity);
-    largest = std::max(largest, natural_frequency * std::sqrt(2 * Potential(table.gravity, amplitude)));
+  for (const auto& [first, last] : table.Runs()) {
+    for (std::size_t i = first; i < last; ++i) {
+      const double amplitude = AngleAmplitude(table.quantity, table.Amplitude(i), natural_frequency, gravity);
+      largest = std::max(largest, natural_frequency * std::sqrt(2 * Potential(gravity, amplitude)));
+    }
   }
   return largest;
 }
@@ -117,18 +125,18 @@ double LargestRate(const HalfSwingTable& table, double natural_frequency) {
 
 /// At a turning point the energy is U = 1 - cos A. Between two of them friction takes ∫ T(ω(θ)) dθ, with
 /// ω(θ) = ω0 sqrt(2 (cos θ - cos A)) and A the mean amplitude.
-std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const HalfSwingTable& table,
+std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const TurningPointTable& table,
                                          double natural_frequency) {
   std::vector<EnergyBalance> balances;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     if constexpr (HasRateScale<F>) {
-      const double largest = LargestRate(table, natural_frequency);
+      const double largest = LargestRate(model.gravity, table, natural_frequency);
       for (const double scale : F::kRateScales) {
-        balances.push_back(BalanceAt<F>(table, natural_frequency, scale * largest));
+        balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, scale * largest));
       }
       std::ranges::stable_sort(balances, std::ranges::greater(), ExplainedShare);
     } else {
-      balances.push_back(BalanceAt<F>(table, natural_frequency, 0));
+      balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, 0));
     }
   });
   return balances;

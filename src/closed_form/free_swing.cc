@@ -11,7 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/classify_half_swings.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
 
@@ -20,15 +20,10 @@ namespace {
 
 using Eigen::Index;
 
-/// A run of free half swings: turning points [first, last].
-struct Run {
-  std::size_t first;
-  std::size_t last;
-};
-
-std::vector<Run> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
+/// The runs of free half swings.
+std::vector<TurningPointRun> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
   constexpr std::size_t kMin = 2;
-  std::vector<Run> runs;
+  std::vector<TurningPointRun> runs;
   std::size_t first = 0;
   const auto close = [&](std::size_t last) {
     if (last >= first + kMin) runs.push_back({first, last});
@@ -67,8 +62,7 @@ struct Beginning {
 
 /// Whether samples [first, last] show one value: drift below three standard deviations of the noise, and scatter below
 /// twice the noise.
-bool IsSteady(const TurningPointTable& table, Index first, Index last) {
-  const Recording& recording = table.recording;
+bool IsSteady(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
   const Index count = last - first + 1;
   Eigen::MatrixX2d basis(count, 2);
   basis << Eigen::ArrayXd::Ones(count), Eigen::ArrayXd::LinSpaced(count, 0, 1);
@@ -81,33 +75,32 @@ bool IsSteady(const TurningPointTable& table, Index first, Index last) {
 
 /// Begins in the steady part at the end of a hold, or where the hold ends if it is not steady: a moving hand does not
 /// hold.
-Beginning SteadyPart(const TurningPointTable& table, Index first, Index last) {
+Beginning SteadyPart(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
   constexpr Index kMin = 8;
   // The release also lies somewhere within the band.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kMin; begin += (held - begin + 1) / 2) {
-    if (IsSteady(table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
+    if (IsSteady(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
   }
   return {last, {WindowBegin::Reason::kUnsteadyHold}};
 }
 
 /// The hold that contains the first turning point of a run, if the reading stays near it for longer than in a swing.
-std::optional<Beginning> HoldBefore(const TurningPointTable& table, std::size_t turn) {
-  const Recording& recording = table.recording;
+std::optional<Beginning> HoldBefore(const Recording& recording, const TurningPointTable& table, std::size_t turn) {
   const bool rate = recording.quantity == Quantity::kRate;
   // For a rate the hold is at its zero, a quarter period before its first turning point.
-  const double level = rate ? table.zero[turn] : table.turns[turn].value;
-  const double band = 0.05 * table.amplitude[turn] + 5 * table.noise + 2 * recording.resolution;
-  Index end = table.turns[turn].sample;
+  const double level = rate ? table.ZeroAt(turn) : table.points[turn].value;
+  const double band = 0.05 * table.Amplitude(turn) + 5 * table.noise + 2 * recording.resolution;
+  Index end = table.points[turn].sample;
   if (rate) {
     while (end > 0 && std::abs(recording.value[end] - level) > band) --end;
-    if (table.turns[turn].time - recording.time[end] > table.half_period) return std::nullopt;
+    if (table.points[turn].time - recording.time[end] > table.half_period) return std::nullopt;
   }
   const Index begin = FirstWithin(recording, end, level, band);
   const double natural = 0.25 * table.half_period * table.Stretch(turn);
   const double dwell = recording.time[LastWithin(recording, end, level, band)] - recording.time[begin];
   if (dwell < (rate ? 1.0 : 2.0) * natural || begin == end) return std::nullopt;
-  return SteadyPart(table, begin, LastWithin(recording, end, level, band));
+  return SteadyPart(recording, table, begin, LastWithin(recording, end, level, band));
 }
 
 /// Begins at the next turning point after a fall from near the upright, which contains no information on the release,
@@ -115,30 +108,27 @@ std::optional<Beginning> HoldBefore(const TurningPointTable& table, std::size_t 
 std::optional<Beginning> BeginAfterFall(const TurningPointTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   constexpr double kOverTheTop = 185 * kRadFromDeg;
-  const Recording& recording = table.recording;
-  const bool angle = recording.quantity == Quantity::kAngle && recording.is_calibrated();
-  if (!angle || !(table.amplitude[turn] > kUpright)) return std::nullopt;
-  const Index next = table.turns[turn + 1].sample;
-  if (table.amplitude[turn] > kOverTheTop) return Beginning{next, {WindowBegin::Reason::kAfterTurns}};
-  return Beginning{next, {WindowBegin::Reason::kAfterFall, table.amplitude[turn] / kRadFromDeg}};
+  const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
+  if (!angle || !(table.Amplitude(turn) > kUpright)) return std::nullopt;
+  const Index next = table.points[turn + 1].sample;
+  if (table.Amplitude(turn) > kOverTheTop) return Beginning{next, {WindowBegin::Reason::kAfterTurns}};
+  return Beginning{next, {WindowBegin::Reason::kAfterFall, table.Amplitude(turn) / kRadFromDeg}};
 }
 
-Beginning FindBeginning(const TurningPointTable& table, const Run& run) {
-  const Recording& recording = table.recording;
+Beginning FindBeginning(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   if (auto after_fall = BeginAfterFall(table, run.first)) return *after_fall;
-  if (auto hold = HoldBefore(table, run.first)) return *hold;
-  const double before = table.turns[run.first].time - recording.time[0];
+  if (auto hold = HoldBefore(recording, table, run.first)) return *hold;
+  const double before = table.points[run.first].time - recording.time[0];
   const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
   const bool within =
-      std::abs(recording.value[0] - table.zero[run.first]) <= table.amplitude[run.first] + table.Tolerance(run.first);
+      std::abs(recording.value[0] - table.ZeroAt(run.first)) <= table.Amplitude(run.first) + table.Tolerance(run.first);
   if (near_start && within) return {0, {WindowBegin::Reason::kInMotion}};
-  return {table.turns[run.first].sample, {WindowBegin::Reason::kAfterMove}};
+  return {table.points[run.first].sample, {WindowBegin::Reason::kAfterMove}};
 }
 
 /// Fits an oscillation with the period of small swings to samples [first, first + count). Returns its amplitude divided
 /// by its standard error.
-double AmplitudeOverError(const TurningPointTable& table, Index first, Index count) {
-  const Recording& recording = table.recording;
+double AmplitudeOverError(const Recording& recording, const TurningPointTable& table, Index first, Index count) {
   const Eigen::ArrayXd phase =
       kPi / table.half_period * (recording.time.segment(first, count).array() - recording.time[first]);
   Eigen::MatrixX3d basis(count, 3);
@@ -150,15 +140,14 @@ double AmplitudeOverError(const TurningPointTable& table, Index first, Index cou
 }
 
 /// The last sample at which the reading moves; checks one period at a time from `sample` to `limit`.
-Index EndOfMotion(const TurningPointTable& table, Index sample, Index limit) {
+Index EndOfMotion(const Recording& recording, const TurningPointTable& table, Index sample, Index limit) {
   constexpr double kMoves = 5;
   constexpr Index kMin = 6;
-  const Recording& recording = table.recording;
   Index end = sample;
   while (sample < limit) {
     Index next = sample;
     while (next < limit && recording.time[next] - recording.time[sample] < 2 * table.half_period) ++next;
-    if (next - sample < kMin || AmplitudeOverError(table, sample, next - sample) > kMoves) end = next;
+    if (next - sample < kMin || AmplitudeOverError(recording, table, sample, next - sample) > kMoves) end = next;
     sample = next;
   }
   return end;
@@ -166,10 +155,10 @@ Index EndOfMotion(const TurningPointTable& table, Index sample, Index limit) {
 
 /// Whether the pendulum was stopped after turning point `last`: the next turning point is missing although there was
 /// time for two, and it would have been visible.
-bool IsStopped(const TurningPointTable& table, std::size_t last, Index limit) {
+bool IsStopped(const Recording& recording, const TurningPointTable& table, std::size_t last, Index limit) {
   if (last == 0) return false;
-  const double time_left = table.recording.time[limit] - table.turns[last].time;
-  const double next = table.amplitude[last] - 1.5 * (table.amplitude[last - 1] - table.amplitude[last]);
+  const double time_left = recording.time[limit] - table.points[last].time;
+  const double next = table.Amplitude(last) - 1.5 * (table.Amplitude(last - 1) - table.Amplitude(last));
   return time_left > 3 * table.half_period * table.Stretch(last) && next > table.threshold + table.Tolerance(last);
 }
 
@@ -179,14 +168,13 @@ struct Ending {
   WindowEnd why;
 };
 
-Ending FindEnding(const TurningPointTable& table, const Run& run) {
-  const Recording& recording = table.recording;
-  const Index turn = table.turns[run.last].sample;
+Ending FindEnding(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
+  const Index turn = table.points[run.last].sample;
   // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
   if (run.last < table.half_swings()) return {turn, {WindowEnd::Reason::kBeforeMove}};
   const Index limit = recording.size() - 1;
-  if (IsStopped(table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
-  const Index end = EndOfMotion(table, turn, limit);
+  if (IsStopped(recording, table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
+  const Index end = EndOfMotion(recording, table, turn, limit);
   if (recording.time[limit] - recording.time[end] <= 6 * table.half_period)
     return {limit, {WindowEnd::Reason::kEndOfRecording}};
   Index sample = end;
@@ -194,19 +182,19 @@ Ending FindEnding(const TurningPointTable& table, const Run& run) {
   return {sample, {WindowEnd::Reason::kAtRest, recording.time[end]}};
 }
 
-FreeSwing MakeSwing(const TurningPointTable& table, const Run& run) {
+FreeSwing MakeSwing(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   FreeSwing swing;
-  const Beginning beginning = FindBeginning(table, run);
-  const Ending ending = FindEnding(table, run);
-  swing.from = table.recording.time[beginning.sample];
-  swing.to = table.recording.time[ending.sample];
-  swing.after_hold = table.recording.time[std::min(beginning.after_hold, table.recording.size() - 1)];
+  const Beginning beginning = FindBeginning(recording, table, run);
+  const Ending ending = FindEnding(recording, table, run);
+  swing.from = recording.time[beginning.sample];
+  swing.to = recording.time[ending.sample];
+  swing.after_hold = recording.time[std::min(beginning.after_hold, recording.size() - 1)];
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
   for (std::size_t i = run.first; i <= run.last; ++i) {
-    swing.turns.push_back(table.turns[i].time);
-    swing.amplitude = std::max(swing.amplitude, table.amplitude[i]);
+    swing.turns.push_back(table.points[i].time);
+    swing.amplitude = std::max(swing.amplitude, table.Amplitude(i));
   }
   return swing;
 }
@@ -233,7 +221,8 @@ double MedianOf(const std::vector<double>& values, std::size_t first, std::size_
 /// Median amplitude of the last third of turning points [first, last], divided by that of the first third.
 double Decay(const TurningPointTable& table, std::size_t first, std::size_t last) {
   const std::size_t third = std::max<std::size_t>((last - first + 1) / 3, 1);
-  return MedianOf(table.amplitude, last + 1 - third, third) / MedianOf(table.amplitude, first, third);
+  const std::vector<double> amplitude = table.Amplitudes();
+  return MedianOf(amplitude, last + 1 - third, third) / MedianOf(amplitude, first, third);
 }
 
 /// Whether the amplitude decreases over turning points [first, last], either clearly or by three standard errors. The
@@ -244,7 +233,8 @@ bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last)
   constexpr Index kMin = 6;
   const auto count = static_cast<Index>(last - first + 1);
   if (count < kMin || Decay(table, first, last) < kClearly) return true;
-  const Eigen::VectorXd amplitude = Eigen::Map<const Eigen::VectorXd>(table.amplitude.data() + first, count);
+  const auto amplitude_at = [&](Index i) { return table.Amplitude(first + static_cast<std::size_t>(i)); };
+  const Eigen::VectorXd amplitude = Eigen::VectorXd::NullaryExpr(count, amplitude_at);
   Eigen::MatrixX3d basis(count, 3);
   const Eigen::ArrayXd index = Eigen::ArrayXd::LinSpaced(count, -1, 1);
   // An error of the zero makes the amplitudes on both sides differ.
@@ -263,13 +253,13 @@ double RisingShare(const TurningPointTable& table) {
   std::size_t low = 1;
   std::size_t high = 1;
   const auto close = [&] {
-    const bool climbs = table.amplitude[high] > 1.1 * table.amplitude[low] + table.Tolerance(low);
+    const bool climbs = table.Amplitude(high) > 1.1 * table.Amplitude(low) + table.Tolerance(low);
     if (climbs && high >= low + kMin) climbing += high - low;
   };
-  for (std::size_t i = 2; i < table.turns.size(); ++i) {
-    if (table.amplitude[i] >= table.amplitude[high]) {
+  for (std::size_t i = 2; i < table.points.size(); ++i) {
+    if (table.Amplitude(i) >= table.Amplitude(high)) {
       high = i;
-    } else if (table.amplitude[i] < 0.95 * table.amplitude[high] || table.amplitude[i] < table.amplitude[low]) {
+    } else if (table.Amplitude(i) < 0.95 * table.Amplitude(high) || table.Amplitude(i) < table.Amplitude(low)) {
       close();
       low = high = i;
     }
@@ -279,12 +269,14 @@ double RisingShare(const TurningPointTable& table) {
 }
 
 /// Handles repeated turning points that are not a free swing: an error, or a swing that beats.
-Result<std::optional<FreeSwing>> ClassifyOtherMotion(const TurningPointTable& table, const std::vector<Run>& runs) {
+Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording, const TurningPointTable& table,
+                                                     const std::vector<TurningPointRun>& runs) {
   constexpr double kMaxRisingShare = 0.2;
   constexpr double kDecayed = 0.7;
   constexpr std::size_t kMin = 6;
-  const std::size_t turns = table.turns.size();
-  const auto longest = std::ranges::max_element(runs, {}, [](const Run& run) { return run.last - run.first; });
+  const std::size_t turns = table.points.size();
+  const auto longest =
+      std::ranges::max_element(runs, {}, [](const TurningPointRun& run) { return run.last - run.first; });
   const std::size_t free = longest == runs.end() ? 0 : longest->last - longest->first + 1;
   const bool climbs = RisingShare(table) > kMaxRisingShare;
   if (!climbs && 2 * free >= turns) {
@@ -294,30 +286,30 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const TurningPointTable& ta
                      " half swings: the pendulum is driven, or its friction is too small to see; what lies between "
                      "--from and --to is fitted as it is");
   }
-  const double largest = *std::ranges::max_element(table.amplitude);
-  const bool scattered = 3 * free < turns && (free < kMin || table.amplitude[longest->first] < 0.5 * largest);
+  const double largest = std::ranges::max(table.Amplitudes());
+  const bool scattered = 3 * free < turns && (free < kMin || table.Amplitude(longest->first) < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
   // A motion that begins at rest and climbs was not released.
-  const bool from_rest = climbs && table.amplitude[1] < 0.35 * largest;
+  const bool from_rest = climbs && table.Amplitude(1) < 0.35 * largest;
   if (from_rest || Decay(table, 0, turns - 1) > kDecayed) {
     if (climbs) return NoSwing("the amplitude climbs again and again: the pendulum is driven");
     return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
                    " follow each other as a free swing's do, in equal times and with less and "
                    "less amplitude: the pendulum was moved by hand or motor, or held at one angle after another");
   }
-  FreeSwing swing = MakeSwing(table, {0, turns - 1});
+  FreeSwing swing = MakeSwing(recording, table, {0, turns - 1});
   swing.has_beats = true;
   return swing;
 }
 
 /// The largest amplitude of turning points outside all runs. Runs are in time order.
-double LargestOutside(const TurningPointTable& table, const std::vector<Run>& runs) {
+double LargestOutside(const TurningPointTable& table, const std::vector<TurningPointRun>& runs) {
   double largest = 0;
   auto run = runs.begin();
-  for (std::size_t i = 1; i < table.turns.size(); ++i) {
+  for (std::size_t i = 1; i < table.points.size(); ++i) {
     while (run != runs.end() && run->last < i) ++run;
     const bool inside = run != runs.end() && i >= run->first;
-    if (!inside) largest = std::max(largest, table.amplitude[i]);
+    if (!inside) largest = std::max(largest, table.Amplitude(i));
   }
   return largest;
 }
@@ -325,8 +317,8 @@ double LargestOutside(const TurningPointTable& table, const std::vector<Run>& ru
 /// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
 Result<void> CheckUnit(const TurningPointTable& table) {
   constexpr double kMax = 3.3;  // rad
-  const bool angle = table.recording.quantity == Quantity::kAngle && table.recording.is_calibrated();
-  const double typical = Median(table.amplitude);
+  const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
+  const double typical = Median(table.Amplitudes());
   if (!angle || typical < kMax) return {};
   return Error(
       StatusCode::kFailedPrecondition,
@@ -343,21 +335,21 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
     if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
     return swings;
   }
-  const TurningPointTable table = TabulateTurningPoints(recording);
-  if (table.turns.size() < 3) {
-    const Result<std::vector<Extremum>> extrema = FindExtrema(recording);
-    return tl::unexpected(extrema ? Status{StatusCode::kFailedPrecondition, "no turning points"} : extrema.error());
+  const TurningPointTable table = FindAllTurningPoints(recording);
+  if (table.points.size() < 3) {
+    const Result<TurningPointTable> found = FindTurningPoints(recording);
+    return tl::unexpected(found ? Status{StatusCode::kFailedPrecondition, "no turning points"} : found.error());
   }
   if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
-  const std::vector<Verdict> verdicts = ClassifyHalfSwings(table);
-  const std::vector<Run> runs = FreeRuns(table, verdicts);
-  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(table, runs);
+  const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
+  const std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
+  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs);
   if (!other_motion) return tl::unexpected(other_motion.error());
   if (*other_motion) return std::vector<FreeSwing>{**other_motion};
   std::vector<FreeSwing> swings;
   const double outside = LargestOutside(table, runs);
-  for (const Run& run : runs) {
-    swings.push_back(MakeSwing(table, run));
+  for (const TurningPointRun& run : runs) {
+    swings.push_back(MakeSwing(recording, table, run));
     swings.back().amplitude_outside = outside;
   }
   if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude and cross the zero");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/closed_form/log_decrement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/period.h"
 
 namespace pendulum {
@@ -16,26 +18,16 @@ using Eigen::VectorXd;
 
 constexpr Index kFormulas = 7;  // the number of formulas in LogDecrement, in its order
 
-/// Indices of the first turning point of each run, followed by one past the last turning point.
-std::vector<std::size_t> RunStarts(const PeakTable& table) {
-  std::vector<std::size_t> starts;
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    if (i == 0 || !table.peaks[i].continues) starts.push_back(i);
-  }
-  starts.push_back(table.peaks.size());
-  return starts;
-}
-
 /// The n periods to which the formulas are applied.
 struct PeriodSpan {
-  const PeakTable& table;
+  const TurningPointTable& table;
   Gravity gravity;
   std::size_t first;
   int periods;
 
   std::size_t last() const { return first + 2 * static_cast<std::size_t>(periods); }
-  const Peak& from() const { return table.peaks[first]; }
-  const Peak& to() const { return table.peaks[last()]; }
+  const TurningPoint& from() const { return table.points[first]; }
+  const TurningPoint& to() const { return table.points[last()]; }
 };
 
 /// Inputs of the formulas: two times [s], two readings relative to the zero, and the mean over the half swings of their
@@ -56,7 +48,7 @@ Outputs Formulas(const Inputs& inputs, int periods) {
 
 /// The mean period ratio and its derivatives (M) by the values of the turning points.
 double MeanPeriodRatio(const PeriodSpan& span, VectorXd& gradient) {
-  gradient = VectorXd::Zero(static_cast<Index>(span.table.peaks.size()));
+  gradient = VectorXd::Zero(static_cast<Index>(span.table.points.size()));
   if (span.gravity == Gravity::kLinear) return 1;
   constexpr double kStep = 1e-4;  // of the amplitude
   const double share = 1 / (2.0 * span.periods);
@@ -99,17 +91,17 @@ MatrixXd Gradient(const PeriodSpan& span, const Inputs& inputs, const VectorXd& 
 }
 
 /// Whether the turning points `first` and n periods later belong to one run and lie on the same side of the zero.
-bool Reaches(const PeakTable& table, std::size_t first, int periods) {
+bool Reaches(const TurningPointTable& table, std::size_t first, int periods) {
   const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
-  if (periods < 1 || last >= table.peaks.size()) return false;
+  if (periods < 1 || last >= table.points.size()) return false;
   for (std::size_t i = first + 1; i <= last; ++i) {
-    if (!table.peaks[i].continues) return false;
+    if (!table.points[i].continues) return false;
   }
   return table.Side(first) == table.Side(last);
 }
 
 /// ζ of two turning points n periods apart and its error, without the other formulas. zero_weights are the table's.
-std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zero_weights, std::size_t first,
+std::optional<Estimate> DampingRatio(const TurningPointTable& table, const VectorXd& zero_weights, std::size_t first,
                                      int periods) {
   if (!Reaches(table, first, periods)) return std::nullopt;
   const std::size_t last = first + 2 * static_cast<std::size_t>(periods);
@@ -120,10 +112,10 @@ std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zer
   // The amplitudes are relative to the zero, which depends on all values, including these two.
   const double by_zero = table.Side(first) * (1 / after - 1 / before);
   double variance = std::pow(by_zero * table.zero.std_error, 2);
-  for (const auto& [peak, slope] : {std::pair(first, 1 / before), std::pair(last, -1 / after)}) {
+  for (const auto& [point, slope] : {std::pair(first, 1 / before), std::pair(last, -1 / after)}) {
     const double own = table.Side(first) * slope;
-    const double through_zero = by_zero * zero_weights[static_cast<Index>(peak)];
-    variance += own * (own + 2 * through_zero) * table.peaks[peak].covariance(1, 1);
+    const double through_zero = by_zero * zero_weights[static_cast<Index>(point)];
+    variance += own * (own + 2 * through_zero) * table.points[point].covariance(1, 1);
   }
   const double slope = 4 * kPi * kPi / (square * std::sqrt(square));
   return Estimate{decrement / std::sqrt(square), slope * std::sqrt(variance) / periods};
@@ -131,7 +123,8 @@ std::optional<Estimate> DampingRatio(const PeakTable& table, const VectorXd& zer
 
 }  // namespace
 
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods) {
+std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gravity gravity, std::size_t first,
+                                              int periods) {
   if (!Reaches(table, first, periods)) return std::nullopt;
   const PeriodSpan span{table, gravity, first, periods};
   VectorXd ratio_gradient;
@@ -150,29 +143,29 @@ std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gr
   return result;
 }
 
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, const std::stop_token& stop) {
-  const std::vector<std::size_t> starts = RunStarts(table);
-  std::size_t longest = 0;
-  for (std::size_t r = 1; r + 1 < starts.size(); ++r) {
-    if (starts[r + 1] - starts[r] > starts[longest + 1] - starts[longest]) longest = r;
-  }
+std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gravity gravity,
+                                              const std::stop_token& stop) {
+  const std::vector<TurningPointRun> runs = table.Runs();
+  const auto longest =
+      std::ranges::max_element(runs, {}, [](const TurningPointRun& run) { return run.last - run.first; });
+  if (longest == runs.end()) return std::nullopt;
   const VectorXd weights = table.ZeroWeights();
   int best = 0;
   double smallest = 0;
-  for (int n = 1; Reaches(table, starts[longest], n); ++n) {
+  for (int n = 1; Reaches(table, longest->first, n); ++n) {
     if (stop.stop_requested()) return std::nullopt;
-    const double error = DampingRatio(table, weights, starts[longest], n)->std_error;
+    const double error = DampingRatio(table, weights, longest->first, n)->std_error;
     if (best == 0 || error < smallest) best = n, smallest = error;
   }
-  return ApplyLogDecrement(table, gravity, starts[longest], best);
+  return ApplyLogDecrement(table, gravity, longest->first, best);
 }
 
-std::vector<DecayRow> TabulateDecay(const PeakTable& table, const std::stop_token& stop) {
+std::vector<DecayRow> TabulateDecay(const TurningPointTable& table, const std::stop_token& stop) {
   const VectorXd weights = table.ZeroWeights();
   std::vector<DecayRow> rows;
   std::size_t start = 0;
-  for (std::size_t i = 0; i < table.peaks.size() && !stop.stop_requested(); ++i) {
-    if (!table.peaks[i].continues) start = i;
+  for (std::size_t i = 0; i < table.points.size() && !stop.stop_requested(); ++i) {
+    if (!table.points[i].continues) start = i;
     DecayRow row{i, DampingRatio(table, weights, i, 1), std::nullopt, static_cast<int>((i - start) / 2)};
     row.so_far = DampingRatio(table, weights, start + (i - start) % 2, row.periods);
     rows.push_back(row);

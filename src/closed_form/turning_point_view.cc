@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turning_points.h"
 
 namespace pendulum {
 namespace {
@@ -30,13 +30,12 @@ Extremes ExtremesOf(const Recording& recording) {
 }
 
 /// The passages through the bottom, which are maxima of the reading.
-std::vector<Extremum> Bottoms(const Recording& upright, double threshold) {
+std::vector<TurningPoint> Bottoms(const Recording& upright, const TurningPointTable& table) {
   constexpr double kAlike = 0.25;  // of a swing of the reading, which decreases with the energy, but less than this in
                                    // one swing
-  const std::vector<Extremum> turns = FindTurningPoints(upright, threshold);
-  std::vector<Extremum> bottoms;
-  for (std::size_t i = 0; i + 1 < turns.size(); ++i) {  // maxima and minima alternate
-    if (turns[i].value > turns[i + 1].value) bottoms.push_back(turns[i]);
+  std::vector<TurningPoint> bottoms;
+  for (std::size_t i = 0; i < table.half_swings(); ++i) {  // maxima and minima alternate
+    if (table.points[i].value > table.points[i + 1].value) bottoms.push_back(table.points[i]);
   }
   // The first may be the start of the recording in the middle of a swing.
   if (bottoms.size() < 2) return bottoms;
@@ -47,9 +46,9 @@ std::vector<Extremum> Bottoms(const Recording& upright, double threshold) {
 
 /// Replaces small values around each passage by a line between the values on both sides. Otherwise the square root of
 /// the noise would have turning points of its own.
-void InterpolatePassages(const std::vector<Extremum>& bottoms, double least, Recording& view) {
+void InterpolatePassages(const std::vector<TurningPoint>& bottoms, double least, Recording& view) {
   Eigen::VectorXd& value = view.value;
-  for (const Extremum& bottom : bottoms) {
+  for (const TurningPoint& bottom : bottoms) {
     Index before = bottom.sample;
     Index after = bottom.sample;
     while (before > 0 && std::abs(value[before]) < least) --before;
@@ -63,16 +62,16 @@ void InterpolatePassages(const std::vector<Extremum>& bottoms, double least, Rec
 /// MODEL.md eq. (14.5), with M interpolated linearly between the bottoms' readings.
 Recording Unfolded(Recording recording) {
   recording.value *= RadialSide(recording);
-  const double threshold = TurningThreshold(recording, SuccessiveDifferenceNoise(recording));
-  const std::vector<Extremum> bottoms = Bottoms(recording, threshold);
+  const TurningPointTable table = FindAllTurningPoints(recording);
+  const std::vector<TurningPoint> bottoms = Bottoms(recording, table);
   if (bottoms.size() < 2) return recording;
   const double spacing = (bottoms.back().time - bottoms.front().time) / static_cast<double>(bottoms.size() - 1);
   std::size_t next = 0;
   for (Index i = 0; i < recording.size(); ++i) {
     const double time = recording.time[i];
     while (next < bottoms.size() && bottoms[next].time <= time) ++next;
-    const Extremum& before = bottoms[next == 0 ? 0 : next - 1];
-    const Extremum& after = bottoms[std::min(next, bottoms.size() - 1)];
+    const TurningPoint& before = bottoms[next == 0 ? 0 : next - 1];
+    const TurningPoint& after = bottoms[std::min(next, bottoms.size() - 1)];
     const double step = after.time - before.time;
     const double share = step > 0 ? (time - before.time) / step : 0;
     const double bottom = before.value + share * (after.value - before.value);
@@ -81,7 +80,7 @@ Recording Unfolded(Recording recording) {
     const bool is_over = next == bottoms.size() && time > bottoms.back().time + spacing;
     recording.value[i] = is_over ? 0.0 : side * std::sqrt(std::max(bottom - recording.value[i], 0.0));
   }
-  InterpolatePassages(bottoms, std::sqrt(threshold), recording);
+  InterpolatePassages(bottoms, std::sqrt(table.threshold), recording);
   return recording;
 }
 

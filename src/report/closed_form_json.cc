@@ -113,7 +113,7 @@ nlohmann::ordered_json ClosedFormsJson(const Identification& report) {
   if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);
   return json.Set("envelopes", EnvelopesJson(forms.envelopes))
       .Set("envelope", TextOrNull(forms.envelope))
-      .Set("turning_points", Json(forms.table.peaks.size()))
+      .Set("turning_points", Json(forms.table.points.size()))
       .Set(KeyWithUnit("noise", report.data.unit), forms.table.noise)
       .Done();
 }

@@ -102,7 +102,7 @@ void AddDecrement(const Identification& report, Section& section) {
   const Decrement& decrement = *forms.decrement;
   std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
-  section.AddText("Fitted to all " + std::to_string(forms.table.peaks.size()) + " turning points, " +
+  section.AddText("Fitted to all " + std::to_string(forms.table.points.size()) + " turning points, " +
                   (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
                   ", with the friction of model " + report.closed_forms_model + ": chi-square " +
                   NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
@@ -152,7 +152,7 @@ struct Listed {
 constexpr Listed kBesideAFit = {10, 2};
 constexpr Listed kAlone = {58, 2};
 
-std::vector<Column> PeakColumns(const PeakTable& table, const std::string& unit) {
+std::vector<Column> TurningPointColumns(const TurningPointTable& table, const std::string& unit) {
   const std::string quantity = table.quantity == Quantity::kRate ? "rate" : "angle";
   return {{"number", true},
           {"t [s]", true},
@@ -171,11 +171,11 @@ std::array<std::string, 2> RatioCells(const std::optional<Estimate>& ratio) {
   return {numbers.Value(), numbers.Error()};
 }
 
-Cells PeakCells(const ClosedForms& forms, std::size_t i, double factor) {
-  const Peak& peak = forms.table.peaks[i];
-  const QuantityNumbers time(peak.time, std::sqrt(peak.covariance(0, 0)));
-  const QuantityNumbers value(peak.value, std::sqrt(peak.covariance(1, 1)), factor);
-  Cells cells = {std::to_string(i + 1), time.Number(peak.time), value.Number(peak.value), "", "", "", "", ""};
+Cells TurningPointCells(const ClosedForms& forms, std::size_t i, double factor) {
+  const TurningPoint& point = forms.table.points[i];
+  const QuantityNumbers time(point.time, std::sqrt(point.covariance(0, 0)));
+  const QuantityNumbers value(point.value, std::sqrt(point.covariance(1, 1)), factor);
+  Cells cells = {std::to_string(i + 1), time.Number(point.time), value.Number(point.value), "", "", "", "", ""};
   if (i >= forms.decay.size()) return cells;
   const DecayRow& decay = forms.decay[i];
   std::ranges::copy(RatioCells(decay.pair), cells.begin() + 3);
@@ -189,16 +189,16 @@ Section TurningPointSection(const Identification& report) {
   const std::optional<Conversion> degrees = Degrees(report.data.unit);
   const Conversion shown = degrees.value_or(Conversion{report.data.unit});
   const Listed listed = report.fits.empty() ? kAlone : kBesideAFit;
-  const std::size_t count = forms.table.peaks.size();
+  const std::size_t count = forms.table.points.size();
   const std::size_t left_out = count - std::min(count, listed.first + listed.last);
-  Table table{PeakColumns(forms.table, std::string(shown.unit)), {}};
+  Table table{TurningPointColumns(forms.table, std::string(shown.unit)), {}};
   if (left_out > 0) {
     table.rows_before = listed.first;
     table.left_out = "... " + std::to_string(left_out) + " more: --series";
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (left_out > 0 && i == listed.first) i += left_out;
-    table.rows.push_back(PeakCells(forms, i, shown.factor));
+    table.rows.push_back(TurningPointCells(forms, i, shown.factor));
   }
   const std::string remark = "ζ: damping ratio of a pair, and over n periods";
   return {"Turning points", remark, {std::move(table)}};

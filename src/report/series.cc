@@ -11,7 +11,7 @@
 #include "pendulum/analysis/fitted_motion.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/report/json_parts.h"
 
@@ -52,9 +52,9 @@ Json ExtremaJson(const Recording& used) {
   if (used.quantity == Quantity::kAcceleration)
     return json;  // turning points of an acceleration are not the
                   // pendulum's
-  const Result<std::vector<Extremum>> extrema = FindExtrema(used);
-  if (!extrema) return json;
-  for (const Extremum& extremum : *extrema) json.push_back(Json::array({extremum.time, extremum.value}));
+  const Result<TurningPointTable> table = FindTurningPoints(used);
+  if (!table) return json;
+  for (const TurningPoint& point : table->points) json.push_back(Json::array({point.time, point.value}));
   return json;
 }
 
@@ -65,15 +65,15 @@ void SetEstimate(const std::string& key, const std::optional<Estimate>& estimate
 
 /// One turning point, numbered from 1.
 Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) {
-  const Peak& peak = forms.table.peaks[i];
+  const TurningPoint& point = forms.table.points[i];
   const std::string quantity = forms.table.quantity == Quantity::kRate ? "rate" : "angle";
   const DecayRow decay = i < forms.decay.size() ? forms.decay[i] : DecayRow();
   Json json;
   json["number"] = i + 1;
-  json["time_s"] = peak.time;
-  json["time_std_error"] = NumberOrNull(std::sqrt(peak.covariance(0, 0)));
-  json[KeyWithUnit(quantity, unit)] = peak.value;
-  json["std_error"] = NumberOrNull(std::sqrt(peak.covariance(1, 1)));
+  json["time_s"] = point.time;
+  json["time_std_error"] = NumberOrNull(std::sqrt(point.covariance(0, 0)));
+  json[KeyWithUnit(quantity, unit)] = point.value;
+  json["std_error"] = NumberOrNull(std::sqrt(point.covariance(1, 1)));
   SetEstimate("zeta_pair", decay.pair, json);
   SetEstimate("zeta", decay.so_far, json);
   json["periods"] = decay.so_far ? Json(decay.periods) : Json(nullptr);
@@ -83,7 +83,7 @@ Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) 
 Json PeaksJson(const Identification& report, const std::string& unit) {
   Json json = Json::array();
   if (!report.closed_forms) return json;
-  for (std::size_t i = 0; i < report.closed_forms->table.peaks.size(); ++i) {
+  for (std::size_t i = 0; i < report.closed_forms->table.points.size(); ++i) {
     json.push_back(PeakJson(*report.closed_forms, i, unit));
   }
   return json;

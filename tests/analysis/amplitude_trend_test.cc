@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "tests/analysis/fitted_run.h"
 
 namespace pendulum::amplitude_trend_test {
@@ -41,7 +41,8 @@ SyntheticOptions RunOf(std::string_view model, double noise) {
 /// The release and the turning points: M + 1 ends of the first M half swings.
 std::vector<double> FirstEnds(const Recording& recording, std::size_t half_swings) {
   std::vector<double> ends;
-  for (const Extremum& turn : Must(FindExtrema(recording))) ends.push_back(turn.time);
+  const TurningPointTable table = Must(FindTurningPoints(recording));
+  for (const TurningPoint& turn : table.points) ends.push_back(turn.time);
   EXPECT_THAT(ends.size(), Gt(half_swings));
   ends.resize(half_swings + 1);
   return ends;

@@ -42,7 +42,7 @@ double PartBy(const std::string& cause, const ClosedFormRow& row) {
 /// Number of half swings from the release to the first turning point of the linear formulas.
 int HalfSwingsBefore(const CheckedRun& checked) {
   const LogDecrement& linear = *checked.forms.linear;
-  const double since = checked.forms.table.peaks[linear.first].time - 1.9;
+  const double since = checked.forms.table.points[linear.first].time - 1.9;
   return static_cast<int>(std::lround(since / checked.forms.table.half_period));
 }
 

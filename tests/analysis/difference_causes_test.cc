@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/log_decrement.h"
 #include "pendulum/closed_form/period.h"
 #include "tests/analysis/fitted_run.h"
@@ -223,9 +224,9 @@ TEST(ApplyInStages, FindsTheEffectOfLevels) {
 
 /// The textbook's inertia over 4 periods, from the first turning point after 3 s on (the second one after the release).
 std::optional<Eigen::VectorXd> SmallAngleInertia(const Recording& recording, Gravity gravity) {
-  const PeakTable table = Must(LocatePeaks(recording));
+  const TurningPointTable table = Must(LocateTurningPoints(recording));
   std::size_t first = 0;
-  while (table.peaks[first].time < 3) ++first;
+  while (table.points[first].time < 3) ++first;
   const auto linear = ApplyLogDecrement(table, gravity, first, 4);
   return Eigen::VectorXd::Constant(1, linear.value().inertia.value);
 }

@@ -38,7 +38,7 @@ Recording Read(const Decay& decay) {
 
 TEST(ClosedForms, ReproduceThePublishedNumbersOfTheTextbookRig) {
   const ClosedForms forms = Must(EstimateClosedForms(Read(Published()), kViscousModel));
-  const auto five = ApplyLogDecrement(forms.table, Gravity::kSine, 0, 5);  // six peaks, five periods
+  const auto five = ApplyLogDecrement(forms.table, Gravity::kSine, 0, 5);  // six maxima, five periods
   ASSERT_TRUE(five);
   EXPECT_NEAR(five->damped_frequency.value, 4.8, 0.1);
   EXPECT_NEAR(five->damping_ratio.value, 0.004, 0.0005);
@@ -82,7 +82,7 @@ TEST(ClosedForms, UseTrueSecondsOnAWrongClock) {
   const ClosedForms forms = Must(EstimateClosedForms(recording, kViscousModel));
   EXPECT_NEAR(forms.linear->inertia.value / right.linear->inertia.value, 1, 1e-6);
   EXPECT_NEAR(forms.decrement->friction[0].value / right.decrement->friction[0].value, 1, 1e-4);
-  EXPECT_NEAR(forms.table.peaks[3].time, 100 + right.table.peaks[3].time / 1.25, 1e-6);
+  EXPECT_NEAR(forms.table.points[3].time, 100 + right.table.points[3].time / 1.25, 1e-6);
 }
 
 TEST(ClosedForms, WorkWithoutADecrementForFewTurningPoints) {
@@ -90,7 +90,7 @@ TEST(ClosedForms, WorkWithoutADecrementForFewTurningPoints) {
   decay.duration = 2.3;  // three turning points, the last one near the end
   const MotionModel drag = {"drag", "drag", Gravity::kSine};
   const ClosedForms forms = Must(EstimateClosedForms(Read(decay), drag));
-  EXPECT_EQ(forms.table.peaks.size(), 3U);
+  EXPECT_EQ(forms.table.points.size(), 3U);
   EXPECT_TRUE(forms.linear);
   EXPECT_FALSE(forms.decrement);
   EXPECT_THAT(forms.no_decrement, HasSubstr("too few"));

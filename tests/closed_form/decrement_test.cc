@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "tests/closed_form/reference_swing.h"
 
 namespace pendulum::decrement_test {
@@ -70,11 +71,11 @@ TEST(FitDecrement, ContinuesAcrossAGap) {
 
 TEST(FitDecrement, HasTheGradientOfItsTurningPoints) {
   const Recording recording = WithNoise(SimulateDecay(AllThree()), 1e-3, 1);
-  PeakTable table = Must(LocatePeaks(recording));
+  TurningPointTable table = Must(LocateTurningPoints(recording));
   const std::vector<bool> all(3, true);
   const Decrement before = Must(FitDecrement(table, kDragModel, all));
-  const double change = 0.3 * std::sqrt(table.peaks[4].covariance(1, 1));
-  table.peaks[4].value += change;
+  const double change = 0.3 * std::sqrt(table.points[4].covariance(1, 1));
+  table.points[4].value += change;
   const Decrement after = Must(FitDecrement(table, kDragModel, all));
   const Eigen::VectorXd slope = before.gradient.col(9);  // by the value of turning point 4
   EXPECT_NEAR((after.zero.value - before.zero.value) / change, slope[0], 0.02 * std::abs(slope[0]));
@@ -103,7 +104,7 @@ TEST(CompareEnvelopes, FindsTheOnlyTermPresent) {
     Decay decay;
     decay.amplitude = 0.6;
     (truth == 0 ? decay.viscous : truth == 1 ? decay.coulomb : decay.drag) = 0.002;
-    const PeakTable table = Must(LocatePeaks(WithNoise(SimulateDecay(decay), 1e-3, 11)));
+    const TurningPointTable table = Must(LocateTurningPoints(WithNoise(SimulateDecay(decay), 1e-3, 11)));
     const EnvelopeComparison laws = Must(CompareEnvelopes(table, Gravity::kSine));
     ASSERT_EQ(laws.single.size(), 3U);
     for (std::size_t k = 0; k < terms.size(); ++k) {

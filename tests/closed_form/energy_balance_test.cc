@@ -18,20 +18,22 @@ using testing::Each;
 using testing::Ge;
 
 std::vector<double> FrictionOf(const Recording& recording, std::string_view model) {
-  const HalfSwingTable table = Must(TabulateHalfSwings(recording));
-  return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, NaturalFrequency(table)).front());
+  const TurningPointTable table = Must(FindTurningPoints(recording));
+  const double frequency = Must(NaturalFrequency(recording, table, Gravity::kSine));
+  return FrictionFrom(BalanceEnergy(Must(FindMotionModel(model)), table, frequency).front());
 }
 
 /// Amplitudes of a swing with dry friction alone: τ (A + A') = cos A' - cos A, exact at any amplitude.
-HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
-  HalfSwingTable table;
+TurningPointTable DryHalfSwings(double amplitude, double coulomb, int count) {
+  TurningPointTable table;
+  table.points.push_back({.value = amplitude});
   for (int i = 0; i < count; ++i) {
     double next = amplitude;
     for (int iteration = 0; iteration < 50; ++iteration) {  // Newton's method
       const double excess = std::cos(next) - std::cos(amplitude) - coulomb * (amplitude + next);
       next -= excess / (-std::sin(next) - coulomb);
     }
-    table.half_swings.push_back({0, amplitude, next, i > 0});
+    table.points.push_back({.value = next, .continues = true});
     amplitude = next;
   }
   return table;
@@ -39,7 +41,7 @@ HalfSwingTable DryHalfSwings(double amplitude, double coulomb, int count) {
 
 TEST(FrictionFrom, IsExactForDryFrictionAtAnyAmplitude) {
   for (const double amplitude : {0.3, 1.5, 2.6}) {
-    const HalfSwingTable table = DryHalfSwings(amplitude, 0.01, 10);
+    const TurningPointTable table = DryHalfSwings(amplitude, 0.01, 10);
     const std::vector<double> friction =
         FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
     EXPECT_NEAR(friction[0], 0, 1e-8) << amplitude;
@@ -50,9 +52,9 @@ TEST(FrictionFrom, IsExactForDryFrictionAtAnyAmplitude) {
 TEST(FrictionFrom, IsTheLogDecrementForSmallViscousSwings) {
   // A' = A exp(-π ζ / sqrt(1 - ζ²)), ζ = b ω0 / 2.
   const double viscous = 0.002, zeta = 0.5 * viscous * 5, ratio = std::exp(-kPi * zeta / std::sqrt(1 - zeta * zeta));
-  HalfSwingTable table;
-  for (int i = 0; i < 10; ++i) {
-    table.half_swings.push_back({0, 0.01 * std::pow(ratio, i), 0.01 * std::pow(ratio, i + 1), i > 0});
+  TurningPointTable table;
+  for (int i = 0; i <= 10; ++i) {
+    table.points.push_back({.value = 0.01 * std::pow(ratio, i), .continues = i > 0});
   }
   EXPECT_NEAR(FrictionFrom(BalanceEnergy(Must(FindMotionModel("viscous")), table, 5).front())[0] / viscous, 1, 1e-4);
 }
@@ -106,7 +108,7 @@ TEST(FrictionFrom, CountsNoLossAcrossAGap) {
 }
 
 TEST(FrictionFrom, GivesAllParametersOfEveryModel) {
-  const HalfSwingTable table = DryHalfSwings(1.0, 0.01, 10);
+  const TurningPointTable table = DryHalfSwings(1.0, 0.01, 10);
   for (const MotionModel& model : MotionModels()) {
     EXPECT_EQ(FrictionFrom(BalanceEnergy(model, table, 5).front()).size() + 1, PhysicalParameters(model).size())
         << model.name;
@@ -115,7 +117,7 @@ TEST(FrictionFrom, GivesAllParametersOfEveryModel) {
 
 TEST(FrictionFrom, MatchesTheSimplerLawWithoutAParameter) {
   Decay decay{5, 0.003, 0.003, 0.0006, 60 * kRadFromDeg, 60, Quantity::kAngle};
-  const HalfSwingTable table = Must(TabulateHalfSwings(SimulateDecay(decay)));
+  const TurningPointTable table = Must(FindTurningPoints(SimulateDecay(decay)));
   const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5).front();
   const std::vector<double> coulomb = FrictionFrom(BalanceEnergy(Must(FindMotionModel("coulomb")), table, 5).front());
   const std::vector<double> without = FrictionFrom(drag, {false, false, true});

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 #include "tests/closed_form/reference_swing.h"
 
 namespace pendulum::log_decrement_test {
@@ -27,7 +28,7 @@ double Linear(double t) {
 }
 
 TEST(LogDecrement, ReproducesTheLinearPendulum) {
-  const PeakTable table = Must(LocatePeaks(Sample(Linear, 15, 100)));
+  const TurningPointTable table = Must(LocateTurningPoints(Sample(Linear, 15, 100)));
   for (const int periods : {1, 2, 5, 9}) {
     const auto found = ApplyLogDecrement(table, Gravity::kLinear, 1, periods);
     ASSERT_TRUE(found) << periods;
@@ -47,7 +48,7 @@ TEST(LogDecrement, ScattersAsItsErrorsPredict) {
   constexpr int kSeeds = 200;
   Eigen::Array4d squares = Eigen::Array4d::Zero();
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const PeakTable table = Must(LocatePeaks(WithNoise(clean, 1e-3, seed)));
+    const TurningPointTable table = Must(LocateTurningPoints(WithNoise(clean, 1e-3, seed)));
     const auto found = ApplyLogDecrement(table, Gravity::kLinear, 0, 5);
     ASSERT_TRUE(found);
     const auto square = [](const Estimate& estimate, double truth) {
@@ -64,7 +65,7 @@ TEST(LogDecrement, ScattersAsItsErrorsPredict) {
 TEST(LogDecrement, TakesTheLongerPeriodOfLargeSwingsForInertia) {
   constexpr double kAmplitude = 0.8;  // rad
   const auto swing = [](double t) { return UndampedAngle(kAmplitude, 1 / (kNatural * kNatural), t); };
-  const PeakTable table = Must(LocatePeaks(Sample(swing, 15, 100)));
+  const TurningPointTable table = Must(LocateTurningPoints(Sample(swing, 15, 100)));
   const auto found = ApplyLogDecrement(table, Gravity::kSine, 0, 5);
   ASSERT_TRUE(found);
   const double ratio = 2 / kPi * boost::math::ellint_1(std::sin(kAmplitude / 2));
@@ -73,7 +74,7 @@ TEST(LogDecrement, TakesTheLongerPeriodOfLargeSwingsForInertia) {
 }
 
 TEST(LogDecrement, ChoosesThePeriodsWithTheSmallestError) {
-  const PeakTable table = Must(LocatePeaks(WithNoise(Sample(Linear, 25, 100), 1e-3, 4)));
+  const TurningPointTable table = Must(LocateTurningPoints(WithNoise(Sample(Linear, 25, 100), 1e-3, 4)));
   const auto best = ApplyLogDecrement(table, Gravity::kLinear);
   ASSERT_TRUE(best);
   EXPECT_EQ(best->first, 0U);
@@ -84,14 +85,14 @@ TEST(LogDecrement, ChoosesThePeriodsWithTheSmallestError) {
 }
 
 TEST(LogDecrement, HasTheGradientOfItsTurningPoints) {
-  PeakTable table = Must(LocatePeaks(WithNoise(Sample(Linear, 15, 100), 1e-3, 4)));
+  TurningPointTable table = Must(LocateTurningPoints(WithNoise(Sample(Linear, 15, 100), 1e-3, 4)));
   const auto before = ApplyLogDecrement(table, Gravity::kSine, 0, 4);
   constexpr double kChange = 1e-5;
-  table.peaks[8].value += kChange;
+  table.points[8].value += kChange;
   table.zero.value = 0;  // computed again from the values
   const Eigen::VectorXd weights = table.ZeroWeights();
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    table.zero.value += weights[i] * table.peaks[static_cast<std::size_t>(i)].value;
+    table.zero.value += weights[i] * table.points[static_cast<std::size_t>(i)].value;
   }
   const auto after = ApplyLogDecrement(table, Gravity::kSine, 0, 4);
   ASSERT_TRUE(before && after);
@@ -104,22 +105,22 @@ TEST(LogDecrement, HasTheGradientOfItsTurningPoints) {
 }
 
 TEST(LogDecrement, IsMissingBeyondTheTurningPointsOrAcrossAGap) {
-  const PeakTable table = Must(LocatePeaks(WithoutSamples(Sample(Linear, 15, 100), 5.0, 7.0)));
+  const TurningPointTable table = Must(LocateTurningPoints(WithoutSamples(Sample(Linear, 15, 100), 5.0, 7.0)));
   EXPECT_FALSE(ApplyLogDecrement(table, Gravity::kSine, 0, 40));
   EXPECT_FALSE(ApplyLogDecrement(table, Gravity::kSine, 0, 0));
   EXPECT_TRUE(ApplyLogDecrement(table, Gravity::kSine, 0, 2));
   EXPECT_FALSE(ApplyLogDecrement(table, Gravity::kSine, 0, 4));
   const auto longest = ApplyLogDecrement(table, Gravity::kSine);
   ASSERT_TRUE(longest);
-  EXPECT_GT(table.peaks[longest->first].time, 7.0);
+  EXPECT_GT(table.points[longest->first].time, 7.0);
 }
 
 TEST(TabulateDecay, GivesEachPairAndTheSumSoFar) {
-  const PeakTable table = Must(LocatePeaks(Sample(Linear, 15, 100)));
+  const TurningPointTable table = Must(LocateTurningPoints(Sample(Linear, 15, 100)));
   const std::vector<DecayRow> rows = TabulateDecay(table);
-  ASSERT_EQ(rows.size(), table.peaks.size());
+  ASSERT_EQ(rows.size(), table.points.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_EQ(rows[i].peak, i);
+    EXPECT_EQ(rows[i].point, i);
     EXPECT_EQ(rows[i].periods, static_cast<int>(i / 2));
     EXPECT_EQ(rows[i].pair.has_value(), i + 2 < rows.size());
     EXPECT_EQ(rows[i].so_far.has_value(), i >= 2);

@@ -13,6 +13,7 @@ namespace pendulum::period_test {
 namespace {
 
 using testing::DoubleNear;
+using testing::HasSubstr;
 
 // ---- Amplitude and period ----------------------------------------------------------------------------------------
 
@@ -52,17 +53,67 @@ TEST(AngleAmplitude, FollowsFromEnergyForAPeakRate) {
   EXPECT_EQ(AngleAmplitude(Quantity::kRate, 11, 5), 3.1);  // faster than any swing
 }
 
+// ---- Zero crossings ------------------------------------------------------------------------------------------------
+
+constexpr double kOmega = 5.0;  // rad/s
+
+/// Turning points at 5 t - 0.9 = n π, zero crossings half a period later.
+double Cosine(double t) { return 0.1 + std::cos(kOmega * t - 0.9); }
+
+double CrossingAfterTurn(double number) { return ((number + 0.5) * kPi + 0.9) / kOmega; }
+
+TEST(ZeroCrossing, IsThatOfACosine) {
+  const Recording recording = Sample(Cosine, 8, 100, 1000);  // on a clock that starts at 1000 s
+  const TurningPointTable table = Must(FindTurningPoints(recording));
+  ASSERT_EQ(table.half_swings(), 11U);
+  const double first_turn_number = std::ceil((kOmega * 1000 - 0.9) / kPi);
+  for (std::size_t i = 1; i < table.points.size(); ++i) {
+    const double crossing = CrossingAfterTurn(first_turn_number + static_cast<double>(i - 1));
+    EXPECT_THAT(ZeroCrossing(recording, table, i), DoubleNear(crossing, 5e-5)) << i;
+  }
+}
+
+TEST(ZeroCrossing, IsMorePreciseWithManySamples) {
+  constexpr double kNoise = 0.05;
+  double squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Recording recording = WithNoise(Sample(Cosine, 8, 200), kNoise, seed);
+    const TurningPointTable table = Must(FindTurningPoints(recording));
+    ASSERT_EQ(table.half_swings(), 12U) << "seed " << seed;
+    for (std::size_t i = 1; i < table.points.size(); ++i, ++count) {
+      squares += std::pow(ZeroCrossing(recording, table, i) - CrossingAfterTurn(static_cast<double>(i - 1)), 2);
+    }
+  }
+  // Two samples give an error of about noise / slope = 0.01 s. The line through 28 samples gives 0.01 s / sqrt(28) =
+  // 0.002 s plus a common 0.002 s from the noise of zero.
+  EXPECT_LT(std::sqrt(squares / count), 0.0045);
+}
+
+TEST(ZeroCrossing, NeedsOnlyTwoSamples) {
+  const Recording recording = Sample(Cosine, 8, 8);  // five samples per half period
+  const TurningPointTable table = Must(FindTurningPoints(recording));
+  for (std::size_t i = 1; i < table.points.size(); ++i) {
+    const double crossing = CrossingAfterTurn(static_cast<double>(i - 1));
+    EXPECT_THAT(ZeroCrossing(recording, table, i), DoubleNear(crossing, 0.02)) << i;
+  }
+}
+
 // ---- Natural frequency from a recording ---------------------------------------------------------------------------
 
 // Near the top, the angle and the rate around their peaks differ more and more from a parabola. The amplitudes come out
 // too small, and so does the correction of the period.
 
+double FrequencyOf(const Recording& recording) {
+  return Must(NaturalFrequency(recording, Must(FindTurningPoints(recording)), Gravity::kSine));
+}
+
 TEST(NaturalFrequency, IsRightForAnUndampedAngleAtAnyAmplitude) {
   for (double degrees = 10; degrees <= 170; degrees += 10) {
     const auto angle = [&](double t) { return UndampedAngle(degrees * kRadFromDeg, 1.0 / 25, t + 0.3); };
-    const HalfSwingTable table = Must(TabulateHalfSwings(Sample(angle, 30, 100)));
+    const Recording recording = Sample(angle, 30, 100);
     const double tolerance = degrees <= 120 ? 1e-4 : 2e-3;
-    EXPECT_THAT(NaturalFrequency(table) / 5, DoubleNear(1, tolerance)) << degrees << " deg";
+    EXPECT_THAT(FrequencyOf(recording) / 5, DoubleNear(1, tolerance)) << degrees << " deg";
   }
 }
 
@@ -72,7 +123,7 @@ TEST(NaturalFrequency, IsRightForAnUndampedRateAtAnyAmplitude) {
     Recording recording = Sample(rate, 30, 100);
     recording.quantity = Quantity::kRate;
     const double tolerance = degrees <= 60 ? 1e-4 : degrees <= 110 ? 1e-3 : 0.02;
-    EXPECT_THAT(NaturalFrequency(Must(TabulateHalfSwings(recording))) / 5, DoubleNear(1, tolerance)) << degrees;
+    EXPECT_THAT(FrequencyOf(recording) / 5, DoubleNear(1, tolerance)) << degrees;
   }
 }
 
@@ -83,15 +134,26 @@ TEST(NaturalFrequency, IsCorrectedForAnAmplitudeThatDecays) {
   decay.amplitude = 150 * kRadFromDeg;
   for (const Quantity quantity : {Quantity::kAngle, Quantity::kRate}) {
     decay.quantity = quantity;
-    const HalfSwingTable table = Must(TabulateHalfSwings(SimulateDecay(decay)));
-    EXPECT_THAT(NaturalFrequency(table) / 5, DoubleNear(1, 2e-3)) << (quantity == Quantity::kRate ? "rate" : "angle");
+    const Recording recording = SimulateDecay(decay);
+    EXPECT_THAT(FrequencyOf(recording) / 5, DoubleNear(1, 2e-3)) << (quantity == Quantity::kRate ? "rate" : "angle");
   }
 }
 
 TEST(NaturalFrequency, LosesNoCycleInAGap) {
   const auto angle = [](double t) { return UndampedAngle(1.0, 1.0 / 25, t + 0.3); };
   const Recording recording = WithoutSamples(Sample(angle, 30, 100), 10.03, 13.71);  // 2.7 periods
-  EXPECT_THAT(NaturalFrequency(Must(TabulateHalfSwings(recording))) / 5, DoubleNear(1, 1e-4));
+  EXPECT_THAT(FrequencyOf(recording) / 5, DoubleNear(1, 1e-4));
+}
+
+TEST(NaturalFrequency, RefusesIsolatedHalfSwings) {
+  Recording recording = Sample(Cosine, 8, 100);
+  for (double turn = 0.9 / kOmega; turn < 8; turn += 2 * kPi / kOmega) {
+    recording = WithoutSamples(recording, turn + 0.1, turn + kPi / kOmega - 0.1);
+  }
+  const Result<double> frequency = NaturalFrequency(recording, Must(FindTurningPoints(recording)), Gravity::kSine);
+  ASSERT_FALSE(frequency);
+  EXPECT_EQ(frequency.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(frequency.error().message, HasSubstr("no two half swings follow each other without a gap"));
 }
 
 }  // namespace

@@ -77,19 +77,19 @@ inline FitReport ExampleFit() {
 }
 
 /// Five turning points with errors of 0.001 s and 0.002 rad.
-inline PeakTable ExamplePeaks() {
-  PeakTable table;
+inline TurningPointTable ExampleTurningPoints() {
+  TurningPointTable table;
   table.noise = 0.0035;
   table.half_period = 0.65;
   table.zero = {0.01, 0.0001};
   const double values[] = {0.4, -0.375, 0.39, -0.365, 0.38};
   for (int i = 0; i < 5; ++i) {
-    Peak peak;
-    peak.time = 2.5 + 0.65 * i;
-    peak.value = values[i];
-    peak.covariance = Eigen::Vector2d(1e-6, 4e-6).asDiagonal();
-    peak.continues = i > 0;
-    table.peaks.push_back(peak);
+    TurningPoint point;
+    point.time = 2.5 + 0.65 * i;
+    point.value = values[i];
+    point.covariance = Eigen::Vector2d(1e-6, 4e-6).asDiagonal();
+    point.continues = i > 0;
+    table.points.push_back(point);
   }
   return table;
 }
@@ -97,7 +97,7 @@ inline PeakTable ExamplePeaks() {
 /// Closed forms of these turning points in units of G, with invented numbers.
 inline ClosedForms ExampleClosedForms() {
   ClosedForms forms;
-  forms.table = ExamplePeaks();
+  forms.table = ExampleTurningPoints();
   forms.decay = {{0, Estimate{0.0041, 0.0008}, std::nullopt, 0},
                  {1, Estimate{0.0039, 0.0008}, std::nullopt, 0},
                  {2, Estimate{0.0042, 0.0008}, Estimate{0.0041, 0.0008}, 1},

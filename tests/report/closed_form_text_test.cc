@@ -24,9 +24,9 @@ std::string SamplingText(const Identification& report) { return ToText(SamplingS
 Identification ReportWithTurningPoints(int count) {
   Identification report = ExampleReport();
   ClosedForms& forms = *report.closed_forms;
-  for (int i = static_cast<int>(forms.table.peaks.size()); i < count; ++i) {
-    forms.table.peaks.push_back(forms.table.peaks.back());
-    forms.table.peaks.back().time += 0.65;
+  for (int i = static_cast<int>(forms.table.points.size()); i < count; ++i) {
+    forms.table.points.push_back(forms.table.points.back());
+    forms.table.points.back().time += 0.65;
     forms.decay.push_back({static_cast<std::size_t>(i), std::nullopt, Estimate{0.004, 0.0004}, i / 2});
   }
   return report;

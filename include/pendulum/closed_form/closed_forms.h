@@ -8,17 +8,17 @@
 
 #include "pendulum/closed_form/decrement.h"
 #include "pendulum/closed_form/log_decrement.h"
-#include "pendulum/closed_form/peaks.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
 
-/// All closed-form results from the turning points of a recording. Everything except the peaks' times is in true
-/// seconds (clock_scale).
+/// All closed-form results from the turning points of a recording. Everything except the turning points' times is in
+/// true seconds (clock_scale).
 struct ClosedForms {
   Gravity gravity = Gravity::kSine;    ///< The model's gravity law.
-  PeakTable table;                     ///< Its peaks' times are on the file's own clock.
+  TurningPointTable table;             ///< Its times are on the file's own clock.
   std::vector<DecayRow> decay;         ///< One for each turning point.
   std::optional<LogDecrement> linear;  ///< By the textbook's formulas; std::nullopt without a whole period.
   std::optional<Decrement> decrement;  ///< Valid at any amplitude, with the model's friction.
@@ -28,8 +28,8 @@ struct ClosedForms {
   std::string envelope;                ///< A sentence: which of these laws the amplitudes follow.
 };
 
-/// Computes them all. kFailedPrecondition: as LocatePeaks, or an uncalibrated reading for a model with sine gravity.
-/// kTryAgain: a stop was requested before the end.
+/// Computes them all. kFailedPrecondition: as LocateTurningPoints, or an uncalibrated reading for a model with sine
+/// gravity. kTryAgain: a stop was requested before the end.
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop = {});
 

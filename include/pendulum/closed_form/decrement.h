@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/closed_form/estimate.h"
-#include "pendulum/closed_form/peaks.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/recording.h"
 
@@ -18,7 +18,7 @@ namespace pendulum {
 /// unit.
 struct Decrement {
   MotionModel model;
-  PeakTable table;
+  TurningPointTable table;
   Estimate zero;                   ///< rad or rad/s
   Estimate inertia;                ///< s^2
   std::vector<Estimate> friction;  ///< K; may be negative
@@ -37,14 +37,14 @@ struct Decrement {
 /// Liang, J. Sound Vib. 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), but without their
 /// small-angle approximation. Without friction it is the period corrected by the elliptic integral. Errors follow from
 /// those of the turning points, times sqrt(chi_square / freedom) if that is above 1. Once the kinks are known, the
-/// turning points are located again. kFailedPrecondition: as LocatePeaks, too few turning points for the number of
-/// unknowns, or no such motion. kTryAgain: a stop was requested before the end. Cost: some milliseconds; a second for a
-/// thousand turning points.
+/// turning points are located again. kFailedPrecondition: as LocateTurningPoints, too few turning points for the number
+/// of unknowns, or no such motion. kTryAgain: a stop was requested before the end. Cost: some milliseconds; a second
+/// for a thousand turning points.
 Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop = {});
 
 /// The same from turning points that are already located. Friction parameters that are not `included` (K) are 0.
-Result<Decrement> FitDecrement(const PeakTable& table, const MotionModel& model, const std::vector<bool>& included,
-                               const std::stop_token& stop = {});
+Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel& model,
+                               const std::vector<bool>& included, const std::stop_token& stop = {});
 
 /// The fit of one friction term alone to the turning points.
 struct EnvelopeLaw {
@@ -65,6 +65,7 @@ struct EnvelopeComparison {
 /// Compares which law the envelope follows: a straight line for dry friction alone, an exponential for viscous
 /// friction, a hyperbola for drag. Each is fitted alone. The errors are enlarged until all terms together fit.
 /// `gravity` is the model's. Errors as FitDecrement.
-Result<EnvelopeComparison> CompareEnvelopes(const PeakTable& table, Gravity gravity, const std::stop_token& stop = {});
+Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Gravity gravity,
+                                            const std::stop_token& stop = {});
 
 }  // namespace pendulum

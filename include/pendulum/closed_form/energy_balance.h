@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "pendulum/closed_form/half_swings.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/motion_model.h"
 
 namespace pendulum {
@@ -20,7 +20,7 @@ struct EnergyBalance {
 };
 
 /// One balance. For a law with a reference rate, one for each of its kRateScales, best explanation first.
-std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const HalfSwingTable& table,
+std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const TurningPointTable& table,
                                          double natural_frequency);
 
 /// The K friction parameters >= 0 (units of G) that balance the energy best, accurate to some percent. Parameters

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/closed_form/estimate.h"
-#include "pendulum/closed_form/peaks.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/motion_model.h"
 
 namespace pendulum {
@@ -34,23 +34,24 @@ struct LogDecrement {
 /// Applies the formulas to the n periods that follow a turning point. Errors are propagated from times, values and
 /// zero. Returns std::nullopt if the turning points do not follow each other for n periods, or one lies on the wrong
 /// side of the zero.
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity, std::size_t first, int periods);
+std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gravity gravity, std::size_t first,
+                                              int periods);
 
 /// The same from the beginning of the longest run of turning points, over the number of periods that gives the damping
 /// ratio the smallest standard error. Returns std::nullopt if no run has a whole period, or once a stop is requested.
-std::optional<LogDecrement> ApplyLogDecrement(const PeakTable& table, Gravity gravity,
+std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gravity gravity,
                                               const std::stop_token& stop = {});
 
 /// A line of the table of turning points: damping ratios from pairs of turning points one period apart, and from the
 /// first.
 struct DecayRow {
-  std::size_t peak = 0;            ///< Index in the table.
+  std::size_t point = 0;           ///< Index in the table.
   std::optional<Estimate> pair;    ///< ζ from this turning point and the next on its side.
   std::optional<Estimate> so_far;  ///< ζ from the first turning point on this side in its run and this one.
   int periods = 0;                 ///< Number of periods in `so_far`.
 };
 
 /// One line for each turning point; fewer once a stop is requested.
-std::vector<DecayRow> TabulateDecay(const PeakTable& table, const std::stop_token& stop = {});
+std::vector<DecayRow> TabulateDecay(const TurningPointTable& table, const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -1,45 +1,97 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "pendulum/closed_form/extrema.h"
+#include <Eigen/Core>
+
+#include "pendulum/closed_form/estimate.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
 
-/// All M turning points of a recording, disturbed or not. Half swing i goes from turning point i to i + 1.
-struct TurningPointTable {
-  const Recording& recording;        ///< Must outlive the table.
-  double noise = 0, threshold = 0;   ///< rad or rad/s: noise between neighbours, and least height of a turning point
-  std::vector<Extremum> turns = {};  ///< M
-  /// M, rad or rad/s: the zero near each turning point (it may drift), and the distance from this zero; empty if M < 3
-  std::vector<double> zero = {}, amplitude = {};
-  double half_period = 0;  ///< s, typical, for small swings
+/// A turning point of the reading. The errors are those of LocateTurningPoints; 0 and empty before.
+struct TurningPoint {
+  double time = 0, value = 0;  ///< s; unit of the recording's values
+  Eigen::Index sample = 0;     ///< The largest or smallest sample.
+  bool continues = false;      ///< The previous turning point in the table is also the previous one of the motion.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< 2 x 2, of (time, value)
+  Eigen::Index first = 0;                                ///< The first of the C samples it was located from.
+  Eigen::Matrix2Xd influence = {};  ///< 2 x C: derivatives of (time, value) with respect to their readings.
+};
 
-  std::size_t half_swings() const { return turns.empty() ? 0 : turns.size() - 1; }
+/// Turning points [first, last] that follow each other: last - first half swings without a gap.
+struct TurningPointRun {
+  std::size_t first = 0, last = 0;
+};
+
+/// The kink that dry friction causes at a turning point. The reading is displaced by the sticking angle towards where
+/// it came from.
+struct Kink {
+  /// τ_c / G [rad; counts or volts for an uncalibrated angle], and rad/s.
+  double sticking_angle = 0, natural_frequency = 0;
+};
+
+/// The M turning points of a recording, alternately maxima and minima, in time order. Values, noise, zeros and
+/// amplitudes have the unit of the recording's values.
+struct TurningPointTable {
+  Quantity quantity = Quantity::kAngle;
+  bool is_calibrated = true;       ///< As the recording.
+  double resolution = 0;           ///< As the recording.
+  double noise = 0;                ///< Standard deviation of the noise of a sample.
+  double threshold = 0;            ///< The least height of a turning point.
+  double half_period = 0;          ///< s, typical
+  Estimate zero;                   ///< Of the whole swing.
+  std::vector<double> local_zero;  ///< M: the zero near each turning point, where it may drift; empty: `zero`.
+  Kink kink;                       ///< The kink that was subtracted from the readings.
+  std::vector<TurningPoint> points;
+
+  std::size_t half_swings() const { return points.empty() ? 0 : points.size() - 1; }
+
+  double ZeroAt(std::size_t point) const { return local_zero.empty() ? zero.value : local_zero[point]; }
+
+  /// 1 above the zero, otherwise -1.
+  double Side(std::size_t point) const { return points[point].value > ZeroAt(point) ? 1.0 : -1.0; }
+
+  double Amplitude(std::size_t point) const { return std::abs(points[point].value - ZeroAt(point)); }
+
+  std::vector<double> Amplitudes() const;  ///< M
 
   /// Duration of a half swing from this turning point, divided by that of a small swing (MODEL.md eq. (6.1)).
-  double Stretch(std::size_t turn) const;
+  double Stretch(std::size_t point) const;
 
   /// How far a reading may differ from that of this turning point and still count as equal: 5 % of the amplitude plus
   /// noise.
-  double Tolerance(std::size_t turn) const;
+  double Tolerance(std::size_t point) const;
+
+  /// The runs of at least two turning points that `continues` joins.
+  std::vector<TurningPointRun> Runs() const;
+
+  /// The largest amplitude in these runs; 0 without a run.
+  double LargestAmplitude() const;
+
+  /// Weights w (M) with Σ w_i value_i = mean of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points that follow each
+  /// other. Dry friction does not change this mean, and a decay hardly changes it.
+  Eigen::VectorXd ZeroWeights() const;
 };
 
-TurningPointTable TabulateTurningPoints(const Recording& recording);
+/// Standard deviation of the noise [unit of the recording], from each sample's distance to the line through its
+/// neighbours. Curvature between samples counts as noise; quantized data may give 0.
+double SuccessiveDifferenceNoise(const Recording& recording);
 
-/// Classification of a half swing compared with its neighbours.
-enum class Verdict {
-  kFree,           ///< Crosses the zero, and loses as much amplitude and takes as long as its neighbours.
-  kFreeAfterHold,  ///< The same, but takes at least half as long again: the turning point before it is a hold.
-  kGains,          ///< Gains amplitude permanently: it was pushed, or a hand lifted the pendulum.
-  kIrregular       ///< Otherwise: braked, too short, or with lost samples.
-};
+/// Turning points located to O(h³) instead of to one sample. A turning point counts once the reading has moved back by
+/// more than the threshold: the maximum of 2 sqrt(2 ln N) + 1 standard deviations of the noise between neighbours, two
+/// resolutions, and 3 % of the range (of an angle's range at most one turn counts). A hold, or a start in the middle of
+/// a swing, is not one. The zero is the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4. A turning point does not continue
+/// the motion if it lies on the same side of the zero as the previous one, or after a gap in the data longer than 0.6
+/// half periods. kFailedPrecondition: fewer than three; the message gives their number.
+Result<TurningPointTable> FindTurningPoints(const Recording& recording);
 
-/// One verdict for each half swing; needs three turning points. A single deviating turning point is an outlier and
-/// disturbs no half swing. Next to a gap in the samples only a gain counts.
-std::vector<Verdict> ClassifyHalfSwings(const TurningPointTable& table);
+/// The same turning points for ClassifyHalfSwings, which assumes no free swing: preceded by the first candidate, which
+/// may be the start or lie in a hold, and maybe fewer than three. Has local zeros and the half period of small swings
+/// if there are three; no point continues another.
+TurningPointTable FindAllTurningPoints(const Recording& recording);
 
 }  // namespace pendulum

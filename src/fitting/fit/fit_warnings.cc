@@ -9,7 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/extrema.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
 

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "pendulum/base/format.h"
-#include "pendulum/closed_form/extrema.h"
 #include "pendulum/closed_form/turning_point_view.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/start/sensor_start.h"
 #include "pendulum/model/friction/registry.h"

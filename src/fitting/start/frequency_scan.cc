@@ -12,6 +12,7 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/period.h"
+#include "pendulum/closed_form/turning_points.h"
 
 namespace pendulum {
 namespace {
@@ -144,19 +145,16 @@ std::vector<Candidate> LocalMinima(const std::vector<Candidate>& candidates) {
   return minima;
 }
 
-/// The turning points that a candidate predicts: amplitudes of the reading, half a period apart.
-HalfSwingTable TurnsOf(const Candidate& candidate, Quantity quantity, Gravity gravity, double duration) {
+/// The turning points that a candidate predicts, relative to its zero, without their times.
+TurningPointTable TurnsOf(const Candidate& candidate, Quantity quantity, double duration) {
   constexpr double kMaxHalfSwings = 200;
-  HalfSwingTable table;
+  TurningPointTable table;
   table.quantity = quantity;
-  table.gravity = gravity;
-  table.zero = candidate.coefficients[2];
   const double half_swings = std::clamp(candidate.frequency * duration / kPi, 2.0, kMaxHalfSwings);
   const double step = kPi / candidate.frequency / duration;
-  for (double i = 0; i < half_swings; ++i) {
-    const auto reading = [&](double turns) { return candidate.amplitude() * candidate.envelope.At(turns * step); };
-    table.half_swings.push_back({0, reading(i), reading(i + 1), i > 0});
-  }
+  const auto reading = [&](double turns) { return candidate.amplitude() * candidate.envelope.At(turns * step); };
+  table.points.push_back({.value = reading(0)});
+  for (double i = 0; i < half_swings; ++i) table.points.push_back({.value = reading(i + 1), .continues = true});
   return table;
 }
 
@@ -174,7 +172,7 @@ std::array<double, 2> InitialState(const Candidate& candidate, Quantity quantity
 }
 
 StartValues StartAt(const Candidate& candidate, const Recording& recording, const MotionModel& model, double duration) {
-  const HalfSwingTable table = TurnsOf(candidate, recording.quantity, model.gravity, duration);
+  const TurningPointTable table = TurnsOf(candidate, recording.quantity, duration);
   StartValues values;
   values.start = StartKind::kMoving;
   values.natural_frequency = candidate.frequency;
@@ -184,7 +182,7 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
   const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
   const auto state = InitialState(candidate, recording.quantity, model.gravity, values.amplitude);
-  values.parameters.insert(values.parameters.end(), {state[0], state[1], table.zero});
+  values.parameters.insert(values.parameters.end(), {state[0], state[1], candidate.coefficients[2]});
   return values;
 }
 

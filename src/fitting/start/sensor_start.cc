@@ -9,9 +9,9 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/half_swings.h"
 #include "pendulum/closed_form/period.h"
 #include "pendulum/closed_form/turning_point_view.h"
+#include "pendulum/closed_form/turning_points.h"
 
 namespace pendulum {
 namespace {
@@ -46,13 +46,13 @@ struct Turns {
 
 Result<Turns> FindTurnsOf(const Recording& recording) {
   Turns turns{TurningPointView(recording)};
-  Result<HalfSwingTable> table = TabulateHalfSwings(turns.view);
+  const Result<TurningPointTable> table = FindTurningPoints(turns.view);
   if (!table) return tl::unexpected(table.error());
-  table->gravity = Gravity::kLinear;
-  turns.frequency = NaturalFrequency(*table);
-  turns.zero = table->zero;
-  for (const HalfSwing& half : table->half_swings)
-    turns.amplitude = std::max({turns.amplitude, half.before, half.after});
+  const Result<double> frequency = NaturalFrequency(turns.view, *table, Gravity::kLinear);
+  if (!frequency) return tl::unexpected(frequency.error());
+  turns.frequency = *frequency;
+  turns.zero = table->zero.value;
+  turns.amplitude = table->LargestAmplitude();
   return turns;
 }
 

@@ -10,9 +10,8 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/energy_balance.h"
-#include "pendulum/closed_form/extrema.h"
-#include "pendulum/closed_form/half_swings.h"
 #include "pendulum/closed_form/period.h"
+#include "pendulum/closed_form/turning_points.h"
 
 namespace pendulum {
 namespace {
@@ -29,13 +28,14 @@ struct Hold {
 /// The recording relative to its zero, with its time scale.
 struct Centred {
   const Recording& recording;
-  const HalfSwingTable& table;
+  const TurningPointTable& table;
+  Gravity gravity;
   double natural_frequency;
-  double noise;
 
-  double Reading(Index i) const { return recording.value[i] - table.zero; }
+  double Reading(Index i) const { return recording.value[i] - table.zero.value; }
+  double FirstAmplitude() const { return table.Amplitude(table.Runs().front().first); }
   double Period(double amplitude) const {
-    return 2 * kPi / natural_frequency * (table.gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
+    return 2 * kPi / natural_frequency * (gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
   }
   /// The first sample from `from` on whose sign differs from `sign`; N if there is none.
   Index FirstOnOtherSide(Index from, double sign) const {
@@ -46,7 +46,7 @@ struct Centred {
 
 /// Mean reading and largest distance from it over the samples [0, count).
 std::pair<double, double> MeanAndSpread(const Centred& data, Index count) {
-  const auto held = data.recording.value.head(count).array() - data.table.zero;
+  const auto held = data.recording.value.head(count).array() - data.table.zero.value;
   const double mean = held.mean();
   return {mean, (held - mean).abs().maxCoeff()};
 }
@@ -69,7 +69,7 @@ std::optional<Fall> FirstFall(const Centred& data) {
   const bool is_rate = recording.quantity == Quantity::kRate;
   Index first = 0;
   if (is_rate) {
-    const double half_peak = 0.5 * data.table.half_swings.front().before;
+    const double half_peak = 0.5 * data.FirstAmplitude();
     while (first < recording.size() && std::abs(data.Reading(first)) < half_peak) ++first;
     if (first == recording.size()) return std::nullopt;
   }
@@ -80,8 +80,8 @@ std::optional<Fall> FirstFall(const Centred& data) {
   const double y1 = data.Reading(after);
   const double step = recording.time[after] - recording.time[after - 1];
   const double time = recording.time[after - 1] + step * y0 / (y0 - y1);
-  const double level = is_rate ? data.table.half_swings.front().before : std::abs(data.Reading(0));
-  const double amplitude = AngleAmplitude(recording.quantity, level, data.natural_frequency, data.table.gravity);
+  const double level = is_rate ? data.FirstAmplitude() : std::abs(data.Reading(0));
+  const double amplitude = AngleAmplitude(recording.quantity, level, data.natural_frequency, data.gravity);
   return Fall{time, is_rate ? 0.5 : 0.25, is_rate ? -sign * amplitude : sign * amplitude};
 }
 
@@ -100,11 +100,11 @@ std::optional<Hold> FindHold(const Centred& data, bool is_requested) {
   // Strong friction makes the release appear later than it was, so only the first part of the hold is used.
   const Index certainly_held = std::max<Index>(7 * held / 10, 1);
   const auto [mean, spread] = MeanAndSpread(data, certainly_held);
-  const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.table.half_swings.front().before;
-  const double band = 0.05 * level + 5 * data.noise + 2 * recording.resolution;
+  const double level = recording.quantity == Quantity::kAngle ? std::abs(mean) : data.FirstAmplitude();
+  const double band = 0.05 * level + 5 * data.table.noise + 2 * recording.resolution;
   if (spread > band && !is_requested) return std::nullopt;
   // A pushed pendulum is not released: the held angle must be close to the amplitude of the first swing.
-  const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.table.half_swings.front().before;
+  const bool is_push = recording.quantity == Quantity::kAngle && level < 0.7 * data.FirstAmplitude();
   if (is_push && !is_requested) return std::nullopt;
   Index moving = SampleAt(recording, fall->time) - 1;
   while (moving > certainly_held && std::abs(data.Reading(moving - 1) - mean) > band) --moving;
@@ -120,7 +120,7 @@ std::pair<double, double> InitialReading(const Centred& data) {
   const Eigen::ArrayXd t = recording.time.head(count).array() - recording.time[0];
   Eigen::MatrixX3d basis(count, 3);
   basis << Eigen::ArrayXd::Ones(count), t, t.square();
-  const Eigen::VectorXd reading = recording.value.head(count).array() - data.table.zero;
+  const Eigen::VectorXd reading = recording.value.head(count).array() - data.table.zero.value;
   const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(reading);
   return {c[0], c[1]};
 }
@@ -132,16 +132,10 @@ std::pair<double, double> InitialState(const Centred& data) {
   if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
   const double square = data.natural_frequency * data.natural_frequency;
   const double torque = -slope / square;  // θ'' = -ω0² g(θ)
-  if (data.table.gravity == Gravity::kLinear) return {torque, reading};
-  const double peak = data.table.half_swings.front().before;
+  if (data.gravity == Gravity::kLinear) return {torque, reading};
+  const double peak = data.FirstAmplitude();
   const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // from the kinetic energy at the bottom
   return {std::atan2(torque, cosine), reading};
-}
-
-double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
-  double largest = 0;
-  for (const HalfSwing& half : table.half_swings) largest = std::max({largest, half.before, half.after});
-  return AngleAmplitude(table.quantity, largest, natural_frequency, table.gravity);
 }
 
 }  // namespace
@@ -150,17 +144,19 @@ double LargestAmplitude(const HalfSwingTable& table, double natural_frequency) {
 /// half a period before the first turn of a rate. Otherwise a parabola through the first samples gives angle and rate.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
                                         std::optional<StartKind> choice) {
-  Result<HalfSwingTable> table = TabulateHalfSwings(recording);
+  const Result<TurningPointTable> table = FindTurningPoints(recording);
   if (!table) return tl::unexpected(table.error());
-  table->gravity = model.gravity;
+  const Result<double> frequency = NaturalFrequency(recording, *table, model.gravity);
+  if (!frequency) return tl::unexpected(frequency.error());
   StartValues values;
-  values.natural_frequency = NaturalFrequency(*table);
+  values.natural_frequency = *frequency;
   const double inertia = 1 / (values.natural_frequency * values.natural_frequency);
   if (!(inertia > 1e-30 && inertia < 1e30)) {
     return Error(StatusCode::kFailedPrecondition, "the period is " + NumberText(2 * kPi / values.natural_frequency, 3) +
                                                       " s, which no pendulum has; check the unit of time");
   }
-  values.amplitude = LargestAmplitude(*table, values.natural_frequency);
+  values.amplitude =
+      AngleAmplitude(table->quantity, table->LargestAmplitude(), values.natural_frequency, model.gravity);
   values.parameters = {inertia};
   values.other_balances = BalanceEnergy(model, *table, values.natural_frequency);
   values.energy_balance = values.other_balances.front();
@@ -168,7 +164,7 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
   const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 
-  const Centred data{recording, *table, values.natural_frequency, SuccessiveDifferenceNoise(recording)};
+  const Centred data{recording, *table, model.gravity, values.natural_frequency};
   const std::optional<Hold> hold =
       choice == StartKind::kMoving ? std::nullopt : FindHold(data, choice == StartKind::kRelease);
   if (choice == StartKind::kRelease && !hold) {
@@ -186,7 +182,7 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
     const auto [angle, rate] = InitialState(data);
     values.parameters.insert(values.parameters.end(), {angle, rate});
   }
-  values.parameters.push_back(table->zero);
+  values.parameters.push_back(table->zero.value);
   return values;
 }
 

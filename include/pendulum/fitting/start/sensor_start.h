@@ -37,7 +37,7 @@ struct SensorStart {
 };
 
 /// Start points of the search for a sensor that is not direct. If the scale is unknown, there is one for each amplitude
-/// that the readings may represent. kFailedPrecondition: as TabulateHalfSwings.
+/// that the readings may represent. kFailedPrecondition: as FindTurningPoints and NaturalFrequency.
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
                                               const FitOptions& options);
 

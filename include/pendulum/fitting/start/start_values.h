@@ -27,8 +27,8 @@ struct StartValues {
 /// Estimates the inertia from the crossings, friction from the energy balance, the zero from the turning points, and
 /// the start: a release, or the first angle and rate. If `choice` is empty, a release is assumed when the reading stays
 /// constant at first for at least a tenth of a period. kFailedPrecondition: the data contain no swing (see
-/// FindExtrema), or kRelease was requested and no held part exists. A friction law that is not linear in its parameters
-/// needs its own start values here.
+/// FindTurningPoints), or kRelease was requested and no held part exists. A friction law that is not linear in its
+/// parameters needs its own start values here.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
                                         std::optional<StartKind> choice);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/closed_form/peaks.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "pendulum/base/physics.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum::peaks_test {
+namespace pendulum::locate_turning_points_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,43 +32,43 @@ double DryDecay(double t) {
   return side * (kSticking + (kAmplitude - (2 * k + 1) * kSticking) * std::cos(kFrequency * t - kPi * k));
 }
 
-TEST(LocatePeaks, FindsACosinesTurningPointsExactly) {
+TEST(LocateTurningPoints, FindsACosinesTurningPointsExactly) {
   for (const double rate : {12.0, 20.0, 100.0, 1000.0}) {
-    const PeakTable table = Must(LocatePeaks(Sample(Cosine, 10, rate)));
-    ASSERT_GE(table.peaks.size(), 13U) << rate;
-    for (const Peak& peak : table.peaks) {
-      const double turns = (peak.time - 0.3) / kTurn;
+    const TurningPointTable table = Must(LocateTurningPoints(Sample(Cosine, 10, rate)));
+    ASSERT_GE(table.points.size(), 13U) << rate;
+    for (const TurningPoint& point : table.points) {
+      const double turns = (point.time - 0.3) / kTurn;
       EXPECT_NEAR(turns, std::round(turns), 2e-4) << rate;
-      EXPECT_NEAR(std::abs(peak.value - 0.02), 0.4, 2e-5) << rate;
+      EXPECT_NEAR(std::abs(point.value - 0.02), 0.4, 2e-5) << rate;
     }
     EXPECT_NEAR(table.zero.value, 0.02, 1e-5) << rate;
     EXPECT_NEAR(table.half_period, kTurn, 2e-3 * kTurn) << rate;
   }
 }
 
-TEST(LocatePeaks, MatchesEllipticFunctionsForLargeSwings) {
+TEST(LocateTurningPoints, MatchesEllipticFunctionsForLargeSwings) {
   constexpr double kAmplitude = 1.5;
   const auto swing = [](double t) { return UndampedAngle(kAmplitude, 1 / (kFrequency * kFrequency), t - 0.5); };
-  const PeakTable table = Must(LocatePeaks(Sample(swing, 10, 100)));
+  const TurningPointTable table = Must(LocateTurningPoints(Sample(swing, 10, 100)));
   const double turn = 2 / kFrequency * boost::math::ellint_1(std::sin(kAmplitude / 2));
-  for (const Peak& peak : table.peaks) {
-    const double turns = (peak.time - 0.5) / turn;
+  for (const TurningPoint& point : table.points) {
+    const double turns = (point.time - 0.5) / turn;
     EXPECT_NEAR(turns, std::round(turns), 1e-6);
-    EXPECT_NEAR(std::abs(peak.value), kAmplitude, 2e-5);
+    EXPECT_NEAR(std::abs(point.value), kAmplitude, 2e-5);
   }
 }
 
-TEST(LocatePeaks, ScattersAsItsErrorsPredict) {
+TEST(LocateTurningPoints, ScattersAsItsErrorsPredict) {
   const Recording clean = Sample(Cosine, 12, 100);
   double time_squares = 0, value_squares = 0, count = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const PeakTable table = Must(LocatePeaks(WithNoise(clean, 0.002, seed)));
+    const TurningPointTable table = Must(LocateTurningPoints(WithNoise(clean, 0.002, seed)));
     EXPECT_NEAR(table.noise, 0.002, 0.0002) << seed;
-    for (const Peak& peak : table.peaks) {
-      const double late = std::remainder(peak.time - 0.3, kTurn);
-      const double high = std::abs(peak.value - 0.02) - 0.4;
-      time_squares += late * late / peak.covariance(0, 0);
-      value_squares += high * high / peak.covariance(1, 1);
+    for (const TurningPoint& point : table.points) {
+      const double late = std::remainder(point.time - 0.3, kTurn);
+      const double high = std::abs(point.value - 0.02) - 0.4;
+      time_squares += late * late / point.covariance(0, 0);
+      value_squares += high * high / point.covariance(1, 1);
       ++count;
     }
   }
@@ -76,12 +76,12 @@ TEST(LocatePeaks, ScattersAsItsErrorsPredict) {
   EXPECT_NEAR(std::sqrt(value_squares / count), 1, 0.08);
 }
 
-TEST(LocatePeaks, AccountsForTheKinkOfDryFriction) {
+TEST(LocateTurningPoints, AccountsForTheKinkOfDryFriction) {
   const Recording recording = Sample(DryDecay, 8, 200);
   const auto largest_delay = [&](const Kink& kink) {
     double largest = 0;
-    for (const Peak& peak : Must(LocatePeaks(recording, kink)).peaks) {
-      largest = std::max(largest, std::abs(std::remainder(peak.time, kTurn)));
+    for (const TurningPoint& point : Must(LocateTurningPoints(recording, kink)).points) {
+      largest = std::max(largest, std::abs(std::remainder(point.time, kTurn)));
     }
     return largest;
   };
@@ -90,59 +90,60 @@ TEST(LocatePeaks, AccountsForTheKinkOfDryFriction) {
   EXPECT_GT(largest_delay({-0.01, kFrequency}), 2e-3);
 }
 
-TEST(LocatePeaks, HasTheInfluencesOfTheReadings) {
+TEST(LocateTurningPoints, HasTheInfluencesOfTheReadings) {
   Recording recording = WithNoise(Sample(Cosine, 8, 100), 0.001, 7);
-  const PeakTable before = Must(LocatePeaks(recording));
-  const Peak& peak = before.peaks[2];
-  const Eigen::Index sample = peak.influence.cols() / 3;
+  const TurningPointTable before = Must(LocateTurningPoints(recording));
+  const TurningPoint& point = before.points[2];
+  const Eigen::Index sample = point.influence.cols() / 3;
   constexpr double kChange = 1e-5;
-  recording.value[peak.first + sample] += kChange;
-  const Peak after = Must(LocatePeaks(recording)).peaks[2];
-  EXPECT_NEAR((after.time - peak.time) / kChange, peak.influence(0, sample), 1e-3 * peak.influence.row(0).maxCoeff());
-  EXPECT_NEAR((after.value - peak.value) / kChange, peak.influence(1, sample), 1e-3);
+  recording.value[point.first + sample] += kChange;
+  const TurningPoint after = Must(LocateTurningPoints(recording)).points[2];
+  EXPECT_NEAR((after.time - point.time) / kChange, point.influence(0, sample),
+              1e-3 * point.influence.row(0).maxCoeff());
+  EXPECT_NEAR((after.value - point.value) / kChange, point.influence(1, sample), 1e-3);
   // A constant added to all readings changes the value by the same amount and the time not at all.
-  EXPECT_NEAR(peak.influence.row(0).sum(), 0, 1e-9);
-  EXPECT_NEAR(peak.influence.row(1).sum(), 1, 1e-9);
+  EXPECT_NEAR(point.influence.row(0).sum(), 0, 1e-9);
+  EXPECT_NEAR(point.influence.row(1).sum(), 1, 1e-9);
 }
 
-TEST(LocatePeaks, PropagatesInfluenceAndCovariance) {
-  const PeakTable table = Must(LocatePeaks(WithNoise(Sample(Cosine, 8, 100), 0.001, 3)));
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(1, 2 * static_cast<Eigen::Index>(table.peaks.size()));
+TEST(LocateTurningPoints, PropagatesInfluenceAndCovariance) {
+  const TurningPointTable table = Must(LocateTurningPoints(WithNoise(Sample(Cosine, 8, 100), 0.001, 3)));
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(1, 2 * static_cast<Eigen::Index>(table.points.size()));
   gradient(0, 0) = -1;  // the time between the first and the last turning point
   gradient(0, gradient.cols() - 2) = 1;
-  const double expected = table.peaks.front().covariance(0, 0) + table.peaks.back().covariance(0, 0);
+  const double expected = table.points.front().covariance(0, 0) + table.points.back().covariance(0, 0);
   EXPECT_NEAR(CovarianceOf(table, gradient)(0, 0), expected, 1e-9 * expected);
   const Eigen::MatrixXd influence = InfluenceOf(table, gradient, 800);
   EXPECT_NEAR(influence.squaredNorm() * table.noise * table.noise, expected, 1e-9 * expected);
 }
 
-TEST(LocatePeaks, ExcludesSaturatedTurningPoints) {
+TEST(LocateTurningPoints, ExcludesSaturatedTurningPoints) {
   Recording recording = Sample(Cosine, 8, 100);
   recording.range = SensorRange{-1, 0.4};
   recording.value = recording.value.cwiseMin(0.4);
-  EXPECT_FALSE(LocatePeaks(recording));  // the minima alone do not follow each other
+  EXPECT_FALSE(LocateTurningPoints(recording));  // the minima alone do not follow each other
   recording.range = SensorRange{-1, 0.5};
   recording.value = recording.value.cwiseMin(0.5);
-  EXPECT_TRUE(LocatePeaks(recording));
+  EXPECT_TRUE(LocateTurningPoints(recording));
 }
 
-TEST(LocatePeaks, ReportsWhereAGapBreaksTheSequence) {
-  const PeakTable table = Must(LocatePeaks(WithoutSamples(Sample(Cosine, 12, 100), 4.0, 6.1)));
+TEST(LocateTurningPoints, ReportsWhereAGapBreaksTheSequence) {
+  const TurningPointTable table = Must(LocateTurningPoints(WithoutSamples(Sample(Cosine, 12, 100), 4.0, 6.1)));
   int breaks = 0;
-  for (std::size_t i = 1; i < table.peaks.size(); ++i) {
-    const bool across = table.peaks[i - 1].time < 4.0 && table.peaks[i].time > 6.1;
-    EXPECT_EQ(table.peaks[i].continues, !across) << i;
+  for (std::size_t i = 1; i < table.points.size(); ++i) {
+    const bool across = table.points[i - 1].time < 4.0 && table.points[i].time > 6.1;
+    EXPECT_EQ(table.points[i].continues, !across) << i;
     breaks += across ? 1 : 0;
   }
   EXPECT_EQ(breaks, 1);
 }
 
-TEST(LocatePeaks, NeedsThreeConsecutiveTurningPoints) {
-  const auto located = LocatePeaks(Sample(Cosine, 1.7, 100));
+TEST(LocateTurningPoints, NeedsThreeConsecutiveTurningPoints) {
+  const auto located = LocateTurningPoints(Sample(Cosine, 1.7, 100));
   ASSERT_FALSE(located);
   EXPECT_EQ(located.error().code, StatusCode::kFailedPrecondition);
   EXPECT_THAT(located.error().message, HasSubstr("record for longer"));
 }
 
 }  // namespace
-}  // namespace pendulum::peaks_test
+}  // namespace pendulum::locate_turning_points_test

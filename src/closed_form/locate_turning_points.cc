@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/closed_form/peaks.h"
+#include "pendulum/closed_form/locate_turning_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
-#include "pendulum/closed_form/extrema.h"
 
 namespace pendulum {
 namespace {
@@ -43,40 +42,36 @@ ArrayXd CosineBeyond(int degree, const ArrayXd& x) {
 
 /// A polynomial fitted about a turning point, before the noise is known.
 struct LocalFit {
-  Peak peak;  // without covariance
+  TurningPoint point;  // without covariance
   double sum_of_squares = 0;
   Index freedom = 0;
 };
 
-class PeakFitter {
+class TurningPointFitter {
  public:
-  PeakFitter(const Recording& recording, const std::vector<Extremum>& extrema, const Kink& kink)
-      : recording_(recording), kink_(kink) {
-    std::vector<double> intervals;
+  TurningPointFitter(const Recording& recording, const TurningPointTable& found, const Kink& kink)
+      : recording_(recording), kink_(kink), half_period_(found.half_period) {
     std::vector<double> middles;
-    for (std::size_t i = 1; i < extrema.size(); ++i) {
-      intervals.push_back(extrema[i].time - extrema[i - 1].time);
-      middles.push_back(0.5 * (extrema[i].value + extrema[i - 1].value));
+    for (std::size_t i = 1; i < found.points.size(); ++i) {
+      middles.push_back(0.5 * (found.points[i].value + found.points[i - 1].value));
     }
-    half_period_ = Median(std::move(intervals));
     zero_ = Median(std::move(middles));
     std::vector<double> steps;
     for (Index i = 1; i < recording.size(); ++i) steps.push_back(recording.time[i] - recording.time[i - 1]);
     shape_ = ShapeFor(2 * half_period_ / Median(std::move(steps)), 2 * half_period_);
   }
 
-  double half_period() const { return half_period_; }
-
   /// Returns std::nullopt if samples are missing, saturated or too few.
-  std::optional<LocalFit> Fit(const Extremum& extremum) const {
+  std::optional<LocalFit> Fit(const TurningPoint& found) const {
     LocalFit fit;
-    double centre = extremum.time;
-    double value = extremum.value;
-    constexpr int kRounds = 2;  // the kink is at the peak, so its position is iterated
+    fit.point.sample = found.sample;
+    double centre = found.time;
+    double value = found.value;
+    constexpr int kRounds = 2;  // the kink is at the turning point, so its position is iterated
     for (int round = 0; round < kRounds; ++round) {
       if (!FitAbout(centre, value, fit)) return std::nullopt;
-      centre = fit.peak.time;
-      value = fit.peak.value;
+      centre = fit.point.time;
+      value = fit.point.value;
     }
     return fit;
   }
@@ -116,14 +111,14 @@ class PeakFitter {
     const VectorXd c = solver * rest;
     fit.sum_of_squares = (rest - powers * c).squaredNorm();
     MatrixXd gradient;  // of (time, value) with respect to c
-    if (!FindVertex(c, centre, fit.peak, gradient)) return false;
-    fit.peak.first = first;
-    fit.peak.influence = gradient * solver;
+    if (!FindVertex(c, centre, fit.point, gradient)) return false;
+    fit.point.first = first;
+    fit.point.influence = gradient * solver;
     return true;
   }
 
   /// Finds the extremum of the polynomial nearest to the centre.
-  bool FindVertex(const VectorXd& c, double centre, Peak& peak, MatrixXd& gradient) const {
+  bool FindVertex(const VectorXd& c, double centre, TurningPoint& point, MatrixXd& gradient) const {
     constexpr int kMaxSteps = 20;
     double x = 0;
     VectorXd at(c.size()), slope(c.size()), curvature(c.size());
@@ -140,8 +135,8 @@ class PeakFitter {
       if (!(std::abs(x) < 0.8)) return false;
       if (std::abs(change) < 1e-12) break;
     }
-    peak.time = centre + x * shape_.half_width;
-    peak.value = at.dot(c);
+    point.time = centre + x * shape_.half_width;
+    point.value = at.dot(c);
     gradient.resize(2, c.size());
     gradient.row(0) = -slope.transpose() * (shape_.half_width / curvature.dot(c));
     gradient.row(1) = at.transpose();
@@ -155,24 +150,24 @@ class PeakFitter {
 };
 
 /// Two turning points follow each other if they lie on different sides of the zero and about half a period apart.
-bool Follows(const Peak& before, const Peak& peak, double half_period, double zero) {
+bool Follows(const TurningPoint& before, const TurningPoint& point, double half_period, double zero) {
   constexpr double kLongest = 1.6;
-  return (before.value > zero) != (peak.value > zero) && peak.time - before.time < kLongest * half_period;
+  return (before.value > zero) != (point.value > zero) && point.time - before.time < kLongest * half_period;
 }
 
-void EstimateZero(PeakTable& table) {
+void EstimateZero(TurningPointTable& table) {
   const VectorXd weights = table.ZeroWeights();
   double variance = 0;
   table.zero.value = 0;
   for (Index i = 0; i < weights.size(); ++i) {
-    const Peak& peak = table.peaks[static_cast<std::size_t>(i)];
-    table.zero.value += weights[i] * peak.value;
-    variance += weights[i] * weights[i] * peak.covariance(1, 1);
+    const TurningPoint& point = table.points[static_cast<std::size_t>(i)];
+    table.zero.value += weights[i] * point.value;
+    variance += weights[i] * weights[i] * point.covariance(1, 1);
   }
   table.zero.std_error = std::sqrt(variance);
 }
 
-tl::unexpected<Status> TooFew(std::size_t found, std::size_t located) {
+tl::unexpected<Status> TooFewLocated(std::size_t found, std::size_t located) {
   return Error(StatusCode::kFailedPrecondition,
                "of " + std::to_string(found) + " turning points " + std::to_string(located) +
                    " can be located, and three that follow each other are needed: those at the ends of the recording "
@@ -182,64 +177,53 @@ tl::unexpected<Status> TooFew(std::size_t found, std::size_t located) {
 
 }  // namespace
 
-VectorXd PeakTable::ZeroWeights() const {
-  VectorXd weights = VectorXd::Zero(static_cast<Index>(peaks.size()));
-  for (std::size_t i = 1; i + 1 < peaks.size(); ++i) {
-    if (!peaks[i].continues || !peaks[i + 1].continues) continue;
-    weights.segment<3>(static_cast<Index>(i) - 1) += Eigen::Vector3d(0.25, 0.5, 0.25);
-  }
-  const double sum = weights.sum();
-  return sum > 0 ? VectorXd(weights / sum) : weights;
-}
-
-MatrixXd CovarianceOf(const PeakTable& table, const MatrixXd& gradient) {
+MatrixXd CovarianceOf(const TurningPointTable& table, const MatrixXd& gradient) {
   MatrixXd covariance = MatrixXd::Zero(gradient.rows(), gradient.rows());
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
     const auto part = gradient.middleCols<2>(2 * static_cast<Index>(i));
-    covariance += part * table.peaks[i].covariance * part.transpose();
+    covariance += part * table.points[i].covariance * part.transpose();
   }
   return covariance;
 }
 
-MatrixXd InfluenceOf(const PeakTable& table, const MatrixXd& gradient, Index samples) {
+MatrixXd InfluenceOf(const TurningPointTable& table, const MatrixXd& gradient, Index samples) {
   MatrixXd influence = MatrixXd::Zero(samples, gradient.rows());
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    const Peak& peak = table.peaks[i];
-    influence.middleRows(peak.first, peak.influence.cols()) +=
-        (gradient.middleCols<2>(2 * static_cast<Index>(i)) * peak.influence).transpose();
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    const TurningPoint& point = table.points[i];
+    influence.middleRows(point.first, point.influence.cols()) +=
+        (gradient.middleCols<2>(2 * static_cast<Index>(i)) * point.influence).transpose();
   }
   return influence;
 }
 
-Result<PeakTable> LocatePeaks(const Recording& recording, const Kink& kink) {
-  const Result<std::vector<Extremum>> extrema = FindExtrema(recording);
-  if (!extrema) return tl::unexpected(extrema.error());
-  const PeakFitter fitter(recording, *extrema, kink);
-  PeakTable table;
-  table.quantity = recording.quantity;
-  table.half_period = fitter.half_period();
+Result<TurningPointTable> LocateTurningPoints(const Recording& recording, const Kink& kink) {
+  const Result<TurningPointTable> found = FindTurningPoints(recording);
+  if (!found) return found;
+  const TurningPointFitter fitter(recording, *found, kink);
+  TurningPointTable table = *found;
   table.kink = kink;
+  table.points.clear();
   double sum_of_squares = 0;
   Index freedom = 0;
-  for (const Extremum& extremum : *extrema) {
-    const std::optional<LocalFit> fit = fitter.Fit(extremum);
+  for (const TurningPoint& point : found->points) {
+    const std::optional<LocalFit> fit = fitter.Fit(point);
     if (!fit) continue;
     sum_of_squares += fit->sum_of_squares;
     freedom += fit->freedom;
-    table.peaks.push_back(fit->peak);
+    table.points.push_back(fit->point);
   }
-  if (table.peaks.size() < 3) return TooFew(extrema->size(), table.peaks.size());
+  if (table.points.size() < 3) return TooFewLocated(found->points.size(), table.points.size());
   constexpr double kRounding = 1e-12;  // of the range: least noise assumed for noise-free readings
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
   table.noise = std::max(std::sqrt(sum_of_squares / static_cast<double>(freedom)), kRounding * range);
-  const double middle = 0.5 * (table.peaks[0].value + table.peaks[1].value);
-  for (std::size_t i = 0; i < table.peaks.size(); ++i) {
-    Peak& peak = table.peaks[i];
-    peak.covariance = table.noise * table.noise * peak.influence * peak.influence.transpose();
-    if (i > 0) peak.continues = Follows(table.peaks[i - 1], peak, table.half_period, middle);
+  const double middle = 0.5 * (table.points[0].value + table.points[1].value);
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    TurningPoint& point = table.points[i];
+    point.covariance = table.noise * table.noise * point.influence * point.influence.transpose();
+    if (i > 0) point.continues = Follows(table.points[i - 1], point, table.half_period, middle);
   }
   EstimateZero(table);
-  if (table.ZeroWeights().isZero()) return TooFew(extrema->size(), table.peaks.size());
+  if (table.ZeroWeights().isZero()) return TooFewLocated(found->points.size(), table.points.size());
   return table;
 }
 
