@@ -127,10 +127,10 @@ _DECLARED = re.compile(
     r"|(?!(?:return|using|namespace|template|static|TEST|struct|class|enum)\b)[\w:<>,&*\[\] ]*?[\w>&*] ([A-Z]\w+)\()", re.MULTILINE)
 # Everything that looks like a declaration, including members, locals and enumerators: such a name needs no header.
 _ANY_DECLARED = re.compile(
-    r"\b(?:struct|class|enum class|using|typename|concept) (?:\[\[[^\]]*\]\] )?(\w+)|(?<!\breturn)(?<!\bco_return)[\w>&*\]] [&*]?([A-Z]\w+)\("
+    r"\b(?:struct|class|enum class|using|typename|concept) (?:\[\[[^\]]*\]\] )?(\w+)|(?<!\breturn)(?<!\bco_return)(?:[\w>&*\]]|decltype\(auto\)) [&*]?([A-Z]\w+)\("
     r"|\b(k[A-Z]\w+)(?= =|\{|,|;|\))|^  (k[A-Z]\w+)$|\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\((\w+), \w+|[\w>&*] (k?[A-Z]\w+)(?:;|\[|\{| =)", re.MULTILINE)
 _QUALIFIED = re.compile(r"(?:\w::(?:template )?|\b(?:typename|class|auto|int|bool)(?:\.\.\.)? )(\w+)")
-_USED = re.compile(r"(?<![\w.:>~])(?:pendulum::)?(k?[A-Z]\w+)\b")
+_USED = re.compile(r"(?<![\w.:>~])(?<!\btemplate )(?:pendulum::)?(k?[A-Z]\w+)\b")
 
 
 def own_header(root, path, name):

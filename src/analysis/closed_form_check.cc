@@ -64,7 +64,7 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
                 {"inertia_elliptic_period", "the same period corrected by the elliptic integral", "inertia",
                  "an amplitude that falls within each half swing, where the elliptic integral takes its mean"}};
   group.assumption = "the formula's friction, which is viscous alone";
-  if (forms.gravity == Gravity::kLinear) group.rows.pop_back();  // nothing to correct
+  if (forms.gravity.is_linear()) group.rows.pop_back();  // nothing to correct
   group.value = LinearValues(linear);
   group.error = Eigen::Vector4d(linear.damping_ratio.std_error, linear.inertia.std_error, linear.viscous.std_error,
                                 linear.corrected_inertia.std_error);

@@ -29,7 +29,7 @@ std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t most = 0;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
-    if (!model || model->gravity != Gravity::kSine) continue;
+    if (!model || model->gravity.is_linear()) continue;
     // A model with a parameter that may have no meaning is the last choice.
     const std::size_t size = FindOrderedPair(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
     if (size <= most) continue;

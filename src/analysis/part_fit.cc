@@ -120,8 +120,9 @@ double Parts::Amplitude(double time) const {
   const double angle = motion_->Angle(Instant(time));
   const double rate = motion_->Rate(Instant(time));
   const double kinetic = inertia_ * rate * rate;  // twice the kinetic energy, in units of G
-  if (fit_.model.gravity == Gravity::kLinear) return std::sqrt(kinetic + angle * angle);
-  return std::acos(std::clamp(std::cos(angle) - 0.5 * kinetic, -1.0, 1.0));
+  const Gravity gravity = fit_.model.gravity;
+  return gravity.AngleOfChord(
+      std::min(std::hypot(gravity.Chord(angle), std::sqrt(kinetic)), gravity.Chord(gravity.top())));
 }
 
 std::vector<std::size_t> CutEvenly(const std::vector<double>& ends, std::size_t parts, const Parts& fits) {

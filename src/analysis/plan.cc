@@ -44,22 +44,20 @@ std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end)
 std::optional<double> Amplitude(const SyntheticOptions& run) {
   if (run.start == StartKind::kRelease) return std::abs(run.release_angle);
   const double rate = std::sqrt(run.parameters[0]) * run.initial_rate;  // in units of ω0
-  if (run.model.gravity == Gravity::kLinear) return std::hypot(run.initial_angle, rate);
-  const double half_sine = std::hypot(std::sin(0.5 * run.initial_angle), 0.5 * rate);
-  if (std::abs(run.initial_angle) >= kPi || half_sine >= 1) return std::nullopt;
-  return 2 * std::asin(half_sine);
+  const Gravity gravity = run.model.gravity;
+  const double chord = std::hypot(gravity.Chord(run.initial_angle), rate);
+  if (std::abs(run.initial_angle) >= gravity.top() || chord >= gravity.Chord(gravity.top())) return std::nullopt;
+  return gravity.AngleOfChord(chord);
 }
 
 /// Scales the swing from one amplitude to another, at the same phase. Both amplitudes are positive.
 SyntheticOptions WithAmplitude(SyntheticOptions run, double from, double to) {
   if (run.start == StartKind::kRelease) {
     run.release_angle = std::copysign(to, run.release_angle);
-  } else if (run.model.gravity == Gravity::kLinear) {
-    run.initial_angle *= to / from;
-    run.initial_rate *= to / from;
   } else {
-    const double factor = std::sin(0.5 * to) / std::sin(0.5 * from);
-    run.initial_angle = 2 * std::asin(factor * std::sin(0.5 * run.initial_angle));
+    const Gravity gravity = run.model.gravity;
+    const double factor = gravity.Chord(to) / gravity.Chord(from);
+    run.initial_angle = gravity.AngleOfChord(factor * gravity.Chord(run.initial_angle));
     run.initial_rate *= factor;
   }
   return run;

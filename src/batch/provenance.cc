@@ -42,7 +42,7 @@ Json ReadJson(const ReadOptions& read) {
 /// Enumerations without names are stored by number. New values must be appended, otherwise the hash of unchanged
 /// options changes.
 Json FitJson(const FitOptions& fit) {
-  return {{"gravity", fit.gravity ? Json(static_cast<int>(*fit.gravity)) : Json(nullptr)},
+  return {{"gravity", fit.gravity ? Json(fit.gravity->name()) : Json(nullptr)},
           {"start", fit.start ? Json(*fit.start == StartKind::kRelease ? "release" : "moving") : Json(nullptr)},
           {"fix", fit.fixed},
           {"init", fit.initial},

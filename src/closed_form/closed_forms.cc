@@ -70,7 +70,7 @@ tl::unexpected<Status> Stopped() {
 
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop) {
-  if (model.gravity == Gravity::kSine && !recording.is_calibrated()) {
+  if (!model.gravity.is_linear() && !recording.is_calibrated()) {
     return Error(StatusCode::kFailedPrecondition,
                  "the readings are in " + recording.unit +
                      ", and closed forms of this model need an angle or a rate; --closed_form_only has those of small "

@@ -64,10 +64,8 @@ class DecrementProblem {
     const double amplitude = table_.Amplitude(runs_[0].first);
     const bool is_rate = table_.quantity == Quantity::kRate;
     x[1] = kPi / table_.half_period;
-    if (model_.gravity == Gravity::kSine) {
-      const double angle = AngleAmplitude(table_.quantity, amplitude, x[1], model_.gravity);
-      x[1] *= PeriodRatio(0.8 * angle);  // most swings of the run have smaller amplitudes
-    }
+    const double angle = AngleAmplitude(table_.quantity, amplitude, x[1], model_.gravity);
+    x[1] *= model_.gravity.PeriodRatio(0.8 * angle);  // most swings of the run have smaller amplitudes
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Index at = 2 + friction() + 2 * static_cast<Index>(r);
       x[at] = AngleAmplitude(table_.quantity, table_.Amplitude(runs_[r].first), x[1], model_.gravity);
@@ -161,8 +159,7 @@ class DecrementProblem {
     double time = x[2 + friction() + 2 * static_cast<Index>(r) + 1];
     const bool is_rate = table_.quantity == Quantity::kRate;
     for (std::size_t i = runs_[r].first; i <= runs_[r].last; ++i) {
-      if (stop_.stop_requested() || !(amplitude > 0 && x[1] > 0)) return false;
-      if (model_.gravity == Gravity::kSine && !(amplitude < kPi)) return false;
+      if (stop_.stop_requested() || !(amplitude > 0 && amplitude < model_.gravity.top() && x[1] > 0)) return false;
       if (!is_rate) Add(i, time, x[0] + table_.Side(i) * amplitude, row, residuals);
       if (!is_rate && i == runs_[r].last) break;
       const double direction = is_rate ? table_.Side(i) : -table_.Side(i);

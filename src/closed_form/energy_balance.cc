@@ -16,11 +16,6 @@
 namespace pendulum {
 namespace {
 
-/// Potential energy in units of G.
-double Potential(Gravity gravity, double angle) {
-  return gravity == Gravity::kSine ? 1 - std::cos(angle) : 0.5 * angle * angle;
-}
-
 /// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0, except a reference rate,
 /// which keeps its value. The substitution θ = A sin φ makes the integrand smooth at the ends.
 template <FrictionModel F>
@@ -33,7 +28,7 @@ Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double na
     if (unit[k] == 0) unit[k] = 1;
     const auto integrand = [&](double phi) {
       const double angle = amplitude * std::sin(phi);
-      const double kinetic = std::max(2 * (Potential(gravity, amplitude) - Potential(gravity, angle)), 0.0);
+      const double kinetic = std::max(2 * (gravity.Potential(amplitude) - gravity.Potential(angle)), 0.0);
       return F::Torque(natural_frequency * std::sqrt(kinetic), 1.0, unit.data()) * amplitude * std::cos(phi);
     };
     loss[k] = boost::math::quadrature::gauss<double, 15>::integrate(integrand, -kPi / 2, kPi / 2);
@@ -89,11 +84,11 @@ EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double 
   };
   for (const auto& [first, last] : table.Runs()) {
     double before = amplitude_at(first);
-    equations.StartRun(Potential(gravity, before));
+    equations.StartRun(gravity.Potential(before));
     for (std::size_t i = first + 1; i <= last; ++i) {
       const double after = amplitude_at(i);
       equations.Add(LossPerParameter<F>(gravity, 0.5 * (before + after), natural_frequency, reference_rate),
-                    Potential(gravity, after));
+                    gravity.Potential(after));
       before = after;
     }
     equations.FinishRun();
@@ -115,7 +110,7 @@ double LargestRate(Gravity gravity, const TurningPointTable& table, double natur
   for (const auto& [first, last] : table.Runs()) {
     for (std::size_t i = first; i < last; ++i) {
       const double amplitude = AngleAmplitude(table.quantity, table.Amplitude(i), natural_frequency, gravity);
-      largest = std::max(largest, natural_frequency * std::sqrt(2 * Potential(gravity, amplitude)));
+      largest = std::max(largest, natural_frequency * std::sqrt(2 * gravity.Potential(amplitude)));
     }
   }
   return largest;

@@ -59,13 +59,10 @@ class Collocation {
   std::array<std::array<double, kNodes + 1>, kNodes> polynomials_;
 };
 
-/// Potential energy in units of G, and the angle >= 0 with that energy.
+/// Potential energy in units of G, accurate at small angles.
 double PotentialAt(Gravity gravity, double angle) {
-  const double half_sine = std::sin(0.5 * angle);
-  return gravity == Gravity::kSine ? 2 * half_sine * half_sine : 0.5 * angle * angle;
-}
-double AngleWith(Gravity gravity, double potential) {
-  return gravity == Gravity::kSine ? 2 * std::asin(std::sqrt(0.5 * potential)) : std::sqrt(2 * potential);
+  const double chord = gravity.Chord(angle);
+  return 0.5 * chord * chord;
 }
 
 /// The path from -before to after as θ = m + h sin(π x / 2). Along it the energy and rate / cos(π x / 2) are smooth,
@@ -86,14 +83,15 @@ class HalfSwingPath {
     constexpr int kMaxRounds = 200;
     constexpr double kSame = 4e-15;
     const double energy_before = PotentialAt(gravity_, before_);
+    const double highest = PotentialAt(gravity_, gravity_.top());
     Nodes energy = Nodes::Constant(energy_before);
     double after = before_;
     for (int round = 0; round < kMaxRounds; ++round) {
       const Nodes loss = Loss(energy, after);
       energy = energy_before - (Rule().integrate * loss.matrix()).array();
       const double energy_after = energy_before - (Rule().weight * loss).sum();
-      if (!(energy_after > 0) || (gravity_ == Gravity::kSine && !(energy_after < 2))) return std::nullopt;
-      const double last = std::exchange(after, AngleWith(gravity_, energy_after));
+      if (!(energy_after > 0 && energy_after < highest)) return std::nullopt;
+      const double last = std::exchange(after, gravity_.AngleOfChord(std::sqrt(2 * energy_after)));
       if (std::abs(last - after) > kSame * before_) continue;
       HalfSwingEnd end{after, (Rule().weight * slope_ / rate_).sum(), 0, 0};
       if (wants_peak) FindPeak(loss, after, end);
@@ -143,7 +141,7 @@ class HalfSwingPath {
       x = 2 / kPi * std::asin(std::clamp((angle - middle) / half, -1.0, 1.0));
       rate = RateAt(PotentialAt(gravity_, before_) - Rule().WeightsTo(x).dot(loss.matrix()), angle);
       const double torque = std::clamp(Torque(rate), -1.0, 1.0);
-      const double last = std::exchange(angle, gravity_ == Gravity::kSine ? -std::asin(torque) : -torque);
+      const double last = std::exchange(angle, -gravity_.AngleAtTorque(torque));
       if (std::abs(last - angle) <= kSame * half) break;
     }
     end.peak_rate = rate;

@@ -49,12 +49,12 @@ Outputs Formulas(const Inputs& inputs, int periods) {
 /// The mean period ratio and its derivatives (M) by the values of the turning points.
 double MeanPeriodRatio(const PeriodSpan& span, VectorXd& gradient) {
   gradient = VectorXd::Zero(static_cast<Index>(span.table.points.size()));
-  if (span.gravity == Gravity::kLinear) return 1;
+  if (span.gravity.is_linear()) return 1;
   constexpr double kStep = 1e-4;  // of the amplitude
   const double share = 1 / (2.0 * span.periods);
   const double frequency = kPi / span.table.half_period;
   const auto ratio_at = [&](double amplitude) {
-    return PeriodRatio(AngleAmplitude(span.table.quantity, amplitude, frequency));
+    return span.gravity.PeriodRatio(AngleAmplitude(span.table.quantity, amplitude, frequency, span.gravity));
   };
   double sum = 0;
   for (std::size_t i = span.first; i < span.last(); ++i) {

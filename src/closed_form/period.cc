@@ -42,7 +42,7 @@ std::vector<double> CrossingPhases(const TurningPointTable& table, Gravity gravi
     phases.push_back(0);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double amplitude = AngleAmplitude(table.quantity, table.Amplitude(i), natural_frequency, gravity);
-      phases.push_back(phases.back() + kPi * (gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0));
+      phases.push_back(phases.back() + kPi * gravity.PeriodRatio(amplitude));
     }
     Centre(begin, phases);
   }
@@ -63,22 +63,12 @@ double FrequencyAtAmplitudesOf(const std::vector<double>& time, const TurningPoi
 
 }  // namespace
 
-double PeriodRatio(double amplitude) {
-  double a = 1;
-  double b = std::cos(0.5 * amplitude);
-  while (std::abs(a - b) > 1e-15 * a) {
-    const double mean = 0.5 * (a + b);
-    b = std::sqrt(a * b);
-    a = mean;
-  }
-  return 1 / a;
-}
-
 double AngleAmplitude(Quantity quantity, double amplitude, double natural_frequency, Gravity gravity) {
-  if (gravity == Gravity::kLinear) return quantity == Quantity::kAngle ? amplitude : amplitude / natural_frequency;
-  constexpr double kLargest = 3.1;
-  if (quantity == Quantity::kAngle) return std::min(amplitude, kLargest);
-  return std::min(2 * std::asin(std::min(amplitude / (2 * natural_frequency), 1.0)), kLargest);
+  constexpr double kBelowTop = kPi - 3.1;
+  const double largest = gravity.top() - kBelowTop;
+  if (quantity == Quantity::kAngle) return std::min(amplitude, largest);
+  const double chord = std::min(amplitude / natural_frequency, gravity.Chord(gravity.top()));
+  return std::min(gravity.AngleOfChord(chord), largest);
 }
 
 /// Fits a least-squares line of time on reading to the samples within 0.35 of the smaller amplitude, or uses the two
@@ -115,7 +105,7 @@ Result<double> NaturalFrequency(const Recording& recording, const TurningPointTa
   }
   const std::vector<double> times = CrossingTimes(recording, table);
   const auto frequency_at = [&](double frequency) { return FrequencyAtAmplitudesOf(times, table, gravity, frequency); };
-  if (table.quantity == Quantity::kAngle || gravity == Gravity::kLinear) return frequency_at(kUnbounded);
+  if (table.quantity == Quantity::kAngle || gravity.is_linear()) return frequency_at(kUnbounded);
   // The amplitudes of a rate also depend on ω0. A larger ω0 means smaller amplitudes, and these give a smaller ω0, so
   // there is exactly one solution. At the smallest possible ω0 the largest peak would carry the pendulum to the top.
   const double smallest = 0.5 * table.LargestAmplitude();

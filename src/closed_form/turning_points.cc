@@ -212,7 +212,7 @@ std::vector<double> TurningPointTable::Amplitudes() const {
 double TurningPointTable::Stretch(std::size_t point) const {
   constexpr double kNearTop = 3.0;
   if (quantity == Quantity::kRate || !is_calibrated) return 1;
-  return PeriodRatio(std::min(Amplitude(point), kNearTop));
+  return SineGravity::PeriodRatio(std::min(Amplitude(point), kNearTop));
 }
 
 double TurningPointTable::Tolerance(std::size_t point) const {

@@ -93,7 +93,7 @@ Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options,
 MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one) {
   const MotionModel asked = *FindMotionModel(options.fit.model);
   const MotionModel linear = *FindMotionModel("linear");
-  if (one.used.is_calibrated() || asked.name == linear.name) return asked;
+  if (one.used.is_calibrated() || asked.gravity.is_linear()) return asked;
   one.warnings.push_back({"uncalibrated", "the readings are in " + one.used.unit +
                                               ", not in an angle's unit; the closed forms are those of model linear, "
                                               "which takes small angles for granted"});

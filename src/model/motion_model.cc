@@ -10,9 +10,36 @@
 
 namespace pendulum {
 
+namespace {
+
+std::string ModelName(std::string_view gravity, std::string_view friction) {
+  if (gravity == Gravity().name()) return std::string(friction);
+  if (friction == ViscousFriction::kName) return std::string(gravity);
+  return std::string(gravity) + "_" + std::string(friction);
+}
+
+/// Outlives all models, which only refer to their names.
+const std::vector<std::string>& ModelNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const std::string_view gravity : GravityModels::kNames) {
+      for (const std::string_view friction : FrictionModels::kNames) all.push_back(ModelName(gravity, friction));
+    }
+    return all;
+  }();
+  return names;
+}
+
+}  // namespace
+
 std::vector<MotionModel> MotionModels() {
-  std::vector<MotionModel> models = {{"linear", ViscousFriction::kName, Gravity::kLinear}};
-  for (const std::string_view name : FrictionModels::kNames) models.push_back({name, name, Gravity::kSine});
+  std::vector<MotionModel> models;
+  auto name = ModelNames().begin();
+  for (const std::string_view gravity : GravityModels::kNames) {
+    for (const std::string_view friction : FrictionModels::kNames) {
+      models.push_back({*name++, friction, *Gravity::Named(gravity)});
+    }
+  }
   return models;
 }
 

@@ -28,7 +28,7 @@ std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravit
                                              {"natural_frequency", "ω_n", linear.natural_frequency, "rad/s"},
                                              Reported(kInertia, linear.inertia, rig),
                                              Reported(kViscous, linear.viscous, rig)};
-  if (gravity == Gravity::kLinear) return estimates;
+  if (gravity.is_linear()) return estimates;
   estimates.push_back(Reported(kInertia, linear.corrected_inertia, rig));
   estimates.back().name = "corrected_inertia";
   return estimates;

@@ -72,11 +72,12 @@ void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section&
     return;
   }
   const int periods = forms.linear->periods;
-  const bool is_sine = forms.gravity == Gravity::kSine;
   section.AddText("Formulas of the linear pendulum, over " + std::to_string(periods) +
                   (periods == 1 ? " period" : " periods") + " from turning point " +
                   std::to_string(forms.linear->first + 1) + " on" +
-                  (is_sine ? "; corrected_inertia: each period divided by the elliptic integral's ratio." : "."));
+                  (forms.gravity.is_linear() ? "."
+                                             : "; corrected_inertia: each period divided by the elliptic integral's "
+                                               "ratio."));
   section.Add(EstimateTable(LinearEstimates(*forms.linear, forms.gravity, rig), false));
 }
 
@@ -103,7 +104,7 @@ void AddDecrement(const Identification& report, Section& section) {
   std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
   section.AddText("Fitted to all " + std::to_string(forms.table.points.size()) + " turning points, " +
-                  (forms.gravity == Gravity::kSine ? "exact at any amplitude" : "small angles") +
+                  (forms.gravity.is_linear() ? "small angles" : "exact at any amplitude") +
                   ", with the friction of model " + report.closed_forms_model + ": chi-square " +
                   NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
                   " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");

@@ -13,7 +13,7 @@ namespace {
 std::string EquationOf(const MotionModel& model) {
   std::string equation = "{inertia} th'' + ";
   FrictionModels::Visit(model.friction, [&]<typename F>() { equation += F::kFormula; });
-  return equation + " + {gravity_torque} " + (model.gravity == Gravity::kSine ? "sin th" : "th") + " = 0";
+  return equation + " + {gravity_torque} " + std::string(model.gravity.formula()) + " = 0";
 }
 
 void Replace(std::string_view from, std::string_view to, std::string& text) {

@@ -36,14 +36,14 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
   Result<MotionModel> model = FindMotionModel(flags.model);
   if (!model) return BadFlag("--model: " + model.error().message);
   if (flags.gravity.empty()) return model;
-  if (flags.gravity != "sin" && flags.gravity != "linear") {
-    return BadFlag("--gravity is '" + flags.gravity + "'; it must be sin or linear");
+  const std::optional<Gravity> gravity = Gravity::Named(flags.gravity);
+  if (!gravity)
+    return BadFlag("--gravity is '" + flags.gravity + "'; it must be one of " + NameList(GravityModels::kNames));
+  if (model->name != model->friction && gravity != model->gravity) {
+    return BadFlag("--gravity " + flags.gravity + " contradicts --model " + flags.model +
+                   "; its friction law is --model " + std::string(model->friction));
   }
-  const Gravity gravity = flags.gravity == "sin" ? Gravity::kSine : Gravity::kLinear;
-  if (model->name == "linear" && gravity == Gravity::kSine) {
-    return BadFlag("--gravity sin contradicts --model linear; its friction with sine gravity is --model viscous");
-  }
-  model->gravity = gravity;
+  model->gravity = *gravity;
   return model;
 }
 

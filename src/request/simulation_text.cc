@@ -76,8 +76,7 @@ void AppendNumber(double value, std::string& text) {
 std::string Head(const Simulation& simulation, std::uint64_t seed) {
   const MotionModel& model = simulation.synthetic.model;
   std::string text = "# simulate_pendulum " + std::string(kVersion) + ", model " + std::string(model.name) +
-                     ", gravity " + (model.gravity == Gravity::kSine ? "sin" : "linear") + ", seed " +
-                     std::to_string(seed) + "\n";
+                     ", gravity " + std::string(model.gravity.name()) + ", seed " + std::to_string(seed) + "\n";
   if (simulation.resolution > 0) text += "# resolution: " + NumberText(simulation.resolution) + "\n";
   if (simulation.range) {
     text += "# range: " + NumberText(simulation.range->low) + "," + NumberText(simulation.range->high) + "\n";

@@ -91,15 +91,16 @@ Json ParameterJson(const ParameterInfo& info) {
           {"upper", NumberOrNull(info.upper)}};
 }
 
-/// A model with its own description; `linear` is not a friction law.
+/// A model with the description of its friction law, or of its gravity if that is not the default.
 Json ModelJson(const MotionModel& model) {
-  std::string label = "viscous friction and small angles";
-  std::string about = "The textbook's pendulum, whose period does not depend on the angle: for comparison.";
-  if (model.name == model.friction) {
-    FrictionModels::Visit(model.friction, [&]<typename F>() {
-      label = F::kTitle;
-      about = F::kAbout;
-    });
+  std::string label, about;
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    label = F::kTitle;
+    about = F::kAbout;
+  });
+  if (model.gravity != Gravity()) {
+    label += " and " + std::string(model.gravity.title());
+    about = model.gravity.about();
   }
   Json nested_in = Json::array(), parameters = Json::array();
   for (const MotionModel& richer : MotionModels()) {

@@ -103,7 +103,7 @@ class Tracer {
   }
 
   void Reverse(double direction, State<T>& state) {
-    const double gravity = GravityTorque(values_.gravity, Value(state.angle));
+    const double gravity = values_.gravity.Torque(Value(state.angle));
     const double torque = gravity + F::Torque(0.0, direction, values_.friction.data());
     state = StateAtReversal(state, -torque / values_.inertia);
     RecordReversal(gravity);

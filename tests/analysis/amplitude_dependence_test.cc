@@ -82,8 +82,8 @@ TEST(AmplitudeDependence, ReportsPeriodsOfSmallestAndLargestSwings) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
-  const double expected = std::pow(PeriodRatio(result.amplitudes.back()), -2) -  //
-                          std::pow(PeriodRatio(result.amplitudes.front()), -2);
+  const double expected = std::pow(SineGravity::PeriodRatio(result.amplitudes.back()), -2) -  //
+                          std::pow(SineGravity::PeriodRatio(result.amplitudes.front()), -2);
   EXPECT_THAT(DependenceOf(result, "inertia")->span / expected, DoubleNear(1, 0.1));
 }
 

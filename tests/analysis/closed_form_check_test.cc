@@ -56,7 +56,7 @@ TEST(CheckClosedForms, AttributesTheInertiaOfLargeSwingsToFiniteAmplitude) {
   const int half_swings = 2 * checked.forms.linear->periods;
   double ratio = 0;
   for (int i = 0; i < half_swings; ++i) {
-    ratio += PeriodRatio(0.423 * std::pow(decay, HalfSwingsBefore(checked) + i + 0.5)) / half_swings;
+    ratio += SineGravity::PeriodRatio(0.423 * std::pow(decay, HalfSwingsBefore(checked) + i + 0.5)) / half_swings;
   }
   const ClosedFormRow& row = checked.Row("inertia_small_angle");
   const double bias = 0.079 * (ratio * ratio - 1);

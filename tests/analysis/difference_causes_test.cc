@@ -238,7 +238,7 @@ TEST(ApplyInStages, FindsTheFiniteAmplitudeEffectOnInertia) {
   const double inertia = run.run.fit.Find("inertia")->estimate;
   const double decay = std::exp(-kPi * run.run.fit.Find("viscous")->estimate / (2 * std::sqrt(inertia)));
   double ratio = 0;
-  for (int i = 0; i < 8; ++i) ratio += PeriodRatio(std::pow(decay, 2.5 + i)) / 8;
+  for (int i = 0; i < 8; ++i) ratio += SineGravity::PeriodRatio(std::pow(decay, 2.5 + i)) / 8;
   const DifferenceCauses causes = SplitDifference(run.Apply(SmallAngleInertia).value(), 0, 1, 0, inertia);
   EXPECT_THAT(causes.amplitude / (inertia * (ratio * ratio - 1)), DoubleNear(1, 0.02));
   EXPECT_LT(std::abs(causes.formula), 1e-5 * inertia);

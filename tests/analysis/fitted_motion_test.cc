@@ -187,7 +187,7 @@ TEST(FittedMotion, KeepsSineGravityWithOtherFriction) {
   options.release_time = 0.5;
   const FittedMotion motion =
       FittedMotion(Must(SimulateRecording(options)), TrueReport(options), {}).WithViscous(0.05, 1e-9);
-  const double period = 2 * kPi * std::sqrt(0.05) * PeriodRatio(1.5);
+  const double period = 2 * kPi * std::sqrt(0.05) * SineGravity::PeriodRatio(1.5);
   const Eigen::VectorXd turns = Eigen::Vector3d(0.5, 0.5 + period / 2, 0.5 + period);
   const Eigen::VectorXd readings = motion.Readings((Eigen::VectorXd(4) << 0.0, turns).finished()).value();
   EXPECT_THAT(readings[2] - options.zero, DoubleNear(-1.5, 1e-6));

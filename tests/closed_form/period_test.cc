@@ -23,20 +23,20 @@ TEST(PeriodRatio, MatchesThePublishedTable) {
                                                   {90, 1.180340599016}, {120, 1.372880500618}, {150, 1.762203729504},
                                                   {170, 2.439362719674}};
   for (const auto& [degrees, ratio] : kTable) {
-    EXPECT_THAT(PeriodRatio(degrees * kRadFromDeg), DoubleNear(ratio, 1e-12)) << degrees;
+    EXPECT_THAT(SineGravity::PeriodRatio(degrees * kRadFromDeg), DoubleNear(ratio, 1e-12)) << degrees;
   }
 }
 
 TEST(PeriodRatio, MatchesTheStandardLibrarysEllipticIntegral) {
   for (double degrees = 1; degrees < 180; degrees += 1) {
     const double expected = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg));
-    EXPECT_THAT(PeriodRatio(degrees * kRadFromDeg) / expected, DoubleNear(1, 1e-12)) << degrees;
+    EXPECT_THAT(SineGravity::PeriodRatio(degrees * kRadFromDeg) / expected, DoubleNear(1, 1e-12)) << degrees;
   }
 }
 
 TEST(PeriodRatio, IsOneAtRestAndTheSameOnBothSides) {
-  EXPECT_EQ(PeriodRatio(0), 1);
-  EXPECT_EQ(PeriodRatio(-1.2), PeriodRatio(1.2));
+  EXPECT_EQ(SineGravity::PeriodRatio(0), 1);
+  EXPECT_EQ(SineGravity::PeriodRatio(-1.2), SineGravity::PeriodRatio(1.2));
 }
 
 TEST(AngleAmplitude, IsUnchangedForAnAngle) {

@@ -244,7 +244,7 @@ TEST(FindAllTurningPoints, FindsTimesZeroAndAmplitudeOfADecayingCosine) {
     EXPECT_NEAR(table.Amplitude(i), 0.2 * std::exp(-kDecay * expected), 1.5e-3);
   }
   // half_period refers to small swings; a swing of 0.2 rad takes longer.
-  EXPECT_NEAR(table.half_period * PeriodRatio(0.17), kHalfPeriod, 2e-3);
+  EXPECT_NEAR(table.half_period * SineGravity::PeriodRatio(0.17), kHalfPeriod, 2e-3);
 }
 
 TEST(FindAllTurningPoints, HasNoZeroForFewerThanThree) {

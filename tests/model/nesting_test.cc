@@ -56,10 +56,10 @@ TEST(FindNesting, FindsNoNestingInItselfOrASimplerLaw) {
   EXPECT_FALSE(Between("stribeck", "drag"));
 }
 
-// The small-angle model is not nested in any other model.
 TEST(FindNesting, RequiresTheSameGravity) {
   EXPECT_FALSE(Between("linear", "coulomb"));
   EXPECT_FALSE(Between("linear", "viscous"));
+  EXPECT_TRUE(Between("linear", "linear_coulomb"));
 }
 
 TEST(LargestNestedModel, IsTheNestedLawOfMostParameters) {

@@ -50,11 +50,6 @@ TEST(EvaluatePartials, MatchThePolynomialsDerivativesForAnyOrder) {
   }
 }
 
-TEST(GravityTorque, IsTheSineOrTheAngle) {
-  EXPECT_DOUBLE_EQ(GravityTorque(Gravity::kSine, kPi / 6), 0.5);
-  EXPECT_EQ(GravityTorque(Gravity::kLinear, 0.75), 0.75);
-}
-
 // ---- Direction of motion -----------------------------------------------------------------------------------------
 
 TEST(DirectionOfMotion, FollowsTheRateHoweverSlow) {

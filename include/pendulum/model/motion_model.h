@@ -7,28 +7,28 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/model/gravity/gravity.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
 
-/// The law of gravity's torque in units of G: sin θ, or θ for the small-angle model.  MODEL.md eq. (2.2), (2.3).
-enum class Gravity { kSine, kLinear };
-
-/// A model as --model selects it: a friction law and a gravity law.
+/// A model as --model selects it: a friction law and a gravity law, each with each.
 struct MotionModel {
   std::string_view name;      ///< The name that --model takes.
   std::string_view friction;  ///< A name in FrictionModels.
   Gravity gravity;
 };
 
-/// `linear` (viscous friction, linear gravity) and one model of sine gravity for each registered friction law.
+/// Each friction law with each law of gravity, in the order of the registries. With the default gravity, sin, the model
+/// has the name of its friction law. Others are called GRAVITY_FRICTION, as linear_coulomb, and GRAVITY alone means
+/// viscous friction.
 std::vector<MotionModel> MotionModels();
 
 /// The model with this name. kInvalidArgument: there is none; the message lists the existing names.
 Result<MotionModel> FindMotionModel(std::string_view name);
 
 /// The models of a comma-separated list such as "viscous,coulomb", in its order. "all" means one model for each
-/// friction law. kInvalidArgument: a name is unknown, empty or repeated.
+/// friction law, with the default gravity. kInvalidArgument: a name is unknown, empty or repeated.
 Result<std::vector<MotionModel>> FindMotionModels(std::string_view names);
 
 /// The inertia and the parameters of the model's friction law, in the order in which trajectories take them.

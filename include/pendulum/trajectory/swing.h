@@ -11,7 +11,7 @@
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/friction/friction_model.h"
-#include "pendulum/model/motion_model.h"
+#include "pendulum/model/gravity/gravity.h"
 #include "pendulum/model/series.h"
 
 namespace pendulum {
@@ -19,7 +19,7 @@ namespace pendulum {
 /// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (2.1)): inertia I/G [s^2], friction / G.
 template <FrictionModel F, typename T>
 struct Pendulum {
-  Gravity gravity = Gravity::kSine;
+  Gravity gravity;
   T inertia;
   std::array<T, kFrictionParameters<F>> friction;
 };
@@ -113,11 +113,6 @@ inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
 
-/// Restoring torque g(θ) in units of G: sin θ or θ.
-inline double GravityTorque(Gravity gravity, double angle) {
-  return gravity == Gravity::kSine ? std::sin(angle) : angle;
-}
-
 /// The values of a pendulum's parameters, without derivatives.
 template <FrictionModel F, typename T>
 Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
@@ -131,7 +126,7 @@ Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
 template <FrictionModel F>
 double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, double rate) {
   if (rate != 0) return rate > 0 ? 1.0 : -1.0;
-  const double torque = GravityTorque(pendulum.gravity, angle);
+  const double torque = pendulum.gravity.Torque(angle);
   const double direction = torque > 0 ? -1.0 : 1.0;
   const double holding = direction * F::Torque(0.0, direction, pendulum.friction.data());
   constexpr double kMargin = 1.0 + 1e-12;  // at equality, rounding must not start a motion

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <tuple>
 #include <utility>
 
 #include "pendulum/model/friction/friction_model.h"
+#include "pendulum/model/gravity/gravity.h"
 #include "pendulum/model/series.h"
 #include "pendulum/trajectory/swing.h"
 
@@ -32,45 +34,46 @@ class SwingExpansion {
       angle_.partials[0] = from.angle.v;
       rate_.dual[0] = from.rate;
     }
-    pendulum_.gravity == Gravity::kSine ? FindAll<Gravity::kSine>() : FindAll<Gravity::kLinear>();
+    pendulum_.gravity.Visit([this]<typename L>() { FindAll<L>(); });
   }
 
  private:
-  template <Gravity kGravity>
+  template <GravityModel L>
   void FindAll() {
     const auto next = [&]<int n>() {
-      FindValue<kGravity, n>();
-      if constexpr (DualNumber<T>) FindPartials<kGravity, n>();
+      FindValue<L, n>();
+      if constexpr (DualNumber<T>) FindPartials<L, n>();
       return n + 1 < angle_.order;
     };
     [&]<int... n>(std::integer_sequence<int, n...>) { (void)(next.template operator()<n>() && ...); }
     (std::make_integer_sequence<int, kMaxOrder>());
   }
 
-  template <Gravity kGravity, int n>
+  template <GravityModel L, int n>
   void FindValue() {
     angle_.angle[n + 1] = rate_.value[n] * kInverse[n + 1];
     if (n + 1 == angle_.order) return;
-    const double gravity =
-        kGravity == Gravity::kSine ? sine_.template Next<n>(angle_.angle[0], rate_.value) : angle_.angle[n];
+    const double gravity = GravitySeries<L>().template Next<n>(angle_.angle, rate_.value);
     const double friction = friction_(n, rate_.value, direction_, values_.friction.data());
     rate_.value[n + 1] = (gravity + friction) * per_torque_[n + 1];
   }
 
   /// Linear equations for the derivatives along the swing: eq. (4.1) and (4.4), differentiated.
-  template <Gravity kGravity, int n>
+  template <GravityModel L, int n>
   void FindPartials() {
     angle_.partials[n + 1] = kInverse[n + 1] * rate_.dual[n].v;
     if (n + 1 == angle_.order) return;
-    auto gravity = angle_.partials[n];
-    if constexpr (kGravity == Gravity::kSine) {
-      gravity = sine_.template PartialsOf<n>(angle_.partials, next_sine_);
-    }
+    const auto gravity = GravitySeries<L>().template PartialsOf<n>(angle_.partials);
     const auto friction = dual_friction_(n, rate_.dual, direction_, pendulum_.friction.data()).v;
     const double rate = rate_.value[n + 1];
     const double factor = per_torque_[n + 1];
     const auto known_in_advance = factor * gravity - rate * inertia_;
     rate_.dual[n + 1] = T(rate, known_in_advance + factor * friction);
+  }
+
+  template <GravityModel L>
+  [[gnu::always_inline]] typename L::template Recurrence<T>& GravitySeries() {
+    return std::get<typename L::template Recurrence<T>>(gravity_);
   }
 
   const Pendulum<F, T>& pendulum_;
@@ -80,8 +83,7 @@ class SwingExpansion {
   double direction_ = 1;
   Segment<T>& angle_;
   RateSeries<T>& rate_;
-  SineSeries sine_;
-  PartialsFor<T> next_sine_;
+  GravityModels::Recurrences<T> gravity_;
   typename F::template Recurrence<double> friction_;
   typename F::template Recurrence<T> dual_friction_;
 };

@@ -22,7 +22,7 @@ namespace {
 void UnwrapOffset(const FitProblem& problem, Solution& solution) {
   const std::size_t zero = problem.zero();
   const std::size_t angle = problem.angle();
-  if (problem.model.gravity != Gravity::kSine) return;
+  if (!std::isfinite(problem.model.gravity.top())) return;
   if (problem.data.quantity != Quantity::kAngle) {
     const double turns = std::round((solution.parameters[angle] - problem.start.parameters[angle]) / (2 * kPi));
     if (!problem.solve.fixed[angle]) solution.parameters[angle] -= 2 * kPi * turns;

@@ -236,7 +236,7 @@ Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
 Result<void> CheckSensor(const Recording& recording, const MotionModel& model, const SensorModel& sensor,
                          const FitOptions& options) {
   const bool is_raw_angle = recording.quantity == Quantity::kAngle && !recording.is_calibrated();
-  if (is_raw_angle && model.gravity == Gravity::kSine) return NeedsCalibration(recording, model);
+  if (is_raw_angle && !model.gravity.is_linear()) return NeedsCalibration(recording, model);
   if (Result<void> checked = CheckSensorOptions(sensor, options); !checked) return checked;
   if (recording.quantity != Quantity::kAcceleration) return {};
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";

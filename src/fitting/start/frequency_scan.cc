@@ -92,9 +92,10 @@ class Scan {
 
   /// ∫ dt / PeriodRatio [s]: the phase at 1 rad/s. `amplitude` is in units of the reading.
   ArrayXd WarpedTime(const ArrayXd& amplitude, double frequency) const {
-    if (gravity_ == Gravity::kLinear) return time_;
-    const ArrayXd speed = amplitude.unaryExpr(
-        [&](double reading) { return 1 / PeriodRatio(AngleAmplitude(quantity_, reading, frequency)); });
+    if (gravity_.is_linear()) return time_;
+    const ArrayXd speed = amplitude.unaryExpr([&](double reading) {
+      return 1 / gravity_.PeriodRatio(AngleAmplitude(quantity_, reading, frequency, gravity_));
+    });
     ArrayXd warped = ArrayXd::Zero(time_.size());
     for (Index i = 1; i < time_.size(); ++i) {
       warped[i] = warped[i - 1] + 0.5 * (speed[i] + speed[i - 1]) * (time_[i] - time_[i - 1]);
@@ -160,15 +161,14 @@ TurningPointTable TurnsOf(const Candidate& candidate, Quantity quantity, double 
 
 /// Angle and rate at the first sample from the reading and its slope there, as in EstimateStartValues.
 std::array<double, 2> InitialState(const Candidate& candidate, Quantity quantity, Gravity gravity, double amplitude) {
-  const double ratio = gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0;
+  const double ratio = gravity.PeriodRatio(amplitude);
   const double reading = candidate.coefficients[0];
   const double slope = candidate.coefficients[1] * candidate.frequency / ratio;
   if (quantity == Quantity::kAngle) return {reading, slope};
   const double square = candidate.frequency * candidate.frequency;
   const double torque = -slope / square;  // θ'' = -ω0² g(θ)
-  if (gravity == Gravity::kLinear) return {torque, reading};
   const double peak = candidate.amplitude();
-  return {std::atan2(torque, 1 - (peak * peak - reading * reading) / (2 * square)), reading};
+  return {gravity.AngleAt(torque, (peak * peak - reading * reading) / (2 * square)), reading};
 }
 
 StartValues StartAt(const Candidate& candidate, const Recording& recording, const MotionModel& model, double duration) {

@@ -41,7 +41,7 @@ struct Turns {
   double frequency = 0;  ///< rad/s, as if the swings of the recording were small.
 
   /// ω0, if the largest amplitude is `angle`.
-  double NaturalFrequency(double angle) const { return frequency * PeriodRatio(angle); }
+  double NaturalFrequency(double angle) const { return frequency * SineGravity::PeriodRatio(angle); }
 };
 
 Result<Turns> FindTurnsOf(const Recording& recording) {
@@ -160,7 +160,7 @@ SensorModel SensorOf(const Recording& recording, Gravity gravity) {
     sensor.down = recording.arc->down;
     return sensor;
   }
-  if (gravity == Gravity::kLinear) return sensor;
+  if (gravity.is_linear()) return sensor;
   if (recording.quantity == Quantity::kRate && !recording.is_calibrated()) sensor.kind = SensorKind::kScaledRate;
   if (recording.quantity == Quantity::kPosition) sensor.kind = SensorKind::kCoordinate;
   if (recording.quantity == Quantity::kAcceleration) {

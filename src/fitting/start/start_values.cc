@@ -34,9 +34,7 @@ struct Centred {
 
   double Reading(Index i) const { return recording.value[i] - table.zero.value; }
   double FirstAmplitude() const { return table.Amplitude(table.Runs().front().first); }
-  double Period(double amplitude) const {
-    return 2 * kPi / natural_frequency * (gravity == Gravity::kSine ? PeriodRatio(amplitude) : 1.0);
-  }
+  double Period(double amplitude) const { return 2 * kPi / natural_frequency * gravity.PeriodRatio(amplitude); }
   /// The first sample from `from` on whose sign differs from `sign`; N if there is none.
   Index FirstOnOtherSide(Index from, double sign) const {
     while (from < recording.size() && Reading(from) * sign >= 0) ++from;
@@ -132,10 +130,9 @@ std::pair<double, double> InitialState(const Centred& data) {
   if (data.recording.quantity == Quantity::kAngle) return {reading, slope};
   const double square = data.natural_frequency * data.natural_frequency;
   const double torque = -slope / square;  // θ'' = -ω0² g(θ)
-  if (data.gravity == Gravity::kLinear) return {torque, reading};
   const double peak = data.FirstAmplitude();
-  const double cosine = 1 - (peak * peak - reading * reading) / (2 * square);  // from the kinetic energy at the bottom
-  return {std::atan2(torque, cosine), reading};
+  const double lost = (peak * peak - reading * reading) / (2 * square);  // kinetic energy lost since the bottom
+  return {data.gravity.AngleAt(torque, lost), reading};
 }
 
 }  // namespace

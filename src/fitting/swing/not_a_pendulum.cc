@@ -66,9 +66,10 @@ std::optional<std::string> IsLinear(const Recording& recording, const FitReport&
   if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
   constexpr double kNearTop = 3.1;
   return "the period does not depend on the amplitude as a pendulum's does, which is " +
-         Percent(PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " + NumberText(amplitude, 3) +
-         " rad: a linear oscillator leaves " + NumberText(linear->statistics.rms_residual, 3) +
-         " rad (rms), a pendulum " + NumberText(left, 3) + " rad; --model linear describes the former";
+         Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
+         NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
+         NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " + NumberText(left, 3) +
+         " rad; --model linear describes the former";
 }
 
 /// A frequency and its share of the residuals.
@@ -125,7 +126,7 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
 
 std::optional<std::string> LinearOscillatorReason(const Recording& recording, const FitReport& report,
                                                   const std::stop_token& stop) {
-  if (report.termination == Termination::kFailed || report.model.gravity == Gravity::kLinear) return std::nullopt;
+  if (report.termination == Termination::kFailed || report.model.gravity.is_linear()) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
   return richest ? IsLinear(some, *richest, stop) : std::nullopt;
