@@ -25,7 +25,7 @@ class Tracer {
         values_(Values(pendulum)),
         options_(options),
         order_(OrderForTolerance(options.tolerance)),
-        longest_step_(0.5 * kPi * std::sqrt(values_.inertia)),
+        longest_step_(0.5 * kPi * std::sqrt(values_.inertia / LargestStiffness(values_))),
         visit_(visit) {}
 
   TraceSummary Run(const Start<T>& start) {
@@ -53,7 +53,7 @@ class Tracer {
 
   TraceSummary RunGeneric(const Start<T>& start) {
     Expander expander(pendulum_, segment_);
-    State<T> state{T(start.time), start.angle, start.rate};
+    StateOf<F, T> state{T(start.time), start.angle, start.rate};
     if (start.kind == StartKind::kRelease && start.time > options_.begin)
       VisitRest(options_.begin, start.time, start.angle);
     double direction = Direction(state);
@@ -69,12 +69,27 @@ class Tracer {
     return summary_;
   }
 
-  double Direction(const State<T>& state) const {
-    return DirectionOfMotion(values_, Value(state.angle), Value(state.rate));
+  double Direction(const StateOf<F, T>& state) const {
+    if constexpr (FrictionWithState<F>) {
+      if (Value(state.rate) != 0) return std::copysign(1.0, Value(state.rate));
+      const double torque = values_.gravity.Torque(Value(state.angle)) + FrictionAtReversal(0, state);
+      return torque > 0 ? -1.0 : torque < 0 ? 1.0 : 0.0;
+    } else {
+      return DirectionOfMotion(values_, Value(state.angle), Value(state.rate));
+    }
+  }
+
+  /// The friction torque at a reversal that ends motion in a direction, in units of G.
+  double FrictionAtReversal([[maybe_unused]] double direction, [[maybe_unused]] const StateOf<F, T>& state) const {
+    if constexpr (FrictionWithState<F>) {
+      return F::TorqueAt(Values(state.friction), values_.friction.data());
+    } else {
+      return F::Torque(0.0, direction, values_.friction.data());
+    }
   }
 
   /// Moves `state` to the next reversal or to the end. Returns false if the trial cannot be traced.
-  bool Swing(double direction, State<T>& state, Expander& expander) {
+  bool Swing(double direction, StateOf<F, T>& state, Expander& expander) {
     segment_.order = order_;
     const RateSeries<T>& rate = expander.rate;
     while (Value(state.time) < options_.end) {
@@ -87,11 +102,12 @@ class Tracer {
       const double end_rate = EvaluateSeries(rate.value, order_ - 1, step);
       const double root = FirstReversal(rate.value, order_ - 1, direction, step, end_rate);
       const double length = root > 0 ? root : step;
-      State<T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
+      StateOf<F, T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
       if constexpr (DualNumber<T>) {
         next.angle.v = EvaluateSeries(segment_.partials, order_, length);
         next.rate.v = EvaluatePartials(rate.dual, order_ - 1, length);
       }
+      if constexpr (FrictionWithState<F>) next.friction = expander.expansion.FrictionStatesAt(length);
       VisitSwing(state.time, length);
       state = next;
       if (root > 0) {
@@ -102,9 +118,9 @@ class Tracer {
     return true;
   }
 
-  void Reverse(double direction, State<T>& state) {
+  void Reverse(double direction, StateOf<F, T>& state) {
     const double gravity = values_.gravity.Torque(Value(state.angle));
-    const double torque = gravity + F::Torque(0.0, direction, values_.friction.data());
+    const double torque = gravity + FrictionAtReversal(direction, state);
     state = StateAtReversal(state, -torque / values_.inertia);
     RecordReversal(gravity);
   }
@@ -117,9 +133,10 @@ class Tracer {
   }
 
   /// Counts a reversal. The margin is the difference between gravity and the friction that could hold the pendulum
-  /// there.
+  /// there. Friction with states holds nothing.
   void RecordReversal(double gravity) {
     ++summary_.reversals;
+    if constexpr (FrictionWithState<F>) return;
     const double direction = gravity > 0 ? -1.0 : 1.0;
     const double holding = direction * F::Torque(0.0, direction, values_.friction.data());
     summary_.smallest_reversal_margin =
@@ -128,7 +145,7 @@ class Tracer {
 
   /// Rest after a stop. The partials of the angle need no correction for the instant of the stop, because the rate
   /// there is 0.
-  void RestFrom(const State<T>& state) {
+  void RestFrom(const StateOf<F, T>& state) {
     if (Value(state.time) < options_.end) VisitRest(Value(state.time), options_.end, state.angle);
   }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -24,13 +25,24 @@ struct Pendulum {
   std::array<T, kFrictionParameters<F>> friction;
 };
 
-/// The state at one instant. With a dual T the partial derivatives of angle and rate are taken at a fixed time *since*
-/// this instant. The partials of `time` are those of the instant itself, which depends on the parameters after a
-/// reversal.
-template <typename T>
+/// The state at one instant, with K states of the friction law. With a dual T the partial derivatives of angle, rate
+/// and friction states are taken at a fixed time *since* this instant. The partials of `time` are those of the instant
+/// itself, which depends on the parameters after a reversal.
+template <typename T, int K = 0>
 struct State {
   T time, angle, rate;  ///< s, rad, rad/s
+  std::array<T, K> friction{};
 };
+
+/// Laws without a state have none to copy.
+template <typename T>
+struct State<T, 0> {
+  T time, angle, rate;  ///< s, rad, rad/s
+};
+
+/// The state of a pendulum with friction law F.
+template <FrictionModel F, typename T>
+using StateOf = State<T, kFrictionStates<F>>;
 
 /// A piece of the trajectory: θ(t) = Σ angle[n] (t - start)^n for start <= t <= end, n = 0..order; order 0 is rest.
 /// Coefficients are in rad s⁻ⁿ. With a dual T `partials` are their derivatives at a fixed time since `start`; `start`
@@ -113,13 +125,25 @@ inline int OrderForTolerance(double tolerance) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - 0.72 * std::log(tolerance))), 8, kMaxOrder);
 }
 
+/// K numbers without their derivatives.
+template <typename T, std::size_t K>
+std::array<double, K> Values(const std::array<T, K>& numbers) {
+  std::array<double, K> values;
+  std::ranges::transform(numbers, values.begin(), [](const T& x) { return Value(x); });
+  return values;
+}
+
 /// The values of a pendulum's parameters, without derivatives.
 template <FrictionModel F, typename T>
 Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
-  Pendulum<F, double> values{pendulum.gravity, Value(pendulum.inertia), {}};
-  std::transform(pendulum.friction.begin(), pendulum.friction.end(), values.friction.begin(),
-                 [](const T& p) { return Value(p); });
-  return values;
+  return {pendulum.gravity, Value(pendulum.inertia), Values(pendulum.friction)};
+}
+
+/// The largest slope of the torque by the angle, in units of G: gravity's is 1.
+template <FrictionModel F>
+double LargestStiffness(const Pendulum<F, double>& pendulum) {
+  if constexpr (FrictionWithState<F>) return 1 + F::Stiffness(pendulum.friction.data());
+  return 1;
 }
 
 /// Direction of the motion that follows a state: ±1, or 0 if static friction holds the pendulum (MODEL.md eq. (2.9)).
@@ -184,10 +208,12 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
 
 /// The state at a reversal, computed from the state at the same instant, whose rate is 0 except for rounding. The rate
 /// and its derivatives become 0, and the derivative of the instant is -ω_p / α (implicit function theorem, MODEL.md eq.
-/// (4.5)).
-template <typename T>
-State<T> StateAtReversal(const State<T>& state, double acceleration) {
-  State<T> reversal{state.time, state.angle, T(0.0)};
+/// (4.5)). Angle and friction states change at no rate there, so the shift of the instant does not change their
+/// derivatives.
+template <typename T, int K>
+State<T, K> StateAtReversal(const State<T, K>& state, double acceleration) {
+  State<T, K> reversal = state;
+  reversal.rate = T(0.0);
   if constexpr (DualNumber<T>) reversal.time.v -= (1 / acceleration) * state.rate.v;
   return reversal;
 }

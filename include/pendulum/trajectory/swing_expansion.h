@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <utility>
 
@@ -26,8 +27,12 @@ class SwingExpansion {
 
   /// Coefficients 0..angle.order of the angle and 0..angle.order - 1 of the rate, for one direction of motion from a
   /// state (MODEL.md eq. (4.1)). With a dual T also their partial derivatives.
-  void Expand(double direction, const State<T>& from) {
+  void Expand(double direction, const StateOf<F, T>& from) {
     direction_ = direction;
+    if constexpr (FrictionWithState<F>) {
+      friction_.Begin(Values(from.friction));
+      dual_friction_.Begin(from.friction);
+    }
     angle_.angle[0] = Value(from.angle);
     rate_.value[0] = Value(from.rate);
     if constexpr (DualNumber<T>) {
@@ -35,6 +40,15 @@ class SwingExpansion {
       rate_.dual[0] = from.rate;
     }
     pendulum_.gravity.Visit([this]<typename L>() { FindAll<L>(); });
+  }
+
+  /// The friction states `tau` s after the begin of the expanded swing. Their series ends one order below the angle's.
+  std::array<T, kFrictionStates<F>> FrictionStatesAt(double tau) const requires FrictionWithState<F> {
+    if constexpr (DualNumber<T>) {
+      return dual_friction_.StatesAt(angle_.order - 1, tau);
+    } else {
+      return friction_.StatesAt(angle_.order - 1, tau);
+    }
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -24,9 +25,9 @@ namespace pendulum {
 /// Invariants: the law is odd, T(-ω, -s) = -T(ω, s), except that parameters of either sign change sign too. It never
 /// adds energy: T(ω) ω >= 0 for parameters within their bounds. If all torques are 0, there is no friction.
 ///
-/// Two members are optional. kOrdered names a parameter that is never below another. kRateScales is for a law whose
+/// Some members are optional. kOrdered names a parameter that is never below another. kRateScales is for a law whose
 /// last parameter is a rate in which the torque is not linear: it holds the multiples of the largest rate at which a
-/// search starts.
+/// search starts. kStates is for a law whose torque depends on the motion so far, see FrictionWithState.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
@@ -52,6 +53,37 @@ concept HasRateScale = requires {
 /// The number of parameters of a friction law, at compile time.
 template <FrictionModel F>
 inline constexpr int kFrictionParameters = static_cast<int>(F::kParameters.size());
+
+template <typename F>
+concept HasState = requires {
+  { F::kStates } -> std::convertible_to<int>;
+};
+
+/// The number of internal states of a friction law, such as the deflection of bristles; 0 for laws of the rate alone.
+template <FrictionModel F>
+inline constexpr int kFrictionStates = [] {
+  if constexpr (HasState<F>) return F::kStates;
+  return 0;
+}();
+
+/// A friction law with states z that obey z' = ω h(z, ω), as those of Dahl, and Canudas de Wit et al. (LuGre), IEEE
+/// Trans. Automatic Control 40:419, 1995. It gives some torque at any z, so nothing holds the pendulum: it oscillates
+/// on the bristles until the motion is below any resolution. The states and their time derivatives do not jump at a
+/// reversal. Torque(ω, s, p) is the torque in steady sliding, which closed forms use.
+///
+/// - TorqueAt(z, p): the torque at a reversal, in the direction of positive angles.
+/// - Stiffness(p): the largest slope of the torque by the angle, which limits the duration of a half swing.
+/// - Recurrence::Begin(z) begins a swing with these states. Call n of the recurrence also finds coefficient n + 1 of
+///   the states. Recurrence::StatesAt(order, τ) gives them τ after the begin.
+template <typename F>
+concept FrictionWithState = FrictionModel<F> && HasState<F> &&
+    requires(double tau, const double* p, std::array<double, F::kStates> z,
+             typename F::template Recurrence<double> recurrence) {
+  { F::TorqueAt(z, p) } -> std::same_as<double>;
+  { F::Stiffness(p) } -> std::same_as<double>;
+  recurrence.Begin(z);
+  { recurrence.StatesAt(0, tau) } -> std::same_as<std::array<double, F::kStates>>;
+};
 
 /// A closed list of friction laws. Only these can be chosen by name.
 template <FrictionModel... Fs>
