@@ -110,6 +110,7 @@ Json ModelJson(const MotionModel& model) {
   return {{"name", model.name},
           {"label", label},
           {"about", about},
+          {"gravity", model.gravity.name()},
           {"equation", SymbolicEquation(model)},
           {"nested_in", std::move(nested_in)},
           {"parameters", std::move(parameters)}};

@@ -16,6 +16,7 @@
 #include "pendulum/acquisition/logger.h"
 #include "pendulum/acquisition/serial_port.h"
 #include "pendulum/base/format.h"
+#include "pendulum/model/motion_model.h"
 #include "pendulum/report/text.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
@@ -180,7 +181,7 @@ Result<void> SaveRecording(const RecordPendulumOptions& options, const RecordedR
 /// Checks before the swing whether a requested fit lacks a calibration to angles.
 Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
                              const pendulum_logger::Info& info) {
-  const auto needs_angle = [](const std::string& model) { return model != "linear"; };
+  const auto needs_angle = [](const std::string& model) { return !FindMotionModel(model)->gravity.is_linear(); };
   if (!options.fit || given || info.has_calibration != 0) return {};
   if (std::ranges::none_of(options.fit->models, needs_angle)) return {};
   return Error(StatusCode::kDataLoss,

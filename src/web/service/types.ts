@@ -91,6 +91,7 @@ export interface ModelInfo {
   name: string;
   label: string;
   about: string;
+  gravity: string;
   equation: string;
 }
 

@@ -41,7 +41,8 @@ export class ModelForm {
 
   /** Ticks the models of a fit. */
   fill(list: string): void {
-    const names = list === 'all' ? this.models.map((model) => model.name) : list.split(',').map((name) => name.trim());
+    const all = this.models.filter((model) => model.gravity === 'sin').map((model) => model.name);
+    const names = list === 'all' ? all : list.split(',').map((name) => name.trim());
     this.chosen = new Set(names);
     this.own = !isDefault(names);
     this.draw();
