@@ -59,13 +59,14 @@ tl::unexpected<Status> Logger::NoAnswer(double seconds) const {
   if (stop_) return Interrupted();
   const std::string waited = " within " + NumberText(seconds, 2) + " s";
   if (bytes_ == 0) {
-    return Error(StatusCode::kDataLoss, "nothing on " + port_.path() + " answers" + waited +
-                                            "; is firmware/pendulum_logger on the board, and this its port?");
+    return Error(StatusCode::kDataLoss,
+                 "no logger answers on " + port_.path() + waited +
+                     "; check that firmware/pendulum_logger is on the board and that this is its port");
   }
-  return Error(StatusCode::kDataLoss, "what comes from " + port_.path() + " is no pendulum_logger's (" +
+  return Error(StatusCode::kDataLoss, "the device on " + port_.path() + " is not a pendulum_logger (" +
                                           std::to_string(bytes_) + " bytes" + waited +
-                                          ", no answer among them); is the sketch firmware/pendulum_logger on the "
-                                          "board, with the baud rate that --baud says?");
+                                          ", but no answer); check that the sketch firmware/pendulum_logger is on the "
+                                          "board, with the baud rate of --baud");
 }
 
 /// Sends commands, and repeats them until `pick` accepts a message as the answer. `pick` returns an optional;
@@ -104,7 +105,7 @@ Result<wire::Info> Logger::Connect(double timeout_seconds) {
 tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
   return Error(StatusCode::kDataLoss,
                "the logger on " + port_.path() + " speaks version " + std::to_string(other.version) +
-                   " of the protocol, and this record_pendulum version " + std::to_string(wire::kProtocol) +
+                   " of the protocol, but this record_pendulum speaks version " + std::to_string(wire::kProtocol) +
                    "; put the firmware/pendulum_logger of the same release on the board");
 }
 
@@ -112,7 +113,7 @@ tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
 Result<wire::Info> Logger::Checked(const wire::Info& info) const {
   const auto differs = [&](const std::string& what, std::uint32_t its, std::uint32_t ours) {
     return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " has " + std::to_string(its) + " " + what +
-                                            ", and this record_pendulum reads " + std::to_string(ours) +
+                                            ", but this record_pendulum reads " + std::to_string(ours) +
                                             "; put the firmware/pendulum_logger of the same release on the board");
   };
   if (info.tick_hz != wire::kTickHz) return differs("ticks a second", info.tick_hz, wire::kTickHz);
@@ -123,7 +124,7 @@ Result<wire::Info> Logger::Checked(const wire::Info& info) const {
 /// The error for a logger that answered before but does not answer now.
 tl::unexpected<Status> Logger::NoAnswerTo(std::uint8_t kind) const {
   if (stop_) return Interrupted();
-  return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " said what it is, and now does not answer '" +
+  return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " answered before, but does not answer '" +
                                           static_cast<char>(kind) + "' within " +
                                           NumberText(kTries * kRepeatSeconds, 2) +
                                           " s; unplug the board, plug it in and try again");
@@ -148,7 +149,7 @@ Result<wire::Info> Logger::StoreCalibration(const wire::StraightLine& line) {
   auto info = Connect();
   if (info && (info->has_calibration == 0 || !AreEqual(info->calibration, line))) {
     return Error(StatusCode::kDataLoss,
-                 "the logger does not give back the calibration that was stored; its EEPROM may be worn out");
+                 "the logger does not return the calibration that was stored; its EEPROM may be worn out");
   }
   return info;
 }

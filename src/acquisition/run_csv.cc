@@ -46,10 +46,10 @@ std::string RunHead(const RunDescription& description, const SamplingRate& rate)
   head += Line("range: 0," + std::to_string(kFullScaleCounts));
   head += ClockLines(description.clock);
   if (const auto& losses = description.losses) {
-    if (!losses->is_end_known) head += Line("the logger's end of the run did not arrive");
+    if (!losses->is_end_known) head += Line("the logger's message about the end of the run did not arrive");
     head += Line("lost_samples: " + std::to_string(losses->samples));
   } else {
-    head += Line("part of a run: what was lost of it is not known");
+    head += Line("part of a run: the number of lost samples is not known");
   }
   if (description.calibration) {
     head += Line("calibration: " + JsonText(CalibrationJson(*description.calibration)));
@@ -80,12 +80,12 @@ std::optional<Calibration> StoredCalibration(const pendulum_logger::Info& info) 
 Result<pendulum_logger::StraightLine> StraightLineOf(const Calibration& calibration) {
   if (calibration.input != "counts") {
     return Error(StatusCode::kInvalidArgument,
-                 "the calibration is one of " + calibration.input + ", and a logger gives counts");
+                 "the calibration is for " + calibration.input + ", but a logger sends counts");
   }
   if (calibration.coefficients.size() != 2) {
     return Error(StatusCode::kInvalidArgument,
-                 "the calibration is a curve, and a logger keeps straight lines only; "
-                 "give it to record_pendulum --calibration at every recording");
+                 "the calibration is a curve, but a logger stores only straight lines; give it to record_pendulum "
+                 "--calibration for every recording");
   }
   const double deg = calibration.RadFromUnit() / kRadFromDeg;
   const auto single = [](double value) { return static_cast<float>(value); };

@@ -55,7 +55,7 @@ PortName Described(const fs::path& device, const std::string& path) {
 }
 
 tl::unexpected<Status> Lost(const std::string& path, const std::string& why) {
-  return Error(StatusCode::kDataLoss, path + " is gone (" + why + "): was the cable pulled?");
+  return Error(StatusCode::kDataLoss, path + " was disconnected (" + why + "); check the cable");
 }
 
 }  // namespace
@@ -77,15 +77,13 @@ Result<SerialPort> SerialPort::Open(const std::string& path, unsigned baud) {
   if (descriptor < 0) {
     const int error = errno;
     if (error == ENOENT || error == ENODEV || error == ENXIO) {
-      return Error(StatusCode::kNotFound,
-                   "there is no port " + path + "; record_pendulum --list shows those there are");
+      return Error(StatusCode::kNotFound, "there is no port " + path + "; record_pendulum --list shows the ports");
     }
     if (error == EBUSY) {
       return Error(StatusCode::kTryAgain, path + " is in use by another program; close the Serial Monitor");
     }
-    const std::string remedy = error == EACCES ? "; ports belong to the group dialout: sudo adduser $USER dialout, and "
-                                                 "log in again"
-                                               : "";
+    const std::string remedy =
+        error == EACCES ? "; ports belong to the group dialout: sudo adduser $USER dialout, and log in again" : "";
     return Error(StatusCode::kDataLoss, "cannot open " + path + ": " + SystemErrorText(error) + remedy);
   }
   SerialPort port(descriptor, path);
@@ -103,7 +101,7 @@ SerialPort::~SerialPort() {
 Result<void> SerialPort::Configure(unsigned baud) {
   termios2 settings{};
   if (::ioctl(descriptor_, TCGETS2, &settings) != 0) {
-    return Error(StatusCode::kDataLoss, path_ + " is no serial port; record_pendulum --list shows those there are");
+    return Error(StatusCode::kDataLoss, path_ + " is not a serial port; record_pendulum --list shows the ports");
   }
   // TIOCEXCL prevents other programs from opening the port, except root's. The lock is for programs that check it.
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
@@ -144,7 +142,7 @@ Result<void> SerialPort::Write(std::span<const std::uint8_t> bytes) {
     const int ready = ::poll(&waiting, 1, kWriteMilliseconds);
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0)
-      return Error(StatusCode::kDataLoss, path_ + " takes no bytes; unplug the board and plug it in again");
+      return Error(StatusCode::kDataLoss, path_ + " accepts no data; unplug the board and plug it in again");
     const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
     if (count < 0) return Lost(path_, SystemErrorText(errno));

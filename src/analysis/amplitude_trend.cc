@@ -256,12 +256,12 @@ std::string CompareWindows(const Recording& used, const Parts& parts, const std:
   if (!fit.parameters[0].fixed) windows.tested.push_back(0);
   const ParameterEstimate* const friction = BestFriction(fit);
   if (friction != nullptr) windows.tested.push_back(friction - fit.parameters.data());
-  if (windows.tested.empty()) return "inertia and friction are held: there is no trend to look for";
+  if (windows.tested.empty()) return "inertia and friction are fixed, so there is no trend to test";
   if (std::string reason = FitWindows(parts, ends, fit, windows); !reason.empty()) return reason;
-  if (!LinearizeWindows(used, fit, options, parts, windows)) return "a window does not tell inertia and friction";
+  if (!LinearizeWindows(used, fit, options, parts, windows)) return "a window does not determine inertia and friction";
   const std::optional<LinearFit> whole =
       LinearizeFit(used, fit, options.rig, windows.terms, options.priors, true, options.stop);
-  if (!whole) return "the errors of the whole fit cannot be followed";
+  if (!whole) return "the errors of the whole fit cannot be computed";
   AddTrends(used, fit, *whole, windows, parts, result);
   return "";
 }

@@ -57,13 +57,13 @@ VectorXd LinearValues(const LogDecrement& linear) {
 FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
   const LogDecrement& linear = *forms.linear;
   FormulaGroup group;
-  const std::string small = "finite amplitude, where the formula takes small angles";
+  const std::string small = "finite amplitude, while the formula assumes small angles";
   group.rows = {{"damping_ratio_log_decrement", "log decrement", std::string(kDampingRatio), small},
                 {"inertia_small_angle", "damped period and log decrement, small angles", "inertia", small},
                 {"viscous_log_decrement", "log decrement", "viscous", small},
                 {"inertia_elliptic_period", "the same period corrected by the elliptic integral", "inertia",
-                 "an amplitude that falls within each half swing, where the elliptic integral takes its mean"}};
-  group.assumption = "the formula's friction, which is viscous alone";
+                 "the decay of the amplitude within each half swing, for which the elliptic integral uses the mean"}};
+  group.assumption = "the formula's friction, which is only viscous";
   if (forms.gravity.is_linear()) group.rows.pop_back();  // nothing to correct
   group.value = LinearValues(linear);
   group.error = Eigen::Vector4d(linear.damping_ratio.std_error, linear.inertia.std_error, linear.viscous.std_error,
@@ -270,10 +270,10 @@ class Checker {
   std::string DescribeMisfit() const {
     constexpr double kFarMore = 3;  // than the standard errors of the turning points
     if (!forms_.wrong_law.empty()) return "the friction law (" + forms_.wrong_law + ")";
-    std::string misfit = "what the recording has beyond the fitted motion";
+    std::string misfit = "features of the recording that the fitted motion lacks";
     const double scatter = forms_.decrement ? forms_.decrement->chi_square / forms_.decrement->freedom : 0;
     if (scatter < kFarMore) return misfit;
-    return misfit + " (its turning points follow no law of friction here: chi2/dof " + NumberText(scatter, 3) + ")";
+    return misfit + " (its turning points follow none of the friction laws: chi2/dof " + NumberText(scatter, 3) + ")";
   }
 
   const Recording& used_;
@@ -308,7 +308,7 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
                       ""};
     const std::string percent = Percent(inertia.value / fitted->estimate) + " than the fit's";
     if (!inertia.std_error || !fit_error) {
-      row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to judge that by";
+      row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to compare it with";
     } else {
       SetAgreement(std::hypot(inertia.difference_std_error, *fit_error, clock_error), row);
       if (row.agrees == false) row.why = percent + ", more than the rig's errors allow";
@@ -324,8 +324,8 @@ std::string DescribePointMass(const std::vector<ClosedFormRow>& rows) {
   constexpr double kMaxDifference = 0.01;  // used if the rig gives no standard errors
   const double ratio = row->closed_form / row->fit;
   const bool is_adequate = row->agrees.value_or(std::abs(ratio - 1) < kMaxDifference);
-  return std::string("; a point mass would ") + (is_adequate ? "do" : "not do") + ": its inertia is " + Percent(ratio) +
-         " than the fit's";
+  return std::string("; a point mass is ") + (is_adequate ? "" : "not ") + "an adequate model: its inertia is " +
+         Percent(ratio) + " than the fit's";
 }
 
 double Rms(const VectorXd& measured, const VectorXd& modelled) {
@@ -351,23 +351,23 @@ TextbookOverlay MakeOverlay(const Recording& used, const LogDecrement& linear, c
 /// absorb the longer period of large swings.
 std::string DescribeOverlay(const TextbookOverlay& overlay, const LogDecrement& linear, const std::string& unit) {
   const auto rms = [&](double value) { return NumberText(value, 2) + " " + unit; };
-  std::string text = "With the linear formulas' inertia and damping the linear model leaves " +
-                     rms(overlay.linear_rms) + " rms, the nonlinear one " + rms(overlay.nonlinear_rms) + ", the fit " +
-                     rms(overlay.fitted_rms);
+  std::string text = "With inertia and damping from the linear formulas the residuals of the linear model are " +
+                     rms(overlay.linear_rms) + " rms, those of the nonlinear one " + rms(overlay.nonlinear_rms) +
+                     ", those of the fit " + rms(overlay.fitted_rms);
   constexpr double kClearly = 1.1;
   if (!(overlay.nonlinear_rms > kClearly * overlay.linear_rms)) return text;
   const double excess = linear.inertia.value / linear.corrected_inertia.value - 1;
   return text +
-         ": the linear model looks better because its parameters were found with it. Its inertia holds the longer "
+         ": the linear model looks better because its parameters were found with it. Its inertia contains the longer "
          "period of large swings" +
          (excess > 0 ? " (" + NumberText(100 * excess, 2) + " % of it)" : "") +
-         ", which the nonlinear model adds once more";
+         ", which the nonlinear model adds a second time";
 }
 
 std::string Summarize(const std::vector<ClosedFormRow>& rows, const std::string& wrong_law) {
   const auto judged = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees.has_value(); });
   const auto agree = std::ranges::count_if(rows, [](const ClosedFormRow& row) { return row.agrees == true; });
-  if (judged == 0) return "there are no errors to judge the closed forms by";
+  if (judged == 0) return "there are no errors to compare the closed forms with";
   return std::to_string(agree) + " of " + std::to_string(judged) + " closed forms agree with the fit within " +
          NumberText(kAgrees) + " standard deviations of the difference" + DescribePointMass(rows) +
          (wrong_law.empty() ? "" : "; wrong friction law: " + wrong_law);

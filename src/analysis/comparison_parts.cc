@@ -47,7 +47,7 @@ std::string NoLikelihoodReason(const FitReport& best, const std::string& autocor
                           : IsNormal(best)                           ? "noise below half a count"
                           : best.noise.family == NoiseFamily::kEdges ? "rows at uneven times"
                                                                      : "a robust loss";
-  return residuals + "remember (" + autocorrelation + "), and no likelihood is known for that with " + why;
+  return residuals + "are autocorrelated (" + autocorrelation + "), and with " + why + " their likelihood is not known";
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best) {
     case Likelihood::kIndependent:
       return "likelihood of independent " + std::string(NoiseFamilyName(best.noise.family)) + " residuals";
     case Likelihood::kCorrelated:
-      return "Gaussian likelihood of residuals that remember, " + autocorrelation + " as those of " +
+      return "Gaussian likelihood of autocorrelated residuals, " + autocorrelation + " as for " +
              std::string(best.model.name) + ", with the variance of rounding added";
     case Likelihood::kNone: return "none: " + NoLikelihoodReason(best, autocorrelation);
   }

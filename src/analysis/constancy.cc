@@ -81,12 +81,12 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
     if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
     std::optional<UnboundedEstimate> estimate =
         EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), options.rig, options.stop);
-    if (!estimate) return std::string("the ") + name + " half does not tell all parameters";
+    if (!estimate) return std::string("the ") + name + " half does not determine all parameters";
     estimates.push_back(*std::move(estimate));
   }
   CompareEstimates(estimates[0], estimates[1], fit, result);
-  if (result.halves.empty()) return "inertia and friction are held: there is nothing to compare";
-  return result.halves_p ? "" : "the halves' difference has no covariance that could be inverted";
+  if (result.halves.empty()) return "inertia and friction are fixed, so there is nothing to compare";
+  return result.halves_p ? "" : "the covariance of the halves' difference cannot be inverted";
 }
 
 // ---- Words ---------------------------------------------------------------------------------------------------------
@@ -117,11 +117,11 @@ std::string DescribeHalves(const Constancy& result) {
 std::string DescribeTrend(const AmplitudeTrend& trend) {
   const std::string change = trend.span > 0 ? " falls by " : " rises by ";
   const std::string why = trend.name == kInertia.name
-                              ? "the period depends on amplitude in another way than the model's"
-                              : "friction depends on amplitude in another way than the model's, or on time";
+                              ? "the period does not depend on amplitude as in the model"
+                              : "friction does not depend on amplitude as in the model, or depends on time";
   return trend.name + change + NumberText(100 * std::abs(trend.span), 2) +
-         " % from the largest to the smallest swings, by a line in amplitude² (p " + ProbabilityText(trend.p) +
-         "): " + why;
+         " % from the largest to the smallest swings, in a straight line over amplitude² (p " +
+         ProbabilityText(trend.p) + "): " + why;
 }
 
 std::string Describe(const Constancy& result) {

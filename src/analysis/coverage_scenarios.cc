@@ -228,14 +228,14 @@ std::vector<CoverageScenario> CoverageScenarios() {
                       Quantity::kPosition, SensorKind::kCoordinate, {0, 0.64, 0.4}, 0.0005),
       WithOtherSensor("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc,
                       {0, 0.64, 0.12, 0.4}, 0.0005),
-      OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, stamps of 0.13 ms"),
-      OnFewTicks("few_ticks", "the same of a small swing over some ten counts"),
+      OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, time stamps of 0.13 ms"),
+      OnFewTicks("few_ticks", "the same with a small swing over some ten counts"),
       WithLag(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
       WithoutLag(OnTicks("prompt_ticks", "the encoder of ticks, known to have no lag")),
-      WithoutLag(OnFewTicks("few_prompt_ticks", "that of few_ticks, likewise")),
-      SampledEvenly(
-          OnTicks("ticks_1khz", "the encoder of ticks read at 1 kHz: errors to compare, intervals may be any")),
-      SampledEvenly(OnFewTicks("few_ticks_1khz", "that of few_ticks read at 1 kHz; likewise")),
+      WithoutLag(OnFewTicks("few_prompt_ticks", "the encoder of few_ticks, also known to have no lag")),
+      SampledEvenly(OnTicks("ticks_1khz",
+                            "the encoder of ticks read at 1 kHz: for comparing errors, without a rule for intervals")),
+      SampledEvenly(OnFewTicks("few_ticks_1khz", "the encoder of few_ticks read at 1 kHz, also for comparing errors")),
   };
 }
 

@@ -90,9 +90,9 @@ std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const
   const bool noise = std::abs(causes.recording) < kNoise * std_dev;
   std::vector<std::pair<double, std::string>> parts = {
       {causes.formula, names.formula},
-      {causes.drift, "the drift of the zero, which the formula does not know"},
+      {causes.drift, "the drift of the zero, which the formula ignores"},
       {causes.amplitude, names.amplitude},
-      {causes.sampling, "sampling, too sparse about the turning points"},
+      {causes.sampling, "too few samples around the turning points"},
       {causes.resolution, "the sensor's resolution"},
       {causes.recording, noise ? "noise" : names.misfit}};
   std::ranges::stable_sort(parts, [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });

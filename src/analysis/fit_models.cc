@@ -153,7 +153,7 @@ void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& mo
     const std::string model(fit.model.name);
     for (const std::string& name : ForModel(options, model, models).ignored) {
       std::string message = "model ";
-      message.append(model).append(" has no ").append(name).append("; what was said of it is left out there");
+      message.append(model).append(" has no ").append(name).append("; its options are ignored for this model");
       fit.warnings.push_back({"ignored_parameter", std::move(message)});
     }
   }

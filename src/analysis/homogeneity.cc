@@ -329,10 +329,10 @@ const FitReport& FirstWithParameters(const std::vector<RunAlone>& runs) {
 std::string NotTestedReason(const FitReport& example, const std::vector<std::string>& shared,
                             const std::vector<std::string>& free) {
   if (std::ranges::none_of(shared, [&](const std::string& name) { return example.Find(name) != nullptr; })) {
-    return "the model has none of what is shared";
+    return "the model has none of the shared parameters";
   }
-  if (free.empty()) return "all that is shared is fixed: there is nothing to compare";
-  return "fewer than two recordings tell all shared parameters alone";
+  if (free.empty()) return "all shared parameters are fixed, so there is nothing to compare";
+  return "fewer than two recordings determine all shared parameters on their own";
 }
 
 /// Tests all shared parameters together.

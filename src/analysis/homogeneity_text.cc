@@ -37,7 +37,7 @@ std::string DescribeExceptions(const Homogeneity& result) {
   std::string text;
   for (const SharedParameter& parameter : result.parameters) {
     if (Differs(parameter))
-      text += "; by itself " + parameter.name + " does not agree (p " + ProbabilityText(parameter.p) + ")";
+      text += "; on its own, " + parameter.name + " does not agree (p " + ProbabilityText(parameter.p) + ")";
   }
   return text;
 }
@@ -106,9 +106,10 @@ std::string DescribeAmplitude(const Homogeneity& result) {
     text +=
         (text.empty() ? "" : "; ") + dependence.name + (dependence.span > 0 ? " rises by " : " falls by ") +
         PercentText(dependence.span) +
-        " from the recording of the smallest swings to that of the largest, as a slope " +
-        "with amplitude squared within and between recordings would have it (p " + ProbabilityText(dependence.p) + ")" +
-        (dependence.rest_p < Homogeneity::kDisagree ? ", which is not all that differs" : ", and nothing else differs");
+        " from the recording with the smallest swings to that with the largest, as a linear dependence on amplitude "
+        "squared within and between recordings predicts (p " +
+        ProbabilityText(dependence.p) + ")" +
+        (dependence.rest_p < Homogeneity::kDisagree ? ", but other differences remain" : ", and nothing else differs");
   }
   return text.empty() ? text : text + "; another law may explain that (--model all)";
 }
@@ -131,10 +132,9 @@ std::string DescribeScatter(const Homogeneity& result, bool recommends_law) {
   return "between recordings " + most->name + " scatters by " +
          (scatter.mean != 0 ? PercentText(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
          ", beyond its errors" +
-         (recommends_law
-              ? ""
-              : "; another law may explain that (--model all), and if not, the rig's constants and their errors are "
-                "the random-effects means");
+         (recommends_law ? ""
+                         : "; another law may explain that (--model all); if not, the random-effects means and their "
+                           "errors are the rig's constants");
 }
 
 bool LacksFit(const std::vector<RunAlone>& runs) {
@@ -146,21 +146,21 @@ bool LacksFit(const std::vector<RunAlone>& runs) {
 std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<RunAlone>& runs) {
   const std::string test = " (chi-square " + NumberText(result.statistic, 3) + ", " + DegreesOfFreedomText(result.dof) +
                            ", p " + ProbabilityText(result.p.value_or(0)) + ")";
-  const std::string misfit = "; the model does not describe all of each recording";
+  const std::string misfit = "; the model does not describe each recording completely";
   const bool lacks_fit = LacksFit(runs);
   if (result.agrees()) {
     return "the recordings agree on " + NamesOf(result, IsAnyParameter) + test + DescribeExceptions(result) +
-           (lacks_fit ? misfit + ", and the errors are as wide as that makes them" : "");
+           (lacks_fit ? misfit + ", which makes the errors larger" : "");
   }
   const std::string text = "the recordings do not agree on " + DifferingNames(result) + test + "; ";
   const std::string end = lacks_fit ? misfit +
-                                          ", so that the errors compared here may be too small, and another law may "
-                                          "explain the differences (--model all)"
+                                          ", so the errors compared here may be too small, and another law may explain "
+                                          "the differences (--model all)"
                                     : "";
   if (!result.disagreeing.empty()) return text + DescribeOutliers(result, runs, lacks_fit) + end;
   if (const double share = ScatterOfDifferentRigs(result); share > 0) {
     return text + "inertia differs by " + PercentText(share) +
-           " (standard deviation): these are not recordings of one rig, or not at one length";
+           " (standard deviation): the recordings are of different rigs, or of one rig at different lengths";
   }
   const std::string amplitude = DescribeAmplitude(result);
   if (result.is_amplitude()) return text + amplitude + end;

@@ -78,9 +78,10 @@ void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
                (parameter->unit == "1" ? "" : " " + parameter->unit) + " between " + std::string(estimates.parts);
   }
   if (scatter.empty()) return;
-  fit.warnings.push_back({"not_constant", "not constant over this recording, beyond the errors: " + scatter +
-                                              "; another run may differ by about as much, which the systematic errors "
-                                              "count and standard errors and intervals do not"});
+  fit.warnings.push_back(
+      {"not_constant", "parameters change during this recording by more than their errors: " + scatter +
+                           ". Another run may differ by about as much; the systematic errors include this, standard "
+                           "errors and intervals do not"});
 }
 
 }  // namespace pendulum

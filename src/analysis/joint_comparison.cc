@@ -219,7 +219,8 @@ void SetCorrelatedLikelihood(const ComparedFits& compared, std::size_t m, std::s
     const auto likelihood = AddLikelihood(compared, k, m, best, options, together);
     if (!likelihood) {
       row.judged = false;
-      row.reason = "the residuals of " + run.label + " have no likelihood with the memory of the best model's";
+      row.reason = "the likelihood of the residuals of " + run.label +
+                   " cannot be computed with the autocorrelation of the best model's residuals";
       return;
     }
     sum += likelihood->log_likelihood + PerCount(run.alone.used);
@@ -342,7 +343,7 @@ Comparison CompareJointModels(const JointModels& joint, const FitOptions& option
   comparison.effective_samples = std::max(best->statistics.effective_samples, std::exp(2.0));
   comparison.criterion =
       DescribeLikelihood(comparison.likelihood, RepresentativeRecording(compared, index, comparison.likelihood)) +
-      (compared.is_separate ? ", each recording with parameters of its own, for they do not share them"
+      (compared.is_separate ? ", each recording with its own parameters, because they are not shared"
                             : ", of all recordings");
   SetLikelihoods(compared, index, options, comparison);
   if (how.predict) SetPredictions(compared, options, comparison);

@@ -20,7 +20,8 @@ void SetCorrelatedLikelihood(const FittedModels& fitted, const FitReport& fit, c
   const auto likelihood = data ? MaximizeCorrelatedLikelihood(*data, like, options.stop) : std::nullopt;
   if (!likelihood) {
     row.judged = false;
-    row.reason = "its residuals have no likelihood with the memory of the best model's";
+    row.reason =
+        "the likelihood of its residuals cannot be computed with the autocorrelation of the best model's residuals";
     return;
   }
   row.log_likelihood = likelihood->log_likelihood + PerCount(fitted.used);

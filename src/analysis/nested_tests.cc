@@ -144,7 +144,7 @@ void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::si
       const FitReport null = AtNull(simple, *run.fits[richer], rate, value);
       columns = ColumnsAtNull(run, compared.shared, simple, null, term, options);
       if (!columns) {
-        test.reason = "the motion of the simpler law cannot be traced";
+        test.reason = "the motion with the simpler law cannot be computed";
         return;
       }
       own_shapes.col(g) = columns->term;
@@ -153,7 +153,7 @@ void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::si
     Append(ResidualAfter(columns->own, own_shapes) / SigmaOf(simple), shapes);
   }
   test.p = SupremumTail(nuisance, shapes, test.statistic, options.seed);
-  test.null = "simulated, for " + test.simpler + " has no " + std::string(rate);
+  test.null = "simulated, because " + test.simpler + " has no " + std::string(rate);
 }
 
 /// Whether the user restricted a parameter that the simpler law lacks. The simpler law is then no special case of the
@@ -168,12 +168,12 @@ bool IsRestricted(const Nesting& nesting, const FitOptions& options) {
 void SetProbability(const ComparedRuns& compared, std::size_t simpler, std::size_t richer, const Nesting& nesting,
                     const FitOptions& options, Likelihood likelihood, NestedTest& test) {
   if (test.statistic < -kRounding && nesting.unidentified.empty()) {
-    test.reason = "the richer law's fit is the worse one: its search ended elsewhere";
+    test.reason = "the richer law fits worse, so its search ended in another local minimum";
   } else if (!std::ranges::all_of(nesting.added,
                                   [&](const ParameterInfo& info) { return IsIn(compared.shared, info.name); })) {
-    test.reason = "what is added is not shared: each recording adds its own";
+    test.reason = "the added parameters are not shared: each recording has its own";
   } else if (IsRestricted(nesting, options)) {
-    test.reason = "--fix, --bounds or --prior name what is added";
+    test.reason = "--fix, --bounds or --prior name an added parameter";
   } else if (!nesting.unidentified.empty() && likelihood == Likelihood::kCorrelated) {
     test.reason = "its distribution is simulated for independent residuals only";
   } else if (nesting.unidentified.empty() && nesting.bounded <= 2) {
@@ -184,7 +184,7 @@ void SetProbability(const ComparedRuns& compared, std::size_t simpler, std::size
   } else if (nesting.unidentified.size() == 1 && nesting.bounded == 1 && nesting.free == 0) {
     TestUnidentified(compared, simpler, richer, nesting, options, test);
   } else {
-    test.reason = "more than one parameter has no meaning in the simpler law, or none is at a bound there";
+    test.reason = "in the simpler law more than one parameter has no meaning, or none is at a bound";
   }
 }
 

@@ -175,7 +175,7 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
 Result<Plan> MakePlan(const SyntheticOptions& base) {
   if (base.noise == 0 && base.resolution == 0) {
     return Error(StatusCode::kInvalidArgument,
-                 "noise and resolution are both 0: nothing limits what such a recording tells; give one of them");
+                 "noise and resolution are both 0, so the standard errors would be 0; give one of them");
   }
   const Result<Recording> recording = SimulateRecording(base);
   if (!recording) return tl::unexpected(recording.error());

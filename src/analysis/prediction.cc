@@ -170,8 +170,8 @@ Prediction NoPrediction(const std::string& reason) {
 }
 
 Prediction PredictionOf(const Sums& sums) {
-  if (sums.samples < kMinimumSamples) return NoPrediction("too few readings are there to be predicted");
-  if (!std::isfinite(sums.squares)) return NoPrediction("a fit to the rest runs away");
+  if (sums.samples < kMinimumSamples) return NoPrediction("there are too few readings to predict");
+  if (!std::isfinite(sums.squares)) return NoPrediction("a fit to the rest diverges");
   Prediction prediction;
   const auto samples = static_cast<double>(sums.samples);
   prediction.rms = std::sqrt(sums.squares / samples);

@@ -129,11 +129,12 @@ std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& oth
 /// Describes doubts of the fit about its own law.
 std::string DescribeDoubts(const ComparisonRow& row, const FitReport& fit) {
   if (row.lack_of_fit) {
-    return "; but more than noise is left (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
-           "): something else is missing";
+    return "; but the residuals are more than noise (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
+           "), so the model still lacks something";
   }
   if (fit.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) return "";
-  return "; its residuals remember (" + fit.noise.autocorrelation.Name() + "), which the criterion takes into account";
+  return "; its residuals are autocorrelated (" + fit.noise.autocorrelation.Name() +
+         "), which the criterion takes into account";
 }
 
 }  // namespace
@@ -142,7 +143,7 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   const RankedRows ranked(fits, comparison);
   const std::size_t chosen = ranked.Simplest();
   if (chosen == comparison.rows.size()) {
-    comparison.reason = "none is recommended: there is no criterion";
+    comparison.reason = "no model is recommended, because there is no criterion";
     return;
   }
   const ComparisonRow& row = comparison.rows[chosen];
@@ -151,8 +152,8 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   const std::size_t next = ranked.RunnerUp();
   const std::vector<std::string> undecided = ranked.UndecidedModels(chosen);
   if (!undecided.empty()) {
-    comparison.reason += "the simplest of those that the readings do not tell apart (" + NameList(undecided) +
-                         ", too, within " + NumberText(kWithinBic) + " of the smallest BIC)";
+    comparison.reason += "the simplest of the models that the readings do not distinguish (also " +
+                         NameList(undecided) + ", within " + NumberText(kWithinBic) + " of the smallest BIC)";
   }
   if (next != comparison.rows.size()) {
     const ComparisonRow& other = comparison.rows[next];
@@ -165,9 +166,9 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   if (const std::vector<std::string> refuted = ranked.RefutedModels(chosen); !refuted.empty()) {
     comparison.reason +=
         "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +
-        " a smaller BIC, but what is left is no noise, and the last 40 % is predicted no better, or not at all";
+        " a smaller BIC, but residuals that are not noise, and no better prediction of the last 40 %, or none";
   }
-  if (const std::string other = ranked.ByAicc(); !other.empty()) comparison.reason += "; AICc would take " + other;
+  if (const std::string other = ranked.ByAicc(); !other.empty()) comparison.reason += "; AICc would choose " + other;
   comparison.reason += DescribeDoubts(row, fits[chosen]);
 }
 

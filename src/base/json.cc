@@ -78,7 +78,7 @@ Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std
     Json json = Json::parse(text, see);
     if (watch.exceeds_limits()) {
       return Fault(name, "this has more than " + std::to_string(kMaxJsonKeys) + " keys, or more than " +
-                             std::to_string(kMaxJsonDepth) + " brackets within one another, so it is not a " + what);
+                             std::to_string(kMaxJsonDepth) + " nested brackets, so it is not a " + what);
     }
     if (!json.is_object()) {
       return Fault(name,
@@ -91,7 +91,7 @@ Result<Json> ParseJsonObject(std::string_view text, const std::string& name, std
   } catch (const Json::parse_error& error) {
     return NotJson(text, name, error);
   } catch (const Json::exception&) {  // A number is too large for a double.
-    return Fault(name, Quoted(watch.outermost_key()) + " is beyond what a number can be (about 1e308); correct it");
+    return Fault(name, Quoted(watch.outermost_key()) + " is larger than a number can be (about 1e308); correct it");
   }
 }
 

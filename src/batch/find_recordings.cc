@@ -32,7 +32,7 @@ Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
     entries.push_back(*at);
   }
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory) {
-    return Fault(folder.string(), "this folder cannot be looked into; check its permissions, or name others");
+    return Fault(folder.string(), "this folder cannot be read; check its permissions, or name another");
   }
   std::ranges::sort(entries, {}, [](const fs::directory_entry& entry) { return entry.path().filename(); });
   return entries;
@@ -92,7 +92,7 @@ Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
     auto [folder, parts] = Cut(pattern);
     if (parts.back() == kAnyFolders) parts.emplace_back("*");
     done = Find(folder, parts, found);
-    what = "no file is like this pattern";
+    what = "no file matches this pattern";
   }
   if (!done) return tl::unexpected(done.error());
   std::ranges::sort(found);

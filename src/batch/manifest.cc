@@ -101,24 +101,24 @@ class CsvRows {
   Result<bool> AtEnd() {
     if (!in_quotes()) return false;
     return Fault(name() + ":" + std::to_string(row_.line),
-                 "a field begins with a double quote that is never closed; close it, or write a quote that belongs to "
-                 "the text twice");
+                 "a field begins with a double quote that is never closed; close it, or double a quote that belongs to "
+                 "the text");
   }
 
   Result<bool> TooLong() const {
     return Fault(name() + ":" + std::to_string(row_.line),
-                 "the row that begins here is longer than 16 MiB; is a double quote not closed?");
+                 "the row that begins here is longer than 16 MiB; check for a double quote that is not closed");
   }
 
   /// libcsv would accept a carriage return as a line end.
   Result<bool> CarriageReturn() const {
     return Fault(name() + ":" + std::to_string(lines_.number()),
-                 "a carriage return stands within the line; end lines with LF or CRLF");
+                 "there is a carriage return within the line; end lines with LF or CRLF");
   }
 
   Result<bool> Unreadable() {
     return Fault(name() + ":" + std::to_string(lines_.number()),
-                 "a double quote stands inside a field; put the whole field in quotes and write its own quotes twice");
+                 "there is a double quote inside a field; put the whole field in quotes and double its own quotes");
   }
 
   static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
@@ -158,7 +158,7 @@ class Header {
     const std::string where = file_ + ":" + std::to_string(row.line);
     if (row.fields.size() != names_.size()) {
       return Fault(where, "the row has " + std::to_string(row.fields.size()) + " fields, the header " +
-                              std::to_string(names_.size()) + "; a field with a separator in it stands in quotes");
+                              std::to_string(names_.size()) + "; put a field that contains a separator in quotes");
     }
     ManifestEntry entry;
     entry.position = position;
@@ -175,7 +175,7 @@ class Header {
     if (entry.id.empty()) entry.id = entry.path;
     entry.columns = JsonText(columns);
     if (entry.from && entry.to && *entry.from >= *entry.to) {
-      return Fault(where, "from_s " + NumberText(*entry.from) + " does not lie before to_s " + NumberText(*entry.to));
+      return Fault(where, "from_s " + NumberText(*entry.from) + " is not before to_s " + NumberText(*entry.to));
     }
     return entry;
   }

@@ -126,7 +126,8 @@ Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int
           meta->shard ? "shard " + std::to_string(meta->shard->index) + "/" + std::to_string(meta->shard->count)
                       : "a whole batch";
       return Fault(path.string(), "this is the store of " + is + ", not of shard " + std::to_string(k) + "/" +
-                                      std::to_string(count) + "; give the number it was made with, or another folder");
+                                      std::to_string(count) +
+                                      "; give the number with which it was made, or another folder");
     }
     if (!meta->complete || !store->Check()) missing.push_back(k);
   }
@@ -204,7 +205,7 @@ Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
     const auto meta = MetaOf(path);
     if (first && meta && IsSameBatch(*first, *meta)) continue;
     return Fault(path.string(), "this is a shard of another batch than " + ShardPath(folder, 0).string() +
-                                    " (manifest, options or version differ); run the shards of one batch anew");
+                                    " (manifest, options or version differ); run the shards of one batch again");
   }
   return {};
 }

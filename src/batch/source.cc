@@ -83,7 +83,7 @@ class PackedFile {
     const int version = database_.execAndGet("PRAGMA user_version").getInt();
     if (version == kPackVersion) return {};
     return Fault(name_, "it was packed in form " + std::to_string(version) + ", and this program knows form " +
-                            std::to_string(kPackVersion) + "; pack it anew");
+                            std::to_string(kPackVersion) + "; pack it again");
   }
 
   Result<void> ForEach(const EntrySink& take) {
@@ -119,7 +119,7 @@ class PackedFile {
     const bool texts =
         columns.is_object() && std::ranges::all_of(columns, [](const auto& value) { return value.is_string(); });
     if (texts && !entry.id.empty() && !entry.path.empty()) return {};
-    return Fault(name_, "the entry " + Quoted(entry.id) + " is none of a manifest; pack it anew");
+    return Fault(name_, "the entry " + Quoted(entry.id) + " is not an entry of a manifest; pack it again");
   }
 
   std::string name_;
@@ -149,10 +149,10 @@ Result<void> CheckReplaceable(const fs::path& path) {
   std::error_code unknown;
   const fs::file_type type = fs::status(path, unknown).type();
   if (type == fs::file_type::not_found) return {};
-  if (type != fs::file_type::regular) return CannotWrite(path.string(), "it is no regular file; name one");
+  if (type != fs::file_type::regular) return CannotWrite(path.string(), "it is not a regular file; name one");
   if (IsSqlite(path) && OpenPack(path)) return {};
   return Error(StatusCode::kInvalidArgument,
-               path.string() + ": this file is there and is no packed file, which pack would replace; name another");
+               path.string() + ": this file exists and is not a packed file, and pack would replace it; name another");
 }
 
 /// A packed file in progress.

@@ -24,10 +24,11 @@ inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exc
   switch (error.getErrorCode()) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Error(StatusCode::kTryAgain, name + ": another process has it; try again when that is done");
+      return Error(StatusCode::kTryAgain, name + ": another process uses it; try again when that process is done");
     case SQLITE_NOTADB: return Error(StatusCode::kDataLoss, name + ": this is not an SQLite file; name another");
     case SQLITE_CORRUPT:
-      return Error(StatusCode::kDataLoss, name + ": the file is damaged (" + words + "); restore it, or begin anew");
+      return Error(StatusCode::kDataLoss,
+                   name + ": the file is damaged (" + words + "); restore it, or start with a new file");
     case SQLITE_FULL:
     case SQLITE_IOERR:
     case SQLITE_READONLY:
@@ -55,10 +56,10 @@ auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
     return Refusal(name, error);
   } catch (const nlohmann::json::exception& error) {
     return Error(StatusCode::kDataLoss,
-                 name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
+                 name + ": the file is damaged (" + error.what() + "); restore it, or start with a new file");
   } catch (const std::logic_error& error) {  // from std::stoll
     return Error(StatusCode::kDataLoss,
-                 name + ": the file is damaged (" + error.what() + "); restore it, or begin anew");
+                 name + ": the file is damaged (" + error.what() + "); restore it, or start with a new file");
   }
 }
 

@@ -62,12 +62,13 @@ Result<void> CheckKind(const std::string& name, SQLite::Database& database, Stor
   const bool empty = database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
   if (empty && mode != Store::Mode::kRead) return {};
   if (id != kStoreId) {
-    return Fault(name, "this is no result store of refit_pendulums; name one, or a file that is not there yet");
+    return Fault(name, "this is not a result store of refit_pendulums; name one, or a file that does not exist yet");
   }
   if (version < 1) return Fault(name, "the store is damaged (version " + std::to_string(version) + "); restore it");
   if (version <= static_cast<int>(kStoreMigrations.size())) return {};
-  return Fault(name, "the store has version " + std::to_string(version) + ", made by a newer program; this one knows " +
-                         std::to_string(kStoreMigrations.size()) + " at most; use the newer one");
+  return Fault(name, "the store has version " + std::to_string(version) +
+                         " of a newer program, but this program reads versions up to " +
+                         std::to_string(kStoreMigrations.size()) + "; use the newer program");
 }
 
 }  // namespace
@@ -148,8 +149,8 @@ Result<std::string> Store::State::TakeBatch(const Source& source) {
     if (added == 0) {
       SQLite::Statement other(database, "SELECT place FROM batch WHERE id = ?");
       sqlite::Bind(other, entry.id).executeStep();
-      return Fault(entry.place, "the id " + Quoted(entry.id) + " stands at " + sqlite::Text(other, 0) +
-                                    " too; give each run an id of its own");
+      return Fault(entry.place, "the id " + Quoted(entry.id) + " is also at " + sqlite::Text(other, 0) +
+                                    "; give each run its own id");
     }
     auto next = Sha256(hash + EntryLine(entry));
     if (!next) return tl::unexpected(next.error());
@@ -158,7 +159,7 @@ Result<std::string> Store::State::TakeBatch(const Source& source) {
   });
   if (!taken) return tl::unexpected(taken.error());
   if (!hash.empty()) return hash;
-  return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one a row");
+  return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
 }
 
 /// Removes runs outside the shard from the batch and from the store.
@@ -234,7 +235,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
-  if (fs::is_other(path, unknown)) return Fault(name, "this is no regular file; name one");
+  if (fs::is_other(path, unknown)) return Fault(name, "this is not a regular file; name one");
   if (const auto readable = sqlite::CheckReadable(name); mode == Mode::kRead && !readable) {
     return tl::unexpected(readable.error());
   }
@@ -376,7 +377,7 @@ Result<void> Store::Check() {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     const std::string found = sqlite::Texts(state_->database, "PRAGMA quick_check(1)").front();
     if (found == "ok") return {};
-    return Fault(name(), "the file is damaged (" + found + "); restore it, or begin anew");
+    return Fault(name(), "the file is damaged (" + found + "); restore it, or start with a new file");
   });
 }
 

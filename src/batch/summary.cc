@@ -93,13 +93,13 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
 /// A unit after a number; empty for a dimensionless one.
 std::string Spaced(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
 
-/// "20 runs scatter 1.03 times as much as their quoted errors say (p 0.2)".
+/// "20 runs scatter 1.03 times as much as their quoted errors predict (p 0.2)".
 std::string VerdictText(const Repeatability& all, const std::string& unit, std::size_t outliers) {
   std::string text = std::to_string(all.runs) + " runs scatter " + NumberText(all.ScatterRatio(), 3) +
-                     " times as much as their quoted errors say (p " +
+                     " times as much as their quoted errors predict (p " +
                      ProbabilityText(std::min(all.lower_p, all.upper_p)) + "): ";
   switch (all.verdict) {
-    case Repeatability::Verdict::kAgrees: text += "nothing is found against the error bars"; break;
+    case Repeatability::Verdict::kAgrees: text += "the runs agree with the error bars"; break;
     case Repeatability::Verdict::kScatterLarger:
       text += "the runs differ by ± " + NumberText(all.between, 2) + Spaced(unit) +
               " beyond their errors, or the errors are too small";
@@ -230,8 +230,8 @@ Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const Su
   Json json = DistributionJson(quantity, runs.values);
   json["repeatability"] =
       repeatability ? RepeatabilityJson(runs, options, *repeatability, quantity.unit, outliers.size()) : Json(nullptr);
-  const char* reason = of_the_rig ? "no group has two runs that quote an error"
-                                  : "each run begins as it does: it is no constant of the rig";
+  const char* reason = of_the_rig ? "no group has two runs with an error"
+                                  : "it depends on how each run begins, so it is not a constant of the rig";
   json["repeatability_reason"] = repeatability ? Json(nullptr) : Json(reason);
   json["outliers"] = OutliersJson(runs, options, outliers);
   json["outliers_total"] = outliers.size();
@@ -285,21 +285,22 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
   };
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
   if (counts.earlier > 0) {
-    add("not_in_the_manifest", std::to_string(counts.earlier) + " runs are not named by the last manifest; their " +
-                                   "results are of earlier ones");
+    add("not_in_the_manifest",
+        std::to_string(counts.earlier) + " runs are not in the last manifest; their results belong to earlier ones");
   }
   const std::int64_t same =
       database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE exit_code < 2")
           .getInt64();
   if (same > 0) {
-    add("same_data", std::to_string(same) + " runs have the very data of another run: unless their windows differ, " +
-                         "one swing counts several times");
+    add("same_data",
+        std::to_string(same) +
+            " runs have the same data as another run; unless their windows differ, one swing counts several times");
   }
   const auto [without, example] = WithoutOrder(database, options.trend_by);
   if (without > 0) {
     add("no_order", "the column " + options.trend_by + " of " + std::to_string(without) +
-                        " runs is neither a number nor a date such as 2026-03-01, as " + Quoted(example) +
-                        "; no trend has them");
+                        " runs is neither a number nor a date such as 2026-03-01, for example " + Quoted(example) +
+                        "; trends leave these runs out");
   }
   if (store["versions"].size() > 1) add("several_versions", "the fits are of several versions of the program");
   if (store["cpus"].size() > 1) {

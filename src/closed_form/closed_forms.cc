@@ -18,7 +18,7 @@ namespace {
 constexpr double kRejected = 0.01;
 
 std::string Describe(const EnvelopeLaw& law) {
-  return law.shape + " (" + law.term + " friction alone, p " + ProbabilityText(law.probability) + ")";
+  return law.shape + " (" + law.term + " friction only, p " + ProbabilityText(law.probability) + ")";
 }
 
 /// A sentence: which law the amplitudes follow.
@@ -26,7 +26,8 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
   constexpr double kMaxDescribedChi2 = 10;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
   if (richest > kMaxDescribedChi2) {
-    return "not told: with viscous, dry and quadratic friction together chi2/dof of the turning points is still " +
+    return "not determined: with viscous, dry and quadratic friction together chi2/dof of the turning points is "
+           "still " +
            NumberText(richest, 3);
   }
   std::string followed, rejected;
@@ -34,7 +35,7 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
     std::string& list = law.probability >= kRejected ? followed : rejected;
     list += (list.empty() ? "" : ", ") + Describe(law);
   }
-  if (followed.empty()) return "no single term of friction: neither " + rejected;
+  if (followed.empty()) return "of no single friction term: not " + rejected;
   return "as " + followed + (rejected.empty() ? "; the turning points exclude none" : "; not as " + rejected);
 }
 
@@ -71,10 +72,9 @@ tl::unexpected<Status> Stopped() {
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop) {
   if (!model.gravity.is_linear() && !recording.is_calibrated()) {
-    return Error(StatusCode::kFailedPrecondition,
-                 "the readings are in " + recording.unit +
-                     ", and closed forms of this model need an angle or a rate; --closed_form_only has those of small "
-                     "angles");
+    return Error(StatusCode::kFailedPrecondition, "the readings are in " + recording.unit +
+                                                      ", but closed forms of this model need an angle or a rate; "
+                                                      "--closed_form_only gives those for small angles");
   }
   const double origin = recording.time[0];
   const Recording timed = InTrueSeconds(TurningPointView(recording));

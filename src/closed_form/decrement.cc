@@ -304,11 +304,12 @@ Result<Decrement> FitFrom(const TurningPointTable& table, const MotionModel& mod
   const std::optional<LeastSquares> solution = Solve(problem, *start, free);
   if (stop.stop_requested()) {
     return Error(StatusCode::kTryAgain,
-                 "the least squares of the turning points was stopped before it was done; give it more time");
+                 "the least-squares fit of the turning points was stopped before it was done; give it more time");
   }
   if (!solution) {
-    return Error(StatusCode::kFailedPrecondition, "the turning points follow no " + std::string(model.friction) +
-                                                      " friction: their least squares has no end");
+    return Error(StatusCode::kFailedPrecondition,
+                 "the turning points do not follow " + std::string(model.friction) +
+                     " friction: their least-squares fit does not converge; try another model");
   }
   start = solution->x;
   decrement.chi_square = solution->sum;
@@ -328,9 +329,9 @@ Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel
 
 Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop) {
   if (!IsLinear(model)) {
-    return Error(StatusCode::kFailedPrecondition, std::string(model.friction) +
-                                                      " friction is not linear in its parameters, which the least "
-                                                      "squares of the turning points takes for granted");
+    return Error(StatusCode::kFailedPrecondition,
+                 "there is no closed form for " + std::string(model.friction) +
+                     " friction, because it is not linear in its parameters; use a fit");
   }
   Result<TurningPointTable> table = LocateTurningPoints(recording);
   if (!table) return tl::unexpected(table.error());

@@ -281,10 +281,9 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   const bool climbs = RisingShare(table) > kMaxRisingShare;
   if (!climbs && 2 * free >= turns) {
     if (Decays(table, longest->first, longest->last)) return std::nullopt;
-    return Error(StatusCode::kFailedPrecondition,
-                 "the amplitude does not decay over " + std::to_string(free - 1) +
-                     " half swings: the pendulum is driven, or its friction is too small to see; what lies between "
-                     "--from and --to is fitted as it is");
+    return Error(StatusCode::kFailedPrecondition, "the amplitude does not decay over " + std::to_string(free - 1) +
+                                                      " half swings: the pendulum is driven, or its friction is too "
+                                                      "small to see; give --from and --to to fit this window anyway");
   }
   const double largest = std::ranges::max(table.Amplitudes());
   const bool scattered = 3 * free < turns && (free < kMin || table.Amplitude(longest->first) < 0.5 * largest);
@@ -292,10 +291,10 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   // A motion that begins at rest and climbs was not released.
   const bool from_rest = climbs && table.Amplitude(1) < 0.35 * largest;
   if (from_rest || Decay(table, 0, turns - 1) > kDecayed) {
-    if (climbs) return NoSwing("the amplitude climbs again and again: the pendulum is driven");
+    if (climbs) return NoSwing("the amplitude rises repeatedly: the pendulum is driven");
     return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
-                   " follow each other as a free swing's do, in equal times and with less and "
-                   "less amplitude: the pendulum was moved by hand or motor, or held at one angle after another");
+                   " in a row belong to a free swing, with equal times between them and decreasing amplitude: the "
+                   "pendulum was moved by hand or motor, or held at one angle after another");
   }
   FreeSwing swing = MakeSwing(recording, table, {0, turns - 1});
   swing.has_beats = true;
@@ -320,11 +319,10 @@ Result<void> CheckUnit(const TurningPointTable& table) {
   const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
   const double typical = Median(table.Amplitudes());
   if (!angle || typical < kMax) return {};
-  return Error(
-      StatusCode::kFailedPrecondition,
-      "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
-          " deg) to both sides, and beyond 180 deg a pendulum goes over the top: is the column in another unit? "
-          "--unit and the header must agree");
+  return Error(StatusCode::kFailedPrecondition, "the reading swings by " + NumberText(typical, 3) + " rad (" +
+                                                    NumberText(typical / kRadFromDeg, 3) +
+                                                    " deg) to both sides, but beyond 180 deg a pendulum goes over the "
+                                                    "top; check the unit of the column in the header or in --unit");
 }
 
 }  // namespace
@@ -352,7 +350,7 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
     swings.push_back(MakeSwing(recording, table, run));
     swings.back().amplitude_outside = outside;
   }
-  if (swings.empty()) return NoSwing("no two half swings follow each other that lose amplitude and cross the zero");
+  if (swings.empty()) return NoSwing("there are no two successive half swings that lose amplitude and cross the zero");
   return swings;
 }
 

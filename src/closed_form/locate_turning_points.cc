@@ -169,10 +169,10 @@ void EstimateZero(TurningPointTable& table) {
 
 tl::unexpected<Status> TooFewLocated(std::size_t found, std::size_t located) {
   return Error(StatusCode::kFailedPrecondition,
-               "of " + std::to_string(found) + " turning points " + std::to_string(located) +
-                   " can be located, and three that follow each other are needed: those at the ends of the recording "
-                   "or of the sensor's range, amid a gap, or with fewer than four samples in the third of a period "
-                   "around them cannot; record for longer or more samples a second");
+               "only " + std::to_string(located) + " of " + std::to_string(found) +
+                   " turning points can be located, but three successive ones are needed. Turning points are left out "
+                   "at the ends of the recording or of the sensor's range, in a gap, and with fewer than four samples "
+                   "within a third of a period; record for longer, or with more samples per second");
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ Result<double> NaturalFrequency(const Recording& recording, const TurningPointTa
   const std::vector<TurningPointRun> runs = table.Runs();
   if (std::ranges::none_of(runs, [](const TurningPointRun& run) { return run.last - run.first > 1; })) {
     return Error(StatusCode::kFailedPrecondition,
-                 "no two half swings follow each other without a gap; record for longer or choose another window");
+                 "there are no two successive half swings without a gap; record for longer or choose another window");
   }
   const std::vector<double> times = CrossingTimes(recording, table);
   const auto frequency_at = [&](double frequency) { return FrequencyAtAmplitudesOf(times, table, gravity, frequency); };

@@ -70,18 +70,16 @@ Warning AliasedWarning(const Sampling& sampling, double expected) {
   const double cycles = std::round(expected / sampling.rate_hz);
   constexpr double kStill = 0.01;  // of the rate: less than one swing in a hundred samples
   const bool still = apparent < kStill * sampling.rate_hz;
-  std::string why = "the pendulum is expected to swing at " + Hz(expected) + " and was sampled at " +
-                    Hz(sampling.rate_hz) + ", less than twice a swing: between two samples it makes " +
+  std::string why = "the rig predicts a swing at " + Hz(expected) + ", but the recording has only " +
+                    Hz(sampling.rate_hz) +
+                    ", less than two samples per swing. Between two samples the pendulum makes " +
                     NumberText(expected / sampling.rate_hz, 3) +
-                    " swings, of which the nearest whole number leaves no trace, and so the readings seem to ";
+                    " swings, and the samples do not show whole swings, so the readings seem to ";
   why += still ? "stand still"
                : "swing at |" + NumberText(expected, 3) + " - " + NumberText(cycles * sampling.rate_hz, 3) +
                      "| = " + Hz(apparent) + ", a period of " + NumberText(1 / apparent, 3) + " s";
-  if (sampling.seen_frequency_hz) why += " (" + NumberText(1 / *sampling.seen_frequency_hz, 3) + " s is seen)";
-  return {"aliased", why +
-                         "; periods and decrements of turning points are apparent ones, only a fit of the motion "
-                         "itself is right; " +
-                         Advice(expected)};
+  if (sampling.seen_frequency_hz) why += " (" + NumberText(1 / *sampling.seen_frequency_hz, 3) + " s in the readings)";
+  return {"aliased", why + ". Periods and decrements from turning points are wrong; use the fit; " + Advice(expected)};
 }
 
 void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warning>& warnings) {
@@ -90,17 +88,15 @@ void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warni
   if (expected > 0.5 * sampling.rate_hz) {
     warnings.push_back(AliasedWarning(sampling, expected));
   } else if (high > 0.5 * sampling.rate_hz) {
-    warnings.push_back({"nearly_aliased", "the pendulum is expected to swing at " + Hz(expected) +
-                                              " and was sampled at " + Hz(sampling.rate_hz) +
-                                              ", hardly more than twice a swing; " + Advice(expected)});
+    warnings.push_back({"nearly_aliased", "the rig predicts a swing at " + Hz(expected) + ", and the recording has " +
+                                              Hz(sampling.rate_hz) + ", hardly more than two samples per swing; " +
+                                              Advice(expected)});
   }
   if (!CanAliasWithinRange(low, high, sampling.rate_hz)) return;
   const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);
-  warnings.push_back({"once_a_cycle", "sampled at " + Hz(sampling.rate_hz) + " frequencies to both sides of " +
-                                          Hz(mirror) + " look the same, and the pendulum's, expected at " +
-                                          Hz(expected) +
-                                          ", may lie on either: samples once or twice a swing "
-                                          "cannot tell it; sample faster, or at " +
+  warnings.push_back({"once_a_cycle", "sampled at " + Hz(sampling.rate_hz) + ", frequencies on both sides of " +
+                                          Hz(mirror) + " look the same. The pendulum's frequency, about " +
+                                          Hz(expected) + ", may be on either side; sample faster, or at " +
                                           Hz(1.3 * sampling.rate_hz)});
 }
 
@@ -109,23 +105,23 @@ void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {
     warnings.push_back({"gaps", "readings are missing in " + std::to_string(sampling.gaps) +
                                     (sampling.gaps == 1 ? " place" : " places") + ", for " +
                                     NumberText(sampling.longest_gap, 3) +
-                                    " s at most; the fit goes across by the "
-                                    "stamps, turning points in them are lost"});
+                                    " s at most; the fit uses the time stamps and continues across these gaps, but "
+                                    "turning points in them are missing"});
   }
   if (sampling.jitter * sampling.rate_hz > kMuchJitter) {
     warnings.push_back({"jitter", "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) +
                                       " ms about " + NumberText(1e3 / sampling.rate_hz, 3) +
-                                      " ms; the stamps are taken as they are: if the sensor was read at even times and "
-                                      "only stamped late, give --time_column none with --sample_rate_hz"});
+                                      " ms; the time stamps are used as they are. If the sensor was read at even times "
+                                      "and only stamped late, give --time_column none with --sample_rate_hz"});
   }
 }
 
 void WarnOfCounts(const Sampling& sampling, std::vector<Warning>& warnings) {
   if (!(sampling.start_counts > 0 && sampling.start_counts < kMinCounts)) return;
-  warnings.push_back({"few_counts", "the swing spans " + NumberText(sampling.start_counts) +
+  warnings.push_back({"few_counts", "the swing spans only " + NumberText(sampling.start_counts) +
                                         " levels of the sensor at first and " + NumberText(sampling.end_counts) +
-                                        " at the end: turning points of so few are coarse; release from further out "
-                                        "or use a finer sensor"});
+                                        " at the end, so turning points are inaccurate; release from a larger angle or "
+                                        "use a sensor with a smaller resolution"});
 }
 
 }  // namespace
@@ -161,10 +157,11 @@ std::vector<Warning> SamplingWarnings(const Sampling& sampling) {
   if (sampling.expected_frequency_hz) WarnOfAliasing(sampling, *sampling.expected_frequency_hz, warnings);
   const bool aliases = !warnings.empty();
   if (!aliases && sampling.frequency_hz > 0 && sampling.samples_per_period < kMinPerPeriod) {
-    warnings.push_back({"slow_sampling", NumberText(sampling.samples_per_period, 2) +
-                                             " samples a period: measured turning points and closed-form estimates "
-                                             "are coarse, the fit is not; " +
-                                             Advice(sampling.frequency_hz)});
+    warnings.push_back(
+        {"slow_sampling",
+         NumberText(sampling.samples_per_period, 2) +
+             " samples per period: turning points and closed-form estimates are inaccurate, but the fit is not; " +
+             Advice(sampling.frequency_hz)});
   }
   WarnOfCounts(sampling, warnings);
   WarnOfTimes(sampling, warnings);

@@ -144,14 +144,12 @@ double LongestGap(const Eigen::VectorXd& time, double from, double to) {
 tl::unexpected<Status> TooFewFound(const Recording& recording, std::size_t found) {
   if (recording.value.maxCoeff() == recording.value.minCoeff()) {
     return Error(StatusCode::kFailedPrecondition,
-                 "the reading is constant: there is no swing in it; check the sensor, or choose another column");
+                 "the reading is constant, so there is no swing; check the sensor, or choose another column");
   }
-  return Error(
-      StatusCode::kFailedPrecondition,
-      "turning points that stand out of the noise between neighbouring samples: " + std::to_string(found) +
-          "; at least three turning points, with five samples or more between them, are needed to tell a swing: choose "
-          "a "
-          "window of free swing, or record for longer");
+  return Error(StatusCode::kFailedPrecondition,
+               "turning points above the noise between neighbouring samples: " + std::to_string(found) +
+                   "; at least three turning points, with five samples or more between them, are needed: choose a "
+                   "window of free swing, or record for longer");
 }
 
 }  // namespace

@@ -12,21 +12,23 @@ std::string Sentence(const WindowBegin& begin) {
     case kAsked: return "as asked";
     case kHeld: return "held, then released";
     case kInMotion: return "the recording begins in motion";
-    case kReleaseNotUsed: return "in motion: held before, but its release tells less than its motion";
+    case kReleaseNotUsed:
+      return "in motion: it was held before, but its motion determines the start better than its release";
     case kUnsteadyHold: return "after the release: the hold before it is not steady";
     case kAccelerationJump: return "after the release, at which an acceleration jumps";
     case kAfterFall:
       return "after the fall from " + NumberText(begin.angle_deg, 3) +
-             " deg, where the smallest push decides when it falls and the release tells nothing";
+             " deg: so near the top the smallest push determines when it falls, so the release is not used";
     case kAfterTurns: return "after its turns over the top";
-    case kAfterMove: return "the first turning point after the pendulum was moved otherwise";
-    case kDisturbed: return "what is before it does not fit what follows: touched, or another law";
+    case kAfterMove: return "the first turning point after the pendulum was moved";
+    case kDisturbed:
+      return "the motion before it does not fit the later motion: the pendulum was touched, or follows another law";
     case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
     case kUndersampledAfterFirst:
       return "sampled too slowly to see half swings: the whole recording, without the first reading, before which it "
              "may have been released";
     case kUndersampledAfterHold:
-      return "sampled too slowly to see half swings: the whole recording, without the readings that stay put at first";
+      return "sampled too slowly to see half swings: the whole recording, without the constant readings at its start";
   }
   return "";
 }
@@ -38,11 +40,12 @@ std::string Sentence(const WindowEnd& end) {
     case kAsked: return "as asked";
     case kEndOfRecording: return "the end of the recording";
     case kAtRest: return "at rest from about " + NumberText(end.time, 4) + " s";
-    case kBeforeMove: return "the last turning point before the pendulum is moved otherwise";
+    case kBeforeMove: return "the last turning point before the pendulum is moved";
     case kBeforeStop: return "the last turning point before the pendulum is stopped";
-    case kDisturbed: return "what follows it does not fit what is before: touched, or another law";
-    case kNotConverging: return "with what follows it the fit does not converge";
-    case kCountsLost: return "behind it counts were lost, and how many cannot be told";
+    case kDisturbed:
+      return "the motion after it does not fit the earlier motion: the pendulum was touched, or follows another law";
+    case kNotConverging: return "with the motion after it the fit does not converge";
+    case kCountsLost: return "an unknown number of counts was lost after it";
   }
   return "";
 }

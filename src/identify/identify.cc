@@ -94,9 +94,10 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one)
   const MotionModel asked = *FindMotionModel(options.fit.model);
   const MotionModel linear = *FindMotionModel("linear");
   if (one.used.is_calibrated() || asked.gravity.is_linear()) return asked;
-  one.warnings.push_back({"uncalibrated", "the readings are in " + one.used.unit +
-                                              ", not in an angle's unit; the closed forms are those of model linear, "
-                                              "which takes small angles for granted"});
+  one.warnings.push_back(
+      {"uncalibrated",
+       "the readings are in " + one.used.unit +
+           ", not in a unit of angle; the closed forms are those of model linear, which assumes small angles"});
   return linear;
 }
 
@@ -109,7 +110,8 @@ void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::
   std::optional<MotionModel> model;
   if (run.alone.swing.undersampled) {
     one.no_closed_forms =
-        "the samples are too far apart to show turning points: what they seem to show may be a faster swing's alias";
+        "the samples are too far apart to show turning points: the swing that they show may be the alias of a faster "
+        "one";
   } else if (options.checks == Checks::kNone && !one.fits.empty()) {
     one.no_closed_forms = "not computed (--checks none)";
   } else {
@@ -150,8 +152,9 @@ Result<std::vector<Swing>> TakeAllSwings(std::vector<PreparedRecording> recordin
     for (const int release : recording.swings.chosen) swings.push_back(TakeSwing(recording, release));
   }
   if (swings.size() > 1) return swings;
-  return Error(StatusCode::kInvalidArgument,
-               "--shared is for several recordings, or the releases of one (--release all), and there is one swing");
+  return Error(
+      StatusCode::kInvalidArgument,
+      "--shared is for several recordings, or several releases of one (--release all), but there is only one swing");
 }
 
 /// The same readings twice would count as two recordings with independent errors.
@@ -163,7 +166,7 @@ Result<void> CheckDifferent(const std::vector<Swing>& swings) {
       if (one.size() != other.size() || swings[i].release != swings[k].release) continue;
       if (one.time != other.time || one.value != other.value) continue;
       return Error(StatusCode::kInvalidArgument, swings[i].path + " and " + swings[k].path +
-                                                     " are the same recording, reading for reading; name it once");
+                                                     " are the same recording: all readings are equal; name it once");
     }
   }
   return {};
@@ -175,10 +178,10 @@ Result<void> CheckResolution(const IdentifyOptions& options, const std::vector<S
   const Swing& first = swings.front();
   for (const Swing& swing : swings) {
     if (swing.recording.unit == first.recording.unit) continue;
-    return Error(StatusCode::kInvalidArgument, "--resolution is in the file's unit, and " + first.path + " is in " +
-                                                   first.recording.unit + ", " + swing.path + " in " +
+    return Error(StatusCode::kInvalidArgument, "--resolution is in the file's unit, but " + first.path + " is in " +
+                                                   first.recording.unit + " and " + swing.path + " in " +
                                                    swing.recording.unit +
-                                                   "; write it into each file instead, as a line # resolution: VALUE");
+                                                   "; write a line # resolution: VALUE into each file instead");
   }
   return {};
 }
@@ -192,10 +195,10 @@ Result<std::optional<Rig>> CommonRig(const std::vector<Swing>& swings) {
     const auto& torque = swing.known.rig->gravity_torque;
     const auto& first = known->known.rig->gravity_torque;
     if (torque.value == first.value && torque.std_dev == first.std_dev) continue;
-    return Error(StatusCode::kDataLoss, known->path + " and " + swing.path +
-                                            " describe different rigs (# rig), and one rig's recordings are fitted "
-                                            "together; give the one of all with --rig, or fit them apart with --shared "
-                                            "none");
+    return Error(StatusCode::kDataLoss,
+                 known->path + " and " + swing.path +
+                     " describe different rigs (# rig), but recordings that are fitted together must have one rig; "
+                     "give it with --rig, or fit the recordings separately with --shared none");
   }
   return known == nullptr ? std::nullopt : known->known.rig;
 }
@@ -251,8 +254,8 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identificati
     if (!of_the_fit && !joint.HasWarning(warning.code)) one.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
-  one.warnings.push_back(
-      {"not_alone", "fitted alone it is " + std::string(TerminationName(alone.termination)) + ": " + alone.reason});
+  one.warnings.push_back({"not_alone", "the separate fit of this recording is " +
+                                           std::string(TerminationName(alone.termination)) + ": " + alone.reason});
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {
@@ -296,7 +299,7 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
 Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings) {
   if (options.closed_form_only) {
     return Error(StatusCode::kInvalidArgument,
-                 "several recordings are identified together by fits; closed forms are of each");
+                 "several recordings are identified together by fits; closed forms exist only for a single recording");
   }
   auto swings = TakeAllSwings(std::move(recordings));
   if (!swings) return tl::unexpected(swings.error());

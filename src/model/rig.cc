@@ -104,7 +104,7 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
     form = *found;
     identifying_key = key;
   }
-  if (!form) return Fault(name, "the rig does not say what it is; it must be " + std::string(kFormsText));
+  if (!form) return Fault(name, "the rig has no complete description; it must be " + std::string(kFormsText));
   for (const auto& item : rig.items()) {
     if (item.key() == kInertia.name || Has(*form, item.key())) continue;
     return Fault(name, Quoted(identifying_key) + " and " + Quoted(item.key()) +
@@ -179,8 +179,9 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
     rig.inertia = *inertia;
   }
   if (!IsUsable(rig.gravity_torque) || (rig.inertia && !IsUsable(*rig.inertia))) {
-    return Fault(
-        name, "these values give a torque or inertia beyond 1e-30 to 1e30 (SI), which no pendulum has; correct them");
+    return Fault(name,
+                 "these values give a torque or inertia outside 1e-30 to 1e30 (SI), which is impossible for a "
+                 "pendulum; correct them");
   }
   rig.source = std::move(*source);
   return rig;

@@ -43,7 +43,7 @@ VectorXd Distances(const VectorXd& x, const VectorXd& y, const Circle& circle, E
 }
 
 tl::unexpected<Status> NoArc(const std::string& why, const std::string& otherwise = ", or record a larger swing") {
-  return Error(StatusCode::kFailedPrecondition, "the points (x, y) tell no circle about a pivot: " + why +
+  return Error(StatusCode::kFailedPrecondition, "the points (x, y) do not determine a circle about a pivot: " + why +
                                                     "; choose one coordinate with --value_column" + otherwise);
 }
 
@@ -54,9 +54,10 @@ Result<void> CheckDownDirection(const VectorXd& y, const Circle& circle) {
   const double middle = -circle[1] / circle[2];
   const VectorXd height = (y.array() - circle[1]) / (middle < 0 ? -circle[2] : circle[2]);
   if (std::abs(middle) >= kMin && height.maxCoeff() >= -height.minCoeff()) return {};
-  return NoArc("their middle is " + NumberText(std::abs(middle), 2) + " radii from its centre, and with less than " +
-                   NumberText(kMin, 2) + ", or points farther on the other side, they do not tell which way is down",
-               ", or leave out where it turns over");
+  return NoArc("the middle of the points is " + NumberText(std::abs(middle), 2) +
+                   " radii from its centre; with less than " + NumberText(kMin, 2) +
+                   ", or with points farther away on the other side, the downward direction is unknown",
+               ", or leave out the turns over the top");
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   const double x_mean = x.mean();
   const double y_mean = y.mean();
   const double scale = std::sqrt(((x.array() - x_mean).square() + (y.array() - y_mean).square()).mean());
-  if (!(scale > 0)) return NoArc("all of them are one");
+  if (!(scale > 0)) return NoArc("all points are the same");
   const VectorXd at_x = (x.array() - x_mean) / scale;
   const VectorXd at_y = (y.array() - y_mean) / scale;
   Circle circle = AlgebraicFit(at_x, at_y);
@@ -87,11 +88,11 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   const VectorXd distance = Distances(at_x, at_y, circle, jacobian);
   const double variance = distance.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(x.size() - 3, 1));
   const Eigen::Matrix3d covariance = variance * information.inverse();
-  if (!circle.allFinite() || !covariance.allFinite()) return NoArc("they stand on a line");
-  if (!has_settled || !(circle[2] > 0)) return NoArc("the search for it does not settle");
+  if (!circle.allFinite() || !covariance.allFinite()) return NoArc("the points are on a straight line");
+  if (!has_settled || !(circle[2] > 0)) return NoArc("the search for the circle does not converge");
   const double error = std::sqrt(covariance.diagonal().maxCoeff()) / circle[2];
   if (!(error < kLargestError)) {
-    return NoArc("its radius would be uncertain by " + NumberText(100 * error, 2) + " %");
+    return NoArc("the radius would be uncertain by " + NumberText(100 * error, 2) + " %");
   }
   if (auto checked = CheckDownDirection(at_y, circle); !checked) return tl::unexpected(checked.error());
   Arc arc;

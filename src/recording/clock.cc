@@ -147,9 +147,9 @@ void ClockRepair::Unwrap() {
     const std::vector<Index> wraps = Wraps(counter);
     if (wraps.empty() || !IsLikely(counter, wraps)) continue;
     Warn("time_wrapped", wraps.front(),
-         "the times begin again from " + NumberText(counter.first, kDigits) + " after " + counter.range_text + " " +
+         "the times restart from " + NumberText(counter.first, kDigits) + " after " + counter.range_text + " " +
              samples_.time_unit + ", " + Count(static_cast<Index>(wraps.size()), "time") +
-             " in all; they were counted on");
+             " in all, because the counter overflows; later times were corrected");
     double add = 0;
     std::size_t next = 0;
     for (Index i = wraps.front(); i < size(); ++i) {
@@ -209,12 +209,13 @@ bool ClockRepair::MakeUniform(double grid) {
   const double tolerance = clock->slope_tolerance / clock->slope;
   const auto percent = [](double share) { return NumberText(100 * share, 2) + " %"; };
   Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(grid) + ", coarse against the sampling interval; they were replaced by " +
-           "a uniform clock of " + NumberText(rate_hz, 6) + " Hz, the middle of those that agree with each of them, " +
-           "which end at +- " + NumberText(tolerance * rate_hz, 2) + " Hz: +- " + percent(tolerance) +
-           " of a time, +- " + percent(2 * tolerance) + " of an inertia; this assumes uniform sampling; if the times " +
-           "are cut off instead of rounded, the new ones, and release_time with them, are " + TimeText(grid / 2) +
-           " too early");
+       "the times are rounded to " + TimeText(grid) +
+           ", which is coarse compared with the sampling interval. They were replaced by a uniform clock of " +
+           NumberText(rate_hz, 6) + " Hz, which assumes uniform sampling. Clocks within +- " +
+           NumberText(tolerance * rate_hz, 2) + " Hz agree with all times: an error of " + percent(tolerance) +
+           " in times and " + percent(2 * tolerance) +
+           " in inertia. If the times were truncated instead of rounded, the new times and release_time are " +
+           TimeText(grid / 2) + " too early");
   samples_.clock_std_dev = tolerance / std::sqrt(3.0);
   const double start = first + clock->start * grid;
   samples_.time =
@@ -228,9 +229,10 @@ void ClockRepair::WarnOfScatter() {
   const std::optional<double> grid = Grid();
   if (!grid || static_cast<double>(CountUnusualSteps(*grid)) <= kMinUnusualShare * static_cast<double>(size())) return;
   Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(*grid) + ", coarse against the sampling interval, and no uniform clock " +
-           "agrees with them; they were kept, and rounding scatters them by " + NumberText(*grid / std::sqrt(12.0), 2) +
-           " " + samples_.time_unit);
+       "the times are rounded to " + TimeText(*grid) +
+           ", which is coarse compared with the sampling interval. No uniform clock agrees with them, so they were not "
+           "changed; rounding gives them an error of " +
+           NumberText(*grid / std::sqrt(12.0), 2) + " " + samples_.time_unit);
 }
 
 // ---- Repeated stamps ---------------------------------------------------------------------------------------------
@@ -268,14 +270,14 @@ Check ClockRepair::RemoveRowsWithSharedStamps() {
   const Index removed = CountSharedRows(keep);
   const std::string many = std::to_string(removed) + " of " + std::to_string(size()) + " rows";
   if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) {
-    return Fault(first + 1, "time " + TimeText(time()[first]) + " stands on line " +
-                                std::to_string(samples_.lines.LineOf(first)) + " too, and " + many +
-                                " share a time in this way; no uniform clock agrees with all times: record them to "
-                                "a finer step, or give --sample_rate_hz with --time_column none");
+    return Fault(first + 1, "time " + TimeText(time()[first]) + " is also on line " +
+                                std::to_string(samples_.lines.LineOf(first)) + ", and " + many +
+                                " share a time with another row; no uniform clock agrees with all times. Record the "
+                                "times with a finer step, or give --sample_rate_hz with --time_column none");
   }
   Warn("time_repeated", first + 1,
        many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
-           "; of rows that are equal one was kept");
+           "; one of each group of equal rows was kept");
   Keep(keep);
   return {};
 }
@@ -307,9 +309,9 @@ Check ClockRepair::RemoveBackwardRows() {
   double latest = time()[0];
   for (Index i = 1; i < size(); ++i) {
     if (latest - time()[i] > reach) {
-      return Fault(i, "time " + TimeText(time()[i]) + " follows " + TimeText(latest) +
-                          ", so the clock was set back: these are two recordings in one file; split it before this "
-                          "line");
+      return Fault(i,
+                   "time " + TimeText(time()[i]) + " follows " + TimeText(latest) +
+                       ", so the clock was set back: these are two recordings in one file; split it before this line");
     }
     if (first == 0 && time()[i] <= latest) first = i;
     latest = std::max(latest, time()[i]);
@@ -320,10 +322,10 @@ Check ClockRepair::RemoveBackwardRows() {
                                " of line " + std::to_string(samples_.lines.LineOf(first - 1));
   const std::string many = std::to_string(removed) + " of " + std::to_string(size()) + " rows";
   if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) {
-    return Fault(first,
-                 sentence + ", and " + many + " would have to go for times to increase; correct or sort the rows");
+    return Fault(first, sentence + ", and " + many +
+                            " would have to be left out to make times increase; correct or sort the rows");
   }
-  Warn("time_not_increasing", first, sentence + "; the fewest rows were left out for times to increase, " + many);
+  Warn("time_not_increasing", first, sentence + "; the fewest rows were left out to make times increase, " + many);
   Keep(keep);
   return {};
 }

@@ -76,15 +76,14 @@ bool StartsWithHold(const Recording& recording) {
 
 Warning ConversionWarning(Index silences, std::ptrdiff_t slips) {
   std::string text =
-      "a row stands only where the count changes: each is taken as the edge of its count, crossed at its stamp, and "
-      "the "
-      "angle as within its count in " +
+      "the recording has rows only where the count changes. Each row is treated as the edge of its count, crossed at "
+      "its time stamp, and the angle as within its count in " +
       std::to_string(silences) + " silences at turning points and rest";
   if (slips > 0) {
     text += "; " + std::to_string(slips) + (slips == 1 ? " row" : " rows") +
-            " against the motion left out: the counter slipped";
+            " against the motion left out, because the counter slipped";
   }
-  return {"event_driven", text + "; --noise gaussian takes the rows for samples"};
+  return {"event_driven", text + "; use --noise gaussian to treat the rows as samples"};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ Result<Recording> MakeRecording(Recording recording) {
   if (time.size() != value.size()) {
     return Fault(recording, StatusCode::kDataLoss,
                  std::to_string(time.size()) + " times and " + std::to_string(value.size()) +
-                     " values do not make a recording; every sample has one of each");
+                     " values are not a recording; every sample needs one of each");
   }
   if (time.size() < kMinimumSamples) {
     return Fault(recording, StatusCode::kFailedPrecondition,

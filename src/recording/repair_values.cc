@@ -47,7 +47,7 @@ void Unwrap(Recording& recording) {
   recording.warnings.push_back(
       {"unwrapped",
        std::to_string(jumps) +
-           " jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued"});
+           " jumps by a whole turn, where the sensor's range begins again, were removed, so the angle is continuous"});
 }
 
 /// Keeps only the marked samples.
@@ -128,9 +128,8 @@ void WarnOfEventRows(double smallest_step, Recording& recording) {
   if (!uneven || single < kMinSingleShare * steps || none > kNever * steps) return;
   recording.warnings.push_back(
       {"event_driven",
-       "a row stands only where the value changes: the angle then is at the edge of its count, not in the middle, half "
-       "a "
-       "count early all along, and the error bars know nothing of it; record at even times if you can"});
+       "the recording has rows only where the value changes. The angle is then at the edge of its count, half a count "
+       "from the middle, and the error bars ignore this shift; record at even times if possible"});
 }
 
 constexpr Index kStaleReach = 6;  // samples on either side that are examined for stale readings
@@ -200,9 +199,9 @@ void RemoveStaleReadings(double smallest_step, Recording& recording) {
   }
   if (left_out == 0 || recording.size() - left_out < kMinimumSamples) return;
   KeepMarkedSamples(kept, recording);
-  recording.warnings.push_back({"stale_values", std::to_string(left_out) +
-                                                    " readings only repeat the one before while the pendulum moves on; "
-                                                    "they are left out"});
+  recording.warnings.push_back(
+      {"stale_values", std::to_string(left_out) +
+                           " readings only repeat the previous one while the pendulum moves; they are left out"});
 }
 
 /// Distance of each reading to the line through its two neighbours. Stores medians over blocks; At() returns the
@@ -281,8 +280,8 @@ void RemoveSpikes(double smallest_step, Recording& recording) {
     spikes = FindSpikes(smallest_step, without);
   }
   if (left_out * kMinSamplesPerRemoved > recording.size()) {
-    recording.warnings.push_back({"many_spikes", std::to_string(left_out) + " readings stand far from their "
-                                                                            "neighbours, too many to leave out"});
+    recording.warnings.push_back(
+        {"many_spikes", std::to_string(left_out) + " readings are far from their neighbours, too many to leave out"});
     return;
   }
   recording = std::move(without);

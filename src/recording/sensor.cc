@@ -142,11 +142,11 @@ Check CalibrationReader::CheckCovariance() const {
       const double scale = std::sqrt(matrix(i, i)) * std::sqrt(matrix(j, j));
       if (std::abs(matrix(i, j) - matrix(j, i)) > kRounding * scale) {
         return Fault("covariance", "is not symmetric: " + NumberText(matrix(i, j)) + " and " +
-                                       NumberText(matrix(j, i)) + " stand across the diagonal and must be equal");
+                                       NumberText(matrix(j, i)) + " are symmetric to each other and must be equal");
       }
       if (std::abs(matrix(i, j)) > (1 + kRounding) * scale) {
         return Fault("covariance", "has the covariance " + NumberText(matrix(i, j)) +
-                                       ", beyond the product of its standard deviations, " + NumberText(scale));
+                                       ", larger than the product of its standard deviations, " + NumberText(scale));
       }
     }
   }

@@ -34,7 +34,7 @@ Result<Recording> SelectWindow(Recording recording, double from, double to) {
   if (std::isnan(to)) to = kOpen;
   if (from >= to) {
     return Error(StatusCode::kInvalidArgument,
-                 "the window " + SpanText(from, to) + " is empty; its start must lie before its end");
+                 "the window " + SpanText(from, to) + " is empty; its start must be before its end");
   }
   const double* begin = recording.time.data();
   const double* end = begin + recording.size();

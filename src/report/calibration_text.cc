@@ -140,14 +140,14 @@ std::string ErrorsText(const CalibrationTable& table, const CalibrationFit& fit)
   const std::optional<double> left_out = fit.LeaveOneOutRms();
   if (!left_out) {
     return Prose(
-        "The curve has as many coefficients as the table has points and passes through each: there are no "
-        "residuals to tell standard errors, and none is given. Measure more angles.");
+        "The curve has as many coefficients as the table has points and passes through each, so there are no residuals "
+        "and no standard errors. Measure more angles.");
   }
   const std::string& unit = table.angle_unit;
   return Prose("Residual standard deviation " + Short(*fit.calibration.residual_std_dev) + " " + unit + " (" +
                std::to_string(table.size()) + " points less " + std::to_string(fit.order + 1) +
                " coefficients); leave-one-out error " + Short(*left_out) + " " + unit +
-               " rms: how far the curve misses a point that did not take part (\"left out\" above).");
+               " rms: the distance from the curve to a point that was not fitted (\"left out\" above).");
 }
 
 /// From 5 on "an order of magnitude above", from 50 on two orders, and so on.
@@ -170,17 +170,16 @@ std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& f
   const std::string test = " (χ², p " + ProbabilityText(fit.rounding->p) + ")";
   if (fit.rounding->p >= kSignificance) {
     return Prose(count + ". " + rounding + "; the residuals are no larger than that" + test +
-                 ": nothing shows a lack of fit.");
+                 ": the table shows no lack of fit.");
   }
-  return Prose(
-      count + "; the residuals, up to " + Short(largest) + " " + unit + " at " +
-      NumberText(table.reading[fit.largest]) + " " + table.input + " (line " + std::to_string(table.line[fit.largest]) +
-      "), are " +
-      (ratio >= 2 ? MagnitudeText(ratio) + " it (" + NumberText(ratio, 2) + " counts)"
-                  : "of its size (" + NumberText(ratio, 2) + " counts)") +
-      ". " + rounding + ", and they have " + Short(*fit.calibration.residual_std_dev) + " " + unit + test +
-      ": lack of fit. The sensor is not as even as the curve, or the angles were not set as well as the sensor "
-      "resolves them.");
+  return Prose(count + "; the residuals, up to " + Short(largest) + " " + unit + " at " +
+               NumberText(table.reading[fit.largest]) + " " + table.input + " (line " +
+               std::to_string(table.line[fit.largest]) + "), are " +
+               (ratio >= 2 ? MagnitudeText(ratio) + " it (" + NumberText(ratio, 2) + " counts)"
+                           : "of its size (" + NumberText(ratio, 2) + " counts)") +
+               ". " + rounding + ", but they have " + Short(*fit.calibration.residual_std_dev) + " " + unit + test +
+               ": lack of fit. The sensor deviates from the curve, or the angles were set less accurately than the "
+               "sensor resolves them.");
 }
 
 std::string FText(const OrderTest& test) {
@@ -213,7 +212,7 @@ std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit
   const auto turn = range ? FindTurningReading(fit.calibration, range->low, range->high) : std::nullopt;
   if (turn) {
     text += " In the sensor's range it turns at about " + NumberText(*turn, 4) + " " + table.input +
-            ": readings from there on would be taken for wrong angles.";
+            ": readings beyond it would give wrong angles.";
   }
   return Prose(text);
 }

@@ -77,8 +77,8 @@ std::optional<double> NonzeroOrNull(double value) { return value > 0 ? std::opti
 
 nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling) {
   if (!sampling) return nullptr;
-  const std::string no_frequency = "neither turning points nor a rig tell the frequency of the swing";
-  const std::string no_counts = "the readings stand on no levels";
+  const std::string no_frequency = "neither turning points nor a rig determine the frequency of the swing";
+  const std::string no_counts = "the readings show no discrete levels";
   return NumberObject()
       .Set("rate_hz", sampling->rate_hz)
       .Set("jitter_s", sampling->jitter)
@@ -108,7 +108,7 @@ nlohmann::ordered_json ClosedFormsJson(const Identification& report) {
   NumberObject json;
   json.Set("model", Json(report.closed_forms_model));
   json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, report.rig) : Json(nullptr));
-  if (!forms.linear) json.AddReason("linear: no two turning points a whole period apart follow each other");
+  if (!forms.linear) json.AddReason("linear: no two successive turning points are a whole period apart");
   json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, report) : Json(nullptr));
   if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);
   return json.Set("envelopes", EnvelopesJson(forms.envelopes))

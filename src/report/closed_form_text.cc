@@ -68,7 +68,7 @@ Table EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degr
 
 void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section& section) {
   if (!forms.linear) {
-    section.AddText("No two turning points a whole period apart follow each other: no log decrement.");
+    section.AddText("There is no log decrement, because no two successive turning points are a whole period apart.");
     return;
   }
   const int periods = forms.linear->periods;
@@ -89,7 +89,7 @@ void WarnOfNegativeFriction(const Decrement& decrement, Section& section) {
     const auto [value, error] = decrement.friction[k];
     if (value >= -kSurely * error) continue;
     section.AddText(std::string(infos[k + 1].name) + " is negative by " + NumberText(-value / error, 2) +
-                        " standard errors, which no friction is: the turning points follow another law.",
+                        " standard errors, which is impossible for friction: the turning points follow another law.",
                     Emphasis::kCaution);
   }
 }

@@ -155,7 +155,7 @@ std::string NoConstancyReason(const FitReport& fit, const Constancy* constancy) 
   if (constancy != nullptr && IsTested(*constancy)) return "";
   if (constancy != nullptr && !constancy->reason.empty()) return constancy->reason;
   if (fit.termination != Termination::kConverged) return "the fit is " + std::string(TerminationName(fit.termination));
-  return "it was not looked into";
+  return "it was not tested";
 }
 
 }  // namespace pendulum

@@ -94,7 +94,7 @@ bool HasPredictions(const Comparison& comparison) {
 void AddReasons(const Comparison& comparison, Section& section) {
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
-      section.AddText(row.model + " is not judged: " + Sentence(row.reason));
+      section.AddText(row.model + " is not compared: " + Sentence(row.reason));
       continue;
     }
     const std::string& first = row.cross_validation.reason;
@@ -106,7 +106,7 @@ void AddReasons(const Comparison& comparison, Section& section) {
 }
 
 Table TestTable(const Comparison& comparison) {
-  Table table{{{"law"}, {"adds"}, {"2 Δ log L", true}, {"p"}, {"if not needed follows"}}};
+  Table table{{{"law"}, {"adds"}, {"2 Δ log L", true}, {"p"}, {"null distribution"}}};
   for (const NestedTest& test : comparison.tests) {
     table.rows.push_back({test.richer + " over " + test.simpler, NameList(test.added), NumberText(test.statistic, 3),
                           test.p ? ProbabilityText(*test.p) : "-", test.null});
@@ -124,8 +124,8 @@ Section ComparisonSection(const Comparison& comparison, const Conversion& shown)
   if (HasPredictions(comparison)) {
     section.AddText(
         "Prediction of samples that were left out of the fit, block by block, and of the last part from the "
-        "first: rms of measured - predicted, and of the same over its predicted standard deviation, which is 1 "
-        "where model and errors are right.");
+        "first: rms of measured - predicted, and rms of the same over its predicted standard deviation, which is 1 if "
+        "model and errors are right.");
     section.Add(PredictionTable(comparison, shown));
   }
   AddReasons(comparison, section);
@@ -133,7 +133,7 @@ Section ComparisonSection(const Comparison& comparison, const Conversion& shown)
 }
 
 Section TestSection(const Comparison& comparison) {
-  Section section{"Likelihood-ratio tests", "small p: the simpler law lacks what is added", {TestTable(comparison)}};
+  Section section{"Likelihood-ratio tests", "small p: the simpler law lacks the added term", {TestTable(comparison)}};
   for (const NestedTest& test : comparison.tests) {
     if (!test.p) section.AddText(test.richer + " over " + test.simpler + ": no p: " + Sentence(test.reason));
   }
@@ -223,7 +223,7 @@ Sections ConstancySections(const Identification& report, std::size_t fit) {
   if (HaveHalvesDiffered(*constancy)) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
   if (HasNegativeFriction(*constancy)) {
-    section.AddText("Parts are fitted without bounds: a part by itself may show friction below 0.");
+    section.AddText("Parts are fitted without bounds, so a single part may show friction below 0.");
   }
   const bool said = constancy->verdict.find(constancy->reason) != std::string::npos;
   if (!said) section.AddText("Not tested: " + Sentence(constancy->reason));

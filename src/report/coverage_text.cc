@@ -122,7 +122,7 @@ std::string SetsText(std::span<const CoverageStudy> studies) {
 /// Explains the rules, with the numbers used for the verdicts.
 std::string Rules(std::span<const CoverageStudy> studies) {
   const CoverageRule usual;
-  std::string text = "A line passes when the interval of its coverage meets " + RuleText(usual);
+  std::string text = "A line passes if the interval of its coverage overlaps " + RuleText(usual);
   for (const CoverageStudy& study : studies) {
     const CoverageRule& rule = study.scenario.rule;
     if (rule.lowest == usual.lowest && rule.highest == usual.highest) continue;

@@ -63,7 +63,7 @@ Json DerivedJson(const FitReport& fit) {
     derived[quantity.name] =
         NumberObject()
             .Set("estimate", quantity.estimate)
-            .Set("std_error", quantity.std_error, "a parameter it comes from has no standard error")
+            .Set("std_error", quantity.std_error, "a parameter on which it depends has no standard error")
             .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
             .Set("unit", Json(quantity.unit))
             .Done();

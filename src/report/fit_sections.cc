@@ -153,7 +153,7 @@ Table EstimateTable(const FitReport& fit) {
   return table;
 }
 
-constexpr const char* kNoEstimates = "These are no estimates: nothing was fitted.";
+constexpr const char* kNoEstimates = "These values are not estimates, because nothing was fitted.";
 
 // --- derived quantities ----------------------------------------------------------------------------------------------
 
@@ -246,9 +246,9 @@ Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
   Section section{"Equation of motion", "", {Formula{WithUnbrokenTerms(FittedEquation(fit, rig))}}};
   if (rig) return section.AddText("th in rad from hanging straight down, torques in N m.");
   return section.AddText(
-      "th in rad from hanging straight down; torques are in units of the gravity torque G, for a free swing "
-      "tells only ratios. To get SI, measure the mass, the distance from the pivot to the centre of mass and g, or "
-      "weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
+      "th in rad from hanging straight down; torques are in units of the gravity torque G, because a free swing "
+      "determines only ratios. To get SI units, measure the mass, the distance from the pivot to the centre of mass "
+      "and g, or weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
 }
 
 std::string WithUnbrokenTerms(const std::string& equation) {
@@ -280,8 +280,8 @@ Section StatisticsSection(const FitReport& fit) {
           {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
           {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
           {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-          {"memory", fit.noise.autocorrelation.Name() + "; of a constant the samples tell as much as " +
-                         NumberText(std::round(statistics.effective_samples)) + " independent ones"},
+          {"autocorrelation", fit.noise.autocorrelation.Name() + "; for a constant the samples are worth " +
+                                  NumberText(std::round(statistics.effective_samples)) + " independent ones"},
           {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
           {"AIC, AICc, BIC",
            FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)},

@@ -31,9 +31,9 @@ Json SharedParameterJson(const SharedParameter& parameter) {
   Json runs = Json::array();
   for (const RunEstimate& run : parameter.runs) {
     runs.push_back(NumberObject()
-                       .Set("estimate", run.value, "the recording alone does not tell it")
-                       .Set("std_error", run.std_error, "the recording alone does not tell it")
-                       .Set("z", run.z, "there are no others that tell it")
+                       .Set("estimate", run.value, "the recording on its own does not determine it")
+                       .Set("std_error", run.std_error, "the recording on its own does not determine it")
+                       .Set("z", run.z, "no other recording determines it")
                        .Done());
   }
   return NumberObject()

@@ -56,7 +56,7 @@ Section FitSection(const Identification& report, std::size_t index) {
           "",
           {Facts{{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))},
                  {"shared", NameList(report.joint[index].shared) + ", by " + count +
-                                " recordings; start, zero and noise are each recording's own"},
+                                " recordings; each recording has its own start, zero and noise"},
                  {"status", std::string(TerminationName(fit.termination)) + ": " + Printable(fit.reason),
                   converged ? Emphasis::kNone : Emphasis::kAlarm}}}};
 }
@@ -64,8 +64,9 @@ Section FitSection(const Identification& report, std::size_t index) {
 // ---- Agreement ------------------------------------------------------------------------------------------------------
 
 constexpr const char* kWhatAloneIs =
-    "Alone: what a recording by itself tells, without bounds and priors, its errors wider where few of its samples are "
-    "independent. Recordings are said to disagree below p 0.01: those of one rig by chance in 1 of 100 cases.";
+    "Separate: the estimate from each recording on its own, without bounds and priors; its errors are wider where few "
+    "of its samples are independent. Recordings disagree below p 0.01, which happens by chance to recordings of one "
+    "rig in 1 of 100 cases.";
 
 /// A line of characters from `low` to `high` that shows intervals.
 class Strip {
@@ -198,7 +199,7 @@ void AddMainFit(const Identification& report, std::size_t index, Sections& secti
   sections.push_back(FitSection(report, index));
   sections.push_back(AllOfParameters(fit, report.rig, nullptr));
   if (fit.termination == Termination::kConverged && !report.joint[index].homogeneity.agrees()) {
-    sections.back().AddText("The recordings do not agree, and these errors take for granted that they do: see below.",
+    sections.back().AddText("The recordings do not agree, but these errors assume that they do: see below.",
                             Emphasis::kCaution);
   }
   sections.push_back(AgreementSection(report, index));

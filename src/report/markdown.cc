@@ -156,7 +156,7 @@ Sections VerdictSections(const Identification& report) {
   } else {
     const std::size_t main = report.MainFit();
     if (report.fits[main].termination != Termination::kConverged) {
-      verdict.AddText("The fit did not converge: its numbers are no result.", Emphasis::kAlarm);
+      verdict.AddText("The fit did not converge, so its numbers are not a result.", Emphasis::kAlarm);
     }
     verdict.blocks.emplace_back(VerdictItems(report, main));
     sections.push_back(ParameterSection(report.fits[main], report.fits.size() > 1));

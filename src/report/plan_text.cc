@@ -108,7 +108,7 @@ std::string FactorTable(const Plan& plan, const Units& units) {
     cells.push_back(BiasCell(row.linear_bias));
     rows.push_back(cells);
   }
-  return "\n[[One thing changed at a time]] (* the recording as it is)\n" + AlignedTable(columns, rows, kTextIndent);
+  return "\n[[One setting changed at a time]] (* the recording as given)\n" + AlignedTable(columns, rows, kTextIndent);
 }
 
 bool HasMissingValues(const PlanRow& row) {
@@ -126,8 +126,8 @@ std::string MissingText(const Plan& plan) {
   }
   if (!others) return text;
   return text + Paragraph(
-                    "no bound is known for this noise and sensor, or the readings do not tell the parameter; "
-                    "for the linear formulas: less than one whole period.",
+                    "no bound is known for this noise and sensor, or the readings do not determine the parameter; for "
+                    "the linear formulas: less than one whole period.",
                     "    - ", kTextWidth);
 }
 
@@ -136,15 +136,15 @@ std::string BiasText(const Plan& plan, bool has_bound) {
       "The linear formulas (inertia from damped period and logarithmic decrement, sin θ = θ; all whole periods, "
       "turning "
       "points without error) ";
-  if (!has_bound) return formulas + "cannot be compared with a standard error that is not known.";
+  if (!has_bound) return formulas + "cannot be compared, because the standard error is not known.";
   if (!plan.amplitude_of_equal_bias) {
-    return formulas + "have no amplitude up to " + NumberText(kLargestPlannedAmplitude) +
-           " rad from which on they are off by more than the standard error of inertia.";
+    return formulas + "are accurate up to " + NumberText(kLargestPlannedAmplitude) +
+           " rad: their error stays below the standard error of inertia.";
   }
   const double amplitude = *plan.amplitude_of_equal_bias;
-  return formulas + "are off by more than the standard error of inertia above an amplitude of " +
+  return formulas + "have an error above the standard error of inertia beyond an amplitude of " +
          NumberText(amplitude, kDegreeDigits) + " rad (" + NumberText(amplitude / kRadFromDeg, kDegreeDigits) +
-         " deg): beyond it, fit the full equation.";
+         " deg): there, fit the full equation.";
 }
 
 /// Warns that the bound assumes the right alias of the frequency.
@@ -161,17 +161,18 @@ std::string SlowText(const Plan& plan) {
 }
 
 std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
-  std::string text =
-      std::string(
-          "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column tells by how "
-          "much the linear formulas miss it without any noise. ") +
-      SlowText(plan);
+  std::string text = std::string(
+                         "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column "
+                         "gives the error of the linear formulas without any noise. ") +
+                     SlowText(plan);
   if (plan.noise_of_levels) {
-    text += "Levels without noise have no Cramér-Rao bound: they are taken for white noise of " +
+    text += "Levels without noise have no Cramér-Rao bound, so they are treated as white noise of " +
             NumberText(*plan.noise_of_levels, kPlanDigits) + " " + std::string(plan.parameters.back().unit) +
-            " (their spacing over √12), as least squares sees them; a fit that knows the levels does better. ";
+            " (their spacing over √12), as in least squares; a fit that uses the levels is more accurate. ";
   }
-  if (!rig) return text + "Torques and inertia are in units of the gravity torque G; with a rig, G's own error adds.";
+  if (!rig)
+    return text +
+           "Torques and inertia are in units of the gravity torque G; with a rig, the error of G adds to theirs.";
   const auto [torque, error] = rig->gravity_torque;
   if (error == 0) return text + "The error of the rig's gravity torque G adds to those of inertia and torques.";
   return text + "The error of the rig's gravity torque G, " + ErrorText(100 * error / torque) +

@@ -29,7 +29,7 @@ Result<SensorRange> ParseInputRange(const std::string& text) {
 Result<void> ChooseRange(const CalibrationFlags& flags, CalibrationOptions& options) {
   options.has_bits = flags.bits != 0;
   if (options.has_bits && !flags.input_range.empty()) {
-    return BadFlag("--bits and --input_range both tell the sensor's range; leave one of them out");
+    return BadFlag("--bits and --input_range both define the sensor's range; leave one of them out");
   }
   if (options.has_bits) options.input_range = SensorRange{0, AdcSensor{.bits = flags.bits}.FullScale()};
   if (flags.input_range.empty()) return {};
@@ -60,7 +60,7 @@ Result<CalibrationOptions> MakeCalibrationOptions(const CalibrationFlags& flags)
 Result<CalibrationFit> CalibrateTable(const CalibrationTable& table, const CalibrationOptions& options) {
   if (options.has_bits && table.input != "counts") {
     return Error(StatusCode::kInvalidArgument,
-                 "--bits tells the range of counts, and " + table.path + " has volts; give --input_range");
+                 "--bits defines the range of counts, but " + table.path + " has volts; give --input_range");
   }
   return CalibrateSensor(table, options.order, options.input_range);
 }

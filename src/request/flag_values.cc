@@ -164,7 +164,7 @@ Result<ParameterPriors> ParsePriors(std::string_view flag, std::string_view text
     if (!std_dev) return tl::unexpected(std_dev.error());
     if (*std_dev > 0) return ParameterPrior{*mean, *std_dev};
     return BadSetting(flag, "the standard deviation of " + name + " is " + NumberText(*std_dev) +
-                                "; it must be positive (--fix holds a parameter)");
+                                "; it must be positive (use --fix to hold a parameter)");
   };
   return ParseEntries<ParameterPrior>(flag, text, model, parameters, parse);
 }

@@ -168,7 +168,7 @@ Result<void> CheckFlagName(std::string_view name, std::span<const std::string_vi
 
 Result<RunFlags> RunFlagsOf(const FlagTexts& texts) {
   if (texts.contains("model") && texts.contains("models")) {
-    return BadFlag("--model and --models are one flag, and both are given; leave one of them out");
+    return BadFlag("--model and --models are the same flag; give only one of them");
   }
   return FlagsOf<RunFlags>(texts, NamedRunFlags());
 }

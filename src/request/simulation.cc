@@ -62,7 +62,8 @@ Result<StartKind> ChooseStart(const ParameterValues& values) {
   const bool release = given(kReleaseAngle) || given(kReleaseTime);
   const bool moving = given(kInitialAngle) || given(kInitialRate);
   if (release && moving) {
-    return BadFlag("--set gives two starts; keep release_angle and release_time, or initial_angle and initial_rate");
+    return BadFlag(
+        "--set gives two starts; keep either release_angle and release_time, or initial_angle and initial_rate");
   }
   if (given(kReleaseAngle) && given(kReleaseTime)) return StartKind::kRelease;
   if (given(kInitialAngle) && given(kInitialRate)) return StartKind::kMoving;
@@ -79,7 +80,7 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
                       ParameterValues& values) {
   const std::string inertia(kInertia.name);
   if (rig && rig->inertia) values.try_emplace(inertia, rig->inertia->value);
-  if (!values.contains(inertia)) return BadFlag("--set lacks inertia, and no rig gives one");
+  if (!values.contains(inertia)) return BadFlag("--set lacks inertia, and there is no rig with an inertia");
   if (values[inertia] <= 0) {
     return BadFlag("--set: inertia is " + NumberText(values[inertia]) + "; it must be positive");
   }
@@ -204,8 +205,8 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
                      flags.noise_correlation == 0 && flags.noise_freedom == 0;
   if (!plain) {
     return BadFlag(
-        "--event_driven is of an encoder: an angle, without --range, --jitter, --noise_correlation and "
-        "--noise_freedom");
+        "--event_driven simulates an encoder, which measures an angle; leave out --range, --jitter, "
+        "--noise_correlation and --noise_freedom");
   }
   if (!(flags.resolution > 0)) return BadFlag("--event_driven needs --resolution");
   if (flags.resolution * (flags.unit == "deg" ? kRadFromDeg : 1) < kFinestEvents) {
@@ -260,10 +261,10 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
     }
     lost.push_back({*time, static_cast<int>(*counts)});
   }
-  if (!lost.empty() && flags.resolution == 0) return BadFlag("--lose: counts have a size; give --resolution");
+  if (!lost.empty() && flags.resolution == 0) return BadFlag("--lose needs the size of a count; give --resolution");
   if (const Result<OutputUnit> unit = FindUnit(flags.unit); !lost.empty() && unit && unit->sensor == SensorKind::kArc) {
-    return BadFlag("--lose is of an encoder's counts, and --unit " + flags.unit +
-                   " has the coordinates of a point, which are not counted on; leave one of them out");
+    return BadFlag("--lose simulates lost counts of an encoder, but with --unit " + flags.unit +
+                   " the readings are coordinates of a point; leave one of them out");
   }
   return lost;
 }

@@ -107,7 +107,7 @@ std::optional<Problem> RefuseHost(const HttpRequest& request, const AccessRules&
   for (const std::string_view host : named) {
     if (IsLoopback(host) || IsListedHost(host, rules.allowed_hosts)) continue;
     return Problem{ProblemKind::kForbidden,
-                   "the host " + Quoted(host) + " is none of this service; ask for localhost, or start it with " +
+                   "the host " + Quoted(host) + " is not a name of this service; use localhost, or start it with " +
                        "--allowed_hosts and that name",
                    {}};
   }
@@ -122,11 +122,10 @@ std::optional<Problem> RefuseToken(const HttpRequest& request, const std::string
   }
   const std::string_view value = WithoutBlanks(values.front());
   if (values.size() > 1 || LowerCase(value.substr(0, kScheme.size())) != kScheme) {
-    return Unauthorized("the Authorization of the request is no token; send one, as Authorization: Bearer TOKEN");
+    return Unauthorized("the Authorization of the request is not a token; send one, as Authorization: Bearer TOKEN");
   }
   if (IsSameSecret(WithoutBlanks(value.substr(kScheme.size())), token)) return std::nullopt;
-  return Unauthorized("the token of the request is not that of this service; send the one in its --token_file",
-                      "invalid_token");
+  return Unauthorized("the token of the request is wrong; send the one in the service's --token_file", "invalid_token");
 }
 
 }  // namespace
@@ -171,7 +170,7 @@ std::optional<Problem> RefuseAccess(const HttpRequest& request, const AccessRule
   if (auto refused = RefuseHost(request, rules)) return refused;
   if (IsCrossSite(request)) {
     return Problem{ProblemKind::kForbidden,
-                   "the request comes from a page of another site; this service answers its own page, and programs",
+                   "the request comes from a page of another site; this service answers only its own page and programs",
                    {}};
   }
   if (rules.token.empty() || audience == Audience::kAnybody) return std::nullopt;

@@ -119,7 +119,7 @@ HttpResponse PostBatch(ServiceState& state, const Call& call) {
     if (!state.queue.Reserve(runs, state.options.limits.max_runs)) {
       return ProblemResponse(
           RetryLater(ProblemKind::kTooManyRequests, std::to_string(state.queue.waiting()) +
-                                                        " recordings of batches wait already, and this service keeps " +
+                                                        " recordings of batches wait already, but this service keeps " +
                                                         std::to_string(state.options.limits.max_runs) + " at most"));
     }
     const std::vector<FitOrder> orders = OrdersOf(*std::move(request));

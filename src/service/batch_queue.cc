@@ -106,8 +106,8 @@ Result<void> BatchQueue::StartThreads(int threads) {
     for (int i = 0; i < ThreadsOrCores(threads); ++i) threads_.emplace_back([this] { Work(); });
   } catch (const std::system_error& error) {
     if (threads_.empty()) {
-      return Error(StatusCode::kTryAgain, std::string("no thread can be started, ") + error.what() +
-                                              "; let other processes end, or allow this one more");
+      return Error(StatusCode::kTryAgain, std::string("cannot start a thread, ") + error.what() +
+                                              "; end other processes, or raise the limit of this one");
     }
   }
   return {};

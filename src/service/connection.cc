@@ -85,9 +85,9 @@ void Connection::Take(const Code& code, std::size_t bytes) {
   if (!code && bytes > 0) return Parse();
   if (stage_ == Stage::kIdle || (stage_ == Stage::kHead && bytes_.empty())) return Close();
   if (code == asio::error::timed_out) {
-    return Refuse({408, "the request did not come in whole within the time a request has"});
+    return Refuse({408, "the request did not arrive completely within the time limit"});
   }
-  if (code == asio::error::eof) return Refuse({400, "the request ends before it is whole"});
+  if (code == asio::error::eof) return Refuse({400, "the request ends before it is complete"});
   Close();
 }
 
@@ -188,7 +188,7 @@ void Connection::Dispatch() {
 /// Runs on a thread of a lane, which owns the request meanwhile.
 HttpResponse Connection::Handle(std::chrono::steady_clock::time_point offered) {
   if (std::chrono::steady_clock::now() - offered > serving_.options.wait_time) {
-    return MakeRefusal({408, "the request waited too long for its turn; try again later"});
+    return MakeRefusal({408, "the request waited too long; try again later"});
   }
   const auto failed = [&](const std::string& what) { return MakeRefusal({500, what}); };
   if (serving_.budget.is_exceeded()) return MakeRefusal(TooMuchAtOnce());

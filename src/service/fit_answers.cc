@@ -136,7 +136,7 @@ Result<std::string> SinceOf(const RequestTarget& target) {
   std::string value = QueryValue(target, "since");
   if (value.empty() || std::regex_match(value, form)) return value;
   return Error(StatusCode::kInvalidArgument,
-               "since is '" + value + "'; it must be a time as 2026-11-23T21:40:05Z, or a day");
+               "since is '" + value + "'; it must be a time such as 2026-11-23T21:40:05Z, or a day");
 }
 
 Result<FitFilter> FilterOf(const RequestTarget& target) {
@@ -255,7 +255,7 @@ HttpResponse GetSeries(ServiceState& state, const Call& call) {
 HttpResponse GetResiduals(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string& name) {
     if (run.fits.empty()) {
-      return ProblemAnswer({StatusCode::kNotFound, "there are closed forms only, and no fit that leaves residuals"});
+      return ProblemAnswer({StatusCode::kNotFound, "there are only closed forms, and no fit with residuals"});
     }
     return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run, run.MainFit()), "residuals of " + name);
   });

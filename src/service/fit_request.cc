@@ -194,7 +194,7 @@ Result<void> ReadJson(const std::string& body, FitRequest& request, std::string&
 
 tl::unexpected<Problem> WrongKind(std::string_view type, std::string_view wanted) {
   std::string detail = type.empty() ? "the body has no Content-Type" : "the Content-Type is " + Quoted(type);
-  if (type == "application/x-www-form-urlencoded") detail += ", which curl sets unless it is told otherwise";
+  if (type == "application/x-www-form-urlencoded") detail += ", the default of curl";
   return Refused(ProblemKind::kUnsupportedMediaType, detail + "; it must be " + std::string(wanted));
 }
 
@@ -231,15 +231,16 @@ ResultOrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& lim
   const auto lines = static_cast<std::size_t>(std::ranges::count(data.bytes, '\n'));
   if (lines <= limits.max_samples && data.bytes.size() <= kMaxRecordingBytes) return {};
   return Refused(ProblemKind::kTooLarge, data.name + ": the recording has " + std::to_string(lines) +
-                                             " lines, and this service takes " + std::to_string(limits.max_samples) +
-                                             " samples at most; send a part of it, or use fit_pendulum");
+                                             " lines, but this service accepts at most " +
+                                             std::to_string(limits.max_samples) +
+                                             " samples; send a part of it, or use fit_pendulum");
 }
 
 /// Limits the options, because each run of a batch stores them.
 ResultOrProblem<void> CheckOptions(const FlagTexts& flags) {
   const std::size_t bytes = JsonText(JsonOf(flags)).size();
   if (bytes <= kMaxOptionBytes) return {};
-  return Refused(ProblemKind::kTooLarge, "the options have " + std::to_string(bytes) + " bytes, and may have " +
+  return Refused(ProblemKind::kTooLarge, "the options have " + std::to_string(bytes) + " bytes, but may have only " +
                                              std::to_string(kMaxOptionBytes) + "; leave some out");
 }
 
@@ -299,8 +300,9 @@ Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& c
   auto options = MakeRunOptions(*run_flags);
   if (!options) return options;
   if (options->swing.release == SwingChoice::kAll) {
-    return Error(StatusCode::kInvalidArgument,
-                 "--release all makes several results of a recording; a request has one, so give the number of one");
+    return Error(
+        StatusCode::kInvalidArgument,
+        "--release all gives several results for a recording, but a request has one; give the number of a release");
   }
   options->read.most_unpacked_bytes = kMaxUnpackedBytes;
   options->fit.threads = 1;  // parallelism comes from concurrent requests
@@ -344,9 +346,9 @@ ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const Reque
   }
   if (!read) return Refused(read.error());
   if (request->data.size() != 1) {
-    return Refused(ProblemKind::kWrongRequest, "the request has " + std::to_string(request->data.size()) +
-                                                   " recordings (parts data); a fit has one, and POST /v1/batches "
-                                                   "takes several");
+    return Refused(ProblemKind::kWrongRequest,
+                   "the request has " + std::to_string(request->data.size()) +
+                       " recordings (parts data), but a fit has one; use POST /v1/batches for several");
   }
   if (!name.empty()) request->data.front().name = name;
   return Finish(*std::move(request), limits);
@@ -360,12 +362,14 @@ ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const Req
   const std::string type = TypeOf(http);
   if (type != "multipart/form-data") return WrongKind(type, "multipart/form-data");
   if (auto read = ReadForm(*http.Field("Content-Type"), http.body, *request); !read) return Refused(read.error());
-  if (!name.empty()) return Refused(ProblemKind::kWrongRequest, "name is of one fit; the parts of a batch have names");
-  if (request->data.empty()) return Refused(ProblemKind::kWrongRequest, "the form has no part data; a batch has some");
+  if (!name.empty())
+    return Refused(ProblemKind::kWrongRequest, "name is for a single fit; in a batch each part has a name");
+  if (request->data.empty())
+    return Refused(ProblemKind::kWrongRequest, "the form has no part data; a batch needs at least one");
   if (request->data.size() > limits.max_runs) {
     return Refused(ProblemKind::kTooLarge, "the batch has " + std::to_string(request->data.size()) +
-                                               " recordings, and this service takes " +
-                                               std::to_string(limits.max_runs) + " at most; send several batches");
+                                               " recordings, but this service accepts at most " +
+                                               std::to_string(limits.max_runs) + "; send several batches");
   }
   return Finish(*std::move(request), limits);
 }
@@ -384,7 +388,7 @@ ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const Req
     if (auto read = ReadJson(http.body, request, name); !read) return Refused(read.error());
   }
   if (!request.data.empty()) {
-    return Refused(ProblemKind::kWrongRequest, "a refit has the recording that is there; leave data out");
+    return Refused(ProblemKind::kWrongRequest, "a refit uses the stored recording; leave data out");
   }
   if (request.flags.contains("models") || request.flags.contains("model")) {
     flags.erase("model");

@@ -26,7 +26,7 @@ Provenance ProvenanceOf(const IdentifyOptions& options, const RunFiles& files) {
 Status TookTooLong(std::chrono::milliseconds limit) {
   return {StatusCode::kTryAgain,
           "the fit was not done after " + NumberText(std::chrono::duration<double>(limit).count()) +
-              " s, the most that one may take here; choose fewer models, a shorter window (from, to) or intervals by "
+              " s, the time limit of this service; choose fewer models, a shorter window (from, to) or intervals by "
               "covariance, or use fit_pendulum"};
 }
 

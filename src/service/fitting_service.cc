@@ -65,7 +65,7 @@ Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptio
     state = std::make_unique<ServiceState>(options, std::move(store));
   } catch (const std::system_error& error) {
     return Error(StatusCode::kTryAgain,
-                 std::string("the service cannot start, ") + error.what() + "; let other processes end");
+                 std::string("the service cannot start, ") + error.what() + "; end other processes");
   }
   if (auto begun = state->queue.Begin(options.threads); !begun) return tl::unexpected(begun.error());
   return std::make_unique<FittingService>(std::move(state));
@@ -86,9 +86,8 @@ std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& reques
   if (const auto refused = RefuseAccess(request, state_->options.access, audience)) return GuardedProblem(*refused);
   if (!target) return GuardedProblem(ProblemOf(target.error()));
   if (match.allowed.empty()) {
-    return GuardedProblem({ProblemKind::kNotFound,
-                           "there is nothing at " + target->path + "; GET /openapi.json lists what there is",
-                           {}});
+    return GuardedProblem(
+        {ProblemKind::kNotFound, "there is nothing at " + target->path + "; GET /openapi.json lists the paths", {}});
   }
   if (match.route == nullptr) return GuardedProblem(MethodNotAllowed(request.method, match.allowed));
   if (match.route->query == QueryKind::kOwn) return std::nullopt;

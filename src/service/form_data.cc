@@ -32,7 +32,8 @@ Result<std::string> BoundaryOf(std::string_view content_type) {
   const auto boundary = type->Parameter("boundary");
   if (!boundary) return WrongForm("has no boundary; write it as multipart/form-data; boundary=...");
   if (boundary->empty() || boundary->size() > kLongest || boundary->ends_with(' ')) {
-    return WrongForm("has the boundary " + Quoted(*boundary) + "; it must have 1 to 70 bytes and end in no blank");
+    return WrongForm("has the boundary " + Quoted(*boundary) +
+                     "; it must have 1 to 70 bytes and must not end in a blank");
   }
   return std::string(*boundary);
 }
@@ -168,7 +169,7 @@ struct PartReader {
     }
     auto decoded = WithoutEscapes(value.substr(language + 1));
     if (!decoded || !IsUtf8(*decoded)) {
-      return Wrong("has the filename* " + Quoted(value) + ", whose escapes are no UTF-8; write filename=\"name\"");
+      return Wrong("has the filename* " + Quoted(value) + ", whose escapes are not UTF-8; write filename=\"name\"");
     }
     return *std::move(decoded);
   }
@@ -233,7 +234,7 @@ Result<std::vector<FormPart>> ParseFormData(std::string_view content_type, std::
   while (!line->is_last) {
     const PartReader reader{"part " + std::to_string(parts.size() + 1)};
     const auto next = lines.Behind(*line);
-    if (!next) return reader.Wrong("has no boundary behind it; end the form in " + Quoted("--" + *boundary + "--"));
+    if (!next) return reader.Wrong("has no boundary after it; end the form with " + Quoted("--" + *boundary + "--"));
     if (parts.size() == kMaxFormParts) {
       return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send it in several");
     }

@@ -108,7 +108,7 @@ Result<MediaType> ParseMediaType(std::string_view text) {
   const std::size_t slash = whole.find('/');
   if (slash == std::string_view::npos || !IsToken(whole.substr(0, slash)) || !IsToken(whole.substr(slash + 1))) {
     return Error(StatusCode::kInvalidArgument,
-                 "the content type " + Quoted(text) + " is no media type; write one such as text/csv");
+                 "the content type " + Quoted(text) + " is not a media type; write one such as text/csv");
   }
   auto parameters =
       ParseFieldParameters(text.substr(text.find(whole) + whole.size()), "the content type", Backslash::kEscapesAll);

@@ -63,7 +63,7 @@ Result<SimulationRequest> ParseSimulationRequest(const Call& call) {
 ResultOrProblem<void> CheckSimulatedSamples(const SimulationFlags& flags, const RequestLimits& limits) {
   const double samples = flags.duration * flags.rate;
   if (!(samples > static_cast<double>(limits.max_samples))) return {};
-  return Refused(ProblemKind::kTooLarge, "--duration times --rate makes more samples than this service takes, " +
+  return Refused(ProblemKind::kTooLarge, "--duration times --rate gives more samples than this service accepts, " +
                                              std::to_string(limits.max_samples) + "; use simulate_pendulum for more");
 }
 

@@ -25,21 +25,21 @@ constexpr std::array kKindsOfProblem = {
     KindOfProblem{ProblemKind::kWrongRequest, 400, "wrong_request", "The request is wrong", 2},
     KindOfProblem{ProblemKind::kUnauthorized, 401, "unauthorized", "The request needs a token", {}},
     KindOfProblem{ProblemKind::kForbidden, 403, "forbidden", "The request is not allowed", {}},
-    KindOfProblem{ProblemKind::kNotFound, 404, "not_found", "There is no such thing", 3},
-    KindOfProblem{ProblemKind::kMethodNotAllowed, 405, "method_not_allowed", "The method is not one of these", {}},
-    KindOfProblem{ProblemKind::kTimedOut, 408, "timed_out", "The time was not enough", 75},
-    KindOfProblem{ProblemKind::kConflict, 409, "conflict", "The request does not fit what is there now", {}},
+    KindOfProblem{ProblemKind::kNotFound, 404, "not_found", "Not found", 3},
+    KindOfProblem{ProblemKind::kMethodNotAllowed, 405, "method_not_allowed", "The method is not allowed", {}},
+    KindOfProblem{ProblemKind::kTimedOut, 408, "timed_out", "The request timed out", 75},
+    KindOfProblem{ProblemKind::kConflict, 409, "conflict", "The request conflicts with the current state", {}},
     KindOfProblem{ProblemKind::kTooLarge, 413, "too_large", "The request is too large", 4},
     KindOfProblem{
-        ProblemKind::kUnsupportedMediaType, 415, "unsupported_media_type", "The content is of another kind", {}},
+        ProblemKind::kUnsupportedMediaType, 415, "unsupported_media_type", "The content type is not supported", {}},
     KindOfProblem{ProblemKind::kExpectationFailed, 417, "expectation_failed", "The expectation cannot be met", {}},
     KindOfProblem{ProblemKind::kUnusableData, 422, "unusable_data", "The data cannot be read", 4},
-    KindOfProblem{ProblemKind::kNoSwing, 422, "no_swing", "The data have no swing that can be fitted", 5},
+    KindOfProblem{ProblemKind::kNoSwing, 422, "no_swing", "The data contain no swing that can be fitted", 5},
     KindOfProblem{ProblemKind::kKeyReused, 422, "key_reused", "The key belongs to another request", {}},
-    KindOfProblem{ProblemKind::kTooManyRequests, 429, "too_many_requests", "Too many requests at a time", 75},
+    KindOfProblem{ProblemKind::kTooManyRequests, 429, "too_many_requests", "Too many requests at the same time", 75},
     KindOfProblem{ProblemKind::kHeadersTooLarge, 431, "headers_too_large", "The head of the request is too large", {}},
     KindOfProblem{ProblemKind::kInternal, 500, "internal", "The service has failed", 70},
-    KindOfProblem{ProblemKind::kStopping, 503, "stopping", "The service cannot answer now", 75},
+    KindOfProblem{ProblemKind::kStopping, 503, "stopping", "The service is not available now", 75},
     KindOfProblem{ProblemKind::kCannotWrite, 507, "cannot_write", "The result cannot be stored", 73},
 };
 
@@ -96,7 +96,7 @@ Problem Unauthorized(std::string detail, std::string_view error) {
 
 Problem MethodNotAllowed(std::string_view method, std::string_view allowed) {
   return {ProblemKind::kMethodNotAllowed,
-          "the method " + Quoted(method) + " is none of this resource; it has " + std::string(allowed),
+          "the method " + Quoted(method) + " is not allowed here; allowed are " + std::string(allowed),
           {{"Allow", std::string(allowed)}}};
 }
 

@@ -83,14 +83,14 @@ HttpResponse AnswerOnce(ServiceState& state, const Call& call,
   const ReservedKey taken(state.keys, *key);
   if (!taken.is_reserved()) {
     return ProblemResponse(
-        RetryLater(ProblemKind::kConflict, "another request with this Idempotency-Key is being worked on"));
+        RetryLater(ProblemKind::kConflict, "another request with this Idempotency-Key is in progress"));
   }
   const auto known = state.store->FindAnswer(*key);
   if (!known) return ProblemAnswer(known.error());
   if (!*known) return answer(RequestKey{*key, *hash});
   if ((*known)->request_sha256 == *hash) return AnswerAt(state, call, (*known)->location);
   return ProblemResponse({ProblemKind::kKeyReused,
-                          "this Idempotency-Key came with another request before; take a new key for a new request",
+                          "this Idempotency-Key was used for another request; use a new key for a new request",
                           {}});
 }
 

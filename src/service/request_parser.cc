@@ -28,7 +28,7 @@ std::optional<std::string> WrongByte(std::string_view bytes, std::size_t i) {
   if (byte == '\n') {
     if (i == 0 || bytes[i - 1] != '\r') return "a line of the request's head ends without CR";
     if (!is_last && (bytes[i + 1] == ' ' || bytes[i + 1] == '\t')) {
-      return "a field of the request's head is folded into several lines; send it in one";
+      return "a field of the request's head is folded over several lines; send it in one line";
     }
   } else if (byte == '\r') {
     if (!is_last && bytes[i + 1] != '\n') return "there is a CR within a line of the request's head";
@@ -44,7 +44,7 @@ Refused BodyTooLong(std::size_t max_body) {
   return {413, "the request's body is longer than " + std::to_string(max_body) + " bytes"};
 }
 
-Refused TooMuchAtOnce() { return {429, "too much is being sent and answered at once; try again later"}; }
+Refused TooMuchAtOnce() { return {429, "too many bytes are being received and sent; try again later"}; }
 
 RequestParser::RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget)
     : max_head_(max_head), max_body_(max_body), held_(budget) {
@@ -63,7 +63,7 @@ tl::expected<std::size_t, Refused> RequestParser::HeadSize(std::string_view byte
     const std::string_view until = bytes.substr(0, i + 1);
     if (until.ends_with("\r\n\r\n")) return until.size();
     if (until.ends_with("\r\n") && bytes.find('\r') + 1 == i && until.find(" HTTP/") == std::string_view::npos) {
-      return Malformed("the first line is no request line of HTTP/1.1");
+      return Malformed("the first line is not a request line of HTTP/1.1");
     }
   }
   scanned_ = bytes.size();
@@ -91,7 +91,7 @@ std::optional<Refused> RequestParser::ReadFields() {
   if (auto refused = ReadTarget()) return refused;
   for (const std::string_view expected : request_.Fields("Expect")) {
     if (!IsSameWord(expected, "100-continue")) {
-      return Refused{417, "the request expects \"" + std::string(expected) + "\"; only 100-continue is known here"};
+      return Refused{417, "the request expects \"" + std::string(expected) + "\"; only 100-continue is supported"};
     }
     head_.expects_continue = head_.is_http11;
   }
@@ -105,7 +105,7 @@ std::optional<Refused> RequestParser::ReadLength() {
   }
   if (!codings.empty()) {
     if (!head_.is_http11 || !IsSameWord(codings[0], "chunked")) {
-      return Refused{400, "a Transfer-Encoding other than chunked, or one in HTTP/1.0, is not known here"};
+      return Refused{400, "a Transfer-Encoding other than chunked, or one in HTTP/1.0, is not supported"};
     }
     head_.is_chunked = true;
   }
@@ -113,7 +113,7 @@ std::optional<Refused> RequestParser::ReadLength() {
   const char* end = lengths[0].data() + lengths[0].size();
   const auto read = std::from_chars(lengths[0].data(), end, head_.content_length);
   if (read.ec != std::errc() || read.ptr != end) {
-    return Refused{400, "Content-Length \"" + std::string(lengths[0]) + "\" is no number of bytes"};
+    return Refused{400, "Content-Length \"" + std::string(lengths[0]) + "\" is not a number of bytes"};
   }
   return std::nullopt;
 }
@@ -121,7 +121,7 @@ std::optional<Refused> RequestParser::ReadLength() {
 std::optional<Refused> RequestParser::ReadTarget() {
   std::string& target = request_.target;
   if (request_.method == "CONNECT" || request_.method == "TRACE") {
-    return Refused{400, "method " + request_.method + " is not served here"};
+    return Refused{400, "method " + request_.method + " is not supported"};
   }
   constexpr std::string_view kScheme = "http://";
   if (IsSameWord(target.substr(0, kScheme.size()), kScheme)) {  // as sent to a proxy; RFC 9112, section 3.2.2
@@ -143,7 +143,7 @@ tl::expected<std::size_t, Refused> RequestParser::ReadBody(std::string_view byte
   const std::size_t taken = put(boost::asio::const_buffer(bytes.data(), bytes.size()), code);
   if (refused_) return tl::unexpected(std::move(*refused_));
   if (code && code != boost::beast::http::error::need_more) {
-    return Malformed("the request's body is not chunked as HTTP/1.1 has it: " + code.message());
+    return Malformed("the request's body is not chunked as in HTTP/1.1: " + code.message());
   }
   if (bytes.size() - taken > kMaxBetweenChunks && !is_done()) {
     return Malformed("the line of a chunk's size, or the trailer, is longer than " + std::to_string(kMaxBetweenChunks) +

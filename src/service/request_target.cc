@@ -21,11 +21,11 @@ tl::unexpected<Status> WrongTarget(std::string_view which, std::string_view text
 Result<std::string> DecodedPiece(std::string_view piece, std::string_view which) {
   auto decoded = WithoutEscapes(piece);
   if (!decoded) {
-    return WrongTarget(which, piece, "has a % without two hexadecimal digits behind it; write a percent sign as %25");
+    return WrongTarget(which, piece, "has a % without two hexadecimal digits after it; write a percent sign as %25");
   }
   for (std::string_view rest = *decoded; !rest.empty();) {
     const std::size_t length = Utf8Length(rest);
-    if (length == 0) return WrongTarget(which, piece, "is no UTF-8; encode it as UTF-8, and that in percent");
+    if (length == 0) return WrongTarget(which, piece, "is not UTF-8; encode it as UTF-8, then as percent escapes");
     if (IsControl(rest.substr(0, length))) {
       return WrongTarget(which, piece, "has a control character; leave it out");
     }
@@ -39,10 +39,10 @@ Result<std::string> DecodedSegment(std::string_view segment) {
   if (!decoded) return decoded;
   if (decoded->empty()) return WrongTarget("path segment", segment, "is empty; write one slash, and none at the end");
   if (*decoded == "." || *decoded == "..") {
-    return WrongTarget("path segment", segment, "is no name; write the path without it");
+    return WrongTarget("path segment", segment, "is not a name; write the path without it");
   }
   if (decoded->find_first_of("/\\") != std::string::npos) {
-    return WrongTarget("path segment", segment, "has a slash or backslash in it; no name here has one");
+    return WrongTarget("path segment", segment, "contains a slash or backslash, which no name has");
   }
   return decoded;
 }

@@ -169,7 +169,7 @@ Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, Htt
     return std::make_unique<Server>(std::move(state));
   } catch (const std::exception& error) {
     return Error(StatusCode::kTryAgain, std::string("the server cannot start, ") + error.what() +
-                                            "; ask for fewer threads, or let other processes end");
+                                            "; use fewer threads, or end other processes");
   }
 }
 

@@ -73,23 +73,24 @@ struct ServiceMetrics::State {
       BuildCounter().Name("pendulum_http_requests_total").Help("Answered requests.").Register(registry);
   Family<Histogram>& answer_seconds = BuildHistogram()
                                           .Name("pendulum_http_request_duration_seconds")
-                                          .Help("From a request's first byte to the last of its answer.")
+                                          .Help("Time from a request's first byte to the last byte of its answer.")
                                           .Register(registry);
   Family<Counter>& fits = BuildCounter().Name("pendulum_fits_total").Help("Fits that were made.").Register(registry);
   Family<Histogram>& fit_seconds =
       BuildHistogram().Name("pendulum_fit_duration_seconds").Help("Time that a fit took.").Register(registry);
   Gauge& connections = AddGauge("pendulum_http_open_connections", "Open connections.");
   Gauge& waiting = AddGauge("pendulum_http_requests_waiting", "Requests that wait for a thread.");
-  Gauge& running = AddGauge("pendulum_http_requests_running", "Requests that are being worked on.");
+  Gauge& running = AddGauge("pendulum_http_requests_running", "Requests in progress.");
   Gauge& streams = AddGauge("pendulum_http_event_streams", "Open streams of events.");
   Gauge& buffered = AddGauge("pendulum_http_buffered_bytes", "Bodies of requests in memory.");
   Gauge& batch_runs = AddGauge("pendulum_batch_runs_waiting", "Runs of batches that wait.");
   Counter& retries = AddCounter("pendulum_batch_retried_runs_total",
-                                "Times that a run of a batch had to wait because the store could not be had.");
+                                "How often a run of a batch had to wait because the store was not available.");
   Gauge& resident = AddGauge("process_resident_memory_bytes", "Resident memory of the process.");
   Counter& cpu = AddCounter("process_cpu_seconds_total", "Processor time of the process.");
   Counter& accepted = AddCounter("pendulum_http_connections_total", "Connections that were accepted.");
-  Counter& refused = AddCounter("pendulum_http_requests_refused_total", "Requests that never came to be worked on.");
+  Counter& refused =
+      AddCounter("pendulum_http_requests_refused_total", "Requests that were dropped before they were processed.");
 
   std::mutex mutex;  // for the members below and the counters kept elsewhere
   std::function<ServerCounts()> server;

@@ -18,10 +18,10 @@
 
 DEFINE_string(data, "", "Table with the columns counts or volts and angle_deg or angle_rad; - is standard input.");
 DEFINE_int32(order, 1, "Highest power of the reading in the curve, 1 to 5; default 1, a straight line.");
-DEFINE_string(input_range, "", "What the sensor can show, low,high, in the unit of the readings; default unknown.");
+DEFINE_string(input_range, "", "Range of the sensor, low,high, in the unit of the readings; default unknown.");
 DEFINE_string(json, "", "Where to write the calibration for fit_pendulum; - is standard output; default nowhere.");
 DEFINE_string(plot, "", "Where to write an SVG of curve and residuals (needs gnuplot); default nowhere.");
-DEFINE_bool(plan, false, "Plans a potentiometer and converter instead: what would they resolve? Default off.");
+DEFINE_bool(plan, false, "Plans a potentiometer and converter instead, and prints their resolution. Default off.");
 DEFINE_int32(bits, 0, "Of the converter, 1 to 32; default 10 in a plan. With --data the range is 0 to 2^bits - 1.");
 DEFINE_string(reference_voltage, "", "In a plan: references of the converter in V, between commas; default 5.");
 DEFINE_double(supply_voltage, 5, "In a plan: V across the potentiometer; default 5.");

@@ -27,7 +27,7 @@ Result<void> CheckBelongs(bool is_given, const std::string& flag, bool plan) {
 }
 
 Result<void> CheckTask(const CalibrateSensorFlags& flags) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (!flags.plan && flags.data.empty()) {
     return BadFlag(
         "--data is missing: a table of counts or volts and angles, or - for standard input; --plan needs none");

@@ -18,12 +18,12 @@
 DEFINE_string(scenario, "", "Scenarios, name,..., or all; --list shows them.");
 DEFINE_int32(count, 1000, "Recordings of each scenario; default 1000.");
 DEFINE_int32(runs, 1,
-             "Recordings of one rig that are fitted together, released from different angles; --count sets of them are "
-             "made; default 1, each recording alone.");
+             "Recordings of one rig, released from different angles and fitted together, in each of --count sets; "
+             "default 1, separate recordings.");
 DEFINE_uint64(seed, 1, "Seed of the first recording; recording i has seed + i; default 1.");
 DEFINE_int32(threads, 0, "Threads, on which the result does not depend; default 0, as many as there are cores.");
-DEFINE_string(markdown, "", "Where to write the tables as Markdown too; - is standard output; default nowhere.");
-DEFINE_bool(list, false, "Shows the scenarios and does nothing else; default off.");
+DEFINE_string(markdown, "", "Where else to write the tables, as Markdown; - is standard output; default nowhere.");
+DEFINE_bool(list, false, "Lists the scenarios and exits; default off.");
 
 namespace pendulum {
 namespace {

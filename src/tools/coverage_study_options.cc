@@ -31,7 +31,7 @@ std::vector<NamedFile> CoverageStudyOptions::Outputs() const {
 }
 
 Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (auto checked = CheckWhole("--count", flags.count, 1, kMaxRecordings); !checked) {
     return tl::unexpected(checked.error());
   }

@@ -27,12 +27,13 @@
 
 DEFINE_string(data, "",
               "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "
-              "columns and their units, such as time_s,angle_deg; what phyphox (CSV, zip), Tracker, Logger Pro, "
-              "Graphical Analysis, Capstone and ROS export; MAT-files; - is standard input.");
+              "columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
+              "Graphical Analysis, Capstone and ROS; MAT-files; - is standard input.");
 DEFINE_string(data_list, "", "File that lists recordings, one path a line, instead of --data; default none.");
-DEFINE_string(shared, "",
-              "What several recordings have in common: all of inertia and friction, some of their names, or none (each "
-              "is then fitted by itself); default all of several recordings, none of one recording's releases.");
+DEFINE_string(
+    shared, "",
+    "Parameters that several recordings share: all (inertia and friction), some of their names, or none (each "
+    "recording is fitted separately); default all for several recordings, none for one recording's releases.");
 DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
 DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
 DEFINE_string(series, "",
@@ -55,9 +56,9 @@ constexpr const char* kUsage =
     "Exit codes: 0 converged, 1 fitted but not converged, not identifiable or not a free swing, 2 wrong flags,\n"
     "3 file not found, 4 unreadable data, calibration or rig, 5 no swing in the data or too little, 70 a bug,\n"
     "73 an output cannot be written.\n"
-    "Of several models the recommended one's code counts, of recordings fitted one by one the largest; those that\n"
-    "can be fitted are written. Several recordings are taken for one rig's and fitted together; --shared none fits\n"
-    "each by itself.\n"
+    "With several models, the code is that of the recommended one; with recordings that are fitted separately, "
+    "the\nlargest. Results that can be fitted are written. Several recordings are assumed to be of one rig and "
+    "fitted\ntogether; --shared none fits each separately.\n"
     "\n";
 
 FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {

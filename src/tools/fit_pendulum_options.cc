@@ -17,7 +17,7 @@ bool IsStandardInput(const std::string& path) { return path == "-" || path == "/
 
 Result<void> CheckData(const FitPendulumFlags& flags) {
   if (!flags.positional.empty()) {
-    return BadFlag("'" + flags.positional.front() + "' belongs to no flag; the recording is given with --data");
+    return BadFlag("'" + flags.positional.front() + "' does not belong to a flag; give the recording with --data");
   }
   if (flags.data.empty() == flags.data_list.empty()) {
     return BadFlag(flags.data.empty() ? "no recording was given; name its CSV file with --data"
@@ -28,7 +28,7 @@ Result<void> CheckData(const FitPendulumFlags& flags) {
     if (path.empty()) return BadFlag("--data '" + flags.data + "' has an empty name between its commas");
   }
   if (std::ranges::count_if(paths, IsStandardInput) > 1) {
-    return BadFlag("--data '" + flags.data + "' names standard input twice; it can be read once");
+    return BadFlag("--data '" + flags.data + "' names standard input twice, but it can be read only once");
   }
   return {};
 }
@@ -65,8 +65,7 @@ Result<void> CheckJoint(const FitPendulumFlags& flags, const FitPendulumOptions&
   const bool joint = options.IsJoint(options.data.size()) || (!flags.data_list.empty() && options.IsJoint(2));
   if (!joint || options.fit.interval != IntervalMethod::kBootstrap) return {};
   return BadFlag(
-      "--interval bootstrap is for recordings one by one (--shared none); several together have covariance "
-      "and profile");
+      "--interval bootstrap is only for separate fits (--shared none); for a joint fit use covariance or profile");
 }
 
 }  // namespace

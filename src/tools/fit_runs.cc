@@ -37,16 +37,16 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
   if (options.IsJoint(setup.paths.size())) {
     if (count > 1 && IsStandardOutput(options.residuals)) {
       return Error(StatusCode::kInvalidArgument, "--residuals " + options.residuals +
-                                                     " takes one recording, and there are " + std::to_string(count) +
-                                                     "; name a file, and they are numbered");
+                                                     " takes one recording, but there are " + std::to_string(count) +
+                                                     "; name a file, which is then numbered");
     }
     return CheckOutputs(options.JointOutputs(static_cast<int>(count)), setup.inputs);
   }
   if (count == 1) return {};
   for (const NamedFile& output : options.Outputs()) {
     if (!IsStandardOutput(output.path)) continue;
-    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, and there are " +
-                                                   std::to_string(count) + "; name a file, and they are numbered");
+    return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, but there are " +
+                                                   std::to_string(count) + "; name a file, which is then numbered");
   }
   std::vector<NamedFile> outputs;
   for (std::size_t i = 0; i < count; ++i) {

@@ -80,14 +80,14 @@ std::string FirstWords(std::string_view text) {
 Result<std::string> RunChild(const std::vector<std::string>& arguments, const std::string& input) {
   ChildFiles child;
   if (!child.IsOpen() || !child.Put(input)) {
-    return Error(StatusCode::kCannotWrite, "plot: no temporary file can be written; make room in /tmp");
+    return Error(StatusCode::kCannotWrite, "plot: cannot write a temporary file; free space in /tmp");
   }
   int status = 0;
   const std::error_code error = Spawn(arguments, child, status);
   if (error == std::errc::no_such_file_or_directory) return Error(StatusCode::kCannotWrite, kMissing);
-  if (error) return Error(StatusCode::kCannotWrite, "plot: gnuplot cannot be run: " + error.message());
+  if (error) return Error(StatusCode::kCannotWrite, "plot: cannot run gnuplot: " + error.message());
   if (status == 0) return Contents(child.files[1].get());
-  return Error(StatusCode::kCannotWrite, "plot: gnuplot fails: " + FirstWords(Contents(child.files[2].get())));
+  return Error(StatusCode::kCannotWrite, "plot: gnuplot failed: " + FirstWords(Contents(child.files[2].get())));
 }
 
 }  // namespace

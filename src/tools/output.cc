@@ -156,7 +156,7 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
       if (read[k] == written[i]) return refuse("would overwrite the input of " + inputs[k].flag);
     }
     if (IsStandardOutput(path)) continue;
-    if (IsRedirectionOfStdout(path)) return refuse("is where standard output goes; give - instead");
+    if (IsRedirectionOfStdout(path)) return refuse("is the file to which standard output goes; give - instead");
     if (auto writable = CheckWritable(path, proven); !writable) return writable;
   }
   return {};

@@ -27,19 +27,20 @@
 #include "tools/run_tool.h"
 #include "tools/terminal.h"
 
-DEFINE_string(port, "", "Serial port of the logger, such as /dev/ttyACM0; default the only one there is.");
+DEFINE_string(port, "", "Serial port of the logger, such as /dev/ttyACM0; default the only one.");
 DEFINE_string(out, "", "Where the recording goes (CSV); - is standard output.");
-DEFINE_string(seconds, "", "How long to record, s; default until it is stopped (Ctrl-C).");
+DEFINE_string(seconds, "", "How long to record, s; default until Ctrl-C.");
 DEFINE_bool(until_rest, false, "Stop when the pendulum has swung and come to rest. Default off.");
 DEFINE_bool(overwrite, false, "Replace a recording that is there. Default off.");
 DEFINE_double(rate_hz, 200, "Samples per second; default 200.");
-DEFINE_int32(oversample, 1, "Conversions a sample is the mean of, 1 to 64; default 1.");
+DEFINE_int32(oversample, 1, "Conversions that are averaged for one sample, 1 to 64; default 1.");
 DEFINE_int32(baud, 115200, "Baud rate of the sketch; default 115200.");
 DEFINE_string(calibration, "", "Calibration file (JSON) to put into the recording; default the one in the logger.");
 DEFINE_string(store_calibration, "", "Stores this calibration file in the logger instead of recording.");
-DEFINE_bool(counts, false,
-            "Prints the mean reading of a second, counts, instead of recording: for a calibration table. Default off.");
-DEFINE_bool(info, false, "Shows what the logger says of itself instead of recording. Default off.");
+DEFINE_bool(
+    counts, false,
+    "Prints the mean reading of one second in counts, for a calibration table, instead of recording. Default off.");
+DEFINE_bool(info, false, "Shows the logger's description of itself instead of recording. Default off.");
 DEFINE_bool(list, false, "Lists the serial ports instead of recording. Default off.");
 DEFINE_bool(fit, false, "Fits the recording, as fit_pendulum does. Default off.");
 DEFINE_string(rig, "", "Of --fit: rig file (JSON, SI units); default none.");
@@ -57,7 +58,7 @@ constexpr const char* kUsage =
     "  record_pendulum --port /dev/ttyACM0 --out run.csv --seconds 60\n"
     "  record_pendulum --port /dev/ttyACM0 --out run.csv --until_rest --fit --rig rig.json --model coulomb\n"
     "\n"
-    "Ctrl-C ends a recording in good order. Meanwhile what has come is in run.csv.part, which can be fitted as it is.\n"
+    "Ctrl-C ends a recording regularly. Meanwhile the samples are in run.csv.part, which can be fitted as it is.\n"
     "Exit codes: 0 recorded (with --fit those of fit_pendulum), 1 recorded, but samples are missing or the logger was\n"
     "lost, 2 wrong flags, 3 no such port or file, 4 no logger answers, or a file cannot be read, 70 a bug, 73 an "
     "output\n"
@@ -107,10 +108,11 @@ Result<std::string> ChoosePort(const std::string& asked) {
   if (std::ranges::any_of(ports, &PortName::is_arduino)) std::erase_if(ports, std::not_fn(&PortName::is_arduino));
   if (ports.size() == 1) return ports.front().path;
   if (ports.empty()) {
-    return Error(StatusCode::kNotFound, "there is no USB serial port; is the board plugged in? --port names another");
+    return Error(StatusCode::kNotFound,
+                 "there is no USB serial port; check that the board is plugged in, or name another port with --port");
   }
   return Error(StatusCode::kInvalidArgument,
-               "there are several ports, and --port says which: " + ports.front().path + " to " + ports.back().path);
+               "there are several ports; choose one with --port: " + ports.front().path + " to " + ports.back().path);
 }
 
 /// A recording cannot be repeated, so an existing one is not overwritten by accident.
@@ -119,12 +121,12 @@ Result<void> CheckOut(const RecordPendulumOptions& options) {
   const PartFile part(options.out);
   if (options.overwrite || part.path().empty()) return {};
   if (part.Exists()) {
-    return Error(StatusCode::kCannotWrite, part.path() +
-                                               " holds a recording that was interrupted, and can be fitted as "
-                                               "it is; rename it, or say --overwrite");
+    return Error(
+        StatusCode::kCannotWrite,
+        part.path() + " holds an interrupted recording, which can be fitted as it is; rename it, or give --overwrite");
   }
   if (::access(options.out.c_str(), F_OK) == 0) {
-    return Error(StatusCode::kCannotWrite, options.out + " is there already; name another file, or say --overwrite");
+    return Error(StatusCode::kCannotWrite, options.out + " exists already; name another file, or give --overwrite");
   }
   return {};
 }
@@ -135,7 +137,7 @@ Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOpti
   if (!calibration) return tl::unexpected(calibration.error());
   if (calibration->input != "counts") {
     return Error(StatusCode::kDataLoss, options.calibration + " is of " + calibration->input +
-                                            ", and a logger gives counts; calibrate by counts");
+                                            ", but a logger sends counts; calibrate in counts");
   }
   return *std::move(calibration);
 }
@@ -185,7 +187,7 @@ Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::op
   if (!options.fit || given || info.has_calibration != 0) return {};
   if (std::ranges::none_of(options.fit->models, needs_angle)) return {};
   return Error(StatusCode::kDataLoss,
-               "--fit needs angles, and the logger has no calibration; store one (--store_calibration), give one "
+               "--fit needs angles, but the logger has no calibration; store one (--store_calibration), give one "
                "(--calibration), or fit with --model linear");
 }
 

@@ -26,11 +26,10 @@ Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
   const auto count = std::ranges::count(asked, true, &RequestedTask::first);
   if (count == 0) {
     return BadFlag(
-        "--out is missing: where the recording goes; --counts, --store_calibration, --info and --list need "
-        "none");
+        "--out is missing: where the recording goes; --counts, --store_calibration, --info and --list need none");
   }
   if (count > 1) {
-    return BadFlag("of --out, --counts, --store_calibration, --info and --list only one can be done at a time");
+    return BadFlag("give only one of --out, --counts, --store_calibration, --info and --list");
   }
   return std::ranges::find(asked, true, &RequestedTask::first)->second;
 }
@@ -114,7 +113,7 @@ std::vector<NamedFile> RecordPendulumOptions::Inputs() const {
 }
 
 Result<RecordPendulumOptions> MakeRecordPendulumOptions(const RecordPendulumFlags& flags) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   const auto task = ChooseTask(flags);
   if (!task) return tl::unexpected(task.error());
   RecordPendulumOptions options;

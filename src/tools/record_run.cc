@@ -153,10 +153,10 @@ void RunInProgress::Take(const TimedMessage& received) {
     TakeData(*data, received.host_time);
   } else if (const auto* end = std::get_if<wire::End>(&received.message)) {
     recorded_.run.TakeEnd(*end);
-    if (!is_stopping_) EndAsLost("the logger ended the run by itself");
+    if (!is_stopping_) EndAsLost("the logger ended the run on its own");
     is_over_ = true;
   } else if (std::holds_alternative<wire::Info>(received.message)) {
-    EndAsLost("the logger started again: was its power or reset line touched?");
+    EndAsLost("the logger restarted; check its power and reset line");
   }
 }
 
@@ -194,8 +194,8 @@ void RunInProgress::StopWhenDue(double now) {
     const ReceivedRun& run = recorded_.run;
     const bool is_long_enough = options_.seconds && run.size() > 0 && run.Time(run.size() - 1) >= *options_.seconds;
     const bool is_at_rest = rest_samples_ > 0;
-    if (silence_ > LongestSilence()) return EndAsLost("the logger has fallen silent");
-    if (IsStandardOutput(options_.out) && IsOutputClosed()) return EndAsLost("nobody reads standard output any more");
+    if (silence_ > LongestSilence()) return EndAsLost("the logger stopped sending");
+    if (IsStandardOutput(options_.out) && IsOutputClosed()) return EndAsLost("standard output was closed");
     if (!stop_ && !is_long_enough && !is_at_rest) return;
     recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;
     is_stopping_ = true;
@@ -220,7 +220,7 @@ void RunInProgress::KeepPart(double now) {
   if (kept) return;
   recorded_.part_file_error = kept.error().message;
   if (!is_live_)
-    PrintMessage(kRecordToolName, "warning: " + recorded_.part_file_error + "; the recording goes on in memory only");
+    PrintMessage(kRecordToolName, "warning: " + recorded_.part_file_error + "; the recording continues only in memory");
 }
 
 std::string RunInProgress::LossText() const {

@@ -60,12 +60,12 @@ std::string ReadingsText(const RecordedRun& recorded) {
 std::string ClockText(const DeviceClock& clock) {
   constexpr double kMillion = 1e6;
   if (!clock.is_measured) {
-    return "not measured against this computer's (that takes ten seconds and more): ± " +
-           NumberText(100 * clock.std_dev, 2) + " %, as any resonator";
+    return "not compared with this computer's clock (that takes at least ten seconds): ± " +
+           NumberText(100 * clock.std_dev, 2) + " %, as for any resonator";
   }
   const double ppm = (1 / clock.scale - 1) * kMillion;
   return std::to_string(std::lround(std::abs(ppm))) + " ± " + std::to_string(std::lround(clock.std_dev * kMillion)) +
-         " ppm " + (ppm < 0 ? "slow" : "fast") + " by this computer's, to be counted in by # clock_scale";
+         " ppm " + (ppm < 0 ? "slow" : "fast") + " compared with this computer's clock; # clock_scale corrects for it";
 }
 
 std::string EndText(const RecordedRun& recorded) {
@@ -87,12 +87,12 @@ std::string LossWarning(const RunLosses& losses, int damaged_frames) {
   std::string text = Counted(losses.samples, "sample", "is", "are") + " missing";
   if (losses.dropped > 0) {
     text += "; " + std::to_string(losses.dropped) +
-            " found no room in the logger, for the line is too slow for this rate: lower --rate_hz";
+            " did not fit into the logger's memory, because the line is too slow for this rate; lower --rate_hz";
   }
   if (losses.on_line > 0) text += "; " + std::to_string(losses.on_line) + " were damaged or lost on the line";
   if (damaged_frames > 0) text += " (" + Counted(damaged_frames, "damaged frame", "came", "came") + ")";
-  if (losses.late > 0) text += "; " + std::to_string(losses.late) + " conversions could not begin in time";
-  return text + ". Their rows are not in the file, and all others have the right times";
+  if (losses.late > 0) text += "; " + std::to_string(losses.late) + " conversions began too late";
+  return text + ". Their rows are not in the file; all other rows have correct times";
 }
 
 }  // namespace
@@ -106,17 +106,17 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
   const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   std::vector<Warning> warnings;
   if (recorded.end == RunEnd::kLost)
-    warnings.push_back({"cut_short", recorded.loss_reason + "; what came before is kept"});
+    warnings.push_back({"cut_short", recorded.loss_reason + "; the samples before that are kept"});
   if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses, recorded.damaged_frames)});
   if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
-    warnings.push_back({"no_end",
-                        "the logger did not say how many samples it had sent, so that the last ones may be "
-                        "missing"});
+    warnings.push_back(
+        {"no_end", "the logger did not report how many samples it had sent, so the last ones may be missing"});
   }
   if (losses.contradicting_frames > 0) {
     warnings.push_back(
         {"contradicting_frames", Counted(losses.contradicting_frames, "frame", "contradicted", "contradicted") +
-                                     " the run and left no trace in it"});
+                                     " the run and " + std::string(losses.contradicting_frames == 1 ? "was" : "were") +
+                                     " ignored"});
   }
   if (const int saturated = ReadingsOf(recorded).saturated; saturated > 0) {
     warnings.push_back({"saturated", Counted(saturated, "reading", "is", "are") +
@@ -124,12 +124,13 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
                                          "choose another reference"});
   }
   if (recorded.description.clock.is_implausible) {
-    warnings.push_back({"clock_implausible",
-                        "the logger's clock and this computer's differ by more than any resonator does, so the times' "
-                        "scale was not measured; is one of them stopped at times, as in a virtual machine?"});
+    warnings.push_back(
+        {"clock_implausible",
+         "the logger's clock and this computer's differ by more than any resonator explains, so the scale of the times "
+         "was not measured; check whether one of them pauses, as in a virtual machine"});
   }
   if (!recorded.part_file_error.empty()) {
-    warnings.push_back({"no_part", recorded.part_file_error + "; while it lasted, the recording was in memory only"});
+    warnings.push_back({"no_part", recorded.part_file_error + "; during the run the recording was only in memory"});
   }
   return warnings;
 }
@@ -161,7 +162,8 @@ std::string LoggerText(const pendulum_logger::Info& info, const std::string& por
 }
 
 std::string PortsText(const std::vector<PortName>& ports) {
-  if (ports.empty()) return "There is no USB serial port; is the board plugged in, with a cable that carries data?\n";
+  if (ports.empty())
+    return "There is no USB serial port; check that the board is plugged in, with a cable that carries data.\n";
   std::string text;
   for (const PortName& port : ports) {
     text += port.path + (port.what.empty() ? "" : "  " + Printable(port.what)) +

@@ -36,7 +36,7 @@ std::atomic<int> stop_signal = 0;
 /// The first signal requests an orderly end. A second Ctrl-C stops at once, which a store survives.
 void Stop(int signal) {
   constexpr std::string_view kWords =
-      "\nrefit_pendulums: stopping when the runs in work are done; Ctrl-C again stops at once\n";
+      "\nrefit_pendulums: stopping after the runs in progress; press Ctrl-C again to stop at once\n";
   if (signal == SIGINT && stop_signal == SIGINT) ::_exit(kInterrupted);
   const int error = errno;
   if (signal == SIGINT) WriteAll(STDERR_FILENO, kWords);
@@ -120,8 +120,7 @@ Result<int> FinishRefit(const RefitCounts& counts, const std::string& store, boo
     return ShowStatus(store);
   }
   PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
-                                   " are left: the same command goes on from here" +
-                                   (force ? ", without --force" : ""));
+                                   " are left; run the same command to continue" + (force ? ", without --force" : ""));
   return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
 }
 
@@ -155,9 +154,10 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
   const std::string& out = options.out;
   const bool lines = out.ends_with(".jsonl") || out.ends_with(".ndjson");
   if (!lines && !out.ends_with(".csv") && !IsStandardOutput(out)) {
-    return Error(StatusCode::kInvalidArgument, "--out " + out +
-                                                   ": its name ends with .csv for a table, with .jsonl for "
-                                                   "JSON lines; - is the table on standard output");
+    return Error(
+        StatusCode::kInvalidArgument,
+        "--out " + out +
+            ": the name must end with .csv for a table or .jsonl for JSON lines; - is the table on standard output");
   }
   auto store = OpenForOutput(options);
   if (!store) return tl::unexpected(store.error());
@@ -170,9 +170,10 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
 Result<int> MakeReport(const RefitPendulumsOptions& options) {
   const bool json = options.out.ends_with(".json");
   if (!json && !options.out.ends_with(".html") && !IsStandardOutput(options.out)) {
-    return Error(StatusCode::kInvalidArgument, "--out " + options.out +
-                                                   ": its name ends with .html for a page, with .json for what it "
-                                                   "shows; - is the page on standard output");
+    return Error(
+        StatusCode::kInvalidArgument,
+        "--out " + options.out +
+            ": the name must end with .html for a page or .json for its data; - is the page on standard output");
   }
   auto store = OpenForOutput(options);
   if (!store) return tl::unexpected(store.error());
@@ -210,7 +211,7 @@ Result<int> RunPack(const RefitPendulumsOptions& options) {
   if (packed->unreadable > 0) {
     PrintMessage(kRefitToolName,
                  std::to_string(packed->unreadable) + " of " + std::to_string(packed->files) +
-                     " files could not be read, which the pack will say of them; the first: " + packed->first_reason);
+                     " files could not be read, and the pack records that; the first: " + packed->first_reason);
   }
   return 0;
 }

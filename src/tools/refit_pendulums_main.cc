@@ -11,34 +11,35 @@
 #include "tools/registered_run_flags.h"
 #include "tools/run_tool.h"
 
-DEFINE_string(
-    manifest, "",
-    "Runs to refit: CSV with the column path, and id, rig, calibration, from_s, to_s, models or others, paths "
-    "relative to it; or a file made by pack; - is standard input.");
+DEFINE_string(manifest, "",
+              "Runs to refit: CSV with the column path and optional columns id, rig, calibration, from_s, to_s, models "
+              "and others, paths relative to the CSV file; or a file made by pack; - is standard input.");
 DEFINE_string(data, "",
               "Instead of a manifest: folders (all *.csv, *.mat and *.zip files below), patterns such as "
               "'runs/**/*.txt' and files, between commas.");
-DEFINE_string(store, "", "SQLite file of the results; it is made, or brought up to date.");
-DEFINE_bool(force, false, "Refits also runs whose data, rig, calibration, options and version are as stored.");
-DEFINE_bool(retry_failed, false, "Refits also runs that could not be fitted; default off: the same files fail alike.");
-DEFINE_string(shard, "", "k/N: refits part k (from 0) of N alone, for one store out/shard-k.sqlite each; default all.");
-DEFINE_string(scratch, "", "Folder where a shard is worked on until it is published; default beside the store.");
+DEFINE_string(store, "", "SQLite file of the results; it is created or updated.");
+DEFINE_bool(force, false, "Refits also runs whose data, rig, calibration, options and version have not changed.");
+DEFINE_bool(retry_failed, false,
+            "Refits also runs that could not be fitted; default off, because the same files fail again.");
+DEFINE_string(shard, "",
+              "k/N: refits only part k (from 0) of N, each into its own store out/shard-k.sqlite; default all.");
+DEFINE_string(scratch, "", "Folder of a shard until it is complete; default beside the store.");
 DEFINE_double(checkpoint_s, 60,
-              "Seconds between checkpoints of a shard, from which another attempt goes on; default 60.");
+              "Seconds between checkpoints of a shard, from which another attempt continues; default 60.");
 DEFINE_string(shard_dir, "", "Folder of the stores shard-0.sqlite, shard-1.sqlite, ... of missing and merge.");
 DEFINE_int64(shard_count, 0, "How many shards there are.");
-DEFINE_string(out, "", "What export, report or pack writes: .csv or .jsonl, .html or .json, a packed file.");
+DEFINE_string(out, "", "Output of export (.csv or .jsonl), report (.html or .json) or pack.");
 DEFINE_string(group_by, "",
-              "Manifest column of the report: runs with one value are of one rig; default rig where "
-              "several are named, else all runs are of one.");
+              "Manifest column of the report: runs with the same value are of one rig; default rig if several are "
+              "named, else all runs are of one rig.");
 DEFINE_string(trend_by, "",
-              "Manifest column of the report, numbers or dates, that trends are over; default the position.");
+              "Manifest column of the report, numbers or dates, over which trends are computed; default the position.");
 
 namespace pendulum {
 namespace {
 
 constexpr const char* kUsage =
-    "Fits all recordings of a batch, as fit_pendulum fits one, into a store of results: again only what changed.\n"
+    "Fits all recordings of a batch, as fit_pendulum fits one, into a store of results. Refits only what changed.\n"
     "\n"
     "  refit_pendulums --manifest runs.csv --models viscous,coulomb --store results.sqlite\n"
     "  refit_pendulums --data recordings --models all --store results.sqlite\n"
@@ -52,10 +53,9 @@ constexpr const char* kUsage =
     "  refit_pendulums missing --shard_dir out --shard_count 64\n"
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
-    "What cannot be read or fitted costs its own rows, which say why. Interrupted, the same command goes on.\n"
-    "Exit codes: 0 every run has its rows, 1 compare found what moved by more than its error, ended otherwise or is\n"
-    "gone, 2 wrong flags, 3 file "
-    "or\n"
+    "A run that cannot be read or fitted has a row that says why. After an interruption the same command continues.\n"
+    "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another "
+    "status or\nis missing, 2 wrong flags, 3 file or\n"
     "shards not found, 4 unreadable manifest or store, 5 no run, 70 a bug, 73 the store or an output cannot be "
     "written,\n"
     "75 terminated or the store is in use: try again, 130 interrupted.\n"

@@ -51,7 +51,7 @@ Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) 
   }
   const std::size_t most = command.command == RefitCommand::kCompare ? 3 : 1;
   if (flags.positional.size() <= most) return {};
-  return BadFlag("'" + flags.positional[most] + "' belongs to no flag of " + std::string(command.name));
+  return BadFlag("'" + flags.positional[most] + "' does not belong to a flag of " + std::string(command.name));
 }
 
 Result<Shard> ParseShard(const std::string& text) {
@@ -84,8 +84,8 @@ Result<void> ParseSource(const RefitFlags& flags, RefitPendulumsOptions& options
 
 Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& options) {
   if (flags.shard.empty()) {
-    if (Contains(flags.given, "scratch")) return BadFlag("--scratch is where a shard is worked on; give --shard too");
-    if (Contains(flags.given, "checkpoint_s")) return BadFlag("--checkpoint_s is of a shard; give --shard too");
+    if (Contains(flags.given, "scratch")) return BadFlag("--scratch is for a shard; give --shard too");
+    if (Contains(flags.given, "checkpoint_s")) return BadFlag("--checkpoint_s is for a shard; give --shard too");
     return {};
   }
   const auto shard = ParseShard(flags.shard);
@@ -104,7 +104,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   if (!flags.positional.empty()) {
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);
-    return BadFlag("'" + flags.positional.front() + "' is no command; the commands are " + NameList(names) +
+    return BadFlag("'" + flags.positional.front() + "' is not a command; the commands are " + NameList(names) +
                    ", and none refits");
   }
   for (const std::string_view name : kNotForRefit) {

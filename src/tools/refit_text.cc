@@ -106,7 +106,7 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
   text += Heading("Parameters") + Row("identical", comparison.identical) +
           Row("within 1e-9 of their errors", comparison.rounding) +
           Row("within their errors", comparison.within_errors) + Row("moved by more", comparison.moved) +
-          Row("changed, without an error", comparison.without_error);
+          Row("changed, without a standard error", comparison.without_error);
   if (comparison.cpus_before != comparison.cpus_after) {
     text += Heading("Types of CPU") + Prose(before + ": " + NameList(comparison.cpus_before)) +
             Prose(after + ": " + NameList(comparison.cpus_after));

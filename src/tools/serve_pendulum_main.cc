@@ -26,17 +26,17 @@
 #include "tools/run_tool.h"
 #include "tools/serve_pendulum_options.h"
 
-DEFINE_int32(port, 8080, "Port to listen at; 0 takes any free one, and says which; default 8080.");
+DEFINE_int32(port, 8080, "Port to listen on; 0 chooses a free port and prints it; default 8080.");
 DEFINE_string(address, "127.0.0.1",
-              "Address to listen at, IPv4 or IPv6; default 127.0.0.1, so that only this machine can ask.");
-DEFINE_string(store, "", "File that keeps the fits (SQLite, as refit_pendulums has it); made if it is not there.");
+              "Address to listen on, IPv4 or IPv6; default 127.0.0.1, which only this machine can reach.");
+DEFINE_string(store, "",
+              "File that stores the fits (SQLite, with the tables of refit_pendulums); created if it does not exist.");
 DEFINE_int32(threads, 0, "Fits at a time; default 0, as many as there are cores.");
-DEFINE_string(
-    token_file, "",
-    "File whose first line is the token that a client must know; default the environment's PENDULUM_TOKEN, or "
-    "none. Needed for an --address that other machines reach.");
+DEFINE_string(token_file, "",
+              "File whose first line is the token that a client must send; default the environment variable "
+              "PENDULUM_TOKEN, or none. Needed for an --address that other machines reach.");
 DEFINE_string(allowed_hosts, "",
-              "Names by which clients may ask besides localhost, between commas, such as a proxy's; default none, and "
+              "Host names that clients may use besides localhost, between commas, such as a proxy's; default none, and "
               "any with a token.");
 DEFINE_int32(max_body_mb, 32, "Largest body of a request, MiB; default 32.");
 DEFINE_int32(max_samples, 200000, "Longest recording, in samples; default 200000.");
@@ -45,11 +45,10 @@ DEFINE_int32(max_queue, 64, "Requests that may wait for a thread; one more is re
 DEFINE_int32(max_batch_runs, 10000, "Recordings of batches that may wait; default 10000.");
 DEFINE_int32(max_connections, 512, "Connections at a time; default 512.");
 DEFINE_int32(request_seconds, 30, "Longest time for a request to come in, s; default 30.");
-DEFINE_int32(stop_seconds, 20, "How long fits that are under way may take when it is stopped, s; default 20.");
+DEFINE_int32(stop_seconds, 20, "How long fits in progress may take when the service stops, s; default 20.");
 DEFINE_string(live, "",
-              "The file that a running record_pendulum --out writes, to be shown live on the page; default none.");
-DEFINE_string(docs, "",
-              "Folder of the user guide, shown at /docs; default the guide that was installed with this program.");
+              "The file that a running record_pendulum --out writes, to show it live on the page; default none.");
+DEFINE_string(docs, "", "Folder of the user guide, shown at /docs; default the guide installed with this program.");
 
 namespace pendulum {
 namespace {
@@ -57,16 +56,16 @@ namespace {
 constexpr std::string_view kName = "serve_pendulum";
 
 constexpr const char* kUsage =
-    "Fits recordings of a pendulum for whoever asks over HTTP, and shows a page for it.\n"
+    "Fits recordings of a pendulum over HTTP, and shows a page for it.\n"
     "\n"
     "  serve_pendulum --store fits.sqlite\n"
     "\n"
     "Then http://localhost:8080 is the page, and curl --data-binary @run.csv --header 'Content-Type: text/csv'\n"
-    "http://localhost:8080/v1/fits?model=coulomb gives the JSON of fit_pendulum; /openapi.json tells the rest.\n"
-    "SIGTERM or Ctrl-C ends it once what is under way is answered; batches go on at the next start.\n"
+    "http://localhost:8080/v1/fits?model=coulomb gives the JSON of fit_pendulum; /openapi.json has the rest.\n"
+    "SIGTERM or Ctrl-C stops it when the requests in progress are answered; batches continue at the next start.\n"
     "\n"
     "Exit codes: 0 stopped, 2 wrong flags, 3 token file not found, 4 a store or token file that cannot be read, 70 a\n"
-    "bug, 73 the port or the store cannot be had, 75 another process writes to the store.\n"
+    "bug, 73 the port or the store is not available, 75 another process writes to the store.\n"
     "\n";
 
 ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {

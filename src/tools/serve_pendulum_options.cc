@@ -47,8 +47,8 @@ bool IsLoopbackAddress(const std::string& address) { return address.starts_with(
 Result<void> CheckAudience(const ServePendulumFlags& flags, const std::string& token) {
   if (!token.empty() || IsLoopbackAddress(flags.address)) return {};
   return BadFlag("--address " + flags.address +
-                 " lets other machines ask, so a token is needed: give a file that has one with --token_file, or set "
-                 "PENDULUM_TOKEN; 127.0.0.1 is this machine alone");
+                 " is open to other machines, so a token is needed: give a file with --token_file, or set "
+                 "PENDULUM_TOKEN; use 127.0.0.1 for this machine only");
 }
 
 Result<void> CheckHosts(const ServePendulumFlags& flags) {
@@ -93,9 +93,9 @@ ServiceOptions ServiceOptionsOf(const ServePendulumFlags& flags, const std::stri
 }  // namespace
 
 Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& flags, const std::string& token) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (flags.store.empty()) {
-    return BadFlag("--store is missing: the file that keeps the fits, which is made if it is not there");
+    return BadFlag("--store is missing: the file that stores the fits, created if it does not exist");
   }
   if (const auto checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckHosts(flags); !checked) return tl::unexpected(checked.error());

@@ -26,13 +26,13 @@ DEFINE_string(set, "",
               "pivot_x, pivot_y.");
 DEFINE_string(
     spread, "",
-    "Standard deviations, name=std_dev,... in SI, with which the truth of each recording scatters normally about "
-    "--set, by the recording's seed and within the bounds of each parameter; default none.");
+    "Standard deviations, name=std_dev,... in SI, of a normal distribution about --set, from which the truth of each "
+    "recording is drawn with the recording's seed and within the bounds of each parameter; default none.");
 DEFINE_string(out, "", "Where to write the recording as CSV; - is standard output.");
 DEFINE_string(truth, "", "Where to write the truth, the parameters, as JSON; - is standard output; default nowhere.");
 DEFINE_string(manifest, "",
-              "Where to list the recordings as CSV once all are made: path, id, rig, seed and the truth; - is standard "
-              "output; default nowhere.");
+              "Where to list the recordings as CSV when all are written: path, id, rig, seed and the truth; - is "
+              "standard output; default nowhere.");
 DEFINE_bool(plan, false,
             "Makes no recording, but predicts the standard error of each parameter (Cramér-Rao), and how amplitude, "
             "duration, rate and resolution change it; default off.");
@@ -42,23 +42,25 @@ DEFINE_int32(threads, 0, "Threads, on which the result does not depend; default 
 DEFINE_double(duration, 20, "Length of the recording, s; default 20.");
 DEFINE_double(rate, 100, "Sampling rate, Hz; default 100.");
 DEFINE_double(start_time, 0, "Clock at the first sample, s; default 0.");
-DEFINE_double(jitter, 0, "Standard deviation of the sampling instants, s, which the stamps tell truly; default 0.");
+DEFINE_double(jitter, 0,
+              "Standard deviation of the sampling instants, s; the time stamps are the true instants; default 0.");
 DEFINE_string(unit, "deg",
               "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro), volts (gyro of unknown scale), m_s2 "
               "(accelerometer), px or m (both coordinates of a point); default deg.");
 DEFINE_double(noise, 0, "Standard deviation of the noise before quantization, in --unit; default 0.");
-DEFINE_double(noise_correlation, 0, "AR(1): correlation of each sample's noise with the one before; default 0, white.");
+DEFINE_double(noise_correlation, 0,
+              "AR(1): correlation of each sample's noise with the previous one; default 0, white.");
 DEFINE_double(noise_freedom, 0,
-              "Degrees of freedom, above 2, of Student's t noise, whose scale --noise then is; default 0, Gaussian.");
+              "Degrees of freedom, above 2, of Student's t noise; --noise is then its scale; default 0, Gaussian.");
 DEFINE_bool(event_driven, false,
-            "Rows of an encoder that come only when its count changes, --resolution; --noise is then the error of an "
-            "edge; default off.");
+            "Rows of an encoder, only where its count changes; --resolution is then one count and --noise the error of "
+            "an edge; default off.");
 DEFINE_double(time_noise, 0, "Standard deviation of the error of an event's stamp, s; default 0.");
 DEFINE_double(resolution, 0, "Spacing of the sensor's levels, in --unit; default 0, none.");
-DEFINE_string(range, "", "What the sensor can show, low,high in --unit; its levels start at low; default unlimited.");
+DEFINE_string(range, "", "Range of the sensor, low,high in --unit; its levels start at low; default unlimited.");
 DEFINE_string(lose, "",
-              "Counts that are lost, time:counts,... with times in s: from then on the readings stand so many "
-              "--resolution higher; default none.");
+              "Lost counts, time:counts,... with times in s: from then on the readings are higher by this many times "
+              "--resolution; default none.");
 
 namespace pendulum {
 namespace {

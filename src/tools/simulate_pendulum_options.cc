@@ -17,11 +17,11 @@ Result<void> CheckPlan(const SimulateFlags& flags) {
   if (!flags.spread.empty()) return BadFlag("--spread" + contradiction);
   if (!flags.manifest.empty()) return BadFlag("--manifest" + contradiction);
   if (flags.noise != 0 || flags.resolution != 0) return {};
-  return BadFlag("--plan needs --noise or --resolution: without either nothing limits what a recording tells");
+  return BadFlag("--plan needs --noise or --resolution, because without them the standard errors would be 0");
 }
 
 Result<void> CheckFiles(const SimulateFlags& flags) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' belongs to no flag");
+  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (flags.plan) return CheckPlan(flags);
   if (flags.out.empty()) return BadFlag("--out is missing: the file for the recording, or - for standard output");
   if (flags.count < 1) return BadFlag("--count is " + std::to_string(flags.count) + "; it must be at least 1");

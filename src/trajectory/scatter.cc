@@ -56,9 +56,9 @@ Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter
     offence = Offence(parameters, order, values);
     if (offence.empty()) return values;
   }
-  return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMaxDraws) + " draws of seed " +
-                                                 std::to_string(seed) + " none is within the bounds: in the last, " +
-                                                 offence + "; let the parameters scatter less");
+  return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMaxDraws) + " draws with seed " +
+                                                 std::to_string(seed) + " none is within the bounds (in the last, " +
+                                                 offence + "); make the standard deviations smaller");
 }
 
 }  // namespace pendulum

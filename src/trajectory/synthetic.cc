@@ -112,7 +112,7 @@ Result<void> CheckLostCounts(const SyntheticOptions& options) {
     }
   }
   if (options.lost_counts.empty() || options.resolution > 0) return {};
-  return Error(StatusCode::kInvalidArgument, "counts are lost by a sensor with levels; give a resolution");
+  return Error(StatusCode::kInvalidArgument, "only a sensor with discrete levels loses counts; give a resolution");
 }
 
 /// The amount by which counts lost before `time` raise the readings.
@@ -153,9 +153,9 @@ Result<void> CheckEvents(const SyntheticOptions& options) {
   const bool plain = options.quantity == Quantity::kAngle && !options.range && options.jitter == 0 &&
                      options.noise_correlation == 0 && options.noise_freedom == 0;
   if (!plain) {
-    return Error(
-        StatusCode::kInvalidArgument,
-        "rows of events are those of an encoder: of an angle without range or jitter, with white normal noise");
+    return Error(StatusCode::kInvalidArgument,
+                 "rows of events come from an encoder: the sensor must measure an angle, without range or jitter, with "
+                 "white normal noise");
   }
   if (!(options.resolution >= kFinestEvents))
     return BadOption("resolution", options.resolution, "at least 1e-05 rad where rows are events");
@@ -369,7 +369,7 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   }
   if (!recording.value.allFinite()) {
     return Error(StatusCode::kFailedPrecondition,
-                 "the motion cannot be traced with these parameters: a number overflows");
+                 "the motion cannot be computed with these parameters, because a number overflows");
   }
   return MakeRecording(std::move(recording));
 }

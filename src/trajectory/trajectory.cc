@@ -56,13 +56,14 @@ Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const doub
   switch (trajectory.summary().outcome) {
     case TraceSummary::Outcome::kComplete: return trajectory;
     case TraceSummary::Outcome::kNeverMoved:
-      return Error(
-          StatusCode::kFailedPrecondition,
-          "friction holds the pendulum where it starts: it never moves; release it farther out, or lower dry friction");
+      return Error(StatusCode::kFailedPrecondition,
+                   "friction holds the pendulum where it starts, so it never moves; release it from a larger angle, or "
+                   "lower dry friction");
     case TraceSummary::Outcome::kNotTraceable: break;
   }
-  return Error(StatusCode::kFailedPrecondition,
-               "the motion cannot be traced with these parameters: its time scale is too short for the duration");
+  return Error(
+      StatusCode::kFailedPrecondition,
+      "the motion cannot be computed with these parameters, because its time scale is too short for the duration");
 }
 
 }  // namespace pendulum

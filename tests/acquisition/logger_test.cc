@@ -141,7 +141,7 @@ TEST(Logger, ReportsSilence) {
   script.is_mute = true;
   Connection connection(script);
   const double begin = HostTime();
-  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), StartsWith("nothing on " + connection.board.path()));
+  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), StartsWith("no logger answers on " + connection.board.path()));
   EXPECT_GE(HostTime() - begin, 0.6);
   EXPECT_LT(HostTime() - begin, 2);
 }
@@ -152,7 +152,7 @@ TEST(Logger, ReportsADeviceThatIsNotALogger) {
   script.chatter = Bytes("$GPGGA,123519,4807.038,N,01131.000,E,1,08*47\r\n");
   Connection connection(script);
   const double begin = HostTime();
-  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), HasSubstr("is no pendulum_logger's"));
+  EXPECT_THAT(FaultOf(connection.logger.Connect(0.6)), HasSubstr("is not a pendulum_logger"));
   EXPECT_LT(HostTime() - begin, 2);
 }
 
@@ -205,7 +205,7 @@ TEST(Logger, ReportsAnUnansweredCommand) {
   LoggerScript script;
   script.is_mute = true;
   Connection connection(script);
-  EXPECT_THAT(FaultOf(connection.logger.SetRate({10000, 1})), HasSubstr("now does not answer 'R'"));
+  EXPECT_THAT(FaultOf(connection.logger.SetRate({10000, 1})), HasSubstr("but does not answer 'R'"));
 }
 
 TEST(Logger, ReportsRefusals) {
@@ -320,8 +320,8 @@ TEST(Logger, ReportsALostPort) {
   Connection connection(script);
   ASSERT_TRUE(connection.logger.Start());
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(Next<wire::Data>(connection.logger));
-  EXPECT_THAT(FaultOf(connection.logger.Receive(5)), HasSubstr("is gone"));
-  EXPECT_THAT(FaultOf(connection.logger.RequestStop()), HasSubstr("is gone"));
+  EXPECT_THAT(FaultOf(connection.logger.Receive(5)), HasSubstr("was disconnected"));
+  EXPECT_THAT(FaultOf(connection.logger.RequestStop()), HasSubstr("was disconnected"));
 }
 
 }  // namespace

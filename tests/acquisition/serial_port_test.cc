@@ -203,7 +203,7 @@ TEST(SerialPort, ReportsAPulledCable) {
   const auto bytes = port.Read(1);
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(bytes.error().message, HasSubstr(cable.path() + " is gone"));
+  EXPECT_THAT(bytes.error().message, HasSubstr(cable.path() + " was disconnected"));
   const auto written = port.Write(Bytes({1}));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
@@ -231,7 +231,7 @@ TEST(SerialPort, TimesOutIfNobodyReads) {
   const auto written = port.Write(Bytes(1000000, 0x55));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(written.error().message, HasSubstr("takes no bytes"));
+  EXPECT_THAT(written.error().message, HasSubstr("accepts no data"));
   EXPECT_LT(SecondsSince(begin), 3);
 }
 
@@ -258,7 +258,7 @@ TEST(SerialPort, ReportsAMissingPort) {
 TEST(SerialPort, RejectsAFileThatIsNotAPort) {
   const Status error = OpenError("/dev/null");
   EXPECT_EQ(error.code, StatusCode::kDataLoss);
-  EXPECT_THAT(error.message, HasSubstr("/dev/null is no serial port"));
+  EXPECT_THAT(error.message, HasSubstr("/dev/null is not a serial port"));
   EXPECT_EQ(OpenError(fs::temp_directory_path()).code, StatusCode::kDataLoss);
 }
 

@@ -102,8 +102,7 @@ TEST(AmplitudeDependence, IsReportedIfNoRecordingIsAnOutlier) {
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   EXPECT_THAT(result.disagreeing, IsEmpty());
   EXPECT_THAT(result.verdict,
-              HasSubstr("inertia falls by 1.7 % from the recording of the smallest swings to that of the "
-                        "largest"));
+              HasSubstr("inertia falls by 1.7 % from the recording with the smallest swings to that with the largest"));
   EXPECT_THAT(result.verdict, HasSubstr("and nothing else differs"));
 }
 

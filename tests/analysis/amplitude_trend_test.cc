@@ -185,7 +185,7 @@ TEST(CompareWindows, TestsFreeParametersOnly) {
   EXPECT_THAT(trends.found.trends, ElementsAre(Field(&AmplitudeTrend::name, "inertia")));
   for (const AmplitudeRow& row : trends.found.windows) EXPECT_TRUE(std::isnan(row.friction));
   options.fixed.emplace("inertia", kInertia0);
-  EXPECT_THAT(TrendsOf(FitTo(recording, options), options).reason, HasSubstr("there is no trend to look for"));
+  EXPECT_THAT(TrendsOf(FitTo(recording, options), options).reason, HasSubstr("there is no trend to test"));
 }
 
 // The zero moves by 0.02 rad. Windows that all started at a zero of 0.012 rad would give other values of inertia and

@@ -186,7 +186,7 @@ TEST(ClosedFormRow, RejectsAPointMassForAHeavyRod) {
   EXPECT_THAT(*point.z, DoubleNear((0.475 * 0.43 * 0.43 - inertia) / change, 0.02 * std::abs(*point.z)));
   EXPECT_EQ(point.agrees, false);
   EXPECT_EQ(point.why, "15 % larger than the fit's, more than the rig's errors allow");
-  EXPECT_THAT(checked.check.summary, HasSubstr("a point mass would not do"));
+  EXPECT_THAT(checked.check.summary, HasSubstr("a point mass is not an adequate model"));
 }
 
 TEST(ClosedFormRow, AgreesWithAPointMassForAMasslessRod) {
@@ -204,7 +204,7 @@ TEST(ClosedFormRow, HasNoZIfTheRigHasNoErrors) {
     EXPECT_EQ(row.std_error, std::nullopt);
     EXPECT_EQ(row.z, std::nullopt);
     EXPECT_EQ(row.agrees, std::nullopt);
-    EXPECT_THAT(row.why, HasSubstr("the rig file gives no errors to judge that by"));
+    EXPECT_THAT(row.why, HasSubstr("the rig file gives no errors to compare it with"));
   }
   EXPECT_THAT(checked.Row("inertia_point_mass").why, testing::StartsWith("15 % larger than the fit's"));
 }
@@ -248,7 +248,7 @@ TEST(ClosedFormRow, ReportsWhetherAPointMassIsAdequate) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
   const CheckedRun checked = CheckRun(run, "viscous", rig);
-  EXPECT_THAT(checked.check.summary, HasSubstr("a point mass would do"));
+  EXPECT_THAT(checked.check.summary, HasSubstr("a point mass is an adequate model"));
 }
 
 // A fixed inertia has no error; the rig's error is enough for a verdict.
@@ -283,11 +283,11 @@ TEST(ClosedFormRow, HasNoZIfTheFitDidNotConverge) {
     EXPECT_EQ(row.agrees, std::nullopt) << row.quantity;
     EXPECT_EQ(row.closed_form, checked.Row(row.quantity).closed_form);
     EXPECT_THAT(row.why, testing::AnyOf(HasSubstr("the fit has no standard error"),
-                                        HasSubstr("the fit gives no errors to judge that by")))
+                                        HasSubstr("the fit gives no errors to compare it with")))
         << row.quantity;
   }
   EXPECT_THAT(check.rows[1].why, HasSubstr("the fit has no standard error: the fit is not_converged"));
-  EXPECT_THAT(check.summary, testing::StartsWith("there are no errors to judge the closed forms by"));
+  EXPECT_THAT(check.summary, testing::StartsWith("there are no errors to compare the closed forms with"));
 }
 
 TEST(ClosedFormRow, IsMissingForAFailedFit) {

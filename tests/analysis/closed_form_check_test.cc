@@ -150,7 +150,7 @@ TEST(CheckClosedForms, AttributesTheEffectOfAFixedParameterToTheRecording) {
   const CheckedRun checked = CheckFit(FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options));
   const ClosedFormRow& row = checked.Row("viscous_turning_points");
   EXPECT_EQ(row.agrees, false);
-  EXPECT_THAT(row.why, HasSubstr("by what the recording has beyond the fitted motion"));
+  EXPECT_THAT(row.why, HasSubstr("by features of the recording that the fitted motion lacks"));
 }
 
 // Noise autocorrelated over 0.2 s, 8 s at 50 Hz: the law is right, but its turning points are not independent.
@@ -192,7 +192,7 @@ TEST(CheckClosedForms, DoesNotClaimSmallAnglesForTheEllipticIntegral) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.release_angle = 2.6;
   const CheckedRun checked = CheckRun(run, "viscous");
-  EXPECT_THAT(checked.Row("inertia_elliptic_period").why, Not(HasSubstr("where the formula takes small angles")));
+  EXPECT_THAT(checked.Row("inertia_elliptic_period").why, Not(HasSubstr("while the formula assumes small angles")));
 }
 
 // ---- Rows ----------------------------------------------------------------------------------------------------------

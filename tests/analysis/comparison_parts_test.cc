@@ -108,7 +108,7 @@ TEST(ChooseLikelihood, IsCorrelatedForNormalNoiseAboveHalfACount) {
   EXPECT_EQ(ChooseLikelihood(fit, 0), Likelihood::kCorrelated);
   EXPECT_EQ(ChooseLikelihood(fit, 1.9e-3), Likelihood::kCorrelated);
   EXPECT_EQ(ChooseLikelihood(fit, 2.1e-3), Likelihood::kNone);
-  EXPECT_THAT(DescribeLikelihood(Likelihood::kCorrelated, fit), HasSubstr("AR(1) as those of coulomb"));
+  EXPECT_THAT(DescribeLikelihood(Likelihood::kCorrelated, fit), HasSubstr("AR(1) as for coulomb"));
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, fit), HasSubstr("noise below half a count"));
 }
 

@@ -147,7 +147,7 @@ TEST(Constancy, SkipsFixedParameters) {
   for (const AmplitudeRow& row : constancy.windows) EXPECT_TRUE(std::isnan(row.friction));
   options.fixed.emplace("inertia", 0.079 / kTextbookTorque);
   const Constancy nothing = TestFit(FitTo(recording, options), options);
-  EXPECT_THAT(nothing.reason, HasSubstr("inertia and friction are held"));
+  EXPECT_THAT(nothing.reason, HasSubstr("inertia and friction are fixed"));
   EXPECT_FALSE(nothing.halves_p);
 }
 

@@ -72,14 +72,14 @@ std::string Described(const std::vector<double>& parts, double std_dev = 1e-3, c
 TEST(DescribeCauses, NamesEachCause) {
   EXPECT_EQ(Described({2, 0, 0, 0, 0}), "differs by +2 s: +2 by a spring");
   EXPECT_EQ(Described({0, 2, 0, 0, 0}), "differs by +2 s: +2 by a slope");
-  EXPECT_EQ(Described({0, 0, -2, 0, 0}), "differs by -2 s: -2 by sampling, too sparse about the turning points");
+  EXPECT_EQ(Described({0, 0, -2, 0, 0}), "differs by -2 s: -2 by too few samples around the turning points");
   EXPECT_EQ(Described({0, 0, 0, -2, 0}), "differs by -2 s: -2 by the sensor's resolution");
   EXPECT_EQ(Described({0, 0, 0, 0, 2}), "differs by +2 s: +2 by a shadow");
 }
 
 TEST(DescribeCauses, NamesTheDriftOfTheZero) {
   EXPECT_EQ(DescribeCauses({0, -2, 0, 0, 0, 0}, 1e-3, "s", {}),
-            "differs by -2 s: -2 by the drift of the zero, which the formula does not know");
+            "differs by -2 s: -2 by the drift of the zero, which the formula ignores");
 }
 
 TEST(DescribeCauses, ListsTheLargestPartFirst) {

@@ -235,8 +235,8 @@ TEST(Homogeneity, IsNotTestedIfAllSharedParametersAreFixed) {
   EXPECT_FALSE(result.p);
   EXPECT_TRUE(result.agrees());
   EXPECT_THAT(result.parameters, IsEmpty());
-  EXPECT_EQ(result.reason, "all that is shared is fixed: there is nothing to compare");
-  EXPECT_EQ(result.verdict, "not tested: all that is shared is fixed: there is nothing to compare");
+  EXPECT_EQ(result.reason, "all shared parameters are fixed, so there is nothing to compare");
+  EXPECT_EQ(result.verdict, "not tested: all shared parameters are fixed, so there is nothing to compare");
 }
 
 TEST(Homogeneity, SkipsFixedParameters) {
@@ -254,7 +254,7 @@ TEST(Homogeneity, IsNotTestedWithOneInformativeRecording) {
   fits.Fit(0).termination = Termination::kNotConverged;
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   EXPECT_FALSE(result.p);
-  EXPECT_EQ(result.reason, "fewer than two recordings tell all shared parameters alone");
+  EXPECT_EQ(result.reason, "fewer than two recordings determine all shared parameters on their own");
 }
 
 TEST(Homogeneity, UsesInformativeRecordingsOnly) {

@@ -88,7 +88,7 @@ TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
 TEST(Inconstancy, IsReportedWithItsSize) {
   const FittedRun run = Counted(NoisyTextbookRun("viscous"), WithLinearGravity({}));
   ASSERT_TRUE(run.fit.HasWarning("not_constant"));
-  EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("beyond the errors: inertia by 0.000"));
+  EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("by more than their errors: inertia by 0.000"));
 }
 
 // The rig's error is a factor common to all torques; the inconstancy belongs to inertia alone.
@@ -123,7 +123,7 @@ TEST(Inconstancy, UsesTheHalvesWithoutWindows) {
   AddInconstancyError(constancy, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
-  EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves; another run"));
+  EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves. Another run"));
 }
 
 // Windows that alternate have no slope, and the parameters they hold may differ between halves.

@@ -159,7 +159,7 @@ TEST(CompareJointModels, SkipsTermsThatEachRecordingAddsItself) {
   const Comparison comparison = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
   ASSERT_THAT(comparison.tests, SizeIs(1));
   EXPECT_FALSE(comparison.tests[0].p);
-  EXPECT_EQ(comparison.tests[0].reason, "what is added is not shared: each recording adds its own");
+  EXPECT_EQ(comparison.tests[0].reason, "the added parameters are not shared: each recording has its own");
   EXPECT_EQ(comparison.rows[1].parameters, 2 + 2 * (1 + 3 + 1));  // each recording has a separate dry friction
 }
 
@@ -184,7 +184,7 @@ std::vector<Recording> AutocorrelatedRecordings(int count, std::uint64_t seed) {
 TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
   const auto [joint, comparison] = Compare(AutocorrelatedRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
-  EXPECT_THAT(comparison.criterion, HasSubstr("remember"));
+  EXPECT_THAT(comparison.criterion, HasSubstr("are autocorrelated"));
   EXPECT_LT(comparison.effective_samples, 2250);
   double independent = 0;
   for (std::size_t k = 0; k < 3; ++k) independent += GaussianLogLikelihood(joint.FitOf(k, 1).residual);

@@ -104,7 +104,7 @@ TEST(FitTogether, FailsForAModelWithoutSharedParameters) {
   const JointModels joint = FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"drag"});
   const FitReport& failed = joint.joint[0].whole;
   EXPECT_EQ(failed.termination, Termination::kFailed);
-  EXPECT_EQ(failed.reason, "model coulomb has none of the parameters that are to be shared");
+  EXPECT_EQ(failed.reason, "model coulomb has none of the shared parameters");
   ASSERT_THAT(joint.joint[0].runs, SizeIs(2));
   for (const FitReport& run : joint.joint[0].runs) {
     EXPECT_EQ(run.termination, Termination::kFailed);
@@ -122,7 +122,7 @@ TEST(FitTogether, FailsIfASeparateFitFailed) {
   runs[1].alone.fits[0].reason = "made so";
   const JointModels joint = FitTogether(std::move(runs), PlainOptions(), {"coulomb"}, PhysicalNames({"coulomb"}));
   EXPECT_EQ(joint.joint[0].whole.termination, Termination::kFailed);
-  EXPECT_EQ(joint.joint[0].whole.reason, "recording 2 cannot be fitted alone: made so");
+  EXPECT_EQ(joint.joint[0].whole.reason, "recording 2 cannot be fitted separately: made so");
   EXPECT_FALSE(joint.homogeneity[0].p);
 }
 

@@ -75,7 +75,7 @@ TEST(TestNested, SimulatesForAnUnidentifiedParameter) {
     const auto tests = TestsOf(Must(SimulateRecording(run)), {"coulomb", "stribeck"});
     if (tests.empty()) continue;
     ++made;
-    EXPECT_THAT(tests[0].null, HasSubstr("simulated, for coulomb has no stribeck_rate"));
+    EXPECT_THAT(tests[0].null, HasSubstr("simulated, because coulomb has no stribeck_rate"));
     ASSERT_TRUE(tests[0].p) << tests[0].reason;
     below += *tests[0].p < 0.05;
     far_below += *tests[0].p < 0.001;

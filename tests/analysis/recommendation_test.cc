@@ -76,7 +76,7 @@ TEST(Recommend, GivesItsReasonInWords) {
 
 TEST(Recommend, NamesEquallyGoodModels) {
   EXPECT_THAT(Recommended({{"viscous", 90, 1}, {"coulomb", 51, 1}, {"drag", 50, 1}}).reason,
-              AllOf(HasSubstr("the simplest of those that the readings do not tell apart (drag, too"),
+              AllOf(HasSubstr("the simplest of the models that the readings do not distinguish (also drag"),
                     HasSubstr("BIC lower by 39 than with viscous")));
 }
 
@@ -85,8 +85,9 @@ TEST(Recommend, ReportsWhatIsMissing) {
   made.comparison.rows[1].lack_of_fit = true;
   made.comparison.rows[1].lag1_correlation = 0.6;
   Recommend(made.fitted.fits, made.comparison);
-  EXPECT_THAT(made.comparison.reason,
-              HasSubstr("but more than noise is left (lag-1 correlation 0.6): something else is missing"));
+  EXPECT_THAT(
+      made.comparison.reason,
+      HasSubstr("but the residuals are more than noise (lag-1 correlation 0.6), so the model still lacks something"));
 }
 
 // If more than noise is left, a smaller BIC is not enough: the law must predict readings that were not fitted.
@@ -97,10 +98,11 @@ TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
-  EXPECT_EQ(made.comparison.reason,
-            "drag: no other is better; stribeck has a smaller BIC, but what is left is no noise, and "
-            "the last 40 % is predicted no better, or not at all; but more than noise is left (lag-1 correlation 0): "
-            "something else is missing");
+  EXPECT_EQ(
+      made.comparison.reason,
+      "drag: no other is better; stribeck has a smaller BIC, but residuals that are not noise, and no better "
+      "prediction of the last 40 %, or none; but more than noise is left (lag-1 correlation 0), so the model still "
+      "lacks something");
   made.comparison.rows[1].forward.rms = 0.6;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
@@ -117,7 +119,7 @@ TEST(Recommend, ReportsADifferentChoiceByAicc) {
   made.comparison.rows[1].aicc = 20;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
-  EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would take drag"));
+  EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would choose drag"));
 }
 
 // Next to a refuted law, the weights of the others may all be 0 in double precision.
@@ -134,7 +136,7 @@ TEST(Recommend, UsesAiccOnlyAmongLawsNotRefuted) {
   made.comparison.rows[2].forward.rms = 0.5;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
-  EXPECT_THAT(made.comparison.reason, Not(HasSubstr("AICc would take")));
+  EXPECT_THAT(made.comparison.reason, Not(HasSubstr("AICc would choose")));
 }
 
 TEST(Recommend, IgnoresLawsWhoseExtraTermsAreZero) {

@@ -41,7 +41,7 @@ TEST(ParseJsonObject, RefusesARepeatedKey) {
 
 TEST(ParseJsonObject, RefusesNumbersBeyondADouble) {
   EXPECT_EQ(FaultOf(R"({"a": 1, "b": 1e999})"),
-            R"(a.json: "b" is beyond what a number can be (about 1e308); correct it)");
+            R"(a.json: "b" is larger than a number can be (about 1e308); correct it)");
 }
 
 TEST(ParseJsonObject, RefusesMoreThan64KiB) {
@@ -69,7 +69,7 @@ TEST(ParseJsonObject, RefusesTooMuchDepthOrTooManyKeys) {
   const auto refused = ParseJsonObject(deep, "rig.json", "rig", "{}");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(refused.error().message, testing::HasSubstr("more than 32 brackets within one another"));
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("more than 32 nested brackets"));
   std::string keys = "{";
   for (int i = 0; i <= 4100; ++i) keys += (i == 0 ? "\"k" : ",\"k") + std::to_string(i) + "\":1";
   EXPECT_FALSE(ParseJsonObject(keys + "}", "rig.json", "rig", "{}"));

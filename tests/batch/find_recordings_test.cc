@@ -164,8 +164,8 @@ TEST_F(FindRecordingsTest, NamesWhatIsNotFound) {
   EXPECT_EQ(FaultOf("a").message,
             folder + "/a: there is no *.csv, *.mat or *.zip file in this folder or below it; check the path");
   EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file is like this pattern; check the path");
-  EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file is like this pattern; check the path");
+  EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file matches this pattern; check the path");
+  EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file matches this pattern; check the path");
 }
 
 TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
@@ -179,9 +179,8 @@ TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
   }
   for (const char* pattern : {"locked", "", "*/*.csv", "**/*.csv"}) {
     EXPECT_EQ(FaultOf(pattern).code, StatusCode::kDataLoss) << pattern;
-    EXPECT_EQ(
-        FaultOf(pattern).message,
-        (folder_ / "locked").string() + ": this folder cannot be looked into; check its permissions, or name others");
+    EXPECT_EQ(FaultOf(pattern).message,
+              (folder_ / "locked").string() + ": this folder cannot be read; check its permissions, or name another");
   }
   EXPECT_THAT(Find("a/*.csv"), ElementsAre("a/x.csv"));
   if (self == 0) {

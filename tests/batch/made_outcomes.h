@@ -42,7 +42,7 @@ inline Json FitOf(const std::string& model, double inertia, const std::string& s
 inline RunOutcome OutcomeOf(const std::vector<Json>& fits, const char* recommended = nullptr) {
   RunOutcome outcome;
   outcome.provenance.version = "1.2.3";
-  outcome.provenance.cpu = "a processor";
+  outcome.provenance.cpu = "processor time";
   outcome.result = {{"data", {{"used_samples", 100}}}, {"fits", fits}, {"comparison", nullptr}};
   if (recommended != nullptr) outcome.result["comparison"] = {{"recommended", recommended}};
   for (const Json& fit : fits) outcome.models.push_back(fit["model"]);

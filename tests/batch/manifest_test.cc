@@ -216,7 +216,7 @@ TEST_F(ReadManifestTest, RefusesAHeaderWithoutRecordings) {
 }
 
 TEST_F(ReadManifestTest, RefusesARowOfAnotherLength) {
-  const std::string why = "; a field with a separator in it stands in quotes";
+  const std::string why = "; put a field that contains a separator in quotes";
   EXPECT_EQ(FaultOf("path,id\na.csv\n"), ":2: the row has 1 fields, the header 2" + why);
   EXPECT_EQ(FaultOf("path\na.csv\nb,c.csv\n"), ":3: the row has 2 fields, the header 1" + why);
 }
@@ -232,8 +232,8 @@ TEST_F(ReadManifestTest, RefusesInvalidWindows) {
   }
   EXPECT_EQ(FaultOf("path;from_s\na.csv;1,5\n"),
             ":2: column from_s: \"1,5\" is not a time in seconds on the file's clock");
-  EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2.5,1\n"), ":2: from_s 2.5 does not lie before to_s 1");
-  EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2,2\n"), ":2: from_s 2 does not lie before to_s 2");
+  EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2.5,1\n"), ":2: from_s 2.5 is not before to_s 1");
+  EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2,2\n"), ":2: from_s 2 is not before to_s 2");
 }
 
 TEST_F(ReadManifestTest, RefusesUnknownModels) {
@@ -245,25 +245,24 @@ TEST_F(ReadManifestTest, RefusesUnknownModels) {
 
 TEST_F(ReadManifestTest, RefusesUnpairedQuotes) {
   const std::string open =
-      ": a field begins with a double quote that is never closed; close it, or write a quote that belongs to the text "
-      "twice";
+      ": a field begins with a double quote that is never closed; close it, or double a quote that belongs to the text";
   EXPECT_EQ(FaultOf("path\na.csv\n\"b.csv\nc.csv\n"), ":3" + open);
   EXPECT_EQ(FaultOf("\"path\na.csv\n"), ":1" + open);
   const std::string inside =
-      ": a double quote stands inside a field; put the whole field in quotes and write its own quotes twice";
+      ": there is a double quote inside a field; put the whole field in quotes and double its own quotes";
   EXPECT_EQ(FaultOf("path\na.csv\n5\" rod.csv\n"), ":3" + inside);
   EXPECT_EQ(FaultOf("path\n\"a\"b.csv\n"), ":2" + inside);
 }
 
 TEST_F(ReadManifestTest, RefusesCarriageReturnsAsLineEnds) {
-  const std::string why = ": a carriage return stands within the line; end lines with LF or CRLF";
+  const std::string why = ": there is a carriage return within the line; end lines with LF or CRLF";
   EXPECT_EQ(FaultOf("path,id\ra.csv,1\r"), ":1" + why);
   EXPECT_EQ(FaultOf("path,id\na.csv\rx\n"), ":2" + why);
   EXPECT_EQ(FieldOf("\"a\rb\""), "a\rb");
 }
 
 TEST_F(ReadManifestTest, RefusesBytesThatAreNotText) {
-  EXPECT_THAT(FaultOf(std::string("path\na\0b.csv\n", 13)), StartsWith(":2:2: a NUL byte stands here"));
+  EXPECT_THAT(FaultOf(std::string("path\na\0b.csv\n", 13)), StartsWith(":2:2: there is a NUL byte"));
   EXPECT_THAT(FaultOf("path\n" + std::string(std::size_t{2} << 20, 'a') + "\n"),
               HasSubstr(":2:1: this line is longer than 1 MiB and begins with \"aaa"));
 }
@@ -273,7 +272,7 @@ TEST_F(ReadManifestTest, RefusesARowThatNeverEnds) {
   const std::string lines = Lines(std::size_t{17} << 20);
   const std::string why = " the row that begins here is longer than ";
   EXPECT_THAT(FaultOf("path,x\na.csv,1\nb.csv,\"" + lines + "\"\n"), StartsWith(":3:" + why));
-  EXPECT_THAT(FaultOf("path,x\na.csv,\"" + lines), AllOf(StartsWith(":2:" + why), EndsWith("not closed?")));
+  EXPECT_THAT(FaultOf("path,x\na.csv,\"" + lines), AllOf(StartsWith(":2:" + why), EndsWith("not closed")));
 }
 
 TEST_F(ReadManifestTest, RefusesAPathThatIsNotAFile) {

@@ -277,7 +277,7 @@ TEST_F(RefitTest, ReturnsTheErrorOfItsManifest) {
   const auto twice = Refit(*source, *store, coulomb_);
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(twice.error().message, HasSubstr("runs.csv:3: the id \"a\" stands at"));
+  EXPECT_THAT(twice.error().message, HasSubstr("runs.csv:3: the id \"a\" is also at"));
   folder_.Write("runs.csv", "path,id\n");
   const auto none = Refit(*source, *store, coulomb_);
   ASSERT_FALSE(none);

@@ -138,7 +138,7 @@ TEST_F(SourceTest, NamesAPatternWithoutMatches) {
   const auto source = FindSource({"datasets", "datasets/*.wav"});
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(source.error().message, "datasets/*.wav: no file is like this pattern; check the path");
+  EXPECT_EQ(source.error().message, "datasets/*.wav: no file matches this pattern; check the path");
 }
 
 // ---- Packs ---------------------------------------------------------------------------------------------------------
@@ -241,7 +241,7 @@ TEST_F(SourceTest, OverwritesOnlyPacks) {
     const auto packed = Pack(source, other);
     ASSERT_FALSE(packed);
     EXPECT_EQ(packed.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(packed.error().message, StartsWith(other.string() + ": this file is there and is no packed file"));
+    EXPECT_THAT(packed.error().message, StartsWith(other.string() + ": this file exists and is not a packed file"));
     EXPECT_EQ(fs::file_size(other), before);
   }
 }
@@ -311,7 +311,7 @@ TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, StatusCode::kDataLoss);
   EXPECT_EQ(newer.error().message,
-            pack_.string() + ": it was packed in form 2, and this program knows form 1; pack it anew");
+            pack_.string() + ": it was packed in form 2, and this program knows form 1; pack it again");
 }
 
 TEST_F(SourceTest, RefusesATruncatedPack) {

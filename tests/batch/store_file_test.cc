@@ -78,7 +78,7 @@ TEST_F(StoreFileTest, AllowsOneWriter) {
   const auto put = other.Put("a", UnfittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
-  EXPECT_EQ(put.error().message, path_ + ": another process has it; try again when that is done");
+  EXPECT_EQ(put.error().message, path_ + ": another process uses it; try again when that process is done");
   ASSERT_TRUE(store.Commit());
   ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same data later
   EXPECT_EQ(Reopen().Count()->unfitted, 1);
@@ -189,7 +189,7 @@ TEST_F(StoreFileTest, RefusesOtherSqliteFiles) {
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message,
-              path_ + ": this is no result store of refit_pendulums; name one, or a file that is not there yet");
+              path_ + ": this is not a result store of refit_pendulums; name one, or a file that does not exist yet");
   }
 }
 
@@ -197,9 +197,9 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
   Make({"a"}).database().exec("PRAGMA user_version = 99");
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
-    EXPECT_EQ(
-        FaultOf(mode).message,
-        path_ + ": the store has version 99, made by a newer program; this one knows 2 at most; use the newer one");
+    EXPECT_EQ(FaultOf(mode).message, path_ +
+                                         ": the store has version 99 of a newer program, but this program reads "
+                                         "versions up to 2; use the newer program");
   }
 }
 

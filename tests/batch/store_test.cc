@@ -170,7 +170,7 @@ TEST_F(StoreTest, RefusesARepeatedIdWithoutAChange) {
   const auto begun = store.Begin(SourceOfIds({"a", "b", "a"}), std::nullopt, R"({"other":1})");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(begun.error().message, "runs.csv:4: the id \"a\" stands at runs.csv:2 too; give each run an id of its own");
+  EXPECT_EQ(begun.error().message, "runs.csv:4: the id \"a\" is also at runs.csv:2; give each run its own");
   EXPECT_THAT(TextsOf(store, "SELECT id FROM runs"), ElementsAre("x"));
   EXPECT_EQ(TextsOf(store, "SELECT key || value FROM meta"), before);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM options"), 1);
@@ -182,7 +182,7 @@ TEST_F(StoreTest, RefusesAnEmptyBatch) {
   const auto begun = store.Begin(SourceOf({}), std::nullopt, "{}");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(begun.error().message, "runs.csv: it names no recording; give one a row");
+  EXPECT_EQ(begun.error().message, "runs.csv: it names no recording; give one per row");
 }
 
 TEST_F(StoreTest, ReturnsTheErrorOfTheSource) {

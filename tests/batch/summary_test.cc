@@ -77,7 +77,7 @@ TEST_F(SummaryTest, CountsFitsByModelStatusAndRecommendation) {
   EXPECT_EQ(summary["store"]["pending"], 1);
   EXPECT_EQ(summary["store"]["fits"], 7);
   EXPECT_THAT(summary["store"]["versions"], ElementsAre("1.2.3"));
-  EXPECT_THAT(summary["store"]["cpus"], ElementsAre("a processor"));
+  EXPECT_THAT(summary["store"]["cpus"], ElementsAre("processor time"));
   EXPECT_THAT(summary["models"], ElementsAre(Json({{"model", "coulomb"},
                                                    {"fits", 3},
                                                    {"converged", 2},
@@ -140,7 +140,7 @@ TEST_F(SummaryTest, DescribesEachFittedParameter) {
   EXPECT_NEAR(repeatability["p"].get<double>(), std::exp(-4), 1e-9);
   EXPECT_NEAR(repeatability["between_std_dev"].get<double>(), std::sqrt(3), 1e-6);
   EXPECT_EQ(repeatability["verdict"], "agrees");
-  EXPECT_THAT(repeatability["text"], StartsWith("3 runs scatter 2 times as much as their quoted errors say (p "));
+  EXPECT_THAT(repeatability["text"], StartsWith("3 runs scatter 2 times as much as their quoted errors predict (p "));
   ASSERT_THAT(repeatability["rows"], SizeIs(1));
   EXPECT_EQ(repeatability["rows"][0]["group"], "all runs");
   EXPECT_NEAR(repeatability["rows"][0]["weighted_mean"].get<double>(), 12, 1e-12);
@@ -154,7 +154,7 @@ TEST_F(SummaryTest, ExcludesTheStartFromRepeatability) {
       StoreOf(PlainManifest(6), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 5 ? 1e6 : 10)}); });
   const Json angle = ParameterOf(SummaryOf(store), "viscous", "release_angle");
   EXPECT_EQ(angle["repeatability"], nullptr);
-  EXPECT_THAT(angle["repeatability_reason"], HasSubstr("no constant of the rig"));
+  EXPECT_THAT(angle["repeatability_reason"], HasSubstr("not a constant of the rig"));
   EXPECT_EQ(angle["outliers_total"], 0);
 }
 
@@ -287,8 +287,8 @@ TEST_F(SummaryTest, WarnsOfAColumnWithoutAnOrder) {
   const auto found = std::ranges::find(warnings, "no_order", [](const Json& warning) { return warning["code"]; });
   ASSERT_NE(found, warnings.end());
   EXPECT_EQ((*found)["message"],
-            "the column date of 2 runs is neither a number nor a date such as 2026-03-01, as "
-            "\"03.03.2026\"; no trend has them");
+            "the column date of 2 runs is neither a number nor a date such as 2026-03-01, for example \"03.03.2026\"; "
+            "trends leave these runs out");
   EXPECT_THAT(WarningsOf(SummaryOf(store)), testing::Not(testing::Contains("no_order")));
 }
 

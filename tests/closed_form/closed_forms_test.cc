@@ -61,7 +61,7 @@ TEST(ClosedForms, QuantifyTheFiniteAmplitudeBiasOfTheInertia) {
 
 TEST(ClosedForms, ReportWhichLawTheEnvelopeFollows) {
   const ClosedForms forms = Must(EstimateClosedForms(Read(Published()), kViscousModel));
-  EXPECT_THAT(forms.envelope, StartsWith("as exponential (viscous friction alone"));
+  EXPECT_THAT(forms.envelope, StartsWith("as exponential (viscous friction only"));
   EXPECT_THAT(forms.envelope, HasSubstr("not as straight line (coulomb"));
   EXPECT_EQ(forms.wrong_law, "");
 }
@@ -71,7 +71,7 @@ TEST(ClosedForms, ReportAModelWithTheWrongFriction) {
   decay.coulomb = 0.003 / kTorque;
   const ClosedForms forms = Must(EstimateClosedForms(Read(decay), kViscousModel));
   EXPECT_THAT(forms.wrong_law, HasSubstr("with viscous friction"));
-  EXPECT_THAT(forms.envelope, StartsWith("no single term of friction"));
+  EXPECT_THAT(forms.envelope, StartsWith("no single friction term"));
 }
 
 TEST(ClosedForms, UseTrueSecondsOnAWrongClock) {

@@ -31,10 +31,10 @@ constexpr double kHalfPeriod = kPi / kOmega;  // s, of a small swing
 constexpr double kNoise = 0.002;              // rad
 constexpr char kHeld[] = "held, then released";
 constexpr char kInMotion[] = "the recording begins in motion";
-constexpr char kAfterAMove[] = "the first turning point after the pendulum was moved otherwise";
+constexpr char kAfterAMove[] = "the first turning point after the pendulum was moved";
 constexpr char kUnsteady[] = "after the release: the hold before it is not steady";
 constexpr char kToTheEnd[] = "the end of the recording";
-constexpr char kBeforeAMove[] = "the last turning point before the pendulum is moved otherwise";
+constexpr char kBeforeAMove[] = "the last turning point before the pendulum is moved";
 
 // ---- What people do with a pendulum, in pieces --------------------------------------------------------------------
 
@@ -172,7 +172,8 @@ TEST(FindFreeSwings, BeginsAtTheNextTurningPointNearTheUpright) {
   const double upright = 170 * kRadFromDeg;
   const FreeSwing swing = OnlySwing(Joined({Still(upright, 2), Swing(upright, 20)}));
   EXPECT_EQ(Sentence(swing.begins),
-            "after the fall from 170 deg, where the smallest push decides when it falls and the release tells nothing");
+            "after the fall from 170 deg: so near the top the smallest push determines when it falls, so the release "
+            "is not used");
   EXPECT_THAT(swing.from, AllOf(Ge(2 + kHalfPeriod), Le(2 + 4 * kHalfPeriod)));  // half a period from 165 deg: 1.7 s
   const double lower = 160 * kRadFromDeg;
   EXPECT_EQ(Sentence(OnlySwing(Joined({Still(lower, 2), Swing(lower, 20)})).begins), kHeld);
@@ -328,26 +329,24 @@ std::string Refusal(const Recording& recording) {
 
 TEST(FindFreeSwings, RefusesAConstantReading) {
   EXPECT_EQ(Refusal(Still(0.3, 10)),
-            "the reading is constant: there is no swing in it; check the sensor, or choose another column");
+            "the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
 TEST(FindFreeSwings, RefusesAReadingWithoutTurningPoints) {
   EXPECT_EQ(Refusal(Joined({Still(0.3, 2), Guided(0.3, 0, 1), Still(0, 5)})),
-            "turning points that stand out of the noise between neighbouring samples: 0; at least three turning "
-            "points, with five samples or more between them, are needed to tell a swing: choose a window of free "
-            "swing, or record for longer");
+            "turning points above the noise between neighbouring samples: 0; at least three turning points, with five "
+            "samples or more between them, are needed: choose a window of free swing, or record for longer");
 }
 
 TEST(FindFreeSwings, RefusesADrivenSwing) {
   const auto growing = [](double t) { return 0.1 * std::exp(0.05 * t) * std::sin(kOmega * t); };
-  EXPECT_EQ(
-      Refusal(Joined({Sample(growing, 30, kRate)})),
-      "the amplitude climbs again and again: the pendulum is driven; choose a window of free swing with --from and "
-      "--to");
+  EXPECT_EQ(Refusal(Joined({Sample(growing, 30, kRate)})),
+            "the amplitude rises repeatedly: the pendulum is driven; choose a window of free swing with --from and "
+            "--to");
   const auto steady = [](double t) { return 0.4 * std::sin(kOmega * t); };
   EXPECT_EQ(Refusal(Joined({Sample(steady, 20, kRate)})),
             "the amplitude does not decay over 31 half swings: the pendulum is driven, or its friction is too small to "
-            "see; what lies between --from and --to is fitted as it is");
+            "see; give --from and --to to fit this window anyway");
 }
 
 TEST(FindFreeSwings, DoesNotCountAStartInMotionAsAClimb) {
@@ -364,18 +363,18 @@ TEST(FindFreeSwings, RefusesAPendulumMovedByHand) {
     pieces.push_back(Still(angles[i - 1], 1.5 + 0.4 * static_cast<double>(i % 3)));
     pieces.push_back(Guided(angles[i - 1], angles[i], 0.6 + 0.2 * static_cast<double>(i % 4)));
   }
-  EXPECT_EQ(Refusal(Joined(pieces)),
-            "of 10 turning points no more than 3 follow each other as a free swing's do, in equal times and with less "
-            "and less amplitude: the pendulum was moved by hand or motor, or held at one angle after another; choose a "
-            "window of free swing with --from and --to");
+  EXPECT_EQ(
+      Refusal(Joined(pieces)),
+      "of 10 turning points no more than 3 in a row belong to a free swing, with equal times between them and "
+      "decreasing amplitude: the pendulum was moved by hand or motor, or held at one angle after another; choose a "
+      "window of free swing with --from and --to");
 }
 
 TEST(FindFreeSwings, AsksForTheUnitIfASwingExceedsTheUpright) {
   const Recording in_degrees =
       Sample([](double t) { return 25 * std::exp(-0.02 * t) * std::cos(kOmega * t); }, 20, kRate);
-  EXPECT_THAT(Refusal(in_degrees),
-              testing::HasSubstr("to both sides, and beyond 180 deg a pendulum goes over the top: is "
-                                 "the column in another unit?"));
+  EXPECT_THAT(Refusal(in_degrees), testing::HasSubstr("to both sides, but beyond 180 deg a pendulum goes over the top; "
+                                                      "check the unit of the column in the header or in"));
 }
 
 TEST(FindFreeSwings, DoesNotTreatCountsAsAnAngle) {

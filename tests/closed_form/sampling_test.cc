@@ -138,7 +138,7 @@ TEST(SamplingWarnings, ExplainTheApparentPeriod) {
   EXPECT_NEAR(sampling.samples_per_period, 1 / 0.76, 1e-12);
   EXPECT_THAT(Codes(sampling), ElementsAre("aliased"));
   const std::string message = MessageOf(sampling, "aliased");
-  EXPECT_THAT(message, HasSubstr("|0.76 - 1| = 0.24 Hz, a period of 4.17 s (4.17 s is seen)"));
+  EXPECT_THAT(message, HasSubstr("|0.76 - 1| = 0.24 Hz, a period of 4.17 s (4.17 s in the readings)"));
   EXPECT_THAT(message, HasSubstr("sample at least at 15.2 Hz"));
 }
 

@@ -137,7 +137,7 @@ TEST(FindTurningPoints, RefusesAConstantReading) {
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(found.error().message,
-            "the reading is constant: there is no swing in it; check the sensor, or choose another column");
+            "the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
 TEST(FindTurningPoints, RefusesFewerThanThreeTurningPointsWithTheirNumber) {
@@ -147,7 +147,7 @@ TEST(FindTurningPoints, RefusesFewerThanThreeTurningPointsWithTheirNumber) {
   ASSERT_FALSE(two);
   EXPECT_EQ(two.error().code, StatusCode::kFailedPrecondition);
   EXPECT_THAT(two.error().message, HasSubstr("neighbouring samples: 2;"));
-  EXPECT_THAT(two.error().message, HasSubstr("are needed to tell a swing"));
+  EXPECT_THAT(two.error().message, HasSubstr("are needed: choose"));
   EXPECT_THAT(FindTurningPoints(Sample(wave, 0.4, 100)).error().message, HasSubstr("neighbouring samples: 0;"));
   EXPECT_TRUE(FindTurningPoints(Sample(wave, 2.0, 100)));
 }

@@ -135,7 +135,7 @@ class RecordPendulumTest(unittest.TestCase):
     def test_a_pulled_cable_loses_nothing_that_came(self):
         done = self.done["unplugged"]
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("was the cable pulled?", done.stdout)
+        self.assertIn("check the cable", done.stdout)
         rows = self.values("unplugged")
         # Unplugged after 8 s of sampling; a frame of 8 samples may have been in transit.
         self.assertGreaterEqual(len(rows), 1600 - 2 * 8)

@@ -67,7 +67,7 @@ inline Fitted FitOpenly(Recording recording, FitOptions options, bool remembers 
   fitted.solution = Search(*fitted.cost, problem.data, guess, problem.solve);
   MaximizeLikelihood(*fitted.cost, problem, fitted.options, fitted.solution);
   const std::optional<Optimum> optimum = Linearize(problem.solve, *fitted.cost, fitted.solution);
-  if (!optimum) throw std::runtime_error("the trajectory cannot be traced at the solution");
+  if (!optimum) throw std::runtime_error("the trajectory cannot be computed at the solution");
   fitted.optimum = *optimum;
   fitted.residuals = QuantileResiduals(fitted.solution.noise, fitted.recording.value, fitted.solution.readings);
   if (remembers) {

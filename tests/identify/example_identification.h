@@ -266,7 +266,7 @@ inline Identification ExampleRateReport() {
   fit.systematic_names.clear();
   fit.systematic_covariance.resize(0, 0);
   fit.identifiability.clear();
-  fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, 0, "the readings stand on no levels", 0.125, {}};
+  fit.noise = {NoiseFamily::kGaussian, 0.0035, std::nullopt, 0, 0, "the readings show no discrete levels", 0.125, {}};
   return report;
 }
 

@@ -50,7 +50,7 @@ inline Homogeneity ExampleHomogeneity() {
 /// The shared part of a joint fit: the example's fit without its start, zero and samples.
 inline FitReport ExampleSharedFit() {
   FitReport whole = ExampleFit();
-  whole.reason = "the step left to make is below 0.1 standard errors";
+  whole.reason = "the estimates are within 0.1 standard errors";
   whole.parameters.resize(3);
   whole.covariance_names.resize(2);
   whole.covariance = Eigen::MatrixXd(whole.covariance.topLeftCorner(2, 2));
@@ -109,7 +109,7 @@ inline Identification ExampleFailedJointReport() {
   Identification report = ExampleJointReport();
   const auto fail = [](FitReport& fit) {
     fit.termination = Termination::kFailed;
-    fit.reason = "no joint trajectory can be traced";
+    fit.reason = "no joint motion can be computed";
     for (ParameterEstimate& parameter : fit.parameters) {
       parameter.std_error.reset();
       parameter.lower95.reset();

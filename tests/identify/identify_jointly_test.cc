@@ -56,17 +56,16 @@ TEST(IdentifyJointly, RefusesARecordingThatIsNamedTwice) {
   const auto run = Joined({"datasets/runs_1.csv", "datasets/../datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(
-      run.error().message,
-      "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording, reading for reading; name it "
-      "once");
+  EXPECT_EQ(run.error().message,
+            "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording: all readings are equal; "
+            "name it once");
 }
 
 TEST(IdentifyJointly, RefusesOneSwing) {
   const auto run = Joined({"datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(run.error().message, HasSubstr("there is one swing"));
+  EXPECT_THAT(run.error().message, HasSubstr("there is only one swing"));
 }
 
 TEST(IdentifyJointly, RefusesClosedFormsOnly) {
@@ -76,7 +75,7 @@ TEST(IdentifyJointly, RefusesClosedFormsOnly) {
   const auto run = IdentifyJointly(options, {});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(run.error().message, HasSubstr("closed forms are of each"));
+  EXPECT_THAT(run.error().message, HasSubstr("closed forms exist only for a single recording"));
 }
 
 TEST(IdentifyJointly, BlamesNoRecordingForAStop) {

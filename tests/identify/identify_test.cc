@@ -143,7 +143,7 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   EXPECT_EQ(runs[0]->closed_forms_model, "linear");
   ASSERT_THAT(runs[0]->warnings, Not(IsEmpty()));
   EXPECT_EQ(runs[0]->warnings.back().code, "uncalibrated");
-  EXPECT_THAT(runs[0]->warnings.back().message, StartsWith("the readings are in counts, not in an angle's unit"));
+  EXPECT_THAT(runs[0]->warnings.back().message, StartsWith("the readings are in counts, not in a unit of angle"));
 }
 
 TEST(IdentifyEach, FitsEachChosenRelease) {

@@ -134,7 +134,7 @@ TEST(ParseRig, NamesAMissingKey) {
 
 TEST(ParseRig, AsksWhichDescriptionIsMeant) {
   for (const char* const text : {"{}", R"({"gravity": 9.81})", R"({"inertia": 0.076})"}) {
-    EXPECT_THAT(FaultOf(text), HasSubstr("the rig does not say what it is; it must be {\"bob_mass\""));
+    EXPECT_THAT(FaultOf(text), HasSubstr("the rig has no complete description; it must be {\"bob_mass\""));
   }
 }
 
@@ -193,12 +193,12 @@ TEST(ParseRig, RefusesJsonThatIsNotAnObject) {
 
 TEST(ParseRig, RefusesNumbersBeyondADouble) {
   EXPECT_EQ(FaultOf(R"({"bob_mass": 1, "rod_mass": 1e999, "rod_length": 1, "gravity": 1})"),
-            R"(rig.json: "rod_mass" is beyond what a number can be (about 1e308); correct it)");
+            R"(rig.json: "rod_mass" is larger than a number can be (about 1e308); correct it)");
   // Each value fits in a double, but the product does not.
-  EXPECT_THAT(FaultOf(R"({"mass": 1e200, "center_of_mass": 1e200, "gravity": 1})"), HasSubstr("beyond 1e-30 to 1e30"));
+  EXPECT_THAT(FaultOf(R"({"mass": 1e200, "center_of_mass": 1e200, "gravity": 1})"), HasSubstr("outside 1e-30 to 1e30"));
   EXPECT_THAT(FaultOf(R"({"mass": 1e-200, "center_of_mass": 1e-200, "gravity": 1})"),
-              HasSubstr("beyond 1e-30 to 1e30"));
-  EXPECT_THAT(FaultOf(R"({"gravity_torque": 1e-300})"), HasSubstr("beyond 1e-30 to 1e30"));
+              HasSubstr("outside 1e-30 to 1e30"));
+  EXPECT_THAT(FaultOf(R"({"gravity_torque": 1e-300})"), HasSubstr("outside 1e-30 to 1e30"));
 }
 
 TEST(ParseRig, RefusesATooLongTextWithoutParsingIt) {

@@ -75,7 +75,7 @@ TEST(FitArc, RefusesPointsWithoutADownDirection) {
     const Result<Arc> arc = FitArc(points.x, points.y);
     ASSERT_FALSE(arc) << half;
     EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
-    EXPECT_THAT(arc.error().message, HasSubstr("they do not tell which way is down; choose one coordinate with"));
+    EXPECT_THAT(arc.error().message, HasSubstr("the downward direction is unknown; choose one coordinate with"));
   }
 }
 
@@ -84,7 +84,7 @@ TEST(FitArc, RefusesPointsThatDetermineNoPivot) {
   const Result<Arc> arc = FitArc(points.x, points.y);
   ASSERT_FALSE(arc);
   EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(arc.error().message, HasSubstr("tell no circle about a pivot"));
+  EXPECT_THAT(arc.error().message, HasSubstr("do not determine a circle about a pivot"));
   const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(100, 0, 1);
   EXPECT_FALSE(FitArc(line, 2 * line));
   EXPECT_FALSE(FitArc(Eigen::VectorXd::Ones(100), Eigen::VectorXd::Ones(100)));

@@ -105,8 +105,9 @@ TEST(RepairClock, UnwrapsA32BitCounter) {
     const RawSamples repaired =
         Repaired(Rows(Stamps(200, [&](int i) { return std::fmod(start + 10 * i, 4294967296.0); }), unit));
     for (int i = 0; i < 200; ++i) EXPECT_EQ(repaired.time[i], start + 10 * i);
-    EXPECT_EQ(WarningOf(repaired), "time_wrapped: run.csv:102: the times begin again from 0 after 2^32 " +
-                                       std::string(unit) + ", 1 time in all; they were counted on");
+    EXPECT_EQ(WarningOf(repaired), "time_wrapped: run.csv:102: the times restart from 0 after 2^32 " +
+                                       std::string(unit) +
+                                       ", 1 time in all, because the counter overflows; later times were corrected");
   }
 }
 
@@ -139,7 +140,7 @@ TEST(RepairClock, UnwrapsA16BitCounter) {
     const RawSamples repaired = Repaired(Rows(Stamps(20001, stamp), each.unit));
     for (int i = 0; i <= 20000; ++i) ASSERT_EQ(repaired.time[i], each.first + each.step * i);
     EXPECT_THAT(WarningOf(repaired),
-                testing::HasSubstr("the times begin again from " + std::to_string(static_cast<int>(each.first)) +
+                testing::HasSubstr("the times restart from " + std::to_string(static_cast<int>(each.first)) +
                                    " after 2^16 " + each.unit + ", " + std::to_string(each.wraps) + " times in all"));
   }
 }
@@ -247,10 +248,10 @@ TEST(RepairClock, ReportsTheRepairOfCoarseStamps) {
   // Rows 2 and 898, and rows 1 and 899, are a third of a step off, towards and away from each other. So 0.3 s is at
   // most 1 / 896 too long or 1 / 898 too short.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
-            "time_rounded: run.csv:2: the times are rounded to 0.1 s, coarse against the sampling interval; they were "
-            "replaced by a uniform clock of 30 Hz, the middle of those that agree with each of them, which end at "
-            "+- 0.033 Hz: +- 0.11 % of a time, +- 0.22 % of an inertia; this assumes uniform sampling; if the times "
-            "are cut off instead of rounded, the new ones, and release_time with them, are 0.05 s too early");
+            "time_rounded: run.csv:2: the times are rounded to 0.1 s, which is coarse compared with the sampling "
+            "interval. They were replaced by a uniform clock of 30 Hz, which assumes uniform sampling. Clocks within "
+            "+- 0.033 Hz agree with all times: an error of 0.11 % in times and 0.22 % in inertia. If the times were "
+            "truncated instead of rounded, the new times and release_time are 0.05 s too early");
 }
 
 TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
@@ -260,16 +261,19 @@ TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
       Rows(Stamps(500, [&](int) { return time += static_cast<double>(1 + random() % 5); }), "ms");
   const RawSamples repaired = Repaired(samples);
   EXPECT_EQ(repaired.time, samples.time);
-  EXPECT_EQ(WarningOf(repaired),
-            "time_rounded: run.csv:2: the times are rounded to 1 ms, coarse against the sampling interval, and no "
-            "uniform clock agrees with them; they were kept, and rounding scatters them by 0.29 ms");  // 1 / sqrt(12)
+  EXPECT_EQ(
+      WarningOf(repaired),
+      "time_rounded: run.csv:2: the times are rounded to 1 ms, which is coarse compared with the sampling interval. No "
+      "uniform clock agrees with them, so they were not changed; rounding gives them an error of 0.29 ms");  // 1 /
+                                                                                                             // sqrt(12)
 }
 
 TEST(RepairClock, RefusesCoarseStampsWithLostRows) {
   const auto stamp = [](int i) { return std::round((i < 300 ? i : i + 40) / 3.0) / 10; };
-  EXPECT_EQ(FaultOf(Rows(Stamps(600, stamp))),
-            "run.csv:3: time 0 s stands on line 2 too, and 598 of 600 rows share a time in this way; no uniform clock "
-            "agrees with all times: record them to a finer step, or give --sample_rate_hz with --time_column none");
+  EXPECT_EQ(
+      FaultOf(Rows(Stamps(600, stamp))),
+      "run.csv:3: time 0 s is also on line 2, and 598 of 600 rows share a time with another row; no uniform clock "
+      "agrees with all times. Record the times with a finer step, or give --sample_rate_hz with --time_column none");
 }
 
 // ---- Stamps that repeat ------------------------------------------------------------------------------------------
@@ -284,7 +288,7 @@ TEST(RepairClock, RemovesRowsThatShareAStamp) {
   EXPECT_EQ(repaired.lines.LineOf(49), 53);
   EXPECT_EQ(WarningOf(repaired),
             "time_repeated: run.csv:52: 2 of 100 rows were left out because they share their time with another row, "
-            "first 0.49 s; of rows that are equal one was kept");
+            "first 0.49 s; one of each group of equal rows was kept");
 }
 
 TEST(RepairClock, KeepsOneOfSeveralEqualRows) {
@@ -309,7 +313,7 @@ TEST(RepairClock, RefusesMoreThanAFifthOfSharedStamps) {
     return time;
   });
   EXPECT_THAT(FaultOf(Rows(stamps)),
-              testing::HasSubstr(", and 26 of 100 rows share a time in this way; "));  // 1, 9, .., 97
+              testing::HasSubstr(", and 26 of 100 rows share a time with another row; "));  // 1, 9, .., 97
 }
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
@@ -347,8 +351,8 @@ TEST(RepairClock, RefusesMoreThanATwentiethOfBackwardRows) {
   std::vector<double> time = Stamps(100, Hundredth);
   for (int i = 4; i < 100; i += 15) time[i] -= 0.015;
   EXPECT_EQ(FaultOf(Rows(time)),
-            "run.csv:6: time 0.025 s does not follow 0.03 s of line 5, and 7 of 100 rows would have to go for times to "
-            "increase; correct or sort the rows");
+            "run.csv:6: time 0.025 s does not follow 0.03 s of line 5, and 7 of 100 rows would have to be left out to "
+            "make times increase; correct or sort the rows");
 }
 
 TEST(RepairClock, RepairsOneFaultAfterAnother) {
@@ -358,7 +362,7 @@ TEST(RepairClock, RepairsOneFaultAfterAnother) {
   const RawSamples repaired = Repaired(Rows(time));
   ASSERT_EQ(repaired.warnings.size(), 2);
   EXPECT_EQ(repaired.warnings[1].message,
-            "run.csv:122: time 1.175 s does not follow 1.19 s of line 121; the fewest rows were left out for times to "
+            "run.csv:122: time 1.175 s does not follow 1.19 s of line 121; the fewest rows were left out to make times "
             "increase, 1 of 198 rows");
   EXPECT_EQ(repaired.time.size(), 197);
 }

@@ -75,8 +75,9 @@ TEST(RepairValues, UnwrapsAnAngleAcrossTheSensorsZero) {
   recording.range = SensorRange{0, 2 * kPi};
   const Recording repaired = RepairValues(recording);
   ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
-  EXPECT_EQ(repaired.warnings[0].message,
-            "16 jumps by a whole turn, where the sensor begins again, were taken out: the angle is continued");
+  EXPECT_EQ(
+      repaired.warnings[0].message,
+      "16 jumps by a whole turn, where the sensor's range begins again, were removed, so the angle is continuous");
   EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-12);
   EXPECT_FALSE(repaired.range);
 }
@@ -115,7 +116,7 @@ TEST(RepairValues, RemovesATrackersRepeats) {
     ASSERT_THAT(Codes(repaired), ElementsAre("stale_values"));
     const Eigen::Index left_out = recording.size() - repaired.size();
     EXPECT_EQ(repaired.warnings[0].message, std::to_string(left_out) +
-                                                " readings only repeat the one before while the pendulum moves on; "
+                                                " readings only repeat the previous one while the pendulum moves; "
                                                 "they are left out");
     EXPECT_THAT(static_cast<double>(left_out), testing::DoubleNear(1000.0 * (times - 1) / times, 10));
     EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-3);
@@ -203,7 +204,7 @@ TEST(RepairValues, KeepsAllReadingsIfThereAreTooManySpikes) {
   ASSERT_THAT(Codes(repaired), ElementsAre("many_spikes"));
   EXPECT_EQ(repaired.value, recording.value);
   EXPECT_THAT(repaired.warnings[0].message,
-              testing::EndsWith(" readings stand far from their neighbours, too many to leave out"));
+              testing::EndsWith(" readings are far from their neighbours, too many to leave out"));
   EXPECT_THAT(std::stoi(repaired.warnings[0].message), testing::Ge(101));
 }
 
@@ -233,8 +234,8 @@ TEST(RepairValues, DetectsRowsWrittenOnlyAtChanges) {
   const Recording repaired = RepairValues(OnlyChanges(Counted(20000, 5e-4)));
   ASSERT_THAT(Codes(repaired), ElementsAre("event_driven"));
   EXPECT_EQ(repaired.warnings[0].message,
-            "a row stands only where the value changes: the angle then is at the edge of its count, not in the middle, "
-            "half a count early all along, and the error bars know nothing of it; record at even times if you can");
+            "the recording has rows only where the value changes. The angle is then at the edge of its count, half a "
+            "count from the middle, and the error bars ignore this shift; record at even times if possible");
 }
 
 TEST(RepairValues, FindsNoEventsInEvenSamples) {

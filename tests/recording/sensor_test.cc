@@ -138,7 +138,7 @@ TEST(ParseCalibration, RefusesNonFiniteNumbers) {
   EXPECT_THAT(FaultOf(R"({"input": "counts", "angle_unit": "deg", "coefficients": [1, NaN]})"),
               HasSubstr("this is not JSON"));
   EXPECT_EQ(FaultOf(R"({"input": "counts", "angle_unit": "deg", "coefficients": [1, 1e999]})"),
-            R"(cal.json: "coefficients" is beyond what a number can be (about 1e308); correct it)");
+            R"(cal.json: "coefficients" is larger than a number can be (about 1e308); correct it)");
 }
 
 TEST(ParseCalibration, RefusesAnInvalidCovariance) {
@@ -148,11 +148,11 @@ TEST(ParseCalibration, RefusesAnInvalidCovariance) {
             R"(cal.json: "covariance" has a row of 1 numbers; it must be one row of 2 numbers for each of the 2 )"
             "coefficients");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0.5], [0.25, 1]]")),
-            R"(cal.json: "covariance" is not symmetric: 0.25 and 0.5 stand across the diagonal and must be equal)");
+            R"(cal.json: "covariance" is not symmetric: 0.25 and 0.5 are symmetric to each other and must be equal)");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0], [0, -1]]")),
             R"(cal.json: "covariance" has the variance -1; variances must be 0 or more)");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 3], [3, 4]]")),
-            R"(cal.json: "covariance" has the covariance 3, beyond the product of its standard deviations, 2)");
+            R"(cal.json: "covariance" has the covariance 3, larger than the product of its standard deviations, 2)");
 }
 
 TEST(ParseCalibration, RefusesARangeThatDoesNotIncrease) {

@@ -72,7 +72,7 @@ TEST(SelectWindow, RefusesAStartNotBeforeTheEnd) {
   EXPECT_EQ(FaultOf(15.0, 12.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(15.0, 15.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(kInf, kOpen).code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(FaultOf(15.0, 12.5).message, "the window [15, 12.5] s is empty; its start must lie before its end");
+  EXPECT_EQ(FaultOf(15.0, 12.5).message, "the window [15, 12.5] s is empty; its start must be before its end");
 }
 
 TEST(SelectWindow, RefusesFewerThanEightSamplesWithTheSpan) {

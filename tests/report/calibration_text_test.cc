@@ -101,7 +101,7 @@ TEST(CalibrationText, FindsNoLackOfFitInRoundedCounts) {
   }
   const std::string text = Unwrapped(TextOf(TableOf("counts", "deg", counts, angles), 1));
   EXPECT_THAT(text, AllOf(HasSubstr("the residuals are no larger than that (χ², p "),
-                          HasSubstr("nothing shows a lack of fit."), Not(HasSubstr("magnitude"))));
+                          HasSubstr("the table shows no lack of fit."), Not(HasSubstr("magnitude"))));
   EXPECT_THAT(text, HasSubstr("[[Points]] (the 50 with the largest residuals)"));
 }
 
@@ -120,8 +120,8 @@ TEST(CalibrationText, ListsAtMostFiftyPoints) {
 
 TEST(CalibrationText, ExplainsMissingErrors) {
   const std::string text = TextOf(TableOf("counts,angle_deg\n10,0\n20,20\n40,50\n"), 2);
-  EXPECT_THAT(Unwrapped(text), HasSubstr("as many coefficients as the table has points and passes through each: there "
-                                         "are no residuals to tell standard errors, and none is given."));
+  EXPECT_THAT(Unwrapped(text), HasSubstr("as many coefficients as the table has points and passes through each, so "
+                                         "there are no residuals and no standard errors."));
   EXPECT_THAT(text, AllOf(Not(HasSubstr("±")), Not(HasSubstr("left out")), Not(HasSubstr("largest")),
                           Not(HasSubstr(" -0.000"))));
 }
@@ -131,7 +131,7 @@ TEST(CalibrationText, ReportsWhereTheCurveTurnsInTheSensorsRange) {
   const CalibrationTable table = TableOf("counts,angle_deg\n0,0\n10,18\n20,33\n30,45\n40,53\n");
   EXPECT_THAT(Unwrapped(TextOf(table, 2, SensorRange{0, 1023})),
               AllOf(HasSubstr("sensor's range 0 to 1023 counts"), HasSubstr("In the sensor's range it turns at about "),
-                    EndsWith(" counts: readings from there on would be taken for wrong angles. ")));
+                    EndsWith(" counts: readings beyond it would give wrong angles. ")));
   EXPECT_THAT(TextOf(table, 2, SensorRange{0, 45}), Not(HasSubstr("turns")));
 }
 

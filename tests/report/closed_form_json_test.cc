@@ -45,7 +45,7 @@ TEST(ClosedFormsJson, ExplainsAMissingPart) {
   EXPECT_TRUE(json["decrement"].is_null());
   EXPECT_TRUE(json["envelope"].is_null());
   EXPECT_EQ(json["reason"],
-            "linear: no two turning points a whole period apart follow each other; decrement: too few turning points "
+            "linear: no two successive turning points are a whole period apart; decrement: too few turning points "
             "for 4 unknowns");
 }
 
@@ -95,8 +95,9 @@ TEST(SamplingJson, WritesUnknownValuesAsNull) {
                           "nyquist_margin", "start_counts", "end_counts"}) {
     EXPECT_TRUE(json[key].is_null()) << key;
   }
-  EXPECT_EQ(json["reason"],
-            "neither turning points nor a rig tell the frequency of the swing; the readings stand on no levels");
+  EXPECT_EQ(
+      json["reason"],
+      "neither turning points nor a rig determine the frequency of the swing; the readings show no discrete levels");
   EXPECT_TRUE(SamplingJson(std::nullopt).is_null());
 }
 

@@ -110,7 +110,7 @@ TEST(ConstancyJson, IsNullWithAReasonWithoutATest) {
   Constancy constancy;
   EXPECT_TRUE(ConstancyJson(nullptr).is_null());
   EXPECT_TRUE(ConstancyJson(&constancy).is_null());
-  EXPECT_EQ(NoConstancyReason(fit, nullptr), "it was not looked into");
+  EXPECT_EQ(NoConstancyReason(fit, nullptr), "it was not tested");
   constancy.reason = "too short";
   EXPECT_EQ(NoConstancyReason(fit, &constancy), "too short");
   fit.termination = Termination::kNotIdentifiable;

@@ -32,7 +32,7 @@ TEST(ComparisonSections, StartWithTheRecommendation) {
     model    blocks [deg]  standardized  last part [deg]  standardized
     coulomb         0.201          1.01            0.229          1.12
     drag                -             -                -             -
-    drag is not judged: 100 iterations were not enough.
+    drag is not compared: 100 iterations were not enough.
 [[Likelihood-ratio tests]] (small p: the simpler law lacks what is added)
     law                   adds     2 Δ log L  p      if not needed follows
     coulomb over viscous  coulomb        812  1e-10  half χ²(0), half χ²(1)
@@ -59,7 +59,7 @@ TEST(ComparisonSections, ExplainMissingPredictions) {
   const std::string text = ComparisonText(report);
   EXPECT_THAT(text, Not(HasSubstr("standardized")));
   EXPECT_THAT(text, HasSubstr("    coulomb, left-out blocks: shorter than three periods.\n"
-                              "    coulomb, last part: the same.\n    drag is not judged"));
+                              "    coulomb, last part: the same.\n    drag is not compared"));
   row.forward.reason = "it ends early";
   EXPECT_THAT(ComparisonText(report), HasSubstr("    coulomb, last part: it ends early.\n"));
 }

@@ -58,7 +58,7 @@ TEST(CoverageMarkdown, ContainsTheCommandTheRulesAndTheSameNumbers) {
   const std::string text = CoverageMarkdown(std::vector{ExampleStudy(), lax}, "coverage_study --scenario breeze,storm");
   EXPECT_THAT(text, StartsWith("# "));
   EXPECT_THAT(text, HasSubstr("```sh\ncoverage_study --scenario breeze,storm\n```\n"));
-  EXPECT_THAT(text, HasSubstr("its coverage meets [0.93, 0.97], [0.93, 1.00] in `storm`, [0.94, 0.99] where the"));
+  EXPECT_THAT(text, HasSubstr("its coverage overlaps [0.93, 0.97], [0.93, 1.00] in `storm`, [0.94, 0.99] where the"));
   EXPECT_THAT(text, HasSubstr("| scenario | parameter | coverage | [95 %] | rms error | error/bound |"));
   EXPECT_THAT(text, HasSubstr("|\n| --- | --- | ---: | --- | --- | ---: | ---: | ---: | --- |\n"));
   EXPECT_THAT(text,

@@ -50,7 +50,7 @@ TEST(ParametersJson, ExplainsAMissingError) {
   EXPECT_EQ(parameters["zero_angle"]["reason"], "fixed");
   EXPECT_TRUE(parameters["release_angle"]["interval95"][1].is_null());
   EXPECT_EQ(parameters["release_angle"]["reason"],
-            "the interval is open: the likelihood does not fall far enough on that side, however far out");
+            "the interval is open: the likelihood does not fall far enough on that side, at any distance");
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
 }
 
@@ -58,7 +58,7 @@ TEST(DerivedJson, ExplainsAMissingError) {
   const Json derived = DerivedJson(ExampleFit());
   EXPECT_EQ(derived["natural_frequency"]["interval95"].dump(), "[4.763,4.793]");
   EXPECT_TRUE(derived["damping_ratio"]["std_error"].is_null());
-  EXPECT_EQ(derived["damping_ratio"]["reason"], "a parameter it comes from has no standard error");
+  EXPECT_EQ(derived["damping_ratio"]["reason"], "a parameter on which it depends has no standard error");
 }
 
 TEST(CovarianceJson, IsSquareInTheFreeParameters) {

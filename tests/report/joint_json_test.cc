@@ -99,7 +99,7 @@ TEST(JointFitJson, ReportsALackOfFitPerRecording) {
   EXPECT_TRUE(run["release"].is_null());
   EXPECT_EQ(run["closed_form"], Json::array());
   EXPECT_TRUE(run["constancy"].is_null());
-  EXPECT_EQ(run["constancy_reason"], "it was not looked into");
+  EXPECT_EQ(run["constancy_reason"], "it was not tested");
 }
 
 // The numbers are those of ExampleSharedInertia, calculated there.
@@ -140,8 +140,8 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   homogeneity = {};
   homogeneity.amplitudes = {0.25, 0.125};
-  homogeneity.reason = "all that is shared is fixed";
-  homogeneity.verdict = "not tested: all that is shared is fixed";
+  homogeneity.reason = "all shared parameters are fixed";
+  homogeneity.verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(HomogeneityOf(report).dump(),
             R"({"statistic":null,"dof":0,"p":null,"agrees":null,"disagreeing":[],)"
             R"("verdict":"not tested: all that is shared is fixed","parameters":{},"amplitude_dependence":[],)"

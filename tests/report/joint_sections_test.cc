@@ -95,7 +95,7 @@ TEST(JointSections, ShowADashForARecordingWithoutAFile) {
 TEST(JointSections, CountTheRecordingsThatShareParameters) {
   const std::string text = TextOf(ExampleJointReport(), "Fit");
   EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; start, zero and noise\n"));
-  EXPECT_THAT(text, HasSubstr("    status  converged: the step left to make is below 0.1 standard errors\n"));
+  EXPECT_THAT(text, HasSubstr("    status  converged: the estimates are within 0.1 standard errors\n"));
 }
 
 // Expected positions: the strip has 21 places from 0.078312 (first - 1.96 errors) to 0.079884 (second + 1.96 errors),
@@ -153,8 +153,9 @@ TEST(AgreementSection, HighlightsDisagreement) {
 TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
   Identification report = ExampleJointReport();
   report.joint[0].homogeneity = {};
-  report.joint[0].homogeneity.verdict = "not tested: all that is shared is fixed";
-  EXPECT_EQ(Agreement(report), "[[Do the recordings agree?]]\n    Verdict: not tested: all that is shared is fixed.\n");
+  report.joint[0].homogeneity.verdict = "not tested: all shared parameters are fixed";
+  EXPECT_EQ(Agreement(report),
+            "[[Do the recordings agree?]]\n    Verdict: not tested: all shared parameters are fixed.\n");
 }
 
 TEST(AgreementSection, HasADashForAnUninformativeRecording) {
@@ -207,7 +208,7 @@ TEST(JointSections, ShowAnEquationOnlyIfAllIsShared) {
 
 TEST(JointSections, ShowNoNumbersOfAFailedFit) {
   const std::string text = ToText(ExampleFailedJointReport());
-  EXPECT_THAT(text, HasSubstr("status  failed: no joint trajectory can be traced"));
+  EXPECT_THAT(text, HasSubstr("status  failed: no joint motion can be computed"));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise and statistics]]")));
   EXPECT_THAT(text, Not(HasSubstr("[[Equation of motion]]")));
   EXPECT_THAT(text, Not(testing::ContainsRegex("[^a-z](nan|inf)[^a-z]")));

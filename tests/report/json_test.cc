@@ -106,7 +106,7 @@ TEST(ToJson, ExplainsAnOpenInterval) {
   viscous.open_interval = OpenInterval::kNothingExcluded;
   const Json json = ToJson(report)["fits"][0]["parameters"]["viscous"];
   EXPECT_EQ(json["interval95"], Json::array({nullptr, 0.004}));
-  EXPECT_EQ(json["reason"], "the interval is open: no value that it may have is excluded");
+  EXPECT_EQ(json["reason"], "the interval is open: the data exclude none of its possible values");
 }
 
 TEST(ToJson, GivesEachEndOfDerivedIntervals) {

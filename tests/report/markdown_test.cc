@@ -91,7 +91,7 @@ TEST(ToMarkdown, StartsWithVerdictAndParameters) {
 
 TEST(ToMarkdown, StartsWithAMissingConvergence) {
   EXPECT_THAT(ToMarkdown(ExampleRateReport()),
-              StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge: its numbers are no "
+              StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge, so its numbers are not a "
                          "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));
 }
 

@@ -132,7 +132,8 @@ TEST(ToText, NamesTheOpenInterval) {
   const std::string text = ToText(report);
   EXPECT_THAT(
       OneLine(text),
-      HasSubstr("Intervals: profile likelihood. That of viscous is open: no value that it may have is excluded. "));
+      HasSubstr(
+          "Intervals: profile likelihood. That of viscous is open: the data exclude none of its possible values. "));
   EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 
@@ -164,7 +165,7 @@ TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
   Identification report = ExampleRateReport();
   report.fits[0].termination = Termination::kFailed;
   const std::string text = ToText(report);
-  EXPECT_THAT(text, HasSubstr("These are no estimates: nothing was fitted."));
+  EXPECT_THAT(text, HasSubstr("These values are not estimates, because nothing was fitted."));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise")));
   EXPECT_THAT(text, Not(HasSubstr("[[Equation")));
 }

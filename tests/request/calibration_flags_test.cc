@@ -27,7 +27,7 @@ TEST(MakeCalibrationOptions, NamesTheWrongFlag) {
       {{.order = 0, .input_range = "", .bits = 0}, "--order is 0; it must be 1 to 5"},
       {{.order = 6, .input_range = "", .bits = 0}, "--order is 6; it must be 1 to 5"},
       {{.order = 1, .input_range = "", .bits = 33}, "--bits is 33; it must be 1 to 32"},
-      {{.order = 1, .input_range = "0,1023", .bits = 10}, "--bits and --input_range both tell the sensor's range"},
+      {{.order = 1, .input_range = "0,1023", .bits = 10}, "--bits and --input_range both define the sensor's range"},
       {{.order = 1, .input_range = "5,1", .bits = 0}, "--input_range is '5,1'; low must be less than high"},
   };
   for (const auto& [flags, message] : refusals) {
@@ -43,7 +43,7 @@ TEST(CalibrateTable, RefusesARangeOfCountsForVolts) {
   ASSERT_TRUE(table) << table.error().message;
   const auto fit = CalibrateTable(*table, *MakeCalibrationOptions({.order = 1, .input_range = "", .bits = 10}));
   ASSERT_FALSE(fit);
-  EXPECT_EQ(fit.error().message, "--bits tells the range of counts, and table.csv has volts; give --input_range");
+  EXPECT_EQ(fit.error().message, "--bits defines the range of counts, but table.csv has volts; give --input_range");
   EXPECT_TRUE(CalibrateTable(*table, *MakeCalibrationOptions({})));
 }
 

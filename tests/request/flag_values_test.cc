@@ -117,9 +117,10 @@ TEST(ParsePriors, NamesTheFlagAndTheFault) {
       {"viscous=:1", "--prior viscous is ''; it must be a number in SI units"},
       {"viscous=-1:1", "--prior: viscous is -1; it must be at least 0"},
       {"viscous=1:", "--prior viscous is ''; it must be a standard deviation in SI units"},
-      {"viscous=1:0", "--prior: the standard deviation of viscous is 0; it must be positive (--fix holds a parameter)"},
+      {"viscous=1:0",
+       "--prior: the standard deviation of viscous is 0; it must be positive (use --fix to hold a parameter)"},
       {"viscous=1:-2",
-       "--prior: the standard deviation of viscous is -2; it must be positive (--fix holds a parameter)"},
+       "--prior: the standard deviation of viscous is -2; it must be positive (use --fix to hold a parameter)"},
       {"viscous=1:1,viscous=2:1", "--prior: viscous is given twice"},
   };
   for (const auto& [text, message] : refusals) {

@@ -111,7 +111,7 @@ TEST(RunFlagsOf, RefusesUnknownFlags) {
   ExpectRefused(RunFlagsOf({{"modle", "drag"}}), "--modle is not a flag of this request; did you mean --model?");
   ExpectRefused(RunFlagsOf({{"from", ""}}), "--from has an empty value; leave the flag out for its default");
   ExpectRefused(RunFlagsOf({{"model", "drag"}, {"models", "drag"}}),
-                "--model and --models are one flag, and both are given; leave one of them out");
+                "--model and --models are the same flag; give only one of them");
   // Flags that name files of the server or use its processors, and invalid names.
   for (const char* name : {"rig", "calibration", "threads", "data", "json", "report", "Model", ""}) {
     const auto flags = RunFlagsOf({{name, "1"}});

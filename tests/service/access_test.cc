@@ -119,7 +119,7 @@ TEST(IsListedHost, ComparesNamesAndListedPorts) {
 TEST(RefuseAccess, RefusesAForeignHostWithoutAToken) {
   EXPECT_EQ(AnswerOfHost("localhost:8080"), "allowed");
   EXPECT_EQ(AnswerOfHost("evil.example:8080"),
-            "403 the host \"evil.example:8080\" is none of this service; ask for localhost, or start it with "
+            "403 the host \"evil.example:8080\" is not a name of this service; use localhost, or start it with "
             "--allowed_hosts and that name");
   EXPECT_EQ(AnswerOfHost("lab.example:8080", {"lab.example"}), "allowed");
   EXPECT_EQ(Answer(Request("GET", {{"host", "evil.example"}}), {"", {}}, Audience::kAnybody).substr(0, 3), "403");
@@ -167,8 +167,7 @@ TEST(RefuseAccess, AcceptsTheRightToken) {
 }
 
 TEST(RefuseAccess, RefusesAWrongToken) {
-  const std::string another =
-      "401 the token of the request is not that of this service; send the one in its --token_file";
+  const std::string another = "401 the token of the request is wrong; send the one in the service's --token_file";
   const std::string right = kToken;
   for (const std::string& token : {right.substr(1), right + "x", right + right, std::string("x"), "C" + right.substr(1),
                                    std::string(1 << 20, 'x'), right + std::string(1, '\0')}) {
@@ -177,7 +176,7 @@ TEST(RefuseAccess, RefusesAWrongToken) {
   for (const std::string& value : {right, std::string("Bearer"), std::string("Bearer "), "Basic " + right,
                                    "Bearer" + right, std::string(""), "Bearer\t" + right}) {
     EXPECT_EQ(AnswerOfToken(value),
-              "401 the Authorization of the request is no token; send one, as Authorization: Bearer TOKEN")
+              "401 the Authorization of the request is not a token; send one, as Authorization: Bearer TOKEN")
         << value;
   }
 }
@@ -191,7 +190,7 @@ TEST(RefuseAccess, RefusesARequestWithoutAToken) {
                         {"Authorization", std::string("Bearer ") + kToken},
                         {"authorization", std::string("Bearer ") + kToken}};
   EXPECT_THAT(Answer(Request("GET", twice), {kToken, {}}),
-              HasSubstr("401 the Authorization of the request is no token"));
+              HasSubstr("401 the Authorization of the request is not a token"));
 }
 
 // RFC 6750, section 3.1.
@@ -284,7 +283,7 @@ TEST(IsCrossSite, RefusesOriginNullForWrites) {
 
 TEST(RefuseAccess, RefusesAnotherSiteWithAnyToken) {
   const std::string fault =
-      "403 the request comes from a page of another site; this service answers its own page, and programs";
+      "403 the request comes from a page of another site; this service answers only its own page and programs";
   EXPECT_EQ(Answer(Request("POST", {{"Host", "localhost"}, {"Origin", "http://evil.example"}}), {}), fault);
   EXPECT_EQ(Answer(Request("POST", {{"Host", "lab.example"},
                                     {"Sec-Fetch-Site", "cross-site"},

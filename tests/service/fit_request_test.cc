@@ -143,7 +143,7 @@ TEST(ParseFitRequest, RefusesOtherContentTypes) {
   EXPECT_EQ(Answer(Fit(Post("/v1/fits", "image/png", kCsv))),
             std::string("415 the Content-Type is \"image/png\"") + kWanted);
   EXPECT_THAT(Answer(Fit(Post("/v1/fits", "application/x-www-form-urlencoded", kCsv))),
-              HasSubstr("which curl sets unless it is told otherwise"));
+              HasSubstr("the default of curl"));
   HttpRequest request = Post("/v1/fits", "text/csv", kCsv);
   request.fields.push_back({"Content-Encoding", "gzip"});
   EXPECT_EQ(Answer(Fit(request)), "415 the body has Content-Encoding \"gzip\"; send it as it is, without one");
@@ -165,9 +165,9 @@ TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
   const std::vector<WrongFit> wrong = {
       {"400 --modle is not a flag of this request; did you mean --model?", "/v1/fits?modle=drag", "text/csv", kCsv},
       {"400 --from has an empty value; leave the flag out for its default", "/v1/fits?from=", "text/csv", kCsv},
-      {"400 --model and --models are one flag, and both are given; leave one of them out",
-       "/v1/fits?model=drag&models=drag", "text/csv", kCsv},
-      {"400 --release all makes several results of a recording; a request has one, so give the number of one",
+      {"400 --model and --models are the same flag; give only one of them", "/v1/fits?model=drag&models=drag",
+       "text/csv", kCsv},
+      {"400 --release all gives several results for a recording, but a request has one; give the number of a release",
        "/v1/fits?release=all", "text/csv", kCsv},
       {"400 name has 0 bytes; it must have 1 to 200", "/v1/fits?name=", "text/csv", kCsv},
       {"400 name has 201 bytes; it must have 1 to 200", "/v1/fits?name=" + std::string(201, 'n'), "text/csv", kCsv},
@@ -181,11 +181,11 @@ TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
        Form(data + Part("rig", "{}") + Part("rig", "{}"))},
       {"400 the form has two parts options; leave one of them out", "/v1/fits", kForm,
        Form(data + Part("options", "{}") + Part("options", "{}"))},
-      {"400 the request has 2 recordings (parts data); a fit has one, and POST /v1/batches takes several", "/v1/fits",
+      {"400 the request has 2 recordings (parts data), but a fit has one; use POST /v1/batches for several", "/v1/fits",
        kForm, Form(data + data)},
-      {"400 the request has 0 recordings (parts data); a fit has one, and POST /v1/batches takes several", "/v1/fits",
+      {"400 the request has 0 recordings (parts data), but a fit has one; use POST /v1/batches for several", "/v1/fits",
        kForm, Form(Part("rig", "{}"))},
-      {"400 the request has 0 recordings (parts data); a fit has one, and POST /v1/batches takes several", "/v1/fits",
+      {"400 the request has 0 recordings (parts data), but a fit has one; use POST /v1/batches for several", "/v1/fits",
        "application/json", "{}"},
       {"400 \"daat\" is \"x\"; the body may have data and name (texts), rig, calibration and options (objects)",
        "/v1/fits", "application/json", R"({"data": "", "daat": "x"})"},
@@ -222,7 +222,7 @@ TEST(ParseFitRequest, AcceptsTheMaximumNumberOfLines) {
   const std::string lines = "t,x\n1,1\n2,2\n";
   EXPECT_EQ(Answer(Fit(Post("/v1/fits", "text/csv", lines), limits)), "taken");
   EXPECT_EQ(Answer(Fit(Post("/v1/fits?name=run.csv", "text/csv", lines + "3,3\n"), limits)),
-            "413 run.csv: the recording has 4 lines, and this service takes 3 samples at most; send a part of it, or "
+            "413 run.csv: the recording has 4 lines, but this service accepts at most 3 samples; send a part of it, or "
             "use fit_pendulum");
 }
 
@@ -232,7 +232,7 @@ TEST(ParseBatchRequest, LimitsTheLengthOfOptions) {
     const std::string options = R"({"model": "drag)" + std::string(blanks, ' ') + "\"}";
     return Answer(Batch(Post("/v1/batches", kForm, Form(Part("data", kCsv) + Part("options", options)))));
   };
-  EXPECT_EQ(answer(8177), "413 the options have 8193 bytes, and may have 8192; leave some out");
+  EXPECT_EQ(answer(8177), "413 the options have 8193 bytes, but may have only 8192; leave some out");
   EXPECT_THAT(answer(8176), Not(StartsWith("413")));
 }
 
@@ -266,11 +266,11 @@ TEST(ParseBatchRequest, RefusesAndExplainsInvalidRequests) {
   EXPECT_EQ(Answer(Batch(Post("/v1/batches", "text/csv", kCsv))),
             "415 the Content-Type is \"text/csv\"; it must be multipart/form-data");
   EXPECT_EQ(Answer(Batch(Post("/v1/batches?name=a", kForm, Form(data)))),
-            "400 name is of one fit; the parts of a batch have names");
+            "400 name is for a single fit; in a batch each part has a name");
   EXPECT_EQ(Answer(Batch(Post("/v1/batches", kForm, Form(Part("rig", "{}"))))),
-            "400 the form has no part data; a batch has some");
+            "400 the form has no part data; a batch needs at least one");
   EXPECT_EQ(Answer(Batch(Post("/v1/batches", kForm, Form(data + data + data)), {100, 2})),
-            "413 the batch has 3 recordings, and this service takes 2 at most; send several batches");
+            "413 the batch has 3 recordings, but this service accepts at most 2; send several batches");
   EXPECT_THAT(Answer(Batch(Post("/v1/batches", kForm, Form(data)), {2, 10})),
               StartsWith("413 run.csv: the recording has 3 lines"));
   EXPECT_THAT(Answer(Batch(Post("/v1/batches?modle=drag", kForm, Form(data)))),
@@ -315,14 +315,15 @@ TEST(ParseRefitRequest, ReplacesOrRemovesRigAndCalibration) {
 }
 
 TEST(ParseRefitRequest, RefusesAndExplainsInvalidRequests) {
-  EXPECT_EQ(Answer(Refit("", R"({"data": "x"})")), "400 a refit has the recording that is there; leave data out");
+  EXPECT_EQ(Answer(Refit("", R"({"data": "x"})")), "400 a refit uses the stored recording; leave data out");
   EXPECT_EQ(Answer(Refit("", kCsv, "text/csv")),
             "415 the Content-Type is \"text/csv\"; it must be application/json, or the body empty");
   EXPECT_EQ(Answer(Refit("?modle=drag")), "400 --modle is not a flag of this request; did you mean --model?");
   EXPECT_EQ(Answer(Refit("?model=drag&models=drag")),
-            "400 --model and --models are one flag, and both are given; leave one of them out");
-  EXPECT_EQ(Answer(Refit("?release=all")),
-            "400 --release all makes several results of a recording; a request has one, so give the number of one");
+            "400 --model and --models are the same flag; give only one of them");
+  EXPECT_EQ(
+      Answer(Refit("?release=all")),
+      "400 --release all gives several results for a recording, but a request has one; give the number of a release");
   EXPECT_THAT(Answer(Refit("", R"({"name": ""})")), StartsWith("400 "));
 }
 

@@ -328,7 +328,7 @@ TEST_F(FittingServiceBatchesTest, LimitsTheNumberOfWaitingRuns) {
   Service().Stop();
   Sent(ThreeRecordings());
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
-  EXPECT_EQ(AnswerOf(response), "429 3 recordings of batches wait already, and this service keeps 4 at most");
+  EXPECT_EQ(AnswerOf(response), "429 3 recordings of batches wait already, but this service keeps 4 at most");
   EXPECT_FALSE(FieldOf(response, "Retry-After").empty());
   EXPECT_THAT(IdsAt("/v1/batches", "batches"), SizeIs(1));
   EXPECT_EQ(AnswerOf(Post("/v1/batches", kForm, FormOf(ThreeRecordings() + ThreeRecordings()))).substr(0, 3), "413");

@@ -79,7 +79,7 @@ TEST_F(FittingServiceOtherTest, RefusesInvalidSimulations) {
   EXPECT_THAT(answer("durration=1"),
               StartsWith("400 'durration' is not a parameter of this request; did you mean 'duration'?"));
   EXPECT_THAT(answer("duration=1e9&rate=1e9"),
-              StartsWith("413 --duration times --rate makes more samples than this service takes, 200000"));
+              StartsWith("413 --duration times --rate gives more samples than this service accepts, 200000"));
   EXPECT_THAT(answer("duration=-1"), StartsWith("400 --duration"));
   EXPECT_THAT(answer("out=x.csv"), StartsWith("400 'out' is not a parameter of this request"));
   EXPECT_THAT(AnswerOf(Post("/v1/simulations?seed=1", "application/json", R"({"seed": 1})")),

@@ -75,7 +75,7 @@ TEST_F(FittingServiceRefusalsTest, RejectsUnknownPaths) {
   for (const char* path : {"/v1", "/v1/fit", "/v2/fits", "/v1/fits/a/b", "/v1/fits/a/series/x", "/index.html",
                            "/app.js.map", "/.git", "/V1/fits"}) {
     EXPECT_EQ(Answer("GET", path),
-              "404 there is nothing at " + std::string(path) + "; GET /openapi.json lists what there is");
+              "404 there is nothing at " + std::string(path) + "; GET /openapi.json lists the paths");
     EXPECT_TRUE(IsRefusedAtOnce("GET", path)) << path;
   }
   for (const char* path : {"/v1/fits/../fits", "/v1//fits", "/v1/fits/%00", "/%2e%2e/etc/passwd", "v1/fits", "",

@@ -154,7 +154,7 @@ TEST_F(FittingServiceTest, AnswersOncePerKey) {
   for (const HttpResponse& other : {Post("/v1/fits?model=viscous", "text/csv", Recording() + "\n", key),
                                     Post("/v1/fits?model=drag", "text/csv", Recording(), key)}) {
     EXPECT_EQ(AnswerOf(other),
-              "422 this Idempotency-Key came with another request before; take a new key for a new request");
+              "422 this Idempotency-Key was used for another request; use a new key for a new request");
     EXPECT_EQ(Json::parse(other.body)["code"], "key_reused");
   }
   EXPECT_THAT(IdsAt("/v1/fits"), SizeIs(1));
@@ -218,7 +218,7 @@ TEST_F(FittingServiceTest, FitsOncePerKeyForConcurrentRequests) {
   for (std::thread& thread : threads) thread.join();
   for (const HttpResponse& response : responses) {
     if (response.status == 200) continue;
-    EXPECT_EQ(AnswerOf(response), "409 another request with this Idempotency-Key is being worked on");
+    EXPECT_EQ(AnswerOf(response), "409 another request with this Idempotency-Key is in progress");
     EXPECT_FALSE(FieldOf(response, "Retry-After").empty());
   }
   EXPECT_THAT(IdsAt("/v1/fits"), SizeIs(1));

@@ -227,11 +227,11 @@ TEST(ParseFormData, RefusesAFormWithoutABoundary) {
   EXPECT_THAT(FaultOf("multipart/form-data; boundary=\"\"", ""), HasSubstr("it must have 1 to 70 bytes"));
   EXPECT_THAT(FaultOf("multipart/form-data; boundary=" + std::string(71, 'b'), ""),
               HasSubstr("it must have 1 to 70 bytes"));
-  EXPECT_THAT(FaultOf("multipart/form-data; boundary=\"b \"", ""), HasSubstr("end in no blank"));
+  EXPECT_THAT(FaultOf("multipart/form-data; boundary=\"b \"", ""), HasSubstr("end in a blank"));
   EXPECT_EQ(FaultOf("multipart/mixed; boundary=X", Form(Named("name=a"))),
             "the content type is \"multipart/mixed\"; that of a form is multipart/form-data");
   EXPECT_THAT(FaultOf("multipart/form-data; boundary=X; boundary=Y", ""), HasSubstr("given twice"));
-  EXPECT_THAT(FaultOf("", ""), HasSubstr("is no media type"));
+  EXPECT_THAT(FaultOf("", ""), HasSubstr("is not a media type"));
 }
 
 TEST(ParseFormData, RefusesABodyWithoutItsBoundary) {
@@ -250,8 +250,8 @@ TEST(ParseFormData, RefusesATruncatedForm) {
     EXPECT_NE(FaultOf(whole.substr(0, size)), "not refused") << size;
   }
   EXPECT_EQ(FaultOf(whole.substr(0, whole.size() - 2)),
-            "part 2 of the form has no boundary behind it; end the form in \"--X--\"");
-  EXPECT_THAT(FaultOf(whole.substr(0, 20)), StartsWith("part 1 of the form has no boundary behind it"));
+            "part 2 of the form has no boundary after it; end the form with \"--X--\"");
+  EXPECT_THAT(FaultOf(whole.substr(0, 20)), StartsWith("part 1 of the form has no boundary after it"));
 }
 
 // ---- Heads ---------------------------------------------------------------------------------------------------------
@@ -300,7 +300,7 @@ TEST(ParseFormData, RefusesNamesInOtherEncodings) {
   EXPECT_THAT(fault("utf-8'a.csv"), HasSubstr("write UTF-8''name"));
   EXPECT_THAT(fault("''a.csv"), HasSubstr("write UTF-8''name"));
   for (const char* value : {"utf-8''%A3", "utf-8''%C0%AF", "utf-8''%", "utf-8''%4", "utf-8''%ED%A0%80", "utf-8''%G0"}) {
-    EXPECT_THAT(fault(value), HasSubstr("whose escapes are no UTF-8")) << value;
+    EXPECT_THAT(fault(value), HasSubstr("whose escapes are not UTF-8")) << value;
   }
 }
 

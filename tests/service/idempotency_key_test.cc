@@ -44,11 +44,11 @@ TEST(IdempotencyKey, IsLimitedTo255Bytes) {
 }
 
 TEST(IdempotencyKey, IsRefusedIfInvalid) {
-  EXPECT_EQ(KeyOf(""), "refused: the Idempotency-Key is empty; give each request one of its own, or none");
+  EXPECT_EQ(KeyOf(""), "refused: the Idempotency-Key is empty; give each request its own key, or none");
   EXPECT_THAT(KeyOf(" \t "), HasSubstr("is empty"));
   for (const std::string& key : {std::string("a b"), std::string("a\tb"), std::string("a\x7F"), std::string("\xC3\xA9"),
                                  std::string("a\0b", 3), std::string("a\nb"), std::string("\xFF")}) {
-    EXPECT_THAT(KeyOf(key), HasSubstr("has other than visible letters of ASCII")) << key;
+    EXPECT_THAT(KeyOf(key), HasSubstr("has characters other than visible ASCII")) << key;
   }
   const auto twice = IdempotencyKey(Post({{"Idempotency-Key", "a"}, {"idempotency-key", "a"}}));
   ASSERT_FALSE(twice);

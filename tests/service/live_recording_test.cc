@@ -33,7 +33,7 @@ constexpr const char* kHead =
     "# pendulum_logger version 1.0, Arduino Uno, reference: supply voltage (AVcc)\n"
     "# run 1 of this logger, begun 2026-05-06T07:08:09Z\n# sample_rate_hz: 200\n# resolution: 1\n# range: 0,1023\n"
     "# the clock was not measured: its error is that of a ceramic resonator\n# clock_scale: 1\n"
-    "# clock_scale_std_dev: 0.003\n# part of a run: what was lost of it is not known\n";
+    "# clock_scale_std_dev: 0.003\n# part of a run: the number of lost samples is not known\n";
 
 const std::string kCounts = std::string(kHead) + "time_s,adc_counts\n";
 

@@ -69,10 +69,10 @@ TEST(ParseMediaType, ReadsQuotedValues) {
 }
 
 TEST(ParseMediaType, RefusesInvalidTypes) {
-  EXPECT_EQ(FaultOf(""), "the content type \"\" is no media type; write one such as text/csv");
+  EXPECT_EQ(FaultOf(""), "the content type \"\" is not a media type; write one such as text/csv");
   for (const char* text : {"text", "text/", "/csv", "/", "text/csv/x", "text /csv", "text/ csv", "te(xt/csv",
                            "text/csv,a/b", "text/csv x", ";charset=utf-8", "t\xC3\xA9xt/csv", "\"text/csv\""}) {
-    EXPECT_THAT(FaultOf(text), EndsWith("is no media type; write one such as text/csv")) << text;
+    EXPECT_THAT(FaultOf(text), EndsWith("is not a media type; write one such as text/csv")) << text;
   }
 }
 

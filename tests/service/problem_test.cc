@@ -141,7 +141,7 @@ TEST(MethodNotAllowed, ListsTheAllowedMethods) {
   EXPECT_EQ(response.status, 405);
   EXPECT_EQ(FieldOf(response, "Allow"), "GET, DELETE");
   EXPECT_EQ(Json::parse(response.body)["detail"],
-            R"(the method "PO\x0d\x0aST" is none of this resource; it has GET, DELETE)");
+            R"(the method "PO\x0d\x0aST" is not allowed here; allowed are GET, DELETE)");
 }
 
 // Unicode 15, section 3.9: U+FFFD for each invalid byte of UTF-8; the rest follows RFC 8259, section 7.

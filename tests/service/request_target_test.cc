@@ -94,13 +94,13 @@ TEST(ParseTarget, RefusesOtherForms) {
 
 TEST(ParseTarget, RefusesInvalidSegments) {
   for (const char* target : {"/.", "/..", "/v1/../etc", "/v1/.", "/%2e%2E/etc", "/.%2e", "/a/%2e/b"}) {
-    EXPECT_THAT(FaultOf(target), HasSubstr("is no name; write the path without it")) << target;
+    EXPECT_THAT(FaultOf(target), HasSubstr("is not a name; write the path without it")) << target;
   }
   for (const char* target : {"//", "//v1", "/v1//fits", "/v1/", "/v1/fits/?a=1", "///"}) {
     EXPECT_THAT(FaultOf(target), HasSubstr("is empty; write one slash, and none at the end")) << target;
   }
   for (const char* target : {"/a\\b", "/..\\..\\etc", "/a%5Cb", "/a%2fb", "/%2F", "/..%2F..%2Fetc"}) {
-    EXPECT_THAT(FaultOf(target), HasSubstr("has a slash or backslash in it; no name here has one")) << target;
+    EXPECT_THAT(FaultOf(target), HasSubstr("contains a slash or backslash, which no name has")) << target;
   }
   EXPECT_EQ(PathOf("/..."), "/...");
   EXPECT_EQ(PathOf("/..a/a../.a"), "/..a/a../.a");
@@ -113,7 +113,7 @@ TEST(ParseTarget, RefusesInvalidEscapes) {
     EXPECT_THAT(FaultOf("/a?" + std::string(escape) + "=b"), HasSubstr("write a percent sign as %25")) << escape;
   }
   EXPECT_EQ(FaultOf("/run%"),
-            "the path segment \"run%\" has a % without two hexadecimal digits behind it; write a percent sign as %25");
+            "the path segment \"run%\" has a % without two hexadecimal digits after it; write a percent sign as %25");
 }
 
 // Ill-formed sequences: Unicode 15, table 3-8 and the following tables; RFC 3629, section 10.

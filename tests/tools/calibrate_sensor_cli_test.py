@@ -144,28 +144,28 @@ class CalibrateSensorTest(unittest.TestCase):
     def test_bad_tables_exit_4_with_their_place(self):
         self.check_bad_table("bad.csv:3: points found: 2; a curve of order 2 has 3 coefficients",
                              "counts,angle_deg\n1,0\n2,1\n", "--order", "2")
-        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) stands here again with another angle",
+        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is here again with another angle",
                              "counts,angle_deg\n19,-45\n97,-30\n97,-15\n")
-        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) stands here again with the same angle",
+        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is here again with the same angle",
                              "counts,angle_deg\n19,-45\n97,-30\n97,-30\n")
         self.check_bad_table("bad.csv:4: the angle is -40 deg at 177 counts", TABLE.replace("177,-15", "177,-40"))
-        self.check_bad_table("bad.csv:1:1: no column's name tells that it is the angle",
+        self.check_bad_table("bad.csv:1:1: no column's name shows that it is the angle",
                              TABLE.replace("angle_deg", "angle"))
-        self.check_bad_table("bad.csv:1:1: no column's name tells that it is the reading",
+        self.check_bad_table("bad.csv:1:1: no column's name shows that it is the reading",
                              TABLE.replace("counts", "reading"))
         self.check_bad_table("bad.csv:5: the curve of order 2 turns at about",
                              "volts,angle_deg\n0,0\n1,0\n2,0\n3,30\n", "--order", "2")
 
     def test_hostile_tables_exit_4_with_a_sentence(self):
         self.check_bad_table("bad.csv:1:1: the file is empty", "")
-        self.check_bad_table("a NUL byte stands here", bytes(range(256)) * 10)
+        self.check_bad_table("there is a NUL byte", bytes(range(256)) * 10)
         self.check_bad_table('columns "counts" and "counts" could both be the reading',
                              "counts,counts,angle_deg\n1,2,3\n")
         self.check_bad_table('bad.csv:3:1: column "counts" holds "nan"', "counts,angle_deg\n1,0\nnan,1\n2,2\n")
         self.check_bad_table('bad.csv:3:3: column "angle_deg" holds "inf"', "counts,angle_deg\n1,0\n2,inf\n3,2\n")
-        self.check_bad_table("beyond what a number can be", "counts,angle_deg\n1,0\n1e400,1\n")
-        self.check_bad_table("too large, too small or too alike", "volts,angle_deg\n0,0\n1,1e300\n2,2e300\n3,4e300\n")
-        self.check_bad_table("bad.csv:10002:1: here are more than 10000 rows",
+        self.check_bad_table("which is outside the range of numbers", "counts,angle_deg\n1,0\n1e400,1\n")
+        self.check_bad_table("too large, too small or too similar", "volts,angle_deg\n0,0\n1,1e300\n2,2e300\n3,4e300\n")
+        self.check_bad_table("bad.csv:10002:1: there are more than 10000 rows",
                              "counts,angle_deg\n" + "".join(f"{i},{i}\n" for i in range(1_000_000)))
         self.check_bad_table("this line is longer than 1 MiB", "x" * 3_000_000)
 
@@ -189,12 +189,12 @@ class CalibrateSensorTest(unittest.TestCase):
                            "table.csv")
         self.check_refused(2, "--json x is the output of --plot too", "--data", "table.csv", "--json", "x", "--plot",
                            "x")
-        self.check_refused(2, "table.csv:5: the reading 261 counts lies outside the sensor's range, 0 to 255",
+        self.check_refused(2, "table.csv:5: the reading 261 counts is outside the sensor's range, 0 to 255",
                            "--data", "table.csv", "--bits", "8")
-        self.check_refused(2, "--bits tells the range of counts", "--data", "-", "--bits", "8",
+        self.check_refused(2, "--bits defines the range of counts", "--data", "-", "--bits", "8",
                            input=TABLE.replace("counts", "volts"))
         self.check_refused(2, "--divider is 2", "--plan", "--divider", "2")
-        self.check_refused(2, "'stray' belongs to no flag", "--data", "table.csv", "stray")
+        self.check_refused(2, "'stray' does not belong to a flag", "--data", "table.csv", "stray")
 
     def test_help_and_version_succeed_on_stdout(self):
         self.assertIn("--reference_voltage", self.check_done("--help").stdout)

@@ -126,12 +126,12 @@ TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfATable) {
                   {"--input_range is '9,1'; low must be less than high", [](Flags& f) { f.input_range = "9,1"; }},
                   {"--bits is 33; it must be 1 to 32", [](Flags& f) { f.bits = 33; }},
                   {"--bits is -1; it must be 1 to 32", [](Flags& f) { f.bits = -1; }},
-                  {"--bits and --input_range both tell", [](Flags& f) { f.bits = 10, f.input_range = "0,1"; }},
+                  {"--bits and --input_range both define", [](Flags& f) { f.bits = 10, f.input_range = "0,1"; }},
                   {"--reference_voltage belongs to a plan; add --plan", [](Flags& f) { f.reference_voltage = "5"; }},
                   {"--supply_voltage belongs to a plan", [](Flags& f) { f.supply_voltage = 3; }},
                   {"--potentiometer_range_deg belongs to a plan", [](Flags& f) { f.potentiometer_range_deg = 300; }},
                   {"--divider belongs to a plan", [](Flags& f) { f.divider = 0.5; }},
-                  {"'stray' belongs to no flag", [](Flags& f) { f.positional = {"stray"}; }}});
+                  {"'stray' does not belong to a flag", [](Flags& f) { f.positional = {"stray"}; }}});
 }
 
 TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfAPlan) {

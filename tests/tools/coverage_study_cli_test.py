@@ -83,7 +83,7 @@ class CoverageStudyTest(unittest.TestCase):
         self.check_refused(2, "did you mean --count?", "--scenario", "moving", "--cuont", "1")
         self.check_refused(2, "--count is 0", "--scenario", "moving", "--count", "0")
         self.check_refused(2, "--threads is -1", "--scenario", "moving", "--threads", "-1")
-        self.check_refused(2, "'stray' belongs to no flag", "--scenario", "moving", "stray")
+        self.check_refused(2, "'stray' does not belong to a flag", "--scenario", "moving", "stray")
 
     def test_an_output_that_cannot_be_written_exits_73_before_the_study(self):
         done = self.run_tool("--scenario", "moving", "--count", "10", "--markdown", "none/coverage.md")

@@ -71,7 +71,7 @@ TEST(MakeCoverageStudyOptions, RefusesWrongFlagsAndNamesThem) {
       {"--count is 0; it must be 1 to 1000000", [](CoverageFlags& f) { f.count = 0; }},
       {"--count is 1000001", [](CoverageFlags& f) { f.count = 1000001; }},
       {"--threads is -1; it must be 0 to 1024", [](CoverageFlags& f) { f.threads = -1; }},
-      {"'stray' belongs to no flag", [](CoverageFlags& f) { f.positional = {"stray"}; }},
+      {"'stray' does not belong to a flag", [](CoverageFlags& f) { f.positional = {"stray"}; }},
   };
   for (const Refusal& refusal : refusals) {
     CoverageFlags flags = Flags("moving");

@@ -125,7 +125,7 @@ class BadFlags(CliTest):
         self.assert_flags_refused("--data")
 
     def test_positional_argument(self):
-        self.assert_flags_refused("'run.csv' belongs to no flag; .*--data", "run.csv")
+        self.assert_flags_refused("'run.csv' does not belong to a flag; .*--data", "run.csv")
 
     def test_unknown_model_lists_those_there_are(self):
         self.assert_flags_refused("linear, viscous, coulomb, drag", "--data", "run.csv", "--model", "columb")

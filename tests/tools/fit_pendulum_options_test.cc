@@ -121,7 +121,7 @@ TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
   FitPendulumFlags flags;
   EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
   flags.positional = {"run.csv"};
-  EXPECT_EQ(Refusal(flags), "'run.csv' belongs to no flag; the recording is given with --data");
+  EXPECT_EQ(Refusal(flags), "'run.csv' does not belong to a flag; give the recording with --data");
 }
 
 TEST(MakeFitPendulumOptions, ListsTheModels) {
@@ -263,7 +263,7 @@ TEST(MakeFitPendulumOptions, ReadsStandardInputOnce) {
   FitPendulumFlags flags;
   for (const std::string data : {"-,-", "-,a.csv,/dev/stdin"}) {
     flags.data = data;
-    EXPECT_EQ(Refusal(flags), "--data '" + data + "' names standard input twice; it can be read once");
+    EXPECT_EQ(Refusal(flags), "--data '" + data + "' names standard input twice, but it can be read only once");
   }
   flags.data = "a.csv,-";
   EXPECT_EQ(Refusal(flags), "");
@@ -368,7 +368,7 @@ TEST(MakeFitPendulumOptions, ListsTheParametersThatCanBeShared) {
 TEST(MakeFitPendulumOptions, RejectsABootstrapOfAJointFit) {
   FitPendulumFlags flags = WithTwoRecordings();
   const std::string refusal =
-      "--interval bootstrap is for recordings one by one (--shared none); several together have covariance and profile";
+      "--interval bootstrap is only for separate fits (--shared none); for a joint fit use covariance or profile";
   flags.interval = "bootstrap";
   EXPECT_EQ(Refusal(flags), refusal);
   flags.shared = "none";

@@ -89,7 +89,7 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
   EXPECT_TRUE(CheckNumberedOutputs(options, {}, 1));
   const auto checked = CheckNumberedOutputs(options, {}, 2);
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().message, "--series - takes one fit, and there are 2; name a file, and they are numbered");
+  EXPECT_EQ(checked.error().message, "--series - takes one fit, but there are 2; name a file, which is then numbered");
 }
 
 // ---- Joint fits -----------------------------------------------------------------------------------------------------
@@ -189,8 +189,9 @@ TEST(FitAll, SharesNothingForOneSwing) {
   const auto run = OnlyRun(*MakeFitPendulumOptions(flags));
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(run.error().message,
-            "--shared is for several recordings, or the releases of one (--release all), and there is one swing");
+  EXPECT_EQ(
+      run.error().message,
+      "--shared is for several recordings, or several releases of one (--release all), but there is only one swing");
 }
 
 TEST(CheckNumberedOutputs, AllowsAJointResultOnStandardOutput) {
@@ -205,7 +206,7 @@ TEST(CheckNumberedOutputs, AllowsAJointResultOnStandardOutput) {
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(checked.error().message,
-            "--residuals - takes one recording, and there are 2; name a file, and they are numbered");
+            "--residuals - takes one recording, but there are 2; name a file, which is then numbered");
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(RunGnuplot, ReturnsTheMessageOfAFailedScript) {
   const auto svg = RunGnuplot("plot nonsense\n");
   ASSERT_FALSE(svg);
   EXPECT_EQ(svg.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(svg.error().message, StartsWith("plot: gnuplot fails: \""));
+  EXPECT_THAT(svg.error().message, StartsWith("plot: gnuplot failed: \""));
 }
 
 TEST(CheckGnuplot, NamesTheMissingPackage) {

@@ -217,7 +217,7 @@ def _hangs_at_pi(lab: Lab, how: str) -> Recording:
     return lab.swing() if how == "plain" else wrapped(lab, lab.swing(), -180)
 
 
-@hazard("zero drifts", 0.05, 0.5, 5, unit=" deg")
+@hazard("zero of the readings drifts", 0.05, 0.5, 5, unit=" deg")
 def _drift(lab: Lab, degrees: float) -> Recording:
     resolution, lab.resolution = lab.resolution, 0
     recording = lab.swing()

@@ -243,7 +243,7 @@ class SharedParameters(JointTest):
     def test_nothing_is_compared_when_all_is_held(self):
         (fit,) = self.joint("--fix", "inertia=0.079,viscous=0.003,coulomb=0.004")["fits"]
         self.assertIsNone(fit["homogeneity"]["p"])
-        self.assertEqual(fit["homogeneity"]["reason"], "all that is shared is fixed: there is nothing to compare")
+        self.assertEqual(fit["homogeneity"]["reason"], "all shared parameters are fixed, so there is nothing to compare")
 
     # Inverse variances add: a prior as accurate as the data halves the variance for any number of recordings.
     def test_a_prior_on_what_is_shared_counts_once(self):
@@ -286,27 +286,27 @@ class Refusals(JointTest):
 
     def test_a_file_without_a_swing_among_several(self):
         self.write("flat.csv", FLAT)
-        self.assert_refused(5, "flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose "
+        self.assert_refused(5, "flat.csv: the reading is constant, so there is no swing; check the sensor, or choose "
                             "another column", "--data", "a.csv,flat.csv")
 
     def test_there_is_nothing_to_share_in_one_swing(self):
-        self.assert_refused(2, "--shared is for several recordings, or the releases of one (--release all), and there is "
-                            "one swing", "--data", "a.csv", "--shared", "all")
+        self.assert_refused(2, "--shared is for several recordings, or several releases of one (--release all), but "
+                               "there is only one swing", "--data", "a.csv", "--shared", "all")
 
     def test_a_name_that_cannot_be_shared(self):
         self.assert_refused(2, "--shared names 'mass', which recordings cannot share; they can share inertia, viscous, "
                             "coulomb, or all, or none", "--data", "a.csv,b.csv", "--shared", "inertia,mass")
 
     def test_no_bootstrap_of_several(self):
-        self.assert_refused(2, "--interval bootstrap is for recordings one by one (--shared none); several together have "
-                            "covariance and profile", "--data", "a.csv,b.csv", "--interval", "bootstrap")
+        self.assert_refused(2, "--interval bootstrap is only for separate fits (--shared none); for a joint fit use "
+                               "covariance or profile", "--data", "a.csv,b.csv", "--interval", "bootstrap")
 
     def test_residuals_of_several_have_no_place_on_one_stream(self):
         run = self.run_tool("--data", "a.csv,b.csv", "--residuals", "-")
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertEqual(run.stdout, "")
-        self.assertEqual(run.stderr, "fit_pendulum: --residuals - takes one recording, and there are 2; name a file, and "
-                         "they are numbered\n")
+        self.assertEqual(run.stderr, "fit_pendulum: --residuals - takes one recording, but there are 2; name a file, "
+                                     "which is then numbered\n")
 
     def test_no_residuals_are_written_over_an_input(self):
         self.write("r_002.csv", B)
@@ -315,21 +315,22 @@ class Refusals(JointTest):
     def test_recordings_that_tell_of_different_rigs(self):
         self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
         self.write("b.csv", f"# rig: {json.dumps(dict(swing.RIG, bob_mass=0.4))}\n" + B)
-        self.assert_refused(4, "a.csv and b.csv describe different rigs (# rig), and one rig's recordings are fitted together; "
-                            "give the one of all with --rig, or fit them apart with --shared none", "--data", "a.csv,b.csv")
+        self.assert_refused(4, "a.csv and b.csv describe different rigs (# rig), but recordings that are fitted "
+                               "together must have one rig; give it with --rig, or fit the recordings separately "
+                               "with --shared none", "--data", "a.csv,b.csv")
         self.joint()  # --rig takes precedence
 
     def test_the_same_readings_in_another_file(self):
         self.write("copy.csv", "# exported again\n" + A)
-        self.assert_refused(2, "a.csv and copy.csv are the same recording, reading for reading; name it once",
+        self.assert_refused(2, "a.csv and copy.csv are the same recording: all readings are equal; name it once",
                             "--data", "a.csv,copy.csv")
 
     def test_one_resolution_for_readings_of_two_units(self):
         rows = [line.split(",") for line in A.splitlines() if line[0].isdigit()]
         self.write("rad.csv", "time_s,angle_rad\n" +
                    "".join(f"{time},{math.radians(float(angle)):.9f}\n" for time, angle in rows[1:]))
-        self.assert_refused(2, "--resolution is in the file's unit, and a.csv is in deg, rad.csv in rad; write it into each "
-                            "file instead, as a line # resolution: VALUE", "--data", "a.csv,rad.csv", "--resolution", "0.1")
+        self.assert_refused(2, "--resolution is in the file's unit, but a.csv is in deg and rad.csv in rad; write a "
+                               "line # resolution: VALUE", "--data", "a.csv,rad.csv", "--resolution", "0.1")
 
     # result.schema.json: the format in which a message names its recording.
     def test_warnings_say_whose_they_are(self):

@@ -152,7 +152,7 @@ class WhatIsRefused(ReadTest):
 
     def test_a_header_with_two_units(self):
         self.assert_data_refused(
-            4, 'bad.csv:1:8: column "angle_deg [rad]" tells two units, deg and rad; name it by the one its values are in',
+            4, 'bad.csv:1:8: column "angle_deg [rad]" names two units, deg and rad; keep the unit of its values',
             "time_s,angle_deg [rad]\n0,1\n")
 
     def test_times_that_go_back(self):
@@ -162,7 +162,7 @@ class WhatIsRefused(ReadTest):
             "one file; split it before this line", text + text.split("\n", 1)[1])
 
     def test_binary_files(self):
-        nul = "a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8"
+        nul = "a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8"
         self.assert_data_refused(4, f"bad.csv:2:4: {nul}", b"time_s,angle_deg\n0,1\0\n")
         self.assert_data_refused(4, f"bad.csv:1:4: {nul}", "time_s,angle_deg\n".encode("utf-16"))
         self.assert_data_refused(4, f"bad.csv:3:1: {nul}", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
@@ -182,12 +182,12 @@ class WhatIsRefused(ReadTest):
     def test_a_calibration_of_another_sensor(self):
         self.write("cal.json", json.dumps({**CALIBRATION, "input": "volts"}))
         self.assert_data_refused(
-            4, 'bad.csv:1:1: column "adc_counts" is in counts, and the calibration is one of volts; give that of this '
-            "sensor", table("time_s,adc_counts\n", lambda t, a: f"{t},{counts(a)}"), "--calibration", "cal.json")
+            4, 'bad.csv:1:1: column "adc_counts" is in counts, but the calibration is for volts; give the '
+               'calibration of this sensor', table("time_s,adc_counts\n", lambda t, a: f"{t},{counts(a)}"), "--calibration", "cal.json")
 
     def test_a_calibration_of_an_angle(self):
         self.assert_refused(
-            4, 'run.csv:1:1: column "angle_deg" is in deg, and the calibration is one of counts; leave --calibration out',
+            4, 'run.csv:1:1: column "angle_deg" is in deg, but the calibration is for counts; leave --calibration out',
             "--data", "run.csv", "--calibration", "cal.json")
 
     def test_files_that_are_no_calibration(self):

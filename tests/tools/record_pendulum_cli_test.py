@@ -125,12 +125,12 @@ class GoodRuns(Lab):
         named = self.read()[1]
         self.assertAlmostEqual(float(named["clock_scale"]), 1 / 1.01, delta=0.002)
         self.assertLess(float(named["clock_scale_std_dev"]), 0.003)
-        self.assertRegex(out, r"clock \d+ ± \d+ ppm fast by this computer's")
+        self.assertRegex(out, r"clock \d+ ± \d+ ppm fast compared with this computer's")
 
     def test_a_clock_beyond_any_resonator_is_not_believed(self):
         with PythonLogger(speed=4) as logger:
             out, _ = self.record(logger, "--seconds", 12)
-        self.assertIn("differ by more than any resonator does", out)
+        self.assertIn("differ by more than any resonator explains", out)
         named = self.read()[1]
         self.assertEqual((named["clock_scale"], named["clock_scale_std_dev"]), ("1", "0.003"))
 
@@ -227,7 +227,7 @@ class Calibrations(Lab):
         with PythonLogger() as logger:
             self.check_refused(logger, 4, "volts.json is of volts", "--out", "run.csv", "--calibration", "volts.json")
             self.check_refused(logger, 4, "volts.json is of volts", "--store_calibration", "volts.json")
-            self.check_refused(logger, 2, "a logger keeps straight lines only", "--store_calibration", "curve.json")
+            self.check_refused(logger, 2, "a logger stores only straight lines", "--store_calibration", "curve.json")
             self.check_refused(logger, 3, "none.json", "--store_calibration", "none.json")
             self.check_refused(logger, 3, "none.json", "--out", "run.csv", "--fit", "--rig", "none.json")
         self.assertEqual([each for each in logger.commands if each[:1] in b"WS"], [])
@@ -235,14 +235,14 @@ class Calibrations(Lab):
     def test_a_logger_that_forgets_is_found_out(self):
         self.write_calibration("cal.json", LINE)
         with Forgetful() as logger:
-            self.check_refused(logger, 4, "does not give back the calibration", "--store_calibration", "cal.json")
+            self.check_refused(logger, 4, "does not return the calibration", "--store_calibration", "cal.json")
 
 
 class Files(Lab):
     def test_a_recording_is_replaced_only_when_asked(self):
         (self.folder / "run.csv").write_text("precious\n")
         with PythonLogger(speed=3) as logger:
-            self.check_refused(logger, 73, "run.csv is there already", "--out", "run.csv", "--seconds", 1)
+            self.check_refused(logger, 73, "run.csv exists already", "--out", "run.csv", "--seconds", 1)
             self.assertEqual((self.folder / "run.csv").read_text(), "precious\n")
             self.assertEqual(logger.commands, [])
             self.record(logger, "--seconds", 1, "--overwrite")
@@ -251,7 +251,7 @@ class Files(Lab):
     def test_the_part_of_an_earlier_crash_is_not_lost_unasked(self):
         (self.folder / "run.csv.part").write_text("precious\n")
         with PythonLogger(speed=3) as logger:
-            self.check_refused(logger, 73, "run.csv.part holds a recording that was interrupted", "--out", "run.csv",
+            self.check_refused(logger, 73, "run.csv.part holds an interrupted recording", "--out", "run.csv",
                                "--seconds", 1)
             self.assertEqual((self.folder / "run.csv.part").read_text(), "precious\n")
             self.record(logger, "--seconds", 1, "--overwrite")
@@ -372,7 +372,7 @@ class Flags(Lab):
         for seconds in ("-1", "0", "nan", "inf", "x"):
             self.check_flags("--seconds is", *out, f"--seconds={seconds}")
         self.check_flags("--baud is 300", *out, "--baud", 300)
-        self.check_flags("'stray' belongs to no flag", *out, "stray")
+        self.check_flags("'stray' does not belong to a flag", *out, "stray")
         self.check_flags("did you mean --seconds?", *out, "--secnds", 3)
 
     def test_flags_that_do_not_belong_together_exit_2(self):
@@ -380,10 +380,10 @@ class Flags(Lab):
         self.check_flags("--rig belongs to a fit", *out, "--rig", "rig.json")
         self.check_flags("--model belongs to a fit", *out, "--model", "coulomb")
         self.check_flags("--fit needs a recording in a file", "--out", "-", "--fit")
-        self.check_flags("only one can be done at a time", *out, "--info")
-        self.check_flags("only one can be done at a time", "--list", "--info")
+        self.check_flags("give only one of", *out, "--info")
+        self.check_flags("give only one of", "--list", "--info")
         self.check_flags("--seconds belongs to a recording", "--info", "--seconds", 3)
-        self.check_flags("only one can be done at a time", "--counts", "--info")
+        self.check_flags("give only one of", "--counts", "--info")
         self.check_flags("--out is missing")
         self.write_calibration("cal.json", LINE)
         self.check_flags("would overwrite the input of --calibration", "--out", "cal.json", "--calibration", "cal.json",

@@ -186,12 +186,12 @@ void ExpectRefusals(const Flags& good, const std::vector<Refusal>& refusals) {
 
 TEST(MakeRecordPendulumOptions, RefusesNoTaskAndTwoTasks) {
   ExpectRefusals(Recording(), {{"--out is missing", [](Flags& f) { f.out.clear(); }},
-                               {"only one can be done at a time", [](Flags& f) { f.list = true; }},
-                               {"only one can be done at a time", [](Flags& f) { f.info = true; }},
-                               {"only one can be done at a time", [](Flags& f) { f.counts = true; }},
-                               {"only one can be done", [](Flags& f) { f.store_calibration = "cal.json"; }},
-                               {"only one can be done", [](Flags& f) { f.out.clear(), f.list = f.info = true; }},
-                               {"'run.csv' belongs to no flag", [](Flags& f) { f.positional = {"run.csv"}; }}});
+                               {"give only one of", [](Flags& f) { f.list = true; }},
+                               {"give only one of", [](Flags& f) { f.info = true; }},
+                               {"give only one of", [](Flags& f) { f.counts = true; }},
+                               {"give only one of", [](Flags& f) { f.store_calibration = "cal.json"; }},
+                               {"give only one of", [](Flags& f) { f.out.clear(), f.list = f.info = true; }},
+                               {"'run.csv' does not belong to a flag", [](Flags& f) { f.positional = {"run.csv"}; }}});
 }
 
 TEST(MakeRecordPendulumOptions, RefusesWrongNumbers) {

@@ -202,12 +202,12 @@ LoggerScript TenFramesAnd(Then then) {
 
 TEST(RecordRun, KeepsSamplesBeforeTheCableIsPulled) {
   Laboratory laboratory(TenFramesAnd(Then::kUnplugged));
-  EXPECT_THAT(RecordedUntil(Then::kUnplugged, laboratory).loss_reason, HasSubstr("is gone"));
+  EXPECT_THAT(RecordedUntil(Then::kUnplugged, laboratory).loss_reason, HasSubstr("was disconnected"));
 }
 
 TEST(RecordRun, KeepsSamplesBeforeAReset) {
   Laboratory laboratory(TenFramesAnd(Then::kReset));
-  EXPECT_THAT(RecordedUntil(Then::kReset, laboratory).loss_reason, HasSubstr("started again"));
+  EXPECT_THAT(RecordedUntil(Then::kReset, laboratory).loss_reason, HasSubstr("restarted"));
 }
 
 TEST(RecordRun, KeepsSamplesBeforeAnUnrequestedEnd) {
@@ -217,7 +217,7 @@ TEST(RecordRun, KeepsSamplesBeforeAnUnrequestedEnd) {
 
 TEST(RecordRun, KeepsSamplesBeforeSilence) {
   Laboratory laboratory(TenFramesAnd(Then::kSilence));
-  EXPECT_THAT(RecordedUntil(Then::kSilence, laboratory).loss_reason, HasSubstr("silent"));
+  EXPECT_THAT(RecordedUntil(Then::kSilence, laboratory).loss_reason, HasSubstr("stopped sending"));
 }
 
 TEST(RecordRun, ReportsLostFramesAndKeepsTheTimes) {
@@ -260,7 +260,7 @@ TEST(RecordRun, ReportsAnEmptyRecording) {
   const auto recorded = laboratory.Record();
   ASSERT_FALSE(recorded);
   EXPECT_EQ(recorded.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(recorded.error().message, AllOf(HasSubstr("nothing was recorded"), HasSubstr("silent")));
+  EXPECT_THAT(recorded.error().message, AllOf(HasSubstr("nothing was recorded"), HasSubstr("stopped sending")));
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
 }
 

@@ -136,8 +136,8 @@ TEST(RecordText, ShowsWhyItEnded) {
   recorded.end = RunEnd::kStopped;
   EXPECT_THAT(FlatText(recorded), HasSubstr("ended by hand"));
   recorded.end = RunEnd::kLost;
-  recorded.loss_reason = "the logger has fallen silent";
-  EXPECT_THAT(FlatText(recorded), HasSubstr("ended too early: the logger has fallen silent"));
+  recorded.loss_reason = "the logger stopped sending";
+  EXPECT_THAT(FlatText(recorded), HasSubstr("ended too early: the logger stopped sending"));
 }
 
 TEST(RecordText, FitsATerminal) {
@@ -173,7 +173,7 @@ TEST(RecordWarnings, ReportLostSamples) {
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_EQ(warnings[0].code, "lost_samples");
-  EXPECT_THAT(warnings[0].message, AllOf(HasSubstr("30 samples"), HasSubstr("20 found no room"), HasSubstr("--rate_hz"),
+  EXPECT_THAT(warnings[0].message, AllOf(HasSubstr("30 samples"), HasSubstr("20 did not fit"), HasSubstr("--rate_hz"),
                                          HasSubstr("10 were damaged"), HasSubstr("5 conversions")));
   EXPECT_THAT(FlatText(recorded), HasSubstr("; 30 lost"));
   EXPECT_FALSE(IsComplete(recorded));

@@ -178,7 +178,7 @@ TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
   EXPECT_THAT(line, HasSubstr("<!"));
   options.out = folder_ / "summary.pdf";
   EXPECT_EQ(Run(options), 2);
-  EXPECT_THAT(said_, HasSubstr("its name ends with .html for a page"));
+  EXPECT_THAT(said_, HasSubstr("the name must end with .html for a page"));
   options.out = folder_ / "summary.html";
   options.summary.group_by = "room";
   EXPECT_EQ(Run(options), 2);
@@ -229,7 +229,7 @@ int RefitAfter(int signal, const RefitPendulumsOptions& options) {
 TEST_F(RefitCommandsTest, ReportsASignalByExitCodeAndRemainingRuns) {
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 75}}) {
     EXPECT_EXIT(std::exit(RefitAfter(signal, Options(RefitCommand::kRefit))), testing::ExitedWithCode(code),
-                "2 are left: the same command goes on from here");
+                "2 are left; run the same command to continue");
   }
 }
 

@@ -131,7 +131,7 @@ class Survival(Lab):
             process.send_signal(number)
             _, said = process.communicate(timeout=TIMEOUT_S)
             self.assertEqual(process.returncode, code, said)
-            self.assertRegex(said, r"are left: the same command goes on from here")
+            self.assertRegex(said, r"are left; run the same command to continue")
         self.refit(manifest, "stopped.sqlite")
         self.refit(manifest, "whole.sqlite")
         self.assertEqual(self.rows("stopped.sqlite"), self.rows("whole.sqlite"))
@@ -252,16 +252,16 @@ class HostileManifests(Lab):
 
     def test_what_is_wrong_with_a_manifest_is_said_with_its_line(self):
         for text, words in {
-            "path,id\na.csv,1\nb.csv,1\n": 'bad.csv:3: the id "1" stands at bad.csv:2 too',
+            "path,id\na.csv,1\nb.csv,1\n": 'bad.csv:3: the id "1" is also at bad.csv:2',
             "id\n1\n": "bad.csv:1: the header has no column path",
             "path,path\na,b\n": 'bad.csv:1: the header has the column "path" twice',
             "path,id\na.csv\n": "bad.csv:2: the row has 1 fields, the header 2",
             "path,models\na.csv,viscous\nb.csv,tar\n": "bad.csv:3: column models: there is no model 'tar'",
             "path,from_s\na.csv,soon\n": 'bad.csv:2: column from_s: "soon" is not a time',
-            "path,from_s,to_s\na.csv,3,2\n": "bad.csv:2: from_s 3 does not lie before to_s 2",
+            "path,from_s,to_s\na.csv,3,2\n": "bad.csv:2: from_s 3 is not before to_s 2",
             'path,id\n"a.csv,1\n': "bad.csv:2: a field begins with a double quote that is never closed",
-            'path,id\na"b.csv,1\n': "bad.csv:2: a double quote stands inside a field",
-            "path\n\0\n": "bad.csv:2:1: a NUL byte stands here",
+            'path,id\na"b.csv,1\n': "bad.csv:2: there is a double quote inside a field",
+            "path\n\0\n": "bad.csv:2:1: there is a NUL byte",
             "": "bad.csv: the manifest is empty",
         }.items():
             (self.folder / "bad.csv").write_text(text)
@@ -294,7 +294,7 @@ class HostileManifests(Lab):
                           "runs/run_00[2-9].csv,runs/*/er": ["runs/run_002.csv"],
                           "runs/run_*.csv,runs": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"]}.items():
             if data.endswith("er"):
-                self.assertIn("no file is like this pattern",
+                self.assertIn("no file matches this pattern",
                               self.run_tool("--data", data, "--store", "b.sqlite", code=3)[1])
                 continue
             store = f"{len(data)}.sqlite"
@@ -374,11 +374,11 @@ class Reading(Lab):
             ("--store", "a.sqlite", "--data", "b", "--scratch", "."): "give --shard too",
             ("--store", "a.sqlite", "--data", "b", "--out", "."): "--out is not a flag of a refit",
             ("--store", "a.sqlite", "--data", "b", "--release", "all"): "--release all makes several results",
-            ("statsu", "--store", "a.sqlite"): "'statsu' is no command",
+            ("statsu", "--store", "a.sqlite"): "'statsu' is not a command",
             ("status",): "status needs --store",
             ("status", "--store", "a.sqlite", "--force"): "--force is not a flag of status",
             ("compare", "a.sqlite"): "compare takes two stores",
-            ("export", "--store", "a.sqlite", "--out", "a.txt"): "its name ends with .csv",
+            ("export", "--store", "a.sqlite", "--out", "a.txt"): "the name must end with .csv",
             ("missing", "--shard_dir", ".", "--shard_count", "0"): "it must be at least 1",
         }.items():
             self.assertIn(words, self.run_tool(*arguments, code=2)[1])
@@ -388,7 +388,7 @@ class Reading(Lab):
         (self.folder / "text").write_text("these are notes\n" * 100)
         with sqlite3.connect(self.folder / "other.sqlite") as database:
             database.execute("CREATE TABLE runs(x)")
-        for name, words in {"text": "this is not an SQLite file", "other.sqlite": "this is no result store"}.items():
+        for name, words in {"text": "this is not an SQLite file", "other.sqlite": "this is not a result store"}.items():
             before = (self.folder / name).read_bytes()
             self.assertIn(words, self.refit(manifest, name, code=4)[1])
             self.assertIn(words, self.run_tool("status", "--store", name, code=4)[1])

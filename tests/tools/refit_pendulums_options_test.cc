@@ -89,9 +89,9 @@ TEST(MakeRefitPendulumsOptions, NamesTheFaultOfARefit) {
       {"--release all makes several results", [](RefitFlags& f) { f.release = "all"; }},
       {"--model: there is no model 'tar'", [](RefitFlags& f) { f.model = "tar"; }},
       {"--out is not a flag of a refit", [](RefitFlags& f) { f.given.emplace_back("out"); }},
-      {"--scratch is where a shard is worked on", [](RefitFlags& f) { f.given.emplace_back("scratch"); }},
-      {"--checkpoint_s is of a shard", [](RefitFlags& f) { f.given.emplace_back("checkpoint_s"); }},
-      {"'refit' is no command; the commands are status, export", [](RefitFlags& f) { f.positional = {"refit"}; }},
+      {"--scratch is for a shard", [](RefitFlags& f) { f.given.emplace_back("scratch"); }},
+      {"--checkpoint_s is for a shard", [](RefitFlags& f) { f.given.emplace_back("checkpoint_s"); }},
+      {"'refit' is not a command; the commands are status, export", [](RefitFlags& f) { f.positional = {"refit"}; }},
       {"it must be a positive number of seconds",
        [](RefitFlags& f) {
          f.shard = "0/2";
@@ -131,13 +131,14 @@ TEST(MakeRefitPendulumsOptions, ComparesTwoStores) {
   ASSERT_TRUE(options);
   EXPECT_THAT(options->stores, ElementsAre("a", "b"));
   EXPECT_THAT(Refusal(CommandFlags({"compare", "a"}, {})), HasSubstr("compare takes two stores"));
-  EXPECT_THAT(Refusal(CommandFlags({"compare", "a", "b", "c"}, {})), HasSubstr("'c' belongs to no flag of compare"));
+  EXPECT_THAT(Refusal(CommandFlags({"compare", "a", "b", "c"}, {})),
+              HasSubstr("'c' does not belong to a flag of compare"));
 }
 
 TEST(MakeRefitPendulumsOptions, RefusesFlagsOfOtherCommands) {
   EXPECT_EQ(Refusal(CommandFlags({"export"}, {"store"})), "export needs --out");
   EXPECT_EQ(Refusal(CommandFlags({"status"}, {"store", "force"})), "--force is not a flag of status; leave it out");
-  EXPECT_EQ(Refusal(CommandFlags({"status", "x"}, {"store"})), "'x' belongs to no flag of status");
+  EXPECT_EQ(Refusal(CommandFlags({"status", "x"}, {"store"})), "'x' does not belong to a flag of status");
   RefitFlags flags = CommandFlags({"missing"}, {"shard_dir", "shard_count"});
   flags.shard_count = 0;
   EXPECT_EQ(Refusal(flags), "--shard_count is 0; it must be at least 1");

@@ -253,7 +253,7 @@ class JointSchema(unittest.TestCase):
         none = {"statistic": None, "p": None, "agrees": None, "parameters": {}, "amplitude_dependence": []}
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none))
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(reason="there is one"))
-        none["reason"] = "all that is shared is fixed: there is nothing to compare"
+        none["reason"] = "all shared parameters are fixed, so there is nothing to compare"
         self.assert_holds(lambda result: result["fits"][0]["homogeneity"].update(none))
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none, agrees=True))
 
@@ -261,7 +261,7 @@ class JointSchema(unittest.TestCase):
         inertia = ["fits", 0, "homogeneity", "parameters", "inertia", "runs", 0]
         none = {"estimate": None, "std_error": None, "z": None}
         self.assert_refused(lambda result: Schema.at(result, inertia).update(none))
-        none["reason"] = "the recording alone does not tell it"
+        none["reason"] = "the recording on its own does not determine it"
         self.assert_holds(lambda result: Schema.at(result, inertia).update(none))
 
     def test_knows_how_a_recording_alone_ends(self):

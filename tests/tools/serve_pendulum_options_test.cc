@@ -94,7 +94,7 @@ struct Refusal {
 
 TEST(MakeServePendulumOptions, RefuseWrongFlagsAndNameThem) {
   const std::vector<Refusal> refusals = {
-      {"'stray' belongs to no flag", [](ServePendulumFlags& f) { f.positional = {"stray"}; }},
+      {"'stray' does not belong to a flag", [](ServePendulumFlags& f) { f.positional = {"stray"}; }},
       {"--store is missing", [](ServePendulumFlags& f) { f.store.clear(); }},
       {"--docs names '/none'; there is no such folder", [](ServePendulumFlags& f) { f.docs = "/none"; }},
       {"--port is -1; it must be 0 to 65535", [](ServePendulumFlags& f) { f.port = -1; }},
@@ -126,7 +126,8 @@ TEST(MakeServePendulumOptions, RequireATokenForOtherMachines) {
     const auto refused = MakeServePendulumOptions(flags, "");
     ASSERT_FALSE(refused) << address;
     EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refused.error().message, StartsWith(std::string("--address ") + address + " lets other machines ask"));
+    EXPECT_THAT(refused.error().message,
+                StartsWith(std::string("--address ") + address + " is open to other machines"));
     EXPECT_TRUE(MakeServePendulumOptions(flags, kToken)) << address;
   }
   for (const char* address : {"127.0.0.1", "127.1.2.3", "::1"}) {

@@ -19,10 +19,10 @@ TOOL = ""  # path of the binary, from the command line
 
 EACH = ("--shared", "none")
 FLAT = "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500))
-FLAT_SENTENCE = ("flat.csv: the reading is constant: there is no swing in it; check the sensor, or choose another "
+FLAT_SENTENCE = ("flat.csv: the reading is constant, so there is no swing; check the sensor, or choose another "
                  "column")
-NO_HOLD = ("no held part at the start: the first fall dates the release before the first sample; --start moving fits it "
-           "so")
+NO_HOLD = ("the recording does not begin with a hold: by the first fall, the release was before the first sample; "
+           "use --start moving")
 
 
 def without_hold(text):
@@ -109,13 +109,13 @@ class SeveralFits(unittest.TestCase):
                             "3", "--json", "fit.json")
 
     def test_several_fits_have_no_place_on_one_stream(self):
-        sentence = " - takes one fit, and there are 2; name a file, and they are numbered"
+        sentence = " - takes one fit, but there are 2; name a file, which is then numbered"
         self.assert_refused(2, "--json" + sentence, "--data", "a.csv,b.csv", *EACH, "--json", "-")
         self.assert_refused(2, "--residuals" + sentence, "--data", "two.csv", "--release", "all", "--json", "fit.json",
                             "--residuals", "-")
 
     def test_the_stream_is_refused_before_any_recording_is_read(self):
-        sentence = "--json - takes one fit, and there are 2; name a file, and they are numbered"
+        sentence = "--json - takes one fit, but there are 2; name a file, which is then numbered"
         self.write("junk.csv", "junk\n")
         self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--json", "-")
         self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--release", "all", "--json",
@@ -200,7 +200,7 @@ class SeveralFits(unittest.TestCase):
                             "--model=drag")
 
     def test_standard_input_is_read_once(self):
-        self.assert_refused(2, "--data '-,-' names standard input twice; it can be read once", "--data", "-,-")
+        self.assert_refused(2, "--data '-,-' names standard input twice, but it can be read only once", "--data", "-,-")
 
 
 if __name__ == "__main__":

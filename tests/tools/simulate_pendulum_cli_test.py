@@ -194,7 +194,7 @@ class SimulatePendulumTest(unittest.TestCase):
         self.check_refused(2, "did you mean --noise?", "--niose", "1", "--set", MOTION, "--out", "run.csv")
         self.check_refused(2, "abc", "--rate", "abc", "--set", MOTION, "--out", "run.csv")
         self.check_refused(2, "--out is missing", "--set", MOTION)
-        self.check_refused(2, "'stray' belongs to no flag", "stray", "--set", MOTION, "--out", "run.csv")
+        self.check_refused(2, "'stray' does not belong to a flag", "stray", "--set", MOTION, "--out", "run.csv")
         self.check_refused(2, "model coulomb has no parameter 'drag'; its parameters are inertia, viscous, coulomb, release_angle",
                            "--set", f"drag=1,{MOTION}", "--out", "run.csv")
         self.check_refused(2, "is the output of --truth too", "--set", MOTION, "--out", "run.csv", "--truth", "run.csv")

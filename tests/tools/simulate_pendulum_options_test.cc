@@ -33,7 +33,7 @@ struct Refusal {
 TEST(MakeSimulateOptions, RefusesWrongOutputsAndNamesThem) {
   const std::vector<Refusal> refusals = {
       {"--out is missing", [](SimulateFlags& f) { f.out.clear(); }},
-      {"'stray' belongs to no flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
+      {"'stray' does not belong to a flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
       {"--count is 0; it must be at least 1", [](SimulateFlags& f) { f.count = 0; }},
       {"--count 2 needs files", [](SimulateFlags& f) { (f.count = 2, f.out = "-"); }},
       {"--manifest lists files; give --out a file instead of -",
@@ -82,7 +82,7 @@ TEST(MakeSimulateOptions, RefusesFlagsThatAPlanIgnores) {
       {"--spread contradicts --plan", [](SimulateFlags& f) { f.spread = "inertia=0.001"; }},
       {"--manifest contradicts --plan", [](SimulateFlags& f) { f.manifest = "runs.csv"; }},
       {"--plan needs --noise or --resolution", [](SimulateFlags& f) { f.noise = 0; }},
-      {"'stray' belongs to no flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
+      {"'stray' does not belong to a flag", [](SimulateFlags& f) { f.positional = {"stray"}; }},
   };
   for (const Refusal& refusal : refusals) {
     SimulateFlags flags = PlanFlags();

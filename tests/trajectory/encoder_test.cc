@@ -100,8 +100,7 @@ TEST(SimulateRecording, RefusesEventsWithoutAnEncoder) {
             "resolution is 0; it must be at least 1e-05 rad where rows are events");
   EXPECT_EQ(refused([](SyntheticOptions& o) { o.noise = 0.005; }),
             "noise is 0.005; it must be at most a fifth of the resolution where rows are events");
-  EXPECT_THAT(refused([](SyntheticOptions& o) { o.jitter = 0.001; }),
-              HasSubstr("rows of events are those of an encoder"));
+  EXPECT_THAT(refused([](SyntheticOptions& o) { o.jitter = 0.001; }), HasSubstr("rows of events come from an encoder"));
   EXPECT_EQ(refused([](SyntheticOptions& o) {
               o.rows = RowTiming::kEven;
               o.time_noise = 0.001;

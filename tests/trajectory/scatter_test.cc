@@ -128,11 +128,11 @@ TEST(ScatterParameters, FailsIfNoDrawIsWithinTheBounds) {
   };
   constexpr ParameterInfo kFraction{"fraction", "f", "", "", 0.0, 1.0, ""};
   EXPECT_THAT(message({kFraction, -1e6, 1}),
-              AllOf(StartsWith("of 1000 draws of seed 9 none is within the bounds: in the last, fraction is -"),
-                    EndsWith(", below 0; let the parameters scatter less")));
-  EXPECT_THAT(message({kFraction, 1e6, 1}), EndsWith(", above 1; let the parameters scatter less"));
+              AllOf(StartsWith("of 1000 draws with seed 9 none is within the bounds (in the last, fraction is -"),
+                    EndsWith(", below 0); make the standard deviations smaller")));
+  EXPECT_THAT(message({kFraction, 1e6, 1}), EndsWith(", above 1); make the standard deviations smaller"));
   EXPECT_THAT(message({kFraction, 0.5, 0}, {.larger = 0, .smaller = 1}),
-              EndsWith("fraction is 0.5, below viscous, which is 5; let the parameters scatter less"));
+              EndsWith("fraction is 0.5, below viscous, which is 5); make the standard deviations smaller"));
 }
 
 }  // namespace

@@ -302,7 +302,7 @@ TEST(SimulateRecording, RefusesAndNamesInvalidOptions) {
        [](SyntheticOptions& o) {
          (o.range = {0, 1}, o.resolution = 2);
        }},
-      {invalid, "a sensor with levels; give a resolution",
+      {invalid, "a sensor with discrete levels loses counts; give a resolution",
        [](SyntheticOptions& o) {
          o.lost_counts = {{5, 1}};
        }},
@@ -317,7 +317,7 @@ TEST(SimulateRecording, RefusesAndNamesInvalidOptions) {
       {unusable, "7 samples; at least 8", [](SyntheticOptions& o) { o.duration = 0.07; }},
       {unusable, "it never moves", [](SyntheticOptions& o) { o.release_angle = 0; }},
       {unusable, "the release at 20 s comes after", [](SyntheticOptions& o) { o.release_time = 20; }},
-      {unusable, "cannot be traced", [](SyntheticOptions& o) { o.parameters[0] = 1e-320; }},
+      {unusable, "cannot be computed", [](SyntheticOptions& o) { o.parameters[0] = 1e-320; }},
   };
   for (const Refusal& refusal : refusals) {
     SyntheticOptions options = TextbookRig();

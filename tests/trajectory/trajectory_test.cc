@@ -285,7 +285,7 @@ TEST(MakeTrajectory, RefusesAnAbsurdTimeScale) {
                                                        {StartKind::kRelease, 0, 0.4, 0}, options);
   ASSERT_FALSE(trajectory);
   EXPECT_EQ(trajectory.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(trajectory.error().message, HasSubstr("cannot be traced"));
+  EXPECT_THAT(trajectory.error().message, HasSubstr("cannot be computed"));
   EXPECT_THAT(trajectory.error().message, HasSubstr("time scale is too short"));
 }
 

@@ -92,15 +92,15 @@ inline constexpr ParameterInfo kZeroDrift{"zero_drift",
                                           "rad/s",
                                           -kUnbounded,
                                           kUnbounded,
-                                          "how fast zero_angle, that of the first used sample, moves"};
+                                          "rate of change of zero_angle, whose value is that at the first used sample"};
 inline constexpr ParameterInfo kBiasDrift{"bias_drift",
                                           "z'",
                                           "rad/s^2",
                                           "rad/s^2",
                                           -kUnbounded,
                                           kUnbounded,
-                                          "how fast rate_bias, that of the first used sample, moves"};
+                                          "rate of change of rate_bias, whose value is that at the first used sample"};
 inline constexpr ParameterInfo kEdgeLag{
-    "edge_lag", "h", "rad", "rad", -kUnbounded, kUnbounded, "how far behind its edge an encoder changes its count"};
+    "edge_lag", "h", "rad", "rad", -kUnbounded, kUnbounded, "angle past an edge at which an encoder changes its count"};
 
 }  // namespace pendulum

@@ -91,7 +91,7 @@ void CheckAlternativeMinima(const FitProblem& problem, std::span<const Alternati
   const double behind = std::max(2 * (log_posterior - nearest->log_posterior), 0.0);
   report.termination = Termination::kNotIdentifiable;
   report.reason = "with " + DescribeDifferences(problem, *nearest, report, different) +
-                  " the readings are explained nearly as well (-2 log L is " + NumberText(behind, 2) +
+                  " the fit is nearly as good (-2 log L is " + NumberText(behind, 2) +
                   " higher): " + MeasurementFor(deciding);
   report.warnings.push_back({"ambiguous_sensor", report.reason});
   for (Identifiability& known : report.identifiability) {

@@ -122,8 +122,8 @@ void CheckProfilesForBetterMinimum(const FitProblem& problem, FitReport& report)
   if (!std::ranges::any_of(report.parameters, found_better)) return;
   report.termination = Termination::kNotConverged;
   report.reason =
-      "a profile of the likelihood came by a better minimum: an acceleration jumps when dry friction changes its side, "
-      "and has many; say what is known with --prior, as radius=r:std_dev";
+      "the profile of the likelihood found a better minimum: with dry friction an acceleration jumps at each turning "
+      "point, which causes many local minima; give known values with --prior, such as radius=r:std_dev";
 }
 
 /// Why the estimates violate the order that the law demands of its parameters; empty if they do not. Estimates that are

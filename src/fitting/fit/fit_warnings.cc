@@ -20,8 +20,8 @@ namespace {
 void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings) {
   if (problem.censored == 0) return;
   warnings.push_back({"saturated", std::to_string(problem.censored) +
-                                       " readings stand at an end of the sensor's range; they are taken to say that "
-                                       "the angle is there or beyond"});
+                                       " readings are at an end of the sensor's range; the fit only "
+                                       "assumes that the angle is at that end or beyond it"});
 }
 
 /// The size of the misfit, in resolutions if the readings are quantized.
@@ -44,19 +44,19 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
     const bool taken = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
                        report.termination == Termination::kConverged;
     warnings.push_back({"correlated_residuals",
-                        taken ? "the residuals follow each other: the error bars take them as noise that remembers (" +
-                                    report.noise.autocorrelation.Name() + ") and hold if the model is right"
-                              : "the residuals follow each other, and no error bar takes that into account"});
+                        taken ? "the residuals are autocorrelated: the error bars assume autocorrelated noise (" +
+                                    report.noise.autocorrelation.Name() + ") and are valid if the model is right"
+                              : "the residuals are autocorrelated, and the error bars ignore that"});
     return;
   }
   const std::string times = ratio > kLargestSaid ? "more than 99" : NumberText(ratio, 2);
   const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
-  warnings.push_back({"lack_of_fit", "the residuals are " + times +
-                                         " times the noise between neighbouring samples and follow each other, by " +
-                                         MisfitSize(recording, misfit) +
-                                         ": the model does not describe everything in this recording, or its noise is "
-                                         "slow (look at --residuals, try another model or window); the error bars are "
-                                         "conditional on a model that may be wrong"});
+  warnings.push_back(
+      {"lack_of_fit", "the residuals are autocorrelated and " + times +
+                          " times as large as the noise between neighbouring samples; the misfit is " +
+                          MisfitSize(recording, misfit) +
+                          ". The model does not describe the whole recording, or its noise is slow. The error bars may "
+                          "be wrong; look at --residuals and try another model or window"});
 }
 
 /// A line through the mean residuals of whole periods. The swing itself does not affect these means.
@@ -91,7 +91,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
   const bool angle = recording.quantity != Quantity::kRate;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
-  warnings.push_back({"zero_drift", "the reading's zero drifts, by about " + NumberText(drift, 2) + " " +
+  warnings.push_back({"zero_drift", "the zero of the readings drifts by about " + NumberText(drift, 2) + " " +
                                         recording.value_unit() + " over the window; --init " + name +
                                         "=0 makes the drift a parameter of the fit"});
 }
@@ -103,20 +103,19 @@ void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std:
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers
   const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
   if (of_levels || !(rms < kQuiet * recording.resolution)) return;
-  warnings.push_back(
-      {"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
-                           " resolutions: the noise is too small for rounding to average out, and the "
-                           "error bars may be several times too small; --noise quantized has true ones"});
+  warnings.push_back({"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                                          " resolutions: rounding errors do not average out with so little noise, so "
+                                          "the error bars may be several times too small; use --noise quantized"});
 }
 
 void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kNegligible = 0.01;
   constexpr double kRounding = 1e-11;  // rad or rad/s: smaller noise is rounding error
   if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
-  warnings.push_back({"trace_accuracy", "the trajectory is computed to " + NumberText(report.trace_error, 1) +
-                                            " only, which is not small against the noise of " +
-                                            NumberText(report.noise.sigma, 1) +
-                                            ": near the top rounding grows; choose a window of smaller swings"});
+  warnings.push_back(
+      {"trace_accuracy", "the numerical error of the trajectory is " + NumberText(report.trace_error, 1) +
+                             ", which is not small compared with the noise of " + NumberText(report.noise.sigma, 1) +
+                             ", because rounding errors grow near the top; choose a window with smaller swings"});
 }
 
 /// Compares the prior with the estimate from the recording alone, which follows from prior and posterior. If the
@@ -133,16 +132,16 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
     const double distance =
         std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight * std::sqrt(1 + own);
     if (!(distance > kFar)) continue;
-    warnings.push_back({"prior_conflict", "what is known of " + std::string(parameter.info.name) +
-                                              " beforehand (--prior) and the recording disagree by " +
-                                              NumberText(distance, 3) + " standard deviations of their difference"});
+    warnings.push_back({"prior_conflict", "the prior of " + std::string(parameter.info.name) +
+                                              " (--prior) and the recording disagree by " + NumberText(distance, 3) +
+                                              " standard deviations of their difference"});
   }
 }
 
 /// If one parameter is at its bound, the errors of the others are valid only if the true value lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr std::string_view kConsequence =
-      "; the standard errors of the others take that as exact, the intervals by profile likelihood do not";
+      "; the standard errors of the others assume that this value is exact, the intervals by profile likelihood do not";
   std::vector<ParameterInfo> friction, bounded, extreme;
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
@@ -152,22 +151,22 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
       (none ? friction : own ? extreme : bounded).push_back(parameter.info);
       continue;
     }
-    warnings.push_back({"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
-                                        std::string(kConsequence) +
-                                        "; choose a window with all of the hold, or --start moving with a window after "
-                                        "the release"});
+    warnings.push_back(
+        {"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
+                         std::string(kConsequence) +
+                         "; choose a window with all of the hold, or --start moving with a window after the release"});
   }
   if (!extreme.empty()) {
-    warnings.push_back({"at_bound", "at the end of what it can be: " + NameList(extreme) + std::string(kConsequence) +
-                                        "; the recording hardly tells it"});
+    warnings.push_back({"at_bound", "at the limit of its possible values: " + NameList(extreme) +
+                                        std::string(kConsequence) + "; the recording hardly determines it"});
   }
   if (!bounded.empty()) {
-    warnings.push_back({"at_bound", "at a bound that was given: " + NameList(bounded) + std::string(kConsequence) +
-                                        "; widen --bounds"});
+    warnings.push_back(
+        {"at_bound", "at a given bound: " + NameList(bounded) + std::string(kConsequence) + "; widen --bounds"});
   }
   if (friction.empty()) return;
   warnings.push_back({"at_bound", "at the bound 0: " + NameList(friction) + std::string(kConsequence) +
-                                      "; a simpler model, or a longer recording, has smaller ones"});
+                                      "; a simpler model or a longer recording gives smaller errors"});
 }
 
 /// Warns about the stop of a pendulum that dry friction brings to rest.
@@ -188,13 +187,14 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
   if (other != solution.other_minima.end()) {
     warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) + " " +
                                                std::string(friction.unit) +
-                                               " and another number of half swings the recording is explained nearly "
-                                               "as well; the error bars are those of the first minimum alone"});
+                                               " and another number of half swings the fit is nearly as good; the "
+                                               "error bars apply to the best minimum only"});
   }
   if (trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error) {
-    warnings.push_back({"stop_is_a_kink", "at a late reversal gravity is within three standard errors of " + name +
-                                              ", where the number of half swings changes: the error bars are rough; a "
-                                              "window that ends before the stop has better ones"});
+    warnings.push_back(
+        {"stop_is_a_kink", "at a late turning point gravity and " + name +
+                               " balance within three standard errors, so the number of half swings is uncertain and "
+                               "the error bars are rough; end the window before the pendulum stops (--to)"});
   }
 }
 

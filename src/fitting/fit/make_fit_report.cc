@@ -42,18 +42,18 @@ bool IsAtKink(const FitProblem& problem, const TraceSummary& trace, const Soluti
 std::string NotIdentifiableReason(const FitProblem& problem, const std::vector<int>& direction) {
   const std::string names = JoinNames(problem, direction);
   return direction.size() == 1 ? "the recording does not depend on " + names + "; fix it"
-                               : "the recording tells only a combination of " + names + "; fix one of them";
+                               : "the recording determines only a combination of " + names + "; fix one of them";
 }
 
 std::string UnexplainedReason(const FitProblem& problem, double unexplained) {
-  const std::string what = problem.restricted ? "not with the values, bounds and priors that were given, not a free "
+  const std::string what = problem.restricted ? "the given values, bounds and priors do not fit, or this is not a free "
                                                 "pendulum's swing, or not one of this model: "
                                               : "this is not a free pendulum's swing, or not one of this model: ";
   const std::string leaves = unexplained < 1
                                  ? "the best trajectory leaves " + std::to_string(std::lround(100 * unexplained)) +
                                        " % of the reading's variance unexplained"
                                  : std::string("the best trajectory explains the readings no better than a constant");
-  return what + leaves + (problem.restricted ? "; look at --fix, --bounds and --prior, or" : ";") +
+  return what + leaves + (problem.restricted ? "; check --fix, --bounds and --prior, or" : ";") +
          " choose a window of free swing with --from and --to";
 }
 
@@ -120,28 +120,28 @@ void SetTermination(const FitProblem& problem, const Optimum& optimum, const Sol
   if (unexplained > MaxUnexplainedShare(checks.correlated)) {
     report.reason = UnexplainedReason(problem, unexplained);
   } else if (checks.periods < kMinPeriods) {
-    report.reason = "the motion lasts " + NumberText(checks.periods, 2) +
-                    " of a period of the best trajectory: that is no swing, and hardly anything of the pendulum can be "
-                    "told; record several periods, or choose a window of free swing with --from and --to";
+    report.reason = "the motion lasts only " + NumberText(checks.periods, 2) +
+                    " of a period of the best trajectory, too little to determine the pendulum; record several "
+                    "periods, or choose a window of free swing with --from and --to";
   } else if (checks.at_discontinuity) {
     report.termination = Termination::kConverged;
-    report.reason = "a jump of the acceleration's sum of squares stopped the search: nowhere along the step of " +
+    report.reason = "the search stopped at a jump in the sum of squares: a further step of " +
                     NumberText(checks.shift, 2) +
-                    " standard errors left to make is it less; the errors are those of the parabola";
+                    " standard errors does not reduce it anywhere; the errors assume a smooth minimum";
   } else if (!(checks.shift <= kLargestShift)) {
     report.reason = checks.at_kink
-                        ? "the best trajectory stops just where one half swing more would begin, and there the sum "
-                          "of squares has a kink; end the window before the stop (--to) or choose another model"
-                        : "a step of " +
+                        ? "the best trajectory stops just before another half swing would begin, where the sum of "
+                          "squares has a kink; end the window before the stop (--to) or choose another model"
+                        : "the estimates are still " +
                               (checks.shift < 10 ? NumberText(checks.shift, 2)
                                                  : std::to_string(std::lround(std::min(checks.shift, 1e6)))) +
-                              " standard errors is left to make; a shorter window or another model may converge";
+                              " standard errors from the minimum; try a shorter window or another model";
   } else if (optimum.free.empty() && optimum.at_bound.empty()) {
     report.termination = Termination::kConverged;
-    report.reason = "every parameter is fixed: nothing was fitted";
+    report.reason = "every parameter is fixed, so nothing was fitted";
   } else {
     report.termination = Termination::kConverged;
-    report.reason = "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors";
+    report.reason = "the estimates are within " + NumberText(kLargestShift, 1) + " standard errors of the minimum";
   }
 }
 
@@ -150,8 +150,8 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   FitReport report = InitializeReport(recording, problem, cost, solution);
   report.termination = Termination::kFailed;
   report.reason =
-      "no trajectory can be traced with these values: friction would hold the pendulum, its release would lie "
-      "outside the hold, or its time scale is absurd; look at what is fixed and at the units";
+      "no motion can be computed with these values: friction would hold the pendulum, the release would be outside the "
+      "hold, or the period would be impossible; check fixed values and units";
   SetParameters(recording, options, problem, Optimum{}, solution, report);
   return report;
 }

@@ -73,10 +73,9 @@ std::string OrderViolation(const FitProblem& problem, const std::vector<double>&
   if (parameters[larger] >= parameters[smaller]) return "";
   const std::string above(problem.infos[larger].name);
   const std::string below(problem.infos[smaller].name);
-  return "the readings would have " + above + " " + NumberText(problem.Reported(larger, parameters[larger]), 4) +
-         ", below " + below + " " + NumberText(problem.Reported(smaller, parameters[smaller]), 4) +
-         ", which it never is; where they are equal nothing else of the law has an effect, and a simpler one does as "
-         "well";
+  return "the best fit has " + above + " " + NumberText(problem.Reported(larger, parameters[larger]), 4) + ", below " +
+         below + " " + NumberText(problem.Reported(smaller, parameters[smaller]), 4) +
+         ", which is impossible; with equal values the law reduces to a simpler one, so use a simpler law";
 }
 
 Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,

@@ -101,14 +101,15 @@ Ending DetermineEnding(const JointState& state) {
   if (const std::string left = DescribeUnexplained(state); !left.empty()) {
     const bool restricted = state.joint.members.front().problem->restricted;
     return {Termination::kNotConverged,
-            std::string(restricted ? "not with the values, bounds and priors that were given, or " : "") +
+            std::string(restricted ? "the given values, bounds and priors do not fit, or " : "") +
                 "these are not swings of one pendulum with one " + NameList(state.joint.shared) +
                 ": the best joint trajectories leave " + left + " unexplained"};
   }
   const InformationInverse& inverse = state.optimum.inverse;
   if (!inverse.identifiable) {
     const std::string names = NamesOf(state.joint, inverse.direction);
-    return {Termination::kNotIdentifiable, "the recordings together do not tell " + names + "; fix or share more"};
+    return {Termination::kNotIdentifiable,
+            "the recordings together do not determine " + names + "; fix or share more parameters"};
   }
   for (const JointMember& member : state.joint.members) {
     const std::string violation = OrderViolation(*member.problem, member.solution.parameters);
@@ -116,12 +117,11 @@ Ending DetermineEnding(const JointState& state) {
   }
   if (std::string why = DescribeAmbiguity(state); !why.empty()) return {Termination::kNotIdentifiable, std::move(why)};
   if (const double shift = RemainingShift(state.optimum); !(shift <= kLargestShift)) {
-    return {Termination::kNotConverged, "a step of " + NumberText(shift, 2) +
-                                            " standard errors is left to make; shorter windows or another model may "
-                                            "converge"};
+    return {Termination::kNotConverged, "the estimates are still " + NumberText(shift, 2) +
+                                            " standard errors from the minimum; try shorter windows or another model"};
   }
   return {Termination::kConverged,
-          "the step left to make is below " + NumberText(kLargestShift, 1) + " standard errors"};
+          "the estimates are within " + NumberText(kLargestShift, 1) + " standard errors of the minimum"};
 }
 
 // ---- Errors ---------------------------------------------------------------------------------------------------------
@@ -173,7 +173,7 @@ void SetSharedProfiles(JointState& state, std::vector<FitReport>& reports) {
     }
   }
   for (FitReport& report : reports) {
-    report.interval_method = "profile likelihood of what is shared; of the others " + report.interval_method;
+    report.interval_method = "profile likelihood of the shared parameters; of the others " + report.interval_method;
   }
 }
 
@@ -191,7 +191,7 @@ FitReport ReportOf(const JointState& state, std::size_t k) {
   SetCovariance(*member.problem, own, errors, report);
   SetSystematicErrors(*member.problem, state.systematic(member.at, member.at), report);
   SetCovarianceIntervals(*member.problem, member.solution, own, errors, report);
-  if (state.from_posteriors) report.std_error_method = "posteriors of the recordings alone, combined as parabolas";
+  if (state.from_posteriors) report.std_error_method = "posteriors of the separate recordings, combined as parabolas";
   return report;
 }
 
@@ -269,7 +269,9 @@ void SetShared(JointFit& fit) {
 /// The result if no joint trajectory can be computed.
 JointFit Failed(const JointProblem& joint, JointFit fit) {
   fit.whole.termination = Termination::kFailed;
-  fit.whole.reason = "no joint trajectory can be traced: the recordings are too different, or what is fixed holds them";
+  fit.whole.reason =
+      "no joint motion can be computed: the recordings are too different, or friction with the fixed values holds the "
+      "pendulum";
   for (const JointMember& member : joint.members) {
     fit.runs.push_back(InitializeReport(*member.recording, *member.problem, *member.cost, member.solution));
     SetParameters(*member.recording, member.options, *member.problem, Optimum{}, member.solution, fit.runs.back());

@@ -48,7 +48,7 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
   member.recording = &run.used;
   member.alone = &run.alone;
   if (run.alone.termination == Termination::kFailed) {
-    return Error(StatusCode::kFailedPrecondition, NumberOf(k) + " cannot be fitted alone: " + run.alone.reason);
+    return Error(StatusCode::kFailedPrecondition, NumberOf(k) + " cannot be fitted separately: " + run.alone.reason);
   }
   Result<FitProblem> problem = ProblemOf(run, member.options);
   if (!problem) return tl::unexpected(problem.error());
@@ -76,10 +76,10 @@ Result<void> CheckSameModelAndRig(std::span<const JointRun> runs) {
   const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
   for (std::size_t k = 1; k < runs.size(); ++k) {
     if (runs[k].alone.model.name != runs[0].alone.model.name) {
-      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " was fitted with another model than the first");
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " was fitted with a different model from the first");
     }
     if (torque(runs[k]) != torque(runs[0])) {
-      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " is of another rig than the first");
+      return Error(StatusCode::kInvalidArgument, NumberOf(k) + " is of a different rig from the first");
     }
   }
   return {};
@@ -218,7 +218,7 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
   joint.shared = SharedOf(model, shared);
   if (joint.shared.empty()) {
     return Error(StatusCode::kInvalidArgument,
-                 "model " + std::string(model.name) + " has none of the parameters that are to be shared");
+                 "model " + std::string(model.name) + " has none of the shared parameters");
   }
   Assemble(joint);
   return joint;

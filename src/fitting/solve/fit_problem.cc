@@ -73,7 +73,7 @@ Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
     const double least = std::min(problem.Internal(*i, range.upper), upper);
     const bool too_small = name == kInertia.name && !(least > kSmallestInertia);
     if (!(most < least) || too_small) {
-      return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " leave it no value; it must be " +
+      return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " allow no value; it must be " +
                                                      Range(problem, *i) + ", and may be fixed with --fix");
     }
     lower = most;
@@ -171,10 +171,10 @@ Recording WithoutOutliers(Recording recording) {
 
 tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
-  return Error(StatusCode::kDataLoss,
-               where + "the readings are in " + recording.unit + " and model " + std::string(model.name) +
-                   " needs an angle; calibrate first (--calibration), or fit --model linear, whose period and damping "
-                   "need none");
+  return Error(StatusCode::kDataLoss, where + "the readings are in " + recording.unit + ", but model " +
+                                          std::string(model.name) +
+                                          " needs an angle; calibrate first (--calibration), or fit --model linear, "
+                                          "whose period and damping need no angle");
 }
 
 ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {
@@ -224,13 +224,13 @@ Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
   if (edges && recording.edge) return {};
   if (edges) {
     return Error(StatusCode::kInvalidArgument,
-                 "--noise edges needs rows that come only when the count changes, by one count mostly and at uneven "
-                 "times; those of this recording do not");
+                 "--noise edges needs rows that exist only where the count changes, mostly by one count and at uneven "
+                 "times; this recording has other rows");
   }
   if (recording.resolution > 0) return {};
-  return Error(
-      StatusCode::kInvalidArgument,
-      "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
+  return Error(StatusCode::kInvalidArgument,
+               "--noise quantized needs the resolution of the readings, but the readings show no discrete levels; give "
+               "--resolution");
 }
 
 Result<void> CheckSensor(const Recording& recording, const MotionModel& model, const SensorModel& sensor,
@@ -242,13 +242,15 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   if (sensor.kind == SensorKind::kDirect && IsAlongRod(recording)) {
     return Error(StatusCode::kDataLoss,
-                 where + "an acceleration along the rod swings twice as fast as the pendulum, which " +
-                     "--model linear cannot tell; choose the axis across the rod, or another model");
+                 where +
+                     "an acceleration along the rod swings twice as fast as the pendulum, which --model linear cannot "
+                     "describe; choose the axis across the rod, or another model");
   }
   if (options.start == StartKind::kRelease) {
     return Error(
         StatusCode::kFailedPrecondition,
-        where + "an acceleration jumps at the release, which no sample dates; --start moving fits what follows");
+        where +
+            "an acceleration jumps at the release, and no sample shows when; --start moving fits the motion after it");
   }
   return {};
 }
@@ -265,7 +267,7 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
   const Result<std::vector<SensorStart>> starts = SensorStarts(timed, sensor, options);
   if (!starts) return tl::unexpected(starts.error());
   if (starts->empty())
-    return Error(StatusCode::kFailedPrecondition, "no swing of a pendulum gives readings like these");
+    return Error(StatusCode::kFailedPrecondition, "these readings do not match the swing of any pendulum");
   sensor_starts = starts->size();
   const SensorStart& start = (*starts)[std::min(options.search.sensor_start, starts->size() - 1)];
   Result<StartValues> values = estimate(start.view);
@@ -306,7 +308,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   const bool has_zero_motion = problem.zero_motion != ZeroMotion::kNone;
   if (has_zero_motion && problem.start.parameters.size() < problem.infos.size()) problem.start.parameters.push_back(0);
   if (problem.start.parameters.size() != problem.infos.size()) {
-    return Error(StatusCode::kInvalidArgument, "the start values are not those of model " + std::string(model->name));
+    return Error(StatusCode::kInvalidArgument,
+                 "the start values belong to a model other than " + std::string(model->name));
   }
   problem.first_guess = problem.start.parameters;
   problem.data = MakeData(timed, sensor, *start);

@@ -142,21 +142,24 @@ double LogLikelihoodOf(const FitProblem& problem, const Solution& solution) {
 ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double residual_std_dev) {
   constexpr double kMaxQuantizedSigma = 1;  // in resolutions
   if (options.noise) return {*options.noise, IsRobust(options.noise) ? "asked for by --loss" : "asked for by --noise"};
-  if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings stand on no levels"};
+  if (!(resolution > 0)) return {NoiseFamily::kGaussian, "the readings show no discrete levels"};
   const double ratio = residual_std_dev / resolution;
   if (ratio < kMaxQuantizedSigma) {
     return {NoiseFamily::kQuantized,
-            "the residuals are " + NumberText(ratio, 2) + " resolutions: the readings are levels, not numbers"};
+            "the residuals are " + NumberText(ratio, 2) +
+                " resolutions: rounding is not small, so each reading is treated as an interval of one level"};
   }
   return {NoiseFamily::kGaussian,
-          "the residuals are " + NumberText(ratio, 2) + " resolutions: rounding drowns in the noise"};
+          "the residuals are " + NumberText(ratio, 2) +
+              " resolutions: the noise is larger than the resolution, so the readings are treated as continuous"};
 }
 
 namespace {
 
 ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, double residual_std_dev) {
   if (!options.noise && problem.noise.edge) {
-    return {NoiseFamily::kEdges, "rows come only when the count changes: the readings are the edges between counts"};
+    return {NoiseFamily::kEdges,
+            "rows exist only where the count changes, so the readings are treated as edges between counts"};
   }
   return ChooseNoise(options, problem.resolution, residual_std_dev);
 }

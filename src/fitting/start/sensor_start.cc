@@ -200,10 +200,10 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
     const bool shows_at_0 = info.name == kRadius.name && sensor.gravity > 0;  // gravity is measured at the pivot too
     if (*value == 0 ? shows_at_0 : *value >= info.lower) continue;
     return Error(StatusCode::kInvalidArgument, std::string(info.name) + " cannot be " + NumberText(*value) +
-                                                   ": with that the sensor would show no motion; it must be " +
+                                                   ", because the sensor would then show no motion; it must be " +
                                                    (shows_at_0        ? "at least 0"
                                                     : info.lower == 0 ? "greater than 0"
-                                                                      : "below 0 or above it"));
+                                                                      : "other than 0"));
   }
   return {};
 }

@@ -150,7 +150,7 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
   const double inertia = 1 / (values.natural_frequency * values.natural_frequency);
   if (!(inertia > 1e-30 && inertia < 1e30)) {
     return Error(StatusCode::kFailedPrecondition, "the period is " + NumberText(2 * kPi / values.natural_frequency, 3) +
-                                                      " s, which no pendulum has; check the unit of time");
+                                                      " s, which is impossible for a pendulum; check the unit of time");
   }
   values.amplitude =
       AngleAmplitude(table->quantity, table->LargestAmplitude(), values.natural_frequency, model.gravity);
@@ -166,8 +166,8 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
       choice == StartKind::kMoving ? std::nullopt : FindHold(data, choice == StartKind::kRelease);
   if (choice == StartKind::kRelease && !hold) {
     return Error(StatusCode::kFailedPrecondition,
-                 "no held part at the start: the first fall dates the release before the first sample; --start moving "
-                 "fits it so");
+                 "the recording does not begin with a hold: by the first fall, the release was before the first "
+                 "sample; use --start moving");
   }
   if (hold) {
     values.start = StartKind::kRelease;

@@ -168,7 +168,8 @@ std::string UnwrapOffset(Recording& used) {
   if (used.edge) *used.edge -= 2 * kPi * turns;
   if (used.range) used.range = SensorRange{used.range->low - 2 * kPi * turns, used.range->high - 2 * kPi * turns};
   if (used.calibration) used.calibration->coefficients[0] -= 2 * kPi * turns / used.calibration->RadFromUnit();
-  return NumberText(turns) + " whole turns were taken out of the readings: the zero is that of the swing's own turn";
+  return NumberText(turns) +
+         " whole turns were subtracted from the readings, so the zero refers to the turn in which the pendulum swings";
 }
 
 Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const FitOptions& options) {
@@ -216,10 +217,10 @@ SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
 void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
   constexpr double kLarger = 1.3;
   if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
-  fit.warnings.push_back(
-      {"left_out", "outside the window the reading turns " + NumberText(swing.amplitude_outside / swing.amplitude, 2) +
-                       " times as far out as in it, but not as a free swing does; look at the "
-                       "recording, and choose with --from and --to if this is not the part you want"});
+  fit.warnings.push_back({"left_out", "outside the window the motion is " +
+                                          NumberText(swing.amplitude_outside / swing.amplitude, 2) +
+                                          " times as large as inside, but not a free swing; look at the recording, and "
+                                          "choose another window with --from and --to if needed"});
 }
 
 /// Also removes the errors, because they are valid only for a pendulum.
@@ -262,8 +263,7 @@ std::optional<OffsetJumps> CorrectOffset(FreeSwing& swing, const FitOptions& opt
 }
 
 std::optional<std::string> NotAPendulumReason(const SwingFit& result, const std::stop_token& stop) {
-  if (result.swing.has_beats)
-    return "its amplitude grows again and again, as that of two pendulums that are coupled does";
+  if (result.swing.has_beats) return "its amplitude grows repeatedly, as in coupled pendulums";
   return LinearOscillatorReason(result.used, result.fit, stop);
 }
 
@@ -367,9 +367,9 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
   FitReport& fit = state.result.fit;
   if (state.was_trimmed) {
     fit.warnings.push_back(
-        {"disturbed", "left out as disturbed: the window begins at " + NumberText(state.result.swing.from, 4) +
-                          " s and ends at " + NumberText(state.result.swing.to, 4) +
-                          " s, for what was left out does not fit the rest; --from and --to choose otherwise"});
+        {"disturbed", "disturbed ends were left out, because they do not fit the rest: the window is now " +
+                          NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) +
+                          " s; choose another one with --from and --to"});
   }
   WarnOfLargerMotion(state.swing, fit);
   WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);

@@ -161,7 +161,7 @@ std::string DescribeJumps(const Recording& recording, const std::vector<OffsetSt
     text += (k == 0 ? "by " : ", by ") + SizeText(recording, steps[k]) + " at " +
             NumberText(recording.time[steps[k].sample], 6) + " s";
   }
-  if (steps.size() > kMaxListed) text += " and " + std::to_string(steps.size() - kMaxListed) + " times more";
+  if (steps.size() > kMaxListed) text += " and at " + std::to_string(steps.size() - kMaxListed) + " more times";
   return text;
 }
 
@@ -235,10 +235,10 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
   jumps.message = "the zero jumps " + DescribeJumps(recording, steps);
   if (consistent->uncertain) {
     jumps.uncertain_from = recording.time[*consistent->uncertain];
-    jumps.message += ", not surely by whole counts";
+    jumps.message += ", perhaps not by whole counts";
     if (steps.size() > 1) jumps.message += " from " + NumberText(*jumps.uncertain_from, 6) + " s on";
     jumps.message +=
-        ": the sensor slipped, or counts were lost that cannot be told; choose a window before it or after it with "
+        ": the sensor slipped, or an unknown number of counts was lost; choose a window before or after the jump with "
         "--from and --to";
     return jumps;
   }
@@ -248,7 +248,7 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
   }
   jumps.corrected = std::move(consistent->corrected);
   jumps.message +=
-      ": counts were lost; the readings after each are moved back by as much, in all that follows and in the series";
+      ": counts were lost; the readings after each jump were corrected by its size, here and in the series";
   return jumps;
 }
 
@@ -270,8 +270,8 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
       fit.noise.family == NoiseFamily::kEdges || (!has_misfit && fit.noise.family != NoiseFamily::kQuantized);
   if (!jumps && can_detect && MayHaveOffsetJump(fit)) {
     fit.warnings.push_back({"zero_unsteady",
-                            "the mean of the residuals changes within the window by more than chance has it: the zero "
-                            "may have jumped or drifted by too little to be told; look at --residuals"});
+                            "the mean of the residuals changes within the window by more than chance explains: the "
+                            "zero may have jumped or drifted by a small amount; look at --residuals"});
   }
   if (!jumps) return;
   if (!jumps->AreCorrected()) return RejectForOffsetJumps(jumps->message, fit);

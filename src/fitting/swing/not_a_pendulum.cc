@@ -65,11 +65,11 @@ std::optional<std::string> IsLinear(const Recording& recording, const FitReport&
   const double gain = -2 * static_cast<double>(recording.size()) * std::log(ratio);  // in -2 log L
   if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
   constexpr double kNearTop = 3.1;
-  return "the period does not depend on the amplitude as a pendulum's does, which is " +
+  return "the period does not depend on the amplitude as in a pendulum, whose period is " +
          Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
          NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
          NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " + NumberText(left, 3) +
-         " rad; --model linear describes the former";
+         " rad; use --model linear for this recording";
 }
 
 /// A frequency and its share of the residuals.
@@ -117,7 +117,7 @@ std::optional<std::string> HasTwoModes(const Recording& recording, const FitRepo
   const double ratio = line.frequency / natural;
   const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);
   if (own || line.share < kMinShare) return std::nullopt;
-  return Percent(line.share) + " of what the fit leaves is an oscillation with a period of " +
+  return Percent(line.share) + " of the residuals' variance is an oscillation with a period of " +
          NumberText(2 * kPi / line.frequency, 4) + " s beside the pendulum's " + NumberText(2 * kPi / natural, 4) +
          " s: two modes, of a second pendulum, a string or a loose support";
 }

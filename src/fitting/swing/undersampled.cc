@@ -162,12 +162,13 @@ std::optional<std::string> NotDescribedReason(const Recording& used, const FitRe
   const double left = fit.residual.squaredNorm() / variance;
   if (left > kMaxUnexplained) {
     return "the best trajectory leaves " + NumberText(100 * left, 2) +
-           " % of the reading's variance unexplained, and samples so far apart cannot tell noise from another motion";
+           " % of the reading's variance unexplained; samples this far apart cannot distinguish noise from another "
+           "motion, so sample faster";
   }
   const auto parameters = static_cast<Index>(fit.parameters.size());
   if (used.size() >= kMinPerParameter * parameters) return std::nullopt;
   return std::to_string(used.size()) + " samples are too few for " + std::to_string(parameters) +
-         " parameters and a choice among frequencies; record for longer";
+         " parameters and the choice of a frequency; record for longer";
 }
 
 /// If nothing bounds the frequency, only the slowest pendulum is accepted, and only if it is well sampled and no faster
@@ -180,10 +181,9 @@ std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& al
   const bool alone = NearlyAsGood(aliases, kMinDevianceGap).size() == 1;
   const bool is_unambiguous = rate - frequency > kFastestHz;
   if (slowest && alone && rate > (is_unambiguous ? kTurnsShow : kWell) * frequency) return std::nullopt;
-  return "sampled at " + Hz(rate) + " the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
-         " or, seen too seldom, faster; the readings suggest " + Hz(frequency) +
-         ", but only a rig's inertia bounds it: give --rig with rod and bob or with \"inertia\", --bounds of inertia, "
-         "or sample at 6 Hz or faster";
+  return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
+         " or faster; the readings suggest " + Hz(frequency) +
+         ". Give --rig with rod and bob or with \"inertia\", give --bounds of inertia, or sample at 6 Hz or faster";
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
@@ -201,13 +201,13 @@ std::optional<std::string> AmbiguityReason(const Recording& used, const std::vec
   const double rate = SampleRateOf(used);
   const auto near = NearlyAsGood(aliases, kNearlyAsWell);
   if (near.size() > 1) {
-    return "several inertias explain the readings nearly as well, for samples at " + Hz(rate) +
-           " look alike: " + ListOf(near) + "; sample faster";
+    return "several inertias fit the readings nearly equally well, because their samples at " + Hz(rate) +
+           " look the same: " + ListOf(near) + "; sample faster";
   }
   if (const double frequency = aliases.front().frequency; SamplesTwoPhasesOnly(used, frequency)) {
-    return "sampled at " + Hz(rate) + ", once or twice a swing of " + Hz(frequency) +
-           ", all readings of the pendulum come at nearly the same two phases: a frequency a little lower and one a "
-           "little higher look the same; sample at another rate";
+    return "sampled at " + Hz(rate) + ", once or twice per swing of " + Hz(frequency) +
+           ", all readings show nearly the same two phases, so a slightly lower and a slightly higher frequency look "
+           "the same; sample at another rate";
   }
   return allowed.bounded ? std::nullopt : UnboundedFrequencyReason(aliases, rate);
 }
@@ -216,12 +216,12 @@ std::optional<std::string> AmbiguityReason(const Recording& used, const std::vec
 std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate) {
   const std::string chosen = ListOf({&aliases.front()});
   if (!allowed.bounded) {
-    return "sampled at " + Hz(rate) + " a pendulum faster than " + Hz(0.5 * rate) +
-           " would look slower than it is; of those up to " + Hz(kFastestHz) + " none but " + chosen +
-           " explains the readings; a rig file with masses and length would settle it";
+    return "sampled at " + Hz(rate) + ", a pendulum faster than " + Hz(0.5 * rate) +
+           " would look slower than it is; up to " + Hz(kFastestHz) + " only " + chosen +
+           " fits the readings; give a rig file with masses and length to be certain";
   }
-  return "samples at " + Hz(rate) + " tell frequencies to both sides of a multiple of " + Hz(0.5 * rate) +
-         " apart only by how the period depends on the amplitude; that speaks for " + chosen + " alone";
+  return "at " + Hz(rate) + " frequencies on both sides of a multiple of " + Hz(0.5 * rate) +
+         " differ only in how the period depends on the amplitude; only " + chosen + " agrees with it";
 }
 
 /// Whether the readings fit far better at a frequency that contradicts the rig.
@@ -234,7 +234,7 @@ std::optional<std::string> RigMismatchReason(const Recording& used, const FitRep
   const Alias& best = aliases->front();
   if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kMinDevianceGap) return std::nullopt;
   return "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " + Hz(*expected) +
-         " that the rig lets expect; check the rig, or give --bounds of inertia";
+         " that the rig predicts; check the rig file, or give --bounds of inertia";
 }
 
 /// The reason to reject a fit, independent of its own errors.
@@ -289,8 +289,8 @@ std::string ImplausiblePeriodText(const Recording& recording) {
   const double period = 2 * swings->front().half_period * recording.clock_scale;
   if (!(period > kLongest) || SampleRateOf(recording) * period < kSeen) return "";
   return "the period is " + NumberText(period, 3) +
-         " s, which no pendulum has; if the times are milliseconds or microseconds, name their column time_ms or "
-         "time_us";
+         " s, which is impossible for a pendulum; if the times are milliseconds or microseconds, name their column "
+         "time_ms or time_us";
 }
 
 }  // namespace
@@ -328,7 +328,7 @@ FreeSwing WholeRecording(const Recording& recording) {
 Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const FitOptions& options) {
   if (options.start == StartKind::kRelease) {
     return Error(StatusCode::kFailedPrecondition,
-                 "sampled too slowly to date a release; --start moving fits what follows it");
+                 "sampled too slowly to find the time of the release; --start moving fits the motion after it");
   }
   if (!ExpectedFrequency(options.rig)) {
     if (const std::string implausible = ImplausiblePeriodText(recording); !implausible.empty()) {
@@ -352,7 +352,7 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   if (aliases->empty()) {
     return Error(StatusCode::kFailedPrecondition, "no pendulum of " + Hz(allowed.range.low / kTurn) + " to " +
                                                       Hz(allowed.range.high / kTurn) +
-                                                      " swings as the readings do; look at --rig, or sample faster");
+                                                      " fits the readings; check --rig, or sample faster");
   }
   const std::optional<Rejection> rejection = RejectionOf(*used, *aliases, allowed, moving);
   FitReport fit = aliases->front().fit;

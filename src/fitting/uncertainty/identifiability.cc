@@ -44,7 +44,8 @@ std::string MeasurementFor(std::string_view parameter) {
   const auto* const found = std::ranges::find(kAdvice, parameter, &Advice::parameter);
   if (found != kAdvice.end()) return std::string(found->measurement);
   // Friction laws differ in how the loss depends on amplitude.
-  return "release from further out and record until the swing is small, or fix it at a value from another measurement";
+  return "release from a larger angle and record until the swing is small, or fix it at a value from another "
+         "measurement";
 }
 
 }  // namespace pendulum

@@ -6,13 +6,13 @@ namespace pendulum {
 std::string_view Sentence(OpenInterval open) {
   switch (open) {
     case OpenInterval::kClosed: return "";
-    case OpenInterval::kNotDetermined: return "the recording does not determine it beside the others";
-    case OpenInterval::kFlatLikelihood: return "the likelihood does not fall far enough on that side, however far out";
+    case OpenInterval::kNotDetermined: return "the recording does not determine it together with the other parameters";
+    case OpenInterval::kFlatLikelihood: return "the likelihood does not fall far enough on that side, at any distance";
     case OpenInterval::kNotFollowed: return "its profile could not be followed; try --interval bootstrap";
-    case OpenInterval::kBetterMinimum: return "a better minimum lies within it: the fit is not at the best one";
+    case OpenInterval::kBetterMinimum: return "the interval contains a better minimum, so the fit is not the best one";
     case OpenInterval::kAtBound: return "at its bound; --interval profile gives the other end";
-    case OpenInterval::kNothingExcluded: return "no value that it may have is excluded";
-    case OpenInterval::kFailedResamples: return "too many of the bootstrap's fits cannot be made";
+    case OpenInterval::kNothingExcluded: return "the data exclude none of its possible values";
+    case OpenInterval::kFailedResamples: return "too many fits of the bootstrap failed";
   }
   return "";
 }

@@ -86,8 +86,8 @@ Result<Frame> FirstFrame(const LinearizedFit& fit) {
   if (!inverse.identifiable) {
     std::string names;
     for (const int j : inverse.direction) names.append(" ").append(std::to_string(j));
-    return Error(StatusCode::kFailedPrecondition, "some combination of the parameters" + names +
-                                                      " leaves no trace in the readings; hold one of them fixed");
+    return Error(StatusCode::kFailedPrecondition,
+                 "some combination of the parameters" + names + " has no effect on the readings; fix one of them");
   }
   return Frame{Eigen::VectorXd::Zero(fit.lower.size()), inverse.matrix.llt().matrixL()};
 }

@@ -185,12 +185,12 @@ Part PartOf(const FittedRun& run, const Optimum& optimum) {
 
 std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation) {
   if (correlation.kind != Autocorrelation::Kind::kWhite) {
-    return "sandwich: the residuals follow each other as " + correlation.Name() +
-           " noise does, and its autocovariance stands between two inverses of the information";
+    return "sandwich: the autocovariance of the residuals (" + correlation.Name() +
+           ") between two inverses of the information";
   }
-  if (noise.IsRobust()) return "sandwich of the robust score, residuals taken as independent";
-  if (noise.IsUncensoredGaussian()) return "covariance sigma^2 (J'J)^-1, residuals taken as independent";
-  return "inverse observed information of the parameters and sigma, readings taken as independent";
+  if (noise.IsRobust()) return "sandwich of the robust score, residuals assumed independent";
+  if (noise.IsUncensoredGaussian()) return "covariance sigma^2 (J'J)^-1, residuals assumed independent";
+  return "inverse observed information of the parameters and sigma, readings assumed independent";
 }
 
 /// Each parameter has its own number of effective samples. Autocorrelation that inflates the variance of a mean may not
@@ -273,7 +273,9 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     if (noise.IsUncensoredGaussian()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
     if (own.sigma) *own.sigma *= std::sqrt(runs[k].correlation.SquaredInflation());
     // Alternating autocorrelation can make the variance in a direction negative.
-    if (!sound) own.method = "inverse information, residuals taken as independent: with their memory it has no inverse";
+    if (!sound)
+      own.method =
+          "inverse information, residuals assumed independent, because with their autocorrelation it has no inverse";
   }
   errors.t95 = StudentT95(errors.covariance, optimum, samples, std::ranges::all_of(runs, IsWhite));
   return errors;

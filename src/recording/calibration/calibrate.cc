@@ -171,7 +171,7 @@ Check CheckInputRange(const CalibrationTable& table, const std::optional<SensorR
   for (Index i = 0; range && i < table.size(); ++i) {
     if (table.reading[i] >= range->low && table.reading[i] <= range->high) continue;
     return Error(StatusCode::kInvalidArgument, table.Place(i) + ": the reading " + NumberText(table.reading[i]) + " " +
-                                                   table.input + " lies outside the sensor's range, " +
+                                                   table.input + " is outside the sensor's range, " +
                                                    NumberText(range->low) + " to " + NumberText(range->high) +
                                                    "; correct the range or the row");
   }
@@ -189,7 +189,7 @@ Check CheckNumbers(const CalibrationTable& table, const CalibrationFit& fit) {
   const bool is_finite = std::isfinite(span) && fit.left_out.allFinite() && calibration.covariance.allFinite() &&
                          (again - fit.residual).allFinite() && std::isfinite(fit.resolution);
   if (is_finite && (again - fit.residual).cwiseAbs().maxCoeff() <= kAlike * span) return {};
-  return FaultAtEnd(table, "the numbers of this table are too large, too small or too alike for a curve of order " +
+  return FaultAtEnd(table, "the numbers of this table are too large, too small or too similar for a curve of order " +
                                std::to_string(fit.order) + " in powers of the reading; check them, or lower the order");
 }
 
@@ -199,7 +199,7 @@ Check CheckCurveIsMonotonic(const CalibrationTable& table, const CalibrationFit&
   if (!turn) return {};
   return FaultAtEnd(table, "the curve of order " + std::to_string(fit.order) + " turns at about " +
                                NumberText(*turn, 4) + " " + table.input +
-                               ", between the points, where two readings would be one angle; lower the order");
+                               ", between the points, so two readings would give the same angle; lower the order");
 }
 
 }  // namespace

@@ -76,8 +76,8 @@ Check TableReader::ReadHeader() {
   const std::vector<csv::Name> names = csv::SplitHeader(line_.text, separator_);
   if (std::ranges::none_of(names, [](const csv::Name& name) { return csv::IsName(name.text); })) {
     return line_.Fault(line_.text.data(),
-                       "the first row holds numbers where the names of the columns should stand; put a header above "
-                       "it that tells the units, such as counts,angle_deg");
+                       "the first row has numbers instead of column names; put a header above it that gives the units, "
+                       "such as counts,angle_deg");
   }
   if (Check checked = CheckUnits(names); !checked) return checked;
   if (Check found = FindColumn(names, Kind::kRaw, reading_); !found) return found;
@@ -98,13 +98,14 @@ Check TableReader::CheckUnits(const std::vector<csv::Name>& names) const {
     if (unit == nullptr) continue;
     const std::string column = "column " + Quoted(name.text);
     if (unit->kind != Kind::kRaw && unit->kind != Kind::kAngle) {
-      return line_.Fault(name.at, column + " is in " + std::string(unit->name) +
-                                      ", and a calibration table has readings in counts or volts and angles in deg or "
-                                      "rad; delete this column");
+      return line_.Fault(
+          name.at,
+          column + " is in " + std::string(unit->name) +
+              ", but a calibration table has readings in counts or volts and angles in deg or rad; delete this column");
     }
     if (second != nullptr && second != unit) {
-      return line_.Fault(name.at, column + " tells two units, " + std::string(second->name) + " and " +
-                                      std::string(unit->name) + "; name it by the one its values are in");
+      return line_.Fault(name.at, column + " names two units, " + std::string(second->name) + " and " +
+                                      std::string(unit->name) + "; keep the unit of its values");
     }
   }
   return {};
@@ -125,14 +126,14 @@ Check TableReader::FindColumn(const std::vector<csv::Name>& names, Kind kind, cs
     column = {static_cast<std::size_t>(&name - names.data()), Quoted(name.text), unit};
   }
   if (found != nullptr) return {};
-  return line_.Fault(line_.text.data(), "no column's name tells that it is " + role + "; end it in its unit, " +
+  return line_.Fault(line_.text.data(), "no column's name shows that it is " + role + "; end the name in its unit, " +
                                             (is_reading ? "_counts or _volts" : "_deg or _rad"));
 }
 
 Check TableReader::ReadRow() {
   if (static_cast<Index>(readings_.size()) == kMaxCalibrationPoints) {
-    return line_.Fault(line_.text.data(), "here are more than " + std::to_string(kMaxCalibrationPoints) +
-                                              " rows; a calibration table has one row for each angle that was set");
+    return line_.Fault(line_.text.data(), "there are more than " + std::to_string(kMaxCalibrationPoints) +
+                                              " rows; a calibration table has one row for each angle");
   }
   double reading = 0, angle = 0;
   std::size_t index = 0;
@@ -171,9 +172,8 @@ Check TableReader::CheckEnd() const {
   const std::string lack = lines_.is_empty() ? "the file is empty"
                            : width_ == 0     ? "the file names no column"
                                              : "the header is followed by no row";
-  return last.Fault(last.text.data(), lack +
-                                          "; a calibration table has a header such as counts,angle_deg and a row "
-                                          "for each angle that was set");
+  return last.Fault(last.text.data(),
+                    lack + "; a calibration table has a header such as counts,angle_deg and a row for each angle");
 }
 
 // ---- Requirements of a table -------------------------------------------------------------------------------------
@@ -196,7 +196,7 @@ Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index
     if (table.reading[later] != table.reading[earlier]) continue;
     const bool same = table.angle[later] == table.angle[earlier];
     return FaultAt(table, later,
-                   "the reading " + ReadingAt(table, earlier) + " stands here again with " +
+                   "the reading " + ReadingAt(table, earlier) + " is here again with " +
                        (same ? "the same angle; give their mean, or delete one of the rows"
                              : "another angle; give their mean, or correct or delete one of the rows"));
   }

@@ -38,25 +38,22 @@ constexpr std::array kForeign = {
             "this is an HDF5 file without MATLAB's header; export the recording as CSV, or save it from MATLAB "
             "with save('run.mat', 't', 'angle_deg')"},
     Foreign{"\x1F\x8B"sv, "this is a gzip file; unpack it and name the file in it"},
-    Foreign{"\xFD"
-            "7zXZ"sv,
-            "this is an xz file; unpack it and name the file in it"},
+    Foreign{"\xFD7zXZ"sv, "this is an xz file; unpack it and name the file in it"},
     Foreign{"BZh"sv, "this is a bzip2 file; unpack it and name the file in it"},
     Foreign{"7z\xBC\xAF\x27\x1C"sv, "this is a 7z file; unpack it and name the file in it"},
     Foreign{"Rar!"sv, "this is a RAR file; unpack it and name the file in it"},
     Foreign{"\xD0\xCF\x11\xE0"sv, "this is a workbook of an older Excel; save it as CSV and name that"},
     Foreign{"#ROSBAG"sv, "this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that"},
     Foreign{"\x89MCAP"sv, "this is an MCAP log; export the topic as CSV and name that"},
-    Foreign{"SQLite format 3"sv, "this is an SQLite file and no recording; name a file of rows, a zip or a MAT-file"},
+    Foreign{"SQLite format 3"sv, "this is an SQLite file, not a recording; name a file of rows, a zip or a MAT-file"},
     Foreign{"<?xml"sv,
-            "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name "
-            "that"},
+            "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name that"},
     Foreign{"# Created by Octave"sv,
-            "this is the text in which Octave keeps variables; save them with save -7 run.mat t angle_deg"},
-    Foreign{"Octave-1-"sv, "this is Octave's binary form of variables; save them with save -7 run.mat t angle_deg"},
+            "this is Octave's text format; save the variables with save -7 run.mat t angle_deg"},
+    Foreign{"Octave-1-"sv, "this is Octave's binary format; save the variables with save -7 run.mat t angle_deg"},
     Foreign{"%PDF"sv, "this is a PDF; name the file of the recording"},
     Foreign{"PK\5\6"sv, "this zip file is empty; name one that holds a recording"},
-    Foreign{"PK\7\x8"sv, "this is a part of a zip file that was split; put the parts together"},
+    Foreign{"PK\7\x8"sv, "this is a part of a split zip file; put the parts together"},
 };
 
 const Foreign* FindForeign(std::string_view begin) {

@@ -20,8 +20,8 @@ Result<void> CheckListed(const ListedFile& file, const std::map<fs::path, std::s
   std::error_code error;
   const fs::file_type type = fs::status(file.path, error).type();
   if (type == fs::file_type::not_found) {
-    return Error(StatusCode::kNotFound,
-                 file.place + ": there is no file " + file.path.string() + "; paths begin at the folder of the list");
+    return Error(StatusCode::kNotFound, file.place + ": there is no file " + file.path.string() +
+                                            "; paths are relative to the folder of the list");
   }
   if (type == fs::file_type::directory) {
     return Error(StatusCode::kDataLoss,
@@ -30,7 +30,7 @@ Result<void> CheckListed(const ListedFile& file, const std::map<fs::path, std::s
   const auto found = places.find(file.path.lexically_normal());
   if (found == places.end()) return {};
   return Error(StatusCode::kDataLoss,
-               file.place + ": " + file.path.string() + " stands at " + found->second + " too; keep one of them");
+               file.place + ": " + file.path.string() + " is also at " + found->second + "; keep one of them");
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ Result<std::vector<ListedFile>> ReadDataList(const fs::path& path) {
     places.emplace(files.back().path.lexically_normal(), files.back().place);
   }
   if (!files.empty()) return files;
-  return Error(StatusCode::kFailedPrecondition, lines.name() + ": the list names no file; give one path a line");
+  return Error(StatusCode::kFailedPrecondition, lines.name() + ": the list names no file; give one path per line");
 }
 
 }  // namespace pendulum

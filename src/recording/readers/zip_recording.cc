@@ -90,9 +90,9 @@ Result<const Member*> TakeNamed(const ZipMembers& zip, const std::string& name, 
   for (const Member& member : zip.members()) {
     if (!is_named(file_of(member))) continue;
     if (by_file != nullptr && file_of(member) == file_of(*by_file)) {
-      return Error(StatusCode::kInvalidArgument, name + ": --value_column is " + Quoted(flag) + ", and both " +
+      return Error(StatusCode::kInvalidArgument, name + ": --value_column is " + Quoted(flag) + ", but both " +
                                                      Quoted(by_file->path) + " and " + Quoted(member.path) +
-                                                     " are files of this name; give it with its folders");
+                                                     " have this name; give the path within the zip file");
     }
     by_file = &member;
   }
@@ -104,8 +104,7 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
     return pendulum::Fault(name, "this is an Excel workbook; save its sheet as CSV and name that");
   std::vector<std::string> members;
   for (const Member& member : zip.members()) members.push_back(Quoted(member.path));
-  if (members.empty())
-    return pendulum::Fault(name, "there is no file in this zip file; name one that holds a recording");
+  if (members.empty()) return pendulum::Fault(name, "this zip file contains no recording; name one that does");
   return pendulum::Fault(name, "none of its files " + ListOf(members) +
                                    " has a column of times and one of an angle or a rate; choose with --value_column "
                                    "\"FILE/COLUMN\", or name another recording");

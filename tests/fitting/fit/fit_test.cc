@@ -293,7 +293,7 @@ TEST(FitRecording, NamesTheFileWithoutASwing) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(refused.error().message,
-            "run.csv: the reading is constant: there is no swing in it; check the sensor, or choose another column");
+            "run.csv: the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
 }  // namespace

@@ -61,11 +61,12 @@ TEST(FitWarnings, ReportAModelThatDoesNotDescribeTheData) {
   const FitReport poor = Fit(recording, ModelOptions("viscous"));
   EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit"));
   const std::string& message = poor.warnings[0].message;
-  EXPECT_THAT(message, HasSubstr("the error bars are conditional on a model that may be wrong"));
+  EXPECT_THAT(message, HasSubstr("The error bars may be wrong"));
   // Part beyond the noise, and its share of the residuals: two digits.
   const double rms = poor.statistics.rms_residual;
-  EXPECT_THAT(NumberAfter("the residuals are ", message) / (rms / 0.002), testing::DoubleNear(1, 0.05));
-  EXPECT_THAT(NumberAfter("each other, by ", message) / std::sqrt(rms * rms - 0.002 * 0.002),
+  EXPECT_THAT(NumberAfter("the residuals are autocorrelated and ", message) / (rms / 0.002),
+              testing::DoubleNear(1, 0.05));
+  EXPECT_THAT(NumberAfter("the misfit is ", message) / std::sqrt(rms * rms - 0.002 * 0.002),
               testing::DoubleNear(1, 0.05));
 }
 
@@ -186,7 +187,7 @@ TEST(FitWarnings, ReportSizeAndDirectionOfADriftingZero) {
       const auto warning = std::ranges::find(report.warnings, "zero_drift", &Warning::code);
       ASSERT_NE(warning, report.warnings.end());
       const bool angle = quantity == Quantity::kAngle;
-      const std::string before = "the reading's zero drifts, by about ";
+      const std::string before = "the zero of the readings drifts by about ";
       ASSERT_THAT(warning->message, testing::StartsWith(before));
       // The middle of the last whole period is 28 s after that of the first; the hold covers a part of it.
       EXPECT_THAT(std::stod(warning->message.substr(before.size())) / drift, testing::DoubleNear(28, 4.2));

@@ -176,7 +176,7 @@ TEST(SetIdentifiability, NamesAnUndeterminedCombination) {
   for (const int i : {1, 2}) {
     EXPECT_EQ(verdicts[i].verdict, Verdict::kNotIdentifiable);
     EXPECT_THAT(verdicts[i].direction, UnorderedElementsAre("viscous", "coulomb"));
-    EXPECT_THAT(verdicts[i].advice, HasSubstr("release from further out"));
+    EXPECT_THAT(verdicts[i].advice, HasSubstr("release from a larger angle"));
   }
   EXPECT_EQ(verdicts[0].verdict, Verdict::kIdentifiable);
 }

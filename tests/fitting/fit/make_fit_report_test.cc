@@ -64,8 +64,8 @@ TEST(MakeFitReport, APointOneStandardErrorAwayIsNotConverged) {
   parameters[1] += *fit.parameters[1].std_error;
   const FitReport report = Judged(NoisyRun(), parameters);
   EXPECT_EQ(report.termination, Termination::kNotConverged);
-  EXPECT_THAT(report.reason, HasSubstr("a step of "));
-  EXPECT_THAT(report.reason, HasSubstr("standard errors is left to make"));
+  EXPECT_THAT(report.reason, HasSubstr("the estimates are still "));
+  EXPECT_THAT(report.reason, HasSubstr("standard errors from the minimum"));
   EXPECT_EQ(report.parameters[1].estimate, parameters[1]);
   ExpectNoErrors(report);
   EXPECT_GT(report.statistics.rms_residual, 0.0015);  // statistics are present
@@ -74,7 +74,7 @@ TEST(MakeFitReport, APointOneStandardErrorAwayIsNotConverged) {
 TEST(MakeFitReport, AnUnusableSolutionIsFailed) {
   const FitReport report = Judged(NoisyRun(), Truth(NoisyRun()), false);
   EXPECT_EQ(report.termination, Termination::kFailed);
-  EXPECT_THAT(report.reason, HasSubstr("no trajectory can be traced"));
+  EXPECT_THAT(report.reason, HasSubstr("no motion can be computed"));
   EXPECT_EQ(report.parameters.size(), 6);
   ExpectNoErrors(report);
 }
@@ -187,7 +187,7 @@ TEST(MakeFitReport, NamesAnUndeterminedCombination) {
   const FitReport report = ReportWithoutReadings(seen);
   EXPECT_EQ(report.termination, Termination::kNotIdentifiable);
   EXPECT_EQ(ExitCode(report.termination), 1);
-  EXPECT_EQ(report.reason, "the recording tells only a combination of viscous and coulomb; fix one of them");
+  EXPECT_EQ(report.reason, "the recording determines only a combination of viscous and coulomb; fix one of them");
   ExpectNoErrors(report);
   EXPECT_EQ(report.parameters[0].reason, "the fit is not_identifiable");
   EXPECT_THAT(report.statistics.rms_residual, DoubleNear(0.002, 2e-4));
@@ -211,7 +211,8 @@ TEST(MakeFitReport, ExplainsTheNoiseFamily) {
   run.range = SensorRange{-0.32, 0.32};
   const FitReport report = FitOwnModel(run);
   EXPECT_EQ(report.noise.family, NoiseFamily::kQuantized);
-  EXPECT_THAT(report.noise.why, HasSubstr("the readings are levels, not numbers"));
+  EXPECT_THAT(report.noise.why,
+              HasSubstr("rounding is not small, so each reading is treated as an interval of one level"));
   EXPECT_THAT(report.noise.sigma / run.noise, DoubleNear(1, 0.1));
 }
 

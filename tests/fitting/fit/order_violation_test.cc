@@ -40,7 +40,7 @@ TEST(FitRecording, NeverReportsAStictionBelowCoulomb) {
     if (fit.Find("stiction")->estimate > fit.Find("coulomb")->estimate) continue;
     ++tied;
     EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
-    EXPECT_THAT(fit.reason, HasSubstr("which it never is"));
+    EXPECT_THAT(fit.reason, HasSubstr("which is impossible"));
     EXPECT_EQ(KeptAttempts(fit).back(), "simpler_law") << seed;
     EXPECT_EQ(fit.statistics.rms_residual, Fit(recording, ModelOptions("coulomb")).statistics.rms_residual) << seed;
   }

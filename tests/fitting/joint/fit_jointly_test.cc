@@ -325,7 +325,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
     const ParameterEstimate& viscous = *fit.whole.Find("viscous");
     ASSERT_TRUE(viscous.upper95 && viscous.lower95) << Sentence(viscous.open_interval);
     EXPECT_EQ(*viscous.lower95, 0) << seed;
-    EXPECT_THAT(fit.whole.interval_method, StartsWith("profile likelihood of what is shared"));
+    EXPECT_THAT(fit.whole.interval_method, StartsWith("profile likelihood of the shared"));
     EXPECT_THAT(fit.whole.profiles, SizeIs(3));
     for (const std::string_view name : {"inertia", "coulomb"}) {
       const ParameterEstimate& other = *fit.whole.Find(name);
@@ -375,7 +375,7 @@ TEST(FitJointly, RefusesFewerThanTwoRecordings) {
 TEST(FitJointly, RefusesSharingAParameterTheModelLacks) {
   const Recordings recordings = MixedRecordings();
   ExpectRefused(TryJointly(recordings, FitAlone(recordings, RigOptions()), RigOptions(), {"drag", "release_angle"}),
-                StatusCode::kInvalidArgument, "model coulomb has none of the parameters that are to be shared");
+                StatusCode::kInvalidArgument, "model coulomb has none of the shared parameters");
 }
 
 TEST(FitJointly, RefusesARecordingThatCannotBeFittedAlone) {
@@ -384,7 +384,7 @@ TEST(FitJointly, RefusesARecordingThatCannotBeFittedAlone) {
   alone[1].termination = Termination::kFailed;
   alone[1].reason = "made so";
   ExpectRefused(TryJointly(recordings, alone, RigOptions()), StatusCode::kFailedPrecondition,
-                "recording 2 cannot be fitted alone: made so");
+                "recording 2 cannot be fitted separately: made so");
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ TEST(JointPosterior, CombinesPosteriorsOfQuietRecordings) {
   for (const std::uint64_t seed : {1, 4}) {
     const JointFit fit = FitAllJointly(QuietRecordings(3, seed), QuietOptions());
     ExpectConverged(fit);
-    EXPECT_EQ(fit.whole.std_error_method, "posteriors of the recordings alone, combined as parabolas");
+    EXPECT_EQ(fit.whole.std_error_method, "posteriors of the separate recordings, combined as parabolas");
     for (const double deviation : Deviations(fit.whole, kTruthInSi)) EXPECT_LT(std::abs(deviation), 4) << seed;
   }
 }
@@ -221,7 +221,7 @@ TEST(JointPosterior, CountsAPriorOnASharedParameterOnce) {
   FitOptions options = QuietOptions();
   options.priors = {{"inertia", {combined.value[0], error}}};
   const JointFit fit = FitAllJointly(recordings, options);
-  EXPECT_EQ(fit.whole.std_error_method, "posteriors of the recordings alone, combined as parabolas");
+  EXPECT_EQ(fit.whole.std_error_method, "posteriors of the separate recordings, combined as parabolas");
   ASSERT_TRUE(fit.whole.Find("inertia")->std_error);
   // Posteriors are not exact parabolas, so a prior cannot be removed exactly. If counted twice it would leave 0.58.
   EXPECT_THAT(*fit.whole.Find("inertia")->std_error / error, DoubleNear(std::sqrt(0.5), 0.06));

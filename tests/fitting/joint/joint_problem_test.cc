@@ -54,7 +54,7 @@ TEST(MakeJointProblem, RefusesOneRecordingAndNothingShared) {
   const std::vector<JointRun> two = {one[0], {runs.recordings[1], runs.alone[1], runs.options}};
   const auto nothing = MakeJointProblem(two, {"stiction"});
   ASSERT_FALSE(nothing);
-  EXPECT_EQ(nothing.error().message, "model coulomb has none of the parameters that are to be shared");
+  EXPECT_EQ(nothing.error().message, "model coulomb has none of the shared parameters");
 }
 
 TEST(JointProblem, NamesTheRecordingOfAnOwnParameter) {

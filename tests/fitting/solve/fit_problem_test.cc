@@ -180,7 +180,8 @@ TEST(MakeFitProblem, RefusesQuantizedNoiseWithoutAResolution) {
   const Status status = NoiseRefusal(0);
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_EQ(status.message,
-            "--noise quantized needs the spacing of the readings' levels, and they stand on none; give --resolution");
+            "--noise quantized needs the resolution of the readings, but the readings show no discrete levels; give "
+            "--resolution");
 }
 
 TEST(MakeFitProblem, CensorsReadingsBeyondTheEdgeOfTheLastLevelWithinTheRange) {

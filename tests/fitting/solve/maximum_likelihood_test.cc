@@ -48,12 +48,15 @@ TEST(ChooseNoise, UsesTheRequestedFamily) {
 TEST(ChooseNoise, IsQuantizedBelowOneResolution) {
   const FitOptions options;
   ExpectChoice(options, 0.01, 0.0029, NoiseFamily::kQuantized,
-               "the residuals are 0.29 resolutions: the readings are levels, not numbers");
+               "the residuals are 0.29 resolutions: rounding is not small, so each reading is treated as an interval "
+               "of one level");
   ExpectChoice(options, 0.01, 0.0099, NoiseFamily::kQuantized,
-               "the residuals are 0.99 resolutions: the readings are levels, not numbers");
+               "the residuals are 0.99 resolutions: rounding is not small, so each reading is treated as an interval "
+               "of one level");
   ExpectChoice(options, 0.01, 0.025, NoiseFamily::kGaussian,
-               "the residuals are 2.5 resolutions: rounding drowns in the noise");
-  ExpectChoice(options, 0, 0.025, NoiseFamily::kGaussian, "the readings stand on no levels");
+               "the residuals are 2.5 resolutions: the noise is larger than the resolution, so readings are treated as "
+               "continuous");
+  ExpectChoice(options, 0, 0.025, NoiseFamily::kGaussian, "the readings show no discrete levels");
 }
 
 // ---- Gaussian noise ------------------------------------------------------------------------------------------------

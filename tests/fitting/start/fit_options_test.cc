@@ -131,10 +131,10 @@ TEST(Bounds, AreNamedInTheWarningAboutAParameterAtABound) {
   ASSERT_THAT(fit.warnings, testing::Contains(testing::Field(&Warning::code, "at_bound")));
   for (const Warning& warning : fit.warnings) {
     if (warning.code != "at_bound") continue;
-    EXPECT_EQ(
-        warning.message,
-        "at a bound that was given: viscous; the standard errors of the others take that as exact, the intervals by "
-        "profile likelihood do not; widen --bounds");
+    EXPECT_EQ(warning.message,
+              "at a given bound: viscous; the standard errors of the others assume that this value is exact, the "
+              "intervals by "
+              "profile likelihood do not; widen --bounds");
   }
 }
 
@@ -147,8 +147,8 @@ TEST(Bounds, AreInSiWithARig) {
 
 TEST(Bounds, AreRefusedIfTheyLeaveNoValue) {
   const std::pair<ParameterRange, std::string> refused[] = {
-      {{-5, -1}, "the bounds of viscous leave it no value; it must be at least 0, and may be fixed with --fix"},
-      {{0.2, 0.1}, "the bounds of viscous leave it no value; it must be at least 0, and may be fixed with --fix"}};
+      {{-5, -1}, "the bounds of viscous allow no value; it must be at least 0, and may be fixed with --fix"},
+      {{0.2, 0.1}, "the bounds of viscous allow no value; it must be at least 0, and may be fixed with --fix"}};
   for (const auto& [range, message] : refused) {
     FitOptions options = ModelOptions("viscous");
     options.bounds = {{"viscous", range}};
@@ -158,7 +158,7 @@ TEST(Bounds, AreRefusedIfTheyLeaveNoValue) {
   FitOptions options = ModelOptions("viscous");
   options.bounds = {{"inertia", {-2, -1}}};
   EXPECT_EQ(RefusalOf(options).message,
-            "the bounds of inertia leave it no value; it must be greater than 1e-30, and may be fixed with --fix");
+            "the bounds of inertia allow no value; it must be greater than 1e-30, and may be fixed with --fix");
   options.bounds = {{"coulomb", {0, 1}}};
   EXPECT_THAT(RefusalOf(options).message, HasSubstr("model viscous has no parameter 'coulomb' to bound"));
 }
@@ -342,8 +342,8 @@ TEST(Counts, AreRefusedForAModelThatNeedsAnAngle) {
     EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
     EXPECT_EQ(refused.error().message,
               (path.empty() ? "" : "run.csv: ") +
-                  std::string("the readings are in counts and model coulomb needs an angle; calibrate first "
-                              "(--calibration), or fit --model linear, whose period and damping need none"));
+                  std::string("the readings are in counts, but model coulomb needs an angle; calibrate first "
+                              "(--calibration), or fit --model linear, whose period and damping need no angle"));
   }
 }
 

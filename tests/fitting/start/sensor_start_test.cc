@@ -95,9 +95,8 @@ TEST(FitRecording, ReportsADiscontinuityThatStoppedTheSearch) {
     options.seed = seed;
     const FitReport fit = Fit(options);
     EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
-    const bool at_discontinuity =
-        fit.reason.starts_with("a jump of the acceleration's sum of squares stopped the search");
-    EXPECT_TRUE(at_discontinuity || fit.reason == "the step left to make is below 0.1 standard errors") << fit.reason;
+    const bool at_discontinuity = fit.reason.starts_with("the search stopped at a jump in the sum of squares");
+    EXPECT_TRUE(at_discontinuity || fit.reason == "the estimates are within 0.1 standard errors") << fit.reason;
     stopped += at_discontinuity ? 1 : 0;
   }
   EXPECT_GE(stopped, 1);
@@ -130,12 +129,12 @@ TEST(FitRecording, RefusesSensorsThatWouldShowNothing) {
     return begun.error().message;
   };
   EXPECT_EQ(message(Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
-            "rate_scale cannot be 0: with that the sensor would show no motion; it must be below 0 or above it");
+            "rate_scale cannot be 0, because the sensor would then show no motion; it must be below 0 or above it");
   EXPECT_EQ(message(Seen(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5), "radius"),
-            "radius cannot be 0: with that the sensor would show no motion; it must be greater than 0");
+            "radius cannot be 0, because the sensor would then show no motion; it must be greater than 0");
   EXPECT_EQ(
       message(Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05), "acceleration_scale"),
-      "acceleration_scale cannot be 0: with that the sensor would show no motion; it must be greater than 0");
+      "acceleration_scale cannot be 0, because the sensor would then show no motion; it must be greater than 0");
 }
 
 TEST(FitRecording, FindsThePivotOfAHorizontalCoordinate) {

@@ -114,7 +114,7 @@ TEST(ChooseSwings, RefusesAnEmptyWindow) {
   const auto swings = ChooseSwings(TwoReleases(), Between(5, 4));
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(swings.error().message, "the window [5, 4] s is empty; its start must lie before its end");
+  EXPECT_EQ(swings.error().message, "the window [5, 4] s is empty; its start must be before its end");
 }
 
 TEST(ChooseSwings, NamesTheFileWithoutASwing) {
@@ -125,7 +125,7 @@ TEST(ChooseSwings, NamesTheFileWithoutASwing) {
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(swings.error().message,
-            "run.csv: the reading is constant: there is no swing in it; check the sensor, or choose another column");
+            "run.csv: the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ TEST(FitSwing, RemovesAFirstHalfSwingGuidedByHand) {
     const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
     EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
     EXPECT_EQ(result.swing.to, 19.99);
-    EXPECT_EQ(Sentence(result.swing.begins), "what is before it does not fit what follows: touched, or another law");
+    EXPECT_EQ(Sentence(result.swing.begins),
+              "the motion before it does not fit the later motion: the pendulum was touched, or follows another law");
     EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
     ExpectTruthOfThePendulum(result.fit, run);
   }
@@ -83,7 +84,8 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
   EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
   EXPECT_EQ(result.swing.from, 0);
-  EXPECT_EQ(Sentence(result.swing.ends), "what follows it does not fit what is before: touched, or another law");
+  EXPECT_EQ(Sentence(result.swing.ends),
+            "the motion after it does not fit the earlier motion: the pendulum was touched, or follows another law");
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
@@ -93,10 +95,9 @@ TEST(FitSwing, ReportsWhatItRemoved) {
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
   ASSERT_THAT(Codes(result.fit), ElementsAre("disturbed"));
   EXPECT_THAT(KeptAttempts(result.fit), ElementsAre("disturbed_ends"));
-  EXPECT_EQ(
-      result.fit.warnings[0].message,
-      "left out as disturbed: the window begins at " + NumberText(result.swing.from, 4) +
-          " s and ends at 19.99 s, for what was left out does not fit the rest; --from and --to choose otherwise");
+  EXPECT_EQ(result.fit.warnings[0].message,
+            "disturbed ends were left out, because they do not fit the rest: the window is now " +
+                NumberText(result.swing.from, 4) + " s to 19.99 s; choose another one with --from and --to");
 }
 
 TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {

@@ -82,7 +82,7 @@ TEST(FitSwing, CorrectsAndReportsLostCounts) {
   const SwingFit result = Fit(Must(SimulateRecording(run)));
   EXPECT_EQ(result.fit.termination, Termination::kConverged);
   EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("the zero jumps by -3 counts at 6.5"));
-  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("moved back by as much"));
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("were corrected by its size"));
   EXPECT_EQ(KeptAttempts(result.fit).front(), "offset_jumps");
   EXPECT_FALSE(result.fit.HasWarning("lack_of_fit") || result.fit.HasWarning("correlated_residuals"));
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
@@ -139,7 +139,7 @@ TEST(FitSwing, CorrectsCountsLostByAnEventEncoder) {
   const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
   const SwingFit result = Fit(edges);
   EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
-  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("and 10 times more"));
+  EXPECT_THAT(MessageOf(result.fit, "lost_counts"), HasSubstr("and at 10 more times"));
   EXPECT_FALSE(result.fit.HasWarning("lack_of_fit"));
   EXPECT_THAT(LargestDeviation(result.fit, run), Lt(4));
 }
@@ -162,7 +162,7 @@ TEST(FitSwing, RefusesASlippingZero) {
     EXPECT_EQ(result.fit.termination, Termination::kNotConverged);
     // 2.5 counts are 0.00866 rad.
     EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("the zero jumps by 0.008"));
-    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("choose a window before it or after it"));
+    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("choose a window before or after the jump"));
     EXPECT_EQ(result.fit.reason, MessageOf(result.fit, "zero_jumps"));
     EXPECT_FALSE(result.fit.parameters[1].std_error);
   }

@@ -118,7 +118,7 @@ TEST(FitUndersampled, ExcludesTheHold) {
   const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
   EXPECT_THAT(result.used.time[0], AllOf(Ge(2), Le(3)));  // at 2 s it has moved by less than a tenth of its angle
   EXPECT_EQ(result.fit.start, StartKind::kMoving);
-  EXPECT_THAT(Sentence(result.swing.begins), HasSubstr("without the readings that stay put"));
+  EXPECT_THAT(Sentence(result.swing.begins), HasSubstr("without the constant readings"));
   EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
 }
 
@@ -167,7 +167,7 @@ TEST(FitUndersampled, RejectsAnotherMotionInNoise) {
   for (double& value : noise.value) value = static_cast<double>(generator() >> 11) * 0x1p-53;
   const SwingFit result = FitAsTheToolDoes(noise, TextbookRig());
   EXPECT_EQ(result.fit.termination, Termination::kNotConverged);
-  EXPECT_THAT(result.fit.reason, HasSubstr("cannot tell noise from another motion"));
+  EXPECT_THAT(result.fit.reason, HasSubstr("cannot distinguish noise from another motion"));
 }
 
 TEST(FitUndersampled, RefusesARelease) {
@@ -215,7 +215,8 @@ TEST(FitUndersampled, RefusesAnImplausiblePeriod) {
     const Result<SwingFit> result = FitSwing(recording, swings.found.front(), ModelOptions("viscous"));
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, StatusCode::kFailedPrecondition);
-    EXPECT_THAT(result.error().message, HasSubstr("which no pendulum has; if the times are milliseconds or micro"));
+    EXPECT_THAT(result.error().message,
+                HasSubstr("which is impossible for a pendulum; if the times are milliseconds or micro"));
   }
 }
 

@@ -36,7 +36,7 @@ TEST(MeasurementFor, ExistsForEveryParameterOfEveryModel) {
 
 TEST(MeasurementFor, SuggestsOtherAmplitudesForFriction) {
   for (const char* const name : {"viscous", "coulomb", "drag"}) {
-    EXPECT_THAT(MeasurementFor(name), HasSubstr("further out")) << name;
+    EXPECT_THAT(MeasurementFor(name), HasSubstr("a larger angle")) << name;
   }
   EXPECT_THAT(MeasurementFor("inertia"), HasSubstr("periods"));
 }

@@ -352,7 +352,7 @@ TEST(SamplePosterior, RefusesInvalidValues) {
 TEST(SamplePosterior, NamesUndeterminedParameters) {
   LinearizedFit ramp = Ramp();
   LinearizedFit fit = FitOf(ramp.value, ramp.readings, Eigen::MatrixXd::Ones(20, 2));
-  ExpectError(fit, StatusCode::kFailedPrecondition, "parameters 0 1 leaves no trace");
+  ExpectError(fit, StatusCode::kFailedPrecondition, "parameters 0 1 has no effect");
   fit.prior_weight[1] = 1 / kResolution;
   EXPECT_TRUE(SamplePosterior(fit, 1));
 }

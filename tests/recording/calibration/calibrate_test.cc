@@ -240,9 +240,9 @@ TEST(CalibrateSensor, AcceptsOrders1To5) {
 }
 
 TEST(CalibrateSensor, RefusesAReadingOutsideTheSensorsRange) {
-  EXPECT_EQ(FaultOf(TableOf(kReferenceTable), 1, StatusCode::kInvalidArgument, SensorRange{0, 400}),
-            "table.csv:8: the reading 475 counts lies outside the sensor's range, 0 to 400; correct the range or the "
-            "row");
+  EXPECT_EQ(
+      FaultOf(TableOf(kReferenceTable), 1, StatusCode::kInvalidArgument, SensorRange{0, 400}),
+      "table.csv:8: the reading 475 counts is outside the sensor's range, 0 to 400; correct the range or the row");
 }
 
 TEST(CalibrateSensor, RefusesACurveThatTurnsBetweenThePoints) {
@@ -266,7 +266,7 @@ TEST(CalibrateSensor, RefusesNumbersItCannotComputeWith) {
   EXPECT_THAT(FaultOf(TableOf(spread), 2), HasSubstr("too unevenly spread for a curve of order 2"));
   // Readings between 1e6 and 1e6 + 4: their fifth powers differ in the 5th digit and are accurate only to 1e30 · 2⁻⁵³.
   const std::string alike = "volts,angle_deg\n1000000,0\n1000001,1\n1000002,2.1\n1000003,3\n1000004,4.2\n1000005,5\n";
-  EXPECT_THAT(FaultOf(TableOf(alike), 5), HasSubstr("too large, too small or too alike for a curve of order 5"));
+  EXPECT_THAT(FaultOf(TableOf(alike), 5), HasSubstr("too large, too small or too similar for a curve of order 5"));
 }
 
 TEST(FindTurningReading, FindsTheVertexOfAParabola) {

@@ -75,12 +75,13 @@ TEST(ParseCalibrationTable, AcceptsEqualAnglesAtAdjacentReadings) {
 
 TEST(ParseCalibrationTable, NamesTheMissingColumn) {
   EXPECT_EQ(FaultOf("counts,angle\n1,2\n"),
-            "table.csv:1:1: no column's name tells that it is the angle; end it in its unit, _deg or _rad");
-  EXPECT_EQ(FaultOf("# x\nreading,angle_deg\n1,2\n"),
-            "table.csv:2:1: no column's name tells that it is the reading; end it in its unit, _counts or _volts");
+            "table.csv:1:1: no column's name shows that it is the angle; end the name in its unit, _deg or _rad");
+  EXPECT_EQ(
+      FaultOf("# x\nreading,angle_deg\n1,2\n"),
+      "table.csv:2:1: no column's name shows that it is the reading; end the name in its unit, _counts or _volts");
   EXPECT_THAT(FaultOf("19,-45\n97,-30\n"),
-              StartsWith("table.csv:1:1: the first row holds numbers where the names of the columns should stand; put "
-                         "a header above it that tells the units, such as counts,angle_deg"));
+              StartsWith("table.csv:1:1: the first row has numbers instead of column names; put "
+                         "a header above it that gives the units, such as counts,angle_deg"));
 }
 
 TEST(ParseCalibrationTable, RefusesAmbiguousColumns) {
@@ -90,7 +91,7 @@ TEST(ParseCalibrationTable, RefusesAmbiguousColumns) {
             "table.csv:1:18: columns \"angle_deg\" and \"angle_rad\" could both be the angle; delete one of them");
   EXPECT_THAT(FaultOf("counts,pot_volts,angle_deg\n1,2,3\n"), HasSubstr("could both be the reading"));
   EXPECT_THAT(FaultOf("counts,angle_deg [rad]\n1,2\n"),
-              HasSubstr("column \"angle_deg [rad]\" tells two units, deg and rad; name it by the one"));
+              HasSubstr("column \"angle_deg [rad]\" names two units, deg and rad; keep the unit of"));
 }
 
 TEST(ParseCalibrationTable, RefusesColumnsOfOtherUnits) {
@@ -104,8 +105,8 @@ TEST(ParseCalibrationTable, NamesTheFaultyField) {
   const std::string header = "counts,angle_deg\n1,2\n";
   EXPECT_EQ(FaultOf(header + "x,3\n"),
             "table.csv:3:1: column \"counts\" holds \"x\", which is not a number; correct the field or delete the row");
-  EXPECT_THAT(FaultOf(header + "2,nan\n"), StartsWith("table.csv:3:3: column \"angle_deg\" holds \"nan\", and a "));
-  EXPECT_THAT(FaultOf(header + "1e999,3\n"), HasSubstr("beyond what a number can be"));
+  EXPECT_THAT(FaultOf(header + "2,nan\n"), StartsWith("table.csv:3:3: column \"angle_deg\" holds \"nan\", but a "));
+  EXPECT_THAT(FaultOf(header + "1e999,3\n"), HasSubstr("which is outside the range of numbers"));
   EXPECT_THAT(FaultOf(header + "5,\n"), HasSubstr("is empty where a number is needed"));
   EXPECT_EQ(FaultOf(header + "5\n"), "table.csv:3:2: the row ends after 1 of 2 fields; complete the row or delete it");
   EXPECT_THAT(FaultOf(header + "1,5,3\n"), HasSubstr("field 3 holds \"3\" beyond the header's 2 columns"));
@@ -119,7 +120,7 @@ TEST(ParseCalibrationTable, RefusesATableWithoutRows) {
 }
 
 TEST(ParseCalibrationTable, RefusesBytesThatAreNotText) {
-  EXPECT_THAT(FaultOf(std::string("counts,angle_deg\n1,\0\n", 21)), StartsWith("table.csv:2:3: a NUL byte"));
+  EXPECT_THAT(FaultOf(std::string("counts,angle_deg\n1,\0\n", 21)), StartsWith("table.csv:2:3: there is a NUL byte"));
   EXPECT_THAT(FaultOf(std::string(2'000'000, 'x')), HasSubstr("this line is longer than 1 MiB"));
 }
 
@@ -127,17 +128,16 @@ TEST(ParseCalibrationTable, RefusesARecording) {
   std::string text = "counts,angle_deg\n";
   for (int i = 0; i <= kMaxCalibrationPoints; ++i) text += std::to_string(i) + "," + std::to_string(i) + "\n";
   EXPECT_EQ(FaultOf(text),
-            "table.csv:10002:1: here are more than 10000 rows; a calibration table has one row for each "
-            "angle that was set");
+            "table.csv:10002:1: there are more than 10000 rows; a calibration table has one row for each angle");
 }
 
 TEST(ParseCalibrationTable, RefusesARepeatedReading) {
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,30\n"),
-            "table.csv:5: the reading 3 counts (line 3) stands here again with another angle; give their mean, or "
+            "table.csv:5: the reading 3 counts (line 3) is here again with another angle; give their mean, or "
             "correct or delete one of "
             "the rows");
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,20\n"),
-            "table.csv:5: the reading 3 counts (line 3) stands here again with the same angle; give their mean, or "
+            "table.csv:5: the reading 3 counts (line 3) is here again with the same angle; give their mean, or "
             "delete one of the rows");
 }
 

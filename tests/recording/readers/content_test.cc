@@ -39,8 +39,8 @@ TEST(Content, NamesTheFormatOfAnUnreadableFile) {
   EXPECT_THAT(FaultOf("<?xml version=\"1.0\"?>\n"), HasSubstr("such as the project of Logger Pro or Tracker"));
   EXPECT_THAT(FaultOf("\xD0\xCF\x11\xE0"s), HasSubstr("a workbook of an older Excel; save it as CSV"));
   EXPECT_EQ(FaultOf("# Created by Octave 8.4.0, Tue Nov 24 12:00:00 2026 UTC <a@b>\n# name: t\n# type: matrix\n"),
-            "run.csv: this is the text in which Octave keeps variables; save them with save -7 run.mat t angle_deg");
-  EXPECT_THAT(FaultOf("Octave-1-L\0"s), HasSubstr("this is Octave's binary form of variables; save them with save -7"));
+            "run.csv: this is Octave's text format; save the variables with save -7 run.mat t angle_deg");
+  EXPECT_THAT(FaultOf("Octave-1-L\0"s), HasSubstr("this is Octave's binary format; save the variables with save -7"));
   EXPECT_THAT(FaultOf("PK\5\6"s + std::string(18, '\0')), HasSubstr("this zip file is empty"));
 }
 

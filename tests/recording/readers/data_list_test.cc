@@ -50,21 +50,21 @@ TEST_F(ReadDataListTest, NamesTheLineOfAMissingFile) {
   const Status fault = FaultOf("a.csv\nnowhere.csv\n");
   EXPECT_EQ(fault.code, StatusCode::kNotFound);
   EXPECT_EQ(fault.message, list_.string() + ":2: there is no file " + (folder_ / "nowhere.csv").string() +
-                               "; paths begin at the folder of the list");
+                               "; paths are relative to the folder of the list");
 }
 
 TEST_F(ReadDataListTest, RefusesDirectoriesAndRepeatedFiles) {
   EXPECT_EQ(FaultOf("runs\n").code, StatusCode::kDataLoss);
   EXPECT_EQ(FaultOf("runs\n").message,
             list_.string() + ":1: " + (folder_ / "runs").string() + " is a directory; name a CSV file in it");
-  EXPECT_EQ(FaultOf("a.csv\n\nruns/../a.csv\n").message,
-            list_.string() + ":3: " + (folder_ / "runs" / ".." / "a.csv").string() + " stands at " + list_.string() +
-                ":1 too; keep one of them");
+  EXPECT_EQ(FaultOf("a.csv\n\nruns/../a.csv\n").message, list_.string() +
+                                                             ":3: " + (folder_ / "runs" / ".." / "a.csv").string() +
+                                                             " is also at " + list_.string() + ":1; keep one of them");
 }
 
 TEST_F(ReadDataListTest, RefusesAnEmptyList) {
   EXPECT_EQ(FaultOf("# none\n").code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(FaultOf("# none\n").message, list_.string() + ": the list names no file; give one path a line");
+  EXPECT_EQ(FaultOf("# none\n").message, list_.string() + ": the list names no file; give one path per line");
 }
 
 TEST_F(ReadDataListTest, RefusesAFileThatIsNotAList) {

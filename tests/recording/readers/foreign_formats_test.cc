@@ -69,7 +69,7 @@ TEST(ForeignFormats, TheUserChoosesAmongColumns) {
 TEST(ForeignFormats, NamesWithoutAUnitNeedOne) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
   EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
-            "run.csv:1:3: column \"x\" does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
+            "run.csv:1:3: column \"x\" does not give its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
             "_volts, _m_s2, _px, _m, _cm or _mm, or give --unit");
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "x", "deg")), kDegree);
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "", "deg")), kDegree);
@@ -82,11 +82,11 @@ TEST(ForeignFormats, FractionalTimesWithoutAUnitAreSeconds) {
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
   EXPECT_EQ(recording.warnings[0].message,
-            "run.csv: column \"t\" does not tell its unit and was taken as seconds; give --time_column with :s, :ms or "
-            ":us after the column");
+            "run.csv: column \"t\" does not give its unit and was assumed to be in seconds; give --time_column with "
+            ":s, :ms or :us after the column");
   EXPECT_THAT(
       WrongFlag("t,angle_rad\n" + Rows("{t},{v}"), TimeAndValue("t", "")),
-      HasSubstr("column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms"));
+      HasSubstr("column \"t\" holds whole numbers and does not give its unit; give --time_column with :s, :ms"));
 }
 
 TEST(ForeignFormats, RefuseMissingColumns) {
@@ -116,17 +116,16 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "
       "or add --time_column none to ignore the column");
   EXPECT_THAT(WrongFlag(text, TimeAndValue("time_s:ms", "")),
-              HasSubstr("column \"time_s\" is in s, and --time_column time_s:ms says ms"));
+              HasSubstr("column \"time_s\" is in s, but --time_column time_s:ms says ms"));
   ReadOptions both = Unit("", 50);
   both.time_column = "time_s";
   EXPECT_THAT(WrongFlag(text, both), HasSubstr("--time_column and --sample_rate_hz both say what the times are"));
-  EXPECT_THAT(WrongFlag(text, TimeAndValue("none", "")), HasSubstr("leaves no times; give --sample_rate_hz"));
+  EXPECT_THAT(WrongFlag(text, TimeAndValue("none", "")), HasSubstr("there are no times; give --sample_rate_hz"));
 }
 
 TEST(ForeignFormats, RefuseANameWithTwoUnits) {
-  EXPECT_EQ(
-      FaultOf("time_s,angle_deg [rad]\n" + Rows("{t},{v}")),
-      "run.csv:1:8: column \"angle_deg [rad]\" tells two units, deg and rad; name it by the one its values are in");
+  EXPECT_EQ(FaultOf("time_s,angle_deg [rad]\n" + Rows("{t},{v}")),
+            "run.csv:1:8: column \"angle_deg [rad]\" names two units, deg and rad; keep the unit of its values");
   EXPECT_THAT(FaultOf("time_s,angle_deg\n" + Rows("{t},{v} deg")),
               HasSubstr("holds \"100 deg\", a number followed by \" deg\""));
 }
@@ -136,9 +135,8 @@ TEST(ForeignFormats, RefuseANameWithTwoUnits) {
 TEST(ForeignFormats, NameTheFlagsAFileWithoutHeaderNeeds) {
   const std::string three = Rows("{t},{v},1");
   const std::string common =
-      "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above it, "
-      "such "
-      "as time_s,angle_deg, or say what the columns are: give ";
+      "run.csv:1:1: the first row has numbers instead of column names; put a header above it, such as "
+      "time_s,angle_deg, or describe the columns: give ";
   EXPECT_EQ(FaultOf(three), common + "--time_column or --sample_rate_hz, --value_column and --unit");
   EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "")), common + "--value_column and --unit");
   EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "2")), common + "--unit");
@@ -254,13 +252,11 @@ TEST(ForeignFormats, TheUsersCalibrationOverridesTheFiles) {
 
 TEST(ForeignFormats, RefuseACalibrationOfAnotherSensor) {
   EXPECT_EQ(FaultOf("time_ms,adc_counts\n" + Rows("{t},{v}"), Calibrated("volts")),
-            "run.csv:1:1: column \"adc_counts\" is in counts, and the calibration is one of volts; give that of this "
-            "sensor");
-  EXPECT_EQ(
-      FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}"), Calibrated()),
-      "run.csv:1:1: column \"angle_deg\" is in deg, and the calibration is one of counts; leave --calibration out");
-  EXPECT_THAT(FaultOf(kInline + "time_ms,pot_volts\n" + Rows("{t},{v}")),
-              HasSubstr("the calibration is one of counts"));
+            "run.csv:1:1: column \"adc_counts\" is in counts, but the calibration is for volts; give the calibration "
+            "of this sensor");
+  EXPECT_EQ(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}"), Calibrated()),
+            "run.csv:1:1: column \"angle_deg\" is in deg, but the calibration is for counts; leave --calibration out");
+  EXPECT_THAT(FaultOf(kInline + "time_ms,pot_volts\n" + Rows("{t},{v}")), HasSubstr("the calibration is for counts"));
 }
 
 TEST(ForeignFormats, DoNotApplyTheFilesCalibrationToAnAngle) {

@@ -72,11 +72,11 @@ TEST(ParseRecording, ComputesAnglesFromBothCoordinates) {
   const auto height = ParseRecording(text, "run.csv", y_alone);
   ASSERT_FALSE(height);
   EXPECT_EQ(height.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(height.error().message, HasSubstr("does not tell the side it is on"));
+  EXPECT_THAT(height.error().message, HasSubstr("is the same on both sides"));
   const auto alone = ParseRecording("time_s,y_px\n" + kRows, "run.csv");
   ASSERT_FALSE(alone);
   EXPECT_EQ(alone.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(alone.error().message, HasSubstr("does not tell the side it is on"));
+  EXPECT_THAT(alone.error().message, HasSubstr("is the same on both sides"));
 }
 
 TEST(ParseRecording, RemovesATruncatedLastValue) {

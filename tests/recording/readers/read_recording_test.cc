@@ -203,10 +203,9 @@ TEST(ParseRecording, RefusesMalformedMetadataAtItsPosition) {
 }
 
 TEST(ParseRecording, RefusesAHeaderWithoutTime) {
-  EXPECT_EQ(
-      FaultOf("t,angle_rad\n" + Rows()),
-      "run.csv:1:1: none of the columns \"t\", \"angle_rad\" is a time; name the column of times time_s, time_ms or "
-      "time_us, or give --time_column or --sample_rate_hz");
+  EXPECT_EQ(FaultOf("t,angle_rad\n" + Rows()),
+            "run.csv:1:1: none of the columns \"t\", \"angle_rad\" is a time; call the column of times time_s, time_ms "
+            "or time_us, or give --time_column or --sample_rate_hz");
   EXPECT_THAT(FaultOf("a,b,c,d,e,f,g,h,i,j\n"), HasSubstr("\"g\", \"h\", ... is a time"));
 }
 
@@ -230,8 +229,8 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
 
 TEST(ParseRecording, AsksForAHeaderIfTheFirstRowHasNumbers) {
   EXPECT_EQ(FaultOf(Rows()),
-            "run.csv:1:1: the first row holds numbers where the names of the columns should stand; put a header above "
-            "it, such as time_s,angle_deg, or say what the columns are: give --time_column or --sample_rate_hz and "
+            "run.csv:1:1: the first row has numbers instead of column names; put a header above "
+            "it, such as time_s,angle_deg, or describe the columns: give --time_column or --sample_rate_hz and "
             "--unit");
 }
 
@@ -266,7 +265,7 @@ TEST(ParseRecording, RefusesNonFiniteNumbers) {
 
 TEST(ParseRecording, RefusesNumbersBeyondADouble) {
   for (const char* const text : {"1e999", "-1e309", "1e-400"}) {
-    EXPECT_THAT(FaultOfRow("3.5," + std::string(text)), HasSubstr("beyond what a number can be")) << text;
+    EXPECT_THAT(FaultOfRow("3.5," + std::string(text)), HasSubstr("which is outside the range of numbers")) << text;
   }
 }
 
@@ -279,7 +278,7 @@ TEST(ParseRecording, ShortensAndEscapesShownText) {
 }
 
 TEST(ParseRecording, RefusesNulBytesAtTheirPosition) {
-  EXPECT_THAT(FaultOf(kHeader + Rows() + std::string("8,\0\0", 4)), StartsWith("run.csv:10:3: a NUL byte stands here"));
+  EXPECT_THAT(FaultOf(kHeader + Rows() + std::string("8,\0\0", 4)), StartsWith("run.csv:10:3: there is a NUL byte"));
   EXPECT_THAT(FaultOf(std::string("\xFF\xFEt\0i\0", 6)), AllOf(StartsWith("run.csv:1:4: "), HasSubstr("UTF-16")));
 }
 

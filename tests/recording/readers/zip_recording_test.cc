@@ -54,10 +54,9 @@ TEST(ReadZip, RefusesTwoComponentsAndIgnoresTheVectorLength) {
   EXPECT_EQ(FaultOf(Phyphox()),
             "run.csv:Gyroscope.csv:1:34: columns \"Gyroscope x (rad/s)\" and \"Gyroscope y (rad/s)\" could both be the "
             "quantity; choose one with --value_column");
-  EXPECT_EQ(
-      WrongFlag(Phyphox(), Value("Absolute (rad/s)")),
-      "run.csv:Gyroscope.csv:1:78: column \"Absolute (rad/s)\" is the length of a vector, which has lost the sign "
-      "of the swing; choose one of the vector's components with --value_column");
+  EXPECT_EQ(WrongFlag(Phyphox(), Value("Absolute (rad/s)")),
+            "run.csv:Gyroscope.csv:1:78: column \"Absolute (rad/s)\" is the length of a vector, which does not contain "
+            "the sign of the swing; choose one of the vector's components with --value_column");
   const std::string one = "\"Time (s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"\n" + Rows("0.0{t},{v},{v}");
   ExpectTheRows(RecordingOf(ZipOf({{"Raw Data.csv", one}})));
 }
@@ -87,10 +86,9 @@ TEST(ReadZip, PrefersWholePathsToFileNames) {
   EXPECT_EQ(RecordingOf(nested, Value("old/run.csv")).value[3], 7 * kDegree);
   const std::string two = ZipOf({{"old/run.csv", other}, {"new/run.csv", angle}});
   ExpectTheRows(RecordingOf(two, Value("new/run.csv/angle_deg")), kDegree);
-  EXPECT_EQ(
-      WrongFlag(two, Value("run.csv/angle_deg")),
-      "run.csv: --value_column is \"run.csv/angle_deg\", and both \"old/run.csv\" and \"new/run.csv\" are files of "
-      "this name; give it with its folders");
+  EXPECT_EQ(WrongFlag(two, Value("run.csv/angle_deg")),
+            "run.csv: --value_column is \"run.csv/angle_deg\", but both \"old/run.csv\" and \"new/run.csv\" have this "
+            "name; give the path within the zip file");
 }
 
 TEST(ReadZip, AcceptsAUnitAfterTheTimeColumn) {
@@ -117,7 +115,7 @@ TEST(ReadZip, ReportsThatNoMemberIsARecording) {
   EXPECT_EQ(FaultOf(ZipOf({{"Light.csv", kLight}, {"notes.txt", "hello\n"}})),
             "run.csv: none of its files \"Light.csv\" and \"notes.txt\" has a column of times and one of an angle or a "
             "rate; choose with --value_column \"FILE/COLUMN\", or name another recording");
-  EXPECT_THAT(FaultOf(ZipOf({{"meta/device.csv", kMeta}})), HasSubstr("there is no file in this zip file"));
+  EXPECT_THAT(FaultOf(ZipOf({{"meta/device.csv", kMeta}})), HasSubstr("this zip file contains no recording"));
   EXPECT_THAT(FaultOf(ZipOf({{"xl/workbook.xml", "<x/>"}, {"[Content_Types].xml", "<x/>"}})),
               StartsWith("run.csv: this is an Excel workbook; save its sheet as CSV"));
   EXPECT_EQ(FaultOf(ZipOf({{"inner.zip", ZipOf({{"a.csv", kLight}})}})),

@@ -14,7 +14,7 @@ struct AsymmetricFriction {
   static constexpr std::string_view kName = "asymmetric";
   static constexpr std::string_view kTitle = "dry friction that depends on the direction";
   static constexpr std::string_view kAbout =
-      "Dry friction that is larger one way than the other, as cables and brushes give.";
+      "Dry friction that is larger in one direction than in the other, as with cables and brushes.";
   static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, kCoulomb, kAsymmetry}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} (sgn(th') + {asymmetry})";
 

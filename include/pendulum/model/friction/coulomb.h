@@ -12,8 +12,8 @@ struct CoulombFriction {
   static constexpr std::string_view kName = "coulomb";
   static constexpr std::string_view kTitle = "viscous and dry friction";
   static constexpr std::string_view kAbout =
-      "Rubbing of dry surfaces besides, as in a potentiometer: each swing is smaller by the same angle, and the "
-      "pendulum comes to rest.";
+      "Dry surfaces rub as well, as in a potentiometer: each swing is smaller by the same angle, and the pendulum "
+      "comes to rest.";
   static constexpr std::array<ParameterInfo, 2> kParameters = {{kViscous, kCoulomb}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} sgn(th')";
 

@@ -13,7 +13,7 @@ struct DragFriction {
   static constexpr std::string_view kName = "drag";
   static constexpr std::string_view kTitle = "viscous and dry friction, and air drag";
   static constexpr std::string_view kAbout =
-      "The drag of the air besides, which grows with the square of speed and shows in wide swings.";
+      "Air drag acts as well; it grows with the square of speed and is visible in wide swings.";
   static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, kCoulomb, kDrag}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} sgn(th') + {drag} th' |th'|";
 

@@ -210,8 +210,8 @@ inline Result<void> ColumnChooser::CheckHeaderOrFlags(const Layout& layout) cons
     flags += (i == 0 ? "" : i + 1 == needed.size() ? " and " : ", ") + needed[i];
   }
   return line_.Fault(line_.text.data(),
-                     "the first row holds numbers where the names of the columns should stand; put a "
-                     "header above it, such as time_s,angle_deg, or say what the columns are: give " +
+                     "the first row has numbers instead of column names; put a header above it, such as "
+                     "time_s,angle_deg, or describe the columns: give " +
                          flags);
 }
 
@@ -235,7 +235,7 @@ inline Result<void> ColumnChooser::ChooseNamedTime(Layout& layout) {
   if (!index) return tl::unexpected(index.error());
   const Unit* own = layout.has_header ? FindTimeUnit(names_[*index].text) : nullptr;
   if (given_unit != nullptr && own != nullptr && given_unit != own) {
-    return WrongFlag(*index, "column " + NameOf(*index) + " is in " + std::string(own->name) + ", and --time_column " +
+    return WrongFlag(*index, "column " + NameOf(*index) + " is in " + std::string(own->name) + ", but --time_column " +
                                  options_.time_column + " says " + std::string(given_unit->name) +
                                  "; leave out the unit");
   }
@@ -251,26 +251,26 @@ inline Result<void> ColumnChooser::ChooseTime(Layout& layout) {
   const bool is_rate_asked = options_.sample_rate_hz > 0;
   if (options_.time_column == "none") {
     if (has_rate_ || is_rate_asked || has_host_) return {};
-    return WrongFlag(0, "--time_column none leaves no times; give --sample_rate_hz");
+    return WrongFlag(0, "with --time_column none there are no times; give --sample_rate_hz");
   }
   if (!options_.time_column.empty()) {
     if (is_rate_asked) {
-      return WrongFlag(0, "--time_column and --sample_rate_hz both say what the times are; leave one of them out");
+      return WrongFlag(0, "--time_column and --sample_rate_hz both define the times; leave one of them out");
     }
     return ChooseNamedTime(layout);
   }
   const std::vector<std::size_t> times = Columns(Kind::kTime, Kind::kTime);
   if (!times.empty() && is_rate_asked) {
-    return WrongFlag(times[0], "column " + NameOf(times[0]) + " holds the times, so --sample_rate_hz " +
-                                   NumberText(options_.sample_rate_hz) +
-                                   " contradicts it; leave the flag out, or add --time_column none to ignore the "
-                                   "column");
+    return WrongFlag(times[0],
+                     "column " + NameOf(times[0]) + " holds the times, so --sample_rate_hz " +
+                         NumberText(options_.sample_rate_hz) +
+                         " contradicts it; leave the flag out, or add --time_column none to ignore the column");
   }
   if (times.size() > 1) return Ambiguous(times[0], times[1], "time", "--time_column");
   if (times.size() == 1) layout.time = Column{times[0], NameOf(times[0]), FindUnit(names_[times[0]].text)};
   if (layout.time || is_rate_asked || has_rate_ || has_host_) return {};
   return line_.Fault(line_.text.data(), "none of the columns " + ColumnNames() +
-                                            " is a time; name the column of times time_s, time_ms or time_us, or give "
+                                            " is a time; call the column of times time_s, time_ms or time_us, or give "
                                             "--time_column or --sample_rate_hz");
 }
 
@@ -320,10 +320,10 @@ inline Result<std::size_t> ColumnChooser::FindValue(Layout& layout) const {
   if (columns.size() > 1) return Ambiguous(columns[0], columns[1], "quantity", "--value_column");
   if (columns.size() == 1) return columns[0];
   if (layout.width == 1) return 0;
-  return line_.Fault(line_.text.data(), "none of the columns " + ColumnNames() +
-                                            " is an angle, a rate or another quantity of a swing; end its name in its "
-                                            "unit: " +
-                                            std::string(kSuffixes) + ", or give --value_column and --unit");
+  return line_.Fault(line_.text.data(),
+                     "none of the columns " + ColumnNames() +
+                         " is an angle, a rate or another quantity of a swing; end its name in its unit: " +
+                         std::string(kSuffixes) + ", or give --value_column and --unit");
 }
 
 /// The column with the other coordinate of the same point: bob_y_px for bob_x_px.
@@ -348,8 +348,8 @@ inline Result<void> ColumnChooser::CheckCoordinate(std::size_t index) const {
   const StatusCode code = asked ? StatusCode::kInvalidArgument : StatusCode::kDataLoss;
   return line_.Fault(PlaceOf(index),
                      "column " + NameOf(index) +
-                         " is the height of the point, which does not tell the side it is on; choose the "
-                         "horizontal coordinate with --value_column, or leave the flag out to have both",
+                         " is the height of the point, which is the same on both sides; choose the horizontal "
+                         "coordinate with --value_column, or leave the flag out to use both",
                      code);
 }
 
@@ -358,8 +358,8 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
   const Unit* second = layout.has_header ? SecondUnit(names_[index].text) : nullptr;
   const std::string column = "column " + NameOf(index);
   if (own != nullptr && second != nullptr && second != own) {
-    return line_.Fault(PlaceOf(index), column + " tells two units, " + std::string(second->name) + " and " +
-                                           std::string(own->name) + "; name it by the one its values are in");
+    return line_.Fault(PlaceOf(index), column + " names two units, " + std::string(second->name) + " and " +
+                                           std::string(own->name) + "; keep the unit of its values");
   }
   const Unit* asked = options_.unit.empty() ? nullptr : UnitOfSuffix(options_.unit);
   if (!options_.unit.empty() && (asked == nullptr || asked->kind == Kind::kTime)) {
@@ -372,13 +372,14 @@ inline Result<void> ColumnChooser::SetValueUnit(Layout& layout, std::size_t inde
   }
   const Unit* unit = own != nullptr ? own : asked;
   if (unit == nullptr) {
-    return line_.Fault(PlaceOf(index), column + " does not tell its unit; end its name in " + std::string(kSuffixes) +
+    return line_.Fault(PlaceOf(index), column + " does not give its unit; end its name in " + std::string(kSuffixes) +
                                            ", or give --unit");
   }
   if (unit->kind == Kind::kTime) {
-    return line_.Fault(PlaceOf(index), column + " is in " + std::string(unit->name) +
-                                           ", which is no angle; convert it to degrees or radians and end its name in "
-                                           "_deg or _rad");
+    return line_.Fault(
+        PlaceOf(index),
+        column + " is in " + std::string(unit->name) +
+            ", which is not an angle; convert it to degrees or radians and end its name in _deg or _rad");
   }
   const std::string name = layout.has_header ? CanonicalName(names_[index].text) : "";
   const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };

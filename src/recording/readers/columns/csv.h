@@ -126,7 +126,8 @@ inline std::string Numbers::NumberFault(std::string_view text) const {
   const auto [stop, error] = Numbers(*this).From(text.data(), text.data() + text.size(), number);
   const std::string_view rest = text.substr(stop - text.data());
   if (error == std::errc::result_out_of_range) {
-    return holds + ", beyond what a number can be (about 1e-308 to 1e308); correct the field or delete the row";
+    return holds +
+           ", which is outside the range of numbers (about 1e-308 to 1e308); correct the field or delete the row";
   }
   if (error != std::errc()) return holds + ", which is not a number; correct the field or delete the row";
   if (!std::isfinite(number)) return holds + ", and a sample must be finite; delete the row";

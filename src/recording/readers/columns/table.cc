@@ -77,7 +77,7 @@ Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColum
   if (chosen < columns.size() && IsLengthOfVector(columns[chosen])) {
     return line.Fault(columns[chosen].at,
                       "column " + Quoted(columns[chosen].written) +
-                          " is the length of a vector, which has lost the sign of the swing; choose one of the "
+                          " is the length of a vector, which does not contain the sign of the swing; choose one of the "
                           "vector's components with --value_column",
                       StatusCode::kInvalidArgument);
   }

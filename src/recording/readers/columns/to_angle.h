@@ -37,9 +37,10 @@ inline Result<void> CheckCalibration(const Line& header, const Column& column, c
                                                     column.name + ", which is in " + unit + " already"});
     return {};
   }
-  return header.Fault(header.text.data(), "column " + column.name + " is in " + unit +
-                                              ", and the calibration is one of " + calibration->input +
-                                              (is_raw ? "; give that of this sensor" : "; leave --calibration out"));
+  return header.Fault(header.text.data(),
+                      "column " + column.name + " is in " + unit + ", but the calibration is for " +
+                          calibration->input +
+                          (is_raw ? "; give the calibration of this sensor" : "; leave --calibration out"));
 }
 
 inline bool AllWhole(const Eigen::VectorXd& values) {
@@ -52,9 +53,10 @@ inline void WarnOfResolution(double found, Recording& recording) {
   if (found == 0 || std::abs(recording.resolution - found) <= kAlike * found) return;
   const std::string who = recording.resolution_source == "given" ? "as given" : "as the file says";
   recording.warnings.push_back(
-      {"resolution_disagrees", "the resolution is taken as " + NumberText(recording.resolution, 4) + ", " + who +
-                                   ", but the values are " + NumberText(found, 4) +
-                                   " apart (in the file's unit): a wrong one makes the error bars wrong"});
+      {"resolution_disagrees",
+       "the resolution " + NumberText(recording.resolution, 4) + ", " + who + ", is used, but the values are " +
+           NumberText(found, 4) +
+           " apart (in the file's unit); correct the resolution, because a wrong one makes the error bars wrong"});
 }
 
 /// Sets the spacing of the values and its origin: the user, the file, or the values themselves. Whole counts are
@@ -96,9 +98,9 @@ inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadat
   const double slack = recording.resolution + 1e-6 * (high - low);
   const auto outside = (recording.value.array() < low - slack || recording.value.array() > high + slack).count();
   if (outside == 0) return;
-  recording.warnings.push_back({"range_disagrees", std::to_string(outside) + " readings lie outside the range " +
+  recording.warnings.push_back({"range_disagrees", std::to_string(outside) + " readings are outside the range " +
                                                        NumberText(low, 4) + " to " + NumberText(high, 4) +
-                                                       " (in the file's unit): it is not applied"});
+                                                       " (in the file's unit), so the range is ignored"});
   recording.range.reset();
 }
 

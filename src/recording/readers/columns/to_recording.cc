@@ -21,16 +21,17 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
   const std::string& lost = columns.metadata.lost_samples;
   if (columns.is_host_time) {
     warn("host_time",
-         "the times are those at which the host received each line; a column of the device's own times is "
-         "better, name it with --time_column");
+         "the times are those at which the host received each line; if there is a column of the device's own times, "
+         "name it with --time_column");
   }
   if (!layout.time && RateOf(columns, options) > 0 && lost.find_first_of("123456789") != std::string::npos) {
-    warn("lost_samples", "the file says that " + lost +
-                             " samples were lost, and times counted from the sample rate are late after each");
+    warn("lost_samples",
+         "the file says that " + lost +
+             " samples were lost, so times computed from the sample rate are too early after each loss");
   }
   if (layout.time && !layout.is_time_unit_known) {
     warn("time_unit_assumed", "column " + layout.time->name +
-                                  " does not tell its unit and was taken as seconds; give "
+                                  " does not give its unit and was assumed to be in seconds; give "
                                   "--time_column with :s, :ms or :us after the column");
   }
 }
@@ -48,7 +49,7 @@ Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions&
   if (layout.time && !layout.is_time_unit_known && AllWhole(samples.time)) {
     return line.Fault(line.text.data(),
                       "column " + layout.time->name +
-                          " holds whole numbers and does not tell its unit; give --time_column "
+                          " holds whole numbers and does not give its unit; give --time_column "
                           "with :s, :ms or :us after the column",
                       StatusCode::kInvalidArgument);
   }

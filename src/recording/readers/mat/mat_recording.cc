@@ -38,7 +38,7 @@ constexpr std::size_t kHeaderBytes = 128, kTagBytes = 8;
 
 tl::unexpected<Status> TruncationError(const std::string& name, std::size_t at, std::size_t size, std::size_t left) {
   return Fault(name, "the file is cut off: the variable at byte " + std::to_string(at) + " has " +
-                         std::to_string(size) + " bytes, and " + std::to_string(left) +
+                         std::to_string(size) + " bytes, but only " + std::to_string(left) +
                          " are left; save or copy it again");
 }
 
@@ -128,18 +128,18 @@ tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, 
   switch (failure) {
     case ChildFailure::kNotStarted: break;
     case ChildFailure::kCrashed:
-      return Fault(name, "this MAT-file is damaged: matio, which reads it, broke off; save it again");
+      return Fault(name, "this MAT-file is damaged: its reader, matio, crashed; save it again");
     case ChildFailure::kOutOfTime:
       return Fault(name, "this MAT-file takes longer to read than " + std::to_string(limits.processor_seconds) +
-                             " s of a processor: it is damaged or holds too much" + less);
+                             " s of processor time: it is damaged or too large" + less);
     case ChildFailure::kOutOfMemory:
       return Fault(name, "this MAT-file needs more memory to read than the " + std::to_string(limits.memory_bytes) +
-                             " bytes that it may have: it is damaged or holds too much" + less);
+                             " bytes that are allowed: it is damaged or too large" + less);
     case ChildFailure::kAnswerTooLarge:
       return Fault(name, "this MAT-file unpacks to more than " + std::to_string(limits.answer_bytes) +
                              " bytes, too many for a recording" + less);
   }
-  return Error(StatusCode::kTryAgain, name + ": no process could be started to read it in; try again");
+  return Error(StatusCode::kTryAgain, name + ": the process that reads it could not be started; try again");
 }
 
 Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -147,9 +147,9 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   const TemporaryFile file(bytes);
   if (file.error() != 0) {
     const std::string folder = std::filesystem::path(file.path()).parent_path().string();
-    return Error(StatusCode::kTryAgain, name + ": there can be no copy of this MAT-file in " + Quoted(folder) + " (" +
+    return Error(StatusCode::kTryAgain, name + ": cannot copy this MAT-file to " + Quoted(folder) + " (" +
                                             std::generic_category().message(file.error()) +
-                                            "); make room there, or name another folder in TMPDIR");
+                                            "); free space there, or name another folder in TMPDIR");
   }
   const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
   const auto packed = RunInChildProcess([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
@@ -157,8 +157,7 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   MatTable table = UnpackMatTable(*packed);
   if (table.complaint.empty()) return table;
   if (table.complaint == kOtherFile) {
-    return Fault(name,
-                 "this MAT-file says that numbers of it are in another file, which is not opened; save all in one");
+    return Fault(name, "this MAT-file refers to numbers in another file, which is not opened; save all in one file");
   }
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }

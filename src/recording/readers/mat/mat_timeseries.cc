@@ -28,7 +28,7 @@ using Refusal = tl::unexpected<std::string>;
 template <typename T>
 using Readable = tl::expected<T, std::string>;
 
-Refusal Unknown() { return Refusal("a timeseries that is damaged, or from a version of MATLAB that is not known"); }
+Refusal Unknown() { return Refusal("a timeseries that is damaged, or from an unknown version of MATLAB"); }
 
 /// Values of the properties of a file's objects.
 class Properties {
@@ -189,7 +189,7 @@ std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes,
 Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::size_t object, const std::string& name,
                                            const std::string& meaning) {
   const std::optional<MatValue> storage = properties.Of(object, "Storage_");
-  if (storage && !storage->IsEmpty()) return Refusal("a timeseries whose numbers are kept outside of it");
+  if (storage && !storage->IsEmpty()) return Refusal("a timeseries whose numbers are in another file");
   const std::optional<MatValue> data = properties.Of(object, "Data_");
   if (data && data->IsEmpty()) return Refusal("a timeseries without numbers");
   const auto info = properties.ObjectIn(object, "TimeInfo", kTimeClass);

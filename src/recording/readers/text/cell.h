@@ -24,8 +24,7 @@ struct Cells {
       return {};
     }
     if (IsVernier(text)) {
-      return line.Fault(Trim(field).data(),
-                        "a second data set begins here; export the data sets one by one, each to a file of its own");
+      return line.Fault(Trim(field).data(), "a second data set begins here; export each data set to its own file");
     }
     return line.Fault(Trim(field).data(), "column " + column.name + " " + numbers.NumberFault(text));
   }

@@ -21,7 +21,7 @@ Result<void> RosRows::CheckSecond(const Line& line) const {
   if (!has_joints() || !layout_.second) return {};
   return line.Fault(columns_[layout_.second->index].at,
                     "columns " + layout_.value.name + " and " + layout_.second->name +
-                        " are both coordinates of a point, of which only one is read where each row is one joint's; "
+                        " are both coordinates of a point, but only one is read if each row belongs to one joint; "
                         "choose it with --value_column, or keep the rows of one joint and leave out column " +
                         Quoted(columns_[table_.joint].written));
 }
@@ -48,7 +48,7 @@ Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& ce
   if (joints_.Add(fields_[table_.joint], sample.time, sample.value, line.number)) return std::nullopt;
   return line.Fault(line.text.data(), "column " + Quoted(columns_[table_.joint].written) + " holds more than " +
                                           std::to_string(JointTable::kMaxJoints) +
-                                          " names up to here; name one joint a row");
+                                          " names up to here; name one joint per row");
 }
 
 /// Reads the time of a row. If it is a stamp, the time is in seconds since the first stamp.
@@ -60,7 +60,7 @@ Result<void> RosRows::ReadStamp(const Line& line, Cells& cells, double& time) {
   if (stamps_.Read(field, beyond, time)) return {};
   return line.Fault(field.data(), "column " + layout_.time->name + " holds " + Quoted(field) +
                                       (beyond.empty() ? "" : " s and " + Quoted(beyond) + " ns") +
-                                      ", which is no stamp of ROS; correct the field or delete the row");
+                                      ", which is not a time stamp of ROS; correct the field or delete the row");
 }
 
 Result<JointRows*> RosRows::ChooseJoint(const Line& line) {

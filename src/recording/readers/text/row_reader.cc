@@ -197,7 +197,7 @@ Check Reader::TakeRow() {
 void Reader::WarnOfIncompleteRow(const Line& line) {
   samples_.warnings.push_back({"incomplete_row", std::string(line.file) + ":" + std::to_string(line.number) +
                                                      ": the row " + Quoted(line.text) +
-                                                     " is cut off; it was left out"});
+                                                     " is incomplete; it was left out"});
 }
 
 Check Reader::ReadRow() {
@@ -250,8 +250,8 @@ Check Reader::TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& t
   if (!is_host_time()) return {};
   if (!stamp || !stamp->second_of_day) {
     return line_.Fault(line_.text.data(),
-                       "this line does not begin with the host's time, such as 14:03:22.123 ->, as "
-                       "others do; complete the row or delete it");
+                       "this line does not begin with the host's time, such as 14:03:22.123 ->, although others do; "
+                       "complete the row or delete it");
   }
   time = *stamp->second_of_day + midnights_;
   if (rows_ > 0 && time < last_host_time_ - kDay / 2) {
@@ -270,7 +270,7 @@ Check Reader::MakeRoom() {
     samples_.value.conservativeResize(room);
     if (layout_.second) samples_.second.conservativeResize(room);
   } catch (const std::exception&) {
-    return line_.Fault(line_.text.data(), "the rows up to here fill the memory; split the file");
+    return line_.Fault(line_.text.data(), "the rows up to here use all memory; split the file");
   }
   return {};
 }

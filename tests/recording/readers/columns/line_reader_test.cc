@@ -104,7 +104,7 @@ TEST_F(LineReaderTest, RefusesALineLongerThanAMebibyte) {
 
 TEST_F(LineReaderTest, RefusesANulByteAtItsPosition) {
   EXPECT_EQ(FaultOf(LineReader(std::string_view("a\nbc\0d", 6), "x")),
-            "x:2:3: a NUL byte stands here, so this is not CSV text; delete what is damaged, or save UTF-16 as UTF-8");
+            "x:2:3: there is a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8");
   std::string text;
   for (int i = 0; i < 300000; ++i) text += "12345\n";
   EXPECT_THAT(FaultOf(OpenFile(text + std::string("ab\0", 3))), StartsWith(path_.string() + ":300001:3: "));

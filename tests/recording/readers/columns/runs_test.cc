@@ -113,7 +113,7 @@ TEST(Vernier, ReportsTheLineOfAFaultyRow) {
 
 TEST(Vernier, RefusesASecondDataSet) {
   EXPECT_THAT(FaultOf(Vernier("s\trad\t", Rows("0.0{t}\t{v}\t1")) + Vernier("s\trad\t", Rows("0.0{t}\t{v}\t1"))),
-              HasSubstr("run.csv:16:1: a second data set begins here; export the data sets one by one"));
+              HasSubstr("run.csv:16:1: a second data set begins here; export each data set to its own file"));
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST(ReadMat, RemovesRowsWithNaN) {
 TEST(ReadMat, WholeNumbersOfATimeNeedAUnit) {
   const std::string vectors = MatOf({Matrix("t", 8, Times(1000)), Matrix("angle_rad", 8, Values())});
   EXPECT_EQ(WrongFlag(vectors, {}),
-            "run.csv: column \"t\" holds whole numbers and does not tell its unit; give --time_column with :s, :ms or "
+            "run.csv: column \"t\" holds whole numbers and does not give its unit; give --time_column with :s, :ms or "
             ":us after the column");
   ExpectTheRows(RecordingOf(vectors, TimeAndValue("t:ms", "")));
   EXPECT_THAT(WrongFlag(vectors, TimeAndValue("t", "")), HasSubstr("holds whole numbers"));
@@ -259,7 +259,7 @@ TEST(ReadMat, ExplainsHowToSaveATimeseries) {
       "save('run.mat', 't', 'angle_deg')";
   for (const std::string name : {"ts", "pendulum"}) {
     const std::string fault = "run.csv: variable \"" + name +
-                              "\" is a timeseries that is damaged, or from a version of MATLAB that is not known" +
+                              "\" is a timeseries that is damaged, or from an unknown version of MATLAB" +
                               advice;  // the file contains no objects
     EXPECT_EQ(FaultOf(MatOf({}) + Timeseries(name)), fault);
     EXPECT_EQ(FaultOf(MatOf({Matrix("t_s", 8, Times())}) + Timeseries(name)), fault);
@@ -332,8 +332,8 @@ TEST(ReadMat, ExplainsAMissingCopyForMatio) {
   const std::string folder = before == nullptr ? "" : before;
   ::setenv("TMPDIR", "/proc", 1);  // no file can be created there
   EXPECT_EQ(FaultOf(bytes, {}, StatusCode::kTryAgain),
-            "run.csv: there can be no copy of this MAT-file in \"/proc\" (No such file or directory); make room there, "
-            "or name another folder in TMPDIR");
+            "run.csv: cannot copy this MAT-file to \"/proc\" (No such file or directory); free space "
+            "there, or name another folder in TMPDIR");
   before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", folder.c_str(), 1);
 }
 
@@ -352,7 +352,7 @@ std::string WithOtherFile(const std::string& corpus_file, const std::string& oth
 }
 
 constexpr const char* kOneFile =
-    "run.csv: this MAT-file says that numbers of it are in another file, which is not opened; save all in one";
+    "run.csv: this MAT-file refers to numbers in another file, which is not opened; save all in one";
 
 TEST(ReadMat, ReadsNoOtherFile) {
   for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {

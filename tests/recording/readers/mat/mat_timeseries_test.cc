@@ -63,7 +63,7 @@ TEST_P(OfEveryWay, TakesTheUnitFromTheDataOrAName) {
     series.name = "phi";
     series.data_unit = unit;
     ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "ts"))), kDegree);
-    EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("tells two units"));
+    EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("names two units"));
   }
   series.data_unit = "N*m";
   EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("is an angle, a rate or another"));
@@ -102,7 +102,7 @@ TEST_P(OfEveryWay, AnEmptyTimeUnitIsUnknown) {
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
   series.increment = 10;
-  EXPECT_THAT(WrongFlag(BytesOf(FileOf(series)), {}), HasSubstr("holds whole numbers and does not tell its unit"));
+  EXPECT_THAT(WrongFlag(BytesOf(FileOf(series)), {}), HasSubstr("holds whole numbers and does not give its unit"));
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series)), TimeAndValue("ts.Time:ms", "ts.Data")));
 }
 
@@ -178,7 +178,7 @@ TEST_P(OfEveryWay, ExplainsAnUnreadableTimeseries) {
   const auto fault = [](const Series& series) { return FaultOf(BytesOf(FileOf(series))); };
   Series series = Angle();
   series.storage = objects::Number(1);
-  EXPECT_EQ(fault(series), "run.csv: variable \"ts\" is a timeseries whose numbers are kept outside of it" + advice);
+  EXPECT_EQ(fault(series), "run.csv: variable \"ts\" is a timeseries whose numbers are in another file" + advice);
   series = Angle();
   series.data.clear();
   series.sizes = {0, 1};
@@ -187,8 +187,7 @@ TEST_P(OfEveryWay, ExplainsAnUnreadableTimeseries) {
   series.time_unit = "years";
   EXPECT_EQ(fault(series), "run.csv: variable \"ts\" is a timeseries whose unit of time (years) is not known" + advice);
   const std::string unknown =
-      "run.csv: variable \"ts\" is a timeseries that is damaged, or from a version of MATLAB that is not known" +
-      advice;
+      "run.csv: variable \"ts\" is a timeseries that is damaged, or from an unknown version of MATLAB" + advice;
   for (const double length : {0.0, 7.0, 9.0, 7.5, 1e300}) {
     series = Angle();
     series.length = length;

@@ -22,7 +22,7 @@ TEST(PastedRows, ReadAPasteOfASerialMonitor) {
   EXPECT_EQ(recording.value[0], 99);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "incomplete_row");
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:10: the row \"14:03:22.203 -> 80\" is cut off; it was left out");
+  EXPECT_EQ(recording.warnings[0].message, "run.csv:10: the row \"14:03:22.203 -> 80\" is incomplete; it was left out");
 }
 
 TEST(PastedRows, UseTheHostsTimeIfThereIsNoOther) {
@@ -34,11 +34,11 @@ TEST(PastedRows, UseTheHostsTimeIfThereIsNoOther) {
   ASSERT_EQ(recording.size(), 8);
   for (int i = 0; i < 8; ++i) EXPECT_DOUBLE_EQ(recording.time[i], 86399.96 + i / 100.0);
   ASSERT_EQ(recording.warnings.size(), 2);
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"99.990 -> 7\" is cut off; it was left out");
+  EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"99.990 -> 7\" is incomplete; it was left out");
   EXPECT_EQ(recording.warnings[1].code, "host_time");
   EXPECT_EQ(recording.warnings[1].message,
-            "run.csv: the times are those at which the host received each line; a column of the device's own times is "
-            "better, name it with --time_column");
+            "run.csv: the times are those at which the host received each line; if there is a column of the device's "
+            "own times, name it with --time_column");
 }
 
 TEST(PastedRows, ReadAHeaderAfterTheHostsStamp) {
@@ -46,10 +46,10 @@ TEST(PastedRows, ReadAHeaderAfterTheHostsStamp) {
 }
 
 TEST(PastedRows, RefuseALineWithoutTheHostsStamp) {
-  EXPECT_EQ(
-      FaultOf(Rows("14:03:22.1{t} -> {v}") + "5\n14:03:23.000 -> 7\n", Unit("counts")),
-      "run.csv:9:1: this line does not begin with the host's time, such as 14:03:22.123 ->, as others do; complete "
-      "the row or delete it");
+  EXPECT_EQ(FaultOf(Rows("14:03:22.1{t} -> {v}") + "5\n14:03:23.000 -> 7\n", Unit("counts")),
+            "run.csv:9:1: this line does not begin with the host's time, such as 14:03:22.123 ->, although others do; "
+            "complete "
+            "the row or delete it");
 }
 
 // ---- Rows that are cut off ---------------------------------------------------------------------------------------
@@ -59,7 +59,7 @@ TEST(PastedRows, RemoveATruncatedFirstRowWithoutAHeader) {
     const Recording recording = RecordingOf(cut + "\n" + Rows("{t},{v}"), TimeAndValue("1:ms", "", "deg"));
     ExpectTheRows(recording, kDegree);
     ASSERT_EQ(recording.warnings.size(), 1) << cut;
-    EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"" + cut + "\" is cut off; it was left out");
+    EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"" + cut + "\" is incomplete; it was left out");
   }
 }
 
@@ -89,7 +89,7 @@ TEST(PastedRows, RemoveATruncatedLastValue) {
   const Recording recording = RecordingOf(text + "90,10");
   EXPECT_EQ(recording.size(), 9);
   ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:11: the row \"90,10\" is cut off; it was left out");
+  EXPECT_EQ(recording.warnings[0].message, "run.csv:11: the row \"90,10\" is incomplete; it was left out");
   EXPECT_EQ(RecordingOf(text + "90,10\n").size(), 10);  // The line end shows that it is whole.
   EXPECT_EQ(RecordingOf(text + "90,105").size(), 10);
 }
@@ -108,8 +108,8 @@ TEST(PastedRows, NameTheLineOfClockRepairs) {
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(
       recording.warnings[0].message,
-      "run.csv:13: 2 of 13 rows were left out because they share their time with another row, first 70 ms; of rows "
-      "that are equal one was kept");
+      "run.csv:13: 2 of 13 rows were left out because they share their time with another row, first 70 ms; one of "
+      "each group of equal rows was kept");
 }
 
 }  // namespace

@@ -83,9 +83,9 @@ TEST(Ros, SimulationStampsAreSmallButInNanoseconds) {
 
 TEST(Ros, SmallWholeNumbersOfAStampNeedAUnit) {
   const std::string text = "stamp,angle_rad\n" + Rows("{t},{v}");
-  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; name the column of times time_s, time_ms or time_us, or give"));
+  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; call the column of times time_s, time_ms or time_us, or give"));
   EXPECT_THAT(WrongFlag(text, TimeAndValue("stamp", "")),
-              HasSubstr("column \"stamp\" holds whole numbers and does not tell its unit; give --time_column with :s"));
+              HasSubstr("column \"stamp\" holds whole numbers and does not give its unit; give --time_column with :s"));
   ExpectTheRows(RecordingOf(text, TimeAndValue("stamp:ms", "")));
   ExpectTheRows(RecordingOf("%time,field.position\n" + Rows("{t},{v}"), TimeAndValue("%time:ms", "")));
   ExpectTheRows(RecordingOf("stamp,angle_rad\n" + Rows("0.0{t},{v}")));
@@ -98,9 +98,9 @@ TEST(Ros, AStampBesideATimeIsIgnored) {
 
 TEST(Ros, WholeNumbersOfAPlainTimeNeedAUnit) {
   const std::string text = "time,/js/a/position\n" + Rows("{t},{v}");
-  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; name the column of times time_s"));
+  EXPECT_THAT(FaultOf(text), HasSubstr("is a time; call the column of times time_s"));
   ExpectTheRows(RecordingOf(text, TimeAndValue("time:ms", "")));
-  EXPECT_THAT(FaultOf("time stamp,angle_rad\n" + Rows("{t},{v}")), HasSubstr("is a time; name the column"));
+  EXPECT_THAT(FaultOf("time stamp,angle_rad\n" + Rows("{t},{v}")), HasSubstr("is a time; call the column"));
 }
 
 TEST(Ros, AJointGivesTheAngleUnlessTheRateIsRequested) {
@@ -152,9 +152,9 @@ TEST(Ros, RemovesRowsOfOtherTopics) {
 }
 
 TEST(Ros, ReportsAnInvalidStamp) {
-  EXPECT_EQ(
-      FaultOf("%time,field.position\nnow,1\n" + Rows("170000000{t},{v}")),
-      "run.csv:2:1: column \"%time\" holds \"now\", which is no stamp of ROS; correct the field or delete the row");
+  EXPECT_EQ(FaultOf("%time,field.position\nnow,1\n" + Rows("170000000{t},{v}")),
+            "run.csv:2:1: column \"%time\" holds \"now\", which is not a time stamp of ROS; correct the field or "
+            "delete the row");
 }
 
 // ---- One row per joint -------------------------------------------------------------------------------------------
@@ -185,8 +185,8 @@ TEST(JointTable, RefusesSeveralMovingJointsAndNamesThem) {
 TEST(JointTable, RefusesBothCoordinatesOfAPoint) {
   const std::string text = "time_s,joint,x_px,y_px\n" + Rows("0.0{t},bob,{v},5");
   EXPECT_EQ(FaultOf(text),
-            "run.csv:1:19: columns \"x_px\" and \"y_px\" are both coordinates of a point, of which only one is read "
-            "where each row is one joint's; choose it with --value_column, or keep the rows of one joint and leave out "
+            "run.csv:1:19: columns \"x_px\" and \"y_px\" are both coordinates of a point, but only one is read if "
+            "each row belongs to one joint; choose it with --value_column, or keep the rows of one joint and leave out "
             "column \"joint\"");
   EXPECT_EQ(RecordingOf(text, Value("x_px")).quantity, Quantity::kPosition);
 }

@@ -48,10 +48,9 @@ TEST(Tracker, ReadsOneTrackByItsName) {
 }
 
 TEST(Tracker, RequiresTheUnitOfAnAngle) {
-  EXPECT_THAT(
-      FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
-      HasSubstr("does not tell its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, "
-                "_cm or _mm, or give --unit"));
+  EXPECT_THAT(FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
+              HasSubstr("does not give its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, "
+                        "_px, _m, _cm or _mm, or give --unit"));
 }
 
 TEST(Tracker, ChoosesAmongSeveralTracks) {
@@ -69,7 +68,7 @@ TEST(Tracker, RemovesRowsWithoutAVelocity) {
 
 TEST(Tracker, ALineAboveTheNamesMustContainLabels) {
   EXPECT_THAT(FaultOf("a recording of mine\nangle\trate\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: none of the"));
-  EXPECT_THAT(FaultOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: the first row holds numbers"));
+  EXPECT_THAT(FaultOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: the first row has numbers"));
 }
 
 }  // namespace
