@@ -115,13 +115,13 @@ CoverageScenario OnFewTicks(std::string name, std::string description) {
 
 /// The same encoder with play: its counts change after their edges.
 CoverageScenario WithLag(CoverageScenario scenario) {
-  scenario.run.edge_lag = 0.35 * scenario.run.resolution;
+  scenario.run.hysteresis = 0.35 * scenario.run.resolution;
   return scenario;
 }
 
 /// Fixes the lag at 0, which is also assumed for readings at even times.
 CoverageScenario WithoutLag(CoverageScenario scenario) {
-  scenario.fit.fixed = {{std::string(kEdgeLag.name), 0}};
+  scenario.fit.fixed = {{std::string(kHysteresis.name), 0}};
   return scenario;
 }
 

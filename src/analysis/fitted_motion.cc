@@ -15,13 +15,13 @@ FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const st
                            std::stop_token stop)
     : model_(fit.model), start_(fit.start), quantity_(fit.quantity), sensor_(fit.sensor), stop_(std::move(stop)) {
   instants_ = used.clock_scale * (used.time.array() - used.time[0]);
-  if (fit.Find(kEdgeLag.name) != nullptr) against_ = ZeroMotionFactors(used, instants_, ZeroMotion::kLags);
+  if (fit.Find(kHysteresis.name) != nullptr) against_ = ZeroMotionFactors(used, instants_, ZeroMotion::kLags);
   const double gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   for (const ParameterEstimate& parameter : fit.parameters) {
     const std::string_view name = parameter.info.name;
     const bool is_release = name == kReleaseTime.name;
     if (name == kZeroDrift.name || name == kBiasDrift.name) zero_motion_ = ZeroMotion::kDrifts;
-    if (name == kEdgeLag.name) zero_motion_ = ZeroMotion::kLags;
+    if (name == kHysteresis.name) zero_motion_ = ZeroMotion::kLags;
     reported_.push_back(is_release                             ? 1 / used.clock_scale
                         : parameter.info.scales_with_gravity() ? gravity_torque
                                                                : 1.0);

@@ -70,7 +70,7 @@ Warning AliasedWarning(const Sampling& sampling, double expected) {
   const double cycles = std::round(expected / sampling.rate_hz);
   constexpr double kStill = 0.01;  // of the rate: less than one swing in a hundred samples
   const bool still = apparent < kStill * sampling.rate_hz;
-  std::string why = "the rig predicts a swing at " + Hz(expected) + ", but the recording has only " +
+  std::string why = "the expected frequency is " + Hz(expected) + ", but the readings were taken at " +
                     Hz(sampling.rate_hz) +
                     ", less than two samples per swing. Between two samples the pendulum makes " +
                     NumberText(expected / sampling.rate_hz, 3) +
@@ -88,9 +88,9 @@ void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warni
   if (expected > 0.5 * sampling.rate_hz) {
     warnings.push_back(AliasedWarning(sampling, expected));
   } else if (high > 0.5 * sampling.rate_hz) {
-    warnings.push_back({"nearly_aliased", "the rig predicts a swing at " + Hz(expected) + ", and the recording has " +
-                                              Hz(sampling.rate_hz) + ", hardly more than two samples per swing; " +
-                                              Advice(expected)});
+    warnings.push_back({"nearly_aliased", "the expected frequency is " + Hz(expected) +
+                                              ", and the readings were taken at " + Hz(sampling.rate_hz) +
+                                              ", hardly more than two samples per swing; " + Advice(expected)});
   }
   if (!CanAliasWithinRange(low, high, sampling.rate_hz)) return;
   const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);

@@ -86,8 +86,8 @@ std::vector<ParameterInfo> SensorModel::Parameters() const {
 int SensorModel::size() const { return kind == SensorKind::kDirect ? 1 : static_cast<int>(Parameters().size()); }
 
 bool IsSensorParameter(std::string_view name) {
-  constexpr std::array kInfos = {kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX,
-                                 kPivotY,    kEdgeLag};
+  constexpr std::array kInfos = {kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius,
+                                 kPivotX,    kPivotY,           kHysteresis};
   return std::ranges::find(kInfos, name, &ParameterInfo::name) != kInfos.end();
 }
 

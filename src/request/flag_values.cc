@@ -76,7 +76,7 @@ Result<Setting> ParseSetting(std::string_view flag, const std::string& entry, st
   const std::size_t equals = entry.find('=');
   if (equals == 0 || equals == std::string::npos) return BadSetting(flag, "'" + entry + "' must be name=value");
   const std::string name = entry.substr(0, equals);
-  const auto info = std::ranges::find(parameters, name, &ParameterInfo::name);
+  const auto info = std::ranges::find(parameters, CurrentName(name), &ParameterInfo::name);
   if (info != parameters.end()) return Setting{&*info, entry.substr(equals + 1)};
   return BadSetting(flag, "model " + std::string(model) + " has no parameter '" + name + "'; its parameters are " +
                               NameList(parameters));

@@ -125,7 +125,7 @@ std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& mo
   }
   infos.insert(infos.end(),
                {kReleaseAngle, kReleaseTime, kInitialAngle, kInitialRate, kZeroAngle, kRateBias, kZeroDrift, kBiasDrift,
-                kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX, kPivotY, kEdgeLag});
+                kRateScale, kAccelerationBias, kAccelerationScale, kAxis, kRadius, kPivotX, kPivotY, kHysteresis});
   return infos;
 }
 

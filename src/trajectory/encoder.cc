@@ -71,7 +71,7 @@ class Counter {
     const double last = Position(to);
     const bool up = last > Position(from);
     const double direction = up ? 1 : -1;
-    const double lag = direction * options_.edge_lag / options_.resolution;
+    const double lag = direction * options_.hysteresis / options_.resolution;
     const double& ahead = up ? edges_[1] : edges_[0];
     while (direction * (last - ahead - lag) > 0) {
       const double edge = ahead + lag;

@@ -252,7 +252,7 @@ std::vector<double> TrueParameters(const SyntheticOptions& options) {
   } else {
     parameters.insert(parameters.end(), options.sensor_parameters.begin(), options.sensor_parameters.end());
   }
-  if (options.rows == RowTiming::kEvents) parameters.push_back(options.edge_lag);
+  if (options.rows == RowTiming::kEvents) parameters.push_back(options.hysteresis);
   return parameters;
 }
 

@@ -45,6 +45,13 @@ TEST(ParseSettings, ReadsNamesAndValues) {
   EXPECT_EQ(ParseSettings("--fix", "zero_angle=-1e-3,inertia=0.08", "viscous", kSettable), expected);
 }
 
+TEST(ParseSettings, AcceptsAFormerName) {
+  constexpr ParameterInfo kOfAnEncoder[] = {kInertia, kHysteresis};
+  const ParameterValues expected = {{"hysteresis", 0.001}};
+  EXPECT_EQ(ParseSettings("--fix", "edge_lag=0.001", "viscous", kOfAnEncoder), expected);
+  EXPECT_FALSE(ParseSettings("--fix", "edge_lag=0.001,hysteresis=0.002", "viscous", kOfAnEncoder));
+}
+
 TEST(ParseSettings, NamesTheFlagAndTheFault) {
   const std::pair<const char*, const char*> refusals[] = {
       {"coulomb=1", "--set: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, zero_angle"},

@@ -181,7 +181,7 @@ TEST(MakeFitPendulumOptions, RefusesFixingAParameterTheModelLacks) {
   const std::string names =
       "inertia, viscous, coulomb, release_angle, release_time, initial_angle, initial_rate, zero_angle, rate_bias, "
       "zero_drift, bias_drift, rate_scale, acceleration_bias, acceleration_scale, axis, radius, pivot_x, pivot_y, "
-      "edge_lag";
+      "hysteresis";
   EXPECT_EQ(RefusalOfFix("drag=0.1"), "--fix: model coulomb has no parameter 'drag'; its parameters are " + names);
 }
 

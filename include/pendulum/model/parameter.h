@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace pendulum {
 
@@ -100,7 +102,24 @@ inline constexpr ParameterInfo kBiasDrift{"bias_drift",
                                           -kUnbounded,
                                           kUnbounded,
                                           "rate of change of rate_bias, whose value is that at the first used sample"};
-inline constexpr ParameterInfo kEdgeLag{
-    "edge_lag", "h", "rad", "rad", -kUnbounded, kUnbounded, "angle past an edge at which an encoder changes its count"};
+inline constexpr ParameterInfo kHysteresis{"hysteresis",
+                                           "h",
+                                           "rad",
+                                           "rad",
+                                           -kUnbounded,
+                                           kUnbounded,
+                                           "angle past an edge at which an encoder changes its count"};
+
+/// Names that parameters had before schema version 2, and their names now. Input may still use the former ones.
+inline constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kFormerNames = {
+    {{"edge_lag", kHysteresis.name}}};
+
+/// The name now of a parameter that is given by its name or by a former one.
+constexpr std::string_view CurrentName(std::string_view name) {
+  for (const auto& [former, current] : kFormerNames) {
+    if (name == former) return current;
+  }
+  return name;
+}
 
 }  // namespace pendulum

@@ -60,14 +60,14 @@ struct SyntheticOptions {
   std::optional<SensorRange> range;     ///< rad or rad/s; std::nullopt means unlimited.
   std::vector<LostCounts> lost_counts;  ///< Only for a sensor with levels; `range` applies before counts are lost.
   RowTiming rows = RowTiming::kEven;    ///< With events, `noise` is the error of each crossing of an edge.
-  double edge_lag = 0;                  ///< For events: how far behind its edge the count changes [rad].
+  double hysteresis = 0;                ///< For events: how far behind its edge the count changes [rad].
   double time_noise = 0;                ///< Standard deviation of the error of an event's time stamp [s].
 
   std::uint64_t seed = 1;  ///< Determines noise and jitter.
 };
 
 /// The true parameters of the recording in the order of a fit: those of the model (units of G), of the start and of the
-/// sensor, and edge_lag for events.
+/// sensor, and the hysteresis for events.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
 /// The reading of the sensor for a value x: y = q round(x / q). With a range y = low + q round((x - low) / q), limited

@@ -18,7 +18,7 @@ std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind sta
   }
   infos.push_back(quantity == Quantity::kRate ? kRateBias : kZeroAngle);
   if (zero == ZeroMotion::kDrifts) infos.push_back(quantity == Quantity::kRate ? kBiasDrift : kZeroDrift);
-  if (zero == ZeroMotion::kLags) infos.push_back(kEdgeLag);
+  if (zero == ZeroMotion::kLags) infos.push_back(kHysteresis);
   return infos;
 }
 

@@ -37,7 +37,7 @@ std::string MeasurementFor(std::string_view parameter) {
       Advice{kAccelerationScale.name, "record the sensor at rest in two opposite positions"},
       Advice{kAxis.name, "record the sensor at rest as it is mounted, with the pendulum hanging"},
       Advice{kRadius.name, "measure the distance from the pivot, and give --prior radius=r:std_dev"},
-      Advice{kEdgeLag.name, "record a larger swing"},
+      Advice{kHysteresis.name, "record a larger swing"},
       Advice{kPivotX.name, "mark the pivot in the picture, and give --prior pivot_x=x:std_dev"},
       Advice{kPivotY.name, "mark the pivot in the picture, and give --prior pivot_y=y:std_dev"},
   };

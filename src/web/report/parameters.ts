@@ -26,7 +26,7 @@ export const kCircumstances = new Set([
   'radius',
   'pivot_x',
   'pivot_y',
-  'edge_lag',
+  'hysteresis',
 ]);
 
 /** Name in words, symbol, and the name in flags and JSON. */

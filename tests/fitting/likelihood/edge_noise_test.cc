@@ -161,20 +161,20 @@ TEST(EdgeNoise, GivesSmallerErrorsFromEventsThanFromSamples) {
 /// A lag of a third of a count, if ignored, would look like friction; the fit distinguishes them.
 TEST(EdgeNoise, SeparatesTheLagOfEdgesFromFriction) {
   SyntheticOptions run = Encoder(7);
-  run.edge_lag = 0.35 * kResolution;
+  run.hysteresis = 0.35 * kResolution;
   const Recording edges = WithEdges(Must(SimulateRecording(run)), {});
   const FitReport fit = Must(FitRecording(edges, {}));
   EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
   const std::vector<double> truth = TrueParameters(run);
   ASSERT_EQ(fit.parameters.size(), truth.size());
-  EXPECT_EQ(fit.parameters.back().info.name, "edge_lag");
+  EXPECT_EQ(fit.parameters.back().info.name, "hysteresis");
   for (std::size_t i = 0; i < truth.size(); ++i) {
     ASSERT_TRUE(fit.parameters[i].std_error) << fit.parameters[i].info.name;
     EXPECT_THAT(fit.parameters[i].estimate, DoubleNear(truth[i], 4 * *fit.parameters[i].std_error))
         << fit.parameters[i].info.name;
   }
   FitOptions blind;
-  blind.fixed["edge_lag"] = 0;
+  blind.fixed["hysteresis"] = 0;
   const FitReport taken_for_none = Must(FitRecording(edges, blind));
   EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
@@ -199,7 +199,7 @@ TEST(EdgeNoise, FindsTheReleaseBehindOneRowOfACoarseEncoder) {
   const FitReport fit = Must(FitRecording(WithEdges(Must(SimulateRecording(run)), {}), {}));
   EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
   EXPECT_EQ(fit.start, StartKind::kRelease);
-  EXPECT_THAT(std::abs(fit.Find("edge_lag")->estimate), testing::Lt(4.5 * fit.Find("edge_lag")->std_error.value()));
+  EXPECT_THAT(std::abs(fit.Find("hysteresis")->estimate), testing::Lt(4.5 * fit.Find("hysteresis")->std_error.value()));
   EXPECT_LT(fit.noise.sigma, 0.05 * run.resolution);
 }
 

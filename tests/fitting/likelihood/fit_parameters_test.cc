@@ -33,7 +33,7 @@ TEST(FitParameters, EndWithTheZeroMotionOfADirectSensor) {
   EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kDrifts).back().name,
             "zero_drift");
   EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kRate, ZeroMotion::kDrifts).back().name, "bias_drift");
-  EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kLags).back().name, "edge_lag");
+  EXPECT_EQ(FitParameters(viscous, StartKind::kMoving, Quantity::kAngle, ZeroMotion::kLags).back().name, "hysteresis");
 }
 
 TEST(IsDrift, IsTrueForDriftsOfAnglesAndRates) {

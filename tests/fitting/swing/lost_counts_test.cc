@@ -131,7 +131,7 @@ TEST(FitSwing, CorrectsCountsLostByAnEventEncoder) {
   run.rows = RowTiming::kEvents;
   run.sample_rate = 1000;
   run.resolution = 0.0026;
-  run.edge_lag = 0.35 * run.resolution;
+  run.hysteresis = 0.35 * run.resolution;
   run.noise = 0.05 * run.resolution;
   for (int k = 0; k < 14; ++k) run.lost_counts.push_back({1.3 + 1.297 * k, k % 3 == 0 ? -1 : 1});
   run.lost_counts.push_back({12.4, -4});

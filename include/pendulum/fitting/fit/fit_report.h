@@ -65,7 +65,7 @@ struct NoiseEstimate {
   Autocorrelation autocorrelation;  ///< Of the quantile residuals: white, AR(3), ARMA(1,1) ...
   // For kEdges, as in NoiseModel.
   double stamp_ratio = 0;  ///< s/rad: standard deviation of a time stamp over sigma.
-  double lag = 0;          ///< rad: the estimate of edge_lag.
+  double lag = 0;          ///< rad: the estimate of the hysteresis.
   std::optional<double> edge = std::nullopt;
   std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
 };

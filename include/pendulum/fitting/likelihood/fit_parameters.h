@@ -16,7 +16,7 @@ namespace pendulum {
 enum class ZeroMotion {
   kNone,
   kDrifts,  ///< Linearly with time: zero_drift or bias_drift.
-  kLags,    ///< For event recordings: the zero lags behind the direction of motion by edge_lag.
+  kLags,    ///< For event recordings: the zero lags behind the direction of motion by the hysteresis.
 };
 
 /// The parameters of a fit in order: inertia, friction, the start (release_angle and release_time, or initial_angle and
