@@ -53,12 +53,12 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
 /// Two warnings hold for every model: the recording is not a pendulum's swing, or its zero jumps.
 void CopySharedWarnings(const FitReport& lead, FitReport& fit) {
   const auto said = std::ranges::find_if(lead.warnings, [](const Warning& warning) {
-    return warning.code == "not_a_pendulum" || warning.code == "zero_jumps";
+    return warning.code == "not_a_pendulum" || warning.code == "offset_jumps";
   });
   if (said == lead.warnings.end() || fit.termination == Termination::kFailed) return;
   fit.termination = Termination::kNotConverged;
   fit.reason = said->message;
-  WithdrawErrors(said->code == "zero_jumps" ? "the zero jumps" : "not a pendulum", fit);
+  WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
 /// The fits of one call of FitModels.
@@ -100,7 +100,8 @@ class SharedFits {
       Fit(i, lead);
       for (Warning& warning : said) {
         const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
-        constexpr std::array kOfWindow = {"disturbed", "left_out", "not_a_pendulum", "lost_counts", "zero_jumps"};
+        constexpr std::array kOfWindow = {"ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",
+                                          "offset_jumps"};
         const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
         if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
       }

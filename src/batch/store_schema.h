@@ -11,7 +11,7 @@ inline constexpr int kStoreId = 0x50656e64;
 
 /// The migration of a store's tables from version n - 1 to n (PRAGMA user_version), n from 1 on. A released version
 /// never changes; a new one is appended. SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 2> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 3> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -85,6 +85,9 @@ CREATE TABLE answers(  -- where the answer is to what a client may ask again: it
   key TEXT PRIMARY KEY, request_sha256 TEXT NOT NULL, location TEXT NOT NULL, created TEXT NOT NULL) WITHOUT ROWID;
 CREATE INDEX answers_by_age ON answers(created);
 CREATE INDEX answers_by_place ON answers(location);
+)sql",
+                                                                     R"sql(
+UPDATE quantities SET name = 'hysteresis' WHERE name = 'edge_lag';  -- renamed in schema version 2 of the result JSON
 )sql"};
 
 }  // namespace pendulum

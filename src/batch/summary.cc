@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 constexpr int kMaxOutliers = 50;
 constexpr std::size_t kMaxPoints = 2000;
 
@@ -302,7 +302,7 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
                         " runs is neither a number nor a date such as 2026-03-01, for example " + Quoted(example) +
                         "; trends leave these runs out");
   }
-  if (store["versions"].size() > 1) add("several_versions", "the fits are of several versions of the program");
+  if (store["versions"].size() > 1) add("mixed_versions", "the fits are of several versions of the program");
   if (store["cpus"].size() > 1) {
     add("several_cpus", "the fits were made on several types of CPU, whose last bits differ");
   }

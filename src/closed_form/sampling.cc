@@ -94,10 +94,10 @@ void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warni
   }
   if (!CanAliasWithinRange(low, high, sampling.rate_hz)) return;
   const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);
-  warnings.push_back({"once_a_cycle", "sampled at " + Hz(sampling.rate_hz) + ", frequencies on both sides of " +
-                                          Hz(mirror) + " look the same. The pendulum's frequency, about " +
-                                          Hz(expected) + ", may be on either side; sample faster, or at " +
-                                          Hz(1.3 * sampling.rate_hz)});
+  warnings.push_back({"samples_near_period", "sampled at " + Hz(sampling.rate_hz) + ", frequencies on both sides of " +
+                                                 Hz(mirror) + " look the same. The pendulum's frequency, about " +
+                                                 Hz(expected) + ", may be on either side; sample faster, or at " +
+                                                 Hz(1.3 * sampling.rate_hz)});
 }
 
 void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {

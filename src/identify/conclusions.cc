@@ -43,9 +43,10 @@ void WarnOfFrequency(const Sampling& sampling, Identification& one) {
   constexpr double kFar = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
   if (!(seen > 0) || (seen < kFar * expected && expected < kFar * seen)) return;
-  one.warnings.push_back({"rig_frequency", "the pendulum swings at " + NumberText(seen, 3) +
-                                               " Hz, but the rig predicts " + NumberText(expected, 3) +
-                                               " Hz; check the unit of time and the units in the rig file (SI)"});
+  one.warnings.push_back(
+      {"frequency_differs_from_rig", "the pendulum swings at " + NumberText(seen, 3) + " Hz, but the rig predicts " +
+                                         NumberText(expected, 3) +
+                                         " Hz; check the unit of time and the units in the rig file (SI)"});
 }
 
 /// An undersampled swing shows no turning points; its fit has warned already.

@@ -246,16 +246,17 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
 /// Adds the warnings of the separate fit that the joint fit does not repeat: about window, sampling, other local
 /// minima.
 void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& one) {
-  constexpr std::array<std::string_view, 8> kOfTheFit = {"lack_of_fit",  "correlated_residuals", "zero_drift",
-                                                         "quiet_sensor", "trace_accuracy",       "prior_conflict",
-                                                         "at_bound",     "stop_is_a_kink"};
+  constexpr std::array<std::string_view, 8> kOfTheFit = {
+      "lack_of_fit",         "correlated_residuals", "zero_drift", "noise_below_resolution",
+      "trajectory_accuracy", "prior_conflict",       "at_bound",   "uncertain_stop"};
   for (const Warning& warning : alone.warnings) {
     const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
     if (!of_the_fit && !joint.HasWarning(warning.code)) one.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
-  one.warnings.push_back({"not_alone", "the separate fit of this recording is " +
-                                           std::string(TerminationName(alone.termination)) + ": " + alone.reason});
+  one.warnings.push_back({"separate_fit_not_converged", "the separate fit of this recording is " +
+                                                            std::string(TerminationName(alone.termination)) + ": " +
+                                                            alone.reason});
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {

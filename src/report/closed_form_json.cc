@@ -56,8 +56,9 @@ Json EnvelopesJson(const std::vector<EnvelopeLaw>& laws) {
 
 Json RowJson(const ClosedFormRow& row) {
   const std::string missing = row.why.empty() ? "there is no error to compare with" : row.why;
-  return NumberObject()
-      .Set("quantity", Json(row.quantity))
+  NumberObject object;
+  object.AddReason(row.why);
+  return object.Set("quantity", Json(row.quantity))
       .Set("method", Json(row.method))
       .Set("closed_form", row.closed_form)
       .Set("std_error", row.std_error, missing)
@@ -66,7 +67,7 @@ Json RowJson(const ClosedFormRow& row) {
       .Set("unit", Json(row.unit))
       .Set("z", row.z, missing)
       .Set("agrees", row.agrees ? Json(*row.agrees) : Json(nullptr))
-      .Set("why", TextOrNull(row.why))
+      .Set("reason", Json(nullptr))  // unless there is one
       .Done();
 }
 
@@ -85,7 +86,7 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling) {
       .Set("gaps", Json(sampling->gaps))
       .Set("longest_gap_s", sampling->longest_gap)
       .Set("frequency_hz", NonzeroOrNull(sampling->frequency_hz), no_frequency)
-      .Set("seen_frequency_hz", NumberOrNull(sampling->seen_frequency_hz))
+      .Set("apparent_frequency_hz", NumberOrNull(sampling->seen_frequency_hz))
       .Set("expected_frequency_hz", NumberOrNull(sampling->expected_frequency_hz))
       .Set("samples_per_period", NonzeroOrNull(sampling->samples_per_period), no_frequency)
       .Set("nyquist_margin", NonzeroOrNull(sampling->nyquist_margin), no_frequency)

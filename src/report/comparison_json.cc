@@ -37,7 +37,7 @@ Json RowJson(const ComparisonRow& row, const std::string& unit) {
   NumberObject object;
   if (!row.judged) object.AddReason(row.reason.empty() ? "not judged" : row.reason);
   object.Set("model", Json(row.model))
-      .Set("judged", Json(row.judged))
+      .Set("is_compared", Json(row.judged))
       .Set("parameters", Json(row.parameters))
       .Set(KeyWithUnit("rms_residual", unit), row.rms)
       .Set("log_likelihood", NumberOrNull(row.log_likelihood))

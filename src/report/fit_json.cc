@@ -87,8 +87,8 @@ Json SystematicJson(const FitReport& fit) {
 Json NoiseJson(const FitReport& fit, const DataSummary& data) {
   const NoiseEstimate& noise = fit.noise;
   NumberObject object;
+  object.AddReason(noise.why);
   object.Set("model", Json(NoiseFamilyName(noise.family)))
-      .Set("why", Json(noise.why))
       .Set(KeyWithUnit("sigma", fit.reading_unit), noise.sigma)
       .Set("sigma_std_error", NumberOrNull(noise.sigma_std_error))
       .Set(KeyWithUnit("resolution", fit.reading_unit), ResolutionJson(data))

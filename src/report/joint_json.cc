@@ -56,7 +56,7 @@ Json AmplitudeJson(const AmplitudeDependence& dependence) {
       .Set("unit", Json(dependence.unit + " / rad^2"))
       .Set("p", dependence.p)
       .Set("span", dependence.span)
-      .Set("rest_p", dependence.rest_p)
+      .Set("p_of_remainder", dependence.rest_p)
       .Done();
 }
 
@@ -75,7 +75,7 @@ Json HomogeneityJson(const Homogeneity& homogeneity) {
       .Set("dof", Json(homogeneity.dof))
       .Set("p", NumberOrNull(homogeneity.p))
       .Set("agrees", homogeneity.p ? Json(homogeneity.agrees()) : Json(nullptr))
-      .Set("disagreeing", std::move(disagreeing))
+      .Set("outliers", std::move(disagreeing))
       .Set("verdict", Json(homogeneity.verdict))
       .Set("parameters", std::move(parameters))
       .Set("amplitude_dependence", std::move(amplitude));
@@ -102,7 +102,7 @@ Json RunJson(const Identification& report, std::size_t index, std::size_t k) {
   json["closed_form"] = CheckJson(run.CheckOf(index));
   json["constancy"] = ConstancyJson(run.ConstancyOf(index));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, run.ConstancyOf(index));
-  json["alone"] = report.joint[index].alone[k];
+  json["separate"] = report.joint[index].alone[k];
   return json;
 }
 

@@ -22,7 +22,7 @@ struct KindOfProblem {
 
 /// In the order of ProblemKind.
 constexpr std::array kKindsOfProblem = {
-    KindOfProblem{ProblemKind::kWrongRequest, 400, "wrong_request", "The request is wrong", 2},
+    KindOfProblem{ProblemKind::kWrongRequest, 400, "bad_request", "The request is wrong", 2},
     KindOfProblem{ProblemKind::kUnauthorized, 401, "unauthorized", "The request needs a token", {}},
     KindOfProblem{ProblemKind::kForbidden, 403, "forbidden", "The request is not allowed", {}},
     KindOfProblem{ProblemKind::kNotFound, 404, "not_found", "Not found", 3},
@@ -35,7 +35,7 @@ constexpr std::array kKindsOfProblem = {
     KindOfProblem{ProblemKind::kExpectationFailed, 417, "expectation_failed", "The expectation cannot be met", {}},
     KindOfProblem{ProblemKind::kUnusableData, 422, "unusable_data", "The data cannot be read", 4},
     KindOfProblem{ProblemKind::kNoSwing, 422, "no_swing", "The data contain no swing that can be fitted", 5},
-    KindOfProblem{ProblemKind::kKeyReused, 422, "key_reused", "The key belongs to another request", {}},
+    KindOfProblem{ProblemKind::kKeyReused, 422, "idempotency_key_reused", "The key belongs to another request", {}},
     KindOfProblem{ProblemKind::kTooManyRequests, 429, "too_many_requests", "Too many requests at the same time", 75},
     KindOfProblem{ProblemKind::kHeadersTooLarge, 431, "headers_too_large", "The head of the request is too large", {}},
     KindOfProblem{ProblemKind::kInternal, 500, "internal", "The service has failed", 70},

@@ -106,11 +106,11 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
   const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   std::vector<Warning> warnings;
   if (recorded.end == RunEnd::kLost)
-    warnings.push_back({"cut_short", recorded.loss_reason + "; the samples before that are kept"});
+    warnings.push_back({"recording_interrupted", recorded.loss_reason + "; the samples before that are kept"});
   if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses, recorded.damaged_frames)});
   if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
-    warnings.push_back(
-        {"no_end", "the logger did not report how many samples it had sent, so the last ones may be missing"});
+    warnings.push_back({"end_message_missing",
+                        "the logger did not report how many samples it had sent, so the last ones may be missing"});
   }
   if (losses.contradicting_frames > 0) {
     warnings.push_back(
@@ -130,7 +130,8 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
          "was not measured; check whether one of them pauses, as in a virtual machine"});
   }
   if (!recorded.part_file_error.empty()) {
-    warnings.push_back({"no_part", recorded.part_file_error + "; during the run the recording was only in memory"});
+    warnings.push_back(
+        {"part_file_not_written", recorded.part_file_error + "; during the run the recording was only in memory"});
   }
   return warnings;
 }

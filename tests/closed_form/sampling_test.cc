@@ -143,14 +143,15 @@ TEST(SamplingWarnings, ExplainTheApparentPeriod) {
 }
 
 TEST(SamplingWarnings, ReportOneOrTwoSamplesPerCycleAsAmbiguous) {
-  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 0.76, 30), std::nullopt, 0.76)), Contains("once_a_cycle"));
-  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.52, 30), std::nullopt, 0.76)), Contains("once_a_cycle"));
-  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.267, 30), std::nullopt, 0.76)), Not(Contains("once_a_cycle")));
+  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 0.76, 30), std::nullopt, 0.76)), Contains("samples_near_period"));
+  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.52, 30), std::nullopt, 0.76)), Contains("samples_near_period"));
+  EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.267, 30), std::nullopt, 0.76)),
+              Not(Contains("samples_near_period")));
 }
 
 TEST(SamplingWarnings, ReportARateJustAboveTwiceTheFrequency) {
   EXPECT_THAT(Codes(DescribeSampling(Cosine(0.76, 1.7, 30), std::nullopt, 0.76)),
-              ElementsAre("nearly_aliased", "once_a_cycle"));
+              ElementsAre("nearly_aliased", "samples_near_period"));
 }
 
 TEST(SamplingWarnings, CompareFrequenciesOnlyIfAliased) {

@@ -45,7 +45,7 @@ TEST(IdentifyEach, AsksAboutUnitsIfTheRigPredictsAnotherFrequency) {
     recording.time *= factor;
     const auto runs = IdentifyEach(options, Must(PrepareRecording(std::move(recording), options, rig)));
     ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-    const bool warns = std::ranges::count(runs[0]->warnings, "rig_frequency", &Warning::code) > 0;
+    const bool warns = std::ranges::count(runs[0]->warnings, "frequency_differs_from_rig", &Warning::code) > 0;
     EXPECT_EQ(warns, factor != 1);
   }
 }

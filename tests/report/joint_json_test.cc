@@ -80,14 +80,14 @@ TEST(JointFitJson, ShowsEachRecordingAsJointlyFitted) {
   ASSERT_EQ(runs.size(), 2);
   EXPECT_THAT(Keys(runs[0]), ElementsAre("path", "release", "amplitude_rad", "parameters", "covariance", "correlation",
                                          "systematic_covariance", "noise", "std_error_method", "identifiability",
-                                         "statistics", "closed_form", "constancy", "alone"));
+                                         "statistics", "closed_form", "constancy", "separate"));
   EXPECT_EQ(runs[0]["path"], "run.csv");
   EXPECT_EQ(runs[0]["amplitude_rad"], 0.25);
   EXPECT_EQ(runs[0]["closed_form"].size(), 3);
-  EXPECT_EQ(runs[0]["alone"], "converged");
+  EXPECT_EQ(runs[0]["separate"], "converged");
   EXPECT_EQ(runs[1]["path"], "b c.csv");
   EXPECT_THAT(Keys(runs[1]["parameters"]), ElementsAre("inertia", "viscous", "coulomb", "initial_angle", "zero_angle"));
-  EXPECT_EQ(runs[1]["alone"], "not_converged: too few iterations");
+  EXPECT_EQ(runs[1]["separate"], "not_converged: too few iterations");
 }
 
 TEST(JointFitJson, ReportsALackOfFitPerRecording) {
@@ -128,11 +128,11 @@ TEST(JointFitJson, ReportsAnUninformativeRecording) {
 TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
   Identification report = ExampleJointReport();
   EXPECT_EQ(HomogeneityOf(report)["agrees"], true);
-  EXPECT_EQ(HomogeneityOf(report)["disagreeing"], Json::array());
+  EXPECT_EQ(HomogeneityOf(report)["outliers"], Json::array());
   report.joint[0].homogeneity.p = 0.0099;  // recordings disagree below 0.01
   report.joint[0].homogeneity.disagreeing = {1};
   EXPECT_EQ(HomogeneityOf(report)["agrees"], false);
-  EXPECT_EQ(HomogeneityOf(report)["disagreeing"].dump(), "[2]");
+  EXPECT_EQ(HomogeneityOf(report)["outliers"].dump(), "[2]");
 }
 
 TEST(JointFitJson, HasNoStatisticWithoutATest) {
@@ -143,7 +143,7 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
   homogeneity.reason = "all shared parameters are fixed";
   homogeneity.verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(HomogeneityOf(report).dump(),
-            R"({"statistic":null,"dof":0,"p":null,"agrees":null,"disagreeing":[],)"
+            R"({"statistic":null,"dof":0,"p":null,"agrees":null,"outliers":[],)"
             R"("verdict":"not tested: all that is shared is fixed","parameters":{},"amplitude_dependence":[],)"
             R"("reason":"all that is shared is fixed"})");
 }
@@ -151,7 +151,7 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
 TEST(JointFitJson, ReportsAmplitudeDependence) {
   EXPECT_EQ(HomogeneityOf(ExampleJointReport())["amplitude_dependence"].dump(),
             R"([{"parameter":"inertia","slope":0.0125,"std_error":0.005,"unit":"kg m^2 / rad^2","p":0.25,)"
-            R"("span":0.0078125,"rest_p":0.75}])");
+            R"("span":0.0078125,"p_of_remainder":0.75}])");
 }
 
 TEST(JointFitJson, HasAnRmsForCommonUnits) {

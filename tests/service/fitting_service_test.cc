@@ -155,7 +155,7 @@ TEST_F(FittingServiceTest, AnswersOncePerKey) {
                                     Post("/v1/fits?model=drag", "text/csv", Recording(), key)}) {
     EXPECT_EQ(AnswerOf(other),
               "422 this Idempotency-Key was used for another request; use a new key for a new request");
-    EXPECT_EQ(Json::parse(other.body)["code"], "key_reused");
+    EXPECT_EQ(Json::parse(other.body)["code"], "idempotency_key_reused");
   }
   EXPECT_THAT(IdsAt("/v1/fits"), SizeIs(1));
   EXPECT_NE(FieldOf(Post("/v1/fits?model=viscous", "text/csv", Recording()), "Location"), FieldOf(first, "Location"));

@@ -54,7 +54,7 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
 // The exit codes are those that the tools give (src/docs/reference.md).
 TEST(ProblemOf, MapsEachStatusCodeToHttpStatusAndExitCode) {
   const auto figures = [](StatusCode code) { return Figures(ProblemOf(Status{code, "why"})); };
-  EXPECT_EQ(figures(StatusCode::kInvalidArgument), "400 wrong_request 2");
+  EXPECT_EQ(figures(StatusCode::kInvalidArgument), "400 bad_request 2");
   EXPECT_EQ(figures(StatusCode::kNotFound), "404 not_found 3");
   EXPECT_EQ(figures(StatusCode::kDataLoss), "422 unusable_data 4");
   EXPECT_EQ(figures(StatusCode::kFailedPrecondition), "422 no_swing 5");
@@ -65,7 +65,7 @@ TEST(ProblemOf, MapsEachStatusCodeToHttpStatusAndExitCode) {
 
 TEST(ProblemOf, GivesCodesForHttpRefusals) {
   const auto figures = [](int status) { return Figures(ProblemOf(status, "why")); };
-  EXPECT_EQ(figures(400), "400 wrong_request 2");
+  EXPECT_EQ(figures(400), "400 bad_request 2");
   EXPECT_EQ(figures(403), "403 forbidden -");
   EXPECT_EQ(figures(404), "404 not_found 3");
   EXPECT_EQ(figures(408), "408 timed_out 75");
@@ -99,7 +99,7 @@ TEST(Problem, HasAUniqueCodeAndTitleForEachKind) {
   EXPECT_EQ(codes.size(), kKinds);
   EXPECT_EQ(titles.size(), kKinds);
   EXPECT_EQ(static_cast<int>(ProblemKind::kCannotWrite), kKinds - 1);  // the last one
-  EXPECT_EQ(Figures({ProblemKind::kKeyReused, "why", {}}), "422 key_reused -");
+  EXPECT_EQ(Figures({ProblemKind::kKeyReused, "why", {}}), "422 idempotency_key_reused -");
 }
 
 // RFC 9110, sections 15.5.9 and 15.6.4, and RFC 6585, section 4.

@@ -28,7 +28,7 @@ RIG = DATASETS / "textbook_rig.json"
 CALIBRATION = DATASETS / "potentiometer_calibration.json"
 IS_SANITIZED = is_sanitized(TOOL)
 TIMEOUT_S = 300
-EXIT_TO_PROBLEM = {2: (400, "wrong_request"), 3: (404, "not_found"), 4: (422, "unusable_data"), 5: (422, "no_swing")}
+EXIT_TO_PROBLEM = {2: (400, "bad_request"), 3: (404, "not_found"), 4: (422, "unusable_data"), 5: (422, "no_swing")}
 SANITIZERS_SAY = (b"ERROR: AddressSanitizer", b"ERROR: LeakSanitizer", b"WARNING: ThreadSanitizer", b"runtime error:")
 
 SIMULATED = ["--model", "coulomb", "--rig", str(RIG), "--duration", "6", "--rate", "50", "--noise", "0.3", "--resolution",

@@ -222,12 +222,12 @@ class Idempotency(Served):
     def test_a_key_of_another_request_is_refused(self):
         self.assertEqual(self.server.post_csv("/v1/fits?model=viscous", SHORT, Idempotency_Key="key-2").status, 200)
         for target, data in (("/v1/fits?model=viscous", SHORT + b"# more\n"), ("/v1/fits?model=linear", SHORT)):
-            self.check_problem(self.server.post_csv(target, data, Idempotency_Key="key-2"), 422, "key_reused")
+            self.check_problem(self.server.post_csv(target, data, Idempotency_Key="key-2"), 422, "idempotency_key_reused")
 
     def test_keys_are_visible_ascii(self):
         for key in ("", "x" * 256, "a b", "a\tb", "\u00fc"):
             self.check_problem(self.server.post_csv("/v1/fits", SHORT, Idempotency_Key=key.encode("latin-1")), 400,
-                               "wrong_request")
+                               "bad_request")
         self.assertEqual(self.server.post_csv("/v1/fits", SHORT, Idempotency_Key="!" + "~" * 254).status, 200)
 
     def test_repetitions_at_once_make_one_fit(self):
@@ -251,7 +251,7 @@ class Idempotency(Served):
 
     def test_a_refusal_may_be_repeated(self):
         for _ in range(2):
-            self.check_problem(self.server.post_csv("/v1/fits?model=no", SHORT, Idempotency_Key="key-4"), 400, "wrong_request")
+            self.check_problem(self.server.post_csv("/v1/fits?model=no", SHORT, Idempotency_Key="key-4"), 400, "bad_request")
 
 
 class Beginnings(Lab):

@@ -205,12 +205,12 @@ class Batches(Batched, Served):
 
     def test_batches_that_cannot_be_are_refused_whole(self):
         count = len(self.server.get("/v1/batches?limit=1000").json()["batches"])
-        self.check_problem(self.server.post_parts("/v1/batches", [json_part("rig", {})]), 400, "wrong_request", "data")
+        self.check_problem(self.server.post_parts("/v1/batches", [json_part("rig", {})]), 400, "bad_request", "data")
         name = self.simulate(1, seed=400)[0]
         part = data_part(name, (self.folder / name).read_bytes())
-        self.check_problem(self.server.post_parts("/v1/batches?model=none", [part]), 400, "wrong_request", "no model 'none'")
-        self.check_problem(self.server.post_parts("/v1/batches?modle=viscous", [part]), 400, "wrong_request", "modle")
-        self.check_problem(self.server.post_parts("/v1/batches", [part, ("stranger", None, None, b"x")]), 400, "wrong_request",
+        self.check_problem(self.server.post_parts("/v1/batches?model=none", [part]), 400, "bad_request", "no model 'none'")
+        self.check_problem(self.server.post_parts("/v1/batches?modle=viscous", [part]), 400, "bad_request", "modle")
+        self.check_problem(self.server.post_parts("/v1/batches", [part, ("stranger", None, None, b"x")]), 400, "bad_request",
                            "stranger")
         self.assertEqual(len(self.server.get("/v1/batches?limit=1000").json()["batches"]), count)
 

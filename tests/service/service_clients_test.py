@@ -151,22 +151,22 @@ class SameSentences(Curl):
 
     def test_unknown_parameters_are_refused_with_the_nearest(self):
         for target in ("/v1/fits?modle=linear", "/v1/fits?moddel=linear&name=a.csv"):
-            self.check_problem(self.post_file(target, "coulomb.csv"), 400, "wrong_request", r"mod\w+.*did you mean.*model")
+            self.check_problem(self.post_file(target, "coulomb.csv"), 400, "bad_request", r"mod\w+.*did you mean.*model")
         self.check_problem(self.post_value("/v1/fits", {"data": COULOMB.decode(), "options": {"intervall": "profile"}}), 400,
-                           "wrong_request", "intervall.*did you mean.*interval")
-        self.check_problem(self.curl("/v1/fits?limitt=3"), 400, "wrong_request", "limitt.*did you mean.*limit")
-        self.check_problem(self.curl("/v1/fits?limit=3&limit=4"), 400, "wrong_request", "limit")
-        self.check_problem(self.post_file("/v1/fits?model=linear&model=viscous", "coulomb.csv"), 400, "wrong_request",
+                           "bad_request", "intervall.*did you mean.*interval")
+        self.check_problem(self.curl("/v1/fits?limitt=3"), 400, "bad_request", "limitt.*did you mean.*limit")
+        self.check_problem(self.curl("/v1/fits?limit=3&limit=4"), 400, "bad_request", "limit")
+        self.check_problem(self.post_file("/v1/fits?model=linear&model=viscous", "coulomb.csv"), 400, "bad_request",
                            "model.*twice")
 
     def test_a_flag_given_twice_is_refused(self):
         answer = self.curl("/v1/fits?model=linear", "-F", "data=@coulomb.csv", "-F", 'options={"model": "linear"}')
-        self.check_problem(answer, 400, "wrong_request", "model")
+        self.check_problem(answer, 400, "bad_request", "model")
 
     def test_flags_of_the_command_line_alone_are_unknown(self):
         for flag in ("json", "threads", "data", "rig", "shared", "report", "help"):
-            self.check_problem(self.post_file(f"/v1/fits?{flag}=1", "coulomb.csv"), 400, "wrong_request", flag)
-        self.check_problem(self.post_file("/v1/fits?release=all", "coulomb.csv"), 400, "wrong_request", "release")
+            self.check_problem(self.post_file(f"/v1/fits?{flag}=1", "coulomb.csv"), 400, "bad_request", flag)
+        self.check_problem(self.post_file("/v1/fits?release=all", "coulomb.csv"), 400, "bad_request", "release")
 
     def test_json_requests_of_the_wrong_form_are_refused(self):
         for value in ({}, [], 3, None, {"data": 3}, {"data": COULOMB.decode(), "option": {}},
@@ -174,7 +174,7 @@ class SameSentences(Curl):
                       {"data": COULOMB.decode(), "rig": 3}, {"data": COULOMB.decode(), "options": {"model": ["linear"]}}):
             with self.subTest(value=str(value)[-60:]):
                 answer = self.post_value("/v1/fits", value)
-                self.assertIn((answer.status, answer.json()["code"]), ((400, "wrong_request"), (422, "unusable_data")), answer)
+                self.assertIn((answer.status, answer.json()["code"]), ((400, "bad_request"), (422, "unusable_data")), answer)
 
 
 class Stored(Curl):
@@ -228,7 +228,7 @@ class Stored(Curl):
         self.assertEqual(kept.body, rig.body)
         without = self.post_value(rig.headers["location"] + "/refits", {"rig": None})
         self.assertEqual(without.body, self.fitted("coulomb.csv", "--model", "viscous"))
-        self.check_problem(self.curl(f"{place}/refits?model=nothing", method="POST"), 400, "wrong_request", "no model 'nothing'")
+        self.check_problem(self.curl(f"{place}/refits?model=nothing", method="POST"), 400, "bad_request", "no model 'nothing'")
         self.check_problem(self.curl("/v1/fits/none/refits", method="POST"), 404, "not_found")
 
     def test_a_refit_of_a_list_of_values_may_hold_readings_of_another_calibration(self):
@@ -284,7 +284,7 @@ class Listed(Curl):
             target = f"/v1/fits?limit=2&before={page['next']}"
         self.assertEqual((found, page["next"]), (made, None))
         for wrong in ("limit=0", "limit=x", "limit=-1", "before=nonsense%21", "since=yesterday"):
-            self.check_problem(self.curl(f"/v1/fits?{wrong}"), 400, "wrong_request", wrong.partition("=")[0])
+            self.check_problem(self.curl(f"/v1/fits?{wrong}"), 400, "bad_request", wrong.partition("=")[0])
 
     def check_filters(self, made, items):
         def listed(query):

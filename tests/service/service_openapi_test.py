@@ -257,7 +257,7 @@ class Routes(Served):
                 self.assertNotRegex(answer.body.decode(errors="replace"), f"{name}.* did you mean", f"{method} {route} {name}")
             if "{}" not in route and not route.startswith("/v1/live"):
                 answer = self.server.ask(method.upper(), f"{route}?qqqq=1", body, **headers)
-                self.check_problem(answer, 400, "wrong_request", "qqqq")
+                self.check_problem(answer, 400, "bad_request", "qqqq")
 
     def test_places_that_are_not_described_are_404_or_405(self):
         for path, methods in ROUTES.items():

@@ -62,7 +62,7 @@ class Simulations(Curl):
                 code, _, sentence = run_tool("simulate_pendulum", *flags_of(options), "--out", "-", folder=self.folder)
                 self.assertIn(code, (2, 4, 5), sentence)
                 self.check_same_problem(self.post_value("/v1/simulations", options), code, sentence)
-        self.check_problem(self.post_value("/v1/simulations", {"ratee": "3"}), 400, "wrong_request", "ratee.*did you mean.*rate")
+        self.check_problem(self.post_value("/v1/simulations", {"ratee": "3"}), 400, "bad_request", "ratee.*did you mean.*rate")
 
     def test_a_simulation_without_bounds_is_refused(self):
         answer = self.post_value("/v1/simulations", {**SWING, "duration": "1e6", "rate": "1000"})
@@ -123,7 +123,7 @@ class Calibrations(Curl):
                                              folder=self.folder)
                 self.check_same_problem(self.post_file("/v1/calibrations?" + query_of(options), "textbook_calibration.csv"), code,
                                         sentence)
-        self.check_problem(self.post_file("/v1/calibrations?ordre=2", "textbook_calibration.csv"), 400, "wrong_request",
+        self.check_problem(self.post_file("/v1/calibrations?ordre=2", "textbook_calibration.csv"), 400, "bad_request",
                            "ordre.*order")
 
 

@@ -50,8 +50,8 @@ MOST_BEYOND = 1e-3  # share of the judged parameters
 # A warning counts if it tells the user not to trust the error bars. Warnings that only report a repair or the choice of
 # the window do not count: the result should still be right.
 COUNTING_WARNINGS = {
-    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "left_out", "many_spikes",
-    "not_a_pendulum", "quiet_sensor", "saturated", "stale_values", "stop_is_a_kink", "time_rounded", "trace_accuracy",
+    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "larger_motion_outside", "many_spikes",
+    "not_a_pendulum", "noise_below_resolution", "saturated", "stale_values", "uncertain_stop", "time_rounded", "trajectory_accuracy",
     "zero_drift",
 }
 

@@ -272,7 +272,7 @@ class GoodRun(CliTest):
     def test_dash_makes_standard_output_the_file_alone(self):
         run = self.run_tool("--data", "run.csv", "--json", "-")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(strict_json(run.stdout)["schema_version"], 1)
+        self.assertEqual(strict_json(run.stdout)["schema_version"], 2)
 
     def test_leaves_only_the_files_asked_for(self):
         before = self.names()

@@ -273,7 +273,7 @@ class Refusals(JointTest):
         self.write("other.csv", swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.0794), seed=35))
         result = self.joint(data="a.csv,other.csv,b.csv,c.csv")
         homogeneity = result["fits"][0]["homogeneity"]
-        self.assertEqual(homogeneity["disagreeing"], [2])
+        self.assertEqual(homogeneity["outliers"], [2])
         # 0.0794 / 0.079 = 1.005
         self.assertRegex(homogeneity["verdict"],
                          r"; recording 2 \(other.csv\) disagrees with the others: its inertia is 0\.(49|5|51) % larger; ")

@@ -186,7 +186,7 @@ RecordedRun RecordedUntil(Then then, Laboratory& laboratory) {
   const RecordedRun recorded = laboratory.Recorded();
   EXPECT_EQ(recorded.end, RunEnd::kLost) << static_cast<int>(then);
   EXPECT_FALSE(IsComplete(recorded));
-  EXPECT_THAT(CodesOf(recorded), Contains("cut_short"));
+  EXPECT_THAT(CodesOf(recorded), Contains("recording_interrupted"));
   ExpectSawtooth(ReadBack(recorded.Csv()), 80);
   ExpectSawtooth(ReadBack(laboratory.folder.Text("run.csv.part")), 80);
   return recorded;
@@ -247,7 +247,7 @@ TEST(RecordRun, DoesNotWaitForeverForTheEnd) {
   EXPECT_EQ(recorded.end, RunEnd::kSeconds);
   EXPECT_EQ(recorded.run.size(), 100);
   EXPECT_FALSE(recorded.description.losses->is_end_known);
-  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("end_message_missing"));
   EXPECT_THAT(recorded.Csv(), HasSubstr("end of the run did not arrive"));
 }
 
@@ -322,7 +322,7 @@ TEST(RecordRun, ContinuesIfThePartFileCannotBeWritten) {
   const RecordedRun recorded = laboratory.Recorded();
   ExpectSawtooth(ReadBack(recorded.Csv()), 100);
   EXPECT_THAT(recorded.part_file_error, HasSubstr("nowhere/run.csv.part"));
-  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("part_file_not_written"));
 }
 
 // Samples lost after the requested end do not belong to the recording.
@@ -343,7 +343,7 @@ TEST(RecordRun, ContinuesIfTheDiskIsFull) {
   const RecordedRun recorded = laboratory.Recorded();
   ExpectSawtooth(ReadBack(recorded.Csv()), 100);
   EXPECT_THAT(recorded.part_file_error, HasSubstr("No space left"));
-  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_part"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("part_file_not_written"));
 }
 
 TEST(RecordRun, HasNoPartFileForAStream) {

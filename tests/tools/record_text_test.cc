@@ -182,7 +182,7 @@ TEST(RecordWarnings, ReportLostSamples) {
 TEST(RecordWarnings, ReportAMissingEnd) {
   RecordedRun recorded = Recorded();
   recorded.description.losses->is_end_known = false;
-  EXPECT_THAT(CodesOf(recorded), ElementsAre("no_end"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("end_message_missing"));
   EXPECT_FALSE(IsComplete(recorded));
 }
 
@@ -193,7 +193,7 @@ TEST(RecordWarnings, ReportALostLogger) {
   recorded.description.losses->is_end_known = false;
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));  // none for the End frame, which is missing too
-  EXPECT_EQ(warnings[0].code, "cut_short");
+  EXPECT_EQ(warnings[0].code, "recording_interrupted");
   EXPECT_THAT(warnings[0].message, HasSubstr("/dev/ttyACM0 is gone"));
   EXPECT_FALSE(IsComplete(recorded));
 }
@@ -211,7 +211,7 @@ TEST(RecordWarnings, ReportAllOtherProblems) {
   recorded.description.losses->contradicting_frames = 2;
   recorded.description.clock.is_implausible = true;
   recorded.part_file_error = "cannot write run.csv.part: No space left on device";
-  EXPECT_THAT(CodesOf(recorded), ElementsAre("contradicting_frames", "clock_implausible", "no_part"));
+  EXPECT_THAT(CodesOf(recorded), ElementsAre("contradicting_frames", "clock_implausible", "part_file_not_written"));
   EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("2 frames"), HasSubstr("No space left on device")));
 }
 

@@ -81,7 +81,7 @@ class Schema(unittest.TestCase):
 
     def test_wants_a_reason_for_missing_predictions_and_tests(self):
         self.assert_refused(lambda result: result["comparison"]["rows"][0].update(forward_prediction=None))
-        self.assert_refused(lambda result: result["comparison"]["rows"][0].update(judged=False))
+        self.assert_refused(lambda result: result["comparison"]["rows"][0].update(is_compared=False))
         self.assert_refused(lambda result: result["comparison"]["tests"][0].update(p=None))
 
     def test_knows_a_criterion_unless_there_is_no_likelihood(self):
@@ -298,12 +298,12 @@ class JointResults(unittest.TestCase):
     def test_recordings_that_disagree(self):
         other = swing.angle_csv(sigma=0.002, truth=dict(LOW, coulomb=0.006), seed=33)
         (fit,) = self.assert_valid([self.first, self.second, other])["fits"]
-        self.assertEqual(fit["homogeneity"]["disagreeing"], [3])
+        self.assertEqual(fit["homogeneity"]["outliers"], [3])
 
     def test_two_pendulums(self):
         other = swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.05))
         result = self.assert_valid([self.first, other], "--model", "viscous,coulomb", status="not_converged")
-        self.assertEqual([row["judged"] for row in result["comparison"]["rows"]], [True, True])  # the separate fits
+        self.assertEqual([row["is_compared"] for row in result["comparison"]["rows"]], [True, True])  # the separate fits
 
     def test_angle_and_rate(self):
         result = self.assert_valid([self.first, swing.rate_csv()], "--model", "viscous,coulomb")

@@ -15,7 +15,7 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST(SummaryHtml, ContainsTheSummary) {
-  const Json summary = {{"schema_version", 1}, {"store", {{"path", "results.sqlite"}, {"runs", 2000}}}};
+  const Json summary = {{"schema_version", 2}, {"store", {{"path", "results.sqlite"}, {"runs", 2000}}}};
   const std::string html = SummaryHtml(summary);
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
   EXPECT_EQ(Embedded(html, "summary"), summary);

@@ -41,7 +41,7 @@ bool CanAliasWithinRange(double low_hz, double high_hz, double rate_hz);
 Sampling DescribeSampling(const Recording& used, std::optional<double> half_period,
                           std::optional<double> expected_frequency);
 
-/// Problems of the sampling: aliased, nearly_aliased, once_a_cycle (and twice), slow_sampling, few_counts, gaps,
+/// Problems of the sampling: aliased, nearly_aliased, samples_near_period (and twice), slow_sampling, few_counts, gaps,
 /// jitter. Each message states the problem, its size and what to do.
 std::vector<Warning> SamplingWarnings(const Sampling& sampling);
 

@@ -103,19 +103,20 @@ void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std:
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers
   const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
   if (of_levels || !(rms < kQuiet * recording.resolution)) return;
-  warnings.push_back({"quiet_sensor", "the residuals are " + NumberText(rms / recording.resolution, 2) +
-                                          " resolutions: rounding errors do not average out with so little noise, so "
-                                          "the error bars may be several times too small; use --noise quantized"});
+  warnings.push_back(
+      {"noise_below_resolution", "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                                     " resolutions: rounding errors do not average out with so little noise, so "
+                                     "the error bars may be several times too small; use --noise quantized"});
 }
 
 void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kNegligible = 0.01;
   constexpr double kRounding = 1e-11;  // rad or rad/s: smaller noise is rounding error
   if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
-  warnings.push_back(
-      {"trace_accuracy", "the numerical error of the trajectory is " + NumberText(report.trace_error, 1) +
-                             ", which is not small compared with the noise of " + NumberText(report.noise.sigma, 1) +
-                             ", because rounding errors grow near the top; choose a window with smaller swings"});
+  warnings.push_back({"trajectory_accuracy",
+                      "the numerical error of the trajectory is " + NumberText(report.trace_error, 1) +
+                          ", which is not small compared with the noise of " + NumberText(report.noise.sigma, 1) +
+                          ", because rounding errors grow near the top; choose a window with smaller swings"});
 }
 
 /// Compares the prior with the estimate from the recording alone, which follows from prior and posterior. If the
@@ -192,7 +193,7 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
   }
   if (trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error) {
     warnings.push_back(
-        {"stop_is_a_kink", "at a late turning point gravity and " + name +
+        {"uncertain_stop", "at a late turning point gravity and " + name +
                                " balance within three standard errors, so the number of half swings is uncertain and "
                                "the error bars are rough; end the window before the pendulum stops (--to)"});
   }

@@ -179,7 +179,7 @@ Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const F
   const std::string turns_message = UnwrapOffset(*used);
   Result<FitReport> fit = FitRecording(*used, options);
   if (!fit) return tl::unexpected(fit.error());
-  if (!turns_message.empty()) fit->warnings.push_back({"turns_taken_out", turns_message});
+  if (!turns_message.empty()) fit->warnings.push_back({"whole_turns_removed", turns_message});
   SwingFit result{*std::move(used), swing, *std::move(fit)};
   // The fit decides how the swing began.
   const bool released = result.fit.start == StartKind::kRelease;
@@ -217,10 +217,11 @@ SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
 void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
   constexpr double kLarger = 1.3;
   if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
-  fit.warnings.push_back({"left_out", "outside the window the motion is " +
-                                          NumberText(swing.amplitude_outside / swing.amplitude, 2) +
-                                          " times as large as inside, but not a free swing; look at the recording, and "
-                                          "choose another window with --from and --to if needed"});
+  fit.warnings.push_back(
+      {"larger_motion_outside", "outside the window the motion is " +
+                                    NumberText(swing.amplitude_outside / swing.amplitude, 2) +
+                                    " times as large as inside, but not a free swing; look at the recording, and "
+                                    "choose another window with --from and --to if needed"});
 }
 
 /// Also removes the errors, because they are valid only for a pendulum.
@@ -367,9 +368,9 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
   FitReport& fit = state.result.fit;
   if (state.was_trimmed) {
     fit.warnings.push_back(
-        {"disturbed", "disturbed ends were left out, because they do not fit the rest: the window is now " +
-                          NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) +
-                          " s; choose another one with --from and --to"});
+        {"ends_trimmed", "disturbed ends were left out, because they do not fit the rest: the window is now " +
+                             NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) +
+                             " s; choose another one with --from and --to"});
   }
   WarnOfLargerMotion(state.swing, fit);
   WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);

@@ -258,7 +258,7 @@ namespace {
 void RejectForOffsetJumps(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = why;
-  fit.warnings.push_back({"zero_jumps", fit.reason});
+  fit.warnings.push_back({"offset_jumps", fit.reason});
   WithdrawErrors("the zero jumps", fit);
 }
 
@@ -269,7 +269,7 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
   const bool can_detect =
       fit.noise.family == NoiseFamily::kEdges || (!has_misfit && fit.noise.family != NoiseFamily::kQuantized);
   if (!jumps && can_detect && MayHaveOffsetJump(fit)) {
-    fit.warnings.push_back({"zero_unsteady",
+    fit.warnings.push_back({"offset_unsteady",
                             "the mean of the residuals changes within the window by more than chance explains: the "
                             "zero may have jumped or drifted by a small amount; look at --residuals"});
   }

@@ -76,7 +76,7 @@ test('a failed fit says so first and still renders', async (t) => {
   });
   assert.match(
     await page.locator('main').innerText(),
-    /^Verdict\s+✕\s+The fit failed: there is no result\s+The pendulum never moves\./,
+    /^Verdict\s+✕\s+The fit failed, so there is no result\s+The pendulum never moves\./,
   );
   assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|null/);
 });
@@ -123,7 +123,7 @@ test('an undersampled swing is drawn beside the slow one it seems to be', async 
   const options = { models: ['viscous'], samples: 30, rate: 1 };
   const result = makeResult(options);
   result.warnings = [{ code: 'aliased', message: 'less than twice a swing' }];
-  result.data.sampling = { ...result.data.sampling, frequency_hz: 0.7604, seen_frequency_hz: null };
+  result.data.sampling = { ...result.data.sampling, frequency_hz: 0.7604, apparent_frequency_hz: null };
   const series = { ...makeSeries(options), peaks: [], extrema: [], motions: makeMotions(options) };
   const page = await open(t, result, series);
   // The motion of the fixture swings at 1 / 1.315 s = 0.7605 Hz: |0.7605 - 1| = 0.2395 Hz.

@@ -8,7 +8,7 @@ function comparisonOf(fits, recommended) {
   const prediction = (standardized) => ({ rms_rad: 0.003 * standardized, standardized, samples: 900 });
   const rows = fits.map((fit, i) => ({
     model: fit.model,
-    judged: i > 0,
+    is_compared: i > 0,
     parameters: 5 + i,
     rms_residual_rad: kSigma,
     log_likelihood: -2889,
@@ -64,7 +64,7 @@ export function makeResult({
   const fits = models.map(fitOf);
   const end = (samples - 1) / rate;
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool: { name: 'fit_pendulum', version: '0.1.0' },
     data: {
       path,
@@ -88,7 +88,7 @@ export function makeResult({
         gaps: 0,
         longest_gap_s: 0,
         frequency_hz: 1 / kPeriod,
-        seen_frequency_hz: 1 / kPeriod,
+        apparent_frequency_hz: 1 / kPeriod,
         expected_frequency_hz: null,
         samples_per_period: rate * kPeriod,
         nyquist_margin: (rate * kPeriod) / 2,

@@ -49,7 +49,7 @@ export function fitOf(model) {
     systematic_covariance: { names: [], matrix: [] },
     noise: {
       model: 'gaussian',
-      why: 'rounding drowns in the noise',
+      reason: 'the noise is larger than the resolution, so readings are treated as continuous',
       sigma_rad: kSigma,
       sigma_std_error: 5e-5,
       resolution_rad: 0.0035,
@@ -87,7 +87,7 @@ export function fitOf(model) {
         unit: 'kg m^2',
         z: 19.1,
         agrees: false,
-        why: 'differs by +0.00084 kg m^2: by finite amplitude',
+        reason: 'differs by +0.00084 kg m^2: by finite amplitude',
       },
       {
         quantity: 'inertia_geometry',
@@ -99,8 +99,8 @@ export function fitOf(model) {
         unit: 'kg m^2',
         z: null,
         agrees: null,
-        why: 'no errors to judge that by',
-        reason: 'no errors to judge that by',
+        reason: 'no errors to compare it with',
+        reason: 'no errors to compare it with',
       },
       {
         quantity: 'inertia_turning_points',
@@ -112,7 +112,7 @@ export function fitOf(model) {
         unit: 'kg m^2',
         z: -0.2,
         agrees: true,
-        why: null,
+        reason: null,
       },
     ],
     solver: { iterations: 5, evaluations: 30, termination: 'Function tolerance reached.' },

@@ -27,7 +27,7 @@ function agreementOf(name, { estimate, std_error: error, unit }, count, odd) {
     runs: Array.from({ length: count }, (_unused, k) =>
       known(k)
         ? { estimate: estimate + shift(k) * size, std_error: 2 * size, z: 0.5 * shift(k) }
-        : { estimate: null, std_error: null, z: null, reason: 'the recording alone does not tell it' },
+        : { estimate: null, std_error: null, z: null, reason: 'the recording on its own does not determine it' },
     ),
   };
 }
@@ -43,13 +43,13 @@ function homogeneityOf(parameters, count, odd) {
     dof: 4,
     p: odd ? 1e-120 : 0.48,
     agrees: !odd,
-    disagreeing: odd ? [count] : [],
+    outliers: odd ? [count] : [],
     verdict: verdictOf(count, odd),
     parameters: Object.fromEntries(
       Object.entries(parameters).map(([name, parameter]) => [name, agreementOf(name, parameter, count, odd)]),
     ),
     amplitude_dependence: [
-      { parameter: 'inertia', slope: 1e-7, std_error: 2e-7, unit: 'kg m^2 / rad^2', p: 0.6, span: 2.4e-5, rest_p: 0.8 },
+      { parameter: 'inertia', slope: 1e-7, std_error: 2e-7, unit: 'kg m^2 / rad^2', p: 0.6, span: 2.4e-5, p_of_remainder: 0.8 },
     ],
   };
 }
@@ -84,7 +84,7 @@ function jointFit(fit, count, odd) {
       statistics,
       closed_form,
       constancy,
-      alone: k === 1 ? 'not_identifiable: coulomb is not told' : 'converged',
+      separate: k === 1 ? 'not_identifiable: coulomb is not determined' : 'converged',
     })),
   };
 }
@@ -136,7 +136,7 @@ export function makeJointFailed() {
       p: null,
       reason: 'fewer than two recordings tell them',
       agrees: null,
-      disagreeing: [],
+      outliers: [],
       verdict: 'not tested: fewer than two recordings tell them',
       parameters: {},
       amplitude_dependence: [],
@@ -151,7 +151,7 @@ export function makeJointFailed() {
       closed_form: [],
       constancy: null,
       constancy_reason: 'there is no fit',
-      alone: 'failed: the pendulum never moves',
+      separate: 'failed: the pendulum never moves',
     })),
   });
   return { ...result, calibration: [null, null, null], closed_forms: [null, null, null], warnings: [] };

@@ -230,7 +230,7 @@ export function makeSummary({ runs = 2000, rigs = 3, scatter = 1, names, drift =
     trend: null,
   });
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool,
     store: storeOf(runs, runs - 2, 2 * runs - 4),
     group_by: rigs > 1 ? 'rig' : null,
@@ -251,7 +251,7 @@ export function makeSummary({ runs = 2000, rigs = 3, scatter = 1, names, drift =
 export function makeTiny() {
   const options = { runs: 3, rigs: 1, scatter: 1, drift: 0, seed: 5, column: 'position' };
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool,
     store: storeOf(3, 3, 3, 'tiny.sqlite'),
     group_by: null,
@@ -269,7 +269,7 @@ export function makeTiny() {
 /** A batch without a converged fit. */
 export function makeFailures() {
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool,
     store: storeOf(40, 40, 40, 'failures.sqlite'),
     group_by: 'rig',
@@ -296,7 +296,7 @@ export function makeFailures() {
 export function makeLarge() {
   const options = { runs: 2000, rigs: 40, scatter: 1, drift: 0, column: 'position' };
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool,
     store: storeOf(100_000, 100_000, 100_000, 'large.sqlite'),
     group_by: 'rig',

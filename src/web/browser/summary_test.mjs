@@ -151,7 +151,7 @@ test('three runs', async (t) => {
   const page = await openSummary(t, makeTiny());
   assert.match(
     await page.locator('.banner').textContent(),
-    /3 of 3 fits of coulomb converged; nothing is found against their error bars/,
+    /3 of 3 fits of coulomb converged; the runs agree with their error bars/,
   );
   assert.match(await page.locator('#models').textContent(), /No run compared models/);
   assert.match(await page.locator('#failures').textContent(), /Every fit gave a result/);

@@ -7,9 +7,9 @@ import type { Fit, Result } from '../shared/result_types';
 import { hasWarning, lacksFit } from './report';
 
 const kTroubles: Record<string, [Level, string]> = {
-  failed: ['bad', 'The fit failed: there is no result'],
-  not_converged: ['bad', 'Not converged: these numbers are no result'],
-  not_identifiable: ['bad', 'Not identifiable: the recording does not tell these parameters'],
+  failed: ['bad', 'The fit failed, so there is no result'],
+  not_converged: ['bad', 'Not converged: these numbers are not a result'],
+  not_identifiable: ['bad', 'Not identifiable: the recording does not determine these parameters'],
 };
 
 export function headline(result: Result, fit: Fit | null): Headline {
@@ -25,7 +25,7 @@ export function headline(result: Result, fit: Fit | null): Headline {
       'The fit converged, but its residuals are more than noise; the error bars hold only if the model does.';
     return {
       level: 'caution',
-      title: `Lack of fit: ${fit.model} does not describe everything in this recording`,
+      title: `Lack of fit: ${fit.model} does not describe the whole recording`,
       sentence: what,
     };
   }

@@ -143,13 +143,13 @@ function methods(fit: Fit): HTMLElement | null {
   const overG = fit.parameters.inertia?.unit === 's^2';
   if (overG)
     parts.push(
-      'Without a rig file a free swing tells only ratios to the gravity torque G: inertia and torques are in units of G.',
+      'Without a rig file a free swing determines only ratios to the gravity torque G: inertia and torques are in units of G.',
     );
   return text(typeset(parts.join(' ')), 'quiet');
 }
 
 /** Tables of the parameters and of the derived quantities. */
-export function parameterPart(fit: Fit, untold = 'What the recording does not tell'): HTMLElement {
+export function parameterPart(fit: Fit, untold = 'What the recording does not determine'): HTMLElement {
   const part = el('div', {}, parameterTable(fit));
   for (const more of [methods(fit), advice(fit, untold), derivedTable(fit)]) if (more) part.append(more);
   return part;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The result JSON of fit_pendulum, schema_version 1 (result.schema.json). SI units; a missing number is null. */
+/** The result JSON of fit_pendulum, schema_version 2 (result.schema.json). SI units; a missing number is null. */
 
 export type { ModelSeries, MotionJson, PeakJson, ProfileCurve, Series } from './series_types';
 
@@ -42,12 +42,12 @@ export interface ClosedFormRow {
   unit: string;
   z: Num;
   agrees: boolean | null;
-  why: string | null;
+  reason: string | null;
 }
 
 export interface Noise extends Loose {
   model: string;
-  why: string;
+  reason: string;
   sigma_std_error: Num;
   saturated_samples: number;
   lag1_correlation: Num;
@@ -133,7 +133,7 @@ export interface Prediction extends Loose {
 
 export interface ComparisonRow extends Loose {
   model: string;
-  judged: boolean;
+  is_compared: boolean;
   parameters: number;
   log_likelihood: Num;
   aic: Num;
@@ -176,7 +176,7 @@ export interface Sampling {
   gaps: number;
   longest_gap_s: number;
   frequency_hz: Num;
-  seen_frequency_hz: Num;
+  apparent_frequency_hz: Num;
   expected_frequency_hz: Num;
   samples_per_period: Num;
   nyquist_margin: Num;

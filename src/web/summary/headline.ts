@@ -75,14 +75,14 @@ function errorBars(view: View): Bars {
     return { level: 'good', title: ', and their error bars are not too small', sentence: words };
   }
   if (!judged.some(({ repeatability }) => hasEnoughRuns(repeatability))) {
-    const words = 'Runs of one rig scatter as much as their errors say, but are too few to prove these.';
-    return { level: 'good', title: '; nothing is found against their error bars', sentence: words };
+    const words = 'Runs of one rig scatter as much as their errors predict, but are too few to prove these.';
+    return { level: 'good', title: '; the runs agree with their error bars', sentence: words };
   }
   const compared = counted(judged.length, 'parameter');
   return {
     level: 'good',
     title: ', and their error bars are true',
-    sentence: `Runs of one rig scatter as much as their errors say, in ${judged.length === 1 ? 'the one parameter' : `all ${compared}`} that can be compared.`,
+    sentence: `Runs of one rig scatter as much as their errors predict, in ${judged.length === 1 ? 'the one parameter' : `all ${compared}`} that can be compared.`,
   };
 }
 

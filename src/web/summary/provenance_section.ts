@@ -33,7 +33,7 @@ export function provenanceSection({ summary }: { summary: Summary }): HTMLElemen
       [
         'one rig',
         group === null
-          ? 'no column of the manifest tells rigs apart'
+          ? 'no column of the manifest distinguishes rigs'
           : ['runs of one ', el('code', {}, visible(group))],
       ],
       ['trends over', trend === null ? 'the position in the manifest' : el('code', {}, visible(trend))],

@@ -142,7 +142,7 @@ const kLabels = {
 /** A note that the agreement of only a few runs is weak evidence. */
 const labelOf = (found: Repeatability): string =>
   found.verdict === 'agrees' && !hasEnoughRuns(found)
-    ? 'Nothing is found against the error bars; the runs are few.'
+    ? 'The runs agree with the error bars, but they are few.'
     : kLabels[found.verdict];
 
 /** group: column by which the runs are grouped. */

@@ -79,7 +79,7 @@ function summary(models: ModelCounts[], parameters: ParameterSummary[], more: Pa
     manifest_sha256: null,
   };
   return {
-    schema_version: 1,
+    schema_version: 2,
     tool: { name: 'refit_pendulums', version: '0.1.0' },
     store,
     group_by: null,
@@ -182,7 +182,7 @@ describe('the headline', () => {
   });
 
   test('few runs are weak evidence', () => {
-    expect(of([parameter('inertia', repeats('agrees', 1, 2))]).title).toContain('nothing is found against');
+    expect(of([parameter('inertia', repeats('agrees', 1, 2))]).title).toContain('the runs agree with their error bars');
   });
 
   test('a model that few runs converged with does not represent them', () => {

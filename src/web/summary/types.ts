@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The summary of a batch of refitted runs, schema_version 1 (summary.schema.json). A missing number is null. */
+/** The summary of a batch of refitted runs, schema_version 2 (summary.schema.json). A missing number is null. */
 
 import type { Num, Result } from '../shared/result_types';
 

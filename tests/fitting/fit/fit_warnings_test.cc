@@ -94,11 +94,11 @@ TEST(FitWarnings, ReportASensorWithLessNoiseThanItsResolution) {
     FitOptions options = ModelOptions("coulomb");
     options.noise = NoiseFamily::kGaussian;
     const std::vector<std::string> codes = Codes(Fit(Must(SimulateRecording(run)), options));
-    const bool warned = std::find(codes.begin(), codes.end(), "quiet_sensor") != codes.end();
+    const bool warned = std::find(codes.begin(), codes.end(), "noise_below_resolution") != codes.end();
     // Rounding adds a twelfth to the variance: an rms of half a count corresponds to noise of 0.41 counts.
     EXPECT_EQ(warned, counts < 0.4) << counts;
     // By default the fit treats the readings as quantized.
-    EXPECT_THAT(Codes(FitOwnModel(run)), testing::Not(testing::Contains("quiet_sensor"))) << counts;
+    EXPECT_THAT(Codes(FitOwnModel(run)), testing::Not(testing::Contains("noise_below_resolution"))) << counts;
   }
 }
 
@@ -111,7 +111,7 @@ TEST(FitWarnings, ReportATrajectoryTooInaccurateForTheNoise) {
     const std::vector<Warning> warnings =
         FitWarnings(recording, problem, Solution{}, TraceSummary{}, report.residual, false, report);
     ASSERT_EQ(warnings.size(), share > 0.01 ? 1 : 0);
-    for (const Warning& warning : warnings) EXPECT_EQ(warning.code, "trace_accuracy");
+    for (const Warning& warning : warnings) EXPECT_EQ(warning.code, "trajectory_accuracy");
   }
 }
 
@@ -167,7 +167,7 @@ TEST(FitWarnings, ReportAnotherMinimumAndAStopOnAKink) {
       found.push_back(w.code);
     return found;
   };
-  EXPECT_THAT(codes(), ElementsAre("another_minimum", "stop_is_a_kink"));
+  EXPECT_THAT(codes(), ElementsAre("another_minimum", "uncertain_stop"));
   trace.smallest_reversal_margin = 4 * error;
   EXPECT_THAT(codes(), ElementsAre("another_minimum"));
   solution.other_minima[0].sum = 1010;

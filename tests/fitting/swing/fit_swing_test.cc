@@ -93,7 +93,7 @@ TEST(FitSwing, ReportsWhatItRemoved) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
-  ASSERT_THAT(Codes(result.fit), ElementsAre("disturbed"));
+  ASSERT_THAT(Codes(result.fit), ElementsAre("ends_trimmed"));
   EXPECT_THAT(KeptAttempts(result.fit), ElementsAre("disturbed_ends"));
   EXPECT_EQ(result.fit.warnings[0].message,
             "disturbed ends were left out, because they do not fit the rest: the window is now " +
@@ -108,7 +108,7 @@ TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {
     const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
     EXPECT_EQ(result.used.time, recording.time);
     EXPECT_THAT(result.fit.solver.attempts, IsEmpty());
-    EXPECT_THAT(Codes(result.fit), Not(Contains("disturbed")));
+    EXPECT_THAT(Codes(result.fit), Not(Contains("ends_trimmed")));
     ExpectTruthOfThePendulum(result.fit, run);
   }
 }
@@ -132,7 +132,7 @@ TEST(FitSwing, KeepsTheUsersBounds) {
   const Recording recording = Guided(run, 0);
   const SwingFit from = FitChosen(recording, ModelOptions("coulomb"), {.from = 0.5});
   EXPECT_EQ(from.used.time[0], 0.5);
-  EXPECT_THAT(Codes(from.fit), AllOf(Contains("lack_of_fit"), Not(Contains("disturbed"))));
+  EXPECT_THAT(Codes(from.fit), AllOf(Contains("lack_of_fit"), Not(Contains("ends_trimmed"))));
   const SwingFit both = FitChosen(recording, ModelOptions("coulomb"), {.from = 0.5, .to = 19});
   EXPECT_EQ(both.used.size(), 1851);
   const SwingFit to = FitChosen(recording, ModelOptions("coulomb"), {.to = 19});
@@ -160,7 +160,7 @@ TEST(FitSwing, RemovesWholeTurnsFromTheZero) {
   EXPECT_EQ(Sentence(swing.begins), "after its turns over the top");
   const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
   EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
-  EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "turns_taken_out")));
+  EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "whole_turns_removed")));
 }
 
 }  // namespace

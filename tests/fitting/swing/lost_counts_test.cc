@@ -161,9 +161,9 @@ TEST(FitSwing, RefusesASlippingZero) {
     const SwingFit result = Fit(recording);
     EXPECT_EQ(result.fit.termination, Termination::kNotConverged);
     // 2.5 counts are 0.00866 rad.
-    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("the zero jumps by 0.008"));
-    EXPECT_THAT(MessageOf(result.fit, "zero_jumps"), HasSubstr("choose a window before or after the jump"));
-    EXPECT_EQ(result.fit.reason, MessageOf(result.fit, "zero_jumps"));
+    EXPECT_THAT(MessageOf(result.fit, "offset_jumps"), HasSubstr("the zero jumps by 0.008"));
+    EXPECT_THAT(MessageOf(result.fit, "offset_jumps"), HasSubstr("choose a window before or after the jump"));
+    EXPECT_EQ(result.fit.reason, MessageOf(result.fit, "offset_jumps"));
     EXPECT_FALSE(result.fit.parameters[1].std_error);
   }
 }

@@ -156,7 +156,7 @@ TEST(FitUndersampled, IsNotIdentifiableAtOneOrTwoSamplesPerCycle) {
       EXPECT_FALSE(result.fit.Find("inertia")->std_error);
       EXPECT_EQ(result.fit.covariance.size(), 0);
       EXPECT_THAT(result.fit.warnings, HasWarning("ambiguous_frequency"));
-      EXPECT_THAT(result.fit.warnings, HasWarning("once_a_cycle"));
+      EXPECT_THAT(result.fit.warnings, HasWarning("samples_near_period"));
     }
   }
 }

@@ -13,12 +13,12 @@ namespace pendulum {
 /// saturated: readings at an end of the sensor's range
 /// lack_of_fit, correlated_residuals: autocorrelated residuals that exceed the noise between neighbours
 /// zero_drift: the zero of the sensor drifts
-/// quiet_sensor: noise below half the resolution is treated as Gaussian
-/// trace_accuracy: the trajectory's error is not small compared with the noise
+/// noise_below_resolution: noise below half the resolution is treated as Gaussian
+/// trajectory_accuracy: the trajectory's error is not small compared with the noise
 /// prior_conflict: a prior and the recording disagree
 /// at_bound: a parameter is at its bound
 /// another_minimum: another number of half swings explains the data nearly as well
-/// stop_is_a_kink: the data hardly determine the time of the stop
+/// uncertain_stop: the data hardly determine the time of the stop
 ///
 /// report: complete except for its warnings. trace: at the solution. quantile_residuals: N. correlated: whether they
 /// are autocorrelated.

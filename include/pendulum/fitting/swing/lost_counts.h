@@ -31,9 +31,9 @@ bool MayHaveOffsetJump(const FitReport& fit);
 /// request.
 std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const FitOptions& options);
 
-/// Adds warnings about jumps: `lost_counts` if they were corrected, otherwise `zero_jumps`, which invalidates the fit.
-/// Adds `zero_unsteady` for a possible jump that is too small to identify, unless the fit `has_misfit` so much that the
-/// misfit may explain it.
+/// Adds warnings about jumps: `lost_counts` if they were corrected, otherwise `offset_jumps`, which invalidates the
+/// fit. Adds `offset_unsteady` for a possible jump that is too small to identify, unless the fit `has_misfit` so much
+/// that the misfit may explain it.
 void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit, FitReport& fit);
 
 }  // namespace pendulum

@@ -60,7 +60,7 @@ function parameterPart(fit: JointFit, name: string): HTMLElement {
   const words = [testText(agreement), scatterText(agreement), clippedWords(rows)].filter((part) => part !== '');
   const part = el('div', { class: 'pair agree', 'data-forest': name });
   part.append(
-    plot ? figure(words.join(' '), plot) : absent('No recording tells this parameter.'),
+    plot ? figure(words.join(' '), plot) : absent('No recording determines this parameter on its own.'),
     numbers(name, agreement.unit, rows),
   );
   const symbol = symbolOf(name, agreement.unit);
@@ -83,7 +83,7 @@ function amplitudeTable({ amplitude_dependence: list }: Homogeneity): HTMLElemen
     plusMinus(one.slope, one.std_error) + spacedUnit(one.unit.replace(/^1 \/ /, '1/')),
     one.span === null ? '–' : `${significant(100 * one.span, 2)} %`,
     probabilityText(one.p),
-    probabilityText(one.rest_p),
+    probabilityText(one.p_of_remainder),
   ]);
   return table('Do they change with the amplitude of the recordings?', columns, rows);
 }

@@ -9,13 +9,13 @@ const kTwoSided95 = 1.96;
 type Estimate = Pick<ForestRow, 'estimate' | 'std_error' | 'interval95'>;
 const pick = ({ estimate, std_error, interval95 }: Estimate): Estimate => ({ estimate, std_error, interval95 });
 
-function recordingRows(agreement: SharedAgreement, disagreeing: readonly number[]): ForestRow[] {
+function recordingRows(agreement: SharedAgreement, outliers: readonly number[]): ForestRow[] {
   return agreement.runs.map(({ estimate, std_error, z }, k) => {
     const reach = estimate !== null && std_error !== null ? kTwoSided95 * std_error : null;
     return {
       kind: 'recording',
       label: `recording ${k + 1}`,
-      disagrees: disagreeing.includes(k + 1),
+      disagrees: outliers.includes(k + 1),
       estimate,
       std_error,
       interval95: estimate !== null && reach !== null ? [estimate - reach, estimate + reach] : null,
@@ -29,7 +29,7 @@ export function forestRows(fit: JointFit, name: string): ForestRow[] {
   const agreement = fit.homogeneity.parameters[name];
   const joint = fit.parameters?.[name];
   const scatter = agreement.random_effects;
-  const rows = recordingRows(agreement, fit.homogeneity.disagreeing);
+  const rows = recordingRows(agreement, fit.homogeneity.outliers);
   const common = { disagrees: false, z: null };
   if (joint && joint.estimate !== null)
     rows.push({ ...common, ...pick(joint), kind: 'joint', label: 'joint fit' });

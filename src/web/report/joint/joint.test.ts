@@ -36,7 +36,7 @@ const homogeneity = (more: Partial<Homogeneity> = {}): Homogeneity => ({
   dof: 2,
   p: 0.2,
   agrees: true,
-  disagreeing: [],
+  outliers: [],
   verdict: 'the recordings agree on inertia',
   parameters: { inertia: agreement([[1.9, 0.1], [2, 0.1], [2.2, 0.2]]) },
   amplitude_dependence: [],
@@ -49,7 +49,7 @@ const run = (k: number): JointRun =>
     release: 1,
     parameters: { inertia: parameter(2, 0.1), release_time: parameter(0.5 + k, 0.01), zero_angle: parameter(0.1 * k) },
     noise: { lag1_correlation: 0.1 * k },
-    alone: 'converged',
+    separate: 'converged',
   }) as unknown as JointRun;
 
 const jointFit = (more: Partial<JointFit> = {}): JointFit =>
@@ -136,14 +136,14 @@ describe('the verdict of a joint fit', () => {
 
   test('disagreement is reported before all problems except a refusal', () => {
     const lack = { warnings: [{ code: 'lack_of_fit', message: 'm' }] };
-    const odd = homogeneity({ agrees: false, disagreeing: [2], verdict: 'they do not' });
+    const odd = homogeneity({ agrees: false, outliers: [2], verdict: 'they do not' });
     expect(of({ homogeneity: odd }, lack)).toMatchObject({ level: 'bad', title: 'Recording 2 disagrees with the others' });
-    expect(disagreement(homogeneity({ disagreeing: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
+    expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
     const scattered = homogeneity({ agrees: false, verdict: 'they scatter' });
     expect(of({ homogeneity: scattered })).toMatchObject({ level: 'caution', sentence: 'They scatter.' });
     expect(of({ homogeneity: scattered, status: 'not_converged', reason: 'no; they scatter' })).toEqual({
       level: 'bad',
-      title: 'Refused: the recordings are not of one pendulum; these numbers are no result',
+      title: 'Refused: the recordings are not of one pendulum; these numbers are not a result',
       sentence: 'No; they scatter.',
     });
     expect(of({}, lack).title).toMatch(/^Lack of fit: viscous/);

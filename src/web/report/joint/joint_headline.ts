@@ -8,20 +8,20 @@ import { wholeView } from './joint';
 import type { Homogeneity, JointFit, JointResult } from './joint_types';
 
 /** "Recording 3 disagrees with the others"; null if no single recording can be named. */
-export function disagreement({ disagreeing }: Homogeneity): string | null {
-  if (disagreeing.length === 0) return null;
-  return disagreeing.length === 1
-    ? `Recording ${disagreeing[0]} disagrees with the others`
-    : `Recordings ${inList(disagreeing)} disagree with the others`;
+export function disagreement({ outliers }: Homogeneity): string | null {
+  if (outliers.length === 0) return null;
+  return outliers.length === 1
+    ? `Recording ${outliers[0]} disagrees with the others`
+    : `Recordings ${inList(outliers)} disagree with the others`;
 }
 
 function trouble({ status, homogeneity }: JointFit): string | null {
-  if (status === 'failed') return 'The joint fit failed: there is no result';
-  if (status === 'not_identifiable') return 'Not identifiable: the recordings do not tell these parameters';
+  if (status === 'failed') return 'The joint fit failed, so there is no result';
+  if (status === 'not_identifiable') return 'Not identifiable: the recordings do not determine these parameters';
   if (status !== 'not_converged') return null;
   return homogeneity.agrees === false
-    ? 'Refused: the recordings are not of one pendulum; these numbers are no result'
-    : 'Not converged: these numbers are no result';
+    ? 'Refused: the recordings are not of one pendulum; these numbers are not a result'
+    : 'Not converged: these numbers are not a result';
 }
 
 /** Both as sentences, without the second if the first already contains it. */
@@ -59,6 +59,6 @@ export function jointHeadline(result: JointResult, fit: JointFit | null): Headli
   const { model } = fit;
   const lacks = whole.fits.find((one) => one.model === model);
   if (!lacks || !lacksFit(whole, lacks)) return converged(result, fit);
-  const title = `Lack of fit: ${model} does not describe everything in these recordings`;
+  const title = `Lack of fit: ${model} does not describe these recordings completely`;
   return { level: 'caution', title, sentence: together(verdict, kMoreThanNoise) };
 }

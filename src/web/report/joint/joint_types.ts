@@ -37,7 +37,7 @@ export interface AmplitudeDependence {
   p: Num;
   /** Relative change from the smallest swings to the largest. */
   span: Num;
-  rest_p: Num;
+  p_of_remainder: Num;
 }
 
 export interface Homogeneity {
@@ -46,7 +46,7 @@ export interface Homogeneity {
   p: Num;
   agrees: boolean | null;
   /** Numbers of recordings, counted from 1. */
-  disagreeing: number[];
+  outliers: number[];
   verdict: string;
   parameters: Record<string, SharedAgreement>;
   amplitude_dependence: AmplitudeDependence[];
@@ -62,8 +62,8 @@ export interface JointRun extends Pick<Fit, OfOneRecording | Both> {
   release: number | null;
   /** Root mean square over the motion, rad. */
   amplitude_rad: Num;
-  /** How the fit to this recording alone ended. */
-  alone: string;
+  /** How the separate fit of this recording ended. */
+  separate: string;
 }
 
 export interface JointFit extends Omit<Fit, OfOneRecording> {

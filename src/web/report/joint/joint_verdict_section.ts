@@ -15,7 +15,7 @@ import type { JointFit } from './joint_types';
 
 /** If the recordings scatter and no single one disagrees: the random-effects mean, whose error includes the scatter. */
 function remarkOf({ homogeneity, status }: JointFit): (name: string) => string | null {
-  const scattered = status === 'converged' && homogeneity.agrees === false && homogeneity.disagreeing.length === 0;
+  const scattered = status === 'converged' && homogeneity.agrees === false && homogeneity.outliers.length === 0;
   return (name) => {
     const scatter = homogeneity.parameters[name]?.random_effects;
     if (!scattered || !scatter || scatter.mean === null) return null;
@@ -36,7 +36,7 @@ export function jointVerdictSection(report: JointReport): HTMLElement {
     usable && keyFigures(fit, remarkOf(joint)),
     equation && el('p', { class: 'equation' }, equation),
     usable
-      ? parameterPart(fit, 'What the recordings do not tell')
+      ? parameterPart(fit, 'What the recordings do not determine')
       : fit && text('There are no parameters to show.', 'absent'),
     warnings(report.whole.result),
   );

@@ -16,8 +16,8 @@ import type { JointFit, JointRun } from './joint_types';
 const number = 'number' as const;
 
 /** "recording 3", with its colour in the plots, and whether it disagrees. */
-export function recordingName(k: number, disagreeing: readonly number[]): Cell {
-  const odd = disagreeing.includes(k + 1) && el('small', { class: 'no' }, 'disagrees');
+export function recordingName(k: number, outliers: readonly number[]): Cell {
+  const odd = outliers.includes(k + 1) && el('small', { class: 'no' }, 'disagrees');
   return [swatch(recordingMark(k)), String(k + 1), odd];
 }
 
@@ -40,7 +40,7 @@ function recordingRow({ result }: JointReport, fit: JointFit | null, k: number):
   const data = result.data[k];
   const run = fit?.runs[k];
   return [
-    recordingName(k, fit?.homogeneity.disagreeing ?? []),
+    recordingName(k, fit?.homogeneity.outliers ?? []),
     recordingFile(result, k),
     `${data.used_samples} of ${data.samples}`,
     `${significant(data.window_s[0], 4)} to ${significant(data.window_s[1], 4)}`,
@@ -50,7 +50,7 @@ function recordingRow({ result }: JointReport, fit: JointFit | null, k: number):
     readingText(run?.noise, 'sigma'),
     readingText(run?.statistics, 'rms_residual'),
     significant(run?.noise?.lag1_correlation, 2),
-    typeset((run?.alone ?? '–').replace(/_/g, ' ')),
+    typeset((run?.separate ?? '–').replace(/_/g, ' ')),
   ];
 }
 
@@ -66,7 +66,7 @@ function recordingTable(report: JointReport, fit: JointFit | null): HTMLElement 
     { head: 'Noise σ', kind: number },
     { head: 'rms residual', kind: number },
     { head: 'Lag-1', kind: number },
-    { head: 'Fitted alone' },
+    { head: 'Separate fit' },
   ];
   return table('Recordings', columns, report.result.data.map((_data, k) => recordingRow(report, fit, k)));
 }
@@ -88,13 +88,13 @@ function ownCell(run: JointRun, name: string): Cell {
 function ownTable(fit: JointFit): HTMLElement | null {
   const names = ownNames(fit);
   if (names.length === 0) return null;
-  const { disagreeing } = fit.homogeneity;
+  const { outliers } = fit.homogeneity;
   const columns: Column[] = [
     { head: 'Recording' },
     ...names.map((name) => ({ head: el('span', {}, ...quantityName(name)), kind: number })),
   ];
   const rows = fit.runs.map((run, k): Cell[] => [
-    recordingName(k, disagreeing),
+    recordingName(k, outliers),
     ...names.map((name) => ownCell(run, name)),
   ]);
   return table('Each recording’s own parameters, by the joint fit', columns, rows);

@@ -39,7 +39,7 @@ function row(check: ClosedFormRow): Cell[] {
     plusMinus(check.closed_form, check.std_error),
     plusMinus(check.fit, check.fit_std_error),
     z,
-    [verdict(check.agrees), check.why !== null && el('small', { class: 'why' }, typeset(check.why))],
+    [verdict(check.agrees), check.reason !== null && el('small', { class: 'why' }, typeset(check.reason))],
   ];
 }
 

@@ -24,10 +24,10 @@ function predictionText(prediction: Prediction | null): Cell {
 function modelRow(report: Report, row: ComparisonRow): Cell[] {
   const i = report.result.fits.findIndex((fit) => fit.model === row.model);
   const rms = withUnit(row, 'rms_residual');
-  const fits = row.lack_of_fit ? 'lack of fit' : row.judged ? 'yes' : 'not judged';
+  const fits = row.lack_of_fit ? 'lack of fit' : row.is_compared ? 'yes' : 'not compared';
   return [
     [i >= 0 && swatch(modelMark(rankOf(report.result, i))), row.model],
-    row.judged ? String(row.parameters) : '–',
+    row.is_compared ? String(row.parameters) : '–',
     rms ? significant(rms.value, 3) : '–',
     difference(row.delta_bic),
     row.akaike_weight === null ? '–' : row.akaike_weight < 1e-4 ? '< 0.0001' : fixed(row.akaike_weight, 4),
@@ -83,8 +83,8 @@ function testTable({ tests }: Comparison): HTMLElement | null {
 /** Why a model has no information criteria. */
 const unjudged = ({ rows }: Comparison): HTMLElement[] =>
   rows
-    .filter((row) => !row.judged && row.reason !== undefined)
-    .map((row) => text(sentence(`${row.model} is not judged: ${row.reason?.replace(/_/g, ' ')}`), 'quiet'));
+    .filter((row) => !row.is_compared && row.reason !== undefined)
+    .map((row) => text(sentence(`${row.model} is not compared: ${row.reason?.replace(/_/g, ' ')}`), 'quiet'));
 
 const kMeaning =
   'Left-out samples: blocks predicted by a fit to the others. Later motion: the end predicted from the beginning. ' +

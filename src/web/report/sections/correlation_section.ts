@@ -47,7 +47,7 @@ function strongest({ names, matrix }: NamedMatrix): string {
     }),
   );
   const pair = `${wordsOf(names[row])} and ${wordsOf(names[column])}, ${fixed(matrix[row]?.[column] ?? 0, 2)}`;
-  const meaning = most > 0.95 ? ': the recording tells their combination far better than each of them' : '';
+  const meaning = most > 0.95 ? ': the recording determines their combination far better than each of them' : '';
   return `The strongest is that of ${pair}${meaning}.`;
 }
 

@@ -97,7 +97,7 @@ export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
     ['resolution', resolutionText(data)],
     ['clock', clockText(data)],
     ['begins', data.start === 'release' ? 'held, then released' : data.start === 'moving' ? 'in motion' : '–'],
-    ['noise model', fit?.noise ? `${fit.noise.model}: ${typeset(fit.noise.why)}` : '–'],
+    ['noise model', fit?.noise ? `${fit.noise.model}: ${typeset(fit.noise.reason)}` : '–'],
   ];
 }
 

@@ -33,7 +33,7 @@ describe('labels and help of fields', () => {
 
 describe('flags in sentences', () => {
   test('become the labels of their fields', () => {
-    expect(inFields('--from 9 s does not lie before --to 3 s')).toBe('“From” 9 s does not lie before “To” 3 s');
+    expect(inFields('--from 9 s is not before --to 3 s')).toBe('“From” 9 s is not before “To” 3 s');
     expect(inFields('give --time_column or --sample_rate_hz and --unit')).toBe(
       `give “${labelOf('time_column')}” or “${labelOf('sample_rate_hz')}” and “${labelOf('unit')}”`,
     );
@@ -44,11 +44,11 @@ describe('flags in sentences', () => {
 
   test('have the labels of their options as values', () => {
     const [, words] = optionsOf('noise').find(([value]) => value === 'quantized')!;
-    expect(inFields('--noise quantized has true ones')).toBe(`“${labelOf('noise')}: ${words}” has true ones`);
+    expect(inFields('use --noise quantized')).toBe(`use “${labelOf('noise')}: ${words}”`);
     expect(inFields('; --model linear describes')).toBe('; “Kind of friction” linear describes');
     nameModels([{ name: 'linear', label: 'small angles' }]);
-    expect(inFields('; --model linear describes the former')).toBe(
-      '; “Kind of friction: small angles” describes the former',
+    expect(inFields('; use --model linear for this recording')).toBe(
+      '; use “Kind of friction: small angles” for this recording',
     );
     expect(inFields('--model linear,drag is')).toBe('“Kind of friction” linear,drag is');
   });
@@ -95,8 +95,8 @@ describe('problems of fields', () => {
 
   test('of flags belong to all their fields', () => {
     const find = fields('[data-flag="from"]', '[data-flag="to"]');
-    const told = asFieldError(problem('--from 9 s does not lie before --to 3 s', 'wrong_request'), find) as FieldError;
-    expect(told.message).toBe('“From” 9 s does not lie before “To” 3 s.');
+    const told = asFieldError(problem('--from 9 s is not before --to 3 s', 'bad_request'), find) as FieldError;
+    expect(told.message).toBe('“From” 9 s is not before “To” 3 s.');
     expect([told.field, ...told.others]).toHaveLength(2);
     const noSwing = problem('no swing; choose a window with --from and --to', 'no_swing');
     expect(asFieldError(noSwing, find)).toBe(noSwing);

@@ -29,7 +29,7 @@ export function asFieldError(error: unknown, find: Find): unknown {
   const { code, detail } = error.problem;
   const file = kFile.exec(detail);
   if (file) return ofFile(file[1], detail.slice(file[0].length), find) ?? error;
-  if (code !== 'wrong_request') return error;
+  if (code !== 'bad_request') return error;
   const fields = flagsIn(detail).flatMap((flag) => find(`[data-flag="${flag}"]`) ?? []);
   return fields.length > 0 ? new FieldError(`${inFields(detail)}.`, fields[0], fields.slice(1)) : error;
 }

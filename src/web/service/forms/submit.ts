@@ -59,7 +59,7 @@ async function sentFit({ path, body, headers }: Submission, signal?: AbortSignal
     throw new ProblemError({
       title: 'An answer without an address',
       status: answer.status,
-      detail: 'The service fitted the recording and did not say where.',
+      detail: 'The service fitted the recording, but did not return its address.',
       code: 'bad_answer',
     });
   }

@@ -31,7 +31,7 @@ export class FieldError extends Error {
 export class Cancelled extends Error {}
 
 const kAdvice: Record<string, string> = {
-  wrong_request: 'Change what the sentence names, then try again.',
+  bad_request: 'Change what the sentence names, then try again.',
   unauthorized: 'Give the token that the service was started with.',
   forbidden: 'Open the page by the address that whoever runs the service gave you.',
   not_found: 'It may have been deleted. “Past fits” lists what there is.',
@@ -39,9 +39,9 @@ const kAdvice: Record<string, string> = {
   conflict: 'It is still under way: try again in a moment.',
   too_large: 'Send a shorter recording, or the part of it that matters.',
   unsupported_media_type: 'Choose a text file with columns of numbers, such as the CSV of a logger or a spreadsheet.',
-  unusable_data: 'Mend the file there, or tell columns, units and calibration under “Further options”.',
+  unusable_data: 'Correct the file at that place, or give columns, units and calibration under “Further options”.',
   no_swing: 'Choose a window that holds a free swing, --from and --to, or another recording.',
-  key_reused: 'Try again: this counts as a new request.',
+  idempotency_key_reused: 'Try again: this counts as a new request.',
   too_many_requests: 'Wait a moment, then try again.',
   headers_too_large: 'Shorten the name or the options.',
   internal: 'This is a fault of the service, not of your file. Its log says more.',

@@ -27,7 +27,7 @@ function parsedFile(name: string, content: string): Loose {
     return JSON.parse(content) as Loose;
   } catch (error) {
     const detail = `The file of the ${name} is not JSON (${String(error)}).`;
-    throw new ProblemError({ title: 'The request is wrong', status: 400, detail, code: 'wrong_request' });
+    throw new ProblemError({ title: 'The request is wrong', status: 400, detail, code: 'bad_request' });
   }
 }
 
