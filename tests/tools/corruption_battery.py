@@ -50,9 +50,9 @@ MOST_BEYOND = 1e-3  # share of the judged parameters
 # A warning counts if it tells the user not to trust the error bars. Warnings that only report a repair or the choice of
 # the window do not count: the result should still be right.
 COUNTING_WARNINGS = {
-    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit", "larger_motion_outside", "many_spikes",
-    "not_a_pendulum", "noise_below_resolution", "saturated", "stale_values", "uncertain_stop", "time_rounded", "trajectory_accuracy",
-    "zero_drift",
+    "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit",
+    "larger_motion_outside", "many_spikes", "noise_below_resolution", "not_a_pendulum", "saturated",
+    "stale_values", "time_rounded", "trajectory_accuracy", "uncertain_stop", "zero_drift",
 }
 
 KINDS = ["fits", "beyond 4", "warned", "not converged", "refused", "expected", "unexpected", "WRONG", "DEFECT"]
