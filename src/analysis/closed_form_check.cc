@@ -77,9 +77,7 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
     const std::optional<std::size_t> from = table ? TurningPointAt(*table, first) : std::nullopt;
     if (!from) return std::nullopt;
     std::optional<LogDecrement> there = ApplyLogDecrement(*table, gravity, *from, periods);
-    if (!there)
-      there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // the last turning point may be at the
-                                                                       // end
+    if (!there) there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // for a turning point at the end
     if (!there) return std::nullopt;
     return LinearValues(*there);
   };

@@ -193,8 +193,7 @@ CoverageScenario Without(std::size_t parameter, std::string name, std::string de
 }  // namespace
 
 std::vector<CoverageScenario> CoverageScenarios() {
-  constexpr double kStrongLowest = 0.91;  // lower limit of the coverage at a correlation of 0.9, where few samples are
-                                          // independent
+  constexpr double kStrongLowest = 0.91;  // lower limit at a correlation of 0.9: few samples are independent
   return {
       OnCounts("white_2.5", "white noise of 2.5 counts on counts", 2.5),
       OnCounts("white_0.5", "white noise of 0.5 count on counts", 0.5),

@@ -65,8 +65,7 @@ Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view
   if (!file) return tl::unexpected(file.error());
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  std::string bytes(std::min(unknown ? kBlock : size, max_bytes) + 1, '\0');  // The extra byte detects the end of the
-                                                                              // file.
+  std::string bytes(std::min(unknown ? kBlock : size, max_bytes) + 1, '\0');  // One more byte detects the end.
   std::size_t used = 0;
   while (true) {
     const Result<std::size_t> got = file->Read(std::span(bytes).subspan(used));

@@ -45,8 +45,7 @@ class Units {
 std::string ErrorText(double error) { return NumberText(error, error < 100 ? kErrorDigits : kErrorDigits + 1); }
 
 std::string BiasCell(const std::optional<double>& share) {
-  constexpr double kRounding = 1e-10;  // numerical error of the formulas, which are exact for a linear pendulum with
-                                       // viscous friction
+  constexpr double kRounding = 1e-10;  // numerical error of the formulas, exact with linear viscous friction
   if (!share) return "-";
   return NumberText(std::abs(*share) < kRounding ? 0.0 : 100 * *share, kErrorDigits);
 }

@@ -12,8 +12,7 @@ namespace pendulum::wire {
 
 /// Framing of the body of an answer.
 struct Framing {
-  std::optional<std::size_t> length;  ///< Bytes, for Content-Length; std::nullopt: chunks, or all bytes until the
-                                      ///< connection ends.
+  std::optional<std::size_t> length;  ///< For Content-Length; std::nullopt: chunks, or until the end.
   bool is_chunked = false;
   bool keeps_alive = false;
 };

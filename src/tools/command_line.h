@@ -15,8 +15,7 @@ struct FlagInfo {
   std::string name;             ///< Without dashes.
   std::string help;             ///< Meaning, unit and default.
   std::string type = "string";  ///< gflags' type: bool (no value in a following argument), string, double, int32, ...
-  bool own = true;              ///< Defined by the tool, not by a library: shown by --help and suggested for misspelt
-                                ///< names.
+  bool own = true;              ///< Of the tool, not of a library: in --help and suggestions.
 };
 
 /// Parses the arguments (without the program's name) by gflags' grammar, without setting flags. Returns the arguments

@@ -134,8 +134,7 @@ void RunInProgress::ReceiveUntilOver() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = HostTime();
-    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // after a suspension of this process the logger was not
-                                                               // silent
+    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // a suspended process is not a silent logger
     last_look_ = now;
     if (!received) {
       EndAsLost(received.error().message);

@@ -86,8 +86,7 @@ TEST(RestDetector, DetectsRestByDryFriction) {
   for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at different places within the band
     const auto rest = RestOf(DryFriction(amplitude, 10), 60);
     ASSERT_TRUE(rest) << amplitude;
-    const double stop = 0.75 * std::ceil((amplitude - 10) / 20);  // half swings of 0.75 s, each of which reduces the
-                                                                  // amplitude by 20 counts
+    const double stop = 0.75 * std::ceil((amplitude - 10) / 20);  // half swings of 0.75 s, each 20 counts smaller
     EXPECT_GT(*rest, stop + RestDetector::kRestSeconds - 1) << amplitude;
     EXPECT_LT(*rest, stop + RestDetector::kRestSeconds + 3) << amplitude;
   }

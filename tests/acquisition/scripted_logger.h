@@ -53,8 +53,7 @@ struct LoggerScript {
                                 .calibration = {}};
 
   std::function<int(double time)> counts = [](double) { return 500; };  ///< The reading at a time since the start [s].
-  double frame_seconds = 0.004;  ///< Time between frames of 8 samples; shorter than real time, so that a run of a
-                                 ///< minute takes seconds.
+  double frame_seconds = 0.004;  ///< Between frames of 8 samples; shorter than real time, for quick tests.
   int frames = 1000000;          ///< After these, `then` happens.
   Then then = Then::kSilence;
   std::set<int> lost_frames;  ///< Lost on the line; numbered from 0.

@@ -129,8 +129,7 @@ TEST(CramerRaoBounds, GrowByATwelfthOfASquaredCount) {
 TEST(CramerRaoBounds, TreatTheNoiseSizeAsUnknown) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.15 * kCount;
-  run.zero = 0.2 * kCount - run.release_angle;  // a hold away from the middle of its count, where x and σ are
-                                                // correlated
+  run.zero = 0.2 * kCount - run.release_angle;  // off the count's middle, where x and σ are correlated
   run.resolution = kCount;
   const Eigen::MatrixXd jacobian = JacobianByDifferences(run);
   SyntheticOptions clean = run;

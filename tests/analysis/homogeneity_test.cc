@@ -263,8 +263,7 @@ TEST(Homogeneity, UsesInformativeRecordingsOnly) {
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   EXPECT_EQ(result.dof, 6);
   EXPECT_FALSE(result.parameters.at(0).runs[0].value);
-  EXPECT_THAT(result.disagreeing, ElementsAre(3));  // index among all recordings, not among those that determine the
-                                                    // parameter
+  EXPECT_THAT(result.disagreeing, ElementsAre(3));  // index among all recordings
 }
 
 }  // namespace

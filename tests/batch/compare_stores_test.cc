@@ -149,8 +149,7 @@ TEST_F(CompareStoresTest, ListsTheHundredLargestChangesInOrder) {
   std::vector<Fit> before, after;
   for (int i = 1; i <= 130; ++i) {
     before.push_back({"run " + std::to_string(i), 0.0, 1.0});
-    after.push_back({"run " + std::to_string(i), 37 * i % 131 + 1.0, 1.0});  // 2 to 131, each once, because 131 is
-                                                                             // prime
+    after.push_back({"run " + std::to_string(i), 37 * i % 131 + 1.0, 1.0});  // 2 to 131, each once: 131 is prime
   }
   const StoreComparison comparison = Compare(before, after);
   EXPECT_EQ(comparison.moved, 130);

@@ -361,8 +361,7 @@ TEST_F(SummaryTest, MatchesItsSchema) {
     EXPECT_THAT(check.Faults(summary), IsEmpty()) << options.group_by;
     for (const Json& key : schema["required"]) EXPECT_TRUE(summary.contains(key.get<std::string>())) << key;
   }
-  EXPECT_THAT(check.Faults({{"schema_version", 1}}), SizeIs(testing::Gt(8U)));  // shows that the check detects
-                                                                                // violations
+  EXPECT_THAT(check.Faults({{"schema_version", 1}}), SizeIs(testing::Gt(8U)));  // the check detects violations
 }
 
 }  // namespace

@@ -133,8 +133,7 @@ TEST(FindFreeSwings, IncludesAStartInMotionFromTheFirstSample) {
 }
 
 TEST(FindFreeSwings, BeginsAtTheFirstTurningPointAfterAPush) {
-  const Recording pushed = Part(Swing(0.5, 16), Crossing(Swing(0.5, 16), 0));  // at full speed through its rest
-                                                                               // position
+  const Recording pushed = Part(Swing(0.5, 16), Crossing(Swing(0.5, 16), 0));  // at full speed
   const FreeSwing swing = OnlySwing(Joined({Still(0, 3), pushed}));
   EXPECT_EQ(Sentence(swing.begins), kAfterAMove);
   EXPECT_THAT(swing.from, DoubleNear(3 + kHalfPeriod / 2, 0.05));

@@ -264,8 +264,7 @@ TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
   EXPECT_EQ(
       WarningOf(repaired),
       "time_rounded: run.csv:2: the times are rounded to 1 ms, which is coarse compared with the sampling interval. No "
-      "uniform clock agrees with them, so they were not changed; rounding gives them an error of 0.29 ms");  // 1 /
-                                                                                                             // sqrt(12)
+      "uniform clock agrees with them, so they were not changed; rounding gives them an error of 0.29 ms");  // 1 / √12
 }
 
 TEST(RepairClock, RefusesCoarseStampsWithLostRows) {

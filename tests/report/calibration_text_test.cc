@@ -113,8 +113,7 @@ TEST(CalibrationText, ListsAtMostFiftyPoints) {
   }
   const std::string text = TextOf(TableOf("counts", "deg", counts, angles), 1);
   const std::string points = text.substr(text.find("[[Points]]"), text.find("[[Fit]]") - text.find("[[Points]]"));
-  EXPECT_THAT(points, HasSubstr("residual [deg]  left out [deg]\n       124         31.5"));  // the largest residual
-                                                                                              // comes first
+  EXPECT_THAT(points, HasSubstr("residual [deg]  left out [deg]\n       124         31.5"));  // largest first
   EXPECT_EQ(std::ranges::count(points, '\n'), 2 + kShownPoints);
 }
 

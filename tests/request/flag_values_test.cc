@@ -23,8 +23,7 @@ TEST(NearestName, FindsTheIntendedName) {
   EXPECT_EQ(NearestName("modle", kNames), "model");
   EXPECT_EQ(NearestName("form", kNames), "from");
   EXPECT_EQ(NearestName("temperature", kNames), "");
-  constexpr std::array<std::string_view, 2> kNear = {"lose", "noise"};  // two edits from the first name, one swap from
-                                                                        // the second
+  constexpr std::array<std::string_view, 2> kNear = {"lose", "noise"};  // two edits away, and one swap
   EXPECT_EQ(NearestName("niose", kNear), "noise");
 }
 

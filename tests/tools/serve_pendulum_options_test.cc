@@ -73,8 +73,7 @@ TEST(MakeServePendulumOptions, StoreEachFlag) {
   EXPECT_EQ(options->server.max_queue, 5U);
   EXPECT_EQ(options->server.max_connections, 8U);
   EXPECT_EQ(options->server.max_body, 200U * 1024 * 1024);
-  EXPECT_GE(options->server.max_buffered, options->server.max_body);  // otherwise no request of the maximal size would
-                                                                      // be accepted
+  EXPECT_GE(options->server.max_buffered, options->server.max_body);  // room for the largest request
   EXPECT_EQ(options->server.request_time, std::chrono::seconds(9));
   EXPECT_EQ(options->server.stop_time, std::chrono::seconds(5)) << "to tell those whose fits are stopped";
   EXPECT_EQ(options->service.threads, 3);

@@ -29,12 +29,10 @@ std::optional<SamplingRate> NearestRate(double hz, int oversample);
 
 /// The losses of a run.
 struct RunLosses {
-  std::int64_t samples = 0;      ///< All missing samples: gaps in the time stamps, and samples after the last one that
-                                 ///< End reports.
+  std::int64_t samples = 0;      ///< All missing samples: gaps in time stamps, and samples after the last one.
   std::uint32_t dropped = 0;     ///< Those that the logger dropped because the line was too slow.
   std::uint32_t late = 0;        ///< Conversions that could not start in time.
-  std::int64_t on_line = 0;      ///< Those lost on the line, according to frame numbers or to the number of samples
-                                 ///< sent.
+  std::int64_t on_line = 0;      ///< Those lost on the line, by frame numbers or the number sent.
   int contradicting_frames = 0;  ///< Frames left out: their CRC is right, but they are impossible in this run.
   bool is_end_known = false;     ///< The logger has reported how many samples it sent.
 };
@@ -95,8 +93,7 @@ class ReceivedRun {
   std::uint32_t last_tick_ = 0;      // tick of the last sample, modulo 2^32
   std::uint16_t next_sequence_ = 0;  // expected number of the next frame
   std::uint32_t dropped_ = 0, late_ = 0;
-  std::int64_t found_dropped_ = 0;  // How many of the dropped samples the gaps explain so far. A frame may report drops
-                                    // before their gap appears.
+  std::int64_t found_dropped_ = 0;  // Dropped samples that gaps explain so far; drops may be reported before their gap.
   int contradicting_ = 0;
   std::optional<pendulum_logger::End> end_;
   bool is_trimmed_ = false;

@@ -30,8 +30,7 @@ struct ClosedFormRow {
   /// (MODEL.md eq. (6.11)). Absent without a standard error.
   std::optional<double> z;
   std::optional<bool> agrees;  ///< |z| < kAgrees
-  std::string why;             ///< The computed cause of a difference, or the reason for a missing z; empty if both
-                               ///< agree.
+  std::string why;             ///< Cause of a difference, or of a missing z; empty if both agree.
 };
 
 inline constexpr double kAgrees = 3;

@@ -25,8 +25,7 @@ struct RunAlone {
 
 /// A shared parameter estimated from one recording alone, without bounds.
 struct RunEstimate {
-  std::optional<double> value, std_error;  ///< Estimate in the parameter's unit; absent if the recording does not
-                                           ///< determine it.
+  std::optional<double> value, std_error;  ///< Estimate, parameter's unit; absent: not determined.
   std::optional<double> z;                 ///< Difference to the mean of the others over its standard deviation.
 };
 
@@ -64,8 +63,7 @@ struct Homogeneity {
   std::vector<SharedParameter> parameters;  ///< Without fixed parameters.
   std::vector<double> amplitudes;           ///< K, rad: rms over the motion.
   std::vector<AmplitudeDependence> amplitude_dependence;
-  std::vector<int> disagreeing;  ///< 0-based; recordings that disagree with a majority or with its scatter. Often
-                                 ///< empty.
+  std::vector<int> disagreeing;  ///< 0-based; disagree with a majority or with its scatter; often empty.
   std::string reason;            ///< Why there is no test; empty if there is one.
   std::string verdict;           ///< Sentences.
 

@@ -46,8 +46,7 @@ struct LinearFit {
   std::vector<Eigen::Index> free;  ///< F, neither fixed nor, if `with_bounds`, at a bound.
   Eigen::MatrixXd jacobian;        ///< N x P, readings by the report's parameters.
   Eigen::MatrixXd inverse;         ///< F x F, inverse of the information: products of the report's units.
-  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the change of the estimates [report's
-                                   ///< units].
+  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the change [report's units].
 };
 
 /// std::nullopt: the trajectory cannot be computed, the readings do not determine the F parameters, or a stop was

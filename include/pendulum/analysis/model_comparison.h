@@ -26,8 +26,7 @@ struct ComparisonRow {
   bool judged = false;  ///< Converged: it has criteria (if there are any) and may be recommended.
   int parameters = 0;   ///< Free parameters that are not at a bound 0, including those of the noise.
   double rms = 0;       ///< rad or rad/s, of the residuals.
-  std::optional<double> log_likelihood, aic, aicc, bic;  ///< From densities in 1/rad or 1/(rad/s), or from
-                                                         ///< probabilities of levels
+  std::optional<double> log_likelihood, aic, aicc, bic;  ///< Densities in 1/rad or 1/(rad/s), or probabilities.
   std::optional<double> delta_bic;                       ///< To the smallest.
   std::optional<double> akaike_weight;  ///< exp(-ΔAICc / 2) over their sum (Burnham & Anderson 2002, section 2.9)
   Prediction cross_validation, forward;

@@ -10,10 +10,8 @@ namespace pendulum {
 struct RandomEffects {
   double mean = 0, std_error = 0;
   double lower95 = 0, upper95 = 0;                  ///< Confidence interval of the mean.
-  double between = 0;                               ///< Standard deviation between runs; 0: the errors explain the
-                                                    ///< scatter.
-  double between_lower95 = 0, between_upper95 = 0;  ///< Interval of `between`; NaN: the values are too close together
-                                                    ///< to determine that end.
+  double between = 0;                               ///< Standard deviation between runs; 0: errors explain the scatter.
+  double between_lower95 = 0, between_upper95 = 0;  ///< Interval of `between`; NaN: an end is not determined.
 };
 
 /// Estimates random effects from values and their standard errors (K >= 2, positive). `between` follows R. C. Paule and

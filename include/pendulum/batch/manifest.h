@@ -15,8 +15,7 @@ namespace pendulum {
 struct ManifestEntry {
   std::int64_t position = 0;       ///< Index among all entries, from 0.
   std::string id;                  ///< Unique among the entries.
-  std::string path;                ///< Path of the recording as written in the manifest: relative to the manifest's
-                                   ///< folder.
+  std::string path;                ///< Path of the recording, relative to the manifest's folder.
   std::string rig;                 ///< Path of its rig file, also relative; empty: that of the whole batch.
   std::string calibration;         ///< Path of its calibration file, also relative; empty: that of the whole batch.
   std::optional<double> from, to;  ///< Ends of its window, s on the file's clock; std::nullopt: those of the batch.

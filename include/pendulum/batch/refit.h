@@ -29,14 +29,12 @@ struct RefitOptions {
   IdentifyOptions run;                          ///< Options of every run, changed by its entry.
   std::optional<std::string> rig, calibration;  ///< JSON, for entries that name none.
   std::optional<Shard> shard;
-  int threads = 0;                          ///< Each fits one recording at a time; 0: one per core. The rows do not
-                                            ///< depend on it.
+  int threads = 0;                          ///< Each fits one recording; 0: one per core. Rows do not depend on it.
   bool force = false;                       ///< Refits current runs, too.
   bool retry_failed = false;                ///< Refits runs that could not be fitted, too.
   const std::atomic<bool>* stop = nullptr;  ///< If true, started runs are finished and stored, and no others begin.
   std::function<void(const RefitCounts&)> progress;  ///< Called after every run, from any thread, one at a time.
-  std::function<Result<void>()> committed;  ///< Called after every commit, about once a second; an error ends the
-                                            ///< refit.
+  std::function<Result<void>()> committed;  ///< Called after commits, about once a second; errors end the refit.
 };
 
 /// The result of one run, the same as by fit_pendulum.

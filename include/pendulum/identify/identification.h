@@ -36,8 +36,7 @@ struct DataSummary {
   double clock_scale_std_dev = 0;
   std::string begins, ends;                     ///< Reasons for the ends of the window; empty if it was not chosen.
   std::vector<std::array<double, 2>> releases;  ///< Begin and end of each free swing found [s].
-  int release = 0;                              ///< Index of the fitted one, from 1; 0: the window was given by the
-                                                ///< user.
+  int release = 0;                              ///< Index of the fitted one, from 1; 0: the user gave the window.
 
   double duration() const { return to - from; }                                              ///< s
   double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, mean

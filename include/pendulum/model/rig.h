@@ -23,8 +23,7 @@ struct RigValue {
 /// SI.
 struct Rig {
   RigValue gravity_torque;          ///< G [N m], the torque at θ = 90 deg, with its propagated standard deviation.
-  std::optional<RigValue> inertia;  ///< I_O from geometry or CAD [kg m^2]; compared with the fitted inertia, never used
-                                    ///< in the fit.
+  std::optional<RigValue> inertia;  ///< I_O from geometry or CAD [kg m^2]; compared with the fit, not used in it.
   nlohmann::ordered_json source;    ///< The rig file as it was read, for the report.
 };
 

@@ -27,8 +27,7 @@ class LineNumbers {
   Eigen::Index size() const { return size_; }
 
  private:
-  std::vector<std::pair<Eigen::Index, std::size_t>> jumps_;  // Rows not on the line after the previous row, and their
-                                                             // lines.
+  std::vector<std::pair<Eigen::Index, std::size_t>> jumps_;  // Rows off the previous row's line, and lines.
   Eigen::Index size_ = 0;
   std::size_t last_line_ = 0;
 };
@@ -41,8 +40,7 @@ struct RawSamples {
   Eigen::VectorXd value;        ///< N x 1, finite, in any unit.
   Eigen::VectorXd second;       ///< N x 1, the other coordinate of a point; or 0 x 1.
   LineNumbers lines;            ///< N of them.
-  double clock_std_dev = 0;     ///< Relative standard deviation of the rate of a clock computed from coarse time
-                                ///< stamps.
+  double clock_std_dev = 0;     ///< Relative; of the rate of a clock computed from coarse time stamps.
   std::vector<Warning> warnings;
 };
 

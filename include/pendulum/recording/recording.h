@@ -35,13 +35,10 @@ struct Recording {
   /// between them.
   std::optional<double> edge;
   std::optional<SensorRange> range;  ///< The sensor's range, in the unit of value; std::nullopt if unlimited.
-  double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds per second of the file's clock; not applied to
-                                                    ///< `time`.
+  double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds per second of `time`, which does not include it.
   std::optional<Calibration> calibration;           ///< The calibration that converted counts or volts to `value`.
-  std::optional<Arc> arc;     ///< The circle about which both coordinates of a point, in `unit`, were converted to
-                              ///< angles.
-  bool shows_gravity = true;  ///< For an acceleration: true if it reads g at rest, as an accelerometer; false if g was
-                              ///< removed.
+  std::optional<Arc> arc;     ///< The circle about which coordinates, in `unit`, were converted to angles.
+  bool shows_gravity = true;  ///< For an acceleration: false if g was removed, so that it is 0 at rest.
   std::string rig_json;       ///< The rig described in the file itself, as JSON; empty if none.
   std::vector<Warning> warnings;
 

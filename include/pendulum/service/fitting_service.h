@@ -21,8 +21,7 @@ struct ServiceOptions {
   AccessRules access;
   std::chrono::milliseconds fit_time{30'000};   ///< Longest time of one fit.
   int threads = 0;                              ///< Runs of batches at a time; 0: one per core.
-  std::string live;                             ///< Path of the recording in progress, as LiveRecording; empty for
-                                                ///< none.
+  std::string live;                             ///< Path of the recording in progress (LiveRecording), or empty.
   std::string docs;                             ///< Folder of the user guide, served at /docs; empty: none.
   std::function<void(const std::string&)> say;  ///< Receives messages for the operator, from any thread.
 };

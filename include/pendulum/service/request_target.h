@@ -12,8 +12,7 @@ namespace pendulum {
 
 /// The decoded target of a request: valid UTF-8 without control characters.
 struct RequestTarget {
-  std::string path;                                        ///< "/v1/fits/7"; begins with a slash and ends with one only
-                                                           ///< if it is "/".
+  std::string path;                                        ///< "/v1/fits/7"; no slash at the end, except "/".
   std::vector<std::pair<std::string, std::string>> query;  ///< Names and values in their order; names are unique.
 };
 

@@ -27,8 +27,7 @@ struct ServerOptions {
   std::chrono::milliseconds yield_time{1000};
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more gets 431.
   std::size_t max_body = std::size_t{32} << 20;       ///< Bytes; more gets 413.
-  std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies in memory, including answers; more gets
-                                                      ///< 429.
+  std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies in memory, with answers; above: 429.
   /// Limit for receiving a complete request; then 408. Also for a client to take each quarter of a megabyte of an
   /// answer; then the connection is closed.
   std::chrono::milliseconds request_time{30'000};

@@ -60,8 +60,7 @@ class TimeLimit {
   std::chrono::milliseconds limit_;
   std::mutex mutex_;  // for all members below
   std::condition_variable_any changed_;
-  std::map<std::uint64_t, Running> running_;  // by number; all have the same limit, so the order is also that of their
-                                              // ends
+  std::map<std::uint64_t, Running> running_;  // By number, and so, with one limit for all, by end.
   std::uint64_t next_ = 0;
   bool all_stopped_ = false;
   std::jthread thread_;  // last member, so it is joined before the others are destroyed

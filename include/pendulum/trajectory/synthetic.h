@@ -52,8 +52,7 @@ struct SyntheticOptions {
   std::vector<double> sensor_parameters;  ///< S values, for a sensor that is not direct; `zero` is then unused.
   double zero = 0;                        ///< zero_angle [rad] or rate_bias [rad/s]: added to θ or θ'.
   double noise = 0;                       ///< Standard deviation of the noise [rad or rad/s], before quantization.
-  double noise_correlation = 0;           ///< AR(1): correlation of each sample's noise with that of the previous
-                                          ///< sample, in (-1, 1).
+  double noise_correlation = 0;           ///< AR(1): correlation of successive samples' noise, in (-1, 1).
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels that the sensor can show [rad or rad/s]; 0 means continuous
                              ///< readings.

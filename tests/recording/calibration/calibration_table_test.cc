@@ -69,8 +69,7 @@ TEST(ParseCalibrationTable, AcceptsRowsInAnyOrderAndFallingAngles) {
 }
 
 TEST(ParseCalibrationTable, AcceptsEqualAnglesAtAdjacentReadings) {
-  EXPECT_EQ(TableOf("volts,angle_deg\n1,0\n1.01,0\n2,10\n1.99,10\n").size(), 4);  // each angle set once from below,
-                                                                                  // once from above
+  EXPECT_EQ(TableOf("volts,angle_deg\n1,0\n1.01,0\n2,10\n1.99,10\n").size(), 4);  // set from both sides
 }
 
 TEST(ParseCalibrationTable, NamesTheMissingColumn) {

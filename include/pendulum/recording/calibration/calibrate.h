@@ -32,14 +32,12 @@ struct RoundingTest {
 struct CalibrationFit {
   Calibration calibration;  ///< With all its keys in `source`; covariance 0 x 0 if N = order + 1.
   int order = 1;
-  Eigen::VectorXd residual, left_out;     ///< N x 1: angle - curve; left_out: the same with a curve without that point,
-                                          ///< 0 x 1 if N = order + 1.
+  Eigen::VectorXd residual, left_out;     ///< N x 1: angle - curve; left_out: by a curve without the point, or 0 x 1.
   Eigen::Index largest = 0;               ///< Point of the largest residual.
   double resolution = 0;                  ///< Angle of one count, rms over the points, angle_unit; 0 for volts.
   std::optional<RoundingTest> rounding;   ///< For counts, unless N = order + 1.
   std::optional<OrderTest> lower_order;   ///< This curve against the next lower order; std::nullopt for a line.
-  std::optional<OrderTest> higher_order;  ///< The next higher order against this one; std::nullopt with too few points
-                                          ///< or at the highest order.
+  std::optional<OrderTest> higher_order;  ///< The next order against this one; std::nullopt if there is none.
 
   /// Root mean square of left_out, angle_unit; std::nullopt if N = order + 1.
   std::optional<double> LeaveOneOutRms() const;

@@ -158,8 +158,7 @@ tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_poin
 
 ChildFailure FailureOfStatus(std::optional<int> ended) {
   if (!ended || (WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGXCPU)) return ChildFailure::kOutOfTime;
-  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // Killed by the kernel for lack of
-                                                                              // memory.
+  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // out of memory
   const bool has_no_memory = WIFEXITED(*ended) && WEXITSTATUS(*ended) == kNoMemory;
   return is_killed || has_no_memory ? ChildFailure::kOutOfMemory : ChildFailure::kCrashed;
 }

@@ -15,8 +15,7 @@ namespace pendulum {
 
 /// The objects of a MAT-file. Its variables only refer to them; the objects are in a separate part of the file.
 struct MatSubsystem {
-  std::size_t variables = SIZE_MAX;           // Number before the objects. MATLAB writes objects last, and matio cannot
-                                              // always unpack them.
+  std::size_t variables = SIZE_MAX;           // Before the objects, which matio cannot always unpack.
   std::vector<MatReference> references;       // From its variables.
   std::optional<Mcos> objects;                // std::nullopt: no objects, or damage.
   std::size_t cells = 0;                      // Number of cells with values of properties and others.

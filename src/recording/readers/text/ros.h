@@ -19,8 +19,7 @@ inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 struct RosTable {
   std::size_t seconds = kNoColumn;      // Column of stamps: seconds, or nanoseconds since 1970.
   std::size_t nanoseconds = kNoColumn;  // Column of the part of a stamp below one second.
-  bool is_nanoseconds = false;          // A whole number in the first of these columns is always in nanoseconds, as in
-                                        // `%time` of rostopic.
+  bool is_nanoseconds = false;          // The first of these columns holds whole nanoseconds, as `%time` of rostopic.
   std::size_t joint = kNoColumn;        // Column of joint names, if each row belongs to one joint.
 };
 

@@ -245,8 +245,7 @@ std::string Timeseries(const std::string& name) {
   const std::string numbers = element(kUint32, number(kUint32Class) + number(0)) +
                               element(kInt32, number(2) + number(1)) + element(kInt8, "") +
                               element(kUint32, number(0xDD000000) + number(2));
-  const std::string called = name.size() > 4 ? element(kInt8, name)  // up to four letters share a word with size and
-                                                                     // type
+  const std::string called = name.size() > 4 ? element(kInt8, name)  // shorter ones share a word with size and type
                                              : number(static_cast<std::uint32_t>(name.size() << 16 | kInt8)) + name +
                                                    std::string(4 - name.size(), '\0');
   return element(kMatrix, element(kUint32, number(kOpaqueClass) + number(0)) + called + element(kInt8, "MCOS") +

@@ -17,8 +17,7 @@ struct ReadOptions {
   std::string unit;           ///< Of the values, as a suffix in the header: rad, m_s2 ...; empty: the header's.
   double sample_rate_hz = 0;  ///< For a file without times, Hz; 0: use its times, or its `# sample_rate_hz`.
   std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
-  std::optional<double> resolution;        ///< Spacing of values, in the file's unit; 0: continuous; std::nullopt: the
-                                           ///< file's.
+  std::optional<double> resolution;        ///< In the file's unit; 0: continuous; std::nullopt: the file's.
   std::optional<SensorRange> range;        ///< The sensor's range, in the file's unit; std::nullopt: the file's own.
   /// Limit for a member of a zip file and for all columns of a MAT-file, which may be a thousand times larger than the
   /// file.
