@@ -14,11 +14,11 @@ constexpr double kMinTurn = 5;    // counts: smaller reversals are noise
 
 }  // namespace
 
-/// Limited to kLargest: no potentiometer is noisier, so a larger variance is motion.
+/// Limited to kMaxVariance: no potentiometer is noisier, so a larger variance is motion.
 double RestDetector::Block::Variance() const {
-  constexpr double kLargest = 16;  // counts²
-  if (count < 2) return kLargest;
-  return std::clamp((squares - count * Mean() * Mean()) / (count - 1), 0.0, kLargest);
+  constexpr double kMaxVariance = 16;  // counts²
+  if (count < 2) return kMaxVariance;
+  return std::clamp((squares - count * Mean() * Mean()) / (count - 1), 0.0, kMaxVariance);
 }
 
 void RestDetector::Take(double time, double counts) {

@@ -245,11 +245,11 @@ double DistanceFromScatter(const std::vector<SeparateEstimates>& estimates, std:
 }
 
 /// Without an agreeing majority: recordings that are far from the others compared with the others' own scatter. This
-/// needs at least kMin recordings.
+/// needs at least kMinRecordings.
 std::vector<std::size_t> FarFromScatter(const std::vector<SeparateEstimates>& estimates) {
-  constexpr std::size_t kMin = 4;
+  constexpr std::size_t kMinRecordings = 4;
   std::vector<std::size_t> far;
-  if (estimates.size() < kMin) return far;
+  if (estimates.size() < kMinRecordings) return far;
   const Index size = estimates.front().value.size();
   const double trials = static_cast<double>(estimates.size()) * static_cast<double>(size);
   for (std::size_t k = 0; k < estimates.size(); ++k) {

@@ -126,14 +126,14 @@ Distribution Describe(const std::vector<double>& values) {
 }
 
 std::vector<Outlier> FindOutliers(const RunValues& values) {
-  constexpr std::size_t kMin = 5;
+  constexpr std::size_t kMinRuns = 5;
   constexpr double kFalseAlarms = 0.05;
   std::vector<Outlier> outliers;
-  if (values.size() < kMin) return outliers;
+  if (values.size() < kMinRuns) return outliers;
   const double each = -std::expm1(std::log1p(-kFalseAlarms) / static_cast<double>(values.size()));
   const double limit = -NormalQuantile(each / 2);
   for (const auto& [group, runs] : Groups(values)) {
-    if (runs.size() >= kMin) AddOutliersOf(values, runs, limit, outliers);
+    if (runs.size() >= kMinRuns) AddOutliersOf(values, runs, limit, outliers);
   }
   std::ranges::sort(outliers, std::greater(), &Outlier::z);
   return outliers;

@@ -40,9 +40,9 @@ void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std
 
 /// The frequency that the rig's geometry predicts is rough, but not by a factor of two.
 void WarnOfFrequency(const Sampling& sampling, Identification& one) {
-  constexpr double kFar = 2;
+  constexpr double kMaxRatio = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
-  if (!(seen > 0) || (seen < kFar * expected && expected < kFar * seen)) return;
+  if (!(seen > 0) || (seen < kMaxRatio * expected && expected < kMaxRatio * seen)) return;
   one.warnings.push_back(
       {"frequency_differs_from_rig", "the pendulum swings at " + NumberText(seen, 3) + " Hz, but the rig predicts " +
                                          NumberText(expected, 3) +

@@ -91,7 +91,7 @@ Warning ConversionWarning(Index silences, std::ptrdiff_t slips) {
 bool IsEventDriven(const Recording& recording) {
   constexpr double kMinSteps = 20;
   constexpr double kWhole = 0.1;  // of a count
-  constexpr double kMax = 3;      // counts, if rows were missed
+  constexpr double kMaxStep = 3;  // counts, if rows were missed
   constexpr double kNearlyAll = 0.99, kSingle = 0.85, kRepeated = 0.05;
   const auto steps = static_cast<double>(recording.size() - 1);
   if (recording.quantity != Quantity::kAngle || !(recording.resolution > 0) || steps < kMinSteps) return false;
@@ -99,7 +99,7 @@ bool IsEventDriven(const Recording& recording) {
   for (Index i = 1; i < recording.size(); ++i) {
     const double step = std::abs(recording.value[i] - recording.value[i - 1]) / recording.resolution;
     const double whole = std::round(step);
-    if (std::abs(step - whole) > kWhole || whole > kMax) continue;
+    if (std::abs(step - whole) > kWhole || whole > kMaxStep) continue;
     ++few;
     single += whole == 1 ? 1 : 0;
     none += whole == 0 ? 1 : 0;

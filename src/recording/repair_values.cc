@@ -80,7 +80,7 @@ double SmallestStep(const Recording& recording, double share) {
 /// Counts runs of at least three readings equal to the extreme of all readings that are entered and left in large
 /// steps: clipped tops of a swing.
 Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smallest_step) {
-  constexpr Index kMin = 3;
+  constexpr Index kMinReadings = 3;
   constexpr double kAtSpeed = 3;
   Index tops = 0;
   for (Index i = 1; i + 1 < value.size(); ++i) {
@@ -89,7 +89,7 @@ Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smalles
     while (end < value.size() && value[end] == extreme) ++end;
     if (end == value.size()) break;
     const double steps = std::abs(value[i - 1] - extreme) + std::abs(value[end] - extreme);
-    if (end - i >= kMin && steps > 2 * kAtSpeed * smallest_step) ++tops;
+    if (end - i >= kMinReadings && steps > 2 * kAtSpeed * smallest_step) ++tops;
     i = end;
   }
   return tops;
@@ -97,12 +97,12 @@ Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smalles
 
 /// If the file gives no range, takes an extreme at which swings are clipped as an end of the sensor's range.
 void DetectSaturation(double smallest_step, Recording& recording) {
-  constexpr Index kMin = 3;
+  constexpr Index kMinTops = 3;
   if (recording.range) return;
   const double high = recording.value.maxCoeff();
   const double low = recording.value.minCoeff();
-  const bool at_high = CountFlatTops(recording.value, high, smallest_step) >= kMin;
-  const bool at_low = CountFlatTops(recording.value, low, smallest_step) >= kMin;
+  const bool at_high = CountFlatTops(recording.value, high, smallest_step) >= kMinTops;
+  const bool at_low = CountFlatTops(recording.value, low, smallest_step) >= kMinTops;
   if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
 }
 
@@ -179,10 +179,10 @@ bool ChangesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, d
 /// Leaves out stale readings: all of them if a tracker repeats many values, otherwise only three or more in a row
 /// during motion.
 void RemoveStaleReadings(double smallest_step, Recording& recording) {
-  constexpr double kMany = 0.25;
+  constexpr double kMaxRepeatedShare = 0.25;
   constexpr std::size_t kMinConsecutive = 3;
   const Repeats repeats = FindRepeats(smallest_step, recording);
-  const bool many = static_cast<double>(repeats.repeated) > kMany * static_cast<double>(repeats.changing);
+  const bool many = static_cast<double>(repeats.repeated) > kMaxRepeatedShare * static_cast<double>(repeats.changing);
   const std::vector<bool>& stale = many ? repeats.amid_change : repeats.amid_motion;
   std::vector<bool> kept(stale.size(), true);
   Index left_out = 0;

@@ -21,8 +21,8 @@ constexpr std::size_t kMinLevels = 5;
 constexpr double kLargestSpread = 0.12;  // rms distance to the levels, in steps; random readings have 0.29
 
 Levels SortedSample(const Eigen::VectorXd& value) {
-  constexpr Index kMax = 20000;
-  const Index count = std::min(value.size(), kMax);
+  constexpr Index kMaxValues = 20000;
+  const Index count = std::min(value.size(), kMaxValues);
   Levels sample;
   for (Index i = 0; i < count; ++i) sample.push_back(value[i * value.size() / count]);
   std::ranges::sort(sample);

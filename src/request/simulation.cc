@@ -246,7 +246,7 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
 
 /// Parses --lose.
 Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
-  constexpr double kMax = 1e6;
+  constexpr double kMaxCounts = 1e6;
   std::vector<LostCounts> lost;
   for (const std::string& part : Split(flags.lose, ',')) {
     const std::vector<std::string> words = Split(part, ':');
@@ -255,7 +255,7 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
     const Result<double> counts = ParseNumber("--lose", words[1], "a whole number of counts");
     if (!time) return tl::unexpected(time.error());
     if (!counts) return tl::unexpected(counts.error());
-    if (*counts != std::round(*counts) || std::abs(*counts) > kMax) {
+    if (*counts != std::round(*counts) || std::abs(*counts) > kMaxCounts) {
       return BadFlag("--lose: " + NumberText(*counts) +
                      " counts; it must be a whole number of them, at most a million");
     }

@@ -98,13 +98,13 @@ Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view n
 }
 
 Result<ListPage> PageOf(const RequestTarget& target) {
-  constexpr std::int64_t kMax = 500;
+  constexpr std::int64_t kMaxPageSize = 500;
   ListPage page;
   const auto limit = QueryNumber(target, "limit", page.limit);
   if (!limit) return tl::unexpected(limit.error());
   const auto before = QueryNumber(target, "before", 0);
   if (!before) return tl::unexpected(before.error());
-  page.limit = static_cast<int>(std::min(*limit, kMax));
+  page.limit = static_cast<int>(std::min(*limit, kMaxPageSize));
   if (*before > 0) page.before = *before;
   return page;
 }

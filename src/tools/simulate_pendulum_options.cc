@@ -35,9 +35,10 @@ Result<void> CheckFiles(const SimulateFlags& flags) {
 }
 
 Result<void> CheckThreads(const SimulateFlags& flags) {
-  constexpr int kMax = 1024;
-  if (flags.threads >= 0 && flags.threads <= kMax) return {};
-  return BadFlag("--threads is " + std::to_string(flags.threads) + "; it must be 0 to " + std::to_string(kMax));
+  constexpr int kMaxRecordingThreads = 1024;
+  if (flags.threads >= 0 && flags.threads <= kMaxRecordingThreads) return {};
+  return BadFlag("--threads is " + std::to_string(flags.threads) + "; it must be 0 to " +
+                 std::to_string(kMaxRecordingThreads));
 }
 
 void CopyFiles(const SimulateFlags& flags, SimulateOptions& options) {

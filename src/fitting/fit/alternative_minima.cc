@@ -20,13 +20,13 @@ bool IsOfPendulumOrSensor(const FitProblem& problem, std::size_t i) {
 /// The parameters in which a solution differs from the report by more than their errors allow.
 std::vector<std::size_t> DifferingParameters(const FitProblem& problem, const AlternativeMinimum& alternative,
                                              const FitReport& report) {
-  constexpr double kFew = 3;  // standard errors
+  constexpr double kMaxDistance = 3;  // standard errors
   std::vector<std::size_t> different;
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {
     const ParameterEstimate& parameter = report.parameters[i];
     if (!IsOfPendulumOrSensor(problem, i) || !parameter.std_error) continue;
     const double distance = std::abs(problem.Reported(i, alternative.parameters[i]) - parameter.estimate);
-    if (distance > kFew * *parameter.std_error) different.push_back(i);
+    if (distance > kMaxDistance * *parameter.std_error) different.push_back(i);
   }
   return different;
 }

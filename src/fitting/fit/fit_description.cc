@@ -26,8 +26,8 @@ bool IsRounding(const Recording& recording, const FitReport& report) {
 /// Samples per period, as a number of lags.
 int PeriodLags(const FitProblem& problem) {
   const std::vector<double>& time = problem.data.time;
-  constexpr std::size_t kEnough = 100'000;
-  const std::size_t stride = time.size() / kEnough + 1;
+  constexpr std::size_t kMaxSamples = 100'000;
+  const std::size_t stride = time.size() / kMaxSamples + 1;
   std::vector<double> intervals;
   for (std::size_t i = 0; i + 1 < time.size(); i += stride) intervals.push_back(time[i + 1] - time[i]);
   const double lags = 2 * kPi / problem.start.natural_frequency / Median(std::move(intervals));

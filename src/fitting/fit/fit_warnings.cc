@@ -62,7 +62,7 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
 /// A line through the mean residuals of whole periods. The swing itself does not affect these means.
 void WarnOfDrift(const Recording& recording, const FitProblem& problem, const FitReport& report,
                  std::vector<Warning>& warnings) {
-  constexpr Eigen::Index kMin = 5;
+  constexpr Eigen::Index kMinWholePeriods = 5;
   constexpr double kSure = 5;  // standard errors
   if (problem.zero_motion == ZeroMotion::kDrifts || problem.data.sensor.kind != SensorKind::kDirect) return;
   const Eigen::VectorXd& time = recording.time;
@@ -78,7 +78,7 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
     first = end;
   }
   const auto count = static_cast<Eigen::Index>(when.size());
-  if (count < kMin) return;
+  if (count < kMinWholePeriods) return;
   const Eigen::Map<const Eigen::VectorXd> y(mean.data(), count);
   Eigen::MatrixX2d basis(count, 2);
   basis << Eigen::VectorXd::Ones(count), Eigen::Map<const Eigen::VectorXd>(when.data(), count).array() - when.front();

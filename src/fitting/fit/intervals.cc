@@ -61,9 +61,9 @@ void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
 void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
   const Bootstrap bootstrap =
       RunBootstrap(fitted.problem, fitted.options, fitted.solution, fitted.quantile_residuals, fitted.correlation);
-  constexpr int kMin = kBootstrapFits * 9 / 10;
+  constexpr int kMinRefits = kBootstrapFits * 9 / 10;
   for (const int i : UnfixedParameters(fitted.optimum)) {
-    if (bootstrap.estimates.rows() < kMin) {
+    if (bootstrap.estimates.rows() < kMinRefits) {
       report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kFailedResamples;
       continue;
     }

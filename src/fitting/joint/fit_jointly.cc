@@ -137,11 +137,11 @@ Errors ErrorsAt(const JointState& state, const Optimum& optimum) {
 
 /// Whether the joint residuals of a recording equal those of its own fit, apart from the cost of shared parameters.
 bool MatchesSeparateFit(const JointMember& member, bool correlated) {
-  constexpr double kFew = 10;  // of the deviance
+  constexpr double kMaxRise = 10;  // of the deviance
   const FitReport& alone = *member.alone;
   const double rise = 2 * member.samples() * std::abs(std::log(member.solution.noise.sigma / alone.noise.sigma));
   const bool is_autocorrelated = alone.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite;
-  return alone.termination == Termination::kConverged && rise < kFew && (is_autocorrelated || !correlated);
+  return alone.termination == Termination::kConverged && rise < kMaxRise && (is_autocorrelated || !correlated);
 }
 
 Errors OwnErrors(const JointState& state, std::size_t k) {

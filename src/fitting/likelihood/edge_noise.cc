@@ -73,11 +73,11 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
 double MostLikelyStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                             const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates) {
   constexpr int kSteps = 30;
-  constexpr Index kMin = 20;
+  constexpr Index kMinEdges = 20;
   constexpr double kMinShare = 1e-4;  // smallest share of the variance left to an edge
   constexpr double kSure = 2;
   const Differences of = DifferencesOf(noise, value, readings, rates);
-  if (of.square.size() < kMin || !(of.square.sum() > 0) || !(of.stamps.sum() > 0)) return 0;
+  if (of.square.size() < kMinEdges || !(of.square.sum() > 0) || !(of.stamps.sum() > 0)) return 0;
   const double all = of.square.mean() / 2;
   Eigen::Vector2d variance(all, 0);  // of an edge, of a stamp
   double error = 0;                  // standard error of the variance of a stamp

@@ -157,9 +157,9 @@ inline void ArmaFilter::PredictCovariance() {
 
 /// Predicts over samples that are missing.
 inline void ArmaFilter::Skip(double intervals) {
-  constexpr double kFew = 30;
+  constexpr double kMaxPropagated = 30;
   is_settled_ = false;
-  if (intervals > kFew) return Jump(intervals);
+  if (intervals > kMaxPropagated) return Jump(intervals);
   for (double i = 0; i < intervals; ++i) Predict();
 }
 

@@ -128,14 +128,14 @@ class FisherScoring {
 
   Eigen::VectorXd Maximize(Eigen::VectorXd place) const {
     constexpr int kMaxSteps = 30;
-    constexpr double kEnough = 1e-7;  // gain in log-likelihood
-    constexpr double kLongest = 1;    // step
+    constexpr double kMinGain = 1e-7;  // gain in log-likelihood
+    constexpr double kLongest = 1;     // step
     if (is_stopped()) return place;
     LikelihoodDerivatives here = DerivativesAt(family_, place, time_, residual_, kDifference);
     double damping = 1e-4;
     for (int i = 0; i < kMaxSteps && damping < 1e6 && !is_stopped(); ++i) {
       Eigen::VectorXd step = StepOf(here, damping);
-      if (!(step.dot(here.gradient) > kEnough)) break;
+      if (!(step.dot(here.gradient) > kMinGain)) break;
       step /= std::max(1.0, step.cwiseAbs().maxCoeff() / kLongest);
       const LikelihoodDerivatives next = DerivativesAt(family_, place + step, time_, residual_, kDifference);
       const bool higher = next.log_likelihood > here.log_likelihood;
@@ -295,7 +295,7 @@ CorrelatedLikelihood AlternateShiftAndAutocorrelation(const ArmaFamily& family, 
                                                       const std::stop_token& stop) {
   constexpr int kMaxRounds = 6;
   // Gain in log-likelihood by the shift; the gain by the autocorrelation that follows is smaller.
-  constexpr double kEnough = 1e-3;
+  constexpr double kMinGain = 1e-3;
   Eigen::VectorXd left = data.residual - data.jacobian * shift;
   const FisherScoring scoring(family, data.time, left, stop);
   Eigen::VectorXd place = MostLikelyStart(family, like, data.time, left, scoring);
@@ -309,7 +309,7 @@ CorrelatedLikelihood AlternateShiftAndAutocorrelation(const ArmaFamily& family, 
     shift = next;
     place = scoring.Maximize(place);
     log_likelihood = scoring.At(place).log_likelihood;
-    if (!(gain > kEnough)) break;
+    if (!(gain > kMinGain)) break;
   }
   const ArmaProcess process = ProcessAt(family, place);
   const Eigen::MatrixXd white = Whitened(FilteredAt(family, place), data.time, data.jacobian);

@@ -250,8 +250,8 @@ Vertex LowestOnLine(const std::function<double(double)>& height, double from, do
 /// parameters can follow, including the slowest part of the autocorrelation. The likelihood of the remaining
 /// combinations corrects for this (H. D. Patterson and R. Thompson, Biometrika 58:545, 1971).
 Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights) {
-  constexpr Eigen::Index kFew = 100'000;  // beyond this, the part removed by the parameters is negligible
-  if (weights.cols() == 0 || residual.size() > kFew) return residual;
+  constexpr Eigen::Index kMaxCorrected = 100'000;  // beyond this, the part removed by the parameters is negligible
+  if (weights.cols() == 0 || residual.size() > kMaxCorrected) return residual;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weights);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Identity(residual.size(), qr.rank() + 1);
   columns.applyOnTheLeft(qr.householderQ());
@@ -383,8 +383,8 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
 
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  constexpr Eigen::Index kMin = 30;
-  if (residual.size() < kMin || !(residual.squaredNorm() > 0)) return {};
+  constexpr Eigen::Index kMinSamples = 30;
+  if (residual.size() < kMinSamples || !(residual.squaredNorm() > 0)) return {};
   const Clock clock = FindClock(time);
   return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
 }

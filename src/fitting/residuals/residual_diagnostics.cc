@@ -48,14 +48,14 @@ using PeriodError = Eigen::Vector2d;
 
 std::vector<PeriodError> PeriodErrors(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted,
                                       const Eigen::VectorXd& residual, double period) {
-  constexpr Eigen::Index kMin = 6;
+  constexpr Eigen::Index kMinSamples = 6;
   const double sigma = std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
   std::vector<PeriodError> errors;
-  for (Eigen::Index first = 0; first + kMin < time.size();) {
+  for (Eigen::Index first = 0; first + kMinSamples < time.size();) {
     Eigen::Index end = first;
     while (end < time.size() && time[end] - time[first] < period) ++end;
     const Eigen::Index count = end - first;
-    if (count >= kMin && end < time.size()) {
+    if (count >= kMinSamples && end < time.size()) {
       const Eigen::ArrayXd rise = fitted.segment(first + 1, count).array() - fitted.segment(first, count).array();
       const Eigen::ArrayXd step = time.segment(first + 1, count).array() - time.segment(first, count).array();
       Eigen::MatrixX2d basis(count, 2);

@@ -43,9 +43,9 @@ InformationInverse InvertInformation(const Eigen::MatrixXd& information, const s
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   const Eigen::VectorXd& values = eigen.eigenvalues();  // in increasing order
-  constexpr double kSmallest = 1e-12;
+  constexpr double kMinRatio = 1e-12;
   constexpr double kTakesPart = 0.1;
-  if (values[0] < kSmallest * values[values.size() - 1]) {
+  if (values[0] < kMinRatio * values[values.size() - 1]) {
     for (Eigen::Index i = 0; i < norms.size(); ++i) {
       if (std::abs(eigen.eigenvectors()(i, 0)) > kTakesPart)
         inverse.direction.push_back(free[static_cast<std::size_t>(i)]);

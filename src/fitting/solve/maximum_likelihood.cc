@@ -93,13 +93,13 @@ void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::v
 std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
   // In -2 log L by least squares; if noise is small, the likelihood of quantized readings differs from it.
   constexpr double kNear = 60;
-  constexpr std::size_t kMax = 4;
+  constexpr std::size_t kMaxMinima = 4;
   std::vector<Minimum> near;
   for (const Minimum& minimum : solution.other_minima) {
     if (samples * std::log(minimum.sum / solution.sum) < kNear) near.push_back(minimum);
   }
   std::ranges::sort(near, {}, &Minimum::sum);
-  if (near.size() > kMax) near.resize(kMax);
+  if (near.size() > kMaxMinima) near.resize(kMaxMinima);
   return near;
 }
 

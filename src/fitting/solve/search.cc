@@ -29,10 +29,10 @@ std::size_t SamplesBefore(const TrajectoryData& data, double time) {
 Solution SolveOnGrowingPart(TrajectoryCost& cost, const TrajectoryData& data, Solution solution, SolveOptions options,
                             const std::vector<double>& times) {
   for (const int k : options.small_swing_parameters) options.fixed[k] = true;
-  constexpr std::size_t kMin = 16;
+  constexpr std::size_t kMinSamples = 16;
   for (const double time : times) {
     const std::size_t count = SamplesBefore(data, time);
-    if (count < kMin || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
+    if (count < kMinSamples || count >= data.time.size() || cost.traces() >= options.max_traces) continue;
     cost.set_used_samples(count);
     solution = Continue(cost, solution, options);
   }

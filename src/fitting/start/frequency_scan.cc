@@ -36,8 +36,8 @@ struct Envelope {
 
   /// Amplitude relative to the first amplitude at `part` of the scanned time.
   double At(double part) const {
-    constexpr double kMin = 0.02;  // a pendulum at rest has no phase
-    return std::max(exponential ? std::pow(end, part) : 1 - (1 - end) * part, kMin);
+    constexpr double kMinAmplitude = 0.02;  // a pendulum at rest has no phase
+    return std::max(exponential ? std::pow(end, part) : 1 - (1 - end) * part, kMinAmplitude);
   }
 };
 

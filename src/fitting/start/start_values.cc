@@ -92,8 +92,8 @@ std::optional<Hold> FindHold(const Centred& data, bool is_requested) {
   const Recording& recording = data.recording;
   const double release = fall->time - fall->periods * data.Period(fall->amplitude);
   const Index held = SampleAt(recording, release);
-  constexpr Index kMin = 3;
-  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kMin;
+  constexpr Index kMinHeld = 3;
+  const bool is_short = release - recording.time[0] < 0.1 * data.Period(0) || held < kMinHeld;
   if (held < 1 || (is_short && !is_requested)) return std::nullopt;
   // Strong friction makes the release appear later than it was, so only the first part of the hold is used.
   const Index certainly_held = std::max<Index>(7 * held / 10, 1);

@@ -32,7 +32,7 @@ bool IsGap(const Eigen::VectorXd& time, const std::vector<Index>& edges, std::si
 }
 
 std::vector<Run> RunsOf(const Recording& recording) {
-  constexpr std::size_t kMin = 3;  // edges needed to determine a zero
+  constexpr std::size_t kMinEdges = 3;  // edges needed to determine a zero
   const Eigen::VectorXd directions = EdgeDirections(recording);
   std::vector<Index> edges;
   for (Index i = 0; i < directions.size(); ++i) {
@@ -47,7 +47,7 @@ std::vector<Run> RunsOf(const Recording& recording) {
       runs.push_back({{}, direction, 0});
     runs.back().edges.push_back(edges[k]);
   }
-  std::erase_if(runs, [](const Run& run) { return run.edges.size() < kMin; });
+  std::erase_if(runs, [](const Run& run) { return run.edges.size() < kMinEdges; });
   return runs;
 }
 

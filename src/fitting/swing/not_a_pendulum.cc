@@ -52,12 +52,12 @@ bool DescribesAll(const FitReport& report) {
 /// A mass on a spring has the same period at every amplitude. pendulum: a fit with sine gravity.
 std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum,
                                     const std::stop_token& stop) {
-  constexpr double kSmallest = 0.2;  // rad; for smaller amplitudes the two models hardly differ
+  constexpr double kMinAmplitude = 0.2;  // rad; for smaller amplitudes the two models hardly differ
   constexpr double kMuchLess = 0.7;
   constexpr double kSurely = 30;
   if (recording.quantity != Quantity::kAngle) return std::nullopt;
   const double amplitude = 0.5 * (recording.value.maxCoeff() - recording.value.minCoeff());
-  if (amplitude < kSmallest) return std::nullopt;
+  if (amplitude < kMinAmplitude) return std::nullopt;
   const std::optional<FitReport> linear = FitRichest(recording, Gravity::kLinear, stop);
   if (!linear) return std::nullopt;
   const double left = pendulum.statistics.rms_residual;
@@ -108,11 +108,11 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
 
 std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
   constexpr double kMinShare = 0.4;
-  constexpr double kSmallest = 0.03;  // of the swing's rms
+  constexpr double kMinMisfit = 0.03;  // of the swing's rms
   const double natural = NaturalFrequencyOf(report);
   if (!(natural > 0)) return std::nullopt;
   const double swing = std::sqrt((recording.value.array() - recording.value.mean()).square().mean());
-  if (!(report.statistics.rms_residual > kSmallest * swing)) return std::nullopt;
+  if (!(report.statistics.rms_residual > kMinMisfit * swing)) return std::nullopt;
   const Line line = StrongestLine(recording.clock_scale * recording.time, report.residual, natural);
   const double ratio = line.frequency / natural;
   const bool own = ratio < 0.3 || (ratio > 0.8 && ratio < 1.15) || (ratio > 2.8 && ratio < 3.1);

@@ -57,14 +57,14 @@ class MutedErrors {
 
 /// The text in an attribute; empty if there is none.
 std::string TextIn(hid_t object, const char* name) {
-  constexpr std::size_t kMax = 256;
+  constexpr std::size_t kMaxTextBytes = 256;
   if (H5Aexists(object, name) <= 0) return "";
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!attribute || !type || !space || H5Tget_class(type.id()) != H5T_STRING) return "";
   const std::size_t size = H5Tget_size(type.id());
-  if (H5Tis_variable_str(type.id()) != 0 || size == 0 || size > kMax) return "";
+  if (H5Tis_variable_str(type.id()) != 0 || size == 0 || size > kMaxTextBytes) return "";
   if (H5Sget_simple_extent_npoints(space.id()) != 1) return "";
   std::string text(size, '\0');
   if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return "";
@@ -180,8 +180,8 @@ class Reader {
 
  private:
   MatValue ValueOf(hid_t object) {
-    constexpr int kMax = 100'000;
-    if (depth_ == kDeepestValue || ++values_ > kMax) return {};
+    constexpr int kMaxValues = 100'000;
+    if (depth_ == kDeepestValue || ++values_ > kMaxValues) return {};
     ++depth_;
     const H5I_type_t type = H5Iget_type(object);
     MatValue value = type == H5I_DATASET ? OfDataset(object) : type == H5I_GROUP ? OfGroup(object) : MatValue{};

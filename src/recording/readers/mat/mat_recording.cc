@@ -112,10 +112,10 @@ class TemporaryFile {
 /// A second is enough for a hundred megabytes, but some damaged files would take forever. Several copies of the numbers
 /// exist until the answer is complete.
 ChildLimits LimitsFor(std::size_t bytes, std::size_t max_unpacked) {
-  constexpr std::size_t kCopies = 8, kMin = std::size_t{1} << 26;
+  constexpr std::size_t kCopies = 8, kMinBytes = std::size_t{1} << 26;
   ChildLimits limits;
   limits.answer_bytes = max_unpacked;
-  limits.memory_bytes = std::min(limits.memory_bytes, kMin + kCopies * std::max(max_unpacked, bytes));
+  limits.memory_bytes = std::min(limits.memory_bytes, kMinBytes + kCopies * std::max(max_unpacked, bytes));
   limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
   limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Other processes also use the processors.
   return limits;

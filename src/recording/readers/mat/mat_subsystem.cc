@@ -37,7 +37,7 @@ std::size_t PlaceOfSubsystem(std::string_view bytes, bool is_swapped) {
 /// The bytes of the matrix in an element at top level, unpacked into `room` if it is compressed. Without `all`,
 /// matrices of numbers, which cannot contain anything, are not unpacked.
 std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bool all, std::string& room) {
-  constexpr std::size_t kHead = 1024, kTag = 8, kMax = std::size_t{1} << 33;
+  constexpr std::size_t kHead = 1024, kTag = 8, kMaxUnpacked = std::size_t{1} << 33;
   if (element.type == kMatrixElement) return OpenMatrix(element.bytes, is_swapped);
   if (element.type != kPackedElement) return std::nullopt;
   auto head = Unpacked(element.bytes, kHead);
@@ -45,7 +45,7 @@ std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bo
   const auto start = OpenMatrix(std::string_view(*head).substr(kTag), is_swapped);
   const std::uint32_t kind = start ? start->kind : 0;
   if (!all && kind != kOpaqueClass && kind != kStructureClass && kind != kCellClass) return std::nullopt;
-  auto unpacked = Unpacked(element.bytes, kMax);
+  auto unpacked = Unpacked(element.bytes, kMaxUnpacked);
   if (!unpacked) return std::nullopt;
   room = *std::move(unpacked);
   const auto matrix = MatElements(room, is_swapped).Next(kMatrixElement);

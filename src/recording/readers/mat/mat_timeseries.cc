@@ -225,10 +225,10 @@ class TimeseriesAdder {
 
   /// Returns true if there is at least one.
   bool Run() {
-    constexpr std::size_t kMax = 1000;
+    constexpr std::size_t kMaxTimeseries = 1000;
     const Mcos& objects = properties_.objects();
     std::size_t object = 1;
-    for (; object < objects.objects() && count_ < kMax; ++object) {
+    for (; object < objects.objects() && count_ < kMaxTimeseries; ++object) {
       if (objects.ClassName(objects.ClassOf(object)) == kTimeseries) Add(object);
     }
     if (object < objects.objects()) table_.skipped.push_back({"", "one of more than a thousand timeseries", true});

@@ -33,11 +33,11 @@ char AsciiLetter(double letter) {
 }
 
 std::optional<std::size_t> CountIn(const std::vector<std::size_t>& sizes) {
-  constexpr std::size_t kMax = std::size_t{1} << 40;
+  constexpr std::size_t kMaxElements = std::size_t{1} << 40;
   if (std::ranges::find(sizes, std::size_t{0}) != sizes.end()) return 0;
   std::size_t count = 1;
   for (const std::size_t size : sizes) {
-    if (size > kMax / count) return std::nullopt;
+    if (size > kMaxElements / count) return std::nullopt;
     count *= size;
   }
   return count;
@@ -59,14 +59,14 @@ std::optional<MatObjects> ObjectsOf(const MatValue& value) {
 }
 
 void AddReferences(const MatValue& value, const std::string& name, std::vector<MatReference>& references) {
-  constexpr std::size_t kMax = 100'000;
-  if (references.size() >= kMax) return;
+  constexpr std::size_t kMaxReferences = 100'000;
+  if (references.size() >= kMaxReferences) return;
   const std::size_t parts = value.parts.size(), fields = value.names.size();
   if (value.kind == MatValue::Kind::kObject) {
     const std::optional<MatObjects> found = ObjectsOf(value);
     const std::size_t count = found ? found->objects.size() : 0;
     if (!found) references.push_back({name, value.text});
-    for (std::size_t i = 0; i < std::min(count, kMax); ++i) {
+    for (std::size_t i = 0; i < std::min(count, kMaxReferences); ++i) {
       references.push_back({name + PlaceOf(i, count, "()"), value.text, found->objects[i]});
     }
   }

@@ -127,8 +127,8 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
   if (error != std::errc() || stop != whole_end) return std::nullopt;
   const bool is_long = is_whole_nanoseconds || text.size() > kLongestSeconds;
   if (point == std::string_view::npos && is_long) return seconds;
-  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max() / kSecond - 1;
-  if (seconds > kMax || seconds < -kMax) return std::nullopt;
+  constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::int64_t>::max() / kSecond - 1;
+  if (seconds > kMaxSeconds || seconds < -kMaxSeconds) return std::nullopt;
   if (point != std::string_view::npos) {
     std::string digits(text.substr(point + 1));
     if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
@@ -194,9 +194,9 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
     if (error != std::errc() || stop != end || beyond < 0 || beyond >= kSecond) return false;
   }
   if (!stamp) {  // Written by a program that stores stamps as doubles: 1.6e+09.
-    constexpr double kMax = 9e9;
+    constexpr double kMaxSeconds = 9e9;
     double number = 0;
-    if (!ParseNumber(seconds, number) || std::abs(number) > kMax) return false;
+    if (!ParseNumber(seconds, number) || std::abs(number) > kMaxSeconds) return false;
     stamp = std::llround(number * kSecond);
   }
   std::int64_t now = 0;
