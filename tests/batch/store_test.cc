@@ -170,7 +170,7 @@ TEST_F(StoreTest, RefusesARepeatedIdWithoutAChange) {
   const auto begun = store.Begin(SourceOfIds({"a", "b", "a"}), std::nullopt, R"({"other":1})");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(begun.error().message, "runs.csv:4: the id \"a\" is also at runs.csv:2; give each run its own");
+  EXPECT_EQ(begun.error().message, "runs.csv:4: the id \"a\" is also at runs.csv:2; give each run its own id");
   EXPECT_THAT(TextsOf(store, "SELECT id FROM runs"), ElementsAre("x"));
   EXPECT_EQ(TextsOf(store, "SELECT key || value FROM meta"), before);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM options"), 1);

@@ -57,13 +57,13 @@ TEST(CalibrationText, ShowsTheReferenceTableAsPublished) {
        475           45        44.70            0.30            0.55
 [[Fit]]
     Residual standard deviation 1.19 deg (7 points less 2 coefficients);
-    leave-one-out error 1.32 deg rms: how far the curve misses a point that did
-    not take part ("left out" above).
+    leave-one-out error 1.32 deg rms: the distance from the curve to a point
+    that was not fitted ("left out" above).
     The resolution is 0.1985 deg, one count; the residuals, up to 2.21 deg at
     261 counts (line 5), are an order of magnitude above it (11 counts).
-    Rounding to counts would leave a standard deviation of 0.0573 deg, and they
-    have 1.19 deg (χ², p < 1e-99): lack of fit. The sensor is not as even as the
-    curve, or the angles were not set as well as the sensor resolves them.
+    Rounding to counts would leave a standard deviation of 0.0573 deg, but they
+    have 1.19 deg (χ², p < 1e-99): lack of fit. The sensor deviates from the
+    curve, or the angles were set less accurately than the sensor resolves them.
     A curve of order 2 is not significantly better (F(1, 4) 2.44, p 0.19).
     Outside 19 to 475 counts the curve is extrapolated.
 )");

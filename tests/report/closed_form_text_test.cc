@@ -182,8 +182,8 @@ TEST(ClosedFormText, ReportsMissingParts) {
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
   EXPECT_THAT(ClosedFormText(report), StartsWith(R"([[Closed forms]]
-    No two turning points a whole period apart follow each other: no log
-    decrement.
+    There is no log decrement, because no two successive turning points are a
+    whole period apart.
     No law was fitted to the turning points: too few turning points for 4
     unknowns.
     envelope  as )"));

@@ -26,15 +26,15 @@ TEST(ComparisonSections, StartWithTheRecommendation) {
     drag              -       28.6     -            -   0.12  lack of fit
     BIC of independent residuals.
     Prediction of samples that were left out of the fit, block by block, and of
-    the last part from the first: rms of measured - predicted, and of the same
-    over its predicted standard deviation, which is 1 where model and errors are
-    right.
+    the last part from the first: rms of measured - predicted, and rms of the
+    same over its predicted standard deviation, which is 1 if model and errors
+    are right.
     model    blocks [deg]  standardized  last part [deg]  standardized
     coulomb         0.201          1.01            0.229          1.12
     drag                -             -                -             -
     drag is not compared: 100 iterations were not enough.
-[[Likelihood-ratio tests]] (small p: the simpler law lacks what is added)
-    law                   adds     2 Δ log L  p      if not needed follows
+[[Likelihood-ratio tests]] (small p: the simpler law lacks the added term)
+    law                   adds     2 Δ log L  p      null distribution
     coulomb over viscous  coulomb        812  1e-10  half χ²(0), half χ²(1)
     drag over coulomb     drag             0  -
     drag over coulomb: no p: drag did not converge.

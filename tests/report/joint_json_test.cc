@@ -119,10 +119,11 @@ TEST(JointFitJson, ReportsAnUninformativeRecording) {
   runs[0] = {};
   runs[1].z.reset();
   const Json json = HomogeneityOf(report)["parameters"]["inertia"]["runs"];
-  EXPECT_EQ(json[0].dump(), R"({"estimate":null,"std_error":null,"z":null,)"
-                            R"("reason":"the recording alone does not tell it; there are no others that tell it"})");
+  EXPECT_EQ(json[0].dump(),
+            R"({"estimate":null,"std_error":null,"z":null,)"
+            R"("reason":"the recording on its own does not determine it; no other recording determines it"})");
   EXPECT_EQ(json[1].dump(),
-            R"({"estimate":0.0791,"std_error":0.0004,"z":null,"reason":"there are no others that tell it"})");
+            R"({"estimate":0.0791,"std_error":0.0004,"z":null,"reason":"no other recording determines it"})");
 }
 
 TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
@@ -144,8 +145,8 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
   homogeneity.verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(HomogeneityOf(report).dump(),
             R"({"statistic":null,"dof":0,"p":null,"agrees":null,"outliers":[],)"
-            R"("verdict":"not tested: all that is shared is fixed","parameters":{},"amplitude_dependence":[],)"
-            R"("reason":"all that is shared is fixed"})");
+            R"("verdict":"not tested: all shared parameters are fixed","parameters":{},"amplitude_dependence":[],)"
+            R"("reason":"all shared parameters are fixed"})");
 }
 
 TEST(JointFitJson, ReportsAmplitudeDependence) {

@@ -100,7 +100,7 @@ TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
 
 ## Verdict
 
-- Model coulomb, converged: the step left to make is below 0.1 standard errors
+- Model coulomb, converged: the estimates are within 0.1 standard errors
 - the recordings agree on inertia, viscous
 
 ## Result

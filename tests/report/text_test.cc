@@ -76,7 +76,7 @@ constexpr const char* kWholeFit = R"([[Data]]
     lag-1 correlation  0.125
     Durbin-Watson      1.750
     Ljung-Box, runs    p 0.04, 0.25
-    memory             AR(2); of a constant the samples tell as much as 1200
+    autocorrelation    AR(2); for a constant the samples are worth 1200
                        independent ones
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50

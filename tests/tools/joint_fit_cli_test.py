@@ -330,7 +330,7 @@ class Refusals(JointTest):
         self.write("rad.csv", "time_s,angle_rad\n" +
                    "".join(f"{time},{math.radians(float(angle)):.9f}\n" for time, angle in rows[1:]))
         self.assert_refused(2, "--resolution is in the file's unit, but a.csv is in deg and rad.csv in rad; write a "
-                               "line # resolution: VALUE", "--data", "a.csv,rad.csv", "--resolution", "0.1")
+                               "line # resolution: VALUE into each file instead", "--data", "a.csv,rad.csv", "--resolution", "0.1")
 
     # result.schema.json: the format in which a message names its recording.
     def test_warnings_say_whose_they_are(self):

@@ -96,7 +96,8 @@ TEST(FitRecording, ReportsADiscontinuityThatStoppedTheSearch) {
     const FitReport fit = Fit(options);
     EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
     const bool at_discontinuity = fit.reason.starts_with("the search stopped at a jump in the sum of squares");
-    EXPECT_TRUE(at_discontinuity || fit.reason == "the estimates are within 0.1 standard errors") << fit.reason;
+    EXPECT_TRUE(at_discontinuity || fit.reason == "the estimates are within 0.1 standard errors of the minimum")
+        << fit.reason;
     stopped += at_discontinuity ? 1 : 0;
   }
   EXPECT_GE(stopped, 1);
@@ -129,7 +130,7 @@ TEST(FitRecording, RefusesSensorsThatWouldShowNothing) {
     return begun.error().message;
   };
   EXPECT_EQ(message(Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
-            "rate_scale cannot be 0, because the sensor would then show no motion; it must be below 0 or above it");
+            "rate_scale cannot be 0, because the sensor would then show no motion; it must be other than 0");
   EXPECT_EQ(message(Seen(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5), "radius"),
             "radius cannot be 0, because the sensor would then show no motion; it must be greater than 0");
   EXPECT_EQ(

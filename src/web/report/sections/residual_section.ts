@@ -17,7 +17,7 @@ const kNormal95 = 1.96;
 
 function autocorrelationPart(residual: Float64Array): HTMLElement {
   const { r, used } = autocorrelation(residual, kLags);
-  if (r.length < 2) return absent('The residuals do not vary, so nothing can be said of their memory.');
+  if (r.length < 2) return absent('The residuals do not vary, so they have no autocorrelation.');
   const limit = kNormal95 / Math.sqrt(used);
   const lags = r.map((_value, k) => k);
   const beyond = r.slice(1).filter((value) => Math.abs(value) > limit).length;
@@ -100,7 +100,7 @@ function numbers(fit: Fit): HTMLElement | null {
     ['root mean square', sized(withUnit(statistics, 'rms_residual'))],
     ['noise σ of a sample', sized(withUnit(noise, 'sigma'))],
     ['correlation of neighbours', significant(noise.lag1_correlation, 3)],
-    ['memory', noise.correlation],
+    ['autocorrelation', noise.correlation],
     ['Durbin–Watson (2: none)', significant(statistics.durbin_watson, 4)],
     ['Ljung–Box p', probabilityText(statistics.ljung_box_p)],
     ['runs of signs p', probabilityText(statistics.runs_p)],

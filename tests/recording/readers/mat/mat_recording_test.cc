@@ -351,7 +351,7 @@ std::string WithOtherFile(const std::string& corpus_file, const std::string& oth
 }
 
 constexpr const char* kOneFile =
-    "run.csv: this MAT-file refers to numbers in another file, which is not opened; save all in one";
+    "run.csv: this MAT-file refers to numbers in another file, which is not opened; save all in one file";
 
 TEST(ReadMat, ReadsNoOtherFile) {
   for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
