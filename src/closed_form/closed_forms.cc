@@ -98,7 +98,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     forms.envelope = DescribeEnvelopes(*laws);
     forms.envelopes = std::move(laws->single);
   } else {
-    forms.envelope = "not told: " + laws.error().message;
+    forms.envelope = "not determined: " + laws.error().message;
   }
   forms.decay = TabulateDecay(forms.table, stop);
   forms.linear = ApplyLogDecrement(forms.table, model.gravity, stop);

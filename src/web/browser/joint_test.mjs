@@ -42,7 +42,7 @@ test('each recording alone, the joint fit and the random effects stand in plot a
   assert.equal(await forestRow(page, 'inertia', 2), 'recording 3|0.079003 ± 0.000006|0.6|0.078992 to 0.079014');
   assert.equal(await forestRow(page, 'inertia', 3), 'joint fit|0.0789996 ± 0.0000028|–|0.0789942 to 0.0790051');
   assert.equal(await forestRow(page, 'inertia', 4), 'random effects|0.079002 ± 0.000006|–|0.078986 to 0.079019');
-  assert.equal(await forestRow(page, 'coulomb', 1), 'recording 2|not told|–|–');
+  assert.equal(await forestRow(page, 'coulomb', 1), 'recording 2|not determined|–|–');
   const words = await page.locator('[data-forest=inertia] figcaption').textContent();
   assert.match(words, /χ² = 1\.75 with 2 degrees of freedom, p = 0\.42\. Between recordings a standard deviation of 1\.4 × 10⁻⁶/);
   const told = await page.locator('[data-forest=inertia] .forest').getAttribute('aria-label');

@@ -91,7 +91,7 @@ function picture(rows: ForestRow[], range: readonly [number, number]): SVGElemen
 function labels(rows: ForestRow[]): HTMLElement {
   const list = el('div', { class: 'labels' });
   for (const row of rows) {
-    const remark = row.disagrees ? 'disagrees' : row.estimate === null ? 'not told' : null;
+    const remark = row.disagrees ? 'disagrees' : row.estimate === null ? 'not determined' : null;
     const small = remark !== null && el('small', row.disagrees ? { class: 'no' } : {}, remark);
     list.append(el('div', row.kind === 'recording' ? {} : { class: row.kind }, row.label, small));
   }

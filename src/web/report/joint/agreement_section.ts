@@ -34,7 +34,7 @@ function rowCells(row: ForestRow): Cell[] {
   const odd = disagrees && el('small', { class: 'no' }, 'disagrees');
   return [
     [label, odd],
-    estimate === null ? 'not told' : plusMinus(estimate, error),
+    estimate === null ? 'not determined' : plusMinus(estimate, error),
     z === null ? '–' : fixed(z, 1),
     intervalText(interval95, estimate, error),
   ];
