@@ -77,7 +77,7 @@ test('recordings that scatter have the mean of random effects beside the joint e
 test('the recordings with their noise and their own parameters', async (t) => {
   const page = await openJoint(t);
   const cells = page.locator('#recordings table').first().locator('tbody tr').nth(1).locator('th, td');
-  assert.match((await cells.allTextContents()).join('|'), /^2\|run2\.csv\|2000 of 2000\|0 to 19\.99\|100\|held\|11\.5°\|0\.004.rad\|0\.003.rad\|−0\.03\|not identifiable: coulomb is not told$/);
+  assert.match((await cells.allTextContents()).join('|'), /^2\|run2\.csv\|2000 of 2000\|0 to 19\.99\|100\|held\|11\.5°\|0\.004.rad\|0\.003.rad\|−0\.03\|not identifiable: coulomb is not determined$/);
   const own = page.locator('#recordings table').nth(1);
   assert.match(await own.locator('thead').textContent(), /release angle.*release time.*zero of the sensor/);
   assert.match(await own.locator('tbody tr').nth(1).textContent(), /0\.41000 ± 0\.00020.rad/);
