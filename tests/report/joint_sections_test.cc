@@ -94,7 +94,7 @@ TEST(JointSections, ShowADashForARecordingWithoutAFile) {
 
 TEST(JointSections, CountTheRecordingsThatShareParameters) {
   const std::string text = TextOf(ExampleJointReport(), "Fit");
-  EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; start, zero and noise\n"));
+  EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; each recording has its\n"));
   EXPECT_THAT(text, HasSubstr("    status  converged: the estimates are within 0.1 standard errors\n"));
 }
 
