@@ -330,7 +330,7 @@ TEST(RepairClock, RemovesTheFewestRowsIfStampsGoBack) {
   EXPECT_EQ(
       WarningOf(repaired),
       "time_not_increasing: run.csv:42: time 0.375 s does not follow 0.39 s of line 41; the fewest rows were left "
-      "out for times to increase, 2 of 100 rows");
+      "out to make times increase, 2 of 100 rows");
 }
 
 TEST(RepairClock, DetectsNonAdjacentUnorderedStamps) {
