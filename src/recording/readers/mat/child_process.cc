@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 #include <new>
 #include <optional>
 #include <string_view>
@@ -21,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "recording/readers/mat/write_all.h"
+#include "pendulum/base/staged_file.h"
 
 namespace pendulum {
 

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -22,14 +21,13 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/staged_file.h"
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
 #include "recording/readers/mat/child_process.h"
-#include "recording/readers/mat/mat_columns.h"
 #include "recording/readers/mat/mat_elements.h"
 #include "recording/readers/mat/mat_version_4.h"
-#include "recording/readers/mat/write_all.h"
 
 namespace pendulum {
 namespace {
