@@ -23,7 +23,6 @@
 #include "tools/output.h"
 #include "tools/registered_run_flags.h"
 #include "tools/run_tool.h"
-#include "tools/terminal.h"
 
 DEFINE_string(data, "",
               "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "

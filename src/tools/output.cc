@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
-#include <string_view>
 #include <system_error>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "pendulum/base/staged_file.h"
 
 namespace pendulum {
 namespace {
@@ -231,5 +230,75 @@ Result<void> SynchroniseFileSystem(const std::string& path) {
   if (!synchronised) return CannotWrite(path, SystemErrorText(error));
   return {};
 }
+
+namespace {
+
+constexpr int kReadAndWrite = 0666;  // before the umask is applied
+
+bool IsFileOrAbsent(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  return status.type() == std::filesystem::file_type::not_found || std::filesystem::is_regular_file(status);
+}
+
+}  // namespace
+
+PartFile::PartFile(const std::string& path)
+    : path_(!path.empty() && !IsStandardOutput(path) && IsFileOrAbsent(path) ? path + ".part" : "") {}
+
+PartFile::~PartFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool PartFile::Exists() const {
+  std::error_code error;
+  return !path_.empty() && std::filesystem::exists(path_, error);
+}
+
+Result<void> PartFile::Open() {
+  if (path_.empty()) return {};
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadAndWrite);
+  if (descriptor_ < 0) return CannotWrite(path_, SystemErrorText(errno));
+  return {};
+}
+
+Result<void> PartFile::Append(std::string_view text) {
+  if (descriptor_ < 0 || WriteAll(descriptor_, text)) return {};
+  return CannotWrite(path_, SystemErrorText(errno));
+}
+
+Result<void> PartFile::Synchronise() {
+  if (descriptor_ < 0 || ::fdatasync(descriptor_) == 0) return {};
+  return CannotWrite(path_, SystemErrorText(errno));
+}
+
+void PartFile::Remove() {
+  std::error_code error;
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (!path_.empty()) std::filesystem::remove(path_, error);
+}
+
+namespace {
+
+/// An environment variable; empty if it is not set.
+std::string_view Environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string_view() : value;
+}
+
+}  // namespace
+
+bool CanRedraw(int descriptor) {
+  const std::string_view terminal = Environment("TERM");
+  return ::isatty(descriptor) == 1 && !terminal.empty() && terminal != "dumb";
+}
+
+TerminalSize SizeOfTerminal(int descriptor) {
+  winsize size{};
+  if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {};
+  return {size.ws_col, size.ws_row};
+}
+
+bool WantsColour(int descriptor) { return CanRedraw(descriptor) && Environment("NO_COLOR").empty(); }
 
 }  // namespace pendulum

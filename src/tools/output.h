@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
@@ -57,5 +58,53 @@ Result<void> WriteStreamed(const std::string& path, const std::function<Result<v
 
 /// Synchronises the file system of the file `path`, so that all writes survive a loss of power. kCannotWrite.
 Result<void> SynchroniseFileSystem(const std::string& path);
+
+/// The incomplete recording on disk, named PATH.part. It can be read at any time, so a crash or a loss of power costs
+/// at most a second of data. A stream has no part file.
+class PartFile {
+ public:
+  /// `path`: final path of the recording; empty: none.
+  explicit PartFile(const std::string& path);
+  PartFile(const PartFile&) = delete;
+  PartFile(PartFile&&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+  PartFile& operator=(PartFile&&) = delete;
+  ~PartFile();
+
+  /// Whether the part of an earlier recording exists.
+  bool Exists() const;
+
+  /// Creates it or empties it. kCannotWrite.
+  Result<void> Open();
+
+  /// kCannotWrite.
+  Result<void> Append(std::string_view text);
+
+  /// Writes the appended text to the disk. kCannotWrite.
+  Result<void> Synchronise();
+
+  /// Call it when the complete recording is written.
+  void Remove();
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;  // empty for a stream
+  int descriptor_ = -1;
+};
+
+/// Whether output to a file descriptor may be coloured: it is a terminal with colours (TERM is set and not "dumb"), and
+/// NO_COLOR is absent or empty (https://no-color.org).
+bool WantsColour(int descriptor);
+
+/// Whether lines on a file descriptor can be redrawn: it is a terminal with cursor control.
+bool CanRedraw(int descriptor);
+
+struct TerminalSize {
+  std::size_t columns = 80, rows = 24;
+};
+
+/// Current size of the terminal; a usual size if it is unknown.
+TerminalSize SizeOfTerminal(int descriptor);
 
 }  // namespace pendulum

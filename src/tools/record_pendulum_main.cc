@@ -20,12 +20,10 @@
 #include "pendulum/report/text.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
-#include "tools/part_file.h"
 #include "tools/record_pendulum_options.h"
 #include "tools/record_run.h"
 #include "tools/record_text.h"
 #include "tools/run_tool.h"
-#include "tools/terminal.h"
 
 DEFINE_string(port, "", "Serial port of the logger, such as /dev/ttyACM0; default the only one.");
 DEFINE_string(out, "", "Where the recording goes (CSV); - is standard output.");

@@ -13,9 +13,8 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/base/utc_time.h"
 #include "tools/live_trace.h"
-#include "tools/part_file.h"
+#include "tools/output.h"
 #include "tools/run_tool.h"
-#include "tools/terminal.h"
 
 namespace pendulum {
 namespace {

@@ -5,9 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,7 +21,6 @@
 #include "pendulum/model/rig.h"
 #include "pendulum/web/summary_page.h"
 #include "tools/output.h"
-#include "tools/refit_progress.h"
 #include "tools/refit_text.h"
 #include "tools/run_tool.h"
 

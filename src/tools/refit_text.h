@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/compare_stores.h"
+#include "pendulum/batch/refit.h"
 #include "pendulum/batch/store.h"
 
 namespace pendulum {
@@ -16,5 +18,37 @@ Result<std::string> StatusText(Store& store);
 
 /// The differences between two stores as text.
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after);
+
+/// A duration as text: "42 s", "3 min 05 s", "2 h 10 min".
+std::string DurationText(double seconds);
+
+/// "1200 of 2000 runs (60 %), 1850 a second, 1 s left, 3 could not be fitted".
+std::string ProgressText(const RefitCounts& counts, double seconds);
+
+/// Shows the progress of a refit: on a terminal a bar that is redrawn a few times a second, elsewhere a plain line from
+/// time to time.
+class RefitProgress {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `name`: the tool's name, which begins plain lines. `descriptor`: for the output, such as STDERR_FILENO. `between`:
+  /// time between plain lines.
+  RefitProgress(std::string name, int descriptor, std::chrono::milliseconds between = std::chrono::seconds(10));
+
+  /// Tests pass `now`; the default is the current time.
+  void Show(const RefitCounts& counts, Clock::time_point now = Clock::now());
+
+  /// Ends the bar's line.
+  void Finish();
+
+ private:
+  std::string name_;
+  int descriptor_;
+  bool is_terminal_;
+  std::chrono::milliseconds between_;  // between two updates
+  bool has_drawn_ = false;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
 
 }  // namespace pendulum

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/part_file.h"
-
 #include <filesystem>
 #include <string>
 
@@ -9,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "tests/tools/temporary_folder.h"
+#include "tools/output.h"
 
 namespace pendulum::part_file_test {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/refit_progress.h"
-
 #include <array>
 #include <chrono>
 #include <string>
@@ -9,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <unistd.h>
+
+#include "tools/refit_text.h"
 
 namespace pendulum::refit_progress_test {
 namespace {

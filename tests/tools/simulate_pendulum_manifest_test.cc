@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulate_pendulum_manifest.h"
-
 #include <filesystem>
 #include <string>
 
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/temporary_folder.h"
+#include "tools/simulate_pendulum_files.h"
 
 namespace pendulum::simulate_pendulum_manifest_test {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/terminal.h"
-
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -8,6 +6,8 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "tools/output.h"
 
 namespace pendulum::terminal_test {
 namespace {
