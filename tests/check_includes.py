@@ -35,7 +35,7 @@ STANDARD = {
              "fmod frexp hypot isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nextafter nexttoward "
              "pow remainder round signbit sin sinh sqrt tan tanh tgamma trunc",
     "complex": "arg complex norm polar",
-    "concepts": "convertible_to floating_point integral invocable same_as",
+    "concepts": "convertible_to derived_from floating_point integral invocable same_as",
     "condition_variable": "condition_variable condition_variable_any",
     "csignal": "raise sig_atomic_t signal",
     "cstdint": "int16_t int32_t int64_t int8_t uint16_t uint32_t uint64_t uint8_t uintmax_t uintptr_t",

@@ -4,8 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include <gflags/gflags.h>
-
 #include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/report/adc_plan_text.h"
 #include "pendulum/report/calibration_plot.h"
@@ -15,18 +13,6 @@
 #include "tools/gnuplot.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
-
-DEFINE_string(data, "", "Table with the columns counts or volts and angle_deg or angle_rad; - is standard input.");
-DEFINE_int32(order, 1, "Highest power of the reading in the curve, 1 to 5; default 1, a straight line.");
-DEFINE_string(input_range, "", "Range of the sensor, low,high, in the unit of the readings; default unknown.");
-DEFINE_string(json, "", "Where to write the calibration for fit_pendulum; - is standard output; default nowhere.");
-DEFINE_string(plot, "", "Where to write an SVG of curve and residuals (needs gnuplot); default nowhere.");
-DEFINE_bool(plan, false, "Plans a potentiometer and converter instead, and prints their resolution. Default off.");
-DEFINE_int32(bits, 0, "Of the converter, 1 to 32; default 10 in a plan. With --data the range is 0 to 2^bits - 1.");
-DEFINE_string(reference_voltage, "", "In a plan: references of the converter in V, between commas; default 5.");
-DEFINE_double(supply_voltage, 5, "In a plan: V across the potentiometer; default 5.");
-DEFINE_double(potentiometer_range_deg, 270, "In a plan: electrical travel of the potentiometer, deg; default 270.");
-DEFINE_double(divider, 1, "In a plan: V at the converter for 1 V at the wiper, R2/(R1+R2); default 1, no divider.");
 
 namespace pendulum {
 namespace {
@@ -44,21 +30,27 @@ constexpr const char* kUsage =
     "output cannot be written.\n"
     "\n";
 
-CalibrateSensorFlags CurrentFlags(const std::vector<std::string>& positional) {
-  CalibrateSensorFlags flags;
-  flags.data = FLAGS_data;
-  flags.order = FLAGS_order;
-  flags.input_range = FLAGS_input_range;
-  flags.json = FLAGS_json;
-  flags.plot = FLAGS_plot;
-  flags.plan = FLAGS_plan;
-  flags.bits = FLAGS_bits;
-  flags.reference_voltage = FLAGS_reference_voltage;
-  flags.supply_voltage = FLAGS_supply_voltage;
-  flags.potentiometer_range_deg = FLAGS_potentiometer_range_deg;
-  flags.divider = FLAGS_divider;
-  flags.positional = positional;
-  return flags;
+using Flags = CalibrateSensorFlags;
+
+std::vector<ToolFlag<Flags>> FlagTable() {
+  return {
+      {"data", &Flags::data, "Table with the columns counts or volts and angle_deg or angle_rad; - is standard input."},
+      {"order", &Flags::order, "Highest power of the reading in the curve, 1 to 5; default 1, a straight line."},
+      {"input_range", &Flags::input_range,
+       "Range of the sensor, low,high, in the unit of the readings; default unknown."},
+      {"json", &Flags::json, "Where to write the calibration for fit_pendulum; - is standard output; default nowhere."},
+      {"plot", &Flags::plot, "Where to write an SVG of curve and residuals (needs gnuplot); default nowhere."},
+      {"plan", &Flags::plan, "Plans a potentiometer and converter instead, and prints their resolution. Default off."},
+      {"bits", &Flags::bits,
+       "Of the converter, 1 to 32; default 10 in a plan. With --data the range is 0 to 2^bits - 1."},
+      {"reference_voltage", &Flags::reference_voltage,
+       "In a plan: references of the converter in V, between commas; default 5."},
+      {"supply_voltage", &Flags::supply_voltage, "In a plan: V across the potentiometer; default 5."},
+      {"potentiometer_range_deg", &Flags::potentiometer_range_deg,
+       "In a plan: electrical travel of the potentiometer, deg; default 270."},
+      {"divider", &Flags::divider,
+       "In a plan: V at the converter for 1 V at the wiper, R2/(R1+R2); default 1, no divider."},
+  };
 }
 
 Result<void> CheckBeforeWork(const CalibrateSensorOptions& options) {
@@ -85,8 +77,8 @@ Result<std::vector<Output>> MakeOutputs(const CalibrateSensorOptions& options) {
   return outputs;
 }
 
-Result<int> Work(const std::vector<std::string>& positional) {
-  const auto options = MakeCalibrateSensorOptions(CurrentFlags(positional));
+Result<int> Work(const Flags& flags) {
+  const auto options = MakeCalibrateSensorOptions(flags);
   if (!options) return tl::unexpected(options.error());
   if (const auto checked = CheckBeforeWork(*options); !checked) return tl::unexpected(checked.error());
   const auto outputs = MakeOutputs(*options);
@@ -98,5 +90,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+  return pendulum::RunTool(pendulum::kName, __FILE__, pendulum::kUsage, pendulum::FlagTable(), pendulum::Work, argc,
+                           argv);
 }

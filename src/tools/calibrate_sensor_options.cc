@@ -2,7 +2,6 @@
 #include "tools/calibrate_sensor_options.h"
 
 #include <array>
-#include <string_view>
 #include <utility>
 
 #include "pendulum/base/format.h"

@@ -6,24 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include <gflags/gflags.h>
-
 #include "pendulum/analysis/coverage.h"
 #include "pendulum/report/coverage_text.h"
 #include "pendulum/report/rounding.h"
 #include "tools/coverage_study_options.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
-
-DEFINE_string(scenario, "", "Scenarios, name,..., or all; --list shows them.");
-DEFINE_int32(count, 1000, "Recordings of each scenario; default 1000.");
-DEFINE_int32(runs, 1,
-             "Recordings of one rig, released from different angles and fitted together, in each of --count sets; "
-             "default 1, separate recordings.");
-DEFINE_uint64(seed, 1, "Seed of the first recording; recording i has seed + i; default 1.");
-DEFINE_int32(threads, 0, "Threads, on which the result does not depend; default 0, as many as there are cores.");
-DEFINE_string(markdown, "", "Where else to write the tables, as Markdown; - is standard output; default nowhere.");
-DEFINE_bool(list, false, "Lists the scenarios and exits; default off.");
 
 namespace pendulum {
 namespace {
@@ -39,17 +27,22 @@ constexpr const char* kUsage =
     "Exit codes: 0 done, whatever the tables say, 2 wrong flags, 70 a bug, 73 an output cannot be written.\n"
     "\n";
 
-CoverageFlags CurrentFlags(const std::vector<std::string>& positional) {
-  CoverageFlags flags;
-  flags.scenario = FLAGS_scenario;
-  flags.count = FLAGS_count;
-  flags.runs = FLAGS_runs;
-  flags.seed = FLAGS_seed;
-  flags.threads = FLAGS_threads;
-  flags.markdown = FLAGS_markdown;
-  flags.list = FLAGS_list;
-  flags.positional = positional;
-  return flags;
+using Flags = CoverageFlags;
+
+std::vector<ToolFlag<Flags>> FlagTable() {
+  return {
+      {"scenario", &Flags::scenario, "Scenarios, name,..., or all; --list shows them."},
+      {"count", &Flags::count, "Recordings of each scenario; default 1000."},
+      {"runs", &Flags::runs,
+       "Recordings of one rig, released from different angles and fitted together, in each of --count sets; default 1, "
+       "separate recordings."},
+      {"seed", &Flags::seed, "Seed of the first recording; recording i has seed + i; default 1."},
+      {"threads", &Flags::threads,
+       "Threads, on which the result does not depend; default 0, as many as there are cores."},
+      {"markdown", &Flags::markdown,
+       "Where else to write the tables, as Markdown; - is standard output; default nowhere."},
+      {"list", &Flags::list, "Lists the scenarios and exits; default off."},
+  };
 }
 
 /// Reports the progress of a study on standard error at each tenth, and the total time.
@@ -90,8 +83,8 @@ Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
   return outputs;
 }
 
-Result<int> Work(const std::vector<std::string>& positional) {
-  const auto options = MakeCoverageStudyOptions(CurrentFlags(positional));
+Result<int> Work(const Flags& flags) {
+  const auto options = MakeCoverageStudyOptions(flags);
   if (!options) return tl::unexpected(options.error());
   if (const auto checked = CheckOutputs(options->Outputs(), {}); !checked) return tl::unexpected(checked.error());
   const auto outputs = MakeOutputs(*options);
@@ -103,5 +96,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+  return pendulum::RunTool(pendulum::kName, __FILE__, pendulum::kUsage, pendulum::FlagTable(), pendulum::Work, argc,
+                           argv);
 }

@@ -21,26 +21,7 @@
 #include "tools/fit_runs.h"
 #include "tools/gnuplot.h"
 #include "tools/output.h"
-#include "tools/registered_run_flags.h"
 #include "tools/run_tool.h"
-
-DEFINE_string(data, "",
-              "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "
-              "columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
-              "Graphical Analysis, Capstone and ROS; MAT-files; - is standard input.");
-DEFINE_string(data_list, "", "File that lists recordings, one path a line, instead of --data; default none.");
-DEFINE_string(
-    shared, "",
-    "Parameters that several recordings share: all (inertia and friction), some of their names, or none (each "
-    "recording is fitted separately); default all for several recordings, none for one recording's releases.");
-DEFINE_string(json, "", "Where to write the result as JSON; - is standard output; default nowhere.");
-DEFINE_string(residuals, "", "Where to write the samples and residuals as CSV; - is standard output; default nowhere.");
-DEFINE_string(series, "",
-              "Where to write samples, turning points and models as JSON; - is standard output; default nowhere.");
-DEFINE_string(report, "",
-              "Where to write the result as a page (HTML, one file); - is standard output; default nowhere.");
-DEFINE_string(markdown, "", "Where to write the result as Markdown; - is standard output; default nowhere.");
-DEFINE_bool(terminal_plot, false, "Draws recording, fit and residuals in the terminal, by gnuplot; default off.");
 
 namespace pendulum {
 namespace {
@@ -55,25 +36,34 @@ constexpr const char* kUsage =
     "Exit codes: 0 converged, 1 fitted but not converged, not identifiable or not a free swing, 2 wrong flags,\n"
     "3 file not found, 4 unreadable data, calibration or rig, 5 no swing in the data or too little, 70 a bug,\n"
     "73 an output cannot be written.\n"
-    "With several models, the code is that of the recommended one; with recordings that are fitted separately, "
-    "the\nlargest. Results that can be fitted are written. Several recordings are assumed to be of one rig and "
-    "fitted\ntogether; --shared none fits each separately.\n"
+    "With several models, the code is that of the recommended one; with recordings that are fitted separately, the\n"
+    "largest. Results that can be fitted are written. Several recordings are assumed to be of one rig and fitted\n"
+    "together; --shared none fits each separately.\n"
     "\n";
 
-FitPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
-  FitPendulumFlags flags;
-  static_cast<RunFlags&>(flags) = RegisteredRunFlags();
-  flags.data = FLAGS_data;
-  flags.data_list = FLAGS_data_list;
-  flags.shared = FLAGS_shared;
-  flags.json = FLAGS_json;
-  flags.residuals = FLAGS_residuals;
-  flags.series = FLAGS_series;
-  flags.report = FLAGS_report;
-  flags.markdown = FLAGS_markdown;
-  flags.terminal_plot = FLAGS_terminal_plot;
-  flags.positional = positional;
-  return flags;
+using Flags = FitPendulumFlags;
+
+std::vector<ToolFlag<Flags>> FlagTable() {
+  return {
+      {"data", &Flags::data,
+       "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "
+       "columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
+       "Graphical Analysis, Capstone and ROS; MAT-files; - is standard input."},
+      {"data_list", &Flags::data_list, "File that lists recordings, one path a line, instead of --data; default none."},
+      {"shared", &Flags::shared,
+       "Parameters that several recordings share: all (inertia and friction), some of their names, or none (each "
+       "recording is fitted separately); default all for several recordings, none for one recording's releases."},
+      {"json", &Flags::json, "Where to write the result as JSON; - is standard output; default nowhere."},
+      {"residuals", &Flags::residuals,
+       "Where to write the samples and residuals as CSV; - is standard output; default nowhere."},
+      {"series", &Flags::series,
+       "Where to write samples, turning points and models as JSON; - is standard output; default nowhere."},
+      {"report", &Flags::report,
+       "Where to write the result as a page (HTML, one file); - is standard output; default nowhere."},
+      {"markdown", &Flags::markdown, "Where to write the result as Markdown; - is standard output; default nowhere."},
+      {"terminal_plot", &Flags::terminal_plot,
+       "Draws recording, fit and residuals in the terminal, by gnuplot; default off."},
+  };
 }
 
 /// The command line, quoted for a shell.
@@ -162,8 +152,8 @@ void ShowProgress(int done, int total) {
   PrintMessage(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
 }
 
-Result<int> Work(const std::vector<std::string>& positional) {
-  auto options = MakeFitPendulumOptions(CurrentFlags(positional));
+Result<int> Work(const Flags& flags) {
+  auto options = MakeFitPendulumOptions(flags);
   if (!options) return tl::unexpected(options.error());
   options->fit.progress = ShowProgress;
   const auto setup = ReadSetup(*options);
@@ -189,6 +179,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  pendulum::RegisterRunFlags();
-  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+  return pendulum::RunTool(pendulum::kName, __FILE__, pendulum::kUsage, pendulum::FlagTable(), pendulum::Work, argc,
+                           argv);
 }

@@ -117,12 +117,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.data_list = flags.data_list;
   options.calibration = flags.calibration;
   options.rig = flags.rig;
-  options.json = flags.json;
-  options.residuals = flags.residuals;
-  options.series = flags.series;
-  options.report = flags.report;
-  options.markdown = flags.markdown;
-  options.terminal_plot = flags.terminal_plot;
+  static_cast<FitOutputs&>(options) = flags;
   if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());
   return options;
 }

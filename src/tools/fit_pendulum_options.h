@@ -11,17 +11,21 @@
 
 namespace pendulum {
 
+/// Where fit_pendulum writes what; "-" is standard output, empty: nowhere.
+struct FitOutputs {
+  std::string json;            ///< Path of the result.
+  std::string residuals;       ///< Path of samples and fit.
+  std::string series;          ///< Path of samples, fit, turning points and models.
+  std::string report;          ///< Path of the HTML page with all results.
+  std::string markdown;        ///< Path of the result as Markdown.
+  bool terminal_plot = false;  ///< Plots the recording on standard output.
+};
+
 /// The flags of fit_pendulum as given; empty or the default if not given.
-struct FitPendulumFlags : RunFlags {
+struct FitPendulumFlags : RunFlags, FitOutputs {
   std::string data;
   std::string data_list;
-  std::string json;
-  std::string residuals;
-  std::string series;
-  std::string report;
-  std::string markdown;
   std::string shared;
-  bool terminal_plot = false;
   std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
@@ -30,17 +34,11 @@ struct FitPendulumFlags : RunFlags {
 enum class Sharing { kByDefault, kNothing, kAsked };
 
 /// The task of fit_pendulum.
-struct FitPendulumOptions : IdentifyOptions {
+struct FitPendulumOptions : IdentifyOptions, FitOutputs {
   std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
   std::string data_list;          ///< Path of a file that lists the recordings instead; empty: none.
   std::string calibration;        ///< Path; empty: none. The caller reads ReadOptions::calibration from it.
   std::string rig;                ///< Path of the rig file; empty: none. The caller reads FitOptions::rig from it.
-  std::string json;               ///< Path of the result; "-" is standard output; empty: none.
-  std::string residuals;          ///< Path of samples and fit; "-" is standard output; empty: none.
-  std::string series;    ///< Path of samples, fit, turning points and models; "-" is standard output; empty: none.
-  std::string report;    ///< Path of the HTML page with all results; "-" is standard output; empty: none.
-  std::string markdown;  ///< Path of the result as Markdown; "-" is standard output; empty: none.
-  bool terminal_plot = false;  ///< Plots the recording on standard output.
   Sharing sharing = Sharing::kByDefault;
 
   /// The output files of fit `index` (0-based) of `count`, with their flags; numbered if there are several fits.

@@ -25,25 +25,6 @@
 #include "tools/record_text.h"
 #include "tools/run_tool.h"
 
-DEFINE_string(port, "", "Serial port of the logger, such as /dev/ttyACM0; default the only one.");
-DEFINE_string(out, "", "Where the recording goes (CSV); - is standard output.");
-DEFINE_string(seconds, "", "How long to record, s; default until Ctrl-C.");
-DEFINE_bool(until_rest, false, "Stop when the pendulum has swung and come to rest. Default off.");
-DEFINE_bool(overwrite, false, "Replace a recording that is there. Default off.");
-DEFINE_double(rate_hz, 200, "Samples per second; default 200.");
-DEFINE_int32(oversample, 1, "Conversions that are averaged for one sample, 1 to 64; default 1.");
-DEFINE_int32(baud, 115200, "Baud rate of the sketch; default 115200.");
-DEFINE_string(calibration, "", "Calibration file (JSON) to put into the recording; default the one in the logger.");
-DEFINE_string(store_calibration, "", "Stores this calibration file in the logger instead of recording.");
-DEFINE_bool(
-    counts, false,
-    "Prints the mean reading of one second in counts, for a calibration table, instead of recording. Default off.");
-DEFINE_bool(info, false, "Shows the logger's description of itself instead of recording. Default off.");
-DEFINE_bool(list, false, "Lists the serial ports instead of recording. Default off.");
-DEFINE_bool(fit, false, "Fits the recording, as fit_pendulum does. Default off.");
-DEFINE_string(rig, "", "Of --fit: rig file (JSON, SI units); default none.");
-DEFINE_string(model, "", "Of --fit: model of the motion, several between commas to compare, or all; default coulomb.");
-
 namespace pendulum {
 namespace {
 
@@ -77,26 +58,31 @@ void OnSignals(void (*handler)(int)) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
 }
 
-RecordPendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
-  RecordPendulumFlags flags;
-  flags.port = FLAGS_port;
-  flags.out = FLAGS_out;
-  flags.seconds = FLAGS_seconds;
-  flags.until_rest = FLAGS_until_rest;
-  flags.overwrite = FLAGS_overwrite;
-  flags.rate_hz = FLAGS_rate_hz;
-  flags.oversample = FLAGS_oversample;
-  flags.baud = FLAGS_baud;
-  flags.calibration = FLAGS_calibration;
-  flags.store_calibration = FLAGS_store_calibration;
-  flags.counts = FLAGS_counts;
-  flags.info = FLAGS_info;
-  flags.list = FLAGS_list;
-  flags.fit = FLAGS_fit;
-  flags.rig = FLAGS_rig;
-  flags.model = FLAGS_model;
-  flags.positional = positional;
-  return flags;
+using Flags = RecordPendulumFlags;
+
+std::vector<ToolFlag<Flags>> FlagTable() {
+  return {
+      {"port", &Flags::port, "Serial port of the logger, such as /dev/ttyACM0; default the only one."},
+      {"out", &Flags::out, "Where the recording goes (CSV); - is standard output."},
+      {"seconds", &Flags::seconds, "How long to record, s; default until Ctrl-C."},
+      {"until_rest", &Flags::until_rest, "Stop when the pendulum has swung and come to rest. Default off."},
+      {"overwrite", &Flags::overwrite, "Replace a recording that is there. Default off."},
+      {"rate_hz", &Flags::rate_hz, "Samples per second; default 200."},
+      {"oversample", &Flags::oversample, "Conversions that are averaged for one sample, 1 to 64; default 1."},
+      {"baud", &Flags::baud, "Baud rate of the sketch; default 115200."},
+      {"calibration", &Flags::calibration,
+       "Calibration file (JSON) to put into the recording; default the one in the logger."},
+      {"store_calibration", &Flags::store_calibration,
+       "Stores this calibration file in the logger instead of recording."},
+      {"counts", &Flags::counts,
+       "Prints the mean reading of one second in counts, for a calibration table, instead of recording. Default off."},
+      {"info", &Flags::info, "Shows the logger's description of itself instead of recording. Default off."},
+      {"list", &Flags::list, "Lists the serial ports instead of recording. Default off."},
+      {"fit", &Flags::fit, "Fits the recording, as fit_pendulum does. Default off."},
+      {"rig", &Flags::rig, "Of --fit: rig file (JSON, SI units); default none."},
+      {"model", &Flags::model,
+       "Of --fit: model of the motion, several between commas to compare, or all; default coulomb."},
+  };
 }
 
 /// The requested port, or the only one available.
@@ -245,8 +231,8 @@ Result<int> RunTask(const RecordPendulumOptions& options, const std::string& por
   return WriteOutputs(std::vector<Output>{{"-", LoggerText(*info, port)}}).map([] { return 0; });
 }
 
-Result<int> Work(const std::vector<std::string>& positional) {
-  const auto options = MakeRecordPendulumOptions(CurrentFlags(positional));
+Result<int> Work(const Flags& flags) {
+  const auto options = MakeRecordPendulumOptions(flags);
   if (!options) return tl::unexpected(options.error());
   if (options->task == RecordTask::kList) {
     return WriteOutputs(std::vector<Output>{{"-", PortsText(ListSerialPorts())}}).map([] { return 0; });
@@ -276,5 +262,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  return pendulum::RunTool({pendulum::kRecordToolName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+  return pendulum::RunTool(pendulum::kRecordToolName, __FILE__, pendulum::kUsage, pendulum::FlagTable(), pendulum::Work,
+                           argc, argv);
 }

@@ -27,6 +27,15 @@ Result<int> Run(const Tool& tool, int argc, char** argv) {
 
 void PrintMessage(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << '\n'; }
 
+void RegisterRunFlags(RunFlags& values, RunFlags& defaults) {
+  for (const RunFlag& flag : RunFlagTable()) {
+    const auto add = [&](auto member) {
+      gflags::FlagRegisterer(flag.name.data(), flag.help.c_str(), __FILE__, &(values.*member), &(defaults.*member));
+    };
+    std::visit(add, flag.value);
+  }
+}
+
 int RunTool(const Tool& tool, int argc, char** argv) {
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' remarks on trial steps are of no use to users

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
+#include <gflags/gflags.h>
+
 #include "pendulum/base/status.h"
+#include "pendulum/request/run_flags.h"
 
 namespace pendulum {
 
@@ -28,5 +34,38 @@ void PrintMessage(std::string_view name, std::string_view sentence);
 /// Runs a tool: parses flags, handles --help and --version, prints errors and maps them to exit codes. An exception is
 /// a bug, 70.
 int RunTool(const Tool& tool, int argc, char** argv);
+
+/// A flag of a tool: its value is a member of the tool's `Flags`, whose initial value is the default.
+template <typename Flags>
+struct ToolFlag {
+  const char* name;
+  std::variant<bool Flags::*, int Flags::*, std::int64_t Flags::*, std::uint64_t Flags::*, double Flags::*,
+               std::string Flags::*>
+      value;
+  const char* help;  ///< Meaning, unit and default.
+};
+
+/// Makes the flags of RunFlagTable flags of gflags, which keeps pointers to both arguments.
+void RegisterRunFlags(RunFlags& values, RunFlags& defaults);
+
+/// RunTool of a tool with the flags of `table` and, if Flags has them, those of RunFlagTable. Call it once in a
+/// process. `work` gets their values, and in `positional` the arguments that belong to no flag.
+template <typename Flags, typename Work>
+int RunTool(std::string_view name, const char* main_file, const std::string& usage,
+            const std::vector<ToolFlag<Flags>>& table, const Work& work, int argc, char** argv) {
+  static Flags values, defaults;  // gflags keeps pointers to both
+  for (const ToolFlag<Flags>& flag : table) {
+    const auto add = [&](auto member) {
+      gflags::FlagRegisterer(flag.name, flag.help, main_file, &(values.*member), &(defaults.*member));
+    };
+    std::visit(add, flag.value);
+  }
+  if constexpr (std::derived_from<Flags, RunFlags>) RegisterRunFlags(values, defaults);
+  const auto run = [&](const std::vector<std::string>& positional) {
+    values.positional = positional;
+    return work(values);
+  };
+  return RunTool({name, main_file, usage, run}, argc, argv);
+}
 
 }  // namespace pendulum

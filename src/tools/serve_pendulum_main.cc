@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -26,30 +25,6 @@
 #include "tools/run_tool.h"
 #include "tools/serve_pendulum_options.h"
 
-DEFINE_int32(port, 8080, "Port to listen on; 0 chooses a free port and prints it; default 8080.");
-DEFINE_string(address, "127.0.0.1",
-              "Address to listen on, IPv4 or IPv6; default 127.0.0.1, which only this machine can reach.");
-DEFINE_string(store, "",
-              "File that stores the fits (SQLite, with the tables of refit_pendulums); created if it does not exist.");
-DEFINE_int32(threads, 0, "Fits at a time; default 0, as many as there are cores.");
-DEFINE_string(token_file, "",
-              "File whose first line is the token that a client must send; default the environment variable "
-              "PENDULUM_TOKEN, or none. Needed for an --address that other machines reach.");
-DEFINE_string(allowed_hosts, "",
-              "Host names that clients may use besides localhost, between commas, such as a proxy's; default none, and "
-              "any with a token.");
-DEFINE_int32(max_body_mb, 32, "Largest body of a request, MiB; default 32.");
-DEFINE_int32(max_samples, 200000, "Longest recording, in samples; default 200000.");
-DEFINE_int32(fit_seconds, 30, "Longest time of one fit, s; one of a batch has four times as long; default 30.");
-DEFINE_int32(max_queue, 64, "Requests that may wait for a thread; one more is refused with 429; default 64.");
-DEFINE_int32(max_batch_runs, 10000, "Recordings of batches that may wait; default 10000.");
-DEFINE_int32(max_connections, 512, "Connections at a time; default 512.");
-DEFINE_int32(request_seconds, 30, "Longest time for a request to come in, s; default 30.");
-DEFINE_int32(stop_seconds, 20, "How long fits in progress may take when the service stops, s; default 20.");
-DEFINE_string(live, "",
-              "The file that a running record_pendulum --out writes, to show it live on the page; default none.");
-DEFINE_string(docs, "", "Folder of the user guide, shown at /docs; default the guide installed with this program.");
-
 namespace pendulum {
 namespace {
 
@@ -68,26 +43,38 @@ constexpr const char* kUsage =
     "bug, 73 the port or the store is not available, 75 another process writes to the store.\n"
     "\n";
 
-ServePendulumFlags CurrentFlags(const std::vector<std::string>& positional) {
-  ServePendulumFlags flags;
-  flags.port = FLAGS_port;
-  flags.address = FLAGS_address;
-  flags.store = FLAGS_store;
-  flags.threads = FLAGS_threads;
-  flags.token_file = FLAGS_token_file;
-  flags.allowed_hosts = FLAGS_allowed_hosts;
-  flags.max_body_mb = FLAGS_max_body_mb;
-  flags.max_samples = FLAGS_max_samples;
-  flags.fit_seconds = FLAGS_fit_seconds;
-  flags.max_queue = FLAGS_max_queue;
-  flags.max_batch_runs = FLAGS_max_batch_runs;
-  flags.max_connections = FLAGS_max_connections;
-  flags.request_seconds = FLAGS_request_seconds;
-  flags.stop_seconds = FLAGS_stop_seconds;
-  flags.live = FLAGS_live;
-  flags.docs = FLAGS_docs;
-  flags.positional = positional;
-  return flags;
+using Flags = ServePendulumFlags;
+
+std::vector<ToolFlag<Flags>> FlagTable() {
+  return {
+      {"port", &Flags::port, "Port to listen on; 0 chooses a free port and prints it; default 8080."},
+      {"address", &Flags::address,
+       "Address to listen on, IPv4 or IPv6; default 127.0.0.1, which only this machine can reach."},
+      {"store", &Flags::store,
+       "File that stores the fits (SQLite, with the tables of refit_pendulums); created if it does not exist."},
+      {"threads", &Flags::threads, "Fits at a time; default 0, as many as there are cores."},
+      {"token_file", &Flags::token_file,
+       "File whose first line is the token that a client must send; default the environment variable PENDULUM_TOKEN, "
+       "or none. Needed for an --address that other machines reach."},
+      {"allowed_hosts", &Flags::allowed_hosts,
+       "Host names that clients may use besides localhost, between commas, such as a proxy's; default none, and any "
+       "with a token."},
+      {"max_body_mb", &Flags::max_body_mb, "Largest body of a request, MiB; default 32."},
+      {"max_samples", &Flags::max_samples, "Longest recording, in samples; default 200000."},
+      {"fit_seconds", &Flags::fit_seconds,
+       "Longest time of one fit, s; one of a batch has four times as long; default 30."},
+      {"max_queue", &Flags::max_queue,
+       "Requests that may wait for a thread; one more is refused with 429; default 64."},
+      {"max_batch_runs", &Flags::max_batch_runs, "Recordings of batches that may wait; default 10000."},
+      {"max_connections", &Flags::max_connections, "Connections at a time; default 512."},
+      {"request_seconds", &Flags::request_seconds, "Longest time for a request to come in, s; default 30."},
+      {"stop_seconds", &Flags::stop_seconds,
+       "How long fits in progress may take when the service stops, s; default 20."},
+      {"live", &Flags::live,
+       "The file that a running record_pendulum --out writes, to show it live on the page; default none."},
+      {"docs", &Flags::docs,
+       "Folder of the user guide, shown at /docs; default the guide installed with this program."},
+  };
 }
 
 /// Prints one line on standard error in a single write, so lines of several threads do not mix.
@@ -154,8 +141,7 @@ std::string AddressText(const ServerOptions& options, std::uint16_t port) {
   return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" + std::to_string(port);
 }
 
-Result<int> Work(const std::vector<std::string>& positional) {
-  const ServePendulumFlags flags = CurrentFlags(positional);
+Result<int> Work(const Flags& flags) {
   const auto token = ReadToken(flags.token_file, std::getenv("PENDULUM_TOKEN"));
   if (!token) return tl::unexpected(token.error());
   auto options = MakeServePendulumOptions(flags, *token);
@@ -188,5 +174,6 @@ Result<int> Work(const std::vector<std::string>& positional) {
 }  // namespace pendulum
 
 int main(int argc, char** argv) {
-  return pendulum::RunTool({pendulum::kName, __FILE__, pendulum::kUsage, pendulum::Work}, argc, argv);
+  return pendulum::RunTool(pendulum::kName, __FILE__, pendulum::kUsage, pendulum::FlagTable(), pendulum::Work, argc,
+                           argv);
 }

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "pendulum/base/file.h"
 #include "pendulum/request/flag_values.h"

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/registered_run_flags.h"
-
 #include <string>
 #include <variant>
 
 #include <gflags/gflags.h>
 #include <gtest/gtest.h>
 
+#include "tools/run_tool.h"
+
 namespace pendulum::registered_run_flags_test {
 namespace {
 
 TEST(RegisterRunFlags, MakesEachFlagOfTheTableKnownToGflagsOnce) {
-  RegisterRunFlags();
+  static RunFlags values, defaults;  // gflags keeps pointers to both
+  RegisterRunFlags(values, defaults);
   for (const RunFlag& flag : RunFlagTable()) {
     gflags::CommandLineFlagInfo info;
     ASSERT_TRUE(gflags::GetCommandLineFlagInfo(flag.name.data(), &info)) << flag.name;
@@ -22,8 +23,8 @@ TEST(RegisterRunFlags, MakesEachFlagOfTheTableKnownToGflagsOnce) {
     }
   }
   gflags::SetCommandLineOption("noise", "quantized");
-  EXPECT_EQ(RegisteredRunFlags().noise, "quantized");
-  EXPECT_EQ(RegisteredRunFlags().model, "coulomb");
+  EXPECT_EQ(values.noise, "quantized");
+  EXPECT_EQ(values.model, "coulomb");
 }
 
 }  // namespace
