@@ -34,7 +34,7 @@ constexpr bool IsFallbackQuantity(const Unit& unit) {
 }
 
 /// A suffix comes before any suffix that it ends in.
-constexpr std::array kUnits = {
+inline constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},
     Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
     Unit{"rad", Kind::kAngle, "rad"},
