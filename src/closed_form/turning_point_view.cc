@@ -31,8 +31,7 @@ Extremes ExtremesOf(const Recording& recording) {
 
 /// The passages through the bottom, which are maxima of the reading.
 std::vector<TurningPoint> Bottoms(const Recording& upright, const TurningPointTable& table) {
-  constexpr double kAlike = 0.25;  // of a swing of the reading, which decreases with the energy, but less than this in
-                                   // one swing
+  constexpr double kAlike = 0.25;  // of a swing, which decreases with energy, but by less in one swing
   std::vector<TurningPoint> bottoms;
   for (std::size_t i = 0; i < table.half_swings(); ++i) {  // maxima and minima alternate
     if (table.points[i].value > table.points[i + 1].value) bottoms.push_back(table.points[i]);

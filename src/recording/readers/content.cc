@@ -38,7 +38,9 @@ constexpr std::array kForeign = {
             "this is an HDF5 file without MATLAB's header; export the recording as CSV, or save it from MATLAB "
             "with save('run.mat', 't', 'angle_deg')"},
     Foreign{"\x1F\x8B"sv, "this is a gzip file; unpack it and name the file in it"},
-    Foreign{"\xFD7zXZ"sv, "this is an xz file; unpack it and name the file in it"},
+    Foreign{"\xFD"
+            "7zXZ"sv,
+            "this is an xz file; unpack it and name the file in it"},
     Foreign{"BZh"sv, "this is a bzip2 file; unpack it and name the file in it"},
     Foreign{"7z\xBC\xAF\x27\x1C"sv, "this is a 7z file; unpack it and name the file in it"},
     Foreign{"Rar!"sv, "this is a RAR file; unpack it and name the file in it"},
