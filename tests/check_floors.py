@@ -74,7 +74,7 @@ FORBIDDEN_BELOW = {
     "throw": r"\bthrow\b",
     "a naked new": r"\bnew\b(?!>)",  # except #include <new>
     "logging": r"\b[DPSV]*LOG(?:_[A-Z_]+)?\s*\(",
-    "a flag": r"\bDEFINE_\w+",
+    "a flag": r"\bDEFINE_\w+|\bgflags::",
 }
 
 

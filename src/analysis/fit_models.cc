@@ -22,16 +22,17 @@ std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   return names;
 }
 
-/// The model that determines the window: the model with the most parameters, all of which have a meaning in every
-/// recording.
+/// The model that determines the window: of those with the default gravity, if there are any, the model with the most
+/// parameters, all of which have a meaning in every recording.
 std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t richest = 0;
-  std::size_t most = 0;
+  std::pair<bool, std::size_t> most;  // whether the gravity is the default, parameters
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
-    if (!model || model->gravity.is_linear()) continue;
+    if (!model) continue;
     // A model with a parameter that may have no meaning is the last choice.
-    const std::size_t size = FindOrderedPair(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
+    const std::size_t parameters = FindOrderedPair(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
+    const std::pair size{model->gravity == Gravity(), parameters};
     if (size <= most) continue;
     most = size;
     richest = i;

@@ -121,6 +121,7 @@ double Parts::Amplitude(double time) const {
   const double rate = motion_->Rate(Instant(time));
   const double kinetic = inertia_ * rate * rate;  // twice the kinetic energy, in units of G
   const Gravity gravity = fit_.model.gravity;
+  // By the chord: an arc cosine of the energy loses half the digits at small angles.
   return gravity.AngleOfChord(
       std::min(std::hypot(gravity.Chord(angle), std::sqrt(kinetic)), gravity.Chord(gravity.top())));
 }

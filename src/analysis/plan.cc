@@ -163,7 +163,8 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
   if (turns.size() < 3) return std::nullopt;
   const std::size_t periods = (turns.size() - 1) / 2;
   const TurningPoint &first = turns.front(), &last = turns[2 * periods];
-  if (std::abs(first.value) >= kPi) return std::nullopt;  // after an escape the angle counts from another turn
+  if (std::abs(first.value) >= run.model.gravity.top())
+    return std::nullopt;  // after an escape the angle counts from another turn
   const auto n = static_cast<double>(periods);
   const double damped_frequency = 2 * kPi * n / (last.time - first.time);
   const double decrement = std::log(first.value / last.value) / n;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "batch/entry_row.h"
+#include "batch/former_results.h"
 #include "batch/result_rows.h"
 #include "batch/sqlite.h"
 #include "batch/store_queries.h"
@@ -44,12 +45,23 @@ StoredRun RunOf(const SQLite::Statement& row) {
   return run;
 }
 
+/// Gives stored results the names of the present schema.
+void RenameInResults(SQLite::Database& database) {
+  SQLite::Statement results(database, "SELECT run, result FROM runs WHERE result IS NOT NULL");
+  SQLite::Statement rename(database, "UPDATE runs SET result = ? WHERE run = ?");
+  while (results.executeStep()) {
+    sqlite::Bind(rename, WithCurrentNames(sqlite::Text(results, 1)), results.getColumn(0).getInt64()).exec();
+    rename.reset();
+  }
+}
+
 /// Updates the tables in one transaction; creates them in a new file.
 void Migrate(SQLite::Database& database, int version) {
-  SQLite::Transaction transaction(database);
+  SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
   for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
+  if (version > 0) RenameInResults(database);
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
   database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
   transaction.commit();
@@ -242,14 +254,18 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   return sqlite::Guard(name, [&]() -> Result<Store> {
     auto state = std::make_unique<State>(name, mode);
     if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
-    if (mode == Mode::kRead) return Store(std::move(state));
+    const int version = state->database.execAndGet("PRAGMA user_version").getInt();
+    const bool is_older = version < static_cast<int>(kStoreMigrations.size());
+    if (mode == Mode::kRead) {
+      if (is_older) Migrate(state->database, version);
+      return Store(std::move(state));
+    }
     // A rollback journal needs no shared memory and works on any file system; EXTRA also synchronises the folder. With
     // a write-ahead log writers do not wait for readers, except when the journal mode changes.
     state->database.exec(mode == Mode::kServe
                              ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -32768"
                              : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
-    const int version = state->database.execAndGet("PRAGMA user_version").getInt();
-    if (version < static_cast<int>(kStoreMigrations.size())) Migrate(state->database, version);
+    if (is_older) Migrate(state->database, version);
     return Store(std::move(state));
   });
 }

@@ -35,7 +35,7 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
     std::string& list = law.probability >= kRejected ? followed : rejected;
     list += (list.empty() ? "" : ", ") + Describe(law);
   }
-  if (followed.empty()) return "of no single friction term: not " + rejected;
+  if (followed.empty()) return "no single friction term (excluded: " + rejected + ")";
   return "as " + followed + (rejected.empty() ? "; the turning points exclude none" : "; not as " + rejected);
 }
 

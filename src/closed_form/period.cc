@@ -108,7 +108,7 @@ Result<double> NaturalFrequency(const Recording& recording, const TurningPointTa
   if (table.quantity == Quantity::kAngle || gravity.is_linear()) return frequency_at(kUnbounded);
   // The amplitudes of a rate also depend on ω0. A larger ω0 means smaller amplitudes, and these give a smaller ω0, so
   // there is exactly one solution. At the smallest possible ω0 the largest peak would carry the pendulum to the top.
-  const double smallest = 0.5 * table.LargestAmplitude();
+  const double smallest = table.LargestAmplitude() / gravity.Chord(gravity.top());
   const double largest = std::max(frequency_at(smallest), 1.01 * smallest);
   const auto excess = [&](double frequency) { return frequency_at(frequency) - frequency; };
   if (!(excess(smallest) > 0)) return smallest;

@@ -124,7 +124,7 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
   const double mark = joint == nullptr ? parameter.scatter.mean : joint->estimate;
   for (std::size_t k = 0; k < parameter.runs.size(); ++k) {
     const RunEstimate& run = parameter.runs[k];
-    const std::string name = std::to_string(k + 1) + " alone";
+    const std::string name = std::to_string(k + 1) + " separate";
     if (!run.value) {
       table.rows.push_back({name, "-", "", "", ""});
       continue;
@@ -185,7 +185,7 @@ Section NoiseSection(const Identification& report, std::size_t index) {
                      NoiseText(fit) + "; rms residual " + ReadingText(fit.statistics.rms_residual, fit.reading_unit) +
                          ", lag-1 correlation " + FixedText(fit.noise.lag1_correlation, 3) + ", " +
                          fit.noise.autocorrelation.Name() + (lacks ? "; lack of fit" : "") +
-                         "; alone: " + report.joint[index].alone[k],
+                         "; separate fit: " + report.joint[index].alone[k],
                      lacks ? Emphasis::kCaution : Emphasis::kNone});
   }
   const FitStatistics& all = report.fits[index].statistics;

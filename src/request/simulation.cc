@@ -43,8 +43,9 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
     return BadFlag("--gravity " + flags.gravity + " contradicts --model " + flags.model +
                    "; its friction law is --model " + std::string(model->friction));
   }
-  model->gravity = *gravity;
-  return model;
+  const std::vector<MotionModel> models = MotionModels();
+  return *std::ranges::find_if(
+      models, [&](const MotionModel& other) { return other.gravity == *gravity && other.friction == model->friction; });
 }
 
 /// Every parameter that --set accepts, in the order of the truth file.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/version.h"
+#include "pendulum/model/gravity/registry.h"
 #include "pendulum/request/run_flags.h"
 #include "pendulum/web/page_parts.h"
 #include "pendulum/web/service_page.h"
@@ -110,6 +111,7 @@ std::string OpenApiDocument() {
   auto document = nlohmann::ordered_json::parse(OpenApiTemplate());
   document["components"]["schemas"]["Result"] = std::move(result);
   AddRunFlags(document);
+  document["components"]["schemas"]["GravityName"]["enum"] = GravityModels::kNames;
   document["info"]["version"] = kVersion;
   constexpr int kIndent = 2;
   return document.dump(kIndent) + "\n";

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "pendulum/analysis/plan.h"
+#include "pendulum/base/format.h"
+#include "pendulum/model/gravity/registry.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/report/plan_text.h"
@@ -38,9 +40,11 @@ std::string Usage() {
 using Flags = SimulateFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
+  static const std::string gravity =
+      "Law of the restoring torque, one of " + NameList(GravityModels::kNames) + "; default the model's own.";
   return {
       {"model", &Flags::model, "Equation of motion, one of the models named above; default coulomb."},
-      {"gravity", &Flags::gravity, "Law of gravity's torque, sin or linear; default the model's own."},
+      {"gravity", &Flags::gravity, gravity.c_str()},
       {"rig", &Flags::rig,
        "Rig file (JSON, SI units); without it torques and inertia are in units of the gravity torque."},
       {"set", &Flags::set,

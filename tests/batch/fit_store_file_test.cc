@@ -196,7 +196,7 @@ void MakeFirstVersion(const std::string& path) {
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId) + "; PRAGMA user_version = 1");
   database.exec(
       "INSERT INTO runs(id, position, path, rig, calibration, models, columns, exit_code, result) "
-      "VALUES('old', 0, 'old.csv', '', '', '', '{}', 0, '{}');"
+      "VALUES('old', 0, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":1,\"why\":\"x\"}');"
       "INSERT INTO fits(run, model, status, reason) VALUES(1, 'coulomb', 'converged', '');"
       "INSERT INTO quantities(run, model, name, derived, unit, fixed, at_bound) "
       "VALUES(1, 'coulomb', 'edge_lag', 0, 'rad', 0, 0)");
@@ -208,6 +208,7 @@ TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   EXPECT_EQ(NumberOutside("PRAGMA user_version"), 3);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM quantities WHERE name = 'hysteresis'"), 1);
+  EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE result = '{\"schema_version\":2,\"reason\":\"x\"}'"), 1);
   EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the other one was not requested from a service
   EXPECT_EQ(Store().Find("old").error().code, StatusCode::kNotFound);
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);

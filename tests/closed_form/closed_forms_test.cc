@@ -71,7 +71,7 @@ TEST(ClosedForms, ReportAModelWithTheWrongFriction) {
   decay.coulomb = 0.003 / kTorque;
   const ClosedForms forms = Must(EstimateClosedForms(Read(decay), kViscousModel));
   EXPECT_THAT(forms.wrong_law, HasSubstr("with viscous friction"));
-  EXPECT_THAT(forms.envelope, StartsWith("of no single friction term"));
+  EXPECT_THAT(forms.envelope, StartsWith("no single friction term"));
 }
 
 TEST(ClosedForms, UseTrueSecondsOnAWrongClock) {

@@ -128,6 +128,7 @@ TEST(MakeSimulation, AllowsAnyGravityWithAnyFriction) {
   ASSERT_TRUE(simulation) << simulation.error().message;
   EXPECT_EQ(simulation->synthetic.model.friction, "coulomb");
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
+  EXPECT_EQ(simulation->synthetic.model.name, "linear_coulomb");
 }
 
 TEST(MakeSimulation, TreatsLinearViscousAsTheLinearModel) {

@@ -56,6 +56,18 @@ class Document:
         return {(path, method): self.resolved(item[method]) for path,
                 (_, item) in self.paths.items() for method in item if method in METHODS}
 
+    def problems(self, code):
+        """The examples of a problem with this code."""
+        waiting, found = [self.content], []
+        while waiting:
+            value = waiting.pop()
+            if isinstance(value, dict):
+                found += [value] if value.get("code") == code and "title" in value else []
+                waiting += value.values()
+            elif isinstance(value, list):
+                waiting += value
+        return found
+
     def errors(self, schema, value):
         """Violations of a schema of this document by a value."""
         schemas = {name: within(each, f"#/$defs/{name}" if "$id" in each else "")
@@ -106,6 +118,10 @@ class Answers(Served):
             return
         self.assertIn(answer.type, {name.partition(";")[0].strip(): None for name in response["content"]}, what)
         media = next(value for name, value in response["content"].items() if name.partition(";")[0].strip() == answer.type)
+        if answer.type == "application/problem+json":
+            problem = answer.json()
+            for example in self.document.problems(problem["code"]):
+                self.assertEqual(example["title"], problem["title"], what)
         if answer.type.endswith("json"):
             self.assertEqual(self.document.errors(media["schema"], answer.json()), [], what)
         for name, header in response.get("headers", {}).items():

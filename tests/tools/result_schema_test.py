@@ -266,9 +266,9 @@ class JointSchema(unittest.TestCase):
 
     def test_knows_how_a_recording_alone_ends(self):
         run = ["fits", 0, "runs", 0]
-        self.assert_holds(lambda result: Schema.at(result, run).update(alone="not_converged: too few iterations"))
+        self.assert_holds(lambda result: Schema.at(result, run).update(separate="not_converged: too few iterations"))
         for wrong in ("ok", "not_converged", "converged: so it is"):
-            self.assert_refused(lambda result, wrong=wrong: Schema.at(result, run).update(alone=wrong))
+            self.assert_refused(lambda result, wrong=wrong: Schema.at(result, run).update(separate=wrong))
 
     def test_wants_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/model/friction/viscous.h"
+#include "pendulum/model/friction/coulomb.h"
 #include "pendulum/trajectory/trajectory.h"
 #include "trajectory/tracer.h"
 
@@ -27,7 +27,8 @@ struct Dahl {
   static constexpr std::string_view kTitle = "viscous friction and bristles";
   static constexpr std::string_view kAbout = "Dry friction that yields like a spring before it slides.";
   static constexpr std::string_view kFormula = "{viscous} th' + {stiffness} z";
-  static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, {.name = "coulomb"}, {.name = "stiffness"}}};
+  static constexpr std::array<ParameterInfo, 3> kParameters = {
+      {kViscous, kCoulomb, {"stiffness", "σ", "N m/rad", "1/rad", 0.0, kUnbounded, "stiffness of the bristles"}}};
   static constexpr int kStates = 1;
 
   template <typename T>

@@ -77,8 +77,9 @@ class Store {
  public:
   enum class Mode { kRead, kWrite, kServe };
 
-  /// kRead: kNotFound, no such file. The other modes create a missing file and update older versions. kServe keeps a
-  /// log next to it while it is open, so writers do not wait for readers. kDataLoss: not a store, or a newer version.
+  /// Updates a store of an older version. kRead: kNotFound, no such file. The other modes create a missing file. kServe
+  /// keeps a log next to it while it is open, so writers do not wait for readers. kDataLoss: not a store, or a newer
+  /// version.
   static Result<Store> Open(const std::filesystem::path& path, Mode mode);
 
   Store(Store&& other) noexcept;

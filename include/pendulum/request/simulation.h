@@ -20,7 +20,7 @@ namespace pendulum {
 /// and range are in `unit`.
 struct SimulationFlags {
   std::string model = "coulomb";
-  std::string gravity;       ///< "sin" or "linear"; empty: the model's own.
+  std::string gravity;       ///< A name in GravityModels; empty: the model's own.
   std::string set;           ///< name=value,...
   std::string spread;        ///< name=std_dev,...; empty: no scatter.
   std::string unit = "deg";  ///< deg, rad, deg_s, rad_s, volts (of a gyro), m_s2, px or m

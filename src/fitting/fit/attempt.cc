@@ -22,16 +22,17 @@ namespace {
 void UnwrapOffset(const FitProblem& problem, Solution& solution) {
   const std::size_t zero = problem.zero();
   const std::size_t angle = problem.angle();
-  if (!std::isfinite(problem.model.gravity.top())) return;
+  const double turn = 2 * problem.model.gravity.top();
+  if (!std::isfinite(turn)) return;
   if (problem.data.quantity != Quantity::kAngle) {
-    const double turns = std::round((solution.parameters[angle] - problem.start.parameters[angle]) / (2 * kPi));
-    if (!problem.solve.fixed[angle]) solution.parameters[angle] -= 2 * kPi * turns;
+    const double turns = std::round((solution.parameters[angle] - problem.start.parameters[angle]) / turn);
+    if (!problem.solve.fixed[angle]) solution.parameters[angle] -= turn * turns;
     return;
   }
   if (problem.solve.fixed[zero] || problem.solve.fixed[angle]) return;
-  const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / (2 * kPi));
-  solution.parameters[zero] -= 2 * kPi * turns;
-  solution.parameters[angle] += 2 * kPi * turns;
+  const double turns = std::round((solution.parameters[zero] - problem.start.parameters[zero]) / turn);
+  solution.parameters[zero] -= turn * turns;
+  solution.parameters[angle] += turn * turns;
 }
 
 /// Solves at the tolerance expected to suffice and measures the error of the trajectory at the solution. While the

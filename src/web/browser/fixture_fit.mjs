@@ -100,7 +100,6 @@ export function fitOf(model) {
         z: null,
         agrees: null,
         reason: 'no errors to compare it with',
-        reason: 'no errors to compare it with',
       },
       {
         quantity: 'inertia_turning_points',

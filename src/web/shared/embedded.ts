@@ -2,13 +2,12 @@
 /** Reads the JSON that is embedded in a page, and starts its script. */
 
 import { el } from './dom';
-import { withCurrentNames } from './former_schema';
 
 /** The JSON of the script element with this id; null if it is missing or empty. */
 export function embedded<T>(id: string): T | null {
   const content = document.getElementById(id)?.textContent?.trim() ?? '';
   const filled = /^[{[]/.test(content) ? content : 'null';
-  return withCurrentNames(JSON.parse(filled)) as T | null;
+  return JSON.parse(filled) as T | null;
 }
 
 /** Calls `fill` with the element of this id. An error is shown in the element. */

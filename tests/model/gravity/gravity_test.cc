@@ -53,7 +53,9 @@ TYPED_TEST_SUITE(GravityLaw, TypesOf<GravityModels>::Type, LawName);
 TYPED_TEST(GravityLaw, IsOddAndRestoresBelowTheTop) {
   for (const double angle : this->Angles()) {
     EXPECT_EQ(TypeParam::Torque(-angle), -TypeParam::Torque(angle)) << angle;
-    if (angle > 0) EXPECT_GT(TypeParam::Torque(angle), 0) << angle;
+    if (angle > 0) {
+      EXPECT_GT(TypeParam::Torque(angle), 0) << angle;
+    }
   }
 }
 
@@ -65,6 +67,14 @@ TYPED_TEST(GravityLaw, HasItsTorqueAsTheSlopeOfThePotential) {
     constexpr double kStep = 1e-5;
     const double slope = (TypeParam::Potential(angle + kStep) - TypeParam::Potential(angle - kStep)) / (2 * kStep);
     EXPECT_THAT(slope, DoubleNear(TypeParam::Torque(angle), 1e-9)) << angle;
+  }
+}
+
+TYPED_TEST(GravityLaw, IsSteepestAtTheBottom) {
+  for (const double angle : this->Angles()) {
+    constexpr double kStep = 1e-3;
+    const double rise = TypeParam::Torque(angle + kStep) - TypeParam::Torque(angle);
+    EXPECT_LE(std::abs(rise), kStep * (1 + 1e-12)) << angle;
   }
 }
 

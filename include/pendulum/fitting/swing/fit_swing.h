@@ -17,7 +17,8 @@ struct SwingFit {
 
 /// Fits a free swing. If the fit leaves more than noise, turning points at the ends are left out as long as the richest
 /// law then fits the rest clearly better (warning `ends_trimmed`), or until the fit converges. Ends chosen by the user
-/// stay. FitUndersampled fits an undersampled swing. Larger motion outside the window gives the warning `left_out`. A
+/// stay. FitUndersampled fits an undersampled swing. Larger motion outside the window gives the warning
+/// `larger_motion_outside`. A
 /// motion that is not a pendulum's ends kNotConverged, with `not_a_pendulum`. If an angle's zero jumps by whole counts,
 /// the later readings are shifted back, also in `used` (`lost_counts`). If it jumps by another amount, the fit ends
 /// kNotConverged, with `offset_jumps`; a possible jump gives `offset_unsteady`. Errors as FitRecording. Cost: as

@@ -19,7 +19,7 @@ namespace pendulum {
 /// kTitle says in words what the law is; kAbout explains to a beginner where it occurs. kFormula is T as text for the
 /// equation of motion in the report: th' is the rate, {name} the value of a parameter.
 ///
-/// Torque(0, 1, p) is the static torque. The pendulum stays at rest while |sin θ| is at most the static torque for the
+/// Torque(0, 1, p) is the static torque. The pendulum stays at rest while |g(θ)| is at most the static torque for the
 /// direction in which it would move.
 ///
 /// Invariants: the law is odd, T(-ω, -s) = -T(ω, s), except that parameters of either sign change sign too. It never
@@ -88,6 +88,8 @@ concept FrictionWithState = FrictionModel<F> && HasState<F> &&
 /// A closed list of friction laws. Only these can be chosen by name.
 template <FrictionModel... Fs>
 struct FrictionModelList {
+  static_assert(((!HasState<Fs> || FrictionWithState<Fs>)&&...), "a law with kStates has all members of its concept");
+
   static constexpr std::array<std::string_view, sizeof...(Fs)> kNames = {Fs::kName...};
 
   /// Calls visit.operator()<F>() for the law called `name`. Returns false if there is none.

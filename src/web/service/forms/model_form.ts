@@ -41,7 +41,7 @@ export class ModelForm {
 
   /** Ticks the models of a fit. */
   fill(list: string): void {
-    const all = this.models.filter((model) => model.gravity === 'sin').map((model) => model.name);
+    const all = this.models.filter((model) => model.gravity === this.models[0]?.gravity).map((model) => model.name);
     const names = list === 'all' ? all : list.split(',').map((name) => name.trim());
     this.chosen = new Set(names);
     this.own = !isDefault(names);

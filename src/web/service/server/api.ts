@@ -4,7 +4,6 @@
  * ProblemError.
  */
 
-import { withCurrentNames } from '../../shared/former_schema';
 import { waitFor } from '../waiting';
 import { problemFrom, ProblemError, retryAfter, unreachable, type Problem } from './problem';
 import { askToken, token } from './token';
@@ -71,7 +70,7 @@ export async function askJson<T>(path: string, options: Ask = {}): Promise<T> {
   const answer = await ask(path, options);
   const body = await answer.text();
   try {
-    return withCurrentNames(JSON.parse(body)) as T;
+    return JSON.parse(body) as T;
   } catch {
     throw new ProblemError(problemFrom(answer.status, ''));
   }
