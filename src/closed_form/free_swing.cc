@@ -22,11 +22,11 @@ using Eigen::Index;
 
 /// The runs of free half swings.
 std::vector<TurningPointRun> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
-  constexpr std::size_t kMin = 2;
+  constexpr std::size_t kMinHalfSwings = 2;
   std::vector<TurningPointRun> runs;
   std::size_t first = 0;
   const auto close = [&](std::size_t last) {
-    if (last >= first + kMin) runs.push_back({first, last});
+    if (last >= first + kMinHalfSwings) runs.push_back({first, last});
   };
   for (std::size_t i = 0; i < table.half_swings(); ++i) {
     const bool free = verdicts[i] == Verdict::kFree || (verdicts[i] == Verdict::kFreeAfterHold);
@@ -76,10 +76,10 @@ bool IsSteady(const Recording& recording, const TurningPointTable& table, Index 
 /// Begins in the steady part at the end of a hold, or where the hold ends if it is not steady: a moving hand does not
 /// hold.
 Beginning SteadyPart(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
-  constexpr Index kMin = 8;
+  constexpr Index kMinSamples = 8;
   // The release also lies somewhere within the band.
   const Index held = first + 7 * (last - first) / 10;
-  for (Index begin = first; held - begin >= kMin; begin += (held - begin + 1) / 2) {
+  for (Index begin = first; held - begin >= kMinSamples; begin += (held - begin + 1) / 2) {
     if (IsSteady(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
   }
   return {last, {WindowBegin::Reason::kUnsteadyHold}};
@@ -142,12 +142,12 @@ double AmplitudeOverError(const Recording& recording, const TurningPointTable& t
 /// The last sample at which the reading moves; checks one period at a time from `sample` to `limit`.
 Index EndOfMotion(const Recording& recording, const TurningPointTable& table, Index sample, Index limit) {
   constexpr double kMoves = 5;
-  constexpr Index kMin = 6;
+  constexpr Index kMinSamples = 6;
   Index end = sample;
   while (sample < limit) {
     Index next = sample;
     while (next < limit && recording.time[next] - recording.time[sample] < 2 * table.half_period) ++next;
-    if (next - sample < kMin || AmplitudeOverError(recording, table, sample, next - sample) > kMoves) end = next;
+    if (next - sample < kMinSamples || AmplitudeOverError(recording, table, sample, next - sample) > kMoves) end = next;
     sample = next;
   }
   return end;
@@ -230,9 +230,9 @@ double Decay(const TurningPointTable& table, std::size_t first, std::size_t last
 bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last) {
   first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
-  constexpr Index kMin = 6;
+  constexpr Index kMinPoints = 6;
   const auto count = static_cast<Index>(last - first + 1);
-  if (count < kMin || Decay(table, first, last) < kClearly) return true;
+  if (count < kMinPoints || Decay(table, first, last) < kClearly) return true;
   const auto amplitude_at = [&](Index i) { return table.Amplitude(first + static_cast<std::size_t>(i)); };
   const Eigen::VectorXd amplitude = Eigen::VectorXd::NullaryExpr(count, amplitude_at);
   Eigen::MatrixX3d basis(count, 3);
@@ -248,13 +248,13 @@ bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last)
 /// Share of the half swings in which the amplitude climbs by at least a tenth over three or more half swings. The start
 /// of the recording is not a turning point.
 double RisingShare(const TurningPointTable& table) {
-  constexpr std::size_t kMin = 3;
+  constexpr std::size_t kMinRise = 3;
   std::size_t climbing = 0;
   std::size_t low = 1;
   std::size_t high = 1;
   const auto close = [&] {
     const bool climbs = table.Amplitude(high) > 1.1 * table.Amplitude(low) + table.Tolerance(low);
-    if (climbs && high >= low + kMin) climbing += high - low;
+    if (climbs && high >= low + kMinRise) climbing += high - low;
   };
   for (std::size_t i = 2; i < table.points.size(); ++i) {
     if (table.Amplitude(i) >= table.Amplitude(high)) {
@@ -273,7 +273,7 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
                                                      const std::vector<TurningPointRun>& runs) {
   constexpr double kMaxRisingShare = 0.2;
   constexpr double kDecayed = 0.7;
-  constexpr std::size_t kMin = 6;
+  constexpr std::size_t kMinFreePoints = 6;
   const std::size_t turns = table.points.size();
   const auto longest =
       std::ranges::max_element(runs, {}, [](const TurningPointRun& run) { return run.last - run.first; });
@@ -286,7 +286,7 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
                                                       "small to see; give --from and --to to fit this window anyway");
   }
   const double largest = std::ranges::max(table.Amplitudes());
-  const bool scattered = 3 * free < turns && (free < kMin || table.Amplitude(longest->first) < 0.5 * largest);
+  const bool scattered = 3 * free < turns && (free < kMinFreePoints || table.Amplitude(longest->first) < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
   // A motion that begins at rest and climbs was not released.
   const bool from_rest = climbs && table.Amplitude(1) < 0.35 * largest;
@@ -315,10 +315,10 @@ double LargestOutside(const TurningPointTable& table, const std::vector<TurningP
 
 /// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
 Result<void> CheckUnit(const TurningPointTable& table) {
-  constexpr double kMax = 3.3;  // rad
+  constexpr double kMaxAngle = 3.3;  // rad
   const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
   const double typical = Median(table.Amplitudes());
-  if (!angle || typical < kMax) return {};
+  if (!angle || typical < kMaxAngle) return {};
   return Error(StatusCode::kFailedPrecondition, "the reading swings by " + NumberText(typical, 3) + " rad (" +
                                                     NumberText(typical / kRadFromDeg, 3) +
                                                     " deg) to both sides, but beyond 180 deg a pendulum goes over the "

@@ -47,11 +47,11 @@ void DescribeIntervals(const Eigen::VectorXd& time, Sampling& sampling) {
 }
 
 void DescribeCounts(const Recording& used, Sampling& sampling) {
-  constexpr Index kMin = 8;
+  constexpr Index kMinSamples = 8;
   const double q = used.resolution;
   const auto peak_to_peak = [](const auto& values) { return values.maxCoeff() - values.minCoeff(); };
   const auto in_period = static_cast<Index>(std::ceil(std::min(sampling.samples_per_period, 1e9)));
-  const Index last = std::min(std::max(in_period, kMin), used.size());
+  const Index last = std::min(std::max(in_period, kMinSamples), used.size());
   if (q > 0) sampling.start_counts = std::round(peak_to_peak(used.value) / q);
   if (q > 0) sampling.end_counts = std::round(peak_to_peak(used.value.tail(last)) / q);
   if (!used.range) return;
