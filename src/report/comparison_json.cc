@@ -35,7 +35,7 @@ Json PredictionJson(const std::string& what, const Prediction& prediction, const
 
 Json RowJson(const ComparisonRow& row, const std::string& unit) {
   NumberObject object;
-  if (!row.judged) object.AddReason(row.reason.empty() ? "not judged" : row.reason);
+  if (!row.judged) object.AddReason(row.reason.empty() ? "not compared" : row.reason);
   object.Set("model", Json(row.model))
       .Set("is_compared", Json(row.judged))
       .Set("parameters", Json(row.parameters))

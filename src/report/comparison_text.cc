@@ -59,7 +59,7 @@ Table CriteriaTable(const Comparison& comparison, const Conversion& shown) {
                           FixedText(row.lag1_correlation, 2),
                           row.lack_of_fit ? kLackOfFit
                           : row.judged    ? ""
-                                          : "not judged"});
+                                          : "not compared"});
   }
   return table;
 }

@@ -10,7 +10,7 @@
 
 namespace pendulum {
 
-/// The part of a row that needs no other model: parameters, residuals, and the reason if it is not judged.
+/// The part of a row that needs no other model: parameters, residuals, and the reason if it is not compared.
 ComparisonRow DescribeFit(const FitReport& fit);
 
 /// The judged fit with the smallest AICc. Autocorrelated residuals do not exclude the other fits: a wrong law leaves

@@ -33,7 +33,7 @@ struct ComparisonRow {
   double lag1_correlation = 0;  ///< Lag-1 correlation of the quantile residuals.
   double ljung_box_p = 1;
   bool lack_of_fit = false;  ///< The fit reports that more than noise is left in its residuals.
-  std::string reason;        ///< Why it is not judged; empty if it is.
+  std::string reason;        ///< Why it is not compared; empty if it is.
 };
 
 /// Test whether a law needs the parameters that it adds to a simpler one.
