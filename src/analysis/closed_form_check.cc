@@ -241,9 +241,10 @@ class Checker {
   }
 
  private:
-  /// Hausman's deviation, if the residuals are white and the difference of variances is not small. The residuals of a
-  /// wrong law are autocorrelated misfit, not noise. In that case it uses the noise between neighbouring samples, or
-  /// the closed form's own error if that is larger.
+  /// Standard deviation of the difference. If the residuals are white and the variances differ clearly, it is
+  /// Hausman's. The residuals of a wrong law are misfit, not noise; it is then computed from the noise between
+  /// neighbouring samples, but is at least the closed form's own error. Otherwise it is computed from the residuals and
+  /// their autocorrelation.
   std::optional<double> Deviation(const ClosedFormRow& row, const FitSide::Value& fitted, const VectorXd& gradient) {
     constexpr double kSmallDifference = 0.25;
     if (!fitted.std_error) return std::nullopt;

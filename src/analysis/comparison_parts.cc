@@ -45,7 +45,7 @@ std::string NoLikelihoodReason(const FitReport& best, const std::string& autocor
   if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
   const std::string why = best.noise.censored > 0                    ? "readings at an end of the sensor's range"
                           : IsNormal(best)                           ? "noise below half a count"
-                          : best.noise.family == NoiseFamily::kEdges ? "rows at uneven times"
+                          : best.noise.family == NoiseFamily::kEdges ? "rows only where the count changes"
                                                                      : "a robust loss";
   return residuals + "are autocorrelated (" + autocorrelation + "), and with " + why + " their likelihood is not known";
 }

@@ -102,7 +102,7 @@ CoverageScenario OnTicks(std::string name, std::string description) {
   return scenario;
 }
 
-/// So few counts that the motion near turning points and rest is slow compared with a count.
+/// A swing of so few counts (8 to either side) that one count takes long near turning points and rest.
 CoverageScenario OnFewTicks(std::string name, std::string description) {
   CoverageScenario scenario = OnTicks(std::move(name), std::move(description));
   scenario.run.initial_angle = 0.08;
@@ -119,16 +119,16 @@ CoverageScenario WithLag(CoverageScenario scenario) {
   return scenario;
 }
 
-/// Fixes the lag at 0, which is also assumed for readings at even times.
+/// Fixes the lag at 0, which is also assumed for readings at equal intervals.
 CoverageScenario WithoutLag(CoverageScenario scenario) {
   scenario.fit.fixed = {{std::string(kHysteresis.name), 0}};
   return scenario;
 }
 
-/// The same encoder sampled at even times. An error lasts as long as a count, so this scenario is for comparison and
-/// not for its intervals.
+/// The same encoder sampled at equal intervals. An edge error affects all samples of a count; therefore only the errors
+/// of this scenario are compared, not its intervals.
 CoverageScenario SampledEvenly(CoverageScenario scenario) {
-  scenario.run.rows = RowTiming::kEvenOfEvents;
+  scenario.run.rows = RowTiming::kEvenFromEncoder;
   scenario.run.time_noise = 0;
   scenario.fit.interval = IntervalMethod::kCovariance;  // a posterior with so many samples takes seconds
   scenario.rule.lowest = 0;

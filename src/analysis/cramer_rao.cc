@@ -97,7 +97,7 @@ Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitiviti
 /// The information of the parameters, and in some cases of the noise's size; std::nullopt without a closed form.
 std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
                                            const Eigen::VectorXd& time) {
-  if (truth.rows == RowTiming::kEvenOfEvents) return std::nullopt;
+  if (truth.rows == RowTiming::kEvenFromEncoder) return std::nullopt;
   if (truth.rows == RowTiming::kEvents) return EdgeInformation(truth, at, time);
   const bool has_levels = truth.resolution > 0;
   const bool correlated = truth.noise_correlation != 0;

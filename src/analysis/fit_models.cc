@@ -52,11 +52,11 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
 }
 
 /// Two warnings hold for every model: the recording is not a pendulum's swing, or its zero jumps.
-void CopySharedWarnings(const FitReport& lead, FitReport& fit) {
-  const auto said = std::ranges::find_if(lead.warnings, [](const Warning& warning) {
+void CopySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
+  const auto said = std::ranges::find_if(richest_fit.warnings, [](const Warning& warning) {
     return warning.code == "not_a_pendulum" || warning.code == "offset_jumps";
   });
-  if (said == lead.warnings.end() || fit.termination == Termination::kFailed) return;
+  if (said == richest_fit.warnings.end() || fit.termination == Termination::kFailed) return;
   fit.termination = Termination::kNotConverged;
   fit.reason = said->message;
   WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
@@ -65,40 +65,43 @@ void CopySharedWarnings(const FitReport& lead, FitReport& fit) {
 /// The fits of one call of FitModels.
 class SharedFits {
  public:
-  SharedFits(SwingFit lead, std::size_t lead_index, FitOptions options, const std::vector<std::string>& models)
-      : options_(std::move(options)), models_(models), result_{std::move(lead.used), std::move(lead.swing), {}} {
-    options_.start = OptionsLike(lead.fit, options_).start;
+  SharedFits(SwingFit richest_fit, std::size_t richest_index, FitOptions options,
+             const std::vector<std::string>& models)
+      : options_(std::move(options)),
+        models_(models),
+        result_{std::move(richest_fit.used), std::move(richest_fit.swing), {}} {
+    options_.start = OptionsLike(richest_fit.fit, options_).start;
     result_.fits.resize(models.size());
-    result_.fits[lead_index] = std::move(lead.fit);
+    result_.fits[richest_index] = std::move(richest_fit.fit);
     for (std::size_t i = 0; i < models.size(); ++i) {
-      if (i != lead_index) Fit(i, result_.fits[lead_index]);
+      if (i != richest_index) Fit(i, result_.fits[richest_index]);
     }
-    ShareNoise(lead_index);
+    ShareNoise(richest_index);
   }
 
   FittedModels Take() && { return std::move(result_); }
 
  private:
-  void Fit(std::size_t i, const FitReport& lead) {
+  void Fit(std::size_t i, const FitReport& richest_fit) {
     auto [options, ignored] = ForModel(options_, models_[i], models_);
     Result<FitReport> fit = FitRecording(result_.used, options);
-    result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], lead, fit.error());
-    CopySharedWarnings(lead, result_.fits[i]);
+    result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], richest_fit, fit.error());
+    CopySharedWarnings(richest_fit, result_.fits[i]);
   }
 
   /// Likelihoods can be compared only within one noise family: that of the fit with the smallest residuals.
-  void ShareNoise(std::size_t lead_index) {
+  void ShareNoise(std::size_t richest_index) {
     const auto best = std::ranges::min_element(result_.fits, {}, [](const FitReport& fit) {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
     });
     const NoiseFamily family = best->noise.family;
     options_.noise = OptionsLike(*best, options_).noise;
-    const FitReport lead = result_.fits[lead_index];
+    const FitReport richest_fit = result_.fits[richest_index];
     for (std::size_t i = 0; i < models_.size(); ++i) {
       FitReport& fit = result_.fits[i];
       if (fit.termination == Termination::kFailed || fit.noise.family == family) continue;
       std::vector<Warning> said = std::move(fit.warnings);
-      Fit(i, lead);
+      Fit(i, richest_fit);
       for (Warning& warning : said) {
         const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
         constexpr std::array kOfWindow = {"ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",
@@ -143,11 +146,11 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
 
 Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models) {
-  const std::size_t lead_index = Richest(models);
-  const FitOptions lead_options = ForModel(options, models[lead_index], models).options;
-  Result<SwingFit> lead = FitSwing(std::move(recording), swing, lead_options);
-  if (!lead) return tl::unexpected(lead.error());
-  return SharedFits(*std::move(lead), lead_index, options, models).Take();
+  const std::size_t richest_index = Richest(models);
+  const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
+  Result<SwingFit> richest_fit = FitSwing(std::move(recording), swing, richest_options);
+  if (!richest_fit) return tl::unexpected(richest_fit.error());
+  return SharedFits(*std::move(richest_fit), richest_index, options, models).Take();
 }
 
 void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedModels& fitted) {

@@ -73,7 +73,7 @@ struct FitStore::State {
 
   Result<void> WaitUntilCommitted(std::unique_lock<std::mutex>& held);
   Result<void> AddRun(const FitOrder& order, const FileHashes& hashes, const std::optional<std::int64_t>& batch);
-  void KeepAnswer(const std::optional<RequestKey>& key, const std::string& location, const std::string& created);
+  void StoreAnswer(const std::optional<RequestKey>& key, const std::string& location, const std::string& created);
 
   /// Writes that share one commit.
   struct Round {
@@ -162,8 +162,8 @@ Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& ha
   return {};
 }
 
-void FitStore::State::KeepAnswer(const std::optional<RequestKey>& key, const std::string& location,
-                                 const std::string& created) {
+void FitStore::State::StoreAnswer(const std::optional<RequestKey>& key, const std::string& location,
+                                  const std::string& created) {
   if (!key) return;
   writer.database().exec(kForgetAnswers);
   SQLite::Statement add(writer.database(), "INSERT OR REPLACE INTO answers VALUES(?, ?, ?, ?)");
@@ -198,7 +198,7 @@ Result<void> FitStore::Add(const FitOrder& order, const RunOutcome& outcome, con
   if (!hashes) return tl::unexpected(hashes.error());
   return state_->Write([&](SQLite::Database&) -> Result<void> {
     if (auto added = state_->AddRun(order, *hashes, std::nullopt); !added) return added;
-    state_->KeepAnswer(key, "/v1/fits/" + order.id, order.created);
+    state_->StoreAnswer(key, "/v1/fits/" + order.id, order.created);
     return state_->writer.Put(order.id, outcome);
   });
 }
@@ -219,7 +219,7 @@ Result<void> FitStore::AddBatch(const std::string& id, const std::string& create
     for (std::size_t i = 0; i < orders.size(); ++i) {
       if (auto added = state_->AddRun(orders[i], hashes[i], batch); !added) return added;
     }
-    state_->KeepAnswer(key, "/v1/batches/" + id, created);
+    state_->StoreAnswer(key, "/v1/batches/" + id, created);
     return {};
   });
 }

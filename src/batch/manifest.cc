@@ -54,12 +54,12 @@ class CsvRows {
     while (!complete_) {
       const Result<bool> next = lines_.Next();
       if (!next) return tl::unexpected(next.error());
-      if (!*next) return AtEnd();
+      if (!*next) return EndOrUnclosedQuote();
       if (!has_delimiter_ && lines_.line().find_first_not_of(" \t") != std::string::npos)
         ChooseDelimiter(lines_.line());
-      if (!Parse(lines_.line()) || !Parse("\n")) return Unreadable();
-      if (goes_on_) return CarriageReturn();
-      if (row_bytes_ > kLongestRow) return TooLong();
+      if (!Parse(lines_.line()) || !Parse("\n")) return QuoteInFieldError();
+      if (goes_on_) return CarriageReturnError();
+      if (row_bytes_ > kLongestRow) return TooLongError();
       if (!complete_ && row_.fields.empty() && !in_quotes()) {
         row_.line = lines_.number() + 1;
         row_bytes_ = 0;
@@ -98,25 +98,25 @@ class CsvRows {
 
   bool in_quotes() const { return quotes_ % 2 == 1; }
 
-  Result<bool> AtEnd() {
+  Result<bool> EndOrUnclosedQuote() {
     if (!in_quotes()) return false;
     return Fault(name() + ":" + std::to_string(row_.line),
                  "a field begins with a double quote that is never closed; close it, or double a quote that belongs to "
                  "the text");
   }
 
-  Result<bool> TooLong() const {
+  Result<bool> TooLongError() const {
     return Fault(name() + ":" + std::to_string(row_.line),
                  "the row that begins here is longer than 16 MiB; check for a double quote that is not closed");
   }
 
   /// libcsv would accept a carriage return as a line end.
-  Result<bool> CarriageReturn() const {
+  Result<bool> CarriageReturnError() const {
     return Fault(name() + ":" + std::to_string(lines_.number()),
                  "there is a carriage return within the line; end lines with LF or CRLF");
   }
 
-  Result<bool> Unreadable() {
+  Result<bool> QuoteInFieldError() {
     return Fault(name() + ":" + std::to_string(lines_.number()),
                  "there is a double quote inside a field; put the whole field in quotes and double its own quotes");
   }

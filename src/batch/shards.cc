@@ -221,7 +221,8 @@ Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs
   return {};
 }
 
-/// Removes files of attempts. They are dead or too late, because all shards are complete.
+/// Removes the files of other attempts. All shards are complete, so those attempts have crashed or are no longer
+/// needed.
 void RemoveLeftovers(const fs::path& folder, std::int64_t count) {
   std::error_code error;
   std::vector<fs::path> leftovers;

@@ -196,8 +196,8 @@ struct LeastSquares {
   double sum = 0;
 };
 
-/// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is a hundredth of the standard
-/// errors, scaled by the size of the residuals.
+/// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is below a hundredth of the
+/// standard errors. These are multiplied by sqrt(chi2 / dof) if that exceeds 1.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMaxSteps = 100;
   constexpr double kSmallStep = 1e-4;  // squared, in standard errors

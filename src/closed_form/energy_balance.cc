@@ -96,8 +96,8 @@ EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double 
   return {equations.normal, equations.right, reference_rate};
 }
 
-/// The share of the losses that the best friction explains.
-double ExplainedShare(const EnergyBalance& balance) {
+/// The reduction of the sum of squares by the best friction. It only ranks the balances of one table.
+double ExplainedSumOfSquares(const EnergyBalance& balance) {
   const std::vector<double> friction = FrictionFrom(balance);
   double gain = 0;  // excludes the reference rate, whose equation is not solved
   for (std::size_t k = 0; k + 1 < friction.size(); ++k)
@@ -129,7 +129,7 @@ std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const Turning
       for (const double scale : F::kRateScales) {
         balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, scale * largest));
       }
-      std::ranges::stable_sort(balances, std::ranges::greater(), ExplainedShare);
+      std::ranges::stable_sort(balances, std::ranges::greater(), ExplainedSumOfSquares);
     } else {
       balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, 0));
     }

@@ -109,10 +109,11 @@ void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {
                                     "turning points in them are missing"});
   }
   if (sampling.jitter * sampling.rate_hz > kMuchJitter) {
-    warnings.push_back({"jitter", "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) +
-                                      " ms about " + NumberText(1e3 / sampling.rate_hz, 3) +
-                                      " ms; the time stamps are used as they are. If the sensor was read at even times "
-                                      "and only stamped late, give --time_column none with --sample_rate_hz"});
+    warnings.push_back(
+        {"jitter", "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) + " ms about " +
+                       NumberText(1e3 / sampling.rate_hz, 3) +
+                       " ms; the time stamps are used as they are. If the sensor was read at equal "
+                       "intervals and only stamped late, give --time_column none with --sample_rate_hz"});
   }
 }
 

@@ -58,7 +58,8 @@ void InterpolatePassages(const std::vector<TurningPoint>& bottoms, double least,
   }
 }
 
-/// MODEL.md eq. (14.5), with M interpolated linearly between the bottoms' readings.
+/// Replaces each reading y by ±sqrt(M - y), with the other sign after each passage (MODEL.md eq. (14.5)). M is
+/// interpolated linearly between the readings at the passages.
 Recording Unfolded(Recording recording) {
   recording.value *= RadialSide(recording);
   const TurningPointTable table = FindAllTurningPoints(recording);

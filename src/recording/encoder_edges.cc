@@ -38,8 +38,8 @@ std::vector<Index> RunsOf(const Recording& recording) {
   return begins;
 }
 
-/// Marks slips: one or two rows against the motion between long runs. They occur when a counter misses edges while its
-/// logger is busy, and they are not edges at their stamps.
+/// Marks slips: one or two rows in the opposite direction within a long motion. They occur when a counter misses edges
+/// while its logger is busy, and they are not edges at their stamps.
 std::vector<bool> MarkSlips(const Recording& recording) {
   constexpr Index kShort = 2, kLong = 8;
   const std::vector<Index> begins = RunsOf(recording);
@@ -77,11 +77,11 @@ bool StartsWithHold(const Recording& recording) {
 Warning ConversionWarning(Index silences, std::ptrdiff_t slips) {
   std::string text =
       "the recording has rows only where the count changes. Each row is treated as the edge of its count, crossed at "
-      "its time stamp, and the angle as within its count in " +
-      std::to_string(silences) + " silences at turning points and rest";
+      "its time stamp; between rows at the " +
+      std::to_string(silences) + " turning points and rests the angle is only known to be within its count";
   if (slips > 0) {
     text += "; " + std::to_string(slips) + (slips == 1 ? " row" : " rows") +
-            " against the motion left out, because the counter slipped";
+            " in the wrong direction left out, because the counter missed edges";
   }
   return {"event_driven", text + "; use --noise gaussian to treat the rows as samples"};
 }

@@ -106,7 +106,7 @@ void DetectSaturation(double smallest_step, Recording& recording) {
   if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
 }
 
-/// Warns if there are rows only where the value changes: steps of one size, never zero, at uneven times.
+/// Warns if there are rows only where the value changes: steps of one size, never zero, at unequal intervals.
 void WarnOfEventRows(double smallest_step, Recording& recording) {
   constexpr double kSame = 1e-3;
   constexpr double kMinSingleShare = 0.3;
@@ -129,13 +129,13 @@ void WarnOfEventRows(double smallest_step, Recording& recording) {
   recording.warnings.push_back(
       {"event_driven",
        "the recording has rows only where the value changes. The angle is then at the edge of its count, half a count "
-       "from the middle, and the error bars ignore this shift; record at even times if possible"});
+       "from the middle, and the error bars ignore this shift; record at equal intervals if possible"});
 }
 
 constexpr Index kStaleReach = 6;  // samples on either side that are examined for stale readings
 
-/// Readings that repeat the previous one although the readings around them change by many least steps, either overall
-/// (amid_change) or in one direction (amid_motion).
+/// Readings that repeat the previous one although their neighbours change by many times the smallest step. amid_change:
+/// the range of the neighbours is that large. amid_motion: the neighbours move that far in one direction.
 struct Repeats {
   std::vector<bool> amid_change;
   std::vector<bool> amid_motion;
@@ -144,8 +144,8 @@ struct Repeats {
 };
 
 Repeats FindRepeats(double smallest_step, const Recording& recording) {
-  constexpr double kChange = 12;  // least steps overall
-  constexpr double kMotion = 3;   // least steps from one sample to the next
+  constexpr double kChange = 12;  // smallest steps, over all neighbours
+  constexpr double kMotion = 3;   // smallest steps from one sample to the next
   const Eigen::VectorXd& value = recording.value;
   const Index last = recording.size() - 1;
   Repeats repeats{std::vector<bool>(static_cast<std::size_t>(last + 1)), {}};
@@ -170,7 +170,7 @@ Repeats FindRepeats(double smallest_step, const Recording& recording) {
 /// Whether readings change both before sample `first` and after sample `last`. They do not at the end of a hold, nor
 /// where a pendulum stops.
 bool ChangesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double smallest_step) {
-  constexpr double kChange = 3;  // least steps
+  constexpr double kChange = 3;  // smallest steps
   const double before = value[first - 1] - value[std::max<Index>(first - 1 - kStaleReach, 0)];
   const double after = value[std::min(last + kStaleReach, value.size() - 1)] - value[last];
   return std::min(std::abs(before), std::abs(after)) > kChange * smallest_step;

@@ -41,7 +41,8 @@ std::string SaturationText(const AdcSensor& sensor) {
   return Prose("With a reference of " + FourDigits(sensor.reference_voltage) + " V, below the " + FourDigits(highest) +
                " V that the potentiometer gives, all angles above " + FourDigits(*angle) + " deg read " +
                NumberText(sensor.FullScale()) + (*angle <= 0 ? ", the middle of the travel among them" : "") +
-               ". --divider " + FourDigits(divided.divider) + " would bring the whole travel within it, at " +
+               ". --divider " + FourDigits(divided.divider) +
+               " would keep the voltage of the whole travel below the reference, at " +
                FourDigits(divided.DegPerCount()) + " deg per count.");
 }
 

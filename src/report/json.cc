@@ -90,7 +90,7 @@ Json CalibrationJson(const Identification& report) { return report.calibration; 
 
 /// For one recording the part itself; for a joint fit an array with one per recording, in order.
 template <typename Part>
-Json OfRecordings(const Identification& report, const Part& part) {
+Json JsonPerRecording(const Identification& report, const Part& part) {
   if (!report.is_joint()) return part(report);
   Json all = Json::array();
   for (const Identification& run : report.runs) all.push_back(part(run));
@@ -116,12 +116,12 @@ nlohmann::ordered_json ToJson(const Identification& report) {
   NumberObject json;
   json.Set("schema_version", Json(kSchemaVersion))
       .Set("tool", Json{{"name", "fit_pendulum"}, {"version", kVersion}})
-      .Set("data", OfRecordings(report, DataJson))
+      .Set("data", JsonPerRecording(report, DataJson))
       .Set("rig", report.rig ? report.rig->source : Json(nullptr))
-      .Set("calibration", OfRecordings(report, CalibrationJson))
+      .Set("calibration", JsonPerRecording(report, CalibrationJson))
       .Set("fits", std::move(fits))
       .Set("comparison", ComparisonJson(report))
-      .Set("closed_forms", OfRecordings(report, ClosedFormsJson))
+      .Set("closed_forms", JsonPerRecording(report, ClosedFormsJson))
       .Set("warnings", WarningsJson(report));
   const std::string why = NoClosedFormsReason(report);
   if (!why.empty()) json.AddReason(why);

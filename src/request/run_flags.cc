@@ -439,7 +439,7 @@ const std::vector<RunFlag>& RunFlagTable() {
 }
 
 tl::unexpected<Status> NeedsFitError(std::string_view flag) {
-  return BadFlag("--closed_form_only makes no fit, which " + std::string(flag) + " is for; leave one of them out");
+  return BadFlag(std::string(flag) + " needs a fit, but --closed_form_only makes none; leave one of them out");
 }
 
 Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags) {

@@ -192,7 +192,7 @@ Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
       RunOutcome outcome;
       outcome.exit_code = ExitCode(StatusCode::kInternal);
       outcome.reason = std::string("internal error: ") + error.what();
-      return Keep(run, outcome);
+      return StoreOutcome(run, outcome);
     } catch (const std::exception&) {
       return Error(StatusCode::kInternal, "out of memory");  // short enough to need no allocation
     }
@@ -220,10 +220,10 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
     if (is_stopping_ && fitted.is_stopped) return {};
   }
   metrics_.CountFit("batch", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
-  return Keep(run, fitted.outcome);
+  return StoreOutcome(run, fitted.outcome);
 }
 
-Result<void> BatchQueue::Keep(const FitStore::Waiting& run, const RunOutcome& outcome) {
+Result<void> BatchQueue::StoreOutcome(const FitStore::Waiting& run, const RunOutcome& outcome) {
   auto stored = store_.Put(run.id, outcome);
   const bool is_removed = !stored && stored.error().code == StatusCode::kNotFound;
   if (!stored && !is_removed) return stored;

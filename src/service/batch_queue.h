@@ -101,7 +101,7 @@ class BatchQueue {
   std::optional<FitStore::Waiting> Take();
   Result<void> TryOne(const FitStore::Waiting& run);
   Result<void> FitOne(const FitStore::Waiting& run);
-  Result<void> Keep(const FitStore::Waiting& run, const RunOutcome& outcome);
+  Result<void> StoreOutcome(const FitStore::Waiting& run, const RunOutcome& outcome);
   void ReportReason(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   void PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   template <typename Notify>

@@ -60,7 +60,7 @@ class BoundaryLines {
   }
 
   /// The next line; it may begin with the line end of `line`.
-  std::optional<BoundaryLine> Behind(const BoundaryLine& line) const { return FindFrom(line.end - kLineEnd.size()); }
+  std::optional<BoundaryLine> NextAfter(const BoundaryLine& line) const { return FindFrom(line.end - kLineEnd.size()); }
 
  private:
   std::optional<BoundaryLine> FindFrom(std::size_t from) const {
@@ -233,7 +233,7 @@ Result<std::vector<FormPart>> ParseFormData(std::string_view content_type, std::
   std::vector<FormPart> parts;
   while (!line->is_last) {
     const PartReader reader{"part " + std::to_string(parts.size() + 1)};
-    const auto next = lines.Behind(*line);
+    const auto next = lines.NextAfter(*line);
     if (!next) return reader.Wrong("has no boundary after it; end the form with " + Quoted("--" + *boundary + "--"));
     if (parts.size() == kMaxFormParts) {
       return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send it in several");

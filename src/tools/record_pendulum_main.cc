@@ -205,8 +205,8 @@ Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_log
   const auto recorded = RecordRun(options, info, std::nullopt, stop, logger);
   if (!recorded) return tl::unexpected(recorded.error());
   if (const int code = ExitCodeOf(options, *recorded); code != 0) {
-    PrintMessage(kRecordToolName,
-                 stop ? "interrupted before the second was over" : "samples of the second are missing; try again");
+    PrintMessage(kRecordToolName, stop ? "interrupted before one second of readings was complete"
+                                       : "samples are missing from the second of readings; try again");
     return code;
   }
   double sum = 0;

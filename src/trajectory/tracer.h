@@ -88,7 +88,7 @@ class Tracer {
     }
   }
 
-  /// Moves `state` to the next reversal or to the end. Returns false if the trial cannot be traced.
+  /// Moves `state` to the next reversal or to the end. Returns false if the motion cannot be traced.
   bool Swing(double direction, StateOf<F, T>& state, Expander& expander) {
     segment_.order = order_;
     const RateSeries<T>& rate = expander.rate;

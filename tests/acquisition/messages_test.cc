@@ -257,7 +257,7 @@ int RejectedOf(const Bytes& garbage) {
   return decoder.rejected();
 }
 
-TEST(MessageDecoder, FindsTheFrameBehindGarbage) {
+TEST(MessageDecoder, FindsTheFrameAfterGarbage) {
   EXPECT_EQ(RejectedOf(Text("pendulum_logger: send ? for a reading\r\n") + Hex("00")), 1);
   EXPECT_EQ(RejectedOf(Hex("00 00 00")), 0);
   EXPECT_EQ(RejectedOf(Hex("01 00 02 33 00")), 2);  // too short for a CRC
@@ -265,7 +265,7 @@ TEST(MessageDecoder, FindsTheFrameBehindGarbage) {
   EXPECT_EQ(RejectedOf(Hex("01 01 01 00")), 1);  // two zero bytes are not the CRC of an empty payload
 }
 
-TEST(MessageDecoder, FindsTheFrameBehindOneThatIsTooLong) {
+TEST(MessageDecoder, FindsTheFrameAfterOneThatIsTooLong) {
   for (const std::size_t length : {51, 52, 53, 255, 256, 257, 308, 10000}) {
     EXPECT_EQ(RejectedOf(Bytes(length, 0x55) + Hex("00")), 1) << length;
   }

@@ -195,7 +195,7 @@ TEST(RunCsv, KeepsTheTimesAfterAGap) {
   EXPECT_DOUBLE_EQ(recording.time[17], 0.1);
 }
 
-// Also after hours: a double can represent 1e4 s in steps of 0.5 us.
+// Time stamps are exact even after hours: at 1e4 s a double still resolves 0.5 us.
 TEST(RunCsv, KeepsEveryTickOfALongRun) {
   ReceivedRun run({251, 1});
   wire::Data frame{};

@@ -42,8 +42,9 @@ double GaussianLogLikelihood(const Eigen::VectorXd& residual) {
 
 // ---- Criteria ------------------------------------------------------------------------------------------------------
 
-// As for one recording (model_comparison_test.cc), summed over three recordings of 1000 samples. Each has two
-// parameters of its start, a zero and a σ. Without autocorrelation all samples count.
+// The criteria of one recording (model_comparison_test.cc), with the log-likelihood summed over three recordings of
+// 1000 samples. Each recording has four parameters of its own: two of its start, its zero and its σ. Residuals are
+// white, so effective_samples is 3000.
 TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
   const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "coulomb", 1)), {"viscous", "coulomb"});
   ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);

@@ -297,7 +297,7 @@ TEST_F(FitStoreFileTest, RecoversFromAFullDiskAtOnce) {
   EXPECT_GT(refusals, 0);
 }
 
-TEST_F(FitStoreFileTest, LosesNothingOfManyThreadsOnAFullDisk) {
+TEST_F(FitStoreFileTest, KeepsEveryRunStoredByManyThreadsOnAFullDisk) {
   constexpr int kThreads = 6, kRuns = 6;
   FitStore& store = Store();
   Add("first");

@@ -118,7 +118,7 @@ TEST_F(ShardsTest, LeaveNoOtherFilesAfterMerging) {
   AllShards(2);
   for (const char* name : {".pendulum.4.0.tmp", "shard-0.sqlite.part", "shard-1.sqlite.attempt-9-0-node-4",
                            "shard-1.sqlite.attempt-9-0-node-4-journal"}) {
-    folder_.Write(std::string("out/") + name, "of a dead attempt");
+    folder_.Write(std::string("out/") + name, "of a crashed attempt");
   }
   folder_.Write("out/notes.txt", "mine");
   ASSERT_TRUE(Merge(2));

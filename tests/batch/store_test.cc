@@ -311,7 +311,7 @@ TEST_F(StoreTest, ForgetsAFailureIfTheFileChanged) {
   }
 }
 
-// The result names its recording, and so does the reason of a file that is not a recording.
+// The stored result names the recording's file. If the file is not a recording, the stored reason names it.
 TEST_F(StoreTest, NamesAFileInItsResultLikeTheManifest) {
   RefitOptions options;
   options.run.models = {"coulomb"};

@@ -53,10 +53,11 @@ inline BesideParameters Beside(const MotionModel& model, const std::vector<doubl
   return beside;
 }
 
-/// All samples except the few that a start, reversal or stop crosses between these parameter sets. Each set holds the
-/// model's parameters, the start and the zero.
-inline std::vector<Eigen::Index> QuietSamples(const MotionModel& model, StartKind start, const TrajectoryData& data,
-                                              const std::array<std::vector<double>, 3>& parameters) {
+/// All samples except those that are before a start, reversal or stop with one of these parameter sets and after it
+/// with another. Each set holds the model's parameters, the start and the zero.
+inline std::vector<Eigen::Index> SamplesAwayFromEvents(const MotionModel& model, StartKind start,
+                                                       const TrajectoryData& data,
+                                                       const std::array<std::vector<double>, 3>& parameters) {
   std::array<std::vector<double>, 3> instants;
   for (std::size_t k = 0; k < 3; ++k) instants[k] = Instants(model, start, parameters[k], data.time.back());
   std::vector<Eigen::Index> quiet;

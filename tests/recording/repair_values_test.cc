@@ -235,7 +235,7 @@ TEST(RepairValues, DetectsRowsWrittenOnlyAtChanges) {
   ASSERT_THAT(Codes(repaired), ElementsAre("event_driven"));
   EXPECT_EQ(repaired.warnings[0].message,
             "the recording has rows only where the value changes. The angle is then at the edge of its count, half a "
-            "count from the middle, and the error bars ignore this shift; record at even times if possible");
+            "count from the middle, and the error bars ignore this shift; record at equal intervals if possible");
 }
 
 TEST(RepairValues, FindsNoEventsInEvenSamples) {

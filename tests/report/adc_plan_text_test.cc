@@ -26,12 +26,12 @@ TEST(AdcPlanText, ListsReferencesAndNamesThoseThatSaturate) {
               3.3          0.174           5.746   -135 to 43.2                  ± 43.2  0 to 1023
               1.1        0.05801           17.24  -135 to -75.6                    none  0 to 1023
     With a reference of 3.3 V, below the 5 V that the potentiometer gives, all
-    angles above 43.2 deg read 1023. --divider 0.66 would bring the whole travel
-    within it, at 0.2637 deg per count.
+    angles above 43.2 deg read 1023. --divider 0.66 would keep the voltage of
+    the whole travel below the reference, at 0.2637 deg per count.
     With a reference of 1.1 V, below the 5 V that the potentiometer gives, all
     angles above -75.6 deg read 1023, the middle of the travel among them.
-    --divider 0.22 would bring the whole travel within it, at 0.2637 deg per
-    count.
+    --divider 0.22 would keep the voltage of the whole travel below the
+    reference, at 0.2637 deg per count.
 )");
 }
 

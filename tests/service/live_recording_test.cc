@@ -316,7 +316,7 @@ TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsPerSecondWithExtremes) {
   EXPECT_TRUE(std::ranges::adjacent_find(times, std::ranges::greater_equal()) == times.end());
   EXPECT_EQ(std::ranges::max(values), 1023);
   EXPECT_GT(times.back(), kSeconds - 0.1);
-  // The first event has the whole run so far, a tenth of a second.
+  // Starts at 0.1 s: the first event sends all rows written before it, not thinned.
   for (double second = 0.1; second + 1 <= kSeconds; second += 0.13) {
     const auto count = std::ranges::count_if(times, [&](double t) { return t >= second && t < second + 1; });
     EXPECT_LE(count, 52) << second;  // two more if a block begins before the second

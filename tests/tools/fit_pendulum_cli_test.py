@@ -358,7 +358,7 @@ class ClosedFormsOnly(CliTest):
         self.assertTrue(series["peaks"])
 
     def test_refuses_what_only_a_fit_needs(self):
-        self.assert_flags_refused("--closed_form_only makes no fit, which --residuals is for", "--data", "run.csv",
+        self.assert_flags_refused("--residuals needs a fit, but --closed_form_only makes none", "--data", "run.csv",
                                   "--closed_form_only", "--residuals", "r.csv")
 
     def test_needs_turning_points(self):

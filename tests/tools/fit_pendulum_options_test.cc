@@ -113,7 +113,7 @@ TEST(MakeFitPendulumOptions, RefusesFitFlagsForClosedFormsOnly) {
     EXPECT_EQ(Refusal(flags), "") << text;
     flags.closed_form_only = true;
     EXPECT_EQ(Refusal(flags),
-              "--closed_form_only makes no fit, which " + text.substr(0, blank) + " is for; leave one of them out");
+              text.substr(0, blank) + " needs a fit, but --closed_form_only makes none; leave one of them out");
   }
 }
 

@@ -68,7 +68,7 @@ TEST_F(ManifestTest, GivesPathsRelativeToItsFolder) {
   EXPECT_THAT(Row(0), StartsWith("runs/run.csv,run,"));
 }
 
-TEST_F(ManifestTest, ResolvesAFolderBehindALink) {
+TEST_F(ManifestTest, FollowsALinkToAFolder) {
   fs::create_directories(folder_.Path("deep/deeper"));
   fs::create_directory_symlink("deep/deeper", folder_.Path("link"));
   flags_.manifest = folder_.Path("link/runs.csv");

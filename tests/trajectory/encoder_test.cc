@@ -73,12 +73,12 @@ TEST(SimulateRecording, ScattersEdgesAndStampsAsGiven) {
   EXPECT_LT(std::sqrt(stamps), 1.0e-4);
 }
 
-TEST(SimulateRecording, SamplesTheSameEncoderAtEvenTimes) {
+TEST(SimulateRecording, SamplesTheSameEncoderAtEqualIntervals) {
   SyntheticOptions options = Undamped();
   options.noise = 5e-4;
   options.sample_rate = 1000;
   const Recording events = Simulated(options);
-  options.rows = RowTiming::kEvenOfEvents;
+  options.rows = RowTiming::kEvenFromEncoder;
   const Recording even = Simulated(options);
   ASSERT_EQ(even.size(), 4000);
   Eigen::Index event = 0;

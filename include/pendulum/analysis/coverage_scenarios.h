@@ -25,7 +25,7 @@ inline constexpr CoverageRule kAtBoundRule = {0.94, 0.99};
 struct CoverageScenario {
   std::string name;         ///< As in --scenario: words and numbers, "white_0.25".
   std::string description;  ///< One line.
-  SyntheticOptions run;     ///< Units of G; seed, zero and release_time vary between recordings.
+  SyntheticOptions run;     ///< Torques and inertia divided by G; seed, zero and release_time vary between recordings.
   FitOptions fit;
   CoverageRule rule;
 };

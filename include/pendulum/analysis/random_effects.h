@@ -16,8 +16,9 @@ struct RandomEffects {
 
 /// Estimates random effects from values and their standard errors (K >= 2, positive). `between` follows R. C. Paule and
 /// J. Mandel, J. Res. NBS 87:377 (1982); its interval W. Viechtbauer, Statistics in Medicine 26:37 (2007); the mean's
-/// error J. Hartung and G. Knapp, Statistics in Medicine 20:3875 (2001). That error is never below the error of runs
-/// that agree; it has Student's t with K - 1 degrees of freedom (MODEL.md eq. (10.5) and (10.6)).
+/// error J. Hartung and G. Knapp, Statistics in Medicine 20:3875 (2001). That error is never below that of a weighted
+/// mean with weights 1 / (std_error² + between²). Its interval uses Student's t with K - 1 degrees of freedom (MODEL.md
+/// eq. (10.5) and (10.6)).
 RandomEffects SummarizeScatter(const Eigen::VectorXd& value, const Eigen::VectorXd& std_error);
 
 /// Probability that the errors of K >= 2 values alone cause this much scatter (W. G. Cochran, Biometrics 10:101, 1954;

@@ -15,7 +15,7 @@
 namespace pendulum {
 
 /// The formulas of a linear pendulum with viscous friction, applied to two turning points n periods apart (MODEL.md
-/// eq. (6.9)). They assume small angles and friction b ω. Units of G.
+/// eq. (6.9)). They assume small angles and friction b ω. Inertia and friction are divided by G.
 struct LogDecrement {
   std::size_t first = 0;       ///< Index in the table of the turning point at which the n periods begin.
   int periods = 0;             ///< n >= 1

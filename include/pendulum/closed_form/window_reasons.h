@@ -19,9 +19,9 @@ struct WindowBegin {
     kAfterTurns,              ///< After turns over the top.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
     kDisturbed,               ///< The motion before it does not fit the rest.
-    kUndersampled,            ///< The whole recording.
-    kUndersampledAfterFirst,  ///< The whole recording without its first reading.
-    kUndersampledAfterHold,   ///< The whole recording without the hold.
+    kUndersampled,            ///< The recording is undersampled: all of it is used.
+    kUndersampledAfterFirst,  ///< As kUndersampled: all except the first reading.
+    kUndersampledAfterHold,   ///< As kUndersampled: all except the hold.
   };
   Reason reason = Reason::kUnknown;
   double angle_deg = 0;

@@ -20,10 +20,10 @@ namespace pendulum {
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording);
 
 /// Identifies one pendulum from all chosen swings of all recordings together, with options.shared in common. Each swing
-/// is fitted alone first, on options.fit.threads threads. Errors name the recording: as IdentifyEach; kInvalidArgument:
-/// options.closed_form_only, fewer than two swings, the same readings twice, or one options.read.resolution for
-/// readings of several units; kDataLoss: the recordings describe different rigs; kTryAgain: options.fit.stop was
-/// requested.
+/// is fitted alone first, on options.fit.threads threads. Every error message names the recording. Errors: those of
+/// IdentifyEach; kInvalidArgument: options.closed_form_only, fewer than two swings, the same readings twice, or one
+/// options.read.resolution for readings of several units; kDataLoss: the recordings describe different rigs; kTryAgain:
+/// options.fit.stop was requested.
 Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings);
 
 /// The bytes of a file, and the name it has in messages.

@@ -17,8 +17,8 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling);
 /// "closed_form" of a fit: one row per quantity; empty if `check` is null.
 nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
 
-/// "closed_forms" of the result without the turning points (SeriesJson); null if there are none. SI with a rig,
-/// otherwise units of G.
+/// "closed_forms" of the result without the turning points (SeriesJson); null if there are none. SI with a rig;
+/// otherwise inertia and torques are divided by G.
 nlohmann::ordered_json ClosedFormsJson(const Identification& report);
 
 }  // namespace pendulum

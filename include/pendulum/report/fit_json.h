@@ -33,7 +33,7 @@ nlohmann::ordered_json NoiseJson(const FitReport& fit, const DataSummary& data);
 nlohmann::ordered_json StatisticsJson(const FitReport& fit);
 nlohmann::ordered_json IdentifiabilityJson(const FitReport& fit);
 
-/// What the solver did, and the rescues that were tried.
+/// What the solver did, and the further attempts.
 nlohmann::ordered_json SolverJson(const SolverSummary& solver);
 
 }  // namespace pendulum

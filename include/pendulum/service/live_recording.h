@@ -23,7 +23,7 @@ struct LiveStatus {
   LiveState state = LiveState::kWaiting;
   std::string name;            ///< File name without folders: of the recording, not of its part file.
   std::uint64_t samples = 0;   ///< Rows so far.
-  std::string unit;            ///< Of the values: "deg" with a calibration, or the column's: "counts".
+  std::string unit;            ///< Of the values: "deg" with a calibration, else that of the column, such as "counts".
   std::optional<double> rate;  ///< Hz, from the file's header.
 };
 

@@ -22,9 +22,9 @@ struct LostCounts {
 
 /// Which instants have a row in the recording.
 enum class RowTiming {
-  kEven,          ///< At even times.
-  kEvents,        ///< At the start and whenever the count of an encoder changes.
-  kEvenOfEvents,  ///< At even times, from the same encoder with the same edge errors as kEvents.
+  kEven,             ///< At equal intervals.
+  kEvents,           ///< At the start and whenever the count of an encoder changes.
+  kEvenFromEncoder,  ///< Equally spaced readings of the encoder of kEvents, with the same edge errors.
 };
 
 /// Limits for event rows. An edge must not move as far as the next edge, and each count produces a row.

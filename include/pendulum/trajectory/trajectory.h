@@ -35,7 +35,7 @@ struct TraceOptions {
   double begin = 0, end = 0;  ///< s; segments start at `begin`, at rest until the release.
   double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
   InstructionSet instruction_set = kInstructionSet;  ///< Must be supported by the processor.
-  int max_steps = 2'000'000;                         ///< A trial with more steps is refused: its time scale is absurd.
+  int max_steps = 2'000'000;  ///< A motion that needs more is not traced: its time scale is absurd.
 };
 
 /// Summary of a traced motion.

@@ -259,7 +259,8 @@ void SetShared(JointFit& fit) {
                        [&](const ProfileCurve& curve) { return fit.IsShared(curve.name); });
   std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),
                        [&](const Identifiability& known) { return fit.IsShared(known.parameter); });
-  // Each derived quantity needs inertia and at most one friction parameter, so all of them need all these parameters.
+  // Together the derived quantities need inertia and every friction parameter. They are common to all recordings only
+  // if all of these are shared.
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;

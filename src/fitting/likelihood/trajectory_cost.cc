@@ -16,7 +16,7 @@ TrajectoryCost::TrajectoryCost(int count) : count_(count) {
   mutable_parameter_block_sizes()->assign(static_cast<std::size_t>(count), 1);
 }
 
-/// After a trial is accepted, the solver asks for derivatives at the same point. They cost little more than the
+/// After a trial step is accepted, the solver asks for derivatives at the same point. They cost little more than the
 /// residuals alone.
 bool TrajectoryCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   std::array<double, kMaxCompressed> values{};

@@ -19,8 +19,8 @@
 
 namespace pendulum {
 
-/// A trial that needs more steps than this has a time scale far from that of the start values. A period takes some 12
-/// steps.
+/// Parameters whose motion needs more steps than this have a time scale far from that of the start values. A period
+/// takes some 12 steps.
 inline constexpr double kStepsPerRadian = 20;
 inline constexpr double kMaxSteps = 10'000;
 

@@ -16,11 +16,11 @@ struct GapFreeSpan {
   Eigen::Index size = 0;
 };
 
-/// Reflection coefficients of orders 1, 2, ... of the autoregression that best predicts the samples of all stretches,
-/// both from earlier and from later samples (Burg, Maximum entropy spectral analysis, Stanford, 1975).
+/// Reflection coefficients of orders 1, 2, ... of the autoregression that best predicts the samples of all spans, both
+/// from earlier and from later samples (Burg, Maximum entropy spectral analysis, Stanford, 1975).
 ///
 /// value      N x 1, of mean 0.
-/// stretches  within 0..N - 1; no sample predicts a sample of another stretch.
+/// spans      within 0..N - 1; no sample predicts a sample of another span.
 /// Returns at most `longest` coefficients, each in (-1, 1), so the process is stationary. Returns fewer if the
 /// prediction is already exact with fewer. Costs O(N longest).
 std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<GapFreeSpan>& spans,
@@ -31,8 +31,8 @@ std::vector<double> CoefficientsFromReflection(const std::vector<double>& reflec
 
 // -----------------------------------------------------------------------------------------------------------------
 
-/// Prediction errors of Burg's lattice for all stretches in sequence. Order p predicts sample t from the p samples
-/// before it, with error forward[t]. It predicts sample t - p from the p samples after it, with error backward[t - p].
+/// Prediction errors of Burg's lattice for all spans in sequence. Order p predicts sample t from the p samples before
+/// it, with error forward[t]. It predicts sample t - p from the p samples after it, with error backward[t - p].
 struct Lattice {
   Eigen::VectorXd forward, backward;
 };

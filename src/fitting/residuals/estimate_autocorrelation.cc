@@ -32,7 +32,7 @@ struct Clock {
 
 Clock FindClock(const Eigen::VectorXd& time) {
   constexpr double kJitter = 0.1;   // mean, in intervals
-  constexpr double kShortest = 50;  // samples per stretch, on average
+  constexpr double kShortest = 50;  // samples per span, on average
   const Eigen::Index count = time.size();
   const Eigen::VectorXd steps = time.tail(count - 1) - time.head(count - 1);
   Clock clock;
@@ -82,7 +82,7 @@ Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& res
   for (std::size_t order = 1; order <= reflection.size(); ++order) {
     left *= 1 - reflection[order - 1] * reflection[order - 1];
     if (left < kRounding) break;
-    // Samples at the start of a stretch have fewer than p predecessors: `order` of them do not have this one.
+    // The first `order` samples of each span have no sample `order` places before them, so they are not predicted.
     const double predicted = samples - spans * static_cast<double>(order);
     criterion += predicted * std::log1p(-reflection[order - 1] * reflection[order - 1]) + std::log(samples);
     if (criterion < best.criterion) best = {{reflection.begin(), reflection.begin() + order}, criterion};
@@ -110,8 +110,8 @@ struct Innovations {
   double log_determinant = 0;  // Σ ln variance_i
 };
 
-/// Innovations of ARMA(1,1), exact from the first sample of each stretch on (P. J. Brockwell and R. A. Davis, Time
-/// Series: Theory and Methods, section 5.3, 1991).
+/// Innovations of ARMA(1,1), exact from the first sample of each span on (P. J. Brockwell and R. A. Davis, Time Series:
+/// Theory and Methods, section 5.3, 1991).
 void PredictMixed(const Clock& clock, double phi, double theta, Innovations* innovations) {
   constexpr double kSettled = 1e-12;
   innovations->keep.setConstant(phi);

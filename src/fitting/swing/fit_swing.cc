@@ -332,8 +332,8 @@ bool MayHaveJumpedInside(const SwingState& state) {
   return state.was_trimmed && !(state.jumps && state.jumps->AreCorrected());
 }
 
-/// Near a stop of the pendulum the cost may have no minimum.
-bool MayConvergeEarlier(const SwingState& state) {
+/// Near a stop of the pendulum the cost may have no minimum; an earlier end of the window may help.
+bool MayConvergeWithEarlierEnd(const SwingState& state) {
   return state.result.fit.termination != Termination::kConverged && !state.swing.to_given;
 }
 
@@ -348,7 +348,7 @@ constexpr std::array<WindowRescue, 5> kWindowRescues = {{
     {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
     {"disturbed_ends", IsLacking, TrimDisturbedEnds},
     {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
-    {"earlier_end", MayConvergeEarlier, TryEarlierEnd},
+    {"earlier_end", MayConvergeWithEarlierEnd, TryEarlierEnd},
 }};
 
 /// Applies the rescues in order, until the fit leaves only noise or the motion is not a pendulum's.

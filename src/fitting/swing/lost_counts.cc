@@ -98,7 +98,8 @@ struct StepInCounts {
   }
 };
 
-/// Not a whole number without a resolution, or with a range, which would have to shift with the readings.
+/// Returns {}, which is not whole, if the recording has no resolution, or if it has a range: the range would have to
+/// shift with the readings.
 StepInCounts InCounts(const OffsetStep& step, const Recording& recording) {
   if (!(recording.resolution > 0) || recording.range) return {};
   return {step.size / recording.resolution, step.std_error / recording.resolution};

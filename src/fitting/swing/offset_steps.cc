@@ -67,7 +67,7 @@ Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double siz
 class StepSearch {
  public:
   explicit StepSearch(const StepRegression& regression)
-      : regression_(regression), now_(regression.Explain(regression.bins().jacobian)) {}
+      : regression_(regression), now_(regression.Fit(regression.bins().jacobian)) {}
 
   std::size_t size() const { return places_.size(); }
 
@@ -87,11 +87,11 @@ class StepSearch {
   bool Add() {
     const std::optional<Trial> best = BestTrial();
     if (!best) return false;
-    const double gain = now_.criterion - best->explained.criterion;
+    const double gain = now_.criterion - best->regression.criterion;
     if (!(gain > kMinGain)) return false;
     if (!(gain > kMargin + BestAlternativeGain(best->place))) return false;
     places_.push_back(best->place);
-    now_ = best->explained;
+    now_ = best->regression;
     RefinePlaces();
     return true;
   }
@@ -114,7 +114,7 @@ class StepSearch {
 
   struct Trial {
     Index place = 0;
-    Explained explained;
+    Regression regression;
   };
 
   Eigen::MatrixXd Columns(const std::vector<Index>& places) const {
@@ -130,12 +130,12 @@ class StepSearch {
   /// Adds steps one by one, each the one that explains most of the residuals. Returns false if `most` steps are not
   /// enough.
   bool AddAssumingWhiteNoise(int most) {
-    Explained white = regression_.ExplainAsWhite(Columns(places_));
+    Regression white = regression_.FitAsWhite(Columns(places_));
     while (static_cast<int>(size()) < most) {
       const Index place = regression_.BestPlace(Columns(places_), {});
       if (place < 0) return true;
       places_.push_back(place);
-      Explained next = regression_.ExplainAsWhite(Columns(places_));
+      Regression next = regression_.FitAsWhite(Columns(places_));
       if (!(white.criterion - next.criterion > kMinGain)) {
         places_.pop_back();
         return true;
@@ -147,14 +147,14 @@ class StepSearch {
 
   /// Removes, one by one, steps that are not significant if the other steps are kept.
   void RemoveInsignificantSteps() {
-    now_ = regression_.Explain(Columns(places_));
+    now_ = regression_.Fit(Columns(places_));
     while (size() > 0) {
       const auto steps = static_cast<Index>(size());
       Index least = 0;
       const Eigen::ArrayXd deviations = (now_.size.tail(steps).array() / now_.std_error.tail(steps).array()).abs();
       if (deviations.minCoeff(&least) > std::sqrt(kMinGain)) return;
       places_.erase(places_.begin() + least);
-      now_ = regression_.Explain(Columns(places_));
+      now_ = regression_.Fit(Columns(places_));
     }
   }
 
@@ -162,7 +162,7 @@ class StepSearch {
   bool ExplainsMoreThanDrift() const {
     constexpr int kDegree = 6;
     const Bins& bins = regression_.bins();
-    const double drift = regression_.Explain(WithColumns(bins.jacobian, Drift(bins, kDegree))).criterion;
+    const double drift = regression_.Fit(WithColumns(bins.jacobian, Drift(bins, kDegree))).criterion;
     const double each = std::log(static_cast<double>(regression_.size()));
     return criterion() + kMargin < drift + each * kDegree;
   }
@@ -173,7 +173,7 @@ class StepSearch {
     const double each = std::log(static_cast<double>(regression_.size()));
     double most = 0;
     for (const Eigen::MatrixXd& alternative : AlternativeExplanations(regression_.bins(), place)) {
-      const double gain = now_.criterion - regression_.Explain(WithColumns(columns, alternative)).criterion;
+      const double gain = now_.criterion - regression_.Fit(WithColumns(columns, alternative)).criterion;
       most = std::max(most, gain - each * static_cast<double>(alternative.cols() - 1));
     }
     return most;
@@ -186,8 +186,8 @@ class StepSearch {
     for (const auto& autoregression : {std::vector<double>{}, now_.autoregression}) {
       const Index place = regression_.BestPlace(columns, autoregression);
       if (place < 0) continue;
-      Explained with = regression_.Explain(WithColumns(columns, StepAt(place, regression_.size())));
-      if (!best || with.criterion < best->explained.criterion) best = {place, std::move(with)};
+      Regression with = regression_.Fit(WithColumns(columns, StepAt(place, regression_.size())));
+      if (!best || with.criterion < best->regression.criterion) best = {place, std::move(with)};
     }
     return best;
   }
@@ -201,7 +201,7 @@ class StepSearch {
       for (std::size_t k = 0; k < size(); ++k) moved = Move(k) || moved;
       if (!moved) break;
     }
-    now_ = regression_.Explain(Columns(places_));
+    now_ = regression_.Fit(Columns(places_));
   }
 
   bool Move(std::size_t k) {
@@ -211,7 +211,7 @@ class StepSearch {
     if (place < 0 || place == places_[k]) return false;
     std::vector<Index> moved = places_;
     moved[k] = place;
-    Explained with = regression_.Explain(Columns(moved));
+    Regression with = regression_.Fit(Columns(moved));
     if (!(with.criterion < now_.criterion)) return false;
     places_ = std::move(moved);
     now_ = std::move(with);
@@ -220,7 +220,7 @@ class StepSearch {
 
   const StepRegression& regression_;
   std::vector<Index> places_;  // bins
-  Explained now_;
+  Regression now_;
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ struct Bins {
   std::vector<GapFreeSpan> spans;        // of bins, without gaps in time
 };
 
-/// Divides the samples into bins, and groups the bins into stretches without a gap in time.
+/// Divides the samples into bins, and groups the bins into spans without a gap in time.
 inline Bins DivideIntoBins(const FitResiduals& data) {
   constexpr double kPerPeriod = 100;
   constexpr double kGap = 0.25;  // of a period
@@ -73,10 +73,10 @@ inline Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::
 }
 
 /// The result of a regression of residuals on K columns with an autoregression.
-struct Explained {
+struct Regression {
   std::vector<double> autoregression;  // φ_1..φ_p
   Eigen::MatrixXd basis;               // M x K, orthonormal: spans the whitened columns
-  Eigen::VectorXd rest;                // M, whitened remaining residuals; 0 where a stretch begins
+  Eigen::VectorXd rest;                // M, whitened remaining residuals; 0 where a span begins
   Eigen::VectorXd size, std_error;     // K
   double sigma = 0;                    // of `rest`
   double criterion = 0;                // -2 log L plus the penalty for the order
@@ -101,26 +101,26 @@ class StepRegression {
 
   const Bins& bins() const { return bins_; }
 
-  Explained Explain(const Eigen::MatrixXd& columns) const {
-    Explained explained;
+  Regression Fit(const Eigen::MatrixXd& columns) const {
+    Regression regression;
     Eigen::VectorXd left = bins_.residual - columns * columns.colPivHouseholderQr().solve(bins_.residual);
     for (int pass = 0; pass < 2; ++pass) {
-      explained.autoregression = FitAutoregression(left);
-      Regress(columns, &explained);
-      left = bins_.residual - columns * explained.size;
+      regression.autoregression = FitAutoregression(left);
+      Regress(columns, &regression);
+      left = bins_.residual - columns * regression.size;
     }
     const double kept = kept_.sum();
-    explained.criterion =
-        2 * kept * std::log(explained.sigma) + static_cast<double>(explained.autoregression.size()) * std::log(kept);
-    return explained;
+    regression.criterion =
+        2 * kept * std::log(regression.sigma) + static_cast<double>(regression.autoregression.size()) * std::log(kept);
+    return regression;
   }
 
   /// The same for residuals without autocorrelation.
-  Explained ExplainAsWhite(const Eigen::MatrixXd& columns) const {
-    Explained explained;
-    Regress(columns, &explained);
-    explained.criterion = 2 * kept_.sum() * std::log(explained.sigma);
-    return explained;
+  Regression FitAsWhite(const Eigen::MatrixXd& columns) const {
+    Regression regression;
+    Regress(columns, &regression);
+    regression.criterion = 2 * kept_.sum() * std::log(regression.sigma);
+    return regression;
   }
 
   /// The bin where one additional step explains most, for the given autocorrelation; -1: none.
@@ -128,17 +128,17 @@ class StepRegression {
     constexpr Eigen::Index kEdge = 3;           // excluded bins at either end of the recording
     constexpr double kMinDistinctShare = 1e-6;  // share of a step that the columns do not explain
     constexpr double kMargin = 6;               // in -2 log L
-    Explained explained;
-    explained.autoregression = std::move(autoregression);
-    Regress(columns, &explained);
-    const std::vector<double> response = StepResponse(explained.autoregression);
-    const Eigen::VectorXd product = CorrelateWithResponse(response, explained.rest);
+    Regression regression;
+    regression.autoregression = std::move(autoregression);
+    Regress(columns, &regression);
+    const std::vector<double> response = StepResponse(regression.autoregression);
+    const Eigen::VectorXd product = CorrelateWithResponse(response, regression.rest);
     std::vector<double> squares = response;
     for (double& value : squares) value *= value;
     Eigen::VectorXd norm = CorrelateWithResponse(squares, kept_);
     const Eigen::VectorXd smallest = kMinDistinctShare * norm;
-    for (Eigen::Index k = 0; k < explained.basis.cols(); ++k)
-      norm -= CorrelateWithResponse(response, explained.basis.col(k)).cwiseAbs2();
+    for (Eigen::Index k = 0; k < regression.basis.cols(); ++k)
+      norm -= CorrelateWithResponse(response, regression.basis.col(k)).cwiseAbs2();
     Eigen::Index best = -1;
     double most = 0;
     for (Eigen::Index i = kEdge; i + kEdge <= size(); ++i) {
@@ -151,7 +151,7 @@ class StepRegression {
       const Eigen::Index i = span.begin;
       const bool holds_best = i >= kEdge && i < best && best < i + span.size;
       if (!holds_best || !(norm[i] > smallest[i])) continue;
-      if (most - product[i] * product[i] / norm[i] < kMargin * explained.sigma * explained.sigma) best = i;
+      if (most - product[i] * product[i] / norm[i] < kMargin * regression.sigma * regression.sigma) best = i;
     }
     return best;
   }
@@ -180,16 +180,17 @@ class StepRegression {
     return kept_.asDiagonal() * white;
   }
 
-  void Regress(const Eigen::MatrixXd& columns, Explained* explained) const {
-    const Eigen::MatrixXd white = Whiten(columns, explained->autoregression);
-    const Eigen::VectorXd value = Whiten(bins_.residual, explained->autoregression);
+  void Regress(const Eigen::MatrixXd& columns, Regression* regression) const {
+    const Eigen::MatrixXd white = Whiten(columns, regression->autoregression);
+    const Eigen::VectorXd value = Whiten(bins_.residual, regression->autoregression);
     const Eigen::VectorXd scale = white.colwise().norm().cwiseMax(1e-300);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(white * scale.cwiseInverse().asDiagonal());
-    explained->basis = qr.householderQ() * Eigen::MatrixXd::Identity(size(), qr.rank());
-    explained->rest = value - explained->basis * (explained->basis.transpose() * value);
-    explained->size = qr.solve(value).cwiseQuotient(scale);
-    explained->sigma = explained->rest.norm() / std::sqrt(std::max(kept_.sum() - static_cast<double>(qr.rank()), 1.0));
-    explained->std_error = explained->sigma * RootVariances(qr).cwiseQuotient(scale);
+    regression->basis = qr.householderQ() * Eigen::MatrixXd::Identity(size(), qr.rank());
+    regression->rest = value - regression->basis * (regression->basis.transpose() * value);
+    regression->size = qr.solve(value).cwiseQuotient(scale);
+    regression->sigma =
+        regression->rest.norm() / std::sqrt(std::max(kept_.sum() - static_cast<double>(qr.rank()), 1.0));
+    regression->std_error = regression->sigma * RootVariances(qr).cwiseQuotient(scale);
   }
 
   /// Standard errors of the coefficients for unit variance; infinite if a column depends on the others.
@@ -225,7 +226,7 @@ class StepRegression {
 
   Bins bins_;
   int longest_ = 0;
-  Eigen::VectorXd kept_;  // M: 1, or 0 where a stretch begins
+  Eigen::VectorXd kept_;  // M: 1, or 0 where a span begins
 };
 
 }  // namespace pendulum

@@ -160,7 +160,7 @@ TEST(JointSystematic, MatchesFitsWithOtherClocksForAngleAndRate) {
 
 // ---- Posteriors ----------------------------------------------------------------------------------------------------
 
-/// Noise-free counts of the rig at several angles and positions within a level.
+/// Noise-free recordings in counts, released at several angles. Their zeros lie at different places between two counts.
 Recordings QuietRecordings(std::size_t count, std::uint64_t seed) {
   Recordings recordings;
   for (std::size_t k = 0; k < count; ++k) {

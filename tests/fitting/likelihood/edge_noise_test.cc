@@ -149,7 +149,7 @@ TEST(EdgeNoise, GivesSmallerErrorsFromEventsThanFromSamples) {
     const Recording ticks = Must(SimulateRecording(run));
     events += squares(ticks, std::nullopt);
     counts += squares(ticks, NoiseFamily::kGaussian);
-    run.rows = RowTiming::kEvenOfEvents;
+    run.rows = RowTiming::kEvenFromEncoder;
     sampled += squares(Must(SimulateRecording(run)), std::nullopt);
   }
   for (int i = 0; i < 3; ++i) {
@@ -188,7 +188,7 @@ TEST(RatesOf, AreFiniteForNearlyEqualStamps) {
 }
 
 /// An encoder records only one row during a hold.
-TEST(EdgeNoise, FindsTheReleaseBehindOneRowOfACoarseEncoder) {
+TEST(EdgeNoise, FindsTheReleaseAfterAHoldOfOneRow) {
   SyntheticOptions run = Encoder(7);
   run.start = StartKind::kRelease;
   run.release_angle = 0.5;
@@ -205,7 +205,7 @@ TEST(EdgeNoise, FindsTheReleaseBehindOneRowOfACoarseEncoder) {
 
 TEST(EdgeNoise, IsRefusedForRowsThatAreNotEvents) {
   SyntheticOptions run = Encoder(1);
-  run.rows = RowTiming::kEvenOfEvents;
+  run.rows = RowTiming::kEvenFromEncoder;
   run.time_noise = 0;
   FitOptions options;
   options.noise = NoiseFamily::kEdges;

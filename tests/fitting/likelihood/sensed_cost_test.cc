@@ -59,7 +59,7 @@ TEST(Motion, MatchesCentralDifferencesForEveryModel) {
     ASSERT_TRUE(cost->Motion(p, true, &states));
     for (int column = 0; column + 1 < static_cast<int>(p.size()); ++column) {
       const auto [above, below, step] = Beside(model, p, column);
-      const std::vector<Eigen::Index> quiet = QuietSamples(model, start, data, {p, above, below});
+      const std::vector<Eigen::Index> quiet = SamplesAwayFromEvents(model, start, data, {p, above, below});
       ASSERT_TRUE(cost->Motion(above, false, &more));
       ASSERT_TRUE(cost->Motion(below, false, &less));
       for (std::size_t k = 0; k < states.value.size(); ++k) {
@@ -96,7 +96,7 @@ TEST(SensedReadings, HaveTheJacobianOfCentralDifferencesForEverySensor) {
       for (int column = 0; column < static_cast<int>(p.size()); ++column) {
         const auto [above, below, step] = Beside(model, p, column);
         const std::vector<Eigen::Index> quiet =
-            QuietSamples(model, start, data, {of_motion(p), of_motion(above), of_motion(below)});
+            SamplesAwayFromEvents(model, start, data, {of_motion(p), of_motion(above), of_motion(below)});
         const Eigen::VectorXd difference = (ReadingsOf(*cost, above) - ReadingsOf(*cost, below)) / (2 * step);
         EXPECT_THAT(ColumnError(jacobian.col(column), difference, quiet), Le(1e-6)) << "column " << column;
       }

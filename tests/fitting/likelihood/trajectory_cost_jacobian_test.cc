@@ -28,7 +28,7 @@ void ExpectColumnOfDifferences(const MotionModel& model, StartKind start, const 
                                const TrajectoryData& data, const std::vector<double>& p, int column,
                                const Eigen::MatrixXd& jacobian) {
   const auto [above, below, step] = Beside(model, p, column);
-  const std::vector<Eigen::Index> quiet = QuietSamples(model, start, data, {p, above, below});
+  const std::vector<Eigen::Index> quiet = SamplesAwayFromEvents(model, start, data, {p, above, below});
   const Eigen::VectorXd difference = (ReadingsOf(cost, above) - ReadingsOf(cost, below)) / (2 * step);
   const double scale = jacobian.col(column).lpNorm<Eigen::Infinity>();
   EXPECT_GT(scale, 0);

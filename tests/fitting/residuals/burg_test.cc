@@ -29,7 +29,7 @@ TEST(ReflectionCoefficients, MatchFourSamplesComputedByHand) {
 }
 
 TEST(ReflectionCoefficients, UseTheSumsOfTwoParts) {
-  // The sample between the stretches belongs to neither.
+  // The sample between the spans belongs to neither.
   Eigen::VectorXd value(9);
   value << 1, 2, 3, 5, 1000, 5, 3, 2, 1;
   EXPECT_THAT(ReflectionCoefficients(value, {{0, 4}, {5, 4}}, 2),

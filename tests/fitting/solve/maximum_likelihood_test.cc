@@ -138,7 +138,7 @@ TEST(MaximizeLikelihood, StaysFiniteForAPerfectFit) {
 }
 
 TEST(MaximizeLikelihood, WeighsAPriorByTheFinalNoise) {
-  // With a resolution of twenty times the noise, the search begins with six times the noise.
+  // The resolution q is 20 σ, so the search begins at q / sqrt(12), about 6 σ.
   Recording recording = Must(SimulateRecording(NoisyRun()));
   recording.resolution = 20 * 0.002;
   FitOptions options = ModelOptions("coulomb");

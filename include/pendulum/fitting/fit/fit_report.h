@@ -79,7 +79,7 @@ struct ProfileCurve {
   double threshold = 0;           ///< Value of the statistic at the ends of the 95 % interval.
 };
 
-/// A rescue that a fit needed (fit.cc, fit_swing.cc): another attempt, or a change of the window or the readings.
+/// A second attempt at a poor fit, or a change of its window or readings (fit.cc, fit_swing.cc).
 struct AttemptRecord {
   std::string name;
   bool kept = false;  ///< Whether the fit is its result.
@@ -90,7 +90,7 @@ struct SolverSummary {
   int iterations = 0;
   int evaluations = 0;  ///< Trajectories computed for the accepted start, with and without sensitivities.
   std::string termination;
-  std::vector<AttemptRecord> attempts;  ///< Rescues that were tried, in their order; empty if none was needed.
+  std::vector<AttemptRecord> attempts;  ///< Those that were tried, in their order; empty if none was needed.
 };
 
 /// One model fitted to one recording.

@@ -36,7 +36,8 @@ struct JointMember {
   std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
-/// Several recordings over P parameters: the shared ones, then those of each recording. Units of G.
+/// Several recordings over P parameters: the shared ones, then those of each recording. Inertia and torques are divided
+/// by G.
 struct JointProblem {
   std::vector<JointMember> members;
   std::vector<std::string> shared;  // names; shared[i] is parameter i
@@ -57,7 +58,8 @@ struct JointProblem {
   std::string NameOf(int parameter) const;
 };
 
-/// Builds a problem ready for the solver, each member at the end of its own fit. Errors as FitJointly.
+/// Builds a problem ready for the solver. Each member starts at the estimates of its own fit. Errors: those of
+/// FitJointly.
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -26,8 +26,8 @@ struct TrajectoryData {
   Quantity quantity = Quantity::kAngle;
   std::vector<double> time, value;  ///< N: s, increasing, time[0] = 0; rad or rad/s, or the unit of another sensor.
   SensorModel sensor;               ///< How readings depend on the motion.
-  double natural_frequency = 0;     ///< rad/s, approximate; a trial with a very different time scale is refused.
-  double latest_release = 0;        ///< s; a trial released outside [0, latest_release] is refused.
+  double natural_frequency = 0;     ///< rad/s, approximate; parameters with a very different time scale are rejected.
+  double latest_release = 0;        ///< s; a release outside [0, latest_release] is rejected.
   /// N, or empty: the factor of one additional parameter. These are the times if the zero drifts, or minus the
   /// direction of each edge if edges lag.
   std::vector<double> zero_motion_factors;
@@ -59,9 +59,9 @@ struct MotionStates {
 /// (the observed information of the samples, MODEL.md eq. (5.2) and (7.3)), R^-T J' r, and the rest of |r|. Cost and
 /// gradient are exactly those of the N residuals. Without Jacobians it returns (0, ..., 0, |r|).
 ///
-/// Every function returns false for a trial that never moves, that cannot be computed, or that is released outside the
-/// data. After a stop request every function returns false as well, even at a point that was evaluated before. Output
-/// arguments are then unchanged or undefined, and the result of Trace is meaningless. The object caches its last
+/// Every function returns false for parameters whose motion never begins, cannot be computed, or is released outside
+/// the data. After a stop request every function returns false as well, even at a point that was evaluated before.
+/// Output arguments are then unchanged or undefined, and the result of Trace is meaningless. The object caches its last
 /// results: use it from one thread at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:

@@ -68,7 +68,7 @@ Result<void> LineReader::Take(std::string_view bytes) {
                    ": there is a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8");
 }
 
-tl::unexpected<Status> LineReader::TooLong() const {
+tl::unexpected<Status> LineReader::TooLongError() const {
   return Error(StatusCode::kDataLoss, name_ + ":" + std::to_string(number_ + 1) +
                                           ":1: this line is longer than 1 MiB and begins with " + Quoted({at_, end_}) +
                                           ", so this is not CSV text; name a CSV file");
@@ -96,7 +96,7 @@ Result<bool> LineReader::NextBlock() {
     if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
   }
   while (!TakeBufferedLine()) {
-    if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLong();
+    if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLongError();
     if (file_ == nullptr) {
       if (at_ == end_) return false;
       is_terminated_ = false;

@@ -59,7 +59,7 @@ class LineReader {
   Result<void> Begin();
   Result<void> Refill();
   Result<void> Take(std::string_view bytes);
-  tl::unexpected<Status> TooLong() const;
+  tl::unexpected<Status> TooLongError() const;
 
   std::string name_;
   std::unique_ptr<InputFile> file_;  // Null once all bytes are in memory.
