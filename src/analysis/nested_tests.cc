@@ -95,8 +95,8 @@ double LargestRate(const ComparedRun& run, const FitReport& fit, const FitOption
   return half_range * 2 * kPi / FittedMotion(run.used, fit, options.rig).small_angle_period();
 }
 
-/// Derivatives of one recording's readings at the null: by the free parameters of the simpler law, shared and own, and
-/// by the added term.
+/// Derivatives of one recording's readings at the null with respect to the free parameters of the simpler law, shared
+/// and own, and to the added term.
 struct NullColumns {
   Eigen::MatrixXd shared, own;
   Eigen::VectorXd term;

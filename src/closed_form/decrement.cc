@@ -82,8 +82,8 @@ class DecrementProblem {
     return residuals;
   }
 
-  /// Converts derivatives (F x observations) by the residuals to derivatives by (time, value) of each turning point in
-  /// the table.
+  /// Converts derivatives (F x observations) with respect to the residuals to derivatives with respect to (time, value)
+  /// of each turning point in the table.
   MatrixXd ByPoints(const MatrixXd& by_residuals) const {
     MatrixXd by_points = MatrixXd::Zero(by_residuals.rows(), 2 * static_cast<Index>(table_.points.size()));
     Index row = 0;

@@ -46,7 +46,7 @@ Outputs Formulas(const Inputs& inputs, int periods) {
   return outputs;
 }
 
-/// The mean period ratio and its derivatives (M) by the values of the turning points.
+/// The mean period ratio and its derivatives (M) with respect to the values of the turning points.
 double MeanPeriodRatio(const PeriodSpan& span, VectorXd& gradient) {
   gradient = VectorXd::Zero(static_cast<Index>(span.table.points.size()));
   if (span.gravity.is_linear()) return 1;
@@ -69,7 +69,7 @@ double MeanPeriodRatio(const PeriodSpan& span, VectorXd& gradient) {
   return sum;
 }
 
-/// Derivatives (kFormulas x 2 M) by the turning points. The zero also depends on their values.
+/// Derivatives (kFormulas x 2 M) with respect to the turning points. The zero also depends on their values.
 MatrixXd Gradient(const PeriodSpan& span, const Inputs& inputs, const VectorXd& ratio_gradient) {
   constexpr double kStep = 1e-6;
   Eigen::Matrix<double, kFormulas, 5> slopes;

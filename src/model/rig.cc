@@ -27,7 +27,7 @@ using namespace std::string_view_literals;
 
 // ---- The descriptions of a rig -----------------------------------------------------------------------------------
 
-/// The derivative by one value, and the standard deviation of that value.
+/// The derivative with respect to one value, and the standard deviation of that value.
 struct ErrorTerm {
   double derivative;
   double std_dev;

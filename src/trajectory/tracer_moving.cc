@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiles trajectories with derivatives by inertia, friction, and the angle and rate of a start in motion.
+// Compiles trajectories with derivatives with respect to inertia, friction, initial angle and initial rate.
 #include "trajectory/tracer.h"
 
 namespace pendulum {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiles trajectories with derivatives by inertia, friction and the angle of a release.
+// Compiles trajectories with derivatives with respect to inertia, friction and release angle.
 #include "trajectory/tracer.h"
 
 namespace pendulum {

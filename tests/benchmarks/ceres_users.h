@@ -13,8 +13,8 @@
 #include "reference_run.h"
 
 /// Code that users of Ceres write without this library. A trajectory advances from sample to sample (here by one
-/// Runge-Kutta step, in odeint_swing.h with step size control). It is differentiated automatically by six parameters in
-/// one block of fixed size.
+/// Runge-Kutta step, in odeint_swing.h with step size control). It is differentiated automatically with respect to six
+/// parameters in one block of fixed size.
 namespace pendulum::benchmarks {
 
 /// Gravity, viscous and dry friction over the inertia [1/s^2, 1/s, 1/s^2].

@@ -20,7 +20,7 @@ namespace pendulum::benchmarks {
 namespace {
 
 constexpr int kState = 2;            // angle [rad], rate [rad/s]
-constexpr int kSensitivities = 4;    // by inertia, viscous, coulomb, release_angle
+constexpr int kSensitivities = 4;    // with respect to inertia, viscous, coulomb, release_angle
 constexpr double kSmoothing = 0.01;  // rad/s
 
 /// The equation of motion in SI: I θ'' = -G sin θ - b θ' - τ tanh(θ' / kSmoothing).

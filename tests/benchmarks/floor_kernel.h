@@ -8,8 +8,8 @@
 /// of the library's own kernels.
 namespace pendulum::benchmarks {
 
-/// Angle [rad] and its derivatives by inertia, viscous, coulomb, release_angle and release_time. The derivative by the
-/// zero is 1.
+/// Angle [rad] and its derivatives with respect to inertia, viscous, coulomb, release_angle and release_time. The
+/// derivative with respect to the zero is 1.
 inline constexpr int kFloorColumns = 6;
 inline constexpr int kFloorMaxOrder = 25;
 

@@ -58,8 +58,8 @@ class OdeintSwing {
   const T& angle() const { return angle_; }
 
  private:
-  /// Release time and zero are not in the equation, so only partial derivatives by the other four parameters are
-  /// carried.
+  /// Release time and zero are not in the equation, so only partial derivatives with respect to the other four
+  /// parameters are carried.
   static constexpr int kCarried = DualNumber<T> ? 4 : 0;
   using Number = std::conditional_t<DualNumber<T>, ceres::Jet<double, 4>, double>;
   using Flat = FlatState<kCarried>;

@@ -57,8 +57,8 @@ EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int
 /// Largest difference [rad] between readings and those of the trajectory at a local tolerance of 1e-17.
 double MaxReadingError(const EvaluationPoint& point, const Eigen::VectorXd& readings);
 
-/// Largest difference between derivatives of the readings by the parameters in SI (N x 6) and those of that trajectory,
-/// relative to the largest entry of their column.
+/// Largest difference between derivatives of the readings with respect to the parameters in SI (N x 6) and those of
+/// that trajectory, relative to the largest entry of their column.
 double MaxJacobianError(const EvaluationPoint& point, const Eigen::MatrixXd& jacobian);
 
 /// Largest distance of estimates from the least-squares optimum of the reference run, in standard errors. The optimum

@@ -77,7 +77,7 @@ TEST(FitDecrement, HasTheGradientOfItsTurningPoints) {
   const double change = 0.3 * std::sqrt(table.points[4].covariance(1, 1));
   table.points[4].value += change;
   const Decrement after = Must(FitDecrement(table, kDragModel, all));
-  const Eigen::VectorXd slope = before.gradient.col(9);  // by the value of turning point 4
+  const Eigen::VectorXd slope = before.gradient.col(9);  // with respect to the value of turning point 4
   EXPECT_NEAR((after.zero.value - before.zero.value) / change, slope[0], 0.02 * std::abs(slope[0]));
   EXPECT_NEAR((after.friction[1].value - before.friction[1].value) / change, slope[3], 0.02 * std::abs(slope[3]));
 }

@@ -206,7 +206,7 @@ TEST(Derivatives, MatchCentralDifferencesThroughReversalsAndStop) {
 // Linear gravity and dry friction alone, in half swing n = 0, 1, ...:
 // θ = (-1)^n τ_c + (A - (2 n + 1) τ_c) cos(ω0 t); at rest after N half swings θ = (-1)^N (A - 2 N τ_c).
 TEST(Derivatives, MatchTheStaircaseThroughTheStop) {
-  using Dual = pendulum::Dual<4>;  // of a release; the derivative by viscous friction is not tested here
+  using Dual = pendulum::Dual<4>;  // of a release; the derivative with respect to viscous friction is not tested here
   constexpr double kOmega = 5, kInertia = 0.04, kDry = 0.007, kAngle = 0.5;
   constexpr int kHalfSwings = 36;  // the last turning point is at 0.5 - 72 · 0.007 = -0.004; friction holds up to 0.007
   const Pendulum<CoulombFriction, Dual> pendulum{Gravity::kLinear, Dual(kInertia, 0), {Dual(0), Dual(kDry, 1)}};

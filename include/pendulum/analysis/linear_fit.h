@@ -18,7 +18,7 @@
 
 namespace pendulum {
 
-/// Derivatives of each of N readings' log-likelihood l by its modelled value m [rad or rad/s].
+/// Derivatives of each of N readings' log-likelihood l with respect to its modelled value m [rad or rad/s].
 struct ReadingTerms {
   Eigen::VectorXd score;        ///< N, ∂l/∂m, 1 / unit of m
   Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; for a robust family the mean

@@ -23,7 +23,7 @@ struct Decrement {
   Estimate inertia;                ///< s^2
   std::vector<Estimate> friction;  ///< K; may be negative
   Eigen::MatrixXd covariance;      ///< (2 + K) x (2 + K), of (zero, inertia, friction); 0 for parameters left out
-  Eigen::MatrixXd gradient;        ///< (2 + K) x 2 M: derivatives by the M turning points, as for CovarianceOf.
+  Eigen::MatrixXd gradient;        ///< (2 + K) x 2 M, with respect to the M turning points, as for CovarianceOf.
   double chi_square = 0;           ///< Of all turning points' times and values, `freedom` degrees of freedom.
   int freedom = 0;
 

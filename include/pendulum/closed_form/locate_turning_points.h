@@ -16,11 +16,11 @@ namespace pendulum {
 /// FindTurningPoints, or fewer than three can be located.
 Result<TurningPointTable> LocateTurningPoints(const Recording& recording, const Kink& kink = {});
 
-/// Covariance (K x K, first order) of K numbers computed from located turning points. gradient: K x 2 M, derivatives by
-/// (time_0, value_0, time_1, ...).
+/// Covariance (K x K, first order) of K numbers computed from located turning points. gradient: K x 2 M, derivatives
+/// with respect to (time_0, value_0, time_1, ...).
 Eigen::MatrixXd CovarianceOf(const TurningPointTable& table, const Eigen::MatrixXd& gradient);
 
-/// Derivatives (N x K) of these numbers by the N readings of the recording.
+/// Derivatives (N x K) of these numbers with respect to the N readings of the recording.
 Eigen::MatrixXd InfluenceOf(const TurningPointTable& table, const Eigen::MatrixXd& gradient, Eigen::Index samples);
 
 }  // namespace pendulum

@@ -14,8 +14,8 @@ namespace pendulum {
 using Quad [[gnu::vector_size(32)]] = double;
 inline constexpr std::size_t kQuadAlignment = 32;
 
-/// Partial derivatives by P parameters, stored in quads. All members are inlined, because the convention for passing a
-/// quad to a function depends on the instruction set.
+/// Partial derivatives with respect to P parameters, stored in quads. All members are inlined, because the convention
+/// for passing a quad to a function depends on the instruction set.
 template <int P>
 class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): a move is the same as a copy
  public:
@@ -81,8 +81,8 @@ class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): a move 
 
 static_assert(alignof(Partials<1>) == kQuadAlignment);
 
-/// A dual number: value `a` and partial derivatives `v` by P parameters, like ceres::Jet, which this floor does not
-/// include. It has only the operations that equations of motion need.
+/// A dual number: value `a` and partial derivatives `v` with respect to P parameters, like ceres::Jet, which this floor
+/// does not include. It has only the operations that equations of motion need.
 template <int P>
 struct Dual {
   Partials<P> v;
@@ -90,7 +90,7 @@ struct Dual {
 
   Dual() = default;
   [[gnu::always_inline]] explicit Dual(double value) : a(value) {}
-  /// The value of parameter number i: its partial derivative by itself is 1.
+  /// The value of parameter number i: its partial derivative with respect to itself is 1.
   [[gnu::always_inline]] Dual(double value, int i) : a(value) { v.set(i, 1.0); }
   [[gnu::always_inline]] Dual(double value, const Partials<P>& partials) : v(partials), a(value) {}
 

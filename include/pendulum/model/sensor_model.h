@@ -28,7 +28,7 @@ struct SensorModel {
   double pivot_x = 0, pivot_y = 0;  ///< kArc: the reference point of the angles, in the coordinates' unit.
   double down = 1;                  ///< kArc: the sign of the y coordinate downwards, 1 or -1.
 
-  /// A reading and its derivatives by angle, rate and acceleration, and by the S sensor parameters.
+  /// A reading and its derivatives with respect to angle, rate, acceleration and the S sensor parameters.
   struct Response {
     double reading = 0;
     std::array<double, kStates> by_state{};

@@ -139,7 +139,7 @@ Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
   return {pendulum.gravity, Value(pendulum.inertia), Values(pendulum.friction)};
 }
 
-/// The largest slope of the torque by the angle, in units of G: gravity's is 1.
+/// The largest slope of the torque with respect to the angle, in units of G: gravity's is 1.
 template <FrictionModel F>
 double LargestStiffness(const Pendulum<F, double>& pendulum) {
   if constexpr (FrictionWithState<F>) return 1 + F::Stiffness(pendulum.friction.data());

@@ -57,12 +57,13 @@ struct TraceSummary {
 template <typename T>
 using SegmentVisitor = std::function<void(const Segment<T>&)>;
 
-/// The number type in which a fit of law F traces a released pendulum: derivatives by inertia, friction and angle.
+/// The number type in which a fit of law F traces a released pendulum: derivatives with respect to inertia, friction
+/// and angle.
 template <typename F>
 using ReleaseDual = Dual<kFrictionParameters<F> + 2>;
 
-/// The number type in which a fit of law F traces a moving pendulum: derivatives by inertia, friction, and the angle
-/// and rate at the start.
+/// The number type in which a fit of law F traces a moving pendulum: derivatives with respect to inertia, friction, and
+/// the angle and rate at the start.
 template <typename F>
 using MovingDual = Dual<kFrictionParameters<F> + 3>;
 

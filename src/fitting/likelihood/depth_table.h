@@ -16,7 +16,7 @@ namespace pendulum {
 /// curve.
 class DepthTable {
  public:
-  /// A log-probability and its first two derivatives by the depth.
+  /// A log-probability and its first two derivatives with respect to the depth.
   struct Curve {
     double log = 0;
     double slope = 0;

@@ -12,8 +12,8 @@ namespace pendulum {
 
 /// Fast NoiseModel::LikelihoodAt for many quantized readings. The likelihood is a smooth function of the distance
 /// between modelled value and level; it is interpolated cubically between exact values σ/32 apart. Errors: the
-/// logarithm 1e-6, its derivatives by λ = ln σ and by the value in units of σ 1e-5. Other noise and distant values are
-/// evaluated exactly. (DepthTable, for the solver's inner loop, has no derivatives by λ.)
+/// logarithm 1e-6, its derivatives with respect to λ = ln σ and to the value in units of σ 1e-5. Other noise and
+/// distant values are evaluated exactly. (DepthTable, for the solver's inner loop, has none with respect to λ.)
 class LevelLikelihoods {
  public:
   /// `samples`: number of readings; a table is made only if it has far fewer entries.

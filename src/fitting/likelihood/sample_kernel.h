@@ -31,7 +31,7 @@ template <int R>
 using RowProducts = std::array<double, R*(R + 1) / 2>;
 
 /// Number of rows that a segment of T fills. With a dual T: the partial derivatives of the angle at a fixed time, for a
-/// release also -θ', the derivative by its instant, and last the angle. Otherwise only the angle.
+/// release also -θ', the derivative with respect to its instant, and last the angle. Otherwise only the angle.
 template <typename T, bool kRelease>
 inline constexpr int kSegmentRows = 1;
 template <int P, bool kRelease>
@@ -60,8 +60,8 @@ using Vector [[gnu::vector_size(64)]] = double;
 #pragma GCC pop_options
 #endif
 
-/// Fills a segment's rows at the times [s] of `count` samples: derivatives by the parameters of T, by the instant of
-/// release, then the angle (MODEL.md eq. (4.6)). Writes up to kParts - 1 entries beyond the last sample.
+/// Fills a segment's rows at the times [s] of `count` samples: derivatives with respect to the parameters of T and to
+/// the instant of release, then the angle (MODEL.md eq. (4.6)). Writes up to kParts - 1 entries beyond the last sample.
 template <bool kRelease, typename T>
 void EvaluateAt(const Segment<T>& segment, const double* time, int count, double* rows) {
 #ifdef PENDULUM_HAS_AVX

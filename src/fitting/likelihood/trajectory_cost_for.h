@@ -32,7 +32,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
   static constexpr int kZero = kParameters - 1;
   static_assert(kParameters + 1 <= kMaxCompressed);
   static constexpr int kModel = kZero;  ///< Row of the model's reading, after its derivatives.
-  /// Derivatives by release time and zero need no dual number.
+  /// Derivatives with respect to release time and zero need no dual number.
   using Dual = std::conditional_t<kStart == StartKind::kRelease, ReleaseDual<F>, MovingDual<F>>;
   template <typename T, int R, typename Sum>
   using Samples = BlockSamples<T, kStart == StartKind::kRelease, R, Sum>;
@@ -333,8 +333,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return traced && samples[0].is_complete();
   }
 
-  /// Traces the motion through all samples. EvaluateAt fills the first rows of each block: the derivatives by all
-  /// parameters except the zero, in the parameters' order, then the model's reading. For T = double only the reading.
+  /// Traces the motion through all samples. EvaluateAt fills the first rows of each block: the derivatives with respect
+  /// to all parameters except the zero, in their order, then the model's reading. For T = double only the reading.
   template <typename T, int R, typename Sum, typename Work, typename Add>
   bool VisitSamples(Samples<T, R, Sum>& samples, std::span<const double> p, const Work& work, const Add& add) const {
     if (is_stopped() || !IsAdmissible(p)) return false;

@@ -50,8 +50,8 @@ double Autocorrelation::SquaredInflation() const {
 namespace {
 
 /// Computes Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, from the last sample backwards. g_k is
-/// the derivative of W'z by the innovation e_k, so this is the transpose of the process's filter. R is never formed,
-/// and the sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
+/// the derivative of W'z with respect to the innovation e_k, so this is the transpose of the process's filter. R is
+/// never formed, and the sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
 class BackwardFilter {
  public:
   BackwardFilter(const Autocorrelation& correlation, Eigen::Index columns)

@@ -83,7 +83,8 @@ class Replicas {
     return solution.usable ? solution.parameters : std::vector<double>{};
   }
 
-  /// Computes the derivatives of the readings by the free parameters at the solution, once for all replicas.
+  /// Computes the derivatives of the readings with respect to the free parameters at the solution, once for all
+  /// replicas.
   void Differentiate() {
     const auto cost = MakeTrajectoryCost(problem_.model, problem_.start.start, problem_.data);
     cost->set_tolerance(tolerance_);

@@ -163,9 +163,9 @@ class Chain {
   const LinearizedFit& fit_;
   const std::stop_token& stop_;
   Generator generator_;
-  LevelSamples samples_;  // derivatives by δ
+  LevelSamples samples_;  // derivatives with respect to δ
   Frame frame_;
-  LevelSamples whitened_;      // derivatives by w
+  LevelSamples whitened_;      // derivatives with respect to w
   LevelSamples active_;        // the samples that may leave their level within these limits:
   double max_distance_ = 1e9;  // norm of w
   double max_sigma_ = kMaxSigma;

@@ -28,7 +28,7 @@ int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
   return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
 }
 
-/// Derivatives of the scores (P) by the calibration's K coefficients: Σ w ∇m ∂value/∂c.
+/// Derivatives of the scores (P) with respect to the calibration's K coefficients: Σ w ∇m ∂value/∂c.
 Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitProblem& problem,
                                     const TrajectoryCost& cost, const Solution& solution) {
   const auto size = static_cast<Index>(calibration.coefficients.size());
@@ -46,8 +46,8 @@ Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitPro
   return pull;
 }
 
-/// Derivative of the scores by ε if parameter i is multiplied by 1 + n_i ε: A n p, where A is the information of the
-/// samples alone.
+/// Derivative of the scores with respect to ε if parameter i is multiplied by 1 + n_i ε: A n p, where A is the
+/// information of the samples alone.
 Eigen::VectorXd ScoresByScale(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
   const Index size = powers.size();
   Eigen::MatrixXd sums;

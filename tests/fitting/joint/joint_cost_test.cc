@@ -45,7 +45,7 @@ struct Case {
   }
 };
 
-/// Weighted residuals of a recording and their derivatives by all P parameters, N x (P + 1).
+/// Weighted residuals of a recording and their derivatives with respect to all P parameters, N x (P + 1).
 Eigen::MatrixXd RowsOf(const Example& example, const std::vector<int>& at, const std::vector<double>& all) {
   std::vector<double> own;
   for (const int i : at) own.push_back(all[static_cast<std::size_t>(i)]);
@@ -129,7 +129,7 @@ TEST(JointCost, GivesCeresTheSameCostAndGradient) {
   }
 }
 
-// The gradient by the shared inertia is half the slope of the total sum, by finite differences.
+// The gradient with respect to the shared inertia is half the slope of the total sum, by finite differences.
 TEST(JointCost, ChangesAllRecordingsWithSharedParameters) {
   const Case joint;
   Eigen::MatrixXd sums;

@@ -97,7 +97,7 @@ Recording Calibrated(const Calibration& calibration, const Eigen::VectorXd& coun
   return recording;
 }
 
-/// D C D', where D holds the derivatives of the refitted estimates by the coefficients.
+/// D C D', where D holds the derivatives of the refitted estimates with respect to the coefficients.
 Eigen::MatrixXd RefittedCovariance(const Calibration& calibration, const Eigen::VectorXd& counts, bool whole,
                                    const FitOptions& options) {
   const Eigen::Index size = calibration.covariance.rows();

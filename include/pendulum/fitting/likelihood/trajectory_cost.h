@@ -39,7 +39,7 @@ struct TrajectoryData {
 };
 
 /// The motion at N instants: angle [rad], rate [rad/s] and acceleration [rad/s²]. If requested, also their derivatives
-/// (N x M each) by the parameters before the zero.
+/// (N x M each) with respect to the parameters before the zero.
 struct MotionStates {
   std::array<Eigen::VectorXd, SensorModel::kStates> value;
   std::array<Eigen::MatrixXd, SensorModel::kStates> jacobian;

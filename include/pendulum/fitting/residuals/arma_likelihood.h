@@ -16,7 +16,7 @@ namespace pendulum {
 struct CorrelatedResiduals {
   Eigen::VectorXd time;          ///< N x 1, s, increasing
   Eigen::VectorXd residual;      ///< N x 1, rad or rad/s
-  Eigen::MatrixXd jacobian;      ///< N x F, derivatives of the readings by the parameters that may change, any units
+  Eigen::MatrixXd jacobian;      ///< N x F, of the readings, with respect to the parameters that may change, any units
   Eigen::VectorXd lowest;        ///< F, the smallest shift δ within the bounds (<= 0); -infinity without a bound
   Eigen::VectorXd highest;       ///< F, the largest shift δ within the bounds (>= 0)
   double rounding_variance = 0;  ///< of e: resolution² / 12

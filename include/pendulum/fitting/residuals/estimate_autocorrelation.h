@@ -19,14 +19,14 @@ namespace pendulum {
 ///
 /// time      N x 1, s, increasing.
 /// residual  N x 1, of about unit variance (any scale gives the same correlations).
-/// weights   N x K, derivatives of the residuals by the parameters; K = 0 for residuals that come from no fit.
+/// weights   N x K, derivatives of the residuals with respect to the parameters; K = 0 if no fit made them.
 /// Fewer than 30 residuals, or only zeros, are reported as white. After a stop request it returns soon; the result is
 /// then meaningless.
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
 
-/// The same for quantile residuals z of readings with that noise. jacobian N x K, the readings' derivatives by all
-/// fitted parameters.
+/// The same for quantile residuals z of readings with that noise. jacobian N x K, the readings' derivatives with
+/// respect to all fitted parameters.
 Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
                                         const Eigen::MatrixXd& jacobian, const std::stop_token& stop = {});
 

@@ -25,7 +25,7 @@ struct Optimum {
 /// Returns std::nullopt if the trajectory cannot be computed.
 std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution);
 
-/// Derivatives of the readings by the free parameters, N x F. No rows if the trajectory cannot be computed.
+/// Derivatives of the readings with respect to the free parameters, N x F. No rows if there is no trajectory.
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
 
 /// Length of the remaining Newton step in standard errors. Its square is twice the expected gain of log L.

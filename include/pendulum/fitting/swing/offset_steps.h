@@ -14,7 +14,7 @@ struct OffsetStep {
   double size = 0, std_error = 0;
 };
 
-/// The residuals of a fit to N readings, and their derivatives by its P parameters.
+/// The residuals of a fit to N readings, and their derivatives with respect to its P parameters.
 struct FitResiduals {
   Eigen::VectorXd time;      ///< N x 1, s, increasing
   Eigen::VectorXd residual;  ///< N x 1, rad or rad/s

@@ -17,7 +17,7 @@ namespace pendulum {
 struct SystematicSource {
   std::string identity;        ///< Recordings with the same identity share the source and its error.
   Eigen::VectorXd powers;      ///< P, for a common factor (C = 1): its power in each parameter; otherwise empty.
-  Eigen::MatrixXd pull;        ///< P x C, derivatives of the scores of the problem's parameters by its C numbers.
+  Eigen::MatrixXd pull;        ///< P x C, derivatives of the problem's P scores with respect to its C numbers.
   Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a factor, relative.
 };
 

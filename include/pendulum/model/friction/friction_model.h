@@ -72,7 +72,8 @@ inline constexpr int kFrictionStates = [] {
 /// reversal. Torque(ω, s, p) is the torque in steady sliding, which closed forms use.
 ///
 /// - TorqueAt(z, p): the torque at a reversal, in the direction of positive angles.
-/// - Stiffness(p): the largest slope of the torque by the angle, which limits the duration of a half swing.
+/// - Stiffness(p): the largest derivative of the torque with respect to the angle. It limits the duration of a half
+///   swing.
 /// - Recurrence::Begin(z) begins a swing with these states. Call n of the recurrence also finds coefficient n + 1 of
 ///   the states. Recurrence::StatesAt(order, τ) gives them τ after the begin.
 template <typename F>
