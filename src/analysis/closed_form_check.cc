@@ -30,7 +30,7 @@ struct FormulaRow {
   std::string amplitude;  ///< Effect of finite amplitude, if there is one.
 };
 
-/// K formulas that are applied together; in units of G.
+/// K formulas that are applied together; in units of the restoring torque G.
 struct FormulaGroup {
   std::vector<FormulaRow> rows;
   std::string assumption;  // in addition to the model's assumptions
@@ -154,7 +154,8 @@ class FitSide {
   }
 
  private:
-  /// ζ = b / (2 sqrt(I)) in units of G. The weights are relative derivatives, so b and I may have other units.
+  /// ζ = b / (2 sqrt(I)) in units of the restoring torque G. The weights are relative derivatives, so the units of b
+  /// and I do not matter.
   std::optional<Value> DampingRatio() const {
     const auto found = std::ranges::find(fit_.derived, kDampingRatio, &DerivedQuantity::name);
     const ParameterEstimate* inertia = fit_.Find(kInertia.name);

@@ -119,7 +119,7 @@ double Parts::Amplitude(double time) const {
   if (!motion_) return 0;
   const double angle = motion_->Angle(Instant(time));
   const double rate = motion_->Rate(Instant(time));
-  const double kinetic = inertia_ * rate * rate;  // twice the kinetic energy, in units of G
+  const double kinetic = inertia_ * rate * rate;  // twice the kinetic energy, in units of the restoring torque G
   const Gravity gravity = fit_.model.gravity;
   // By the chord: an arc cosine of the energy loses half the digits at small angles.
   return gravity.AngleOfChord(

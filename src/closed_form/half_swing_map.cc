@@ -59,7 +59,7 @@ class Collocation {
   std::array<std::array<double, kNodes + 1>, kNodes> polynomials_;
 };
 
-/// Potential energy in units of G, accurate at small angles.
+/// Potential energy in units of the restoring torque G, accurate at small angles.
 double PotentialAt(Gravity gravity, double angle) {
   const double chord = gravity.Chord(angle);
   return 0.5 * chord * chord;

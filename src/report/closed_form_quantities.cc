@@ -9,7 +9,7 @@
 namespace pendulum {
 namespace {
 
-/// Converts an estimate from units of G to SI if a rig gives G.
+/// Converts an estimate from units of the restoring torque G to SI if a rig gives G.
 ReportedEstimate Reported(const ParameterInfo& info, const Estimate& estimate, const std::optional<Rig>& rig) {
   const double factor = rig && info.scales_with_gravity() ? rig->gravity_torque.value : 1;
   return {std::string(info.name),

@@ -30,7 +30,7 @@ class Units {
   std::string Name(std::size_t i) const {
     return std::string(gravity_torque_ ? plan_.parameters[i].unit : plan_.parameters[i].relative_unit);
   }
-  /// Factor from units of G to the report's unit.
+  /// Factor from units of the restoring torque G to the report's unit.
   double Factor(std::size_t i) const {
     return plan_.parameters[i].scales_with_gravity() ? gravity_torque_.value_or(1.0) : 1.0;
   }

@@ -79,7 +79,7 @@ class Tracer {
     }
   }
 
-  /// The friction torque at a reversal that ends motion in a direction, in units of G.
+  /// The friction torque at a reversal that ends motion in a direction, in units of the restoring torque G.
   double FrictionAtReversal([[maybe_unused]] double direction, [[maybe_unused]] const StateOf<F, T>& state) const {
     if constexpr (FrictionWithState<F>) {
       return F::TorqueAt(Values(state.friction), values_.friction.data());

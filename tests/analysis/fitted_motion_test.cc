@@ -21,7 +21,7 @@ using testing::DoubleNear;
 // The fit's trajectory has an error of 1e-8 rad, the motion's 1e-10 per step.
 constexpr double kTraceError = 3e-8;
 
-/// θ of small swings with viscous friction, released at rest (units of G).
+/// θ of small swings with viscous friction, released at rest (units of the restoring torque G).
 double ViscousSwing(double time, double inertia, double viscous, double angle) {
   const double decay = viscous / (2 * inertia);
   const double frequency = std::sqrt(1 / inertia - decay * decay);

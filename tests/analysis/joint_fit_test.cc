@@ -36,7 +36,7 @@ TEST(FitTogether, FitsEveryModelToAllRecordings) {
   }
 }
 
-// TextbookParameters (fit_support.h): the true values in units of G.
+// TextbookParameters (fit_support.h): the true values in units of the restoring torque G.
 TEST(FitTogether, RecoversTheTruthForTheTrueLaw) {
   const std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 4);
   const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());

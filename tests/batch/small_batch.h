@@ -62,7 +62,8 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// Simulation options with the true values in units of G: I_O / G = 0.0438 s^2, b / G = 0.0011 s, τ_c / G = 0.0022.
+/// Simulation options with the true values in units of the restoring torque G: I_O / G = 0.0438 s^2, b / G = 0.0011 s,
+/// τ_c / G = 0.0022.
 inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
   SyntheticOptions options;
   options.parameters = {0.0438, 0.0011, 0.0022};

@@ -13,7 +13,7 @@ namespace pendulum::benchmarks {
 namespace {
 
 /// Residuals of all samples, (measured - modelled) / noise, and their Jacobian by this library's trajectory, in the
-/// form that ceres::TinySolver needs. Parameters in units of G.
+/// form that ceres::TinySolver needs. Parameters in units of the restoring torque G.
 class TinyResiduals {
  public:
   using Scalar = double;

@@ -33,8 +33,8 @@ T Must(Result<T> result) {
   return *std::move(result);
 }
 
-/// Inertia and friction of the textbook rig in units of G, for any registered model: I_O 0.079 kg m², b 0.003 N m
-/// s/rad, τ_c 0.004 N m, τ_s 0.008 N m, c 0.0005 N m s²/rad². Any other parameter has the value of TypicalFriction.
+/// Inertia and friction of the textbook rig in units of the restoring torque G, for any registered model: I_O 0.079 kg
+/// m², b 0.003 N m s/rad, τ_c 0.004 N m, τ_s 0.008 N m, c 0.0005 N m s²/rad². Others are as in TypicalFriction.
 inline std::vector<double> TextbookParameters(const MotionModel& model) {
   std::vector<double> parameters = {0.079 / kTextbookTorque};
   FrictionModels::Visit(model.friction, [&]<typename F>() {

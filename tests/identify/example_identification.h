@@ -94,7 +94,7 @@ inline TurningPointTable ExampleTurningPoints() {
   return table;
 }
 
-/// Closed forms of these turning points in units of G, with invented numbers.
+/// Closed forms of these turning points in units of the restoring torque G, with invented numbers.
 inline ClosedForms ExampleClosedForms() {
   ClosedForms forms;
   forms.table = ExampleTurningPoints();

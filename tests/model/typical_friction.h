@@ -10,9 +10,9 @@
 namespace pendulum {
 
 /// Parameters for any friction law, including laws added later. Each torque coefficient alone gives about `torque` (in
-/// units of G) at rest or at 1 rad/s. The torques increase by a quarter of `torque` from one to the next, so that no
-/// two cancel. A parameter that is not a torque, such as a reference rate, is 1, or a quarter of its upper bound if
-/// that is finite. Ordered parameters keep their order.
+/// units of the restoring torque G) at rest or at 1 rad/s. The torques increase by a quarter of `torque` from one to
+/// the next, so that no two cancel. A parameter that is not a torque, such as a reference rate, is 1, or a quarter of
+/// its upper bound if that is finite. Ordered parameters keep their order.
 template <FrictionModel F>
 std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
   const auto clamp = [](double value, const ParameterInfo& info) { return std::clamp(value, info.lower, info.upper); };

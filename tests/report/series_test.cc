@@ -163,7 +163,8 @@ TEST(SeriesJson, HasSevenDigitsAndNoResidualsForThePage) {
   for (const auto& [name, model] : page.at("models").items()) EXPECT_TRUE(model.at("residual").is_null()) << name;
 }
 
-/// The small-angle pendulum, I_O = 0.04 s² and b = 0.008 s in units of G, released at 1 s from 0.3 rad.
+/// The small-angle pendulum, I_O = 0.04 s² and b = 0.008 s in units of the restoring torque G. Released at 1 s, from
+/// 0.3 rad.
 FitReport LinearFit() {
   FitReport fit;
   fit.model = {"linear", "viscous", Gravity::kLinear};

@@ -19,7 +19,7 @@ namespace pendulum {
 struct ClosedFormRow {
   std::string quantity;  ///< "inertia_small_angle": the quantity and its formula; unique among the rows.
   std::string method;    ///< The formula in words.
-  std::string unit;      ///< Unit of the fit's parameter: SI with a rig, units of G without.
+  std::string unit;      ///< Unit of the fit's parameter: SI with a rig, units of the restoring torque G without.
   double closed_form = 0;
   std::optional<double> std_error;  ///< Standard error of closed_form, if there is one.
   double fit = 0;

@@ -22,8 +22,8 @@ std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run);
 ///   Student's t noise        (ν + 1) / (ν + 3) JᵀJ / s², s its scale
 ///
 /// time N, s, increasing: the time stamps of the samples, from SimulateRecording.
-/// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of G). All bounds are
-/// absent
+/// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of the restoring torque G).
+/// All bounds are absent:
 /// - without noise,
 /// - for a range, unless the noise is white Gaussian noise on levels,
 /// - for Student's t noise that is correlated or on levels,

@@ -37,7 +37,8 @@ class FittedMotion {
   /// The same motion with the zero fixed at its initial value.
   FittedMotion WithoutDrift() const;
 
-  /// The same start and zero with only viscous friction: inertia [s^2] and viscous [s], in units of G.
+  /// The same start and zero with only viscous friction: inertia [s^2] and viscous [s], in units of the restoring
+  /// torque G.
   FittedMotion WithViscous(double inertia, double viscous) const;
 
   /// The readings at instants (N, s from the first sample, increasing), rad or rad/s, and optionally their N x P
@@ -58,7 +59,7 @@ class FittedMotion {
   Quantity quantity_;
   SensorModel sensor_;
   ZeroMotion zero_motion_ = ZeroMotion::kNone;
-  std::vector<double> parameters_;  // P, units of G, times from the first sample
+  std::vector<double> parameters_;  // P, units of the restoring torque G, times from the first sample
   std::vector<double> reported_;    // P: the report's unit per unit of parameters_.
   Eigen::VectorXd instants_;
   std::vector<double> against_;  // N, of edges that lag: the factor of their lag at the recording's instants.

@@ -22,7 +22,7 @@ struct PlanRow {
   std::string_view unit;    ///< rad, s, Hz, and rad/s for the resolution of a rate.
   double value = 0;         ///< Value of the factor, in `unit`; of an angle its magnitude.
   bool is_base = false;
-  std::vector<std::optional<double>> std_errors;  ///< P, the smallest possible ones, as CramerRaoBounds: in units of G.
+  std::vector<std::optional<double>> std_errors;  ///< P, the smallest possible ones: those of CramerRaoBounds.
   std::optional<double> linear_bias;              ///< LinearInertiaBias; absent with less than one whole period.
   std::string reason;                             ///< Why there is no such recording; empty if there is one.
 };
@@ -30,7 +30,7 @@ struct PlanRow {
 /// Predicted accuracy of recordings of a rig; one factor varies at a time.
 struct Plan {
   std::vector<ParameterInfo> parameters;  ///< P, FitParameters of the base.
-  std::vector<double> truth;              ///< P, in units of G.
+  std::vector<double> truth;              ///< P, in units of the restoring torque G.
   std::size_t physical = 0;               ///< Number of inertia and friction parameters; these come first.
   std::vector<PlanRow> rows;              ///< Factor by factor, values increasing; each has the base case.
   std::optional<double> noise_of_levels;  ///< q/√12 [rad or rad/s], used as the noise if there is none.
@@ -42,7 +42,7 @@ struct Plan {
 
 /// Relative error I_linear / I - 1 of the textbook's linear formulas on exact turning points (t_k, A_k), over all n
 /// whole periods until `end` [s]:
-/// ω_d = 2πn / (t_2n - t_0),  δ = ln(A_0 / A_2n) / n,  ζ = δ / sqrt(4π² + δ²),  I = (1 - ζ²) / ω_d² (units of G).
+/// ω_d = 2πn / (t_2n - t_0),  δ = ln(A_0 / A_2n) / n,  ζ = δ / sqrt(4π² + δ²),  I = (1 - ζ²) / ω_d² (over G).
 /// Without friction it is PeriodRatio(A)² - 1. Absent with less than one whole period.
 std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end);
 

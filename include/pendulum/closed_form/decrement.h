@@ -14,8 +14,8 @@
 
 namespace pendulum {
 
-/// Zero, period and K friction parameters from the turning points alone, in units of G. An uncalibrated angle keeps its
-/// unit.
+/// Zero, period and K friction parameters from the turning points alone, in units of the restoring torque G. An
+/// uncalibrated angle keeps its unit.
 struct Decrement {
   MotionModel model;
   TurningPointTable table;

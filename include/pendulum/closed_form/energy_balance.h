@@ -23,8 +23,8 @@ struct EnergyBalance {
 std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const TurningPointTable& table,
                                          double natural_frequency);
 
-/// The K friction parameters >= 0 (units of G) that balance the energy best, accurate to some percent. Parameters
-/// marked in `left_out` (K, or empty) are 0.
+/// The K friction parameters >= 0 (units of the restoring torque G) that balance the energy best, accurate to some
+/// percent. Parameters marked in `left_out` (K, or empty) are 0.
 std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector<bool>& left_out = {});
 
 }  // namespace pendulum

@@ -17,9 +17,9 @@ struct HalfSwingEnd {
 };
 
 /// The half swing of a pendulum released at an amplitude > 0 [rad; below π] that moves in `direction` (±1). Works with
-/// any registered friction law (parameters in units of G, of either sign) and small-angle natural frequency [rad/s].
-/// The relative error is below 1e-9 up to 120 deg (MODEL.md eq. (6.5)). Returns std::nullopt if friction holds the
-/// pendulum or stops it before the other side. Cost: some microseconds.
+/// any registered friction law (parameters in units of the restoring torque G, of either sign) and small-angle natural
+/// frequency [rad/s]. The relative error is below 1e-9 up to 120 deg (MODEL.md eq. (6.5)). Returns std::nullopt if
+/// friction holds the pendulum or stops it before the other side. Cost: some microseconds.
 std::optional<HalfSwingEnd> ComputeHalfSwing(const MotionModel& model, std::span<const double> friction,
                                              double amplitude, double natural_frequency, double direction = 1,
                                              bool wants_peak = false);

@@ -46,7 +46,7 @@ struct ParameterInfo {
   double lower, upper;             ///< The smallest and the largest admissible value.
   std::string_view description;
 
-  /// True if the value in SI units is G times the value in units of G.
+  /// True if the value in SI units is G times the value in units of the restoring torque G.
   constexpr bool scales_with_gravity() const { return unit != relative_unit; }
 };
 

@@ -17,7 +17,7 @@ struct ReportedEstimate {
   std::string name;    ///< Name in JSON.
   std::string symbol;  ///< Symbol in MODEL.md.
   Estimate estimate;   ///< Estimate in `unit`; as for a fit, without the rig's error.
-  std::string unit;    ///< Unit; inertia and torques are in SI with a rig, in units of G without.
+  std::string unit;    ///< Unit; inertia and torques are in SI with a rig, in units of the restoring torque G without.
 };
 
 /// Quantities from the linear pendulum's formulas, in the order of LogDecrement. For linear gravity the corrected

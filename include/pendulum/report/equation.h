@@ -15,8 +15,8 @@ namespace pendulum {
 std::string SymbolicEquation(const MotionModel& model);
 
 /// The equation with the fitted numbers: "0.0790 th'' + 0.0030 th' + 0.0010 sgn(th') + 1.80 sin th = 0" in N m with a
-/// rig, in units of G without one. Each number is rounded by its standard error (PdgRounding), to four significant
-/// digits if it has none. G has as many digits as the inertia, because a swing determines only their ratio.
+/// rig, in units of the restoring torque G without one. Each number is rounded by its standard error (PdgRounding), to
+/// four significant digits if it has none. G has as many digits as the inertia: a swing determines only their ratio.
 std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig);
 
 }  // namespace pendulum

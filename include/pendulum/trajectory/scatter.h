@@ -13,7 +13,7 @@ namespace pendulum {
 /// A parameter whose true value varies between recordings: normally distributed about `mean`, truncated at its bounds.
 struct ScatteredParameter {
   ParameterInfo info;
-  double mean = 0;     ///< SI, or in units of G.
+  double mean = 0;     ///< SI, or in units of the restoring torque G.
   double std_dev = 0;  ///< In the same unit, 0 or more; 0 always gives `mean`.
 };
 

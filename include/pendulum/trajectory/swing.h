@@ -17,7 +17,8 @@
 
 namespace pendulum {
 
-/// The equation of motion I θ'' = -g(θ) - T(θ') in units of G (MODEL.md eq. (2.1)): inertia I/G [s^2], friction / G.
+/// The equation of motion I θ'' = -g(θ) - T(θ'), divided by the restoring torque G (MODEL.md eq. (2.1)): inertia / G
+/// [s^2] and friction / G.
 template <FrictionModel F, typename T>
 struct Pendulum {
   Gravity gravity;
@@ -139,7 +140,7 @@ Pendulum<F, double> Values(const Pendulum<F, T>& pendulum) {
   return {pendulum.gravity, Value(pendulum.inertia), Values(pendulum.friction)};
 }
 
-/// The largest slope of the torque with respect to the angle, in units of G: gravity's is 1.
+/// The largest slope of the torque with respect to the angle, in units of the restoring torque G: gravity's is 1.
 template <FrictionModel F>
 double LargestStiffness(const Pendulum<F, double>& pendulum) {
   if constexpr (FrictionWithState<F>) return 1 + F::Stiffness(pendulum.friction.data());

@@ -34,7 +34,7 @@ inline constexpr double kFinestEvents = 1e-5;  ///< Resolution, rad.
 /// Options for a simulated recording. They contain the true values that a fit of the recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
-  /// The values of PhysicalParameters(model) in units of G: inertia / G [s^2], viscous / G [s], ...
+  /// The values of PhysicalParameters(model) in units of the restoring torque G: inertia / G [s^2], viscous / G [s].
   std::vector<double> parameters;
 
   StartKind start = StartKind::kRelease;
@@ -65,8 +65,8 @@ struct SyntheticOptions {
   std::uint64_t seed = 1;  ///< Determines noise and jitter.
 };
 
-/// The true parameters of the recording in the order of a fit: those of the model (units of G), of the start and of the
-/// sensor, and the hysteresis for events.
+/// The true parameters of the recording in the order of a fit: those of the model (units of the restoring torque G), of
+/// the start and of the sensor, and the hysteresis for events.
 std::vector<double> TrueParameters(const SyntheticOptions& options);
 
 /// The reading of the sensor for a value x: y = q round(x / q). With a range y = low + q round((x - low) / q), limited

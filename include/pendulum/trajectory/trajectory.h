@@ -97,9 +97,9 @@ class Trajectory {
   TraceSummary summary_;
 };
 
-/// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of G. kInvalidArgument:
-/// wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never moves, or the motion
-/// cannot be traced.
+/// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of the restoring torque
+/// G. kInvalidArgument: wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never
+/// moves, or the motion cannot be traced.
 Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
                                   const Start<double>& start, const TraceOptions& options);
 

@@ -33,7 +33,7 @@ struct JointState {
   std::vector<Description> descriptions;          // K
   std::vector<Autocorrelation> autocorrelations;  // K
   Errors errors;
-  Eigen::MatrixXd systematic;  // P x P, units of G
+  Eigen::MatrixXd systematic;  // P x P, units of the restoring torque G
   bool from_posteriors = false;
 };
 

@@ -31,7 +31,7 @@ int HoldingParameter(const MotionModel& model) {
   return holding;
 }
 
-/// s², in units of G; a smaller inertia would give a frequency ω0 = 1/sqrt(I) too high to compute.
+/// s², in units of the restoring torque G; a smaller inertia would give a frequency ω0 = 1/sqrt(I) too high to compute.
 constexpr double kSmallestInertia = 1e-30;
 
 /// The permitted range of a parameter as text for a message, in reported units.

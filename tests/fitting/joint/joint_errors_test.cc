@@ -77,7 +77,7 @@ double RelativeSystematic(const JointFit& fit, const std::string& name) {
   return parameter.systematic_std_error.value_or(0) / parameter.estimate;
 }
 
-// Torques and inertia are computed in units of G: 1 % in G is 1 % of each, for any number of recordings.
+// Torques and inertia are in units of the restoring torque G: 1 % in G is 1 % of each, for any number of recordings.
 TEST(JointSystematic, IsACommonFactorForARig) {
   FitOptions options = RigOptions();
   options.rig = RigOfTorque(0.01 * kTextbookTorque);

@@ -304,7 +304,7 @@ TEST(TrajectoryCost, IsContinuousWhereTheNumberOfHalfSwingsChanges) {
   }
 }
 
-/// τ_c [units of G] fitted by Ceres, with all other parameters known.
+/// τ_c [units of the restoring torque G] fitted by Ceres, with all other parameters known.
 double FittedCoulomb(TrajectoryCost& cost, double from) {
   std::vector<double> p = ToRest(from);
   std::vector<double*> blocks;

@@ -78,7 +78,7 @@ TEST(MeasureTraceError, KeepsTheToleranceAndItsReadings) {
 
 TEST(MeasureTraceError, FailsIfFrictionHoldsThePendulum) {
   Traced traced;
-  traced.solution.parameters[2] = 1;  // coulomb in units of G: more than gravity at any angle
+  traced.solution.parameters[2] = 1;  // coulomb in units of the restoring torque G: more than gravity at any angle
   EXPECT_FALSE(MeasureTraceError(*traced.cost, 1e-8, traced.solution));
 }
 

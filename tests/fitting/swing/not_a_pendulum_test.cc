@@ -146,8 +146,8 @@ TEST(FitSwing, ReportsBeatingModesOfNearlyOneFrequency) {
 
 // ---- A pendulum ---------------------------------------------------------------------------------------------------
 
-/// 20 s of a pendulum of 5 rad/s released at 1 rad. No model has its friction, torque(rate) in units of G. Classical
-/// Runge-Kutta steps of 1 ms; noise as in NoisyRun.
+/// 20 s of a pendulum of 5 rad/s released at 1 rad. No model has its friction, torque(rate) in units of the restoring
+/// torque G. Classical Runge-Kutta steps of 1 ms; noise as in NoisyRun.
 template <typename Friction>
 Recording PendulumWith(const Friction& torque) {
   Recording recording = Must(SimulateRecording([] {

@@ -114,7 +114,7 @@ struct FitReport {
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
-  StartValues start_values;  ///< Start of the search, in units of G.
+  StartValues start_values;  ///< Start of the search, in units of the restoring torque G.
   std::vector<Warning> warnings;
   double trace_error = 0;  ///< Largest difference from a trajectory with a hundredth of the tolerance, rad or rad/s.
   Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.

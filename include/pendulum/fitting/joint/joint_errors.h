@@ -8,8 +8,8 @@
 
 namespace pendulum {
 
-/// Covariance of the estimates caused by the errors of rig, clocks and calibrations, P x P in units of G. A source that
-/// several recordings share affects all of them together. Zero if the optimum is not identifiable.
+/// Covariance of the estimates caused by the errors of rig, clocks and calibrations, P x P in units of the restoring
+/// torque G. A source shared by several recordings affects all of them together. 0 if the optimum is not identifiable.
 Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum);
 
 /// Whether the fit of some recording uses a posterior, and all fits have errors.

@@ -54,7 +54,7 @@ class LeastSquares {
   virtual int Reversals(std::span<const double> parameters) const = 0;
 
   /// Whether the pendulum comes to rest before the end of some recording, or might do so if the torque of dry friction
-  /// at rest changed by `torque_change` (in units of G).
+  /// at rest changed by `torque_change` (in units of the restoring torque G).
   virtual bool ComesToRest(std::span<const double> parameters, double torque_change) const = 0;
 
   /// Number of trajectories computed so far, with and without derivatives.

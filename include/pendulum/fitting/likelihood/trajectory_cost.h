@@ -47,8 +47,8 @@ struct MotionStates {
 
 /// The cost of one trajectory as least squares: samples, sensitivities and likelihood. A fit evaluates it repeatedly.
 ///
-/// Parameters p (P of them), in units of G, times from the first sample: inertia, friction, then release_angle,
-/// release_time, zero or initial_angle, initial_rate, zero. The zero is zero_angle or rate_bias. If
+/// Parameters p (P of them), in units of the restoring torque G, times from the first sample: inertia, friction, then
+/// release_angle, release_time, zero or initial_angle, initial_rate, zero. The zero is zero_angle or rate_bias. If
 /// data.zero_motion_factors is not empty, the zero's drift [unit of the reading per s] or the edges' lag [rad] follows.
 /// If the sensor is not direct, the parameters of data.sensor replace the zero.
 ///

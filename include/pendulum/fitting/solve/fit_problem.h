@@ -13,7 +13,7 @@
 
 namespace pendulum {
 
-/// A recording prepared for the solver: all quantities in units of G, times from the first sample.
+/// A recording prepared for the solver: all quantities in units of the restoring torque G, times from the first sample.
 struct FitProblem {
   MotionModel model;
   StartValues start;                    ///< As estimated from the data, before fixed values are applied.

@@ -39,7 +39,7 @@ struct SearchOptions {
 };
 
 /// The user's options for a fit. Values by name are in SI with a rig (N m, kg m^2); without a rig, torques and inertia
-/// are in units of G.
+/// are in units of the restoring torque G.
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Replaces the model's own.

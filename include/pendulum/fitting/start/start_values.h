@@ -14,7 +14,7 @@ namespace pendulum {
 /// Start of a fit, estimated from the data alone.
 struct StartValues {
   StartKind start = StartKind::kMoving;
-  std::vector<double> parameters;  ///< In TrajectoryCost's order: units of G, times from the first sample.
+  std::vector<double> parameters;  ///< As TrajectoryCost's: torques over G, times from the first sample.
   double latest_release = 0;     ///< s from the first sample: the first sample visibly in motion; 0 for a moving start.
   bool short_hold = false;       ///< Held for less than half a period: it may be a turning point.
   double amplitude = 0;          ///< rad, the largest amplitude.

@@ -29,16 +29,16 @@ struct IntervalEnds {
 /// 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (6.4)). None depends on the rig.
 ///
 /// infos       The model's parameters, inertia first.
-/// parameters  P, in units of G.
-/// covariance  P x P, in units of G, zero rows for fixed parameters; nullptr: no standard errors.
+/// parameters  P, in units of the restoring torque G.
+/// covariance  P x P, in units of the restoring torque G, zero rows for fixed parameters; nullptr: no standard errors.
 /// at_bound    Indices of parameters at a bound.
 /// A quantity that depends on a parameter at a bound, or only on fixed parameters, has no standard error.
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);
 
-/// Sets the intervals of derived quantities from those of their parameters (P, in units of G; other arguments as
-/// above). An end stays missing if no end of a parameter leads to it.
+/// Sets the intervals of derived quantities from those of their parameters (P, in units of the restoring torque G;
+/// other arguments as above). An end stays missing if no end of a parameter leads to it.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
 

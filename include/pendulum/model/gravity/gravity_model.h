@@ -8,9 +8,8 @@
 
 namespace pendulum {
 
-/// A law of gravity: a type without objects. It gives the restoring torque g(θ) in units of G, so g(θ) ≈ θ at small
-/// angles. Angles are in rad. Invariants: g is odd, |g'(θ)| <= 1, and g(θ) > 0 for
-/// 0 < θ < kTop.
+/// A law of gravity: a type without objects. It gives the restoring torque g(θ) in units of the restoring torque G, so
+/// g(θ) ≈ θ at small angles. Angles are in rad. Invariants: g is odd, |g'(θ)| <= 1, and g(θ) > 0 for 0 < θ < kTop.
 ///
 /// - kTitle says in words what the law is; kAbout explains to a beginner where it occurs.
 /// - kFormula: g as text for the equation of motion; th is the angle.
