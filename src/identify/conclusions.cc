@@ -14,68 +14,71 @@
 namespace pendulum {
 namespace {
 
-void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Identification& one) {
-  auto forms = EstimateClosedForms(one.used, model, stop);
+void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Identification& identification) {
+  auto forms = EstimateClosedForms(identification.used, model, stop);
   if (!forms) {
-    one.no_closed_forms = forms.error().message;
+    identification.no_closed_forms = forms.error().message;
     return;
   }
-  one.closed_forms = *std::move(forms);
-  one.closed_forms_model = model.name;
+  identification.closed_forms = *std::move(forms);
+  identification.closed_forms_model = model.name;
 }
 
 /// A fit that failed or is not to be checked has an empty check.
 void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
-               Identification& one) {
-  if (!one.closed_forms) return;
-  for (std::size_t m = 0; m < one.fits.size(); ++m) {
-    const FitReport& fit = one.fits[m];
-    one.checks.emplace_back();
+               Identification& identification) {
+  if (!identification.closed_forms) return;
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
+    const FitReport& fit = identification.fits[m];
+    identification.checks.emplace_back();
     if (fit.termination == Termination::kFailed || !is_checked(m)) continue;
-    const bool same = fit.model.name == one.closed_forms_model;
-    const auto own = same ? Result<ClosedForms>(*one.closed_forms) : EstimateClosedForms(one.used, fit.model, stop);
-    if (own) one.checks.back() = CheckClosedForms(one.used, *own, fit, one.rig, stop);
+    const bool same = fit.model.name == identification.closed_forms_model;
+    const auto own = same ? Result<ClosedForms>(*identification.closed_forms)
+                          : EstimateClosedForms(identification.used, fit.model, stop);
+    if (own) identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.rig, stop);
   }
 }
 
 /// The frequency that the rig's geometry predicts is rough, but not by a factor of two.
-void WarnOfFrequency(const Sampling& sampling, Identification& one) {
+void WarnOfFrequency(const Sampling& sampling, Identification& identification) {
   constexpr double kMaxRatio = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
   if (!(seen > 0) || (seen < kMaxRatio * expected && expected < kMaxRatio * seen)) return;
-  one.warnings.push_back(
+  identification.warnings.push_back(
       {"frequency_differs_from_rig", "the pendulum swings at " + NumberText(seen, 3) + " Hz, but the rig predicts " +
                                          NumberText(expected, 3) +
                                          " Hz; check the unit of time and the units in the rig file (SI)"});
 }
 
 /// An undersampled swing shows no turning points; its fit has warned already.
-void AddSampling(const FreeSwing& swing, Identification& one) {
-  const double clock_scale = one.used.clock_scale;
+void AddSampling(const FreeSwing& swing, Identification& identification) {
+  const double clock_scale = identification.used.clock_scale;
   double half_period = swing.half_period;
-  if (!(half_period > 0) && one.closed_forms) half_period = one.closed_forms->table.half_period / clock_scale;
-  const bool is_seen = half_period > 0 && !(swing.undersampled && one.rig);
+  if (!(half_period > 0) && identification.closed_forms)
+    half_period = identification.closed_forms->table.half_period / clock_scale;
+  const bool is_seen = half_period > 0 && !(swing.undersampled && identification.rig);
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
-  std::optional<double> expected = ExpectedFrequency(one.rig);
+  std::optional<double> expected = ExpectedFrequency(identification.rig);
   if (expected) *expected *= clock_scale;
-  const bool is_fitted = swing.undersampled && !one.fits.empty() && ExitCode(one.fits[one.MainFit()].termination) == 0;
+  const bool is_fitted = swing.undersampled && !identification.fits.empty() &&
+                         ExitCode(identification.fits[identification.MainFit()].termination) == 0;
   if (expected && is_fitted) expected = 0.5 / swing.half_period;
-  one.sampling = DescribeSampling(one.used, seen, expected);
-  WarnOfFrequency(*one.sampling, one);
-  if (swing.undersampled || one.used.edge) return;  // an event-driven recording has no sampling rate
-  std::ranges::move(SamplingWarnings(*one.sampling), std::back_inserter(one.warnings));
+  identification.sampling = DescribeSampling(identification.used, seen, expected);
+  WarnOfFrequency(*identification.sampling, identification);
+  if (swing.undersampled || identification.used.edge) return;  // an event-driven recording has no sampling rate
+  std::ranges::move(SamplingWarnings(*identification.sampling), std::back_inserter(identification.warnings));
 }
 
 }  // namespace
 
 void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model,
                     const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
-                    Identification& one) {
+                    Identification& identification) {
   if (model) {
-    AddClosedForms(*model, stop, one);
-    AddChecks(is_checked, stop, one);
+    AddClosedForms(*model, stop, identification);
+    AddChecks(is_checked, stop, identification);
   }
-  AddSampling(swing, one);
+  AddSampling(swing, identification);
 }
 
 }  // namespace pendulum

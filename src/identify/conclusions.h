@@ -17,6 +17,6 @@ namespace pendulum {
 /// friction, and how the swing was sampled. After a stop request it ends soon, and the conclusions are meaningless.
 void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model,
                     const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
-                    Identification& one);
+                    Identification& identification);
 
 }  // namespace pendulum

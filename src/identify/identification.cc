@@ -22,14 +22,15 @@ bool IsWarningOfAll(const std::vector<FitReport>& fits, const Warning& warning) 
 }
 
 /// The warnings of a joint fit's recordings. Each names its recording, or says that it applies to all.
-std::vector<Warning> WarningsOfRuns(const Identification& report) {
+std::vector<Warning> WarningsOfRuns(const Identification& identification) {
   std::vector<std::vector<Warning>> runs;
-  for (const Identification& run : report.runs) runs.push_back(AllWarnings(run));
+  for (const Identification& run : identification.runs) runs.push_back(AllWarnings(run));
   std::vector<Warning> all;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     for (Warning warning : runs[k]) {
       const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return ContainsWarning(run, warning); });
-      warning.message = (of_each ? std::string("each recording") : RecordingLabel(report, k)) + ": " + warning.message;
+      warning.message =
+          (of_each ? std::string("each recording") : RecordingLabel(identification, k)) + ": " + warning.message;
       AddOnce({warning}, all);
     }
   }
@@ -74,34 +75,37 @@ std::size_t Identification::MainFit() const {
   return converged < fits.size() ? converged : 0;
 }
 
-std::vector<Warning> AllWarnings(const Identification& report) {
+std::vector<Warning> AllWarnings(const Identification& identification) {
   std::vector<Warning> all;
-  AddOnce(report.warnings, all);
-  for (const FitReport& fit : report.fits) {
+  AddOnce(identification.warnings, all);
+  for (const FitReport& fit : identification.fits) {
     std::vector<Warning> named = fit.warnings;
     for (Warning& warning : named) {
-      if (!IsWarningOfAll(report.fits, warning)) warning.message = std::string(fit.model.name) + ": " + warning.message;
+      if (!IsWarningOfAll(identification.fits, warning))
+        warning.message = std::string(fit.model.name) + ": " + warning.message;
     }
     AddOnce(named, all);
   }
-  AddOnce(WarningsOfRuns(report), all);
+  AddOnce(WarningsOfRuns(identification), all);
   return all;
 }
 
-bool IsOneOfSeveral(const Identification& report, std::size_t run) {
-  const DataSummary& data = report.runs[run].data;
+bool IsOneOfSeveral(const Identification& identification, std::size_t run) {
+  const DataSummary& data = identification.runs[run].data;
   const auto is_match = [&](const Identification& other) { return other.data.path == data.path; };
-  return data.release > 0 && std::ranges::count_if(report.runs, is_match) > 1;
+  return data.release > 0 && std::ranges::count_if(identification.runs, is_match) > 1;
 }
 
-std::string RecordingLabel(const Identification& report, std::size_t run) {
-  const DataSummary& data = report.runs[run].data;
+std::string RecordingLabel(const Identification& identification, std::size_t run) {
+  const DataSummary& data = identification.runs[run].data;
   std::string label = "recording " + std::to_string(run + 1);
   if (data.path.empty()) return label;
   return label + " (" + data.path +
-         (IsOneOfSeveral(report, run) ? ", free swing " + std::to_string(data.release) : "") + ")";
+         (IsOneOfSeveral(identification, run) ? ", free swing " + std::to_string(data.release) : "") + ")";
 }
 
-int ExitCode(const Identification& one) { return one.fits.empty() ? 0 : ExitCode(one.fits[one.MainFit()].termination); }
+int ExitCode(const Identification& identification) {
+  return identification.fits.empty() ? 0 : ExitCode(identification.fits[identification.MainFit()].termination);
+}
 
 }  // namespace pendulum

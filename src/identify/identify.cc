@@ -90,35 +90,36 @@ Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options,
 
 /// The model whose closed forms are computed without a fit. For readings in an unknown unit it is the linear model,
 /// because only small-angle formulas apply.
-MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& one) {
+MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& identification) {
   const MotionModel asked = *FindMotionModel(options.fit.model);
   const MotionModel linear = *FindMotionModel("linear");
-  if (one.used.is_calibrated() || asked.gravity.is_linear()) return asked;
-  one.warnings.push_back(
+  if (identification.used.is_calibrated() || asked.gravity.is_linear()) return asked;
+  identification.warnings.push_back(
       {"uncalibrated",
-       "the readings are in " + one.used.unit +
+       "the readings are in " + identification.used.unit +
            ", not in a unit of angle; the closed forms are those of model linear, which assumes small angles"});
   return linear;
 }
 
 /// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
 /// friction of the model of fit `main`.
-void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::size_t main, Identification& one) {
-  SummarizeUsed(run.alone.used, run.alone.swing, one.data);
-  one.used = std::move(run.alone.used);
-  one.constancy = std::move(run.constancy);
+void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::size_t main,
+                            Identification& identification) {
+  SummarizeUsed(run.alone.used, run.alone.swing, identification.data);
+  identification.used = std::move(run.alone.used);
+  identification.constancy = std::move(run.constancy);
   std::optional<MotionModel> model;
   if (run.alone.swing.undersampled) {
-    one.no_closed_forms =
+    identification.no_closed_forms =
         "the samples are too far apart to show turning points: the swing that they show may be the alias of a faster "
         "one";
-  } else if (options.checks == Checks::kNone && !one.fits.empty()) {
-    one.no_closed_forms = "not computed (--checks none)";
+  } else if (options.checks == Checks::kNone && !identification.fits.empty()) {
+    identification.no_closed_forms = "not computed (--checks none)";
   } else {
-    model = one.fits.empty() ? ClosedFormModel(options, one) : one.fits[main].model;
+    model = identification.fits.empty() ? ClosedFormModel(options, identification) : identification.fits[main].model;
   }
   const auto is_checked = [&](std::size_t m) { return IsChecked(options.checks, m, main); };
-  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, one);
+  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, identification);
 }
 
 Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) {
@@ -126,21 +127,21 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
   fit_options.rig = swing.known.rig;
   auto run = FitAlone(options, fit_options, swing);
   if (!run) return tl::unexpected(run.error());
-  Identification one = std::move(swing.known);
-  if (run->alone.fits.size() > 1) one.comparison = CompareModels(run->alone, fit_options);
-  one.fits = std::move(run->alone.fits);
-  const std::size_t main = one.MainFit();
-  for (std::size_t m = 0; m < one.fits.size(); ++m) {
+  Identification identification = std::move(swing.known);
+  if (run->alone.fits.size() > 1) identification.comparison = CompareModels(run->alone, fit_options);
+  identification.fits = std::move(run->alone.fits);
+  const std::size_t main = identification.MainFit();
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
-    run->constancy.push_back(TestFit(options, fit_options, run->alone.used, one.fits[m], is_checked));
-    AddInconstancyError(run->constancy.back(), one.fits[m]);
+    run->constancy.push_back(TestFit(options, fit_options, run->alone.used, identification.fits[m], is_checked));
+    AddInconstancyError(run->constancy.back(), identification.fits[m]);
   }
-  CompleteIdentification(options, *std::move(run), main, one);
+  CompleteIdentification(options, *std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
-  if (options.closed_form_only && !one.closed_forms) {
-    return Error(StatusCode::kFailedPrecondition, one.no_closed_forms);
+  if (options.closed_form_only && !identification.closed_forms) {
+    return Error(StatusCode::kFailedPrecondition, identification.no_closed_forms);
   }
-  return one;
+  return identification;
 }
 
 // ---- Several recordings of one pendulum
@@ -245,18 +246,18 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
 
 /// Adds the warnings of the separate fit that the joint fit does not repeat: about window, sampling, other local
 /// minima.
-void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& one) {
+void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& identification) {
   constexpr std::array<std::string_view, 8> kOfTheFit = {
       "lack_of_fit",         "correlated_residuals", "zero_drift", "noise_below_resolution",
       "trajectory_accuracy", "prior_conflict",       "at_bound",   "uncertain_stop"};
   for (const Warning& warning : alone.warnings) {
     const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
-    if (!of_the_fit && !joint.HasWarning(warning.code)) one.warnings.push_back(warning);
+    if (!of_the_fit && !joint.HasWarning(warning.code)) identification.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
-  one.warnings.push_back({"separate_fit_not_converged", "the separate fit of this recording is " +
-                                                            std::string(TerminationName(alone.termination)) + ": " +
-                                                            alone.reason});
+  identification.warnings.push_back({"separate_fit_not_converged", "the separate fit of this recording is " +
+                                                                       std::string(TerminationName(alone.termination)) +
+                                                                       ": " + alone.reason});
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {
@@ -289,10 +290,11 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
   const std::vector<int> chosen = recording.swings.chosen;
   const std::string path = recording.recording.path;
   for (const int release : chosen) {
-    auto one = IdentifyOne(options, TakeSwing(recording, release));
-    if (!one && options.fit.stop.stop_requested()) one = FitStopped();  // a stop may have caused another error
-    if (!one && chosen.size() > 1) one = ErrorOfRun(one.error(), path, release);
-    all.push_back(std::move(one));
+    auto identification = IdentifyOne(options, TakeSwing(recording, release));
+    // A stop may have caused another error.
+    if (!identification && options.fit.stop.stop_requested()) identification = FitStopped();
+    if (!identification && chosen.size() > 1) identification = ErrorOfRun(identification.error(), path, release);
+    all.push_back(std::move(identification));
   }
   return all;
 }
@@ -316,12 +318,12 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vect
   Identification whole = CombineRecordings(joint, fit_options);
   const std::size_t main = whole.MainFit();
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    Identification one = std::move((*swings)[k].known);
-    one.rig = *rig;
-    for (std::size_t m = 0; m < joint.models.size(); ++m) one.fits.push_back(joint.FitOf(k, m));
-    AddOwnWarnings(joint.runs[k].alone.fits[main], one.fits[main], one);
-    CompleteIdentification(options, std::move(joint.runs[k]), main, one);
-    whole.runs.push_back(std::move(one));
+    Identification identification = std::move((*swings)[k].known);
+    identification.rig = *rig;
+    for (std::size_t m = 0; m < joint.models.size(); ++m) identification.fits.push_back(joint.FitOf(k, m));
+    AddOwnWarnings(joint.runs[k].alone.fits[main], identification.fits[main], identification);
+    CompleteIdentification(options, std::move(joint.runs[k]), main, identification);
+    whole.runs.push_back(std::move(identification));
   }
   if (options.fit.stop.stop_requested()) return FitStopped();
   return whole;

@@ -31,9 +31,9 @@ Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional
   return json;
 }
 
-Json DecrementJson(const Decrement& decrement, const Identification& report) {
+Json DecrementJson(const Decrement& decrement, const Identification& identification) {
   return NumberObject()
-      .Set("parameters", EstimatesJson(DecrementEstimates(decrement, report.data.unit, report.rig)))
+      .Set("parameters", EstimatesJson(DecrementEstimates(decrement, identification.data.unit, identification.rig)))
       .Set("chi_square", decrement.chi_square)
       .Set("dof", Json(decrement.freedom))
       .Set("p", decrement.Probability())
@@ -103,19 +103,19 @@ nlohmann::ordered_json CheckJson(const ClosedFormCheck* check) {
   return rows;
 }
 
-nlohmann::ordered_json ClosedFormsJson(const Identification& report) {
-  if (!report.closed_forms) return nullptr;
-  const ClosedForms& forms = *report.closed_forms;
+nlohmann::ordered_json ClosedFormsJson(const Identification& identification) {
+  if (!identification.closed_forms) return nullptr;
+  const ClosedForms& forms = *identification.closed_forms;
   NumberObject json;
-  json.Set("model", Json(report.closed_forms_model));
-  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, report.rig) : Json(nullptr));
+  json.Set("model", Json(identification.closed_forms_model));
+  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, identification.rig) : Json(nullptr));
   if (!forms.linear) json.AddReason("linear: no two successive turning points are a whole period apart");
-  json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, report) : Json(nullptr));
+  json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, identification) : Json(nullptr));
   if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);
   return json.Set("envelopes", EnvelopesJson(forms.envelopes))
       .Set("envelope", TextOrNull(forms.envelope))
       .Set("turning_points", Json(forms.table.points.size()))
-      .Set(KeyWithUnit("noise", report.data.unit), forms.table.noise)
+      .Set(KeyWithUnit("noise", identification.data.unit), forms.table.noise)
       .Done();
 }
 

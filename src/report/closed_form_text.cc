@@ -94,18 +94,18 @@ void WarnOfNegativeFriction(const Decrement& decrement, Section& section) {
   }
 }
 
-void AddDecrement(const Identification& report, Section& section) {
-  const ClosedForms& forms = *report.closed_forms;
+void AddDecrement(const Identification& identification, Section& section) {
+  const ClosedForms& forms = *identification.closed_forms;
   if (!forms.decrement) {
     section.AddText("No law was fitted to the turning points: " + forms.no_decrement + ".");
     return;
   }
   const Decrement& decrement = *forms.decrement;
-  std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, report.data.unit, report.rig);
+  std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, identification.data.unit, identification.rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
   section.AddText("Fitted to all " + std::to_string(forms.table.points.size()) + " turning points, " +
                   (forms.gravity.is_linear() ? "small angles" : "exact at any amplitude") +
-                  ", with the friction of model " + report.closed_forms_model + ": chi-square " +
+                  ", with the friction of model " + identification.closed_forms_model + ": chi-square " +
                   NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
                   " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");
   section.Add(EstimateTable(estimates, true));
@@ -185,11 +185,11 @@ Cells TurningPointCells(const ClosedForms& forms, std::size_t i, double factor) 
   return cells;
 }
 
-Section TurningPointSection(const Identification& report) {
-  const ClosedForms& forms = *report.closed_forms;
-  const std::optional<Conversion> degrees = Degrees(report.data.unit);
-  const Conversion shown = degrees.value_or(Conversion{report.data.unit});
-  const Listed listed = report.fits.empty() ? kAlone : kBesideAFit;
+Section TurningPointSection(const Identification& identification) {
+  const ClosedForms& forms = *identification.closed_forms;
+  const std::optional<Conversion> degrees = Degrees(identification.data.unit);
+  const Conversion shown = degrees.value_or(Conversion{identification.data.unit});
+  const Listed listed = identification.fits.empty() ? kAlone : kBesideAFit;
   const std::size_t count = forms.table.points.size();
   const std::size_t left_out = count - std::min(count, listed.first + listed.last);
   Table table{TurningPointColumns(forms.table, std::string(shown.unit)), {}};
@@ -207,9 +207,9 @@ Section TurningPointSection(const Identification& report) {
 
 }  // namespace
 
-Sections SamplingSections(const Identification& report) {
-  if (!report.sampling) return {};
-  const Sampling& sampling = *report.sampling;
+Sections SamplingSections(const Identification& identification) {
+  if (!identification.sampling) return {};
+  const Sampling& sampling = *identification.sampling;
   Facts facts = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
                  {"gaps", GapsText(sampling)}};
   if (sampling.frequency_hz > 0) facts.push_back({"swing", SwingText(sampling)});
@@ -220,22 +220,24 @@ Sections SamplingSections(const Identification& report) {
   return {{"Sampling", "", {std::move(facts)}}};
 }
 
-Sections ClosedFormSections(const Identification& report) {
+Sections ClosedFormSections(const Identification& identification) {
   Section forms{"Closed forms"};
-  if (!report.closed_forms) {
-    if (report.no_closed_forms.empty()) return {};
-    return {forms.AddText("There are none: " + report.no_closed_forms + ".")};
+  if (!identification.closed_forms) {
+    if (identification.no_closed_forms.empty()) return {};
+    return {forms.AddText("There are none: " + identification.no_closed_forms + ".")};
   }
-  AddLinear(*report.closed_forms, report.rig, forms);
-  AddDecrement(report, forms);
-  if (!report.closed_forms->envelope.empty()) forms.Add(Facts{{"envelope", report.closed_forms->envelope}});
+  AddLinear(*identification.closed_forms, identification.rig, forms);
+  AddDecrement(identification, forms);
+  if (!identification.closed_forms->envelope.empty())
+    forms.Add(Facts{{"envelope", identification.closed_forms->envelope}});
   Sections sections = {std::move(forms)};
-  for (std::size_t i = 0; i < report.checks.size(); ++i) {
-    if (!report.IsShownInFull(i)) continue;
-    const bool several = report.checks.size() > 1;
-    sections.push_back(CheckSection(report.checks[i], several ? " of " + std::string(report.fits[i].model.name) : ""));
+  for (std::size_t i = 0; i < identification.checks.size(); ++i) {
+    if (!identification.IsShownInFull(i)) continue;
+    const bool several = identification.checks.size() > 1;
+    sections.push_back(
+        CheckSection(identification.checks[i], several ? " of " + std::string(identification.fits[i].model.name) : ""));
   }
-  sections.push_back(TurningPointSection(report));
+  sections.push_back(TurningPointSection(identification));
   return sections;
 }
 

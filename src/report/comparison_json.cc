@@ -122,11 +122,11 @@ bool IsTested(const Constancy& constancy) { return constancy.halves_p || !consta
 
 }  // namespace
 
-nlohmann::ordered_json ComparisonJson(const Identification& report) {
-  if (!report.comparison) return nullptr;
-  const Comparison& comparison = *report.comparison;
+nlohmann::ordered_json ComparisonJson(const Identification& identification) {
+  if (!identification.comparison) return nullptr;
+  const Comparison& comparison = *identification.comparison;
   const bool has_criterion = comparison.likelihood != Likelihood::kNone;
-  const std::string& unit = report.data.unit;
+  const std::string& unit = identification.data.unit;
   return NumberObject()
       .Set("recommended", TextOrNull(comparison.recommended))
       .Set("reason", Json(comparison.reason))

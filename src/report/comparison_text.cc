@@ -23,8 +23,8 @@ constexpr int kWeightDigits = 2;
 constexpr const char* kLackOfFit = "lack of fit";
 
 /// Degrees for angles, otherwise the readings' own unit.
-Conversion ShownUnit(const Identification& report) {
-  return Degrees(report.data.unit).value_or(Conversion{report.data.unit});
+Conversion ShownUnit(const Identification& identification) {
+  return Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
 }
 
 std::string FixedOrDash(const std::optional<double>& value, int decimals) {
@@ -208,15 +208,15 @@ bool HasNegativeFriction(const Constancy& constancy) {
 
 }  // namespace
 
-Sections ComparisonSections(const Identification& report) {
-  if (!report.comparison) return {};
-  Sections sections = {ComparisonSection(*report.comparison, ShownUnit(report))};
-  if (!report.comparison->tests.empty()) sections.push_back(TestSection(*report.comparison));
+Sections ComparisonSections(const Identification& identification) {
+  if (!identification.comparison) return {};
+  Sections sections = {ComparisonSection(*identification.comparison, ShownUnit(identification))};
+  if (!identification.comparison->tests.empty()) sections.push_back(TestSection(*identification.comparison));
   return sections;
 }
 
-Sections ConstancySections(const Identification& report, std::size_t fit) {
-  const Constancy* constancy = report.ConstancyOf(fit);
+Sections ConstancySections(const Identification& identification, std::size_t fit) {
+  const Constancy* constancy = identification.ConstancyOf(fit);
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
   section.AddText(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);

@@ -83,14 +83,14 @@ Json HomogeneityJson(const Homogeneity& homogeneity) {
 }
 
 /// One recording's part of the joint fit.
-Json RunJson(const Identification& report, std::size_t index, std::size_t k) {
-  const Identification& run = report.runs[k];
+Json RunJson(const Identification& identification, std::size_t index, std::size_t k) {
+  const Identification& run = identification.runs[k];
   const FitReport& fit = run.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
   json["path"] = TextOrNull(run.data.path);
   json["release"] = run.data.release > 0 ? Json(run.data.release) : Json(nullptr);
-  json["amplitude_rad"] = NumberOrNull(report.joint[index].homogeneity.amplitudes[k]);
+  json["amplitude_rad"] = NumberOrNull(identification.joint[index].homogeneity.amplitudes[k]);
   json["parameters"] = ParametersJson(fit);
   json["covariance"] = CovarianceJson(fit);
   json["correlation"] = CorrelationJson(fit);
@@ -102,13 +102,13 @@ Json RunJson(const Identification& report, std::size_t index, std::size_t k) {
   json["closed_form"] = CheckJson(run.CheckOf(index));
   json["constancy"] = ConstancyJson(run.ConstancyOf(index));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, run.ConstancyOf(index));
-  json["separate"] = report.joint[index].alone[k];
+  json["separate"] = identification.joint[index].alone[k];
   return json;
 }
 
 /// Sums over all recordings.
-Json WholeStatisticsJson(const Identification& report, const FitReport& fit) {
-  const std::string& unit = report.data.unit;
+Json WholeStatisticsJson(const Identification& identification, const FitReport& fit) {
+  const std::string& unit = identification.data.unit;
   NumberObject json;
   if (unit != "sigma") json.Set(KeyWithUnit("rms_residual", unit), fit.statistics.rms_residual);
   return json.Set("log_likelihood", fit.statistics.log_likelihood)
@@ -120,25 +120,26 @@ Json WholeStatisticsJson(const Identification& report, const FitReport& fit) {
 }
 
 /// With numbers if all of them are shared.
-Json EquationJson(const Identification& report, std::size_t index) {
-  const FitReport& fit = report.fits[index];
-  const bool whole = report.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  return whole && fit.termination != Termination::kFailed ? Json(FittedEquation(fit, report.rig)) : Json(nullptr);
+Json EquationJson(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
+  const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
+  return whole && fit.termination != Termination::kFailed ? Json(FittedEquation(fit, identification.rig))
+                                                          : Json(nullptr);
 }
 
 }  // namespace
 
-Json JointFitJson(const Identification& report, std::size_t index) {
-  const FitReport& fit = report.fits[index];
+Json JointFitJson(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json runs = Json::array();
-  for (std::size_t k = 0; k < report.runs.size(); ++k) runs.push_back(RunJson(report, index, k));
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) runs.push_back(RunJson(identification, index, k));
   Json json;
   json["model"] = fit.model.name;
   json["status"] = TerminationName(fit.termination);
   json["reason"] = fit.reason;
-  json["equation"] = EquationJson(report, index);
-  json["shared"] = report.joint[index].shared;
+  json["equation"] = EquationJson(identification, index);
+  json["shared"] = identification.joint[index].shared;
   json["parameters"] = ParametersJson(fit);
   json["derived"] = DerivedJson(fit);
   json["covariance"] = CovarianceJson(fit);
@@ -147,8 +148,8 @@ Json JointFitJson(const Identification& report, std::size_t index) {
   json["std_error_method"] = TextOrNull(fit.std_error_method);
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit);
-  json["statistics"] = failed ? Json(nullptr) : WholeStatisticsJson(report, fit);
-  json["homogeneity"] = HomogeneityJson(report.joint[index].homogeneity);
+  json["statistics"] = failed ? Json(nullptr) : WholeStatisticsJson(identification, fit);
+  json["homogeneity"] = HomogeneityJson(identification.joint[index].homogeneity);
   json["runs"] = std::move(runs);
   json["solver"] = SolverJson(fit.solver);
   return json;

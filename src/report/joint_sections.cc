@@ -30,15 +30,15 @@ std::string FileText(const DataSummary& data, bool several_releases) {
   return several_releases && data.release > 0 ? path + ", swing " + std::to_string(data.release) : path;
 }
 
-Section RecordingSection(const Identification& report) {
+Section RecordingSection(const Identification& identification) {
   Table files{{{""}, {"file"}}};
   Table table{{{""}, {"samples", true}, {"window"}, {"rate [Hz]", true}, {"starts"}, {"amplitude [deg]", true}}};
-  const std::vector<double>& amplitudes = report.joint[report.MainFit()].homogeneity.amplitudes;
-  for (std::size_t k = 0; k < report.runs.size(); ++k) {
-    const DataSummary& data = report.runs[k].data;
-    const bool again = IsOneOfSeveral(report, k);
+  const std::vector<double>& amplitudes = identification.joint[identification.MainFit()].homogeneity.amplitudes;
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
+    const DataSummary& data = identification.runs[k].data;
+    const bool again = IsOneOfSeveral(identification, k);
     const std::string number = std::to_string(k + 1);
-    const bool held = report.runs[k].fits.front().start == StartKind::kRelease;
+    const bool held = identification.runs[k].fits.front().start == StartKind::kRelease;
     files.rows.push_back({number, FileText(data, again)});
     table.rows.push_back({number, std::to_string(data.used_samples) + " of " + std::to_string(data.samples),
                           WindowText(data), NumberText(data.sample_rate(), 4), held ? "held" : "in motion",
@@ -48,14 +48,14 @@ Section RecordingSection(const Identification& report) {
   return section.AddText("Amplitudes are root mean squares over the motion.");
 }
 
-Section FitSection(const Identification& report, std::size_t index) {
-  const FitReport& fit = report.fits[index];
+Section FitSection(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
   const bool converged = fit.termination == Termination::kConverged;
-  const std::string count = std::to_string(report.runs.size());
+  const std::string count = std::to_string(identification.runs.size());
   return {"Fit",
           "",
           {Facts{{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))},
-                 {"shared", NameList(report.joint[index].shared) + ", by " + count +
+                 {"shared", NameList(identification.joint[index].shared) + ", by " + count +
                                 " recordings; each recording has its own start, zero and noise"},
                  {"status", std::string(TerminationName(fit.termination)) + ": " + Printable(fit.reason),
                   converged ? Emphasis::kNone : Emphasis::kAlarm}}}};
@@ -155,17 +155,17 @@ std::string ScatterText(const SharedParameter& parameter) {
 
 // ---- Separate parameters of each recording --------------------------------------------------------------------------
 
-bool IsShared(const Identification& report, std::size_t index, std::string_view name) {
-  const std::vector<std::string>& shared = report.joint[index].shared;
+bool IsShared(const Identification& identification, std::size_t index, std::string_view name) {
+  const std::vector<std::string>& shared = identification.joint[index].shared;
   return std::ranges::find(shared, name) != shared.end();
 }
 
-Section OwnSection(const Identification& report, std::size_t index) {
+Section OwnSection(const Identification& identification, std::size_t index) {
   Table table{{{""}, {"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
-  for (std::size_t k = 0; k < report.runs.size(); ++k) {
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
     std::string number = std::to_string(k + 1);
-    for (const ParameterEstimate& parameter : report.runs[k].fits[index].parameters) {
-      if (IsShared(report, index, parameter.info.name)) continue;
+    for (const ParameterEstimate& parameter : identification.runs[k].fits[index].parameters) {
+      if (IsShared(identification, index, parameter.info.name)) continue;
       const QuantityNumbers numbers(parameter.estimate, parameter.std_error);
       const std::string note = parameter.fixed ? "(fixed)" : parameter.at_bound ? "(at bound)" : numbers.Error();
       table.rows.push_back({std::exchange(number, ""), std::string(parameter.info.name), numbers.Value(), note,
@@ -175,67 +175,67 @@ Section OwnSection(const Identification& report, std::size_t index) {
   return {"Each recording's own", "by the joint fit", {std::move(table)}};
 }
 
-Section NoiseSection(const Identification& report, std::size_t index) {
+Section NoiseSection(const Identification& identification, std::size_t index) {
   Facts facts;
-  for (std::size_t k = 0; k < report.runs.size(); ++k) {
-    const FitReport& fit = report.runs[k].fits[index];
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
+    const FitReport& fit = identification.runs[k].fits[index];
     if (fit.termination == Termination::kFailed) continue;
     const bool lacks = fit.HasWarning("lack_of_fit");
     facts.push_back({"recording " + std::to_string(k + 1),
                      NoiseText(fit) + "; rms residual " + ReadingText(fit.statistics.rms_residual, fit.reading_unit) +
                          ", lag-1 correlation " + FixedText(fit.noise.lag1_correlation, 3) + ", " +
                          fit.noise.autocorrelation.Name() + (lacks ? "; lack of fit" : "") +
-                         "; separate fit: " + report.joint[index].alone[k],
+                         "; separate fit: " + identification.joint[index].alone[k],
                      lacks ? Emphasis::kCaution : Emphasis::kNone});
   }
-  const FitStatistics& all = report.fits[index].statistics;
+  const FitStatistics& all = identification.fits[index].statistics;
   facts.push_back({"all", "log-likelihood " + FixedText(all.log_likelihood, 2) + ", AIC " + FixedText(all.aic, 2) +
                               ", AICc " + FixedText(all.aicc, 2) + ", BIC " + FixedText(all.bic, 2)});
   return {"Noise and statistics", "", {std::move(facts)}};
 }
 
-void AddMainFit(const Identification& report, std::size_t index, Sections& sections) {
-  const FitReport& fit = report.fits[index];
-  sections.push_back(FitSection(report, index));
-  sections.push_back(AllOfParameters(fit, report.rig, nullptr));
-  if (fit.termination == Termination::kConverged && !report.joint[index].homogeneity.agrees()) {
+void AddMainFit(const Identification& identification, std::size_t index, Sections& sections) {
+  const FitReport& fit = identification.fits[index];
+  sections.push_back(FitSection(identification, index));
+  sections.push_back(AllOfParameters(fit, identification.rig, nullptr));
+  if (fit.termination == Termination::kConverged && !identification.joint[index].homogeneity.agrees()) {
     sections.back().AddText("The recordings do not agree, but these errors assume that they do: see below.",
                             Emphasis::kCaution);
   }
-  sections.push_back(AgreementSection(report, index));
+  sections.push_back(AgreementSection(identification, index));
   if (fit.termination == Termination::kFailed) return;
   // If the joint fit did not converge, its motion describes none of the recordings.
   const bool is_a_motion = fit.termination != Termination::kNotConverged;
-  if (is_a_motion) sections.push_back(OwnSection(report, index));
+  if (is_a_motion) sections.push_back(OwnSection(identification, index));
   if (is_a_motion && !fit.derived.empty()) sections.push_back(DerivedSection(fit));
   if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
-  sections.push_back(NoiseSection(report, index));
-  const bool whole = report.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  if (is_a_motion && whole) sections.push_back(EquationSection(fit, report.rig));
+  sections.push_back(NoiseSection(identification, index));
+  const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
+  if (is_a_motion && whole) sections.push_back(EquationSection(fit, identification.rig));
 }
 
 }  // namespace
 
-Section AgreementSection(const Identification& report, std::size_t fit) {
-  const Homogeneity& homogeneity = report.joint[fit].homogeneity;
+Section AgreementSection(const Identification& identification, std::size_t fit) {
+  const Homogeneity& homogeneity = identification.joint[fit].homogeneity;
   Section section{"Do the recordings agree?"};
   const bool agrees = homogeneity.agrees();
   section.AddText("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
   for (const SharedParameter& parameter : homogeneity.parameters) {
-    section.Add(ForestTable(parameter, report.fits[fit])).AddText(ScatterText(parameter));
+    section.Add(ForestTable(parameter, identification.fits[fit])).AddText(ScatterText(parameter));
   }
   if (!homogeneity.parameters.empty()) section.AddText(kWhatAloneIs);
   return section;
 }
 
-Sections JointSections(const Identification& report) {
-  Sections sections = {RecordingSection(report)};
-  std::ranges::move(ComparisonSections(report), std::back_inserter(sections));
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    if (report.IsShownInFull(i)) AddMainFit(report, i, sections);
+Sections JointSections(const Identification& identification) {
+  Sections sections = {RecordingSection(identification)};
+  std::ranges::move(ComparisonSections(identification), std::back_inserter(sections));
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    if (identification.IsShownInFull(i)) AddMainFit(identification, i, sections);
   }
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    if (!report.IsShownInFull(i)) sections.push_back(ParameterSection(report.fits[i], true));
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    if (!identification.IsShownInFull(i)) sections.push_back(ParameterSection(identification.fits[i], true));
   }
   return sections;
 }

@@ -25,13 +25,13 @@ std::string WindowReason(const DataSummary& data) {
   return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
 }
 
-Json StartJson(const Identification& report) {
-  if (report.fits.empty()) return nullptr;
-  return report.fits.front().start == StartKind::kRelease ? "release" : "moving";
+Json StartJson(const Identification& identification) {
+  if (identification.fits.empty()) return nullptr;
+  return identification.fits.front().start == StartKind::kRelease ? "release" : "moving";
 }
 
-Json DataJson(const Identification& report) {
-  const DataSummary& data = report.data;
+Json DataJson(const Identification& identification) {
+  const DataSummary& data = identification.data;
   return NumberObject()
       .Set("path", TextOrNull(data.path))
       .Set("sha256", TextOrNull(data.sha256))
@@ -47,90 +47,91 @@ Json DataJson(const Identification& report) {
       .Set("window_reason", TextOrNull(WindowReason(data)))
       .Set("releases", Json(data.releases))
       .Set("release", data.release > 0 ? Json(data.release) : Json(nullptr))
-      .Set("start", StartJson(report))
-      .Set("sampling", SamplingJson(report.sampling))
+      .Set("start", StartJson(identification))
+      .Set("sampling", SamplingJson(identification.sampling))
       .Done();
 }
 
 /// Missing parts of a failed fit are null; its `reason` says why.
-Json FitJson(const Identification& report, std::size_t index) {
-  const FitReport& fit = report.fits[index];
+Json FitJson(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
   json["model"] = fit.model.name;
   json["status"] = TerminationName(fit.termination);
   json["reason"] = fit.reason;
-  json["equation"] = failed ? Json(nullptr) : Json(FittedEquation(fit, report.rig));
+  json["equation"] = failed ? Json(nullptr) : Json(FittedEquation(fit, identification.rig));
   json["parameters"] = ParametersJson(fit);
   json["derived"] = DerivedJson(fit);
   json["covariance"] = CovarianceJson(fit);
   json["correlation"] = CorrelationJson(fit);
-  json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, report.data);
+  json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, identification.data);
   json["systematic_covariance"] = SystematicJson(fit);
   json["std_error_method"] = TextOrNull(fit.std_error_method);
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit);
   json["statistics"] = failed ? Json(nullptr) : StatisticsJson(fit);
-  json["closed_form"] = CheckJson(report.CheckOf(index));
-  json["constancy"] = ConstancyJson(report.ConstancyOf(index));
-  if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, report.ConstancyOf(index));
+  json["closed_form"] = CheckJson(identification.CheckOf(index));
+  json["constancy"] = ConstancyJson(identification.ConstancyOf(index));
+  if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, identification.ConstancyOf(index));
   json["solver"] = SolverJson(fit.solver);
   return json;
 }
 
-Json WarningsJson(const Identification& report) {
+Json WarningsJson(const Identification& identification) {
   Json warnings = Json::array();
-  for (const Warning& warning : AllWarnings(report)) {
+  for (const Warning& warning : AllWarnings(identification)) {
     warnings.push_back({{"code", warning.code}, {"message", warning.message}});
   }
   return warnings;
 }
 
-Json CalibrationJson(const Identification& report) { return report.calibration; }
+Json CalibrationJson(const Identification& identification) { return identification.calibration; }
 
 /// For one recording the part itself; for a joint fit an array with one per recording, in order.
 template <typename Part>
-Json JsonPerRecording(const Identification& report, const Part& part) {
-  if (!report.is_joint()) return part(report);
+Json JsonPerRecording(const Identification& identification, const Part& part) {
+  if (!identification.is_joint()) return part(identification);
   Json all = Json::array();
-  for (const Identification& run : report.runs) all.push_back(part(run));
+  for (const Identification& run : identification.runs) all.push_back(part(run));
   return all;
 }
 
-std::string NoClosedFormsReason(const Identification& report) {
-  std::string why = report.closed_forms || report.is_joint() ? "" : report.no_closed_forms;
-  for (std::size_t k = 0; k < report.runs.size(); ++k) {
-    if (report.runs[k].closed_forms) continue;
-    why += (why.empty() ? "" : "; ") + RecordingLabel(report, k) + ": " + report.runs[k].no_closed_forms;
+std::string NoClosedFormsReason(const Identification& identification) {
+  std::string why = identification.closed_forms || identification.is_joint() ? "" : identification.no_closed_forms;
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
+    if (identification.runs[k].closed_forms) continue;
+    why +=
+        (why.empty() ? "" : "; ") + RecordingLabel(identification, k) + ": " + identification.runs[k].no_closed_forms;
   }
   return why;
 }
 
 }  // namespace
 
-nlohmann::ordered_json ToJson(const Identification& report) {
+nlohmann::ordered_json ToJson(const Identification& identification) {
   Json fits = Json::array();
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    fits.push_back(report.is_joint() ? JointFitJson(report, i) : FitJson(report, i));
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    fits.push_back(identification.is_joint() ? JointFitJson(identification, i) : FitJson(identification, i));
   }
   NumberObject json;
   json.Set("schema_version", Json(kSchemaVersion))
       .Set("tool", Json{{"name", "fit_pendulum"}, {"version", kVersion}})
-      .Set("data", JsonPerRecording(report, DataJson))
-      .Set("rig", report.rig ? report.rig->source : Json(nullptr))
-      .Set("calibration", JsonPerRecording(report, CalibrationJson))
+      .Set("data", JsonPerRecording(identification, DataJson))
+      .Set("rig", identification.rig ? identification.rig->source : Json(nullptr))
+      .Set("calibration", JsonPerRecording(identification, CalibrationJson))
       .Set("fits", std::move(fits))
-      .Set("comparison", ComparisonJson(report))
-      .Set("closed_forms", JsonPerRecording(report, ClosedFormsJson))
-      .Set("warnings", WarningsJson(report));
-  const std::string why = NoClosedFormsReason(report);
+      .Set("comparison", ComparisonJson(identification))
+      .Set("closed_forms", JsonPerRecording(identification, ClosedFormsJson))
+      .Set("warnings", WarningsJson(identification));
+  const std::string why = NoClosedFormsReason(identification);
   if (!why.empty()) json.AddReason(why);
   return json.Done();
 }
 
-std::string ToJsonText(const Identification& report) {
+std::string ToJsonText(const Identification& identification) {
   constexpr int kIndent = 2;
-  return JsonText(ToJson(report), kIndent) + "\n";
+  return JsonText(ToJson(identification), kIndent) + "\n";
 }
 
 }  // namespace pendulum

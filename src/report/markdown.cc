@@ -135,31 +135,31 @@ struct MarkdownRenderer {
 // --- the verdict -----------------------------------------------------------------------------------------------------
 
 /// The most important sentences.
-Items VerdictItems(const Identification& report, std::size_t main) {
-  const FitReport& fit = report.fits[main];
+Items VerdictItems(const Identification& identification, std::size_t main) {
+  const FitReport& fit = identification.fits[main];
   Items items;
   items.texts.push_back("Model " + std::string(fit.model.name) + ", " + std::string(TerminationName(fit.termination)) +
                         ": " + fit.reason);
-  if (report.comparison) items.texts.push_back(report.comparison->reason);
-  if (const Constancy* constancy = report.ConstancyOf(main)) items.texts.push_back(constancy->verdict);
-  if (report.is_joint()) items.texts.push_back(report.joint[main].homogeneity.verdict);
+  if (identification.comparison) items.texts.push_back(identification.comparison->reason);
+  if (const Constancy* constancy = identification.ConstancyOf(main)) items.texts.push_back(constancy->verdict);
+  if (identification.is_joint()) items.texts.push_back(identification.joint[main].homogeneity.verdict);
   std::erase(items.texts, "");
   return items;
 }
 
 /// The verdict for readers who read nothing else.
-Sections VerdictSections(const Identification& report) {
+Sections VerdictSections(const Identification& identification) {
   Section verdict{"Verdict"};
   Sections sections;
-  if (report.fits.empty()) {
+  if (identification.fits.empty()) {
     verdict.AddText("No fit was asked for: closed forms only.");
   } else {
-    const std::size_t main = report.MainFit();
-    if (report.fits[main].termination != Termination::kConverged) {
+    const std::size_t main = identification.MainFit();
+    if (identification.fits[main].termination != Termination::kConverged) {
       verdict.AddText("The fit did not converge, so its numbers are not a result.", Emphasis::kAlarm);
     }
-    verdict.blocks.emplace_back(VerdictItems(report, main));
-    sections.push_back(ParameterSection(report.fits[main], report.fits.size() > 1));
+    verdict.blocks.emplace_back(VerdictItems(identification, main));
+    sections.push_back(ParameterSection(identification.fits[main], identification.fits.size() > 1));
     sections.back().title = "Result";
   }
   sections.insert(sections.begin(), std::move(verdict));
@@ -189,15 +189,16 @@ std::string ToMarkdown(const Sections& sections) {
   return text;
 }
 
-std::string ToMarkdown(const Identification& report) {
-  Sections sections = VerdictSections(report);
-  const Sections all = ReportSections(report);
+std::string ToMarkdown(const Identification& identification) {
+  Sections sections = VerdictSections(identification);
+  const Sections all = ReportSections(identification);
   const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };
   std::ranges::copy_if(all, std::back_inserter(sections), is_warning);
   std::ranges::copy_if(all, std::back_inserter(sections), std::not_fn(is_warning));
-  const std::string name = report.is_joint()          ? std::to_string(report.runs.size()) + " recordings of one rig"
-                           : report.data.path.empty() ? "a recording"
-                                                      : report.data.path;
+  const std::string name = identification.is_joint()
+                               ? std::to_string(identification.runs.size()) + " recordings of one rig"
+                           : identification.data.path.empty() ? "a recording"
+                                                              : identification.data.path;
   return "# Pendulum: " + MarkdownText(name) + "\n\n" + ToMarkdown(sections);
 }
 

@@ -80,11 +80,11 @@ Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) 
   return json;
 }
 
-Json PeaksJson(const Identification& report, const std::string& unit) {
+Json PeaksJson(const Identification& identification, const std::string& unit) {
   Json json = Json::array();
-  if (!report.closed_forms) return json;
-  for (std::size_t i = 0; i < report.closed_forms->table.points.size(); ++i) {
-    json.push_back(PeakJson(*report.closed_forms, i, unit));
+  if (!identification.closed_forms) return json;
+  for (std::size_t i = 0; i < identification.closed_forms->table.points.size(); ++i) {
+    json.push_back(PeakJson(*identification.closed_forms, i, unit));
   }
   return json;
 }
@@ -135,11 +135,11 @@ Json MotionJson(const Recording& used, const FitReport& fit, const std::optional
 }
 
 /// By model; null where the samples show the motions.
-Json MotionsJson(const Recording& used, const Identification& report, SeriesDetail detail) {
+Json MotionsJson(const Recording& used, const Identification& identification, SeriesDetail detail) {
   Json json;
-  if (!HidesMotion(used, report.sampling)) return json;
-  for (const FitReport& fit : report.fits) {
-    json[std::string(fit.model.name)] = MotionJson(used, fit, report.rig, detail);
+  if (!HidesMotion(used, identification.sampling)) return json;
+  for (const FitReport& fit : identification.fits) {
+    json[std::string(fit.model.name)] = MotionJson(used, fit, identification.rig, detail);
   }
   return json;
 }
@@ -155,9 +155,9 @@ Json ProfileJson(const ProfileCurve& curve) {
 }
 
 /// Profiles by model and parameter; null if no fit has one.
-Json ProfilesJson(const Identification& report) {
+Json ProfilesJson(const Identification& identification) {
   Json json;
-  for (const FitReport& fit : report.fits) {
+  for (const FitReport& fit : identification.fits) {
     for (const ProfileCurve& curve : fit.profiles) json[std::string(fit.model.name)][curve.name] = ProfileJson(curve);
   }
   return json;
@@ -188,43 +188,46 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
   return text;
 }
 
-std::string ToResidualCsv(const Identification& one, std::size_t fit) {
-  return ToResidualCsv(one.used, one.fits[fit], one.checks.empty() ? TextbookOverlay{} : one.checks[fit].overlay);
+std::string ToResidualCsv(const Identification& identification, std::size_t fit) {
+  return ToResidualCsv(identification.used, identification.fits[fit],
+                       identification.checks.empty() ? TextbookOverlay{} : identification.checks[fit].overlay);
 }
 
 namespace {
 
-Json PartJson(const Identification& report, SeriesDetail detail) {
-  const Recording& used = report.used;
+Json PartJson(const Identification& identification, SeriesDetail detail) {
+  const Recording& used = identification.used;
   const std::string unit = used.value_unit();
   Json json;
   json["time_s"] = SamplesJson(used.time, used.size(), SeriesDetail::kAll);
   json["measured"] = SamplesJson(used.value, used.size(), detail);
   json["unit"] = unit;
   json["extrema"] = ExtremaJson(used);
-  json["peaks"] = PeaksJson(report, unit);
-  json["profiles"] = ProfilesJson(report);
+  json["peaks"] = PeaksJson(identification, unit);
+  json["profiles"] = ProfilesJson(identification);
   json["models"] = Json::object();
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    const FitReport& fit = report.fits[i];
-    const ClosedFormCheck* const check = report.CheckOf(i);
-    const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || i == report.MainFit());
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    const FitReport& fit = identification.fits[i];
+    const ClosedFormCheck* const check = identification.CheckOf(i);
+    const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || i == identification.MainFit());
     json["models"][std::string(fit.model.name)] =
         ModelJson(fit, has_overlay ? check->overlay : TextbookOverlay(), used.size(), detail);
   }
-  json["motions"] = MotionsJson(used, report, detail);
+  json["motions"] = MotionsJson(used, identification, detail);
   return json;
 }
 
 }  // namespace
 
-nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail) {
-  if (!one.is_joint()) return PartJson(one, detail);
+nlohmann::ordered_json SeriesJson(const Identification& identification, SeriesDetail detail) {
+  if (!identification.is_joint()) return PartJson(identification, detail);
   Json all = Json::array();
-  for (const Identification& run : one.runs) all.push_back(PartJson(run, detail));
+  for (const Identification& run : identification.runs) all.push_back(PartJson(run, detail));
   return all;
 }
 
-std::string ToSeriesJsonText(const Identification& one) { return JsonText(SeriesJson(one)) + "\n"; }
+std::string ToSeriesJsonText(const Identification& identification) {
+  return JsonText(SeriesJson(identification)) + "\n";
+}
 
 }  // namespace pendulum

@@ -58,36 +58,38 @@ void Append(Sections more, Sections& sections) {
   sections.insert(sections.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-Section WarningSection(const Identification& report) {
+Section WarningSection(const Identification& identification) {
   Items items{{}, Emphasis::kCaution};
-  for (const Warning& warning : AllWarnings(report)) items.texts.push_back(Printable(warning.message));
+  for (const Warning& warning : AllWarnings(identification)) items.texts.push_back(Printable(warning.message));
   return {"Warnings", "", {std::move(items)}};
 }
 
 }  // namespace
 
-Sections ReportSections(const Identification& report) {
-  if (report.is_joint()) {
-    Sections joint = JointSections(report);
-    if (!AllWarnings(report).empty()) joint.push_back(WarningSection(report));
+Sections ReportSections(const Identification& identification) {
+  if (identification.is_joint()) {
+    Sections joint = JointSections(identification);
+    if (!AllWarnings(identification).empty()) joint.push_back(WarningSection(identification));
     return joint;
   }
-  Sections sections = {DataSection(report.data)};
-  Append(SamplingSections(report), sections);
-  Append(ComparisonSections(report), sections);
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    if (!report.IsShownInFull(i)) continue;
-    Append(FitSections(report.fits[i], report.rig, report.CheckOf(i)), sections);
-    Append(ConstancySections(report, i), sections);
+  Sections sections = {DataSection(identification.data)};
+  Append(SamplingSections(identification), sections);
+  Append(ComparisonSections(identification), sections);
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    if (!identification.IsShownInFull(i)) continue;
+    Append(FitSections(identification.fits[i], identification.rig, identification.CheckOf(i)), sections);
+    Append(ConstancySections(identification, i), sections);
   }
-  for (std::size_t i = 0; i < report.fits.size(); ++i) {
-    if (!report.IsShownInFull(i)) sections.push_back(ParameterSection(report.fits[i], true));
+  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+    if (!identification.IsShownInFull(i)) sections.push_back(ParameterSection(identification.fits[i], true));
   }
-  Append(ClosedFormSections(report), sections);
-  if (!AllWarnings(report).empty()) sections.push_back(WarningSection(report));
+  Append(ClosedFormSections(identification), sections);
+  if (!AllWarnings(identification).empty()) sections.push_back(WarningSection(identification));
   return sections;
 }
 
-std::string ToText(const Identification& report, TextStyle style) { return ToText(ReportSections(report), style); }
+std::string ToText(const Identification& identification, TextStyle style) {
+  return ToText(ReportSections(identification), style);
+}
 
 }  // namespace pendulum

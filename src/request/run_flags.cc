@@ -442,7 +442,7 @@ tl::unexpected<Status> NeedsFitError(std::string_view flag) {
   return BadFlag(std::string(flag) + " needs a fit, but --closed_form_only makes none; leave one of them out");
 }
 
-Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags) {
+Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   IdentifyOptions options;
   options.closed_form_only = flags.closed_form_only;

@@ -91,8 +91,8 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
 }
 
-/// The report with the name of its recording as path.
-Identification NamedReport(const Identification& run, const std::string& name) {
+/// The identification with the name of its recording as path.
+Identification NamedIdentification(const Identification& run, const std::string& name) {
   Identification named = run;
   named.data.path = name;
   return named;
@@ -263,13 +263,13 @@ HttpResponse GetResiduals(ServiceState& state, const Call& call) {
 
 HttpResponse GetReport(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string& name) {
-    return FileAnswer("text/html; charset=utf-8", ToHtml(NamedReport(run, name), ""), name + ".html");
+    return FileAnswer("text/html; charset=utf-8", ToHtml(NamedIdentification(run, name), ""), name + ".html");
   });
 }
 
 HttpResponse GetMarkdown(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string& name) {
-    return FileAnswer("text/markdown; charset=utf-8", ToMarkdown(NamedReport(run, name)), name + ".md");
+    return FileAnswer("text/markdown; charset=utf-8", ToMarkdown(NamedIdentification(run, name)), name + ".md");
   });
 }
 

@@ -247,7 +247,7 @@ ResultOrProblem<void> CheckOptions(const FlagTexts& flags) {
 /// Makes the options and checks the limits.
 ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
   if (auto checked = CheckOptions(request.flags); !checked) return tl::unexpected(checked.error());
-  auto options = RunOptionsOf(request.flags, request.calibration);
+  auto options = IdentifyOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
   if (request.rig) {
     if (const auto rig = ParseRig(request.rig->bytes, request.rig->name); !rig) return Refused(rig.error());
@@ -293,11 +293,11 @@ Json JsonOf(const FlagTexts& flags) {
   return object;
 }
 
-Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
+Result<IdentifyOptions> IdentifyOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
   auto run_flags = RunFlagsOf(flags);
   if (!run_flags) return tl::unexpected(run_flags.error());
   if (calibration) run_flags->calibration = calibration->name;
-  auto options = MakeRunOptions(*run_flags);
+  auto options = MakeIdentifyOptions(*run_flags);
   if (!options) return options;
   if (options->swing.release == SwingChoice::kAll) {
     return Error(
@@ -318,7 +318,7 @@ Result<FlagTexts> FlagsOf(const FitOrder& order) {
 Result<IdentifyOptions> OptionsOf(const FitOrder& order) {
   const auto flags = FlagsOf(order);
   if (!flags) return tl::unexpected(flags.error());
-  return RunOptionsOf(*flags, order.files.calibration);
+  return IdentifyOptionsOf(*flags, order.files.calibration);
 }
 
 ResultOrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types) {

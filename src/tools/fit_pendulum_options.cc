@@ -109,7 +109,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   FitPendulumOptions options;
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
-  auto run = MakeRunOptions(flags);
+  auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());
   static_cast<IdentifyOptions&>(options) = *std::move(run);
   if (const auto parsed = ParseShared(flags, options); !parsed) return tl::unexpected(parsed.error());

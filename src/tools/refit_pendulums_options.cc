@@ -114,7 +114,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   if (flags.store.empty()) return BadFlag("no store was given; name the file for the results with --store");
   if (auto parsed = ParseSource(flags, options); !parsed) return parsed;
   if (flags.release == "all") return BadFlag("--release all makes several results of a run; a batch has one of each");
-  auto run = MakeRunOptions(flags);
+  auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());
   options.refit.threads = run->fit.threads;
   options.refit.run = *std::move(run);

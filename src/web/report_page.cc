@@ -10,10 +10,10 @@
 
 namespace pendulum {
 
-std::string ToHtml(const Identification& one, const std::string& command) {
+std::string ToHtml(const Identification& identification, const std::string& command) {
   using Json = nlohmann::ordered_json;
-  return FillPage(ReportPageTemplate(), {{"@RESULT@", ToJson(one)},
-                                         {"@SERIES@", SeriesJson(one, SeriesDetail::kPage)},
+  return FillPage(ReportPageTemplate(), {{"@RESULT@", ToJson(identification)},
+                                         {"@SERIES@", SeriesJson(identification, SeriesDetail::kPage)},
                                          {"@COMMAND@", command.empty() ? Json(nullptr) : Json{{"command", command}}}});
 }
 

@@ -205,7 +205,7 @@ inline Comparison ExampleComparison() {
 }
 
 /// A run with a rig with uncertain masses, and one warning of the recording.
-inline Identification ExampleReport() {
+inline Identification ExampleIdentification() {
   Identification report;
   report.data.path = "swing.csv";
   report.data.sha256 = std::string(64, 'a');
@@ -233,8 +233,8 @@ inline Identification ExampleReport() {
 }
 
 /// The same for a gyro without a rig, not converged: no standard errors and no closed forms.
-inline Identification ExampleRateReport() {
-  Identification report = ExampleReport();
+inline Identification ExampleRateIdentification() {
+  Identification report = ExampleIdentification();
   report.rig.reset();
   report.sampling.reset();
   report.closed_forms.reset();
@@ -271,9 +271,9 @@ inline Identification ExampleRateReport() {
 }
 
 /// The example compared with a fit that did not converge; inertia depends on amplitude.
-inline Identification ExampleComparedReport() {
-  Identification report = ExampleReport();
-  FitReport drag = ExampleRateReport().fits.front();
+inline Identification ExampleComparedIdentification() {
+  Identification report = ExampleIdentification();
+  FitReport drag = ExampleRateIdentification().fits.front();
   drag.model = {"drag", "drag", Gravity::kSine};
   drag.quantity = Quantity::kAngle;
   drag.reading_unit = "rad";

@@ -61,13 +61,13 @@ inline FitReport ExampleSharedFit() {
 
 /// The example's recording as run.csv, and a second one, "b c.csv", of an earlier release and in motion from the start.
 /// The second one has neither closed forms nor constancy.
-inline Identification ExampleJointReport() {
+inline Identification ExampleJointIdentification() {
   Identification report;
-  report.rig = ExampleReport().rig;
+  report.rig = ExampleIdentification().rig;
   report.fits = {ExampleSharedFit()};
   report.joint = {
       {{"inertia", "viscous", "coulomb"}, ExampleHomogeneity(), {"converged", "not_converged: too few iterations"}}};
-  report.runs = {ExampleReport(), ExampleReport()};
+  report.runs = {ExampleIdentification(), ExampleIdentification()};
   report.runs[0].data.path = "run.csv";
   Identification& second = report.runs[1];
   second.data.path = "b c.csv";
@@ -88,10 +88,10 @@ inline Identification ExampleJointReport() {
   return report;
 }
 
-/// Adds the law drag, which did not converge, with the comparison of ExampleComparedReport.
-inline Identification ExampleComparedJointReport() {
-  Identification report = ExampleJointReport();
-  const FitReport drag = ExampleComparedReport().fits[1];
+/// Adds the law drag, which did not converge, with the comparison of ExampleComparedIdentification.
+inline Identification ExampleComparedJointIdentification() {
+  Identification report = ExampleJointIdentification();
+  const FitReport drag = ExampleComparedIdentification().fits[1];
   report.fits.push_back(drag);
   report.joint.push_back(report.joint.front());
   report.joint.back().shared = {"inertia", "viscous", "coulomb", "drag"};
@@ -105,8 +105,8 @@ inline Identification ExampleComparedJointReport() {
 }
 
 /// The example without a joint trajectory: it has only the numbers of the separate fits.
-inline Identification ExampleFailedJointReport() {
-  Identification report = ExampleJointReport();
+inline Identification ExampleFailedJointIdentification() {
+  Identification report = ExampleJointIdentification();
   const auto fail = [](FitReport& fit) {
     fit.termination = Termination::kFailed;
     fit.reason = "no joint motion can be computed";

@@ -45,7 +45,7 @@ TEST(SummarizeUsed, DescribesTheWindow) {
 }
 
 TEST(AllWarnings, ListEachWarningOnceDataFirst) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.push_back(report.fits.front());
   report.fits.back().warnings.push_back({"gap", "another gap"});
   EXPECT_THAT(AllWarnings(report),
@@ -54,7 +54,7 @@ TEST(AllWarnings, ListEachWarningOnceDataFirst) {
 }
 
 TEST(Identification, GivesTheCheckOfAFitOrNone) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
   EXPECT_EQ(report.CheckOf(1), nullptr);
   report.checks.clear();
@@ -62,13 +62,13 @@ TEST(Identification, GivesTheCheckOfAFitOrNone) {
 }
 
 TEST(AllWarnings, AreTheRecordingsWarningsWithoutAFit) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.clear();
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
 }
 
 TEST(AllWarnings, NameTheRecordingInAJointFit) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
   report.runs[1].warnings = report.runs[0].warnings;
   EXPECT_THAT(AllWarnings(report),
@@ -84,16 +84,16 @@ TEST(AllWarnings, NameTheRecordingInAJointFit) {
 }
 
 TEST(RecordingLabel, IsNumberAndFile) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_TRUE(report.is_joint());
-  EXPECT_FALSE(ExampleReport().is_joint());
+  EXPECT_FALSE(ExampleIdentification().is_joint());
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv)");
   report.runs[1].data.path.clear();
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2");
 }
 
 TEST(RecordingLabel, DistinguishesReleasesOfOneFile) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 3;
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv, free swing 1)");
@@ -103,7 +103,7 @@ TEST(RecordingLabel, DistinguishesReleasesOfOneFile) {
 }
 
 TEST(MainFit, IsTheRecommendedOrTheFirstConvergedFit) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   EXPECT_EQ(report.MainFit(), 0);
   report.comparison->recommended = "drag";
   EXPECT_EQ(report.MainFit(), 1);
@@ -117,7 +117,7 @@ TEST(MainFit, IsTheRecommendedOrTheFirstConvergedFit) {
 }
 
 TEST(IsShownInFull, IsTrueWithoutAComparison) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.comparison.reset();
   EXPECT_TRUE(report.IsShownInFull(0));
   EXPECT_TRUE(report.IsShownInFull(1));
@@ -154,7 +154,7 @@ TEST(ExitCode, FollowsTheRecommendedFit) {
 }
 
 TEST(Parts, AreTheJointRecordingsOrTheSingleOne) {
-  const Identification joint = ExampleJointReport(), single = ExampleReport();
+  const Identification joint = ExampleJointIdentification(), single = ExampleIdentification();
   EXPECT_THAT(joint.Parts(), ElementsAre(&joint.runs[0], &joint.runs[1]));
   EXPECT_THAT(single.Parts(), ElementsAre(&single));
 }

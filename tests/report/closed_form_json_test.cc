@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.rig->gravity_torque.value = 2;
   const Json si = ClosedFormsJson(report);
   EXPECT_EQ(si["linear"]["inertia"].dump(), R"({"estimate":0.089,"std_error":0.00025,"unit":"kg m^2"})");
@@ -28,14 +28,14 @@ TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
 }
 
 TEST(ClosedFormsJson, NamesTheModelWithoutAFitToo) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.clear();
   report.closed_forms->decrement.reset();
   EXPECT_EQ(ClosedFormsJson(report)["model"], "coulomb");
 }
 
 TEST(ClosedFormsJson, ExplainsAMissingPart) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
@@ -49,10 +49,10 @@ TEST(ClosedFormsJson, ExplainsAMissingPart) {
             "for 4 unknowns");
 }
 
-TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(ClosedFormsJson(ExampleRateReport()).is_null()); }
+TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(ClosedFormsJson(ExampleRateIdentification()).is_null()); }
 
 TEST(ClosedFormsJson, NameTheUnitOfTheNoise) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.unit = "rad/s";
   EXPECT_EQ(ClosedFormsJson(report)["noise_rad_s"], 0.0035);
   report.data.unit = "counts";

@@ -22,7 +22,7 @@ std::string SamplingText(const Identification& report) { return ToText(SamplingS
 
 /// The example with more turning points, each 0.65 s after the previous one.
 Identification ReportWithTurningPoints(int count) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   ClosedForms& forms = *report.closed_forms;
   for (int i = static_cast<int>(forms.table.points.size()); i < count; ++i) {
     forms.table.points.push_back(forms.table.points.back());
@@ -46,7 +46,7 @@ std::vector<std::string> TurningPointLines(const Identification& report) {
 
 // Expected values rounded by hand; G = 1.8 N m, and 1 rad = 57.2958 deg.
 TEST(ClosedFormText, ReportsSiUnits) {
-  EXPECT_THAT(ClosedFormText(ExampleReport()), StartsWith(R"([[Closed forms]]
+  EXPECT_THAT(ClosedFormText(ExampleIdentification()), StartsWith(R"([[Closed forms]]
     Formulas of the linear pendulum, over 2 periods from turning point 1 on;
     corrected_inertia: each period divided by the elliptic integral's ratio.
     name               symbol    value ± std error  unit
@@ -74,7 +74,7 @@ TEST(ClosedFormText, ReportsSiUnits) {
 }
 
 TEST(ClosedFormText, UsesUnitsOfGravityWithoutARig) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.rig.reset();
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    inertia            I_O     0.04450 ± 0.00013    s^2\n"));
@@ -82,7 +82,7 @@ TEST(ClosedFormText, UsesUnitsOfGravityWithoutARig) {
 }
 
 TEST(ClosedFormText, RoundsFitAndClosedFormAlikeAndExplainsDifferences) {
-  EXPECT_THAT(ClosedFormText(ExampleReport()), HasSubstr(R"([[Closed forms against the fit]]
+  EXPECT_THAT(ClosedFormText(ExampleIdentification()), HasSubstr(R"([[Closed forms against the fit]]
     quantity               formula ± error        fit    z  agrees
     inertia_small_angle    0.08020 ± 0.00020  0.07900  6.2  NO
     viscous_log_decrement   0.0031 ± 0.0005   0.00300  0.0  yes
@@ -97,13 +97,13 @@ TEST(ClosedFormText, RoundsFitAndClosedFormAlikeAndExplainsDifferences) {
 }
 
 TEST(ClosedFormText, HidesANonFiniteZ) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
   EXPECT_THAT(ClosedFormText(report), HasSubstr("0.08020 ± 0.00020  0.07900    -  NO\n"));
 }
 
 TEST(ClosedFormText, NamesTheModelOfEachOfSeveralChecks) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.push_back(report.fits.front());
   report.fits.back().model = {"viscous", "viscous", Gravity::kSine};
   report.checks.push_back(report.checks.front());
@@ -113,7 +113,7 @@ TEST(ClosedFormText, NamesTheModelOfEachOfSeveralChecks) {
 }
 
 TEST(ClosedFormText, ChecksOnlyTheMainFitOfAComparison) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.checks[1] = ExampleCheck();
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of coulomb]]\n"));
@@ -121,7 +121,7 @@ TEST(ClosedFormText, ChecksOnlyTheMainFitOfAComparison) {
 }
 
 TEST(ClosedFormText, ListsTurningPointsInDegrees) {
-  EXPECT_THAT(ClosedFormText(ExampleReport()),
+  EXPECT_THAT(ClosedFormText(ExampleIdentification()),
               HasSubstr(R"([[Turning points]] (ζ: damping ratio of a pair, and over n periods)
     number   t [s]  angle [deg]  ζ (pair) ± error   ζ over n ± error   n
          1  2.5000        22.92    0.0041 ± 0.0008
@@ -157,7 +157,7 @@ TEST(ClosedFormText, ListsSixtyTurningPointsWithoutAFit) {
 }
 
 TEST(ClosedFormText, UsesRateUnitsForARate) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.unit = "rad/s";
   report.closed_forms->table.quantity = Quantity::kRate;
   report.closed_forms->decrement->table.quantity = Quantity::kRate;
@@ -168,7 +168,7 @@ TEST(ClosedFormText, UsesRateUnitsForARate) {
 }
 
 TEST(ClosedFormText, ShowsCountsUnconverted) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.unit = "counts";
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    number   t [s]  angle [counts]  "));
@@ -177,7 +177,7 @@ TEST(ClosedFormText, ShowsCountsUnconverted) {
 }
 
 TEST(ClosedFormText, ReportsMissingParts) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.closed_forms->linear.reset();
   report.closed_forms->decrement.reset();
   report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
@@ -187,13 +187,13 @@ TEST(ClosedFormText, ReportsMissingParts) {
     No law was fitted to the turning points: too few turning points for 4
     unknowns.
     envelope  as )"));
-  EXPECT_EQ(ClosedFormText(ExampleRateReport()),
+  EXPECT_EQ(ClosedFormText(ExampleRateIdentification()),
             "[[Closed forms]]\n    There are none: only 2 turning points can be located.\n");
   EXPECT_EQ(ClosedFormText(Identification()), "");
 }
 
 TEST(SamplingText, DescribesTheSampling) {
-  EXPECT_EQ(SamplingText(ExampleReport()), R"([[Sampling]]
+  EXPECT_EQ(SamplingText(ExampleIdentification()), R"([[Sampling]]
     rate       100 Hz, intervals scatter by 0.2 ms
     gaps       1, of 0.5 s at most
     swing      0.8 Hz: 125 samples a period, Nyquist margin 62.5; 0.775 Hz

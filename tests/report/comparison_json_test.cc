@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ComparisonJson, HasARowForEachModel) {
-  const Json rows = ComparisonJson(ExampleComparedReport())["rows"];
+  const Json rows = ComparisonJson(ExampleComparedIdentification())["rows"];
   ASSERT_EQ(rows.size(), 2);
   EXPECT_EQ(rows[0]["cross_validation"].dump(), R"({"rms_rad":0.0035,"standardized":1.0125,"samples":1600})");
   EXPECT_EQ(rows[0]["rms_residual_rad"], 0.00349);
@@ -28,7 +28,7 @@ TEST(ComparisonJson, HasARowForEachModel) {
 }
 
 TEST(ComparisonJson, ExplainsAMissingPrediction) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.comparison->rows[0].forward = {0, 0, 0, "it ends early"};
   const Json row = ComparisonJson(report)["rows"][0];
   EXPECT_TRUE(row["forward_prediction"].is_null());
@@ -38,7 +38,7 @@ TEST(ComparisonJson, ExplainsAMissingPrediction) {
 }
 
 TEST(ComparisonJson, NamesTheBasisOfTheCriteria) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   const std::pair<Likelihood, const char*> named[] = {
       {Likelihood::kIndependent, "independent"}, {Likelihood::kCorrelated, "correlated"}, {Likelihood::kNone, "none"}};
   for (const auto& [likelihood, name] : named) {
@@ -50,21 +50,21 @@ TEST(ComparisonJson, NamesTheBasisOfTheCriteria) {
 }
 
 TEST(ComparisonJson, IsNullWithoutARecommendation) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.comparison->recommended.clear();
   EXPECT_TRUE(ComparisonJson(report)["recommended"].is_null());
-  EXPECT_TRUE(ComparisonJson(ExampleReport()).is_null());
+  EXPECT_TRUE(ComparisonJson(ExampleIdentification()).is_null());
 }
 
 TEST(ComparisonJson, ExplainsAMissingP) {
-  const Json tests = ComparisonJson(ExampleComparedReport())["tests"];
+  const Json tests = ComparisonJson(ExampleComparedIdentification())["tests"];
   EXPECT_FALSE(tests[0].contains("reason"));
   EXPECT_TRUE(tests[1]["p"].is_null());
   EXPECT_EQ(tests[1]["reason"], "drag did not converge");
 }
 
 TEST(ComparisonJson, NamesTheUnitOfARate) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.data.unit = "rad/s";
   const Json row = ComparisonJson(report)["rows"][0];
   EXPECT_TRUE(row.contains("rms_residual_rad_s"));
@@ -72,7 +72,7 @@ TEST(ComparisonJson, NamesTheUnitOfARate) {
 }
 
 TEST(ComparisonJson, WritesNonFiniteNumbersAsNull) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   ComparisonRow& row = report.comparison->rows[0];
   row.aic = kNan;
   row.cross_validation.standardized = kNan;

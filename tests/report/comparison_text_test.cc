@@ -18,7 +18,7 @@ std::string ConstancyText(const Identification& report) { return ToText(Constanc
 
 // Expected values: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
 TEST(ComparisonSections, StartWithTheRecommendation) {
-  EXPECT_EQ(ComparisonText(ExampleComparedReport()), R"([[Comparison]]
+  EXPECT_EQ(ComparisonText(ExampleComparedIdentification()), R"([[Comparison]]
     Recommended: coulomb.
     It is the only one that converged.
     model    parameters  rms [deg]  ΔBIC  AICc weight  lag 1
@@ -42,7 +42,7 @@ TEST(ComparisonSections, StartWithTheRecommendation) {
 }
 
 TEST(ComparisonSections, WarnIfNothingIsRecommended) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.comparison->recommended.clear();
   report.comparison->reason = "None converged.";
   report.comparison->tests.clear();
@@ -53,7 +53,7 @@ TEST(ComparisonSections, WarnIfNothingIsRecommended) {
 }
 
 TEST(ComparisonSections, ExplainMissingPredictions) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   ComparisonRow& row = report.comparison->rows[0];
   row.cross_validation = row.forward = {0, 0, 0, "shorter than three periods"};
   const std::string text = ComparisonText(report);
@@ -65,22 +65,22 @@ TEST(ComparisonSections, ExplainMissingPredictions) {
 }
 
 TEST(ComparisonSections, UseTheUnitOfTheReadings) {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   report.data.unit = "counts";
   EXPECT_THAT(ComparisonText(report), HasSubstr("rms [counts]"));
   EXPECT_THAT(ComparisonText(report), HasSubstr("  0.00349  "));
 }
 
-TEST(ComparisonSections, AreEmptyForOneModel) { EXPECT_EQ(ComparisonText(ExampleReport()), ""); }
+TEST(ComparisonSections, AreEmptyForOneModel) { EXPECT_EQ(ComparisonText(ExampleIdentification()), ""); }
 
 TEST(ConstancySections, AreOneSentenceIfAllIsConstant) {
-  EXPECT_EQ(ConstancyText(ExampleReport()),
+  EXPECT_EQ(ConstancyText(ExampleIdentification()),
             "[[Constancy]]\n    inertia and friction are constants of the recording.\n");
 }
 
 // 0.4 rad = 22.918 deg, 0.3 rad = 17.189 deg, 0.2 rad = 11.459 deg.
 TEST(ConstancySections, ShowTheWindowsOfATrend) {
-  EXPECT_EQ(ConstancyText(ExampleComparedReport()), R"([[Constancy]]
+  EXPECT_EQ(ConstancyText(ExampleComparedIdentification()), R"([[Constancy]]
     inertia falls by 1.9 % from the largest to the smallest swings (p = 1e-09).
     from [s]  to [s]  amplitude [deg]  inertia [kg m^2] ± error
         1.50    7.50            22.92           0.07950 ± 0.00013
@@ -90,7 +90,7 @@ TEST(ConstancySections, ShowTheWindowsOfATrend) {
 }
 
 TEST(ConstancySections, ShowDifferingHalves) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.constancy[0].halves_p = 1e-6;
   report.constancy[0].verdict = "viscous differs between the halves";
   EXPECT_EQ(ToText(ConstancySections(report, 0), {.colour = true}),
@@ -102,7 +102,7 @@ TEST(ConstancySections, ShowDifferingHalves) {
 }
 
 TEST(ConstancySections, ReportMissingTests) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.constancy[0] = Constancy();
   EXPECT_EQ(ConstancyText(report), "");
   report.constancy[0].reason = "the recording is shorter than six periods";

@@ -40,7 +40,7 @@ TEST(FittedEquation, RoundsEachNumberByItsError) {
 }
 
 TEST(FittedEquation, HasUnitGravityWithoutARig) {
-  EXPECT_EQ(FittedEquation(ExampleRateReport().fits.front(), std::nullopt),
+  EXPECT_EQ(FittedEquation(ExampleRateIdentification().fits.front(), std::nullopt),
             "0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0");
 }
 

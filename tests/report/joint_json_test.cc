@@ -29,7 +29,7 @@ Json HomogeneityOf(const Identification& report) { return JointFitJson(report, 0
 
 // tests/tools/result_schema_test.py checks the tool's output with the schema.
 TEST(ToJson, HasArraysOfRecordingsForAJointFit) {
-  const Json json = ToJson(ExampleJointReport());
+  const Json json = ToJson(ExampleJointIdentification());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
                                       "closed_forms", "warnings", "reason"));
   ASSERT_EQ(json["data"].size(), 2);
@@ -41,23 +41,23 @@ TEST(ToJson, HasArraysOfRecordingsForAJointFit) {
   ASSERT_EQ(json["closed_forms"].size(), 2);
   EXPECT_EQ(json["closed_forms"][0]["turning_points"], 5);
   EXPECT_TRUE(json["closed_forms"][1].is_null());
-  EXPECT_EQ(json["fits"][0], JointFitJson(ExampleJointReport(), 0));
+  EXPECT_EQ(json["fits"][0], JointFitJson(ExampleJointIdentification(), 0));
 }
 
 TEST(ToJson, NamesTheRecordingWithoutClosedForms) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_EQ(ToJson(report)["reason"], "recording 2 (b c.csv): only 2 turning points can be located");
   report.runs[0].closed_forms.reset();
   report.runs[0].no_closed_forms = "undersampled";
   report.runs[1].data.path.clear();
   EXPECT_EQ(ToJson(report)["reason"],
             "recording 1 (run.csv): undersampled; recording 2: only 2 turning points can be located");
-  report.runs = {ExampleReport(), ExampleReport()};
+  report.runs = {ExampleIdentification(), ExampleIdentification()};
   EXPECT_FALSE(ToJson(report).contains("reason"));
 }
 
 TEST(ToJson, NamesTheRecordingOfAJointFitsWarning) {
-  const Json warnings = ToJson(ExampleJointReport())["warnings"];
+  const Json warnings = ToJson(ExampleJointIdentification())["warnings"];
   ASSERT_EQ(warnings.size(), 2);
   EXPECT_EQ(warnings[0]["message"], "recording 1 (run.csv): there is a gap of 0.5 s after 7 s");
   EXPECT_EQ(warnings[1]["code"], "lack_of_fit");
@@ -65,7 +65,7 @@ TEST(ToJson, NamesTheRecordingOfAJointFitsWarning) {
 }
 
 TEST(JointFitJson, KeepsTheOrderOfKeys) {
-  const Json fit = JointFitJson(ExampleJointReport(), 0);
+  const Json fit = JointFitJson(ExampleJointIdentification(), 0);
   EXPECT_THAT(Keys(fit),
               ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
                           "correlation", "systematic_covariance", "std_error_method", "interval_method",
@@ -76,7 +76,7 @@ TEST(JointFitJson, KeepsTheOrderOfKeys) {
 }
 
 TEST(JointFitJson, ShowsEachRecordingAsJointlyFitted) {
-  const Json runs = JointFitJson(ExampleJointReport(), 0)["runs"];
+  const Json runs = JointFitJson(ExampleJointIdentification(), 0)["runs"];
   ASSERT_EQ(runs.size(), 2);
   EXPECT_THAT(Keys(runs[0]), ElementsAre("path", "release", "amplitude_rad", "parameters", "covariance", "correlation",
                                          "systematic_covariance", "noise", "std_error_method", "identifiability",
@@ -91,7 +91,7 @@ TEST(JointFitJson, ShowsEachRecordingAsJointlyFitted) {
 }
 
 TEST(JointFitJson, ReportsALackOfFitPerRecording) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs[1].data.path.clear();
   report.runs[1].data.release = 0;
   const Json run = JointFitJson(report, 0)["runs"][1];
@@ -104,7 +104,7 @@ TEST(JointFitJson, ReportsALackOfFitPerRecording) {
 
 // The numbers are those of ExampleSharedInertia, calculated there.
 TEST(JointFitJson, ReportsSeparateEstimates) {
-  const Json inertia = HomogeneityOf(ExampleJointReport())["parameters"]["inertia"];
+  const Json inertia = HomogeneityOf(ExampleJointIdentification())["parameters"]["inertia"];
   EXPECT_EQ(
       inertia.dump(),
       R"({"unit":"kg m^2","statistic":0.16,"dof":1,"p":0.6892,"mean":0.078972,"std_error":0.00024,)"
@@ -114,7 +114,7 @@ TEST(JointFitJson, ReportsSeparateEstimates) {
 }
 
 TEST(JointFitJson, ReportsAnUninformativeRecording) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   std::vector<RunEstimate>& runs = report.joint[0].homogeneity.parameters[0].runs;
   runs[0] = {};
   runs[1].z.reset();
@@ -127,7 +127,7 @@ TEST(JointFitJson, ReportsAnUninformativeRecording) {
 }
 
 TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_EQ(HomogeneityOf(report)["agrees"], true);
   EXPECT_EQ(HomogeneityOf(report)["outliers"], Json::array());
   report.joint[0].homogeneity.p = 0.0099;  // recordings disagree below 0.01
@@ -137,7 +137,7 @@ TEST(JointFitJson, NumbersDisagreeingRecordingsFromOne) {
 }
 
 TEST(JointFitJson, HasNoStatisticWithoutATest) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   homogeneity = {};
   homogeneity.amplitudes = {0.25, 0.125};
@@ -150,13 +150,13 @@ TEST(JointFitJson, HasNoStatisticWithoutATest) {
 }
 
 TEST(JointFitJson, ReportsAmplitudeDependence) {
-  EXPECT_EQ(HomogeneityOf(ExampleJointReport())["amplitude_dependence"].dump(),
+  EXPECT_EQ(HomogeneityOf(ExampleJointIdentification())["amplitude_dependence"].dump(),
             R"([{"parameter":"inertia","slope":0.0125,"std_error":0.005,"unit":"kg m^2 / rad^2","p":0.25,)"
             R"("span":0.0078125,"p_of_remainder":0.75}])");
 }
 
 TEST(JointFitJson, HasAnRmsForCommonUnits) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_EQ(JointFitJson(report, 0)["statistics"].dump(),
             R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
             R"("effective_samples":1200.25})");
@@ -166,7 +166,7 @@ TEST(JointFitJson, HasAnRmsForCommonUnits) {
 }
 
 TEST(ToJson, ComparesInSigmasForDifferentUnits) {
-  Identification report = ExampleComparedJointReport();
+  Identification report = ExampleComparedJointIdentification();
   EXPECT_EQ(ToJson(report)["comparison"]["rows"][0]["rms_residual_rad"], 0.00349);
   report.data.unit = "sigma";
   const Json row = ToJson(report)["comparison"]["rows"][0];
@@ -175,14 +175,14 @@ TEST(ToJson, ComparesInSigmasForDifferentUnits) {
 }
 
 TEST(JointFitJson, WritesAnEquationIfAllIsShared) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_THAT(JointFitJson(report, 0)["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
   report.joint[0].shared = {"inertia", "viscous"};
   EXPECT_TRUE(JointFitJson(report, 0)["equation"].is_null());
 }
 
 TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
-  const Json fit = JointFitJson(ExampleFailedJointReport(), 0);
+  const Json fit = JointFitJson(ExampleFailedJointIdentification(), 0);
   EXPECT_EQ(fit["status"], "failed");
   for (const char* key : {"equation", "statistics", "std_error_method", "interval_method"}) {
     EXPECT_TRUE(fit[key].is_null()) << key;
@@ -194,7 +194,7 @@ TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
 // dump() would also write null for each, but without a reason.
 TEST(JointFitJson, ExplainsNonFiniteNumbers) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   homogeneity.amplitude_dependence[0].span = kNan;
   homogeneity.parameters[0].scatter.between = std::numeric_limits<double>::infinity();

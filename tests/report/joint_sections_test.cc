@@ -50,17 +50,17 @@ int WidestOf(const std::string& text) {
 }
 
 TEST(JointSections, StartWithTheComparisonAndEndWithOtherLaws) {
-  EXPECT_THAT(Titles(JointSections(ExampleJointReport())),
+  EXPECT_THAT(Titles(JointSections(ExampleJointIdentification())),
               ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?", "Each recording's own",
                           "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion"));
-  EXPECT_THAT(Titles(JointSections(ExampleComparedJointReport())),
+  EXPECT_THAT(Titles(JointSections(ExampleComparedJointIdentification())),
               ElementsAre("Recordings", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
                           "Do the recordings agree?", "Each recording's own", "Derived quantities", "Correlations",
                           "Noise and statistics", "Equation of motion", "Parameters of drag"));
 }
 
 TEST(JointSections, ShowNoMotionIfThePendulumsDiffer) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.fits[0].termination = Termination::kNotConverged;
   EXPECT_THAT(Titles(JointSections(report)), ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?",
                                                          "Correlations", "Noise and statistics"));
@@ -68,7 +68,7 @@ TEST(JointSections, ShowNoMotionIfThePendulumsDiffer) {
 
 // 0.25 rad = 14.3 deg, 0.125 rad = 7.16 deg.
 TEST(JointSections, NumberTheRecordings) {
-  EXPECT_EQ(TextOf(ExampleJointReport(), "Recordings"), R"([[Recordings]]
+  EXPECT_EQ(TextOf(ExampleJointIdentification(), "Recordings"), R"([[Recordings]]
        file
     1  run.csv
     2  b c.csv
@@ -80,20 +80,20 @@ TEST(JointSections, NumberTheRecordings) {
 }
 
 TEST(JointSections, DistinguishReleasesOfOneFile) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs[1].data.path = "run.csv";
   report.runs[1].data.release = 2;
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  run.csv, swing 1\n    2  run.csv, swing 2\n"));
 }
 
 TEST(JointSections, ShowADashForARecordingWithoutAFile) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs[0].data.path.clear();
   EXPECT_THAT(TextOf(report, "Recordings"), HasSubstr("    1  -\n    2  b c.csv\n"));
 }
 
 TEST(JointSections, CountTheRecordingsThatShareParameters) {
-  const std::string text = TextOf(ExampleJointReport(), "Fit");
+  const std::string text = TextOf(ExampleJointIdentification(), "Fit");
   EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; each recording has its\n"));
   EXPECT_THAT(text, HasSubstr("    status  converged: the estimates are within 0.1 standard errors\n"));
 }
@@ -102,7 +102,7 @@ TEST(JointSections, CountTheRecordingsThatShareParameters) {
 // 0.0000786 each. 0.0789 is at 7.5, its upper end at 15.0; 0.0791 is at 10.0; the joint 0.0790 ± 0.00049 is at 2.5 to
 // 8.8 to 15.0; the mean 0.078972 ± 0.00047 is at 2.4 to 8.4 to 14.4.
 TEST(AgreementSection, DrawsRecordingsJointFitAndMean) {
-  EXPECT_THAT(Agreement(ExampleJointReport()), HasSubstr(R"([[Do the recordings agree?]]
+  EXPECT_THAT(Agreement(ExampleJointIdentification()), HasSubstr(R"([[Do the recordings agree?]]
     Verdict: the recordings agree on inertia, viscous.
     inertia [kg m^2]                        z
     1 alone           0.07890 ± 0.00030  -0.4  -------*--------
@@ -113,14 +113,14 @@ TEST(AgreementSection, DrawsRecordingsJointFitAndMean) {
 }
 
 TEST(AgreementSection, ReportsTheScatterBetweenRecordings) {
-  EXPECT_THAT(Agreement(ExampleJointReport()), HasSubstr(R"( p 0.69. Random effects:
+  EXPECT_THAT(Agreement(ExampleJointIdentification()), HasSubstr(R"( p 0.69. Random effects:
     mean in [0.07590, 0.08200] (95 %); between recordings a standard deviation
     of 0 kg m^2, in [0, 0.005].
 )"));
 }
 
 TEST(AgreementSection, CountsDegreesOfFreedom) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 1 degree of freedom, "));
   report.joint[0].homogeneity.parameters[0].dof = 2;
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 2 degrees of freedom, "));
@@ -129,7 +129,7 @@ TEST(AgreementSection, CountsDegreesOfFreedom) {
 // Expected positions: the widest interval, of the mean 0.0034 ± 0.00196, has 21 places of 0.0002. In it 0.0025 ±
 // 0.00049 has places 3 to 8, 0.0045 ± 0.00098 has 10 to 20, and 0.0033 is at 9.
 TEST(AgreementSection, MarksTheJointEstimateOutsideAnInterval) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.fits[0].parameters[1].estimate = 0.0033;
   const std::string text = Agreement(report);
   const auto row = [&](const std::string& name) {
@@ -142,7 +142,7 @@ TEST(AgreementSection, MarksTheJointEstimateOutsideAnInterval) {
 }
 
 TEST(AgreementSection, HighlightsDisagreement) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   const std::string caution = "\x1B[33mVerdict: ";  // SGR 33 of ECMA-48: yellow
   EXPECT_THAT(Agreement(report, {.colour = true}), Not(HasSubstr(caution)));
   report.joint[0].homogeneity.p = 1e-6;
@@ -151,7 +151,7 @@ TEST(AgreementSection, HighlightsDisagreement) {
 }
 
 TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity = {};
   report.joint[0].homogeneity.verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(Agreement(report),
@@ -159,13 +159,13 @@ TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
 }
 
 TEST(AgreementSection, HasADashForAnUninformativeRecording) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity.parameters[0].runs[0] = {};
   EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 alone +-\n    2 alone +0.0791"));
 }
 
 TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
-  Identification report = ExampleFailedJointReport();
+  Identification report = ExampleFailedJointIdentification();
   report.fits[0].parameters.clear();
   const std::string text = Agreement(report);
   EXPECT_THAT(text, Not(HasSubstr("\n    joint")));
@@ -174,14 +174,14 @@ TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
 
 // The unit of a dimensionless number is 1; coulomb without a rig is an example.
 TEST(AgreementSection, HasNoUnitForADimensionlessNumber) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity.parameters[1].unit = "1";
   report.joint[0].homogeneity.parameters[1].scatter.between = 0.00125;
   EXPECT_THAT(Agreement(report), Not(testing::ContainsRegex("0\\.0013[ \n]+1,")));
 }
 
 TEST(JointSections, ShowOwnParametersPerRecording) {
-  EXPECT_EQ(TextOf(ExampleJointReport(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
+  EXPECT_EQ(TextOf(ExampleJointIdentification(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
        name             value ± std error  unit  95 % interval
     1  release_angle  0.42300 ± 0.00020    rad   [0.42260, 0.42340]
        zero_angle        0.01 (fixed)      rad
@@ -191,7 +191,7 @@ TEST(JointSections, ShowOwnParametersPerRecording) {
 }
 
 TEST(JointSections, ShowNoiseAndSeparateStatusPerRecording) {
-  const std::string text = TextOf(ExampleJointReport(), "Noise and statistics");
+  const std::string text = TextOf(ExampleJointIdentification(), "Noise and statistics");
   EXPECT_THAT(text, HasSubstr("    recording 1  "));
   EXPECT_THAT(text, HasSubstr("lack of"));
   EXPECT_THAT(text, HasSubstr("alone:"));
@@ -200,14 +200,14 @@ TEST(JointSections, ShowNoiseAndSeparateStatusPerRecording) {
 }
 
 TEST(JointSections, ShowAnEquationOnlyIfAllIsShared) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.joint[0].shared = {"inertia"};
   EXPECT_EQ(TextOf(report, "Equation of motion"), "");
   EXPECT_THAT(TextOf(report, "Each recording's own"), HasSubstr("    1  viscous "));
 }
 
 TEST(JointSections, ShowNoNumbersOfAFailedFit) {
-  const std::string text = ToText(ExampleFailedJointReport());
+  const std::string text = ToText(ExampleFailedJointIdentification());
   EXPECT_THAT(text, HasSubstr("status  failed: no joint motion can be computed"));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise and statistics]]")));
   EXPECT_THAT(text, Not(HasSubstr("[[Equation of motion]]")));
@@ -215,13 +215,13 @@ TEST(JointSections, ShowNoNumbersOfAFailedFit) {
 }
 
 TEST(ToText, EndsAJointFitWithTheRecordingsWarnings) {
-  EXPECT_THAT(ToText(ExampleJointReport()),
+  EXPECT_THAT(ToText(ExampleJointIdentification()),
               HasSubstr("[[Warnings]]\n  - recording 1 (run.csv): there is a gap of 0.5 s after 7 s\n"));
 }
 
 // ESC [ 2 J clears a terminal. Labels of recordings occur in verdicts and in the status that repeats them.
 TEST(ToText, ReplacesTerminalControlCharactersOfAJointFit) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs[1].data.path = "a\x1B[2J\n.csv";
   report.runs[1].warnings = {{"gap", "a gap"}};
   report.joint[0].homogeneity.verdict = "recording 2 (" + report.runs[1].data.path + ") disagrees with the others";
@@ -232,7 +232,7 @@ TEST(ToText, ReplacesTerminalControlCharactersOfAJointFit) {
 
 /// The example with the longest possible names, units and numbers of fits.
 Identification WideReport() {
-  Identification report = ExampleComparedJointReport();
+  Identification report = ExampleComparedJointIdentification();
   Homogeneity& homogeneity = report.joint[0].homogeneity;
   SharedParameter& wide = homogeneity.parameters[1];
   wide.name = "stribeck_coulomb";
@@ -254,7 +254,7 @@ Identification WideReport() {
 
 TEST(JointSections, FitInEightyColumns) {
   for (const Identification& report :
-       {ExampleJointReport(), ExampleComparedJointReport(), ExampleFailedJointReport()}) {
+       {ExampleJointIdentification(), ExampleComparedJointIdentification(), ExampleFailedJointIdentification()}) {
     EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
   }
   EXPECT_LE(WidestOf(ToText(WideReport())), 80) << ToText(WideReport());
@@ -262,7 +262,7 @@ TEST(JointSections, FitInEightyColumns) {
 
 // The amplitude of a recording whose separate fit failed.
 TEST(JointSections, ShowADashForAnUnknownAmplitude) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity.amplitudes[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(TextOf(report, "Recordings"), testing::ContainsRegex("    1 .* held +-\n"));
 }

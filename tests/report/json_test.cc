@@ -36,11 +36,11 @@ std::string FileText(const char* path) {
 
 // The example was written by hand from the design and the schema; tests/tools/result_schema_test.py validates it.
 TEST(ToJsonText, MatchesTheExampleByteForByte) {
-  EXPECT_EQ(ToJsonText(ExampleComparedReport()), FileText("tests/report/result_example.json"));
+  EXPECT_EQ(ToJsonText(ExampleComparedIdentification()), FileText("tests/report/result_example.json"));
 }
 
 TEST(ToJson, KeepsTheOrderOfKeys) {
-  const Json json = ToJson(ExampleReport());
+  const Json json = ToJson(ExampleIdentification());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
                                       "closed_forms", "warnings"));
   EXPECT_THAT(Keys(json["fits"][0]),
@@ -53,7 +53,7 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
 }
 
 TEST(ToJson, WorksWithoutAFit) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.clear();
   report.checks.clear();
   const Json json = ToJson(report);
@@ -63,28 +63,28 @@ TEST(ToJson, WorksWithoutAFit) {
 }
 
 TEST(ToJson, ExplainsMissingClosedForms) {
-  const Json json = ToJson(ExampleRateReport());
+  const Json json = ToJson(ExampleRateIdentification());
   EXPECT_TRUE(json["closed_forms"].is_null());
   EXPECT_EQ(json["reason"], "only 2 turning points can be located");
   EXPECT_EQ(json["fits"][0]["closed_form"], Json::array());
   EXPECT_TRUE(json["data"]["sampling"].is_null());
-  EXPECT_FALSE(ToJson(ExampleReport()).contains("reason"));
+  EXPECT_FALSE(ToJson(ExampleIdentification()).contains("reason"));
 }
 
 TEST(ToJson, ExplainsAMissingConstancyTest) {
-  const Json fit = ToJson(ExampleRateReport())["fits"][0];
+  const Json fit = ToJson(ExampleRateIdentification())["fits"][0];
   EXPECT_TRUE(fit["constancy"].is_null());
   EXPECT_EQ(fit["constancy_reason"], "the fit is not_converged");
-  EXPECT_FALSE(ToJson(ExampleReport())["fits"][0].contains("constancy_reason"));
+  EXPECT_FALSE(ToJson(ExampleIdentification())["fits"][0].contains("constancy_reason"));
 }
 
 TEST(ToJson, HasNoComparisonForOneFit) {
-  EXPECT_TRUE(ToJson(ExampleReport())["comparison"].is_null());
-  EXPECT_EQ(ToJson(ExampleComparedReport())["comparison"]["recommended"], "coulomb");
+  EXPECT_TRUE(ToJson(ExampleIdentification())["comparison"].is_null());
+  EXPECT_EQ(ToJson(ExampleComparedIdentification())["comparison"]["recommended"], "coulomb");
 }
 
 TEST(ToJson, ExplainsAMissingStandardError) {
-  const Json parameters = ToJson(ExampleReport())["fits"][0]["parameters"];
+  const Json parameters = ToJson(ExampleIdentification())["fits"][0]["parameters"];
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
   EXPECT_TRUE(parameters["coulomb"]["std_error"].is_null());
   EXPECT_EQ(parameters["coulomb"]["reason"], "the estimate is at its lower bound 0");
@@ -94,13 +94,13 @@ TEST(ToJson, ExplainsAMissingStandardError) {
 }
 
 TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
-  const Json parameters = ToJson(ExampleReport())["fits"][0]["parameters"];
+  const Json parameters = ToJson(ExampleIdentification())["fits"][0]["parameters"];
   EXPECT_EQ(parameters["inertia"]["systematic_std_error"], 0.001);
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 
 TEST(ToJson, ExplainsAnOpenInterval) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
   viscous.open_interval = OpenInterval::kNothingExcluded;
@@ -110,7 +110,7 @@ TEST(ToJson, ExplainsAnOpenInterval) {
 }
 
 TEST(ToJson, GivesEachEndOfDerivedIntervals) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits[0].derived[1].upper95 = 0.005;
   const Json derived = ToJson(report)["fits"][0]["derived"];
   EXPECT_EQ(derived["natural_frequency"]["interval95"], Json::array({4.763, 4.793}));
@@ -118,7 +118,7 @@ TEST(ToJson, GivesEachEndOfDerivedIntervals) {
 }
 
 TEST(ToJson, NamesTheNoiseFamily) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   const std::pair<NoiseFamily, const char*> named[] = {{NoiseFamily::kGaussian, "gaussian"},
                                                        {NoiseFamily::kQuantized, "quantized"},
                                                        {NoiseFamily::kHuber, "huber"},
@@ -128,16 +128,16 @@ TEST(ToJson, NamesTheNoiseFamily) {
     report.fits[0].noise.family = family;
     EXPECT_EQ(ToJson(report)["fits"][0]["noise"]["model"], name);
   }
-  EXPECT_TRUE(ToJson(ExampleRateReport())["fits"][0]["noise"]["sigma_std_error"].is_null());
+  EXPECT_TRUE(ToJson(ExampleRateIdentification())["fits"][0]["noise"]["sigma_std_error"].is_null());
 }
 
 TEST(ToJson, ReportsTheSourceOfTheResolution) {
-  EXPECT_EQ(ToJson(ExampleReport())["data"]["resolution_source"], "found");
-  EXPECT_TRUE(ToJson(ExampleRateReport())["data"]["resolution_source"].is_null());
+  EXPECT_EQ(ToJson(ExampleIdentification())["data"]["resolution_source"], "found");
+  EXPECT_TRUE(ToJson(ExampleRateIdentification())["data"]["resolution_source"].is_null());
 }
 
 TEST(ToJson, UsesRateUnitsForARate) {
-  const Json json = ToJson(ExampleRateReport());
+  const Json json = ToJson(ExampleRateIdentification());
   EXPECT_TRUE(json["rig"].is_null());
   EXPECT_TRUE(json["data"].contains("resolution_rad_s"));
   EXPECT_FALSE(json["data"].contains("resolution_rad"));
@@ -147,7 +147,7 @@ TEST(ToJson, UsesRateUnitsForARate) {
 }
 
 TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
-  const Json fit = ToJson(ExampleRateReport())["fits"][0];
+  const Json fit = ToJson(ExampleRateIdentification())["fits"][0];
   EXPECT_EQ(fit["status"], "not_converged");
   EXPECT_EQ(fit["parameters"]["inertia"]["estimate"], 0.0439);
   EXPECT_EQ(fit["parameters"]["inertia"]["reason"], "the fit did not converge");
@@ -158,7 +158,7 @@ TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
 }
 
 TEST(ToJson, OmitsNoiseAndStatisticsOfAFailedFit) {
-  Identification report = ExampleRateReport();
+  Identification report = ExampleRateIdentification();
   report.fits[0].termination = Termination::kFailed;
   const Json fit = ToJson(report)["fits"][0];
   EXPECT_TRUE(fit["noise"].is_null());
@@ -166,7 +166,7 @@ TEST(ToJson, OmitsNoiseAndStatisticsOfAFailedFit) {
 }
 
 TEST(ToJson, WritesNonFiniteNumbersAsNullWithAReason) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   FitReport& fit = report.fits[0];
   fit.statistics.aicc = std::numeric_limits<double>::infinity();
   fit.parameters[0].estimate = kNan;
@@ -183,14 +183,14 @@ TEST(ToJson, WritesNonFiniteNumbersAsNullWithAReason) {
 }
 
 TEST(ToJson, ReportsAMissingErrorOfADerivedQuantity) {
-  const Json derived = ToJson(ExampleReport())["fits"][0]["derived"];
+  const Json derived = ToJson(ExampleIdentification())["fits"][0]["derived"];
   EXPECT_EQ(derived["natural_frequency"]["std_error"], 0.0075);
   EXPECT_TRUE(derived["damping_ratio"]["std_error"].is_null());
   EXPECT_THAT(derived["damping_ratio"]["reason"], HasSubstr("no standard error"));
 }
 
 TEST(ToJson, OmitsFileDataForARecordingInMemory) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.path.clear();
   report.data.sha256.clear();
   const Json data = ToJson(report)["data"];
@@ -199,7 +199,7 @@ TEST(ToJson, OmitsFileDataForARecordingInMemory) {
 }
 
 TEST(ToJsonText, ReplacesInvalidUtf8) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.path = "w\xFCrfel.csv";
   const std::string text = ToJsonText(report);
   EXPECT_THAT(text, HasSubstr("w\xEF\xBF\xBDrfel.csv"));

@@ -63,7 +63,7 @@ TEST(ToMarkdown, ShowsFactsFormulasAndOmissions) {
 }
 
 TEST(ToMarkdown, StartsWithVerdictAndParameters) {
-  EXPECT_THAT(ToMarkdown(ExampleComparedReport()), StartsWith(R"(# Pendulum: swing.csv
+  EXPECT_THAT(ToMarkdown(ExampleComparedIdentification()), StartsWith(R"(# Pendulum: swing.csv
 
 ## Verdict
 
@@ -90,13 +90,13 @@ TEST(ToMarkdown, StartsWithVerdictAndParameters) {
 }
 
 TEST(ToMarkdown, StartsWithAMissingConvergence) {
-  EXPECT_THAT(ToMarkdown(ExampleRateReport()),
+  EXPECT_THAT(ToMarkdown(ExampleRateIdentification()),
               StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge, so its numbers are not a "
                          "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));
 }
 
 TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
-  EXPECT_THAT(ToMarkdown(ExampleJointReport()), StartsWith(R"(# Pendulum: 2 recordings of one rig
+  EXPECT_THAT(ToMarkdown(ExampleJointIdentification()), StartsWith(R"(# Pendulum: 2 recordings of one rig
 
 ## Verdict
 
@@ -119,19 +119,19 @@ TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
 
 // Unescaped, the stars and bars of a strip would be emphasis and cells.
 TEST(ToMarkdown, ShowsStripsVerbatimForAJointFit) {
-  EXPECT_THAT(ToMarkdown(ExampleJointReport()),
+  EXPECT_THAT(ToMarkdown(ExampleJointIdentification()),
               HasSubstr("| 1 alone | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));
 }
 
 TEST(ToMarkdown, WorksWithoutAFit) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.clear();
   report.checks.clear();
   EXPECT_THAT(ToMarkdown(report), HasSubstr("No fit was asked for: closed forms only."));
 }
 
 TEST(ToMarkdown, EscapesMarkupInAFileName) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.path = "a|<script>\n# [x](http://y)";
   const std::string text = ToMarkdown(report);
   EXPECT_THAT(text, StartsWith("# Pendulum: a\\|\\<script>?# [x\\](http://y)\n"));
@@ -147,8 +147,9 @@ std::vector<std::string> TitlesOf(const std::string& text, const std::string& be
 }
 
 TEST(ToMarkdown, HasEverySectionOfTheText) {
-  for (const Identification& report : {ExampleReport(), ExampleRateReport(), ExampleComparedReport(),
-                                       ExampleComparedJointReport(), ExampleFailedJointReport()}) {
+  for (const Identification& report :
+       {ExampleIdentification(), ExampleRateIdentification(), ExampleComparedIdentification(),
+        ExampleComparedJointIdentification(), ExampleFailedJointIdentification()}) {
     EXPECT_THAT(TitlesOf(ToText(report), "[[", "]]"), IsSubsetOf(TitlesOf(ToMarkdown(report), "\n## ", "\n\n")));
   }
 }

@@ -42,7 +42,7 @@ TextbookOverlay OverlayOfThreeSamples() {
 
 /// Three samples, their fit and its overlay, and the turning points of the example.
 Identification ReportOfThreeSamples() {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.used = ThreeSamples();
   report.fits = {FitOfThreeSamples()};
   report.checks[0].overlay = OverlayOfThreeSamples();
@@ -258,7 +258,7 @@ TEST(ToSeriesJsonText, IsTheSameOnOneLine) {
 }
 
 TEST(SeriesJson, IsAnArrayOfRecordingsForAJointFit) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   report.runs = {ReportOfThreeSamples(), ReportOfThreeSamples()};
   report.runs[1].fits[0].fitted[0] = 0.75;
   report.runs[1].used.time[2] = 0.25;

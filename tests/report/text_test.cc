@@ -92,14 +92,14 @@ constexpr const char* kWholeFit = R"([[Data]]
 )";
 
 TEST(ToText, ShowsTheWholeFit) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.sampling.reset();
   report.closed_forms.reset();
   EXPECT_EQ(ToText(report), kWholeFit);
 }
 
 TEST(ToText, ShowsClosedFormsAfterTheFit) {
-  const std::string text = ToText(ExampleReport());
+  const std::string text = ToText(ExampleIdentification());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
@@ -110,7 +110,7 @@ TEST(ToText, ShowsClosedFormsAfterTheFit) {
 }
 
 TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
-  const std::string text = ToText(ExampleRateReport());
+  const std::string text = ToText(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0\n"));
   EXPECT_THAT(OneLine(text), HasSubstr("torques are in units of the gravity torque G"));
   EXPECT_THAT(OneLine(text), HasSubstr("give --rig."));
@@ -119,13 +119,13 @@ TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
 }
 
 TEST(ToText, ShowsARateInDegreesPerSecondToo) {
-  const std::string text = ToText(ExampleRateReport());
+  const std::string text = ToText(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    rate_bias     0.25  rad/s\n               14.3239  deg/s\n"));
   EXPECT_THAT(text, HasSubstr("sigma 0.0035 rad/s (0.201 deg/s)"));
 }
 
 TEST(ToText, NamesTheOpenInterval) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
   viscous.open_interval = OpenInterval::kNothingExcluded;
@@ -138,7 +138,7 @@ TEST(ToText, NamesTheOpenInterval) {
 }
 
 TEST(ToText, ReportsTheSourceOfTheResolution) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.resolution_source = "file";
   EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
   report.data.resolution_source = "given";
@@ -146,7 +146,7 @@ TEST(ToText, ReportsTheSourceOfTheResolution) {
 }
 
 TEST(ToText, OmitsADerivedErrorLargerThanTheValue) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
                             {"natural_frequency", "rad/s", 4.7781234}};
   EXPECT_THAT(ToText(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
@@ -154,7 +154,7 @@ TEST(ToText, OmitsADerivedErrorLargerThanTheValue) {
 }
 
 TEST(ToText, GivesACommonReasonOnce) {
-  const std::string text = ToText(ExampleRateReport());
+  const std::string text = ToText(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    status  not_converged: 100 iterations were not enough\n"));
   EXPECT_THAT(OneLine(text),
               HasSubstr("No standard error of inertia, viscous, coulomb, rate_bias: the fit did not converge. "));
@@ -162,7 +162,7 @@ TEST(ToText, GivesACommonReasonOnce) {
 }
 
 TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
-  Identification report = ExampleRateReport();
+  Identification report = ExampleRateIdentification();
   report.fits[0].termination = Termination::kFailed;
   const std::string text = ToText(report);
   EXPECT_THAT(text, HasSubstr("These values are not estimates, because nothing was fitted."));
@@ -171,7 +171,7 @@ TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
 }
 
 TEST(ToText, SortsCorrelationsAndOmitsSmallOnes) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits[0].covariance = Eigen::Matrix3d{{1, 0.25, -0.75}, {0.25, 1, 0.0625}, {-0.75, 0.0625, 1}};
   EXPECT_THAT(ToText(report), HasSubstr("[[Correlations]] (those below 0.1 in size are not listed)\n"
                                         "    inertia, release_angle  -0.750\n"
@@ -180,7 +180,7 @@ TEST(ToText, SortsCorrelationsAndOmitsSmallOnes) {
 }
 
 TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
   viscous.systematic_std_error = 4e-8;
@@ -193,7 +193,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
 TEST(ToText, ComparesTheInertiaWithTheRigsWithoutACheck) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
   report.checks.clear();
   EXPECT_THAT(OneLine(ToText(report)),
@@ -206,7 +206,7 @@ TEST(ToText, ComparesTheInertiaWithTheRigsWithoutACheck) {
 }
 
 TEST(ToText, WorksWithoutAFit) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.fits.clear();
   report.checks.clear();
   const std::string text = ToText(report);
@@ -219,14 +219,14 @@ TEST(ToText, WorksWithoutAFit) {
 }
 
 TEST(ToText, HasNoWarningsSectionWithoutWarnings) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.warnings.clear();
   report.fits[0].warnings.clear();
   EXPECT_THAT(ToText(report), Not(HasSubstr("[[Warnings]]")));
 }
 
 TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
-  const std::string text = ToText(ExampleComparedReport());
+  const std::string text = ToText(ExampleComparedIdentification());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
@@ -238,7 +238,7 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
 }
 
 TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.data.path = "a\x1B[2J\n[[Fit]].csv";
   EXPECT_THAT(ToText(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
 }
@@ -253,7 +253,7 @@ int WidestOf(const std::string& text) {
 
 /// The example with the longest possible names, units and numbers of fits.
 Identification WideReport() {
-  Identification report = ExampleComparedReport();
+  Identification report = ExampleComparedIdentification();
   FitReport& fit = report.fits[0];
   for (ParameterEstimate& parameter : fit.parameters) {
     parameter.systematic_std_error = 1.2e-9;
@@ -285,9 +285,9 @@ Identification WideReport() {
 }
 
 TEST(ToText, FitsInEightyColumns) {
-  EXPECT_LE(WidestOf(ToText(ExampleReport())), 80);
-  EXPECT_LE(WidestOf(ToText(ExampleRateReport())), 80);
-  EXPECT_LE(WidestOf(ToText(ExampleComparedReport())), 80);
+  EXPECT_LE(WidestOf(ToText(ExampleIdentification())), 80);
+  EXPECT_LE(WidestOf(ToText(ExampleRateIdentification())), 80);
+  EXPECT_LE(WidestOf(ToText(ExampleComparedIdentification())), 80);
   Identification report = WideReport();
   EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
   EXPECT_LE(WidestOf(ToText(report, {.colour = true})), 80);

@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string Refusal(const RunFlags& flags) {
-  const auto options = MakeRunOptions(flags);
+  const auto options = MakeIdentifyOptions(flags);
   if (options) return "";
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
   return options.error().message;
@@ -38,17 +38,17 @@ RunFlags With(const RunFlag& flag) {
 
 // Otherwise a run would not be fitted again after the flag was changed.
 TEST(RunFlagTable, HasNoFlagThatStoredOptionsLack) {
-  std::set<std::string> known = {OptionsJson(*MakeRunOptions({}))};
+  std::set<std::string> known = {OptionsJson(*MakeIdentifyOptions({}))};
   for (const RunFlag& flag : RunFlagTable()) {
     if (flag.is_local) continue;
-    const auto options = MakeRunOptions(With(flag));
+    const auto options = MakeIdentifyOptions(With(flag));
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_TRUE(known.insert(OptionsJson(*options)).second) << flag.name;
   }
 }
 
-TEST(MakeRunOptions, FitsCoulombToTheLongestSwingByDefault) {
-  const auto options = MakeRunOptions({});
+TEST(MakeIdentifyOptions, FitsCoulombToTheLongestSwingByDefault) {
+  const auto options = MakeIdentifyOptions({});
   ASSERT_TRUE(options);
   EXPECT_THAT(options->models, ElementsAre("coulomb"));
   EXPECT_EQ(options->fit.model, "coulomb");
@@ -56,14 +56,14 @@ TEST(MakeRunOptions, FitsCoulombToTheLongestSwingByDefault) {
   EXPECT_FALSE(options->closed_form_only);
 }
 
-TEST(MakeRunOptions, AcceptsModelsWindowAndParameters) {
+TEST(MakeIdentifyOptions, AcceptsModelsWindowAndParameters) {
   RunFlags flags;
   flags.model = "viscous,drag";
   flags.from = "1.5";
   flags.to = "20";
   flags.fix = "viscous=0.003";
   flags.unit = "counts";
-  const auto options = MakeRunOptions(flags);
+  const auto options = MakeIdentifyOptions(flags);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_THAT(options->models, ElementsAre("viscous", "drag"));
   EXPECT_EQ(options->swing.from, 1.5);
@@ -72,7 +72,7 @@ TEST(MakeRunOptions, AcceptsModelsWindowAndParameters) {
   EXPECT_EQ(options->read.unit, "counts");
 }
 
-TEST(MakeRunOptions, NamesTheWrongFlag) {
+TEST(MakeIdentifyOptions, NamesTheWrongFlag) {
   RunFlags flags;
   flags.model = "tar";
   EXPECT_THAT(Refusal(flags), HasSubstr("--model: there is no model 'tar'"));

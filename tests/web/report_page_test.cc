@@ -27,7 +27,7 @@ Recording ExampleSamples() {
 }
 
 Identification SampledReport() {
-  Identification report = ExampleReport();
+  Identification report = ExampleIdentification();
   report.used = ExampleSamples();
   return report;
 }
@@ -43,7 +43,7 @@ TEST(ToHtml, ContainsResultSeriesAndCommand) {
 }
 
 TEST(ToHtml, ContainsEachRecordingOfAJointFit) {
-  Identification report = ExampleJointReport();
+  Identification report = ExampleJointIdentification();
   for (Identification& run : report.runs) run.used = ExampleSamples();
   report.runs[1].used.value[0] = 0.5;
   const std::string html = ToHtml(report, "");

@@ -91,16 +91,16 @@ struct Identification {
 };
 
 /// The exit code of a run: that of its main fit; 0 for closed forms alone.
-int ExitCode(const Identification& one);
+int ExitCode(const Identification& identification);
 
 /// The warnings of the recording, then those of the fits, without repetitions. With several fits a warning names its
 /// model; with several recordings it names its recording, or says that it applies to each.
-std::vector<Warning> AllWarnings(const Identification& report);
+std::vector<Warning> AllWarnings(const Identification& identification);
 
 /// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
-bool IsOneOfSeveral(const Identification& report, std::size_t run);
+bool IsOneOfSeveral(const Identification& identification, std::size_t run);
 
 /// The label of recording `run` (0-based) of a joint fit: "recording 2 (b.csv)".
-std::string RecordingLabel(const Identification& report, std::size_t run);
+std::string RecordingLabel(const Identification& identification, std::size_t run);
 
 }  // namespace pendulum

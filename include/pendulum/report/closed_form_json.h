@@ -19,6 +19,6 @@ nlohmann::ordered_json CheckJson(const ClosedFormCheck* check);
 
 /// "closed_forms" of the result without the turning points (SeriesJson); null if there are none. SI with a rig;
 /// otherwise inertia and torques are divided by G.
-nlohmann::ordered_json ClosedFormsJson(const Identification& report);
+nlohmann::ordered_json ClosedFormsJson(const Identification& identification);
 
 }  // namespace pendulum

@@ -11,7 +11,7 @@
 namespace pendulum {
 
 /// "comparison" of the result; null without one.
-nlohmann::ordered_json ComparisonJson(const Identification& report);
+nlohmann::ordered_json ComparisonJson(const Identification& identification);
 
 /// "constancy" of a fit: its two tests; null if neither could be made.
 nlohmann::ordered_json ConstancyJson(const Constancy* constancy);

@@ -10,10 +10,10 @@ namespace pendulum {
 
 /// The recommended model and the reason, the criteria of each model, the prediction of samples that were not fitted,
 /// and the likelihood-ratio tests. Empty without a comparison.
-Sections ComparisonSections(const Identification& report);
+Sections ComparisonSections(const Identification& identification);
 
 /// Whether the parameters of fit `fit` are constant: a sentence, and tables of those that are not. Empty if it was not
 /// tested.
-Sections ConstancySections(const Identification& report, std::size_t fit);
+Sections ConstancySections(const Identification& identification, std::size_t fit);
 
 }  // namespace pendulum

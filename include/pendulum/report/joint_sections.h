@@ -8,10 +8,10 @@ namespace pendulum {
 
 /// The sections specific to a joint fit: the recordings and the comparison; for the main fit the shared parameters, the
 /// agreement of the recordings, and the separate parameters of each.
-Sections JointSections(const Identification& report);
+Sections JointSections(const Identification& identification);
 
 /// The agreement of the recordings on the shared parameters: a verdict, and for each parameter the separate estimates,
 /// the joint estimate and the random-effects mean.
-Section AgreementSection(const Identification& report, std::size_t fit);
+Section AgreementSection(const Identification& identification, std::size_t fit);
 
 }  // namespace pendulum

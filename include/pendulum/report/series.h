@@ -22,7 +22,7 @@ namespace pendulum {
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
 /// The same for fit number `fit` of an identification of one recording, with its overlay if there is one.
-std::string ToResidualCsv(const Identification& one, std::size_t fit);
+std::string ToResidualCsv(const Identification& identification, std::size_t fit);
 
 /// kAll: the complete series. kPage: the part for the page, with seven digits, without residuals (the page computes
 /// them), and with the closed forms' trajectories of the main fit only.
@@ -41,9 +41,9 @@ enum class SeriesDetail { kAll, kPage };
 /// about 60 per period, at most 100 001, of kPage 20 001. Point i is at start_s + i interval_s on the file's clock:
 /// "angle" from the equilibrium [angle_unit], "rate" [angle_unit per true s], "reading" of the sensor [unit]. "motions"
 /// is null if the samples themselves show the motion: readings of an angle, without gaps, at least 12 per period.
-nlohmann::ordered_json SeriesJson(const Identification& one, SeriesDetail detail = SeriesDetail::kAll);
+nlohmann::ordered_json SeriesJson(const Identification& identification, SeriesDetail detail = SeriesDetail::kAll);
 
 /// SeriesJson as one line of UTF-8 text.
-std::string ToSeriesJsonText(const Identification& one);
+std::string ToSeriesJsonText(const Identification& identification);
 
 }  // namespace pendulum

@@ -12,9 +12,9 @@ namespace pendulum {
 /// The result as sections: data and sampling, the comparison of several models, each fit and the constancy of its
 /// parameters, closed forms and their check, turning points, warnings. In a comparison one fit is shown in full
 /// (Identification::IsShownInFull), and only the parameters of the others.
-Sections ReportSections(const Identification& report);
+Sections ReportSections(const Identification& identification);
 
 /// ReportSections as UTF-8 text for a terminal of 80 columns, in the usual layout of lmfit's fit_report.
-std::string ToText(const Identification& report, TextStyle style = {});
+std::string ToText(const Identification& identification, TextStyle style = {});
 
 }  // namespace pendulum

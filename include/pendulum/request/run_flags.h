@@ -70,6 +70,6 @@ tl::unexpected<Status> NeedsFitError(std::string_view flag);
 
 /// Converts flags to options; the caller reads rig and calibration. kInvalidArgument: a flag is wrong or contradicts
 /// another; the message names it.
-Result<IdentifyOptions> MakeRunOptions(const RunFlags& flags);
+Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags);
 
 }  // namespace pendulum

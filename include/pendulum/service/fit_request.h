@@ -50,7 +50,7 @@ inline constexpr const char* kUnnamed = "data";
 
 /// Reads the request for one fit. The body is the recording (text/csv), a form (multipart/form-data) with the parts
 /// data, rig, calibration and options, or a JSON object with these members. The query has flags and the recording's
-/// `name`. Problems: as RunFlagsOf and MakeRunOptions; an unknown or repeated part, another content type, too many
+/// `name`. Problems: as RunFlagsOf and MakeIdentifyOptions; an unknown or repeated part, another content type, too many
 /// lines.
 ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                             const RequestLimits& limits);
@@ -65,8 +65,8 @@ ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const Req
                                               RunFiles files);
 
 /// The options of one run of the service with these flags and this calibration. Errors as RunFlagsOf and
-/// MakeRunOptions; kInvalidArgument: release all.
-Result<IdentifyOptions> RunOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
+/// MakeIdentifyOptions; kInvalidArgument: release all.
+Result<IdentifyOptions> IdentifyOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
 /// kUnsupportedMediaType: the body has none of these types, or has a content coding.
 ResultOrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types);

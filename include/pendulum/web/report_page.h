@@ -9,6 +9,6 @@ namespace pendulum {
 
 /// The report as one HTML file that needs no network: the page built from src/web/report with result, series and the
 /// command line (empty for none) embedded as JSON.
-std::string ToHtml(const Identification& one, const std::string& command);
+std::string ToHtml(const Identification& identification, const std::string& command);
 
 }  // namespace pendulum
