@@ -60,13 +60,13 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
 }
 
 /// Keeps the largest ones in a heap whose front is the smallest of them.
-void Keep(MovedParameter moved, std::vector<MovedParameter>& most) {
+void Keep(MovedParameter moved, std::vector<MovedParameter>& largest) {
   const auto more = [](const MovedParameter& a, const MovedParameter& b) { return a.errors > b.errors; };
-  most.push_back(std::move(moved));
-  std::ranges::push_heap(most, more);
-  if (most.size() <= static_cast<std::size_t>(StoreComparison::kMaxListed)) return;
-  std::ranges::pop_heap(most, more);
-  most.pop_back();
+  largest.push_back(std::move(moved));
+  std::ranges::push_heap(largest, more);
+  if (largest.size() <= static_cast<std::size_t>(StoreComparison::kMaxListed)) return;
+  std::ranges::pop_heap(largest, more);
+  largest.pop_back();
 }
 
 void CompareParameter(const SQLite::Statement& row, StoreComparison& comparison) {

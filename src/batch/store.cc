@@ -297,10 +297,10 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
   });
 }
 
-Result<std::vector<StoredRun>> Store::Next(std::int64_t position, int most) {
+Result<std::vector<StoredRun>> Store::Next(std::int64_t position, int max_runs) {
   return sqlite::Guard(name(), [&]() -> Result<std::vector<StoredRun>> {
     SQLite::Statement next(state_->database, kNextRuns);
-    sqlite::Bind(next, position, most);
+    sqlite::Bind(next, position, max_runs);
     std::vector<StoredRun> runs;
     while (next.executeStep()) runs.push_back(RunOf(next));
     return runs;

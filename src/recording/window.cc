@@ -73,8 +73,8 @@ Recording WithoutSamples(const Recording& recording) {
 
 }  // namespace
 
-Recording Thinned(const Recording& recording, Eigen::Index most) {
-  const Eigen::Index stride = std::max<Eigen::Index>((recording.size() + most - 1) / most, 1);
+Recording Thinned(const Recording& recording, Eigen::Index max_samples) {
+  const Eigen::Index stride = std::max<Eigen::Index>((recording.size() + max_samples - 1) / max_samples, 1);
   const Eigen::Index count = (recording.size() + stride - 1) / stride;
   Recording thinned = WithoutSamples(recording);
   thinned.time = recording.time(Eigen::seqN(0, count, stride));
@@ -88,14 +88,14 @@ Recording InTrueSeconds(Recording recording) {
   return recording;
 }
 
-Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end) {
-  const double longest = static_cast<double>(most) / per_second;
+Recording Excerpt(const Recording& recording, Eigen::Index max_samples, double per_second, bool at_end) {
+  const double longest = static_cast<double>(max_samples) / per_second;
   const double first = recording.time[0];
   const double last = recording.time[recording.size() - 1];
   const double from = at_end ? std::max(first, last - longest) : first;
   const double to = at_end ? last : std::min(last, first + longest);
   const Result<Recording> part = SelectWindow(recording, from, to);
-  return Thinned(part ? *part : recording, most);
+  return Thinned(part ? *part : recording, max_samples);
 }
 
 }  // namespace pendulum

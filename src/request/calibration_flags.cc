@@ -10,9 +10,9 @@
 namespace pendulum {
 namespace {
 
-Result<void> CheckWhole(const std::string& flag, int value, int most) {
-  if (value >= 1 && value <= most) return {};
-  return BadFlag(flag + " is " + std::to_string(value) + "; it must be 1 to " + std::to_string(most));
+Result<void> CheckWhole(const std::string& flag, int value, int max_value) {
+  if (value >= 1 && value <= max_value) return {};
+  return BadFlag(flag + " is " + std::to_string(value) + "; it must be 1 to " + std::to_string(max_value));
 }
 
 Result<SensorRange> ParseInputRange(const std::string& text) {

@@ -113,9 +113,9 @@ Result<void> BatchQueue::StartThreads(int threads) {
   return {};
 }
 
-bool BatchQueue::Reserve(std::size_t runs, std::size_t most) {
+bool BatchQueue::Reserve(std::size_t runs, std::size_t max_waiting) {
   const std::scoped_lock lock(mutex_);
-  if (waiting_.size() + reserved_ + runs > most) return false;
+  if (waiting_.size() + reserved_ + runs > max_waiting) return false;
   reserved_ += runs;
   return true;
 }

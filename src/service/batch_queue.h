@@ -77,8 +77,8 @@ class BatchQueue {
   /// store; kTryAgain: no thread can be started.
   Result<void> Begin(int threads);
 
-  /// Reserves room for `runs` runs, unless more than `most` would then wait; Release returns it.
-  bool Reserve(std::size_t runs, std::size_t most);
+  /// Reserves room for `runs` runs, unless more than `max_waiting` would then wait; Release returns it.
+  bool Reserve(std::size_t runs, std::size_t max_waiting);
   void Release(std::size_t runs);
 
   /// Queues a stored batch, in the room reserved for it.

@@ -10,16 +10,16 @@ namespace pendulum::wire {
 /// Limit for the bytes of bodies in memory, over all connections. For any thread.
 class ByteBudget {
  public:
-  explicit ByteBudget(std::size_t most) : most_(most) {}
+  explicit ByteBudget(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  bool is_full() const { return taken_ >= most_; }
-  bool is_exceeded() const { return taken_ > most_; }  ///< Only answers can exceed it.
+  bool is_full() const { return taken_ >= max_bytes_; }
+  bool is_exceeded() const { return taken_ > max_bytes_; }  ///< Only answers can exceed it.
   std::size_t taken() const { return taken_; }
 
  private:
   friend class HeldBytes;
 
-  std::size_t most_;
+  std::size_t max_bytes_;
   std::atomic<std::size_t> taken_ = 0;
 };
 
@@ -39,7 +39,7 @@ class HeldBytes {
 
   /// Takes more bytes; false, without a change, if the budget has too few.
   bool Take(std::size_t bytes) {
-    if (budget_->taken_.fetch_add(bytes) + bytes > budget_->most_) {
+    if (budget_->taken_.fetch_add(bytes) + bytes > budget_->max_bytes_) {
       budget_->taken_ -= bytes;
       return false;
     }

@@ -81,9 +81,9 @@ void Channel::Send(std::string head, std::string body, std::chrono::milliseconds
 }
 
 void Channel::SendPiece(std::chrono::milliseconds time, Done done) {
-  const auto rest_of = [](const std::string& text, std::size_t from, std::size_t most) {
+  const auto rest_of = [](const std::string& text, std::size_t from, std::size_t max_bytes) {
     const std::size_t begin = std::min(from, text.size());
-    return asio::const_buffer(text.data() + begin, std::min(most, text.size() - begin));
+    return asio::const_buffer(text.data() + begin, std::min(max_bytes, text.size() - begin));
   };
   const std::size_t of_body = sent_of_answer_ - std::min(sent_of_answer_, head_.size());
   const std::array<asio::const_buffer, 2> pieces = {rest_of(head_, sent_of_answer_, head_.size()),

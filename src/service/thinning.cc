@@ -25,15 +25,15 @@ void AppendExtremes(std::span<const double> value, std::size_t first, std::size_
 
 }  // namespace
 
-std::vector<Eigen::Index> Thin(std::span<const double> time, std::span<const double> value, Eigen::Index most) {
+std::vector<Eigen::Index> Thin(std::span<const double> time, std::span<const double> value, Eigen::Index max_indices) {
   const std::size_t size = std::min(time.size(), value.size());
   std::vector<Eigen::Index> chosen;
-  if (static_cast<Eigen::Index>(size) <= most) {
+  if (static_cast<Eigen::Index>(size) <= max_indices) {
     chosen.resize(size);
     std::iota(chosen.begin(), chosen.end(), Eigen::Index{0});
     return chosen;
   }
-  const Eigen::Index blocks = std::max<Eigen::Index>(most / 2 - 1, 1);
+  const Eigen::Index blocks = std::max<Eigen::Index>(max_indices / 2 - 1, 1);
   const double begin = time[0], width = (time[size - 1] - begin) / static_cast<double>(blocks);
   chosen.push_back(0);
   std::size_t first = 1;

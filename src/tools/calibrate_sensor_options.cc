@@ -13,9 +13,9 @@ namespace {
 constexpr int kUsualBits = 10;  // bits of the ATmega328P's converter
 
 /// Checks a quantity against limits that no sensible value exceeds and no computation overflows with.
-Result<void> CheckQuantity(const std::string& flag, double value, double most) {
-  if (value >= 1e-6 && value <= most) return {};
-  return BadFlag(flag + " is " + NumberText(value) + "; it must be positive, 0.000001 to " + NumberText(most));
+Result<void> CheckQuantity(const std::string& flag, double value, double max_value) {
+  if (value >= 1e-6 && value <= max_value) return {};
+  return BadFlag(flag + " is " + NumberText(value) + "; it must be positive, 0.000001 to " + NumberText(max_value));
 }
 
 /// Refuses a flag that has no effect on the requested task.

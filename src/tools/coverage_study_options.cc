@@ -12,10 +12,10 @@ constexpr int kMaxRecordings = 1'000'000;
 constexpr int kMaxThreads = 1024;
 constexpr int kMaxRuns = 100;
 
-Result<void> CheckWhole(const std::string& flag, int value, int least, int most) {
-  if (value >= least && value <= most) return {};
-  return BadFlag(flag + " is " + std::to_string(value) + "; it must be " + std::to_string(least) + " to " +
-                 std::to_string(most));
+Result<void> CheckWhole(const std::string& flag, int value, int min_value, int max_value) {
+  if (value >= min_value && value <= max_value) return {};
+  return BadFlag(flag + " is " + std::to_string(value) + "; it must be " + std::to_string(min_value) + " to " +
+                 std::to_string(max_value));
 }
 
 std::string Command(const CoverageFlags& flags) {

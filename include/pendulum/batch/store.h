@@ -93,8 +93,8 @@ class Store {
   /// repeated id; kFailedPrecondition: there is no entry.
   Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json);
 
-  /// Returns at most `most` runs of the batch from `position` on, in order.
-  Result<std::vector<StoredRun>> Next(std::int64_t position, int most);
+  /// Returns up to `max_runs` runs of the batch from `position` on, in order.
+  Result<std::vector<StoredRun>> Next(std::int64_t position, int max_runs);
 
   /// Replaces all rows of a run.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);

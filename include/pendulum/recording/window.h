@@ -12,10 +12,10 @@ Result<Recording> SelectWindow(Recording recording, double from, double to);
 /// The recording with times converted to true seconds (clock_scale), counted from its first sample.
 Recording InTrueSeconds(Recording recording);
 
-/// At most `most` samples from the start or from the end, thinned to `per_second` [Hz] if the recording is that dense.
-Recording Excerpt(const Recording& recording, Eigen::Index most, double per_second, bool at_end);
+/// Up to `max_samples` samples from the start or the end. Denser recordings are thinned to `per_second` [Hz].
+Recording Excerpt(const Recording& recording, Eigen::Index max_samples, double per_second, bool at_end);
 
-/// Every k-th sample, with k such that at most `most` remain.
-Recording Thinned(const Recording& recording, Eigen::Index most);
+/// Every k-th sample, with k such that at most `max_samples` remain.
+Recording Thinned(const Recording& recording, Eigen::Index max_samples);
 
 }  // namespace pendulum

@@ -76,8 +76,8 @@ class StepSearch {
 
   /// Adds several steps at once if they leave white noise; otherwise returns false. Many steps hide each other: each
   /// alone looks like part of a slow autocorrelation.
-  bool AddAll(int most) {
-    if (!AddAssumingWhiteNoise(most)) return false;
+  bool AddAll(int max_steps) {
+    if (!AddAssumingWhiteNoise(max_steps)) return false;
     RemoveInsignificantSteps();
     RefinePlaces();
     return size() > 0 && now_.autoregression.empty() && ExplainsMoreThanDrift();
@@ -127,11 +127,11 @@ class StepSearch {
     return columns;
   }
 
-  /// Adds steps one by one, each the one that explains most of the residuals. Returns false if `most` steps are not
-  /// enough.
-  bool AddAssumingWhiteNoise(int most) {
+  /// Adds steps one by one, each the one that explains most of the residuals. Returns false if `max_steps` steps are
+  /// not enough.
+  bool AddAssumingWhiteNoise(int max_steps) {
     Regression white = regression_.FitAsWhite(Columns(places_));
-    while (static_cast<int>(size()) < most) {
+    while (static_cast<int>(size()) < max_steps) {
       const Index place = regression_.BestPlace(Columns(places_), {});
       if (place < 0) return true;
       places_.push_back(place);
@@ -225,15 +225,15 @@ class StepSearch {
 
 }  // namespace
 
-std::vector<OffsetStep> FindOffsetSteps(const FitResiduals& residuals, int most, const std::stop_token& stop) {
+std::vector<OffsetStep> FindOffsetSteps(const FitResiduals& residuals, int max_steps, const std::stop_token& stop) {
   const StepRegression regression(residuals);
   if (!regression.IsEnough()) return {};
   StepSearch search(regression);
-  while (static_cast<int>(search.size()) < most && !stop.stop_requested() && search.Add()) {
+  while (static_cast<int>(search.size()) < max_steps && !stop.stop_requested() && search.Add()) {
   }
   constexpr int kMaxAtOnce = 24;
   StepSearch all(regression);
-  const bool better = all.AddAll(std::min(most, kMaxAtOnce)) && all.criterion() < search.criterion();
+  const bool better = all.AddAll(std::min(max_steps, kMaxAtOnce)) && all.criterion() < search.criterion();
   return (better ? all : search).Steps(residuals);
 }
 

@@ -62,7 +62,7 @@ std::string ZipMembers::NameOf(const Member& member) const {
   return name_ + ":" + quoted.substr(1, quoted.size() - 2);
 }
 
-Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t most) const {
+Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t max_bytes) const {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   if (member.is_encrypted) {
     return Fault(NameOf(member), "it is encrypted; unpack it with its password and name the file");
@@ -73,9 +73,9 @@ Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t most) c
   const std::unique_ptr<zip_file_t, Close> file(zip_fopen_index(archive_.get(), member.index, 0));
   if (file == nullptr) return damaged(zip_error_strerror(zip_get_error(archive_.get())));
   std::string text;
-  while (text.size() < most) {
+  while (text.size() < max_bytes) {
     const std::size_t used = text.size();
-    text.resize(std::min(used + std::max(used, kBlock), most));
+    text.resize(std::min(used + std::max(used, kBlock), max_bytes));
     const zip_int64_t got = zip_fread(file.get(), text.data() + used, text.size() - used);
     if (got < 0) return damaged(zip_error_strerror(zip_file_get_error(file.get())));
     text.resize(used + static_cast<std::size_t>(got));

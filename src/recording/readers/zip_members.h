@@ -32,9 +32,9 @@ class ZipMembers {
   /// True if there is a file with this path, of any kind.
   bool Has(std::string_view path) const;
 
-  /// The first bytes of a member, at most `most`. kDataLoss: encrypted, damaged, or packed in a way that libzip cannot
-  /// unpack.
-  Result<std::string> Unpack(const Member& member, std::size_t most) const;
+  /// The first bytes of a member, at most `max_bytes`. kDataLoss: encrypted, damaged, or packed in a way that libzip
+  /// cannot unpack.
+  Result<std::string> Unpack(const Member& member, std::size_t max_bytes) const;
 
   /// "NAME:MEMBER", the beginning of messages.
   std::string NameOf(const Member& member) const;

@@ -155,11 +155,11 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   std::vector<Warning> warnings;
   const Result<const Member*> member = ChooseMember(*zip, name, rest, warnings);
   if (!member) return tl::unexpected(member.error());
-  const std::size_t most = options.most_unpacked_bytes;
-  const Result<std::string> text = zip->Unpack(**member, most + 1);
+  const std::size_t max_bytes = options.most_unpacked_bytes;
+  const Result<std::string> text = zip->Unpack(**member, max_bytes + 1);
   if (!text) return tl::unexpected(text.error());
-  if (text->size() > most) {
-    return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(most) +
+  if (text->size() > max_bytes) {
+    return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(max_bytes) +
                                                       " bytes, too many for a recording; name another, or split it");
   }
   Result<Recording> recording = ReadMember(*text, zip->NameOf(**member), rest);

@@ -23,10 +23,10 @@ struct FitResiduals {
   double period = 0;         ///< s, of a small swing
 };
 
-/// Steps in residuals that autocorrelation does not explain (MODEL.md eq. (13.1)), in time order, at most `most`. Each
-/// step raises the likelihood of an autoregression around the fit by at least e^18. It must also raise it by more than
-/// a drifting zero, a spike, a kink, a touched pendulum or a clock slip would. Alternatively, all steps together leave
-/// white noise.
-std::vector<OffsetStep> FindOffsetSteps(const FitResiduals& residuals, int most, const std::stop_token& stop = {});
+/// Steps in residuals that autocorrelation does not explain (MODEL.md eq. (13.1)), in time order, at most `max_steps`.
+/// Each step raises the likelihood of an autoregression around the fit by at least e^18. It must also raise it by more
+/// than a drifting zero, a spike, a kink, a touched pendulum or a clock slip would. Alternatively, all steps together
+/// leave white noise.
+std::vector<OffsetStep> FindOffsetSteps(const FitResiduals& residuals, int max_steps, const std::stop_token& stop = {});
 
 }  // namespace pendulum

@@ -134,7 +134,7 @@ class Child {
 };
 
 /// Reads all bytes up to the end of a pipe.
-tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_point deadline, std::size_t most) {
+tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_point deadline, std::size_t max_bytes) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string bytes;
   std::size_t used = 0;
@@ -144,12 +144,12 @@ tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_poin
     pollfd readable{descriptor, POLLIN, 0};
     const int ready = ::poll(&readable, 1, static_cast<int>(std::min<std::int64_t>(left, 1000)));
     if (ready <= 0) continue;  // the deadline is checked again
-    if (used == bytes.size()) bytes.resize(std::min(used + std::max(used, kBlock), most + 1));
+    if (used == bytes.size()) bytes.resize(std::min(used + std::max(used, kBlock), max_bytes + 1));
     const ssize_t got = ::read(descriptor, bytes.data() + used, bytes.size() - used);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
     used += static_cast<std::size_t>(got);
-    if (used > most) return tl::unexpected(ChildFailure::kAnswerTooLarge);
+    if (used > max_bytes) return tl::unexpected(ChildFailure::kAnswerTooLarge);
   }
   bytes.resize(used);
   return bytes;

@@ -224,7 +224,7 @@ std::optional<std::vector<std::string>> TakeFieldNames(MatElements& contents) {
 
 MatValue ValueOf(MatMatrix matrix, bool with_numbers) { return ValueAt(std::move(matrix), with_numbers, 0); }
 
-std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
+std::optional<std::string> Unpacked(std::string_view packed, std::size_t max_bytes) {
   constexpr std::size_t kBlock = std::size_t{1} << 16, kMaxRoom = std::size_t{1} << 30;
   std::string bytes;
   z_stream stream{};
@@ -235,8 +235,8 @@ std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
   stream.avail_in = static_cast<uInt>(packed.size());
   int state = Z_OK;
   std::size_t used = 0;
-  while (state == Z_OK && used < most) {
-    bytes.resize(std::min(most, std::max(2 * used, kBlock)));
+  while (state == Z_OK && used < max_bytes) {
+    bytes.resize(std::min(max_bytes, std::max(2 * used, kBlock)));
     const std::size_t room = std::min(bytes.size() - used, kMaxRoom);
     stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + used);  // NOLINT
     stream.avail_out = static_cast<uInt>(room);
@@ -244,7 +244,7 @@ std::optional<std::string> Unpacked(std::string_view packed, std::size_t most) {
     used += room - stream.avail_out;
   }
   bytes.resize(used);
-  if (state != Z_STREAM_END && used < most) return std::nullopt;
+  if (state != Z_STREAM_END && used < max_bytes) return std::nullopt;
   return bytes;
 }
 

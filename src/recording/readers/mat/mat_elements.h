@@ -66,7 +66,7 @@ std::optional<std::vector<std::string>> TakeFieldNames(MatElements& contents);
 /// The contents of a matrix; kOther if it is damaged. Without `with_numbers` only parts that lead to objects are read.
 MatValue ValueOf(MatMatrix matrix, bool with_numbers);
 
-/// Unpacks zlib data, at most `most` bytes; std::nullopt if they are damaged.
-std::optional<std::string> Unpacked(std::string_view packed, std::size_t most);
+/// Unpacks zlib data, up to `max_bytes` bytes; std::nullopt if the data are damaged.
+std::optional<std::string> Unpacked(std::string_view packed, std::size_t max_bytes);
 
 }  // namespace pendulum

@@ -118,9 +118,9 @@ Readable<std::vector<double>> ListIn(const Properties& properties, std::size_t o
   return list->numbers;
 }
 
-/// The times in row order, at most `most`: listed in the object itself or in its TimeInfo, or uniform.
+/// The times in row order, at most `max_times`: listed in the object itself or in its TimeInfo, or uniform.
 Readable<std::vector<double>> TimesOf(const Properties& properties, std::size_t object, std::size_t info,
-                                      std::size_t most) {
+                                      std::size_t max_times) {
   const Readable<std::vector<double>> own = ListIn(properties, object), list = ListIn(properties, info);
   if (!own || !list || (!own->empty() && !list->empty() && *own != *list)) return Unknown();
   const std::optional<double> length = NumberIn(properties, info, "Length");
@@ -131,7 +131,7 @@ Readable<std::vector<double>> TimesOf(const Properties& properties, std::size_t 
   const std::optional<double> start = NumberIn(properties, info, "Start_");
   const std::optional<double> step = NumberIn(properties, info, "Increment_");
   const bool is_uniform = start && step && std::isfinite(*start) && std::isfinite(*step) && *step > 0;
-  if (!is_uniform || !length || !(*length >= 1 && *length <= static_cast<double>(most))) return Unknown();
+  if (!is_uniform || !length || !(*length >= 1 && *length <= static_cast<double>(max_times))) return Unknown();
   std::vector<double> times(static_cast<std::size_t>(*length));
   if (static_cast<double>(times.size()) != *length) return Unknown();
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = *start + *step * static_cast<double>(i);
