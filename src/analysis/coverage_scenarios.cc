@@ -88,7 +88,7 @@ CoverageScenario Saturated() {
 }
 
 /// An encoder of 2400 counts per turn, in motion when the recording begins, with one row per count. Its edges have
-/// errors of a twentieth of a count; its time stamps have an equal error at half the largest rate.
+/// errors of a twentieth of a count. The errors of its time stamps have the same effect at half the largest rate.
 CoverageScenario OnTicks(std::string name, std::string description) {
   CoverageScenario scenario = Moving();
   scenario.name = std::move(name);

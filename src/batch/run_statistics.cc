@@ -205,7 +205,7 @@ namespace {
 
 constexpr int kHours = 24, kMinutes = 60;
 
-/// Offset from UTC in minutes of a time zone "Z", "+01:00"; 0 for an empty text.
+/// The offset from UTC, in minutes, of a time zone such as "Z" or "+01:00"; 0 for an empty text.
 std::optional<double> MinutesOfZone(const std::string& zone) {
   if (zone.empty() || zone == "Z") return 0;
   std::array<char, 2> sign{};

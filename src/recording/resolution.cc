@@ -167,8 +167,8 @@ bool IsRamp(const Levels& levels, const LevelGrid& grid, std::size_t readings) {
 
 }  // namespace
 
-/// If more than one in twenty distinct readings lie halfway between the levels (averages of two readings), it is the
-/// finer spacing, otherwise the sensor's own.
+/// Returns the spacing of the sensor's own levels. If more than one in twenty distinct readings lie halfway between
+/// these, as averages of two readings do, it returns the finer spacing.
 double FindResolution(const Eigen::VectorXd& value) {
   constexpr double kFinest = 1e-6;
   if (value.size() < static_cast<Index>(kMinLevels)) return 0;

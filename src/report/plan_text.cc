@@ -41,7 +41,7 @@ class Units {
   std::optional<double> gravity_torque_;
 };
 
-/// Two digits, the maximum for rounded errors; three if a power of ten would follow otherwise.
+/// Two digits, the most to which errors are rounded. Three from 100 on, because two would need a power of ten.
 std::string ErrorText(double error) { return NumberText(error, error < 100 ? kErrorDigits : kErrorDigits + 1); }
 
 std::string BiasCell(const std::optional<double>& share) {

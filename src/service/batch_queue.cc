@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// On Linux this changes only the calling thread.
+/// Lowers the priority of the calling thread only, as setpriority does on Linux.
 void LowerThreadPriority() {
   constexpr int kNiceness = 5;
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
@@ -107,7 +107,7 @@ Result<void> BatchQueue::StartThreads(int threads) {
   } catch (const std::system_error& error) {
     if (threads_.empty()) {
       return Error(StatusCode::kTryAgain, std::string("cannot start a thread, ") + error.what() +
-                                              "; end other processes, or raise the limit of this one");
+                                              "; end other processes, or raise the limit on threads");
     }
   }
   return {};

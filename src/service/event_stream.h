@@ -24,7 +24,8 @@ class EventStream : public std::enable_shared_from_this<EventStream> {
   /// Sends the answer's head and the first events.
   void Start(std::string head);
 
-  /// Ends as after the last event, or after a short time if the client does not receive the remaining data.
+  /// Ends the stream without further events. If the client does not take the remaining data within a short time, closes
+  /// the connection.
   void End();
 
  private:

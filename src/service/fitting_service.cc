@@ -21,7 +21,7 @@ constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// Other answers run nothing, even if a browser displays them.
+/// In all other answers nothing runs, even if a browser displays them.
 constexpr const char* kDataPolicy = "default-src 'none'; frame-ancestors 'none'; sandbox";
 
 /// Adds the security fields that every answer has.

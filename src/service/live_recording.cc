@@ -84,7 +84,7 @@ Result<std::string> WholeLinesOf(const std::filesystem::path& run) {
   return bytes;
 }
 
-/// Position of a listener.
+/// What one listener has received.
 struct LiveCursor {
   std::string said;          // The last status sent.
   bool has_samples = false;  // The run so far was sent.

@@ -21,7 +21,8 @@ constexpr std::size_t kFirstCapacity = std::size_t{64} << 10;
 
 tl::unexpected<Refused> Malformed(std::string detail) { return tl::unexpected(Refused{400, std::move(detail)}); }
 
-/// Describes a forbidden byte at `i` of a head. Beast would accept some of these as blanks and would join folded lines.
+/// Describes the byte at `i` of a head if it is forbidden. Beast would accept some of these as blanks and would join
+/// folded lines.
 std::optional<std::string> WrongByte(std::string_view bytes, std::size_t i) {
   const auto byte = static_cast<unsigned char>(bytes[i]);
   const bool is_last = i + 1 == bytes.size();
@@ -85,7 +86,7 @@ std::optional<Refused> RequestParser::ReadFields() {
   head_.keeps_alive = head_.is_http11 && keep_alive();
   const std::size_t hosts = request_.Fields("Host").size();
   if (hosts > 1 || (hosts == 0 && head_.is_http11)) {
-    return Refused{400, "the request has " + std::to_string(hosts) + " Host fields; HTTP/1.1 asks for one"};
+    return Refused{400, "the request has " + std::to_string(hosts) + " Host fields; HTTP/1.1 requires exactly one"};
   }
   if (auto refused = ReadLength()) return refused;
   if (auto refused = ReadTarget()) return refused;

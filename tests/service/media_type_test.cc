@@ -81,9 +81,9 @@ TEST(ParseMediaType, RefusesInvalidParameters) {
   EXPECT_EQ(fault("charset"), "the parameters of the content type have \"charset\", which is not name=value");
   EXPECT_THAT(fault("=utf-8"), HasSubstr("which is not name=value"));
   EXPECT_THAT(fault("charset =utf-8"), HasSubstr("which is not name=value"));  // RFC 9110, 5.6.6: no blanks
-  EXPECT_THAT(fault("charset= utf-8"), HasSubstr("whose value must stand in quotes"));
-  EXPECT_THAT(fault("charset=;a=b"), HasSubstr("whose value must stand in quotes"));
-  EXPECT_THAT(fault("charset=\xC3\xA9"), HasSubstr("whose value must stand in quotes"));
+  EXPECT_THAT(fault("charset= utf-8"), HasSubstr("whose value must be in quotes"));
+  EXPECT_THAT(fault("charset=;a=b"), HasSubstr("whose value must be in quotes"));
+  EXPECT_THAT(fault("charset=\xC3\xA9"), HasSubstr("whose value must be in quotes"));
   EXPECT_THAT(fault("a=b c=d"), HasSubstr("\"c=d\", where a semicolon must be"));
   EXPECT_THAT(fault("a=\"b\"c"), HasSubstr("\"c\", where a semicolon must be"));
   for (const char* open :

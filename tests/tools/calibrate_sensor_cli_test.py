@@ -144,9 +144,9 @@ class CalibrateSensorTest(unittest.TestCase):
     def test_bad_tables_exit_4_with_their_place(self):
         self.check_bad_table("bad.csv:3: points found: 2; a curve of order 2 has 3 coefficients",
                              "counts,angle_deg\n1,0\n2,1\n", "--order", "2")
-        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is here again with another angle",
+        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is repeated with another angle",
                              "counts,angle_deg\n19,-45\n97,-30\n97,-15\n")
-        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is here again with the same angle",
+        self.check_bad_table("bad.csv:4: the reading 97 counts (line 3) is repeated with the same angle",
                              "counts,angle_deg\n19,-45\n97,-30\n97,-30\n")
         self.check_bad_table("bad.csv:4: the angle is -40 deg at 177 counts", TABLE.replace("177,-15", "177,-40"))
         self.check_bad_table("bad.csv:1:1: no column's name shows that it is the angle",

@@ -26,7 +26,7 @@ struct CoverageRow {
   std::string parameter;
   std::string unit;
   bool at_bound = false;                  ///< The true value is at the parameter's bound.
-  int covered = 0, without_interval = 0;  ///< Recordings whose 95 % interval has the true value; without one.
+  int covered = 0, without_interval = 0;  ///< Recordings whose 95 % interval contains the true value; without interval.
   double coverage = 0, coverage_lower = 0, coverage_upper = 1;  ///< covered / recordings and its BinomialInterval95.
   std::optional<double> rms_error;                              ///< Of converged estimates, in `unit`.
   /// Root mean square of error / Cramér-Rao bound of its recording, over converged fits; absent without a bound.

@@ -44,9 +44,9 @@ double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index fre
 /// A fit as a linear function of the readings' scores about its solution, over F parameters.
 struct LinearFit {
   std::vector<Eigen::Index> free;  ///< F, neither fixed nor, if `with_bounds`, at a bound.
-  Eigen::MatrixXd jacobian;        ///< N x P, readings by the report's parameters.
+  Eigen::MatrixXd jacobian;        ///< N x P, of the readings with respect to the report's parameters.
   Eigen::MatrixXd inverse;         ///< F x F, inverse of the information: products of the report's units.
-  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the change [report's units].
+  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the estimates' change [report's units].
 };
 
 /// std::nullopt: the trajectory cannot be computed, the readings do not determine the F parameters, or a stop was

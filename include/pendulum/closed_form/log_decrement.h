@@ -47,7 +47,7 @@ std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gr
 struct DecayRow {
   std::size_t point = 0;           ///< Index in the table.
   std::optional<Estimate> pair;    ///< ζ from this turning point and the next on its side.
-  std::optional<Estimate> so_far;  ///< ζ from the first turning point on this side in its run and this one.
+  std::optional<Estimate> so_far;  ///< ζ from this turning point and the first on its side in its run.
   int periods = 0;                 ///< Number of periods in `so_far`.
 };
 

@@ -114,7 +114,7 @@ inline constexpr ParameterInfo kHysteresis{"hysteresis",
 inline constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kFormerNames = {
     {{"edge_lag", kHysteresis.name}}};
 
-/// The name now of a parameter that is given by its name or by a former one.
+/// The present name of a parameter that is given by its present or a former name.
 constexpr std::string_view CurrentName(std::string_view name) {
   for (const auto& [former, current] : kFormerNames) {
     if (name == former) return current;

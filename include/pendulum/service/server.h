@@ -28,8 +28,8 @@ struct ServerOptions {
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more gets 431.
   std::size_t max_body = std::size_t{32} << 20;       ///< Bytes; more gets 413.
   std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies in memory, with answers; above: 429.
-  /// Limit for receiving a complete request; then 408. Also for a client to take each quarter of a megabyte of an
-  /// answer; then the connection is closed.
+  /// Time within which a request must be complete, otherwise the answer is 408. A client must also take each quarter of
+  /// a megabyte of an answer within this time, otherwise the connection is closed.
   std::chrono::milliseconds request_time{30'000};
   std::chrono::milliseconds idle_time{60'000};    ///< Limit for a connection without a request.
   std::chrono::milliseconds max_silence{15'000};  ///< Silence of a stream of events; then a comment keeps it open.

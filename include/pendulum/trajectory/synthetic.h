@@ -34,7 +34,7 @@ inline constexpr double kFinestEvents = 1e-5;  ///< Resolution, rad.
 /// Options for a simulated recording. They contain the true values that a fit of the recording should find.
 struct SyntheticOptions {
   MotionModel model = {"coulomb", "coulomb", Gravity::kSine};
-  /// The values of PhysicalParameters(model) in units of the restoring torque G: inertia / G [s^2], viscous / G [s].
+  /// The values of PhysicalParameters(model) over the restoring torque G, such as inertia / G [s^2], viscous / G [s].
   std::vector<double> parameters;
 
   StartKind start = StartKind::kRelease;

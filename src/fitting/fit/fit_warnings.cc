@@ -96,8 +96,8 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
                                         "=0 makes the drift a parameter of the fit"});
 }
 
-/// If the noise is below half a resolution, the readings are rounded values of a smooth curve, not a curve with white
-/// noise.
+/// Warns if the noise is below half a resolution: the readings are then rounded values of a smooth curve, not a curve
+/// with white noise.
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers

@@ -24,7 +24,7 @@ struct Parabola {
   Eigen::VectorXd pull;
 };
 
-/// From the sums at the end of the recording's own fit; its cost has no priors.
+/// The parabola from the sums at the estimates of the recording's own fit. The member's cost has no priors.
 Parabola ParabolaOfSums(const JointMember& member) {
   const std::vector<double>& own = member.alone_parameters;
   const auto size = static_cast<Index>(own.size());
@@ -37,7 +37,7 @@ Parabola ParabolaOfSums(const JointMember& member) {
   return parabola;
 }
 
-/// From the covariance of the recording's own fit if there is one; this needs no trajectory.
+/// The parabola from the covariance of the recording's own fit, which needs no trajectory; from the sums without one.
 Parabola ParabolaOf(const JointMember& member) {
   const FitReport& alone = *member.alone;
   const auto count = static_cast<Index>(alone.covariance_names.size());

@@ -136,7 +136,7 @@ void PredictMixed(const Clock& clock, double phi, double theta, Innovations* inn
 void PredictContinuous(const Eigen::VectorXd& age, double decay_time, double white_share, Innovations* innovations) {
   innovations->keep = (age.array() / -decay_time).exp();
   innovations->keep[0] = 0;
-  double known = 0;  // of the state's variance, after the previous sample
+  double known = 0;  // part of the state's variance that the previous samples explain
   double gain = 0;
   for (Eigen::Index i = 0; i < age.size(); ++i) {
     const double kept = innovations->keep[i];

@@ -178,7 +178,7 @@ std::vector<int> RemovableFriction(const SolveOptions& options) {
   return removable_friction.size() > 1 ? removable_friction : std::vector<int>{};
 }
 
-/// Solves with friction parameter k fixed, then frees it.
+/// Solves with friction parameter k fixed, then continues with it free.
 Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, int k,
                       const SolveOptions& options) {
   SolveOptions simpler = options;

@@ -196,7 +196,7 @@ Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index
     if (table.reading[later] != table.reading[earlier]) continue;
     const bool same = table.angle[later] == table.angle[earlier];
     return FaultAt(table, later,
-                   "the reading " + ReadingAt(table, earlier) + " is here again with " +
+                   "the reading " + ReadingAt(table, earlier) + " is repeated with " +
                        (same ? "the same angle; give their mean, or delete one of the rows"
                              : "another angle; give their mean, or correct or delete one of the rows"));
   }

@@ -132,11 +132,11 @@ TEST(ParseCalibrationTable, RefusesARecording) {
 
 TEST(ParseCalibrationTable, RefusesARepeatedReading) {
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,30\n"),
-            "table.csv:5: the reading 3 counts (line 3) is here again with another angle; give their mean, or "
+            "table.csv:5: the reading 3 counts (line 3) is repeated with another angle; give their mean, or "
             "correct or delete one of "
             "the rows");
   EXPECT_EQ(FaultOf("counts,angle_deg\n1,0\n3,20\n2,10\n3,20\n"),
-            "table.csv:5: the reading 3 counts (line 3) is here again with the same angle; give their mean, or "
+            "table.csv:5: the reading 3 counts (line 3) is repeated with the same angle; give their mean, or "
             "delete one of the rows");
 }
 

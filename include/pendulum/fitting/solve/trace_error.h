@@ -12,7 +12,7 @@ double MaxTraceError(const FitProblem& problem, const FitOptions& options);
 /// `tolerance` is the tolerance of `cost`. Returns false if either trajectory cannot be computed.
 bool MeasureTraceError(TrajectoryCost& cost, double tolerance, Solution& solution);
 
-/// The next tolerance to try if the error is too large, and the maximum number of refinements.
+/// The next tolerance to try if the error is too large. It is refined at most kMaxTraceRefinements times.
 double FinerTolerance(double tolerance);
 inline constexpr int kMaxTraceRefinements = 3;
 

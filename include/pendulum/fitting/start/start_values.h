@@ -16,7 +16,7 @@ struct StartValues {
   StartKind start = StartKind::kMoving;
   std::vector<double> parameters;  ///< As TrajectoryCost's: torques over G, times from the first sample.
   double latest_release = 0;     ///< s from the first sample: the first sample visibly in motion; 0 for a moving start.
-  bool short_hold = false;       ///< Held for less than half a period: it may be a turning point.
+  bool short_hold = false;       ///< Held for less than half a period: the hold may be a turning point.
   double amplitude = 0;          ///< rad, the largest amplitude.
   double natural_frequency = 0;  ///< rad/s
   EnergyBalance energy_balance;  ///< Also gives the friction of the simpler laws.

@@ -127,7 +127,7 @@ class Collector {
   }
 
   void Add(const matvar_t& variable) {
-    // matio gives no name for objects, or that of the system to which they belong.
+    // For objects matio gives no name, or the name of the system to which they belong.
     if (variable.name == nullptr || variable.class_type == MAT_C_OPAQUE) return;
     const std::string name = variable.name;
     if (name.empty() || objects_.contains(name)) return;

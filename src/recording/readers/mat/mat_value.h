@@ -49,7 +49,7 @@ struct MatObjects {
   std::size_t class_id = 0;
 };
 
-/// Decodes a column 0xDD000000, number of sizes, sizes, objects, class; std::nullopt if it is not one.
+/// Decodes a column of 0xDD000000, number of sizes, sizes, objects and class; std::nullopt for any other value.
 std::optional<MatObjects> ObjectsOf(const MatValue& value);
 
 /// A place in a file's variables that refers to an object.

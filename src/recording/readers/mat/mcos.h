@@ -20,7 +20,7 @@ struct McosProperty {
   std::size_t value = 0;  // kCell: index among all cells; kEnumeration: a name; kNumber: the value itself.
 };
 
-/// The table in cell 0. Names, classes and objects are numbered from 1; 0 means none.
+/// The table of objects, which is in cell 0. Names, classes and objects are numbered from 1; 0 means none.
 class Mcos {
  public:
   /// `cells` is the number of cells including the table. std::nullopt if it is inconsistent.
