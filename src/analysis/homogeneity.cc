@@ -200,7 +200,7 @@ VectorXd ScaleOf(const std::vector<SeparateEstimates>& estimates) {
   return scale;
 }
 
-/// Removes recordings one by one until the others agree; each time the one whose removal leaves the smallest statistic.
+/// Removes recordings one by one until the others agree, each time the one whose removal leaves the smallest statistic.
 /// A majority must remain; without a majority no recording can be called wrong.
 std::vector<std::size_t> FindDeviatingRecordings(const std::vector<SeparateEstimates>& estimates,
                                                  const VectorXd& scale) {

@@ -25,8 +25,8 @@ std::string Sentence(const WindowBegin& begin) {
       return "the motion before it does not fit the later motion: the pendulum was touched, or follows another law";
     case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
     case kUndersampledAfterFirst:
-      return "sampled too slowly to see half swings: the whole recording, without the first reading, before which it "
-             "may have been released";
+      return "sampled too slowly to see half swings: the whole recording, without the first reading, at which it may "
+             "still have been held";
     case kUndersampledAfterHold:
       return "sampled too slowly to see half swings: the whole recording, without the constant readings at its start";
   }

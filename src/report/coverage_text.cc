@@ -114,9 +114,9 @@ constexpr std::string_view kColumns =
 
 /// Explains the differences for sets of recordings.
 std::string SetsText(std::span<const CoverageStudy> studies) {
-  return "Here each recording is a set, " + Counted(studies) +
-         " of one rig, released from 0.7 to 1.3 times the scenario's angle and fitted together; the bound is that of "
-         "what they share, from the readings of all.";
+  return "Here the fits are joint fits of " + Counted(studies) +
+         " recordings of one rig, released from 0.7 to 1.3 times the scenario's angle. The bound is that of the shared "
+         "parameters, from the readings of the whole set.";
 }
 
 /// Explains the rules, with the numbers used for the verdicts.

@@ -27,7 +27,7 @@ Result<std::string> BoundaryOf(std::string_view content_type) {
   if (!type) return tl::unexpected(type.error());
   if (type->type != "multipart/form-data") {
     return Error(StatusCode::kInvalidArgument,
-                 "the content type is " + Quoted(type->type) + "; that of a form is multipart/form-data");
+                 "the content type is " + Quoted(type->type) + "; it must be multipart/form-data");
   }
   const auto boundary = type->Parameter("boundary");
   if (!boundary) return WrongForm("has no boundary; write it as multipart/form-data; boundary=...");
@@ -155,7 +155,7 @@ struct PartReader {
     const std::string_view text = *disposition;
     const std::string_view kind = text.substr(0, text.find(';'));
     if (LowerCase(WithoutBlanks(kind)) != "form-data") {
-      return Wrong("has the Content-Disposition " + Quoted(text) + "; that of a form is form-data");
+      return Wrong("has the Content-Disposition " + Quoted(text) + "; it must be form-data");
     }
     return ParseFieldParameters(text.substr(kind.size()), place + " of the form", Backslash::kEscapesQuotes);
   }

@@ -29,7 +29,7 @@ using ErrorCode = boost::system::error_code;
 /// Pause after a failed accept, for example without free file descriptors; an immediate retry would fail too.
 constexpr std::chrono::milliseconds kAfterFailedAccept{100};
 
-/// Rejected connections that get an answer at the same time; further ones are closed without one.
+/// Rejected connections that get an answer at the same time; further ones are closed without an answer.
 constexpr std::size_t kMaxRejected = 64;
 
 std::size_t ThreadsOf(int threads) {

@@ -229,7 +229,7 @@ TEST(ParseFormData, RefusesAFormWithoutABoundary) {
               HasSubstr("it must have 1 to 70 bytes"));
   EXPECT_THAT(FaultOf("multipart/form-data; boundary=\"b \"", ""), HasSubstr("end in a blank"));
   EXPECT_EQ(FaultOf("multipart/mixed; boundary=X", Form(Named("name=a"))),
-            "the content type is \"multipart/mixed\"; that of a form is multipart/form-data");
+            "the content type is \"multipart/mixed\"; it must be multipart/form-data");
   EXPECT_THAT(FaultOf("multipart/form-data; boundary=X; boundary=Y", ""), HasSubstr("given twice"));
   EXPECT_THAT(FaultOf("", ""), HasSubstr("is not a media type"));
 }
@@ -273,8 +273,8 @@ TEST(ParseFormData, NamesTheFaultyPart) {
 
 TEST(ParseFormData, RefusesAnotherDisposition) {
   EXPECT_EQ(FaultOf(Form("Content-Disposition: attachment; name=a")),
-            "part 1 of the form has the Content-Disposition \"attachment; name=a\"; that of a form is form-data");
-  EXPECT_THAT(FaultOf(Form("Content-Disposition: name=a")), HasSubstr("that of a form is form-data"));
+            "part 1 of the form has the Content-Disposition \"attachment; name=a\"; it must be form-data");
+  EXPECT_THAT(FaultOf(Form("Content-Disposition: name=a")), HasSubstr("it must be form-data"));
   EXPECT_THAT(FaultOf(Form(Named("name=a; name=b"))), HasSubstr("\"name\", which is given twice"));
   EXPECT_THAT(FaultOf(Form(Named("name=\"a"))), HasSubstr("whose quotes do not close"));
   EXPECT_THAT(FaultOf(Form(Named("name=a b"))),

@@ -32,7 +32,7 @@ struct RunLosses {
   std::int64_t samples = 0;      ///< All missing samples: gaps in time stamps, and samples after the last one.
   std::uint32_t dropped = 0;     ///< Those that the logger dropped because the line was too slow.
   std::uint32_t late = 0;        ///< Conversions that could not start in time.
-  std::int64_t on_line = 0;      ///< Those lost on the line, by frame numbers or the number sent.
+  std::int64_t on_line = 0;      ///< Those lost on the line, from frame numbers or the reported total.
   int contradicting_frames = 0;  ///< Frames left out: their CRC is right, but they are impossible in this run.
   bool is_end_known = false;     ///< The logger has reported how many samples it sent.
 };

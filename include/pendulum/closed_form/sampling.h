@@ -32,8 +32,8 @@ struct Sampling {
 /// (MODEL.md eq. (6.13)). Shannon, Proc. IRE 37:10 (1949).
 double ApparentFrequency(double frequency_hz, double rate_hz);
 
-/// Whether two frequencies in [low, high] Hz can give the same even samples. This is so if [2 low / rate, 2 high /
-/// rate] contains an integer: frequencies on both sides of it mirror each other (MODEL.md eq. (6.14)).
+/// Whether two frequencies in [low, high] Hz can give the same equally spaced samples. This is so if [2 low / rate, 2
+/// high / rate] contains an integer: frequencies on both sides of it mirror each other (MODEL.md eq. (6.14)).
 bool CanAliasWithinRange(double low_hz, double high_hz, double rate_hz);
 
 /// Describes the sampling of the samples used. half_period [s] comes from the turning points; for an aliased swing it

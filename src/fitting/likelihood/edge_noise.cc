@@ -69,7 +69,7 @@ Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
   return rates;
 }
 
-/// Fisher scoring: squared normal differences about their variances v; the variance of a square is 2 v².
+/// Fisher scoring of the squared differences. A difference is normal with variance v, so its square has variance 2 v².
 double MostLikelyStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                             const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates) {
   constexpr int kSteps = 30;

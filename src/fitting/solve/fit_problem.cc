@@ -224,8 +224,8 @@ Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
   if (edges && recording.edge) return {};
   if (edges) {
     return Error(StatusCode::kInvalidArgument,
-                 "--noise edges needs rows that exist only where the count changes, mostly by one count and at uneven "
-                 "times; this recording has other rows");
+                 "--noise edges needs rows that exist only where the count changes, mostly by one count and at "
+                 "unequal intervals; this recording has other rows");
   }
   if (recording.resolution > 0) return {};
   return Error(StatusCode::kInvalidArgument,

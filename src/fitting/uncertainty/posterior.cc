@@ -357,8 +357,8 @@ Posterior Summarize(Draws draws, double resolution) {
   return posterior;
 }
 
-// Maximum number of samples evaluated. For 1e5 samples with few certain ones it is low, but then the posterior is
-// normal and needs no sampling.
+// Maximum number of evaluations of a sample. It allows few draws for 1e5 samples of which few are certain, but then the
+// posterior is nearly normal and needs no sampling.
 constexpr double kMaxWork = 1e9;
 
 /// Runs of increasing length, each followed by whitening, until the coordinates fit. These draws are discarded.

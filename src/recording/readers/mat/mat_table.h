@@ -23,7 +23,7 @@ struct MatColumn {
 /// A variable without columns, and its kind.
 struct SkippedVariable {
   std::string name, kind;
-  bool is_object = false;  // MATLAB can save its numbers.
+  bool is_object = false;  // The user can save its numbers as a matrix in MATLAB.
 };
 
 /// The contents of a MAT-file that may be a recording.

@@ -78,7 +78,7 @@ class Properties {
 
 // ---- The times ---------------------------------------------------------------------------------------------------
 
-/// A unit of time of a timeseries: the name of a column in this unit after its numbers were scaled.
+/// A unit of time in a timeseries. Numbers times factor / divisor are in the unit of a column named `meaning`.
 struct TimeUnit {
   std::string_view name, meaning;
   double factor = 1, divisor = 1;
