@@ -137,7 +137,8 @@ TEST(FrictionWithState, HasTheDerivativesByAllParameters) {
     for (const Segment<T>& segment : segments) {
       const double tau = 0.5 * (segment.end - segment.start);
       double partial = 0;
-      for (int n = segment.order; n >= 0; --n) partial = partial * tau + PartialsAtFixedTime(segment, n)[k];
+      for (int n = segment.order; n >= 0; --n)
+        partial = partial * tau + PartialsAtFixedTime(segment, n)[static_cast<int>(k)];
       const double time = segment.start + tau;
       const double difference = (angle_at(above, time) - angle_at(below, time)) / (2 * step);
       EXPECT_THAT(partial, DoubleNear(difference, 1e-5 * (1 / p[k] + std::abs(difference)))) << k << " at " << time;
