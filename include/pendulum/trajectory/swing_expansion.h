@@ -39,7 +39,7 @@ class SwingExpansion {
       angle_.partials[0] = from.angle.v;
       rate_.dual[0] = from.rate;
     }
-    pendulum_.gravity.Visit([this]<typename L>() { FindAll<L>(); });
+    FindAllFor(GravityModels());
   }
 
   /// The friction states `tau` s after the begin of the expanded swing. Their series ends one order below the angle's.
@@ -52,6 +52,12 @@ class SwingExpansion {
   }
 
  private:
+  /// A closure in between, as Gravity::Visit has it, would change which products the compiler fuses with sums.
+  template <typename... Ls>
+  void FindAllFor(GravityModelList<Ls...> /*laws*/) {
+    (void)((pendulum_.gravity == Gravity::Of<Ls>() && (FindAll<Ls>(), true)) || ...);
+  }
+
   template <GravityModel L>
   void FindAll() {
     const auto next = [&]<int n>() {

@@ -6,9 +6,7 @@ namespace pendulum {
 FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces) {
   FitOptions trial;
   trial.model = "drag";
-  const Result<MotionModel> model = FindMotionModel(options.model);
-  const bool is_linear = !recording.is_calibrated() || (model && model->gravity.is_linear());
-  if (is_linear) trial.gravity = Gravity::kLinear;
+  if (!recording.is_calibrated()) trial.gravity = Gravity::kLinear;
   trial.start = options.start;
   trial.search.max_traces = max_traces;
   trial.noise = IsRobust(options.noise) ? options.noise : NoiseFamily::kGaussian;

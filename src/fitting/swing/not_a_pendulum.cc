@@ -137,7 +137,7 @@ std::optional<std::string> TwoModesReason(const Recording& recording, const FitR
   if (report.termination == Termination::kFailed) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest =
-      FitRichest(some, recording.is_calibrated() ? report.model.gravity : Gravity::kLinear, stop);
+      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear, stop);
   return richest ? HasTwoModes(some, *richest) : std::nullopt;
 }
 
