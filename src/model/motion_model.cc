@@ -18,28 +18,38 @@ std::string ModelName(std::string_view gravity, std::string_view friction) {
   return std::string(gravity) + "_" + std::string(friction);
 }
 
-/// Outlives all models, which only refer to their names.
-const std::vector<std::string>& ModelNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const std::string_view gravity : GravityModels::kNames) {
-      for (const std::string_view friction : FrictionModels::kNames) all.push_back(ModelName(gravity, friction));
+/// Whether a fit can determine the parameters of the two laws together.
+template <FrictionModel F>
+bool IsDeterminable(Gravity gravity) {
+  return !(HasConstantTorque<F> && gravity.is_linear());
+}
+
+/// A model's name, which outlives all models: they only refer to it.
+struct NamedModel {
+  std::string name;
+  std::string_view friction;
+  Gravity gravity;
+};
+
+const std::vector<NamedModel>& NamedModels() {
+  static const std::vector<NamedModel> models = [] {
+    std::vector<NamedModel> all;
+    for (const std::string_view name : GravityModels::kNames) {
+      const Gravity gravity = *Gravity::Named(name);
+      FrictionModels::ForEach([&]<typename F>() {
+        if (IsDeterminable<F>(gravity)) all.push_back({ModelName(name, F::kName), F::kName, gravity});
+      });
     }
     return all;
   }();
-  return names;
+  return models;
 }
 
 }  // namespace
 
 std::vector<MotionModel> MotionModels() {
   std::vector<MotionModel> models;
-  auto name = ModelNames().begin();
-  for (const std::string_view gravity : GravityModels::kNames) {
-    for (const std::string_view friction : FrictionModels::kNames) {
-      models.push_back({*name++, friction, *Gravity::Named(gravity)});
-    }
-  }
+  for (const auto& [name, friction, gravity] : NamedModels()) models.push_back({name, friction, gravity});
   return models;
 }
 
@@ -57,7 +67,7 @@ Result<std::vector<MotionModel>> FindMotionModels(std::string_view names) {
   std::vector<MotionModel> models;
   if (names == "all") {
     models = MotionModels();
-    std::erase_if(models, [](const MotionModel& model) { return model.name != model.friction; });
+    std::erase_if(models, [](const MotionModel& model) { return model.gravity != Gravity(); });
     return models;
   }
   for (std::size_t begin = 0; begin <= names.size();) {

@@ -39,13 +39,16 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
   const std::optional<Gravity> gravity = Gravity::Named(flags.gravity);
   if (!gravity)
     return BadFlag("--gravity is '" + flags.gravity + "'; it must be one of " + NameList(GravityModels::kNames));
-  if (model->name != model->friction && gravity != model->gravity) {
+  if (model->gravity != Gravity() && gravity != model->gravity) {
     return BadFlag("--gravity " + flags.gravity + " contradicts --model " + flags.model +
                    "; its friction law is --model " + std::string(model->friction));
   }
   const std::vector<MotionModel> models = MotionModels();
-  return *std::ranges::find_if(
+  const auto named = std::ranges::find_if(
       models, [&](const MotionModel& other) { return other.gravity == *gravity && other.friction == model->friction; });
+  if (named != models.end()) return *named;
+  model->gravity = *gravity;  // a fit cannot determine it, but it can be simulated
+  return model;
 }
 
 /// Every parameter that --set accepts, in the order of the truth file.

@@ -27,7 +27,7 @@ using testing::Not;
 
 constexpr const char* kFiniteAmplitude = "finite amplitude";
 constexpr const char* kFormulasFriction = "the formula's friction";
-constexpr const char* kSampling = "sampling";
+constexpr const char* kSampling = "too few samples";
 constexpr const char* kResolution = "the sensor's resolution";
 constexpr const char* kFrictionLaw = "the friction law";
 

@@ -56,7 +56,7 @@ TEST(DescribeHomogeneity, ReportsAgreement) {
 TEST(DescribeHomogeneity, NamesParametersThatDisagreeAlone) {
   Homogeneity result = Example(0.02);
   result.parameters[0].p = 0.004;
-  EXPECT_THAT(WordsOf(result), EndsWith(", p 0.02); by itself inertia does not agree (p 0.004)"));
+  EXPECT_THAT(WordsOf(result), EndsWith(", p 0.02); on its own, inertia does not agree (p 0.004)"));
 }
 
 TEST(DescribeHomogeneity, NamesTheParametersThatDiffer) {

@@ -185,7 +185,7 @@ std::vector<Recording> AutocorrelatedRecordings(int count, std::uint64_t seed) {
 TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
   const auto [joint, comparison] = Compare(AutocorrelatedRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
-  EXPECT_THAT(comparison.criterion, HasSubstr("are autocorrelated"));
+  EXPECT_THAT(comparison.criterion, HasSubstr("autocorrelated residuals"));
   EXPECT_LT(comparison.effective_samples, 2250);
   double independent = 0;
   for (std::size_t k = 0; k < 3; ++k) independent += GaussianLogLikelihood(joint.FitOf(k, 1).residual);

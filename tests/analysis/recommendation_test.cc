@@ -98,11 +98,10 @@ TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   for (ComparisonRow& row : made.comparison.rows) row.lack_of_fit = true;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
-  EXPECT_EQ(
-      made.comparison.reason,
-      "drag: no other is better; stribeck has a smaller BIC, but residuals that are not noise, and no better "
-      "prediction of the last 40 %, or none; but more than noise is left (lag-1 correlation 0), so the model still "
-      "lacks something");
+  EXPECT_EQ(made.comparison.reason,
+            "drag: no other is better; stribeck has a smaller BIC, but residuals that are not noise, and no better "
+            "prediction of the last 40 %, or none; but the residuals are more than noise (lag-1 correlation 0), so the "
+            "model still lacks something");
   made.comparison.rows[1].forward.rms = 0.6;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");

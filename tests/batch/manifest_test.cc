@@ -238,7 +238,7 @@ TEST_F(ReadManifestTest, RefusesInvalidWindows) {
 
 TEST_F(ReadManifestTest, RefusesUnknownModels) {
   EXPECT_THAT(FaultOf("path,models\na.csv,all\nb.csv,magic\n"),
-              StartsWith(":3: column models: there is no model 'magic'; the models are linear, "));
+              StartsWith(":3: column models: there is no model 'magic'; the models are viscous, "));
   EXPECT_EQ(FaultOf("path,models\na.csv,\"viscous,viscous\"\n"),
             ":2: column models: 'viscous,viscous' names viscous twice");
 }

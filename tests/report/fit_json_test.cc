@@ -95,7 +95,8 @@ TEST(NoiseJson, CarriesTheUnitInItsKeys) {
   fit.reading_unit = "rad/s";
   fit.noise.sigma = kNotANumber;
   EXPECT_TRUE(NoiseJson(fit, DataSummary())["sigma_rad_s"].is_null());
-  EXPECT_EQ(NoiseJson(fit, DataSummary())["reason"], "sigma_rad_s is not a finite number");
+  EXPECT_EQ(NoiseJson(fit, DataSummary())["reason"],
+            "the residuals are 0.8 resolutions; sigma_rad_s is not a finite number");
 }
 
 TEST(StatisticsJson, HasNullForNonFiniteNumbers) {

@@ -105,8 +105,8 @@ TEST(AgreementSection, DrawsRecordingsJointFitAndMean) {
   EXPECT_THAT(Agreement(ExampleJointIdentification()), HasSubstr(R"([[Do the recordings agree?]]
     Verdict: the recordings agree on inertia, viscous.
     inertia [kg m^2]                        z
-    1 alone           0.07890 ± 0.00030  -0.4  -------*--------
-    2 alone            0.0791 ± 0.0004    0.4  ----------*----------
+    1 separate        0.07890 ± 0.00030  -0.4  -------*--------
+    2 separate         0.0791 ± 0.0004    0.4  ----------*----------
     joint             0.07900 ± 0.00025           ------*------
     random effects    0.07897 ± 0.00024          ------*------
     Agreement: chi-square 0.16, 1 degree)"));
@@ -136,8 +136,8 @@ TEST(AgreementSection, MarksTheJointEstimateOutsideAnInterval) {
     const std::size_t at = text.find("    " + name, text.find("viscous [N m s/rad]"));
     return text.substr(at, text.find('\n', at) - at);
   };
-  EXPECT_THAT(row("1 alone"), EndsWith("   --*---|"));
-  EXPECT_THAT(row("2 alone"), EndsWith("         |-----*-----"));
+  EXPECT_THAT(row("1 separate"), EndsWith("   --*---|"));
+  EXPECT_THAT(row("2 separate"), EndsWith("         |-----*-----"));
   EXPECT_THAT(row("joint"), Not(HasSubstr("|")));
 }
 
@@ -161,7 +161,7 @@ TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
 TEST(AgreementSection, HasADashForAnUninformativeRecording) {
   Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity.parameters[0].runs[0] = {};
-  EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 alone +-\n    2 alone +0.0791"));
+  EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 separate +-\n    2 separate +0.0791"));
 }
 
 TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
@@ -194,7 +194,7 @@ TEST(JointSections, ShowNoiseAndSeparateStatusPerRecording) {
   const std::string text = TextOf(ExampleJointIdentification(), "Noise and statistics");
   EXPECT_THAT(text, HasSubstr("    recording 1  "));
   EXPECT_THAT(text, HasSubstr("lack of"));
-  EXPECT_THAT(text, HasSubstr("alone:"));
+  EXPECT_THAT(text, HasSubstr("separate fit:"));
   EXPECT_THAT(text, HasSubstr("not_converged: too few"));
   EXPECT_THAT(text, HasSubstr("    all          log-likelihood 1234.50, AIC -2457.00, AICc -2456.88, BIC"));
 }

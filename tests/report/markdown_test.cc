@@ -120,7 +120,7 @@ TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
 // Unescaped, the stars and bars of a strip would be emphasis and cells.
 TEST(ToMarkdown, ShowsStripsVerbatimForAJointFit) {
   EXPECT_THAT(ToMarkdown(ExampleJointIdentification()),
-              HasSubstr("| 1 alone | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));
+              HasSubstr("| 1 separate | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));
 }
 
 TEST(ToMarkdown, WorksWithoutAFit) {

@@ -68,9 +68,8 @@ TEST(PlanText, ShowsTheBaseInSiAndRowsInPercent) {
       "    above the standard error of inertia beyond an amplitude of 0.0113 rad (0.65\n"
       "    deg): there, fit the full equation.\n"
       "    To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the\n"
-      "    last column gives the error of the linear formulas without any noise.\n"
-      "    The error of the rig's gravity torque G adds to those of inertia and\n"
-      "    torques.\n");
+      "    last column gives the error of the linear formulas without any noise. The\n"
+      "    error of the rig's gravity torque G adds to those of inertia and torques.\n");
 }
 
 TEST(PlanText, UsesUnitsOfGravityTorqueWithoutARig) {

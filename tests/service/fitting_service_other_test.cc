@@ -135,11 +135,14 @@ std::set<std::string> Names(const Json& list) {
   return names;
 }
 
-// Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); the small-angle model is nested
-// in none.
+// Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); no model is nested in one of
+// another gravity.
 TEST_F(FittingServiceOtherTest, ReportsWhichModelsAreNested) {
   const std::map<std::string, std::set<std::string>> expected = {
-      {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}}, {"coulomb", {"drag", "stribeck", "asymmetric"}}};
+      {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}},
+      {"coulomb", {"drag", "stribeck", "asymmetric"}},
+      {"linear", {"linear_coulomb", "linear_drag", "linear_stribeck"}},
+      {"linear_coulomb", {"linear_drag", "linear_stribeck"}}};
   const Json models = JsonAt("/v1/models")["models"];
   EXPECT_EQ(models.size(), MotionModels().size());
   for (const Json& model : models) {

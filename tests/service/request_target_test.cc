@@ -122,8 +122,8 @@ TEST(ParseTarget, RefusesInvalidUtf8) {
        {"%80",          "%FF",          "%C0%80",    "%C0%AF",    "%C1%BF",       "%E0%80%AF",    "%E0%9F%BF",
         "%F0%80%80%AF", "%F0%8F%BF%BF", "%ED%A0%80", "%ED%BF%BF", "%F4%90%80%80", "%F5%80%80%80", "%C3",
         "%E3%82",       "%F0%9F%95",    "%C3%28",    "%E3%28%A2", "%F0%9F%28%B0", "\xFF",         "%E1%80%E2"}) {
-    EXPECT_THAT(FaultOf("/" + std::string(bytes)), HasSubstr("is no UTF-8")) << bytes;
-    EXPECT_THAT(FaultOf("/a?b=" + std::string(bytes)), HasSubstr("is no UTF-8")) << bytes;
+    EXPECT_THAT(FaultOf("/" + std::string(bytes)), HasSubstr("is not UTF-8")) << bytes;
+    EXPECT_THAT(FaultOf("/a?b=" + std::string(bytes)), HasSubstr("is not UTF-8")) << bytes;
   }
   for (const char* bytes :
        {"%C2%A0", "%DF%BF", "%E0%A0%80", "%ED%9F%BF", "%EE%80%80", "%EF%BF%BF", "%F0%90%80%80", "%F4%8F%BF%BF"}) {

@@ -212,7 +212,7 @@ TEST(RecordRun, KeepsSamplesBeforeAReset) {
 
 TEST(RecordRun, KeepsSamplesBeforeAnUnrequestedEnd) {
   Laboratory laboratory(TenFramesAnd(Then::kEnd));
-  EXPECT_THAT(RecordedUntil(Then::kEnd, laboratory).loss_reason, HasSubstr("by itself"));
+  EXPECT_THAT(RecordedUntil(Then::kEnd, laboratory).loss_reason, HasSubstr("on its own"));
 }
 
 TEST(RecordRun, KeepsSamplesBeforeSilence) {

@@ -26,7 +26,7 @@ StoreComparison SomeMoved() {
   comparison.most_moved = {{"run_7", "coulomb", "inertia", "kg m^2", 0.079, 0.0814, 24.5}};
   comparison.changed_status = 1;
   comparison.status_changes = {{"run_8", "drag", "converged", "failed"}};
-  comparison.cpus_before = comparison.cpus_after = {"processor time"};
+  comparison.cpus_before = comparison.cpus_after = {"a processor"};
   return comparison;
 }
 

@@ -12,14 +12,15 @@
 
 namespace pendulum {
 
-/// A model as --model selects it: a friction law and a gravity law, each with each.
+/// A model as --model selects it: a friction law and a gravity law.
 struct MotionModel {
   std::string_view name;      ///< The name that --model takes.
   std::string_view friction;  ///< A name in FrictionModels.
   Gravity gravity;
 };
 
-/// Each friction law with each law of gravity, in the order of the registries. With the default gravity, sin, the model
+/// Each friction law with each law of gravity, in the order of the registries, except a friction law whose constant
+/// torque only shifts the zero under linear gravity (asymmetric). With the default gravity, sin, the model
 /// has the name of its friction law. Others are called GRAVITY_FRICTION, as linear_coulomb, and GRAVITY alone means
 /// viscous friction.
 std::vector<MotionModel> MotionModels();

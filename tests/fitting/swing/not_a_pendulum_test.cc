@@ -80,7 +80,7 @@ TEST(FitSwing, ReportsALinearOscillatorWithNumbers) {
     ExpectWithdrawn(fit);
     // A pendulum's period is longer by 2 / π K(sin(A / 2)).
     const double longer = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg)) - 1;
-    EXPECT_THAT(NumberAfter(fit.reason, "which is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
+    EXPECT_THAT(NumberAfter(fit.reason, "whose period is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
     EXPECT_THAT(NumberAfter(fit.reason, "longer at "), DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
     EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
     EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));

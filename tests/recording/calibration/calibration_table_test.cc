@@ -104,7 +104,7 @@ TEST(ParseCalibrationTable, NamesTheFaultyField) {
   const std::string header = "counts,angle_deg\n1,2\n";
   EXPECT_EQ(FaultOf(header + "x,3\n"),
             "table.csv:3:1: column \"counts\" holds \"x\", which is not a number; correct the field or delete the row");
-  EXPECT_THAT(FaultOf(header + "2,nan\n"), StartsWith("table.csv:3:3: column \"angle_deg\" holds \"nan\", but a "));
+  EXPECT_THAT(FaultOf(header + "2,nan\n"), StartsWith("table.csv:3:3: column \"angle_deg\" holds \"nan\", and a "));
   EXPECT_THAT(FaultOf(header + "1e999,3\n"), HasSubstr("which is outside the range of numbers"));
   EXPECT_THAT(FaultOf(header + "5,\n"), HasSubstr("is empty where a number is needed"));
   EXPECT_EQ(FaultOf(header + "5\n"), "table.csv:3:2: the row ends after 1 of 2 fields; complete the row or delete it");

@@ -119,7 +119,7 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
               HasSubstr("column \"time_s\" is in s, but --time_column time_s:ms says ms"));
   ReadOptions both = Unit("", 50);
   both.time_column = "time_s";
-  EXPECT_THAT(WrongFlag(text, both), HasSubstr("--time_column and --sample_rate_hz both say what the times are"));
+  EXPECT_THAT(WrongFlag(text, both), HasSubstr("--time_column and --sample_rate_hz both define the times"));
   EXPECT_THAT(WrongFlag(text, TimeAndValue("none", "")), HasSubstr("there are no times; give --sample_rate_hz"));
 }
 

@@ -17,6 +17,7 @@ struct AsymmetricFriction {
       "Dry friction that is larger in one direction than in the other, as with cables and brushes.";
   static constexpr std::array<ParameterInfo, 3> kParameters = {{kViscous, kCoulomb, kAsymmetry}};
   static constexpr std::string_view kFormula = "{viscous} th' + {coulomb} (sgn(th') + {asymmetry})";
+  static constexpr bool kHasConstantTorque = true;  ///< α τ_c
 
   template <typename T>
   static T Torque(const T& rate, double direction, const T* p) {

@@ -27,7 +27,8 @@ namespace pendulum {
 ///
 /// Some members are optional. kOrdered names a parameter that is never below another. kRateScales is for a law whose
 /// last parameter is a rate in which the torque is not linear: it holds the multiples of the largest rate at which a
-/// search starts. kStates is for a law whose torque depends on the motion so far, see FrictionWithState.
+/// search starts. kHasConstantTorque: a part of the torque does not change with the motion; under linear gravity this
+/// only shifts the zero. kStates is for a law whose torque depends on the motion so far, see FrictionWithState.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {
@@ -53,6 +54,9 @@ concept HasRateScale = requires {
 /// The number of parameters of a friction law, at compile time.
 template <FrictionModel F>
 inline constexpr int kFrictionParameters = static_cast<int>(F::kParameters.size());
+
+template <typename F>
+concept HasConstantTorque = F::kHasConstantTorque;
 
 template <typename F>
 concept HasState = requires {
