@@ -54,8 +54,8 @@ TEST(ChooseNoise, IsQuantizedBelowOneResolution) {
                "the residuals are 0.99 resolutions: rounding is not small, so each reading is treated as an interval "
                "of one level");
   ExpectChoice(options, 0.01, 0.025, NoiseFamily::kGaussian,
-               "the residuals are 2.5 resolutions: the noise is larger than the resolution, so readings are treated as "
-               "continuous");
+               "the residuals are 2.5 resolutions: the noise is larger than the resolution, so the readings are treated "
+               "as continuous");
   ExpectChoice(options, 0, 0.025, NoiseFamily::kGaussian, "the readings show no discrete levels");
 }
 
