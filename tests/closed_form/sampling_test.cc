@@ -96,7 +96,8 @@ TEST(DescribeSampling, CountsLevelsAtTheEnd) {
 TEST(DescribeSampling, WarnsOfFewLevelsAtTheStart) {
   Recording recording = Cosine(0.5, 20, 400);
   recording.resolution = 2.0 / 6;  // peak to peak is 2
-  EXPECT_THAT(MessageOf(DescribeSampling(recording, 1.0, std::nullopt), "few_counts"), HasSubstr("spans only 6 levels"));
+  EXPECT_THAT(MessageOf(DescribeSampling(recording, 1.0, std::nullopt), "few_counts"),
+              HasSubstr("spans only 6 levels"));
 }
 
 TEST(DescribeSampling, HasNoCountsWithoutAResolution) {

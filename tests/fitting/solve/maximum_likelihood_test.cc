@@ -53,9 +53,10 @@ TEST(ChooseNoise, IsQuantizedBelowOneResolution) {
   ExpectChoice(options, 0.01, 0.0099, NoiseFamily::kQuantized,
                "the residuals are 0.99 resolutions: rounding is not small, so each reading is treated as an interval "
                "of one level");
-  ExpectChoice(options, 0.01, 0.025, NoiseFamily::kGaussian,
-               "the residuals are 2.5 resolutions: the noise is larger than the resolution, so the readings are treated "
-               "as continuous");
+  ExpectChoice(
+      options, 0.01, 0.025, NoiseFamily::kGaussian,
+      "the residuals are 2.5 resolutions: the noise is larger than the resolution, so the readings are treated "
+      "as continuous");
   ExpectChoice(options, 0, 0.025, NoiseFamily::kGaussian, "the readings show no discrete levels");
 }
 
