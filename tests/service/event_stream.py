@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"Parses server-sent events like a browser: the rules of the HTML standard, section 9.2.6)"Interpreting an event stream"."""
+"""Parses server-sent events like a browser: the rules of the HTML standard, section 9.2.6, Interpreting an event stream."""
 
 import codecs
 import json

@@ -142,7 +142,7 @@ class Knowledge(Curl):
         self.assertEqual([model["name"] for model in models], listed)
         by_name = {model["name"]: model for model in models}
         for model in models:
-            self.assertEqual(set(model), {"name", "label", "about", "equation", "nested_in", "parameters"})
+            self.assertEqual(set(model), {"name", "label", "about", "gravity", "equation", "nested_in", "parameters"})
             result = json.loads(self.fitted("coulomb.csv", "--model", model["name"], "--rig", RIG, "--interval",
                                             "covariance"))["fits"][0]
             for parameter in model["parameters"]:

@@ -162,7 +162,7 @@ class WhatIsRefused(ReadTest):
             "one file; split it before this line", text + text.split("\n", 1)[1])
 
     def test_binary_files(self):
-        nul = "a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8"
+        nul = "there is a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8"
         self.assert_data_refused(4, f"bad.csv:2:4: {nul}", b"time_s,angle_deg\n0,1\0\n")
         self.assert_data_refused(4, f"bad.csv:1:4: {nul}", "time_s,angle_deg\n".encode("utf-16"))
         self.assert_data_refused(4, f"bad.csv:3:1: {nul}", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")

@@ -187,7 +187,7 @@ class SimulatePendulumTest(unittest.TestCase):
         self.assertTrue(run.read_text().startswith("# simulate_pendulum "))
 
     def test_help_and_version_succeed_on_stdout(self):
-        self.assertIn("linear, viscous, coulomb", self.check_made("--help"))
+        self.assertIn("viscous, coulomb, drag", self.check_made("--help"))
         self.assertRegex(self.check_made("--version"), r"^simulate_pendulum \d+\.\d+\.\d+\n$")
 
     def test_wrong_flags_exit_2(self):
