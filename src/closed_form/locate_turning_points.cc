@@ -197,7 +197,7 @@ MatrixXd InfluenceOf(const TurningPointTable& table, const MatrixXd& gradient, I
 }
 
 Result<TurningPointTable> LocateTurningPoints(const Recording& recording, const Kink& kink) {
-  const Result<TurningPointTable> found = FindTurningPoints(recording);
+  Result<TurningPointTable> found = FindTurningPoints(recording);
   if (!found) return found;
   const TurningPointFitter fitter(recording, *found, kink);
   TurningPointTable table = *found;

@@ -55,7 +55,7 @@ TurningPoint Vertex(const Recording& recording, Index point, double half_width) 
   while (last + 1 < time.size() && time[last + 1] - time[point] <= half_width) ++last;
   first = std::min(first, std::max<Index>(point - 1, 0));
   last = std::max(last, std::min(point + 1, time.size() - 1));
-  const TurningPoint sample{time[point], recording.value[point], point};
+  TurningPoint sample{time[point], recording.value[point], point};
   const Index count = last - first + 1;
   if (count < 3) return sample;
   const Eigen::ArrayXd t = time.segment(first, count).array() - time[point];

@@ -117,7 +117,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.data_list = flags.data_list;
   options.calibration = flags.calibration;
   options.rig = flags.rig;
-  static_cast<FitOutputs&>(options) = flags;
+  static_cast<FitOutputs&>(options) = static_cast<const FitOutputs&>(flags);
   if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());
   return options;
 }
