@@ -115,7 +115,7 @@ TEST(CompareModels, UsesTheAutocorrelation) {
       Compare(CorrelatedRecording(0.004, 0, 5), {"viscous", "coulomb", "drag"}, kCriteriaOnly);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   EXPECT_LT(comparison.effective_samples, 0.5 * static_cast<double>(fitted.used.size()));
-  EXPECT_THAT(comparison.criterion, HasSubstr("are autocorrelated"));
+  EXPECT_THAT(comparison.criterion, HasSubstr("autocorrelated residuals"));
   // An AR(1) with 0.9 has innovations of sqrt(1 - 0.81) of its standard deviation: ln L is larger by -N/2 ln(0.19).
   const double n = static_cast<double>(fitted.used.size());
   const double gained = *comparison.rows[1].log_likelihood - fitted.fits[1].statistics.log_likelihood;
