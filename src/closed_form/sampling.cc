@@ -78,7 +78,8 @@ Warning AliasedWarning(const Sampling& sampling, double expected) {
   why += still ? "stand still"
                : "swing at |" + NumberText(expected, 3) + " - " + NumberText(cycles * sampling.rate_hz, 3) +
                      "| = " + Hz(apparent) + ", a period of " + NumberText(1 / apparent, 3) + " s";
-  if (sampling.seen_frequency_hz) why += " (" + NumberText(1 / *sampling.seen_frequency_hz, 3) + " s in the readings)";
+  if (sampling.apparent_frequency_hz)
+    why += " (" + NumberText(1 / *sampling.apparent_frequency_hz, 3) + " s in the readings)";
   return {"aliased", why + ". Periods and decrements from turning points are wrong; use the fit; " + Advice(expected)};
 }
 
@@ -140,11 +141,11 @@ Sampling DescribeSampling(const Recording& used, std::optional<double> half_peri
   Sampling sampling;
   DescribeIntervals(used.time, sampling);
   sampling.expected_frequency_hz = expected_frequency;
-  if (half_period && *half_period > 0) sampling.seen_frequency_hz = 0.5 / *half_period;
+  if (half_period && *half_period > 0) sampling.apparent_frequency_hz = 0.5 / *half_period;
   // An aliased swing shows a wrong frequency.
   const double expected = expected_frequency.value_or(0);
   const bool aliases = (1 + kExpectedWithin) * expected > 0.5 * sampling.rate_hz;
-  sampling.frequency_hz = aliases ? expected : sampling.seen_frequency_hz.value_or(expected);
+  sampling.frequency_hz = aliases ? expected : sampling.apparent_frequency_hz.value_or(expected);
   if (sampling.frequency_hz > 0) {
     sampling.samples_per_period = sampling.rate_hz / sampling.frequency_hz;
     sampling.nyquist_margin = 0.5 * sampling.samples_per_period;

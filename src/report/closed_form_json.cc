@@ -86,7 +86,7 @@ nlohmann::ordered_json SamplingJson(const std::optional<Sampling>& sampling) {
       .Set("gaps", Json(sampling->gaps))
       .Set("longest_gap_s", sampling->longest_gap)
       .Set("frequency_hz", NonzeroOrNull(sampling->frequency_hz), no_frequency)
-      .Set("apparent_frequency_hz", NumberOrNull(sampling->seen_frequency_hz))
+      .Set("apparent_frequency_hz", NumberOrNull(sampling->apparent_frequency_hz))
       .Set("expected_frequency_hz", NumberOrNull(sampling->expected_frequency_hz))
       .Set("samples_per_period", NonzeroOrNull(sampling->samples_per_period), no_frequency)
       .Set("nyquist_margin", NonzeroOrNull(sampling->nyquist_margin), no_frequency)

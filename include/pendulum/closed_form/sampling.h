@@ -24,8 +24,8 @@ struct Sampling {
   /// Peak-to-peak values of the largest swing and of the last period (at least 8 samples), in resolutions. 0 without a
   /// resolution.
   double start_counts = 0, end_counts = 0;
-  Eigen::Index saturated = 0;                                      ///< Readings at an end of the sensor's range.
-  std::optional<double> seen_frequency_hz, expected_frequency_hz;  ///< From the turning points, and from the rig.
+  Eigen::Index saturated = 0;                                          ///< Readings at an end of the sensor's range.
+  std::optional<double> apparent_frequency_hz, expected_frequency_hz;  ///< From the turning points, and from the rig.
 };
 
 /// The frequency [Hz] that samples of an oscillation appear to have: |f - k rate| for the nearest k, at most rate / 2
