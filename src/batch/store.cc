@@ -254,18 +254,16 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   return sqlite::Guard(name, [&]() -> Result<Store> {
     auto state = std::make_unique<State>(name, mode);
     if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
-    const int version = state->database.execAndGet("PRAGMA user_version").getInt();
-    const bool is_older = version < static_cast<int>(kStoreMigrations.size());
-    if (mode == Mode::kRead) {
-      if (is_older) Migrate(state->database, version);
-      return Store(std::move(state));
-    }
     // A rollback journal needs no shared memory and works on any file system; EXTRA also synchronises the folder. With
     // a write-ahead log writers do not wait for readers, except when the journal mode changes.
-    state->database.exec(mode == Mode::kServe
-                             ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -32768"
-                             : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
-    if (is_older) Migrate(state->database, version);
+    if (mode != Mode::kRead) {
+      state->database.exec(
+          mode == Mode::kServe
+              ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -32768"
+              : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
+    }
+    const int version = state->database.execAndGet("PRAGMA user_version").getInt();
+    if (version < static_cast<int>(kStoreMigrations.size())) Migrate(state->database, version);
     return Store(std::move(state));
   });
 }
