@@ -7,7 +7,7 @@ Usage: check_documents.py BIN_DIR [--update] [FILE.md...]. --update writes the o
 In a ```console block a line that begins with "$ " is a command, lines that begin with "> " continue it, the rest is its
 output. The commands of a document run in one shell, in a temporary folder with links to the files of the project.
 build/release/bin there is BIN_DIR, which is on the PATH too. A command that fails is an error.
-Three comments in front of a block change that:
+Comments in front of a block change how it is handled:
 
     <!-- shown: sed -n 1,5p -->    The document shows the output after this filter.
     <!-- not run: REASON -->       The block is not run. Every ```sh block needs this comment.
@@ -66,7 +66,7 @@ def commands_of(text):
 
 
 def fill(folder, bin_dir):
-    """The project's files as its readers have them, and the tools where they have built them."""
+    """Links to the project's files, and to the tools in build/release/bin, as a reader of the documents has them."""
     for entry in TOP.iterdir():
         if entry.name not in (".git", "build"):
             (folder / entry.name).symlink_to(entry)
@@ -75,7 +75,7 @@ def fill(folder, bin_dir):
 
 
 def run(commands, bin_dir):
-    """What each command prints on stdout."""
+    """The standard output of each command, after its filter."""
     port = free_port() if any(PORT in command for command, _ in commands) else PORT
     script = "".join(
         f"{{ {command.replace(PORT, port)}\n}} > .output; code=$?\n{{ {shown}\n}} < .output\nprintf '{END}%s{END}' $code\n"
@@ -117,7 +117,7 @@ def broken_links(document, text):
 
 
 def check(document, bin_dir, update):
-    """What is wrong with a document, as text; empty if nothing is."""
+    """The errors in a document, as text; empty if there are none."""
     text = document.read_text()
     name = str(document.relative_to(TOP))
     faults = [f"{name}: {fault}\n" for fault in broken_links(document, text)]
@@ -133,7 +133,7 @@ def check(document, bin_dir, update):
 
 
 def self_test():
-    """That each kind of block is treated as the head of this file says."""
+    """Checks that each kind of block is handled as described at the top of this file."""
     def now(text):
         return executed(text, pathlib.Path("/usr/bin"))
 

@@ -55,7 +55,7 @@ def declares(code, name):
 
 
 def check_table(root, model, equations):
-    """Each equation has one row, and what the row names exists."""
+    """Each equation has one row, and the files and functions named in the row exist."""
     rows = {}
     for match in re.finditer(r"^\| \((\d+\.\d+)\) \| (.*) \|$", model, re.MULTILINE):
         place = f"MODEL.md:{line_at(model, match.start())}"
@@ -103,14 +103,14 @@ def cited(citation):
 
 
 def check_citations(root, model, equations):
-    """What is cited, by sources and by MODEL.md itself, exists."""
+    """Equations and sections that sources or MODEL.md itself cite exist."""
     for match in re.finditer(r"\((\d+\.\d+)\)", model):
         if match[1] not in equations:
             yield f"MODEL.md:{line_at(model, match.start())}: there is no equation ({match[1]})"
     sections = set(re.findall(r"^## (\d+)\. ", model, re.MULTILINE))
     for path in sources(root):
         if path.resolve() == pathlib.Path(__file__).resolve():
-            continue  # its examples
+            continue  # this file, whose examples are wrong on purpose
         text, name = path.read_text(), path.relative_to(root)
         for match in _CITATION.finditer(text):
             for number in cited(match[0]):
@@ -128,7 +128,7 @@ def complaints(root):
     return list(dict.fromkeys(found))
 
 
-# A tree with each kind of error, and with what looks like one: file -> content.
+# A tree with each kind of error, and with correct text that looks like an error: file -> content.
 BAD_TREE = {
     "MODEL.md": "## 1. A\n$$a \\tag{1.1}$$\n$$b \\tag{1.3}$$\n## 3. C\n$$c \\tag{3.1}$$\n"
                 "see (1.1), (4.7)\n$$d \\tag{3.2}$$\n"
@@ -151,7 +151,7 @@ EXPECTED = [
 
 
 def self_test():
-    """What is found wrongly in BAD_TREE."""
+    """Expected errors in BAD_TREE that are not found, and others that are found."""
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
         for path, content in BAD_TREE.items():

@@ -14,7 +14,7 @@ import tempfile
 import check_main
 import cpp_text
 
-# The floors, and those that each may use. A file may include its own floor and all those below.
+# Each floor, and the floors directly below it. A file may include headers of its own floor and of all floors below.
 STANDS_ON = {
     "base": [],
     "recording": ["base"],
@@ -137,7 +137,7 @@ def check_include(root, path, header, quoted):
 
 
 def check_includes(root, path):
-    """Each file belongs to a known floor, and includes its own or lower ones."""
+    """Each file belongs to a known floor and includes only headers of this floor or lower floors."""
     floor = floor_of(path)
     if floor not in STANDS_ON and not (path.parts[0] == "tests" and floor in FREE_TEST_FOLDERS):
         yield f"{path}:1: there is no floor {floor}"
@@ -161,8 +161,8 @@ def check_words(root, path):
 
 def check_companions(root, path):
     """src/F/x.cc has include/pendulum/F/x.h, or a private src/F/x.h, and includes it first, which shows that the header
-    compiles on its own. Public files and tools have tests/F/x_test.cc; other private files are tested through these.
-    src/F/x_part.cc has src/F/x.h, whose templates it instantiates."""
+    compiles on its own. Public files and tools have tests/F/x_test.cc; other private files are tested through the
+    public files and tools. src/F/x_part.cc has src/F/x.h, whose templates it instantiates."""
     if path.parts[0] != "src" or path.suffix != ".cc" or path.stem.endswith("_main"):
         return
     inner = path.relative_to("src").with_suffix("")
@@ -233,7 +233,8 @@ def complaints(root):
     return found
 
 
-# A tree that breaks each rule, and keeps it in tempting cases: file -> (content, the expected complaint).
+# A tree that breaks each rule, and also has correct code that looks like a violation: file -> (content, expected
+# complaint).
 BAD_TREE = {
     "include/pendulum/base/good.h": ("// cout << new\n#include <string>\n", None),
     "src/base/good.cc": ('#include "pendulum/base/good.h"\nconst char* k = "throw"; int n = 2\'000; char c[9]; '

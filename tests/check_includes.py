@@ -102,7 +102,7 @@ LIBRARIES = [(re.compile(name), header) for name, header in (
     (r"\bEigen::LD?LT\b|\.ld?lt\(", "Eigen/Cholesky"), (r"\bEigen::\w*EigenSolver\b", "Eigen/Eigenvalues"),
     (r"\bEigen::\w*QR\b|\.\w*[hH]ouseholderQr\(|\.completeOrthogonalDecomposition\(", "Eigen/QR"),
     (r"\bEigen::\w+SVD\b|\.(?:bdc|jacobi)Svd\(", "Eigen/SVD"))]
-# Headers that a header includes, by the standard or in the libraries of g++ and clang, or that it stands for.
+# The headers that a header provides too: by the standard, or because g++'s, clang's or Eigen's header includes them.
 BRINGS = {
     "algorithm": {"utility"}, "charconv": {"system_error"}, "cstring": {"string.h"}, "ios": {"string"}, "iostream": {"ios", "istream", "ostream"},
     "map": {"utility"}, "string": {"string_view"}, "thread": {"stop_token"}, "tuple": {"utility"}, "unordered_map": {"utility"},
@@ -156,7 +156,7 @@ class Tree:
                     self.declaring.setdefault(name, set()).add(path)
 
     def stands_alone(self, path):
-        """Whether a file is not a fragment that another file includes in its middle."""
+        """Whether a file stands alone; it is false for a fragment that another file includes in its middle."""
         return path.suffix == ".cc" or "#pragma once" in self.text(path)
 
     def declared(self, path):
@@ -221,7 +221,7 @@ def complaints(root):
 
 
 def self_test():
-    """The wrong results for a small tree."""
+    """Expected complaints about a small tree that are missing, and unexpected ones."""
     files = {
         "include/pendulum/a/x.h": "#pragma once\n#include <vector>\nstruct Point {\n  std::vector<double> at;\n};\nPoint MakePoint(int n);\n",
         "src/a/good.cc": '#include <cmath>\n#include "pendulum/a/x.h"\nstd::vector<double> F() { return MakePoint(1).at; }\n'

@@ -109,7 +109,7 @@ struct Data {
 // Size in bytes of a frame with `count` samples: payload, CRC, COBS overhead, and the 0.
 constexpr int DataFrameSize(int count) { return 12 + 2 * count + 2 + 1 + 1; }
 
-// The number of samples in a frame when samples come every `step` ticks: about 25 frames per second, if they have room.
+// Number of samples in a frame if samples come every `step` ticks: about 25 frames per second, if the samples fit.
 constexpr int BlockSize(uint32_t step) {
   return kTickHz / 25 / step < 1           ? 1
          : kTickHz / 25 / step > kMaxBlock ? kMaxBlock
@@ -298,7 +298,7 @@ class Receiver {
  public:
   enum Event : uint8_t { kNothing, kFrame, kRejected };
 
-  // kFrame: payload() is that of a frame with the right CRC. kRejected: the bytes before this 0 are not a frame.
+  // kFrame: payload() belongs to a frame with the right CRC. kRejected: the bytes before this 0 are not a frame.
   Event Take(uint8_t byte) {
     if (byte != 0) {
       if (received_ <= kMaxEncoded)

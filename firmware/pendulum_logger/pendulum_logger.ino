@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Records a potentiometer at exact intervals, for record_pendulum; src/docs/hardware.md shows the wiring. Timer 1
-// starts each conversion in hardware, and its count is the time stamp of the sample. Delays of the program affect
-// neither.
+// starts each conversion in hardware, and the count of Timer 1 is the time stamp of the sample. Delays of the program
+// affect neither the conversion nor the time stamp.
 //
 // analogRead(), Servo and PWM on the pins of Timers 1 and 2 cannot be used at the same time.
 #include <Arduino.h>
@@ -63,8 +63,8 @@ static uint8_t oversample = 1;
 static bool is_running = false;
 
 static uint32_t next_tick;        // when Timer 1 starts the next conversion
-static uint32_t conversion_tick;  // when it started the current conversion
-static uint32_t sample_tick;      // when it started the first conversion of this sample
+static uint32_t conversion_tick;  // when Timer 1 started the current conversion
+static uint32_t sample_tick;      // when Timer 1 started the first conversion of this sample
 static bool is_converting, is_spoilt;
 static uint8_t conversions;  // number in this sample so far
 static uint16_t sum;
@@ -73,8 +73,7 @@ static volatile uint32_t dropped, late;
 static const uint8_t kConverterOn = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz
 
 // Ticks from Timer 1 to next_tick; more than a period once Timer 1 has passed it. Timer 1 wraps around after 32 ms, so
-// interrupts must not be blocked longer than that, or times would be wrong by that amount. No code here blocks them
-// long.
+// interrupts must not be blocked longer than 32 ms, or times would be wrong by 32 ms. No code here blocks them long.
 static inline uint16_t TicksAhead() { return static_cast<uint16_t>(static_cast<uint16_t>(next_tick) - TCNT1); }
 
 // The compare match has already started a conversion. This records its time and schedules the next one.
@@ -200,7 +199,7 @@ static void WriteCalibration(StraightLine& line) {
 // ---- Messages ----------------------------------------------------------------------------------------------------
 
 static Data block;          // the frame being filled
-static uint8_t block_size;  // number of samples at which it is sent
+static uint8_t block_size;  // number of samples at which the frame is sent
 static uint32_t sent_samples;
 
 static void Send(const Frame& frame) { Serial.write(frame.bytes, frame.size); }
@@ -359,7 +358,7 @@ static void TakeCommands() {
   static Receiver receiver;
   while (Serial.available() > 0) {
     const uint8_t byte = static_cast<uint8_t>(Serial.read());
-    if (byte == '?' && receiver.IsAtLineStart()) {  // no command starts with '?': it would be 62 bytes long
+    if (byte == '?' && receiver.IsAtLineStart()) {  // no frame starts with '?' (63): it would have more than 62 bytes
       receiver.Take(0);
       TellReading();
     } else if (receiver.Take(byte) == Receiver::kFrame) {

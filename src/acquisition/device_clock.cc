@@ -79,7 +79,7 @@ std::vector<Arrival> Earliest(std::span<const Arrival> arrivals, std::size_t par
   return points;
 }
 
-/// The points without those that are late by more than three standard deviations, estimated from the median.
+/// The points that are late by at most three standard deviations, which are estimated from the median.
 std::vector<Arrival> WithoutLateArrivals(const std::vector<Arrival>& points, const Line& line) {
   constexpr double kDeviations = 3, kStdDevOfMedian = 1.4826;
   std::vector<double> sizes(points.size());
@@ -118,7 +118,7 @@ DeviceClock FitDeviceClock(std::span<const Arrival> arrivals, double polling, do
   const std::optional<Line> line = FitLine(arrivals);
   if (!line) return clock;
   const double seconds = arrivals.back().device_time - arrivals.front().device_time;
-  const double rounding = polling / std::sqrt(6.0) / seconds;  // Rounding of both ends, each uniformly distributed.
+  const double rounding = polling / std::sqrt(6.0) / seconds;  // Rounding of the times at both ends.
   const double std_dev = std::hypot(line->std_dev, rounding, host_std_dev * line->scale);
   clock.is_implausible = !(std::abs(line->scale - 1) - 3 * std_dev <= kMaxDeviation);
   if (clock.is_implausible || !(std_dev < kResonatorStdDev)) return clock;

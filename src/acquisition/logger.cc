@@ -30,7 +30,7 @@ std::optional<wire::Ack> AckOf(std::uint8_t kind, const TimedMessage& received) 
   return ack != nullptr && ack->command == kind ? std::optional(*ack) : std::nullopt;
 }
 
-std::string Refusal(std::uint8_t status) {
+std::string RefusalReason(std::uint8_t status) {
   if (status == wire::kOutOfRange) return "a value is out of its range";
   if (status == wire::kRunning) return "it is recording";
   return "it does not know the command";
@@ -47,7 +47,7 @@ Result<std::optional<TimedMessage>> Logger::Receive(double seconds) {
     if (!bytes) return tl::unexpected(bytes.error());
     const double now = HostTime();
     bytes_ += bytes->size();
-    for (const LoggerMessage& message : decoder_.Take(*bytes)) pending_.push_back({message, now});
+    for (const LoggerMessage& message : decoder_.Decode(*bytes)) pending_.push_back({message, now});
     if (pending_.empty() && (stop_ || now >= until)) return std::nullopt;
   }
   const TimedMessage next = pending_.front();
@@ -92,9 +92,9 @@ Result<wire::Info> Logger::Connect(double timeout_seconds) {
   const std::vector<std::uint8_t> ask = CommandBytes(wire::Command<wire::kAskInfo>{});
   commands.insert(commands.end(), ask.begin(), ask.end());
   const auto pick = [this](const TimedMessage& received) -> std::optional<Result<wire::Info>> {
-    if (const auto* other = std::get_if<OtherProtocol>(&received.message)) return Refused(*other);
+    if (const auto* other = std::get_if<OtherProtocol>(&received.message)) return OtherProtocolError(*other);
     const auto* info = std::get_if<wire::Info>(&received.message);
-    return info != nullptr && info->is_running == 0 ? std::optional(Checked(*info)) : std::nullopt;
+    return info != nullptr && info->is_running == 0 ? std::optional(CheckInfo(*info)) : std::nullopt;
   };
   const auto answer = Exchange(commands, static_cast<int>(std::ceil(timeout_seconds / kRepeatSeconds)), pick);
   if (!answer) return tl::unexpected(answer.error());
@@ -102,7 +102,7 @@ Result<wire::Info> Logger::Connect(double timeout_seconds) {
   return **answer;
 }
 
-tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
+tl::unexpected<Status> Logger::OtherProtocolError(const OtherProtocol& other) const {
   return Error(StatusCode::kDataLoss,
                "the logger on " + port_.path() + " speaks version " + std::to_string(other.version) +
                    " of the protocol, but this record_pendulum speaks version " + std::to_string(wire::kProtocol) +
@@ -110,7 +110,7 @@ tl::unexpected<Status> Logger::Refused(const OtherProtocol& other) const {
 }
 
 /// Checks the properties that the host relies on to interpret times and counts.
-Result<wire::Info> Logger::Checked(const wire::Info& info) const {
+Result<wire::Info> Logger::CheckInfo(const wire::Info& info) const {
   const auto differs = [&](const std::string& what, std::uint32_t its, std::uint32_t ours) {
     return Error(StatusCode::kDataLoss, "the logger on " + port_.path() + " has " + std::to_string(its) + " " + what +
                                             ", but this record_pendulum reads " + std::to_string(ours) +
@@ -135,7 +135,7 @@ Result<void> Logger::Ask(const std::vector<std::uint8_t>& command, std::uint8_t 
   if (!ack) return tl::unexpected(ack.error());
   if (!*ack) return NoAnswerTo(kind);
   if ((*ack)->status == wire::kDone) return {};
-  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + Refusal((*ack)->status));
+  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + RefusalReason((*ack)->status));
 }
 
 Result<void> Logger::SetRate(const SamplingRate& rate) {
@@ -168,7 +168,7 @@ Result<void> Logger::Start() {
   }
   // kRunning: only the answer to an earlier try was lost.
   if ((*ack)->status == wire::kDone || (*ack)->status == wire::kRunning) return {};
-  return Error(StatusCode::kDataLoss, "the logger refuses to start: " + Refusal((*ack)->status));
+  return Error(StatusCode::kDataLoss, "the logger refuses to start: " + RefusalReason((*ack)->status));
 }
 
 Result<void> Logger::RequestStop() { return port_.Write(CommandBytes(wire::Command<wire::kStop>{})); }

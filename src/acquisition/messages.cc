@@ -19,7 +19,7 @@ std::optional<LoggerMessage> MessageDecoder::Message() const {
   return std::nullopt;
 }
 
-std::vector<LoggerMessage> MessageDecoder::Take(std::span<const std::uint8_t> bytes) {
+std::vector<LoggerMessage> MessageDecoder::Decode(std::span<const std::uint8_t> bytes) {
   std::vector<LoggerMessage> messages;
   for (const std::uint8_t byte : bytes) {
     const wire::Receiver::Event event = receiver_.Take(byte);

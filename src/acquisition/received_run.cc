@@ -38,8 +38,9 @@ bool ReceivedRun::Fits(const wire::Data& frame, double host_time) const {
   return step >= rate_.Ticks() && step < kLongestGap && step % rate_.period == 0 && ahead < kMaxAhead;
 }
 
-/// Records the samples missing before an accepted frame. Before the first frame whole frames count, later the ticks. If
-/// frame numbers are missing, the samples were lost on the line, except those that the logger reports as dropped.
+/// Records the samples missing before an accepted frame. Before the first frame, their number follows from the frame
+/// number, later from the ticks. If frame numbers are missing, the samples were lost on the line, except those that the
+/// logger reports as dropped.
 void ReceivedRun::NoteGap(const wire::Data& frame) {
   const auto frames = static_cast<std::uint16_t>(frame.sequence - next_sequence_);
   std::int64_t missing = std::int64_t{frames} * wire::BlockSize(static_cast<std::uint32_t>(rate_.Ticks()));
@@ -55,7 +56,7 @@ void ReceivedRun::NoteGap(const wire::Data& frame) {
   found_dropped_ += dropped;
 }
 
-bool ReceivedRun::Take(const wire::Data& frame, double host_time) {
+bool ReceivedRun::AddFrame(const wire::Data& frame, double host_time) {
   if (!Fits(frame, host_time)) {
     ++contradicting_;
     return false;

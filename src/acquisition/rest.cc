@@ -21,7 +21,7 @@ double RestDetector::Block::Variance() const {
   return std::clamp((squares - count * Mean() * Mean()) / (count - 1), 0.0, kMaxVariance);
 }
 
-void RestDetector::Take(double time, double counts) {
+void RestDetector::AddSample(double time, double counts) {
   const double duration = open_.count >= kBlockSamples ? kBlockSeconds : kLongestBlockSeconds;
   if (open_.count > 0 && time - open_.time >= duration) Close();
   if (open_.count == 0) open_.time = time;

@@ -27,8 +27,9 @@ std::string Line(const std::string& text) { return "# " + text + "\n"; }
 
 std::string ClockLines(const DeviceClock& clock) {
   constexpr int kDigits = 9;  // for a scale near 1
-  return Line(clock.is_measured ? "the clock was compared with the host's: true seconds in one of the times below"
-                                : "the clock was not measured: its error is that of a ceramic resonator") +
+  return Line(clock.is_measured
+                  ? "the clock was compared with the host's; clock_scale is true seconds per second of the times below"
+                  : "the clock was not measured: its error is that of a ceramic resonator") +
          Line("clock_scale: " + NumberText(clock.scale, kDigits)) +
          Line("clock_scale_std_dev: " + NumberText(clock.std_dev, 2));
 }

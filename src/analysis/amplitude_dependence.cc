@@ -18,7 +18,7 @@ using Eigen::MatrixX2d;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-/// The trend of that parameter within a recording; nullptr: none.
+/// The trend of parameter `name` within a recording; nullptr: none.
 const AmplitudeTrend* TrendWithin(const RunAlone& run, const std::string& name) {
   if (run.constancy == nullptr) return nullptr;
   const auto trend = std::ranges::find(run.constancy->trends, name, &AmplitudeTrend::name);
@@ -132,8 +132,9 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
   return std::sqrt(sum / kPlaces);
 }
 
-/// Least squares of numbers with independent errors. The residuals may show that the errors are too small. The F test
-/// of the slope then uses the residual variance; if the residuals are smaller than the errors, it uses the errors.
+/// Least squares of estimates and slopes with independent errors. The residuals may show that the errors are too small.
+/// The F test of the slope then uses the residual variance; if the residuals are smaller than the errors, it uses the
+/// errors.
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes) {

@@ -95,7 +95,8 @@ VectorXd Response(const Windows& windows, std::size_t w, Index k, const std::vec
   return -columns.transpose() * information.asDiagonal() * linear.influence.col(RowOf(linear, k));
 }
 
-/// The parameters that all windows hold at the whole fit's estimates, and their columns in that fit.
+/// The parameters that all windows hold at the whole fit's estimates, and the columns of these parameters in
+/// `whole.influence`.
 std::pair<std::vector<Index>, std::vector<Index>> HeldEstimates(const FitReport& fit, const LinearFit& whole,
                                                                 const std::vector<Index>& tested) {
   std::pair<std::vector<Index>, std::vector<Index>> held;

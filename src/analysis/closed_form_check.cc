@@ -33,10 +33,10 @@ struct FormulaRow {
 /// K formulas that are applied together; in units of the restoring torque G.
 struct FormulaGroup {
   std::vector<FormulaRow> rows;
-  std::string assumption;  // in addition to the model's assumptions
+  std::string assumption;  // what the formulas assume in addition to the model
   VectorXd value, error;   // K
   MatrixXd gradient;       // K x 2 M
-  FormulaValues apply;     // to another recording
+  FormulaValues apply;     // applies the formulas to another recording
 };
 
 constexpr std::string_view kDampingRatio = "damping_ratio";
@@ -77,7 +77,8 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
     const std::optional<std::size_t> from = table ? TurningPointAt(*table, first) : std::nullopt;
     if (!from) return std::nullopt;
     std::optional<LogDecrement> there = ApplyLogDecrement(*table, gravity, *from, periods);
-    if (!there) there = ApplyLogDecrement(*table, gravity, *from, periods - 1);  // for a turning point at the end
+    // The last turning point may be missing.
+    if (!there) there = ApplyLogDecrement(*table, gravity, *from, periods - 1);
     if (!there) return std::nullopt;
     return LinearValues(*there);
   };
@@ -143,8 +144,8 @@ class FitSide {
     return std::nullopt;
   }
 
-  /// Standard deviation of (closed form - fit), if noise of this size and autocorrelation changes both. `influence` (N)
-  /// and `weights` (P) are in the report's units.
+  /// Standard deviation of (closed form - fit) that noise of this size and autocorrelation causes. `influence` (N) and
+  /// `weights` (P) are in the report's units.
   std::optional<double> DifferenceDeviation(const VectorXd& influence, const VectorXd& weights, double noise,
                                             const Autocorrelation& autocorrelation) {
     if (!Linearize()) return std::nullopt;
@@ -242,10 +243,10 @@ class Checker {
   }
 
  private:
-  /// Standard deviation of the difference. If the residuals are white and the variances differ clearly, it is
-  /// Hausman's. The residuals of a wrong law are misfit, not noise; it is then computed from the noise between
-  /// neighbouring samples, but is at least the closed form's own error. Otherwise it is computed from the residuals and
-  /// their autocorrelation.
+  /// Standard deviation of the difference. For a wrong law the residuals are misfit, not noise. The deviation is then
+  /// computed from the scatter about the polynomials of the turning points, but is at least the closed form's standard
+  /// error. For white residuals and clearly different variances it is Hausman's. Otherwise it is computed from the
+  /// residuals and their autocorrelation.
   std::optional<double> Deviation(const ClosedFormRow& row, const FitSide::Value& fitted, const VectorXd& gradient) {
     constexpr double kSmallDifference = 0.25;
     if (!fitted.std_error) return std::nullopt;
@@ -268,7 +269,7 @@ class Checker {
 
   /// Names the property of the readings that the fitted law lacks.
   std::string DescribeMisfit() const {
-    constexpr double kFarMore = 3;  // than the standard errors of the turning points
+    constexpr double kFarMore = 3;  // chi2/dof, far above the 1 that the turning points' standard errors explain
     if (!forms_.wrong_law.empty()) return "the friction law (" + forms_.wrong_law + ")";
     std::string misfit = "features of the recording that the fitted motion lacks";
     const double scatter = forms_.decrement ? forms_.decrement->chi_square / forms_.decrement->freedom : 0;

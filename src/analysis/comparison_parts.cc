@@ -99,7 +99,7 @@ std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitR
   return data;
 }
 
-double PerCount(const Recording& used) {
+double SumOfLogLevelWidths(const Recording& used) {
   return used.resolution > 0 ? static_cast<double>(used.size()) * std::log(used.resolution) : 0.0;
 }
 

@@ -33,7 +33,7 @@ struct RunOutcome {
   bool converged = false;
 };
 
-/// Factor from G-relative units to the report's unit.
+/// Factor from units of the restoring torque G to the report's unit.
 double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
   return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
 }
@@ -47,7 +47,7 @@ void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) 
                     outcome.truth <= parameter.upper95.value_or(kUnbounded);
 }
 
-/// The outcome of one recording, or of a set, for the counted parameters.
+/// The outcome of one recording, or of a set, for the parameters in `bounds`.
 RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>& truth,
                      const std::vector<std::optional<double>>& bounds, const FitReport* report) {
   const std::vector<ParameterInfo> infos = ParametersOf(scenario.run);
@@ -58,7 +58,7 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>
     const double unit = ReportUnit(scenario, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
-    // A Cramér-Rao bound treats fixed parameters as unknown.
+    // The Cramér-Rao bound assumes that no parameter is fixed.
     if (bounds[i] && scenario.fit.fixed.empty()) parameter.bound = unit * *bounds[i];
     const ParameterEstimate* found = outcome.converged ? report->Find(infos[i].name) : nullptr;
     if (found != nullptr) AddEstimate(*found, parameter);
@@ -67,7 +67,7 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>
   return outcome;
 }
 
-/// The true values of recording k of a set: another release angle, or another start.
+/// The true values of recording k of a set; the recordings differ in release angle, or in the moving start.
 SyntheticOptions RunOfSet(const CoverageScenario& scenario, std::uint64_t seed, int k, int runs) {
   constexpr double kSmallest = 0.7, kLargest = 1.3;
   const double factor = kSmallest + (kLargest - kSmallest) * k / (runs - 1);

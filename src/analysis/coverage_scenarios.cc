@@ -39,7 +39,7 @@ CoverageScenario OnCounts(std::string name, std::string description, double nois
   return scenario;
 }
 
-/// The same with a sensor without counts.
+/// The same with continuous readings instead of counts.
 CoverageScenario WithoutCounts(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.run.resolution = 0;
@@ -60,7 +60,7 @@ CoverageScenario ToRest() {
   return scenario;
 }
 
-/// A duration of 10 s ends before the pendulum comes to rest; another scenario covers rest.
+/// A duration of 10 s ends before the pendulum comes to rest; the scenario to_rest covers standstill.
 CoverageScenario SmallSwing() {
   CoverageScenario scenario = OnCounts("small_swing", "a swing of 5 deg, 10 s; noise of 0.25 count on counts", 0.25);
   scenario.run.release_angle = 5 * kRadFromDeg;
@@ -88,7 +88,7 @@ CoverageScenario Saturated() {
 }
 
 /// An encoder of 2400 counts per turn, in motion when the recording begins, with one row per count. Its edges have
-/// errors of a twentieth of a count. The errors of its time stamps have the same effect at half the largest rate.
+/// errors of a twentieth of a count. At half the largest rate, the errors of its time stamps have the same effect.
 CoverageScenario OnTicks(std::string name, std::string description) {
   CoverageScenario scenario = Moving();
   scenario.name = std::move(name);
@@ -102,7 +102,7 @@ CoverageScenario OnTicks(std::string name, std::string description) {
   return scenario;
 }
 
-/// A swing of so few counts (8 to either side) that one count takes long near turning points and rest.
+/// A swing of so few counts (8 to either side) that one count lasts long near turning points and near standstill.
 CoverageScenario OnFewTicks(std::string name, std::string description) {
   CoverageScenario scenario = OnTicks(std::move(name), std::move(description));
   scenario.run.initial_angle = 0.08;
@@ -125,8 +125,8 @@ CoverageScenario WithoutLag(CoverageScenario scenario) {
   return scenario;
 }
 
-/// The same encoder sampled at equal intervals. An edge error affects all samples of a count; therefore only the errors
-/// of this scenario are compared, not its intervals.
+/// The same encoder sampled at equal intervals. An edge error affects all samples of a count, so the errors of samples
+/// are not independent. Therefore only the rms errors of this scenario are compared; its intervals have no rule.
 CoverageScenario SampledEvenly(CoverageScenario scenario) {
   scenario.run.rows = RowTiming::kEvenFromEncoder;
   scenario.run.time_noise = 0;
@@ -144,7 +144,7 @@ CoverageScenario WithOtherSensor(std::string name, std::string description, Quan
   scenario.name = std::move(name);
   scenario.description = std::move(description);
   SyntheticOptions& run = scenario.run;
-  run.initial_angle = 0.5;  // a sensor without sign: the fit assumes this side is positive
+  run.initial_angle = 0.5;  // the fit assumes that this side is positive if a sensor does not show the sign
   run.initial_rate = -1.5;
   run.quantity = quantity;
   run.sensor.kind = kind;
@@ -177,7 +177,7 @@ CoverageScenario Correlated(CoverageScenario scenario, double correlation, doubl
 
 CoverageScenario HeavyTails() {
   CoverageScenario scenario = WithoutCounts(
-      "student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, fine; robust loss", 0.5);
+      "student_3", "Student's t noise of 3 degrees of freedom and scale 0.5 count, without counts; robust loss", 0.5);
   scenario.run.noise_freedom = 3;
   scenario.fit.noise = NoiseFamily::kStudent;
   return scenario;
@@ -206,9 +206,10 @@ std::vector<CoverageScenario> CoverageScenarios() {
       SmallSwing(),
       Moving(),
       Saturated(),
-      Correlated(WithoutCounts("ar_0.5", "AR(1) noise of 0.5 count, correlation 0.5, fine", 0.5), 0.5,
+      Correlated(WithoutCounts("ar_0.5", "AR(1) noise of 0.5 count, correlation 0.5, without counts", 0.5), 0.5,
                  CoverageRule{}.lowest),
-      Correlated(WithoutCounts("ar_0.9", "AR(1) noise of 0.5 count, correlation 0.9, fine", 0.5), 0.9, kStrongLowest),
+      Correlated(WithoutCounts("ar_0.9", "AR(1) noise of 0.5 count, correlation 0.9, without counts", 0.5), 0.9,
+                 kStrongLowest),
       Correlated(OnCounts("ar_0.9_counts", "AR(1) noise of 0.5 count, correlation 0.9, on counts", 0.5), 0.9,
                  kStrongLowest),
       HeavyTails(),
@@ -219,22 +220,25 @@ std::vector<CoverageScenario> CoverageScenarios() {
       WithOtherSensor("acceleration_across",
                       "an accelerometer across the rod, 0.25 m from the pivot; noise of 0.05 m/s^2",
                       Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.25}, 0.05),
-      WithOtherSensor("acceleration_along", "the same along the rod", Quantity::kAcceleration,
-                      SensorKind::kAcceleration, {0, 1, kPi / 2, 0.25}, 0.05),
+      WithOtherSensor("acceleration_along",
+                      "an accelerometer along the rod, 0.25 m from the pivot; noise of 0.05 m/s^2",
+                      Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, kPi / 2, 0.25}, 0.05),
       // In metres, the unit of simulated lengths.
       WithOtherSensor("pixels_x",
                       "the horizontal coordinate of a point, 400 pixels of 1 mm from the pivot; noise of 0.5 pixel",
                       Quantity::kPosition, SensorKind::kCoordinate, {0, 0.64, 0.4}, 0.0005),
-      WithOtherSensor("pixels_xy", "both coordinates of the same point", Quantity::kAngle, SensorKind::kArc,
-                      {0, 0.64, 0.12, 0.4}, 0.0005),
-      OnTicks("ticks", "an encoder's changes of count: edges with noise of 0.05 count, time stamps of 0.13 ms"),
-      OnFewTicks("few_ticks", "the same with a small swing over some ten counts"),
+      WithOtherSensor("pixels_xy", "both coordinates of the point of pixels_x; noise of 0.5 pixel", Quantity::kAngle,
+                      SensorKind::kArc, {0, 0.64, 0.12, 0.4}, 0.0005),
+      OnTicks("ticks", "one row per count of an encoder; noise of 0.05 count on edges and 0.13 ms on time stamps"),
+      OnFewTicks("few_ticks", "as ticks, with a coarser encoder and a swing of 8 counts to either side"),
       WithLag(OnTicks("lagging_ticks", "the encoder of ticks whose counts change 0.35 of a count behind their edges")),
       WithoutLag(OnTicks("prompt_ticks", "the encoder of ticks, known to have no lag")),
-      WithoutLag(OnFewTicks("few_prompt_ticks", "the encoder of few_ticks, also known to have no lag")),
+      WithoutLag(OnFewTicks("few_prompt_ticks", "the encoder of few_ticks, known to have no lag")),
       SampledEvenly(OnTicks("ticks_1khz",
-                            "the encoder of ticks read at 1 kHz: for comparing errors, without a rule for intervals")),
-      SampledEvenly(OnFewTicks("few_ticks_1khz", "the encoder of few_ticks read at 1 kHz, also for comparing errors")),
+                            "the encoder of ticks read at 1 kHz; its errors are compared, its intervals have no rule")),
+      SampledEvenly(
+          OnFewTicks("few_ticks_1khz",
+                     "the encoder of few_ticks read at 1 kHz; its errors are compared, its intervals have no rule")),
   };
 }
 
@@ -259,9 +263,10 @@ Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& n
   return found;
 }
 
-/// Each seed draws its true values uniformly about the scenario's, so the phase of the counts varies.
+/// Draws zero and release time uniformly about the scenario's values, so that their positions relative to counts and
+/// samples vary.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed) {
-  // Uses another stream than the noise, which starts from the seed itself.
+  // The noise uses the generator that starts from `seed`; this one must be independent of it.
   std::mt19937_64 generator(~seed);
   boost::random::uniform_real_distribution<double> draw(-0.5, 0.5);
   SyntheticOptions run = scenario.run;

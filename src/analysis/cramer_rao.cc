@@ -62,7 +62,8 @@ Eigen::MatrixXd WhiteInformation(const SyntheticOptions& truth, const Sensitivit
 
 /// Jᵀ R^-1 J from the innovations of each of J's columns. R is the covariance of AR(1) noise and white noise of
 /// variance q²/12. On levels it is the bound of the best linear estimate, if the quantization noise is white (Widrow &
-/// Kollár, Quantization Noise, 2008). The size of Gaussian noise is independent of its mean, so log σ is left out.
+/// Kollár, Quantization Noise, 2008). For Gaussian noise the errors of log σ and of the mean are independent, so log σ
+/// is left out.
 Eigen::MatrixXd CorrelatedInformation(const SyntheticOptions& truth, const Sensitivities& at) {
   const double correlation = truth.noise_correlation;
   const double stationary = truth.noise * truth.noise;
@@ -94,7 +95,8 @@ Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitiviti
   return at.jacobian.transpose() * weight.asDiagonal() * at.jacobian;
 }
 
-/// The information of the parameters, and in some cases of the noise's size; std::nullopt without a closed form.
+/// The information about the parameters, and in some cases about log σ of the noise; std::nullopt without a closed
+/// form.
 std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
                                            const Eigen::VectorXd& time) {
   if (truth.rows == RowTiming::kEvenFromEncoder) return std::nullopt;
@@ -139,9 +141,8 @@ std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run) {
 std::vector<std::optional<double>> CramerRaoBounds(const SyntheticOptions& truth, const Eigen::VectorXd& time) {
   const std::size_t count = TrueParameters(truth).size();
   std::vector<std::optional<double>> bounds(count);
-  if (truth.sensor.kind != SensorKind::kDirect)
-    return bounds;  // these bounds would need the prior knowledge of the
-                    // sensor
+  // With another sensor, the bounds would have to include the priors of its parameters.
+  if (truth.sensor.kind != SensorKind::kDirect) return bounds;
   const std::optional<Sensitivities> at = SensitivitiesAt(truth, time);
   const std::optional<Eigen::MatrixXd> information = at ? Information(truth, *at, time) : std::nullopt;
   if (!information) return bounds;

@@ -22,15 +22,15 @@ std::set<std::string, std::less<>> NamesOf(const std::string& model) {
   return names;
 }
 
-/// The model that determines the window: of those with the default gravity, if there are any, the model with the most
-/// parameters, all of which have a meaning in every recording.
+/// The model that determines the window: the model with the most parameters among those with the default gravity, if
+/// there are any.
 std::size_t Richest(const std::vector<std::string>& models) {
   std::size_t richest = 0;
-  std::pair<bool, std::size_t> most;  // whether the gravity is the default, parameters
+  std::pair<bool, std::size_t> most;  // whether the gravity is the default, number of parameters
   for (std::size_t i = 0; i < models.size(); ++i) {
     const Result<MotionModel> model = FindMotionModel(models[i]);
     if (!model) continue;
-    // A model with a parameter that may have no meaning is the last choice.
+    // A model with a parameter that has no meaning in some recordings is the last choice.
     const std::size_t parameters = FindOrderedPair(*model).larger >= 0 ? 1 : PhysicalParameters(*model).size();
     const std::pair size{model->gravity == Gravity(), parameters};
     if (size <= most) continue;
@@ -51,8 +51,9 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
   return fit;
 }
 
-/// Two warnings hold for every model: the recording is not a pendulum's swing, or its zero jumps.
-void CopySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
+/// Two warnings of the richest law hold for every model: the recording is not a pendulum's swing, or its zero jumps. If
+/// one of them exists, no fit counts as converged.
+void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
   const auto said = std::ranges::find_if(richest_fit.warnings, [](const Warning& warning) {
     return warning.code == "not_a_pendulum" || warning.code == "offset_jumps";
   });
@@ -86,10 +87,11 @@ class SharedFits {
     auto [options, ignored] = ForModel(options_, models_[i], models_);
     Result<FitReport> fit = FitRecording(result_.used, options);
     result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], richest_fit, fit.error());
-    CopySharedWarnings(richest_fit, result_.fits[i]);
+    ApplySharedWarnings(richest_fit, result_.fits[i]);
   }
 
-  /// Likelihoods can be compared only within one noise family: that of the fit with the smallest residuals.
+  /// Fits all models with the noise family of the fit with the smallest residuals, because likelihoods can be compared
+  /// only within one family.
   void ShareNoise(std::size_t richest_index) {
     const auto best = std::ranges::min_element(result_.fits, {}, [](const FitReport& fit) {
       return fit.termination == Termination::kFailed ? kUnbounded : fit.statistics.rms_residual;
@@ -117,8 +119,8 @@ class SharedFits {
   FittedModels result_;
 };
 
-/// Each model searches aliased frequencies itself. Models with another noise family than the model with the smallest
-/// residuals are fitted again.
+/// For an undersampled swing: each model searches aliased frequencies itself. A model that chose another noise family
+/// than the model with the smallest residuals is fitted again with the family of that model.
 Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
                              const std::vector<std::string>& models) {
   std::vector<Result<SwingFit>> fits;

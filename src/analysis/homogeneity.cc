@@ -36,8 +36,9 @@ struct SeparateEstimates {
   MatrixXd covariance;             // S x S
 };
 
-/// How far a 95 % interval reaches compared with a normal distribution. Autocorrelated residuals have few effective
-/// samples and rough errors, therefore Student's t. A parameter at its bound gets the largest value of the others.
+/// Width of each parameter's 95 % interval over the width for a normal distribution. It is larger than 1 for Student's
+/// t, which is used because autocorrelated residuals have few effective samples. A parameter at its bound gets the
+/// largest factor of the other parameters.
 VectorXd IntervalFactors(const FitReport& fit, const std::vector<std::string>& names) {
   constexpr double kNormal = 1.959963984540054;
   double largest = kNormal;
@@ -106,7 +107,8 @@ MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names
   return covariance;
 }
 
-/// All free parameters of a recording as reported by its fit; std::nullopt if a parameter is at a bound.
+/// All free parameters of a recording as its fit reports them, without the priors. If a parameter is at a bound:
+/// inertia and friction, estimated without bounds. std::nullopt if the readings do not determine them.
 std::optional<SeparateEstimates> EstimateAllFree(const RunAlone& run) {
   const FitReport& fit = run.fit;
   if (std::ranges::any_of(fit.parameters, [](const ParameterEstimate& p) { return p.at_bound; })) {
@@ -200,8 +202,8 @@ VectorXd ScaleOf(const std::vector<SeparateEstimates>& estimates) {
   return scale;
 }
 
-/// Removes recordings one by one until the others agree, each time the one whose removal leaves the smallest statistic.
-/// A majority must remain; without a majority no recording can be called wrong.
+/// Removes recordings one by one until the remaining recordings agree; each time it removes the recording whose removal
+/// leaves the smallest statistic. A majority must remain; without a majority no recording can be called wrong.
 std::vector<std::size_t> FindDeviatingRecordings(const std::vector<SeparateEstimates>& estimates,
                                                  const VectorXd& scale) {
   std::vector<std::size_t> members(estimates.size());
@@ -228,7 +230,8 @@ std::vector<std::size_t> FindDeviatingRecordings(const std::vector<SeparateEstim
   return {};
 }
 
-/// p of the distance of one recording's parameter j from the others, judged by the scatter of these others.
+/// p of the distance between parameter j of recording k and the other recordings, judged by the scatter of the other
+/// recordings.
 double DistanceFromScatter(const std::vector<SeparateEstimates>& estimates, std::size_t k, Index j) {
   VectorXd value(static_cast<Index>(estimates.size()) - 1), error(value.size());
   for (Index i = 0; i < value.size(); ++i) {
@@ -244,8 +247,8 @@ double DistanceFromScatter(const std::vector<SeparateEstimates>& estimates, std:
   return 2 * StudentTail(t, static_cast<double>(value.size() - 1));
 }
 
-/// Without an agreeing majority: recordings that are far from the others compared with the others' own scatter. This
-/// needs at least kMinRecordings.
+/// If no majority agrees: recordings whose distance from the others is large compared with the scatter of the others.
+/// Needs at least kMinRecordings.
 std::vector<std::size_t> FarFromScatter(const std::vector<SeparateEstimates>& estimates) {
   constexpr std::size_t kMinRecordings = 4;
   std::vector<std::size_t> far;
@@ -262,7 +265,8 @@ std::vector<std::size_t> FarFromScatter(const std::vector<SeparateEstimates>& es
   return far;
 }
 
-/// The recordings that disagree with the others or are far from their scatter, in order; often none.
+/// The recordings that disagree with an agreeing majority, or are far outside the scatter of the other recordings, in
+/// order; often none.
 std::vector<int> Disagreeing(const std::vector<SeparateEstimates>& estimates, const VectorXd& scale) {
   std::vector<std::size_t> out = FindDeviatingRecordings(estimates, scale);
   if (out.empty()) out = FarFromScatter(estimates);

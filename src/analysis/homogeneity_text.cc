@@ -60,7 +60,7 @@ OtherRecordings SummarizeOthers(const Homogeneity& result, const SharedParameter
   return {sum / weights, 1 / weights};
 }
 
-/// The parameter in which a recording is farthest from those that agree.
+/// The parameter in which a recording is farthest from the recordings that agree.
 const SharedParameter* Farthest(const Homogeneity& result, std::size_t run) {
   const SharedParameter* farthest = nullptr;
   double most = 0;
@@ -123,8 +123,8 @@ double ScatterOfDifferentRigs(const Homogeneity& result) {
   return share > kOneRig ? share : 0;
 }
 
-/// Names the parameter with the largest scatter relative to its errors, and the resulting constants of the rig. If
-/// another law was already recommended, only the first sentence.
+/// Names the parameter with the largest scatter relative to its errors. Adds advice unless another law was already
+/// recommended.
 std::string DescribeScatter(const Homogeneity& result, bool recommends_law) {
   const auto most = std::ranges::max_element(result.parameters, {}, &SharedParameter::statistic);
   const RandomEffects& scatter = most->scatter;

@@ -37,7 +37,7 @@ Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>
   return estimates;
 }
 
-/// The windows' estimates of each parameter; the halves' if windows have none.
+/// The windows' estimates of each parameter, or the halves' estimates if windows have none.
 std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   std::vector<Estimates> all;
   for (const AmplitudeTrend& trend : constancy.trends) all.push_back(OfWindows(trend, constancy.windows));
@@ -49,7 +49,7 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
-/// Adds a variance of this parameter that is independent of all others.
+/// Adds a systematic error of this parameter that is independent of all other errors.
 void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
   parameter.systematic_std_error = std::hypot(parameter.systematic_std_error.value_or(0), std_dev);
   const auto place = std::ranges::find(fit.systematic_names, parameter.info.name);

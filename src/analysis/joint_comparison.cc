@@ -74,8 +74,8 @@ ComparedFits JointFits(const JointModels& joint) {
   return compared;
 }
 
-/// Chooses separate fits if the recordings disagree under the law that describes each of them best. A joint fit then
-/// lacks more than a law.
+/// Chooses separate fits if the recordings disagree under the law that describes each of them best. Then no law makes
+/// the joint fit right.
 ComparedFits ChooseFitsToCompare(const JointModels& joint) {
   ComparedFits alone = SeparateFits(joint);
   const FitReport* const best = BestFit(alone.combined);
@@ -118,7 +118,7 @@ Likelihood ChooseJointLikelihood(const ComparedFits& compared, std::size_t best)
   return chosen;
 }
 
-/// A recording whose residuals require that likelihood, for the sentence.
+/// The fit to a recording whose residuals require `likelihood`; DescribeLikelihood describes it.
 const FitReport& RepresentativeRecording(const ComparedFits& compared, std::size_t best, Likelihood likelihood) {
   for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
     const FitReport& fit = compared.Fit(k, best);
@@ -132,8 +132,8 @@ const FitReport& RepresentativeRecording(const ComparedFits& compared, std::size
 /// Log-likelihoods of recordings about the joint estimates, as parabolas over all free parameters.
 class SharedShift {
  public:
-  /// Adds a run's parabola in δ of its F free parameters: information (F x F), and the maximum at `shift` within
-  /// [lowest, highest].
+  /// Adds a run's parabola in the shift of its F free parameters: information (F x F), the maximum at `shift`, and the
+  /// range [lowest, highest] of the shift.
   void Add(const std::vector<std::string>& names, const Eigen::MatrixXd& information, const Eigen::VectorXd& shift,
            const Eigen::VectorXd& lowest, const Eigen::VectorXd& highest, const std::vector<std::string>& shared) {
     std::vector<Index> at;
@@ -186,12 +186,12 @@ class SharedShift {
   };
   std::vector<Root> roots_;
   std::vector<std::string> shared_names_;
-  std::vector<Index> places_;  // columns of these names
+  std::vector<Index> places_;  // column of each shared name
   std::vector<double> lowest_, highest_;
 };
 
 /// The likelihood of a recording, linearized about its estimates. The autocorrelation has the kind and order of the
-/// residuals of the best model. Its information about the parameters is added to `together`.
+/// residuals of the best model. The information about the parameters is added to `together`.
 std::optional<CorrelatedLikelihood> AddLikelihood(const ComparedFits& compared, std::size_t k, std::size_t m,
                                                   std::size_t best, const FitOptions& options, SharedShift& together) {
   const FitReport& fit = compared.Fit(k, m);
@@ -223,7 +223,7 @@ void SetCorrelatedLikelihood(const ComparedFits& compared, std::size_t m, std::s
                    " cannot be computed with the autocorrelation of the best model's residuals";
       return;
     }
-    sum += likelihood->log_likelihood + PerCount(run.alone.used);
+    sum += likelihood->log_likelihood + SumOfLogLevelWidths(run.alone.used);
     row.parameters += likelihood->parameters - 1;
   }
   row.log_likelihood = sum - together.Loss();
@@ -263,7 +263,7 @@ class PooledPrediction {
   }
 
   Prediction Take() {
-    if (!pooled_.reason.empty()) pooled_.samples = 0;  // a part is missing
+    if (!pooled_.reason.empty()) pooled_.samples = 0;  // a recording has no prediction
     if (pooled_.samples == 0) return pooled_;
     const auto samples = static_cast<double>(pooled_.samples);
     pooled_.rms = std::sqrt(squares_ / samples);

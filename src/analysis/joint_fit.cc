@@ -42,7 +42,8 @@ Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const
   return TestHomogeneity(alone, shared);
 }
 
-/// Adds the result of the homogeneity test to the termination reason of the joint fit.
+/// If the recordings disagree, adds a warning with the verdict, and the verdict to the reason if the joint fit did not
+/// converge.
 void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
   if (homogeneity.agrees()) return;
   if (whole.termination != Termination::kConverged) whole.reason += "; " + homogeneity.verdict;

@@ -135,7 +135,6 @@ std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const 
   return estimate;
 }
 
-/// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive.
 double SquaredLength(const VectorXd& difference, const MatrixXd& covariance) {
   const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const VectorXd scaled = scale.asDiagonal() * difference;

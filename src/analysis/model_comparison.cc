@@ -24,7 +24,7 @@ void SetCorrelatedLikelihood(const FittedModels& fitted, const FitReport& fit, c
         "the likelihood of its residuals cannot be computed with the autocorrelation of the best model's residuals";
     return;
   }
-  row.log_likelihood = likelihood->log_likelihood + PerCount(fitted.used);
+  row.log_likelihood = likelihood->log_likelihood + SumOfLogLevelWidths(fitted.used);
   row.parameters += likelihood->parameters - 1;
 }
 

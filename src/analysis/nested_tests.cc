@@ -74,7 +74,8 @@ double CorrelationOf(const ComparedRuns& compared, std::size_t index, const FitO
   return std::isfinite(correlation) ? correlation : 0;
 }
 
-/// The richer law set to the simpler one, with the given value of the parameter that has no meaning there.
+/// The richer law with the simpler law's estimates: its added terms are 0, and the parameter `unidentified`, which has
+/// no meaning in the simpler law, has the given value.
 FitReport AtNull(const FitReport& simpler, FitReport richer, std::string_view unidentified, double value) {
   const OrderedPair order = FindOrderedPair(richer.model);
   for (ParameterEstimate& parameter : richer.parameters) {
@@ -109,7 +110,8 @@ std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vect
   Eigen::MatrixXd jacobian;
   if (!motion.Readings(motion.instants(), &jacobian)) return std::nullopt;
   const OrderedPair order = FindOrderedPair(null.model);
-  if (order.larger >= 0) jacobian.col(order.smaller) += jacobian.col(order.larger);  // they move together
+  // At the null the two ordered parameters are equal and change together.
+  if (order.larger >= 0) jacobian.col(order.smaller) += jacobian.col(order.larger);
   NullColumns columns;
   std::vector<Index> common, own;
   for (std::size_t i = 0; i < null.parameters.size(); ++i) {
@@ -125,7 +127,7 @@ std::optional<NullColumns> ColumnsAtNull(const ComparedRun& run, const std::vect
 }
 
 /// Tests a term whose rate has no meaning in the simpler law, over 24 rates from 1/50 of the largest rate to twice that
-/// rate. The parameters of each single recording are first removed from its columns.
+/// rate. The effect of the parameters that each recording has alone is first removed from the columns.
 void TestUnidentified(const ComparedRuns& compared, std::size_t simpler, std::size_t richer, const Nesting& nesting,
                       const FitOptions& options, NestedTest& test) {
   constexpr int kRates = 24;

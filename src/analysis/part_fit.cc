@@ -29,11 +29,12 @@ bool IsStart(std::string_view name) {
 
 bool IsZero(std::string_view name) { return name == kZeroAngle.name || name == kRateBias.name; }
 
-/// A part starts at the whole fit's estimates and needs tens of trajectories. More would be spent only on parts that
-/// are not a free swing.
+/// The search for a part's parameters begins at the whole fit's estimates and needs tens of trajectories. Only parts
+/// that are not a free swing would need more.
 constexpr int kMaxTraces = 200;
 
-/// The options of the whole fit, without those of its start and without values that both halves would share.
+/// The options of the whole fit, without options of its start and without start values and priors, which all parts
+/// would share.
 FitOptions OptionsOfParts(const FitReport& fit, FitOptions options) {
   options = OptionsLike(fit, std::move(options));
   options.start = StartKind::kMoving;

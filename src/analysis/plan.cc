@@ -21,7 +21,7 @@ constexpr std::array kDurationFactors = {0.5, 1.0, 2.0, 4.0};
 constexpr std::array kOtherFactors = {0.25, 1.0, 4.0};
 
 /// Time [s] and angle [rad] of the turning points from the release, or from the first one of a moving start, until
-/// `end` [s]. Swings begin at a rate of exactly 0.
+/// `end` [s]. The trajectory has a rate of exactly 0 at turning points.
 std::vector<TurningPoint> TurningPoints(const SyntheticOptions& run, double end) {
   const bool released = run.start == StartKind::kRelease;
   const Start<double> start{run.start, released ? run.release_time : run.start_time,
@@ -163,8 +163,8 @@ std::optional<double> LinearInertiaBias(const SyntheticOptions& run, double end)
   if (turns.size() < 3) return std::nullopt;
   const std::size_t periods = (turns.size() - 1) / 2;
   const TurningPoint &first = turns.front(), &last = turns[2 * periods];
-  if (std::abs(first.value) >= run.model.gravity.top())
-    return std::nullopt;  // after an escape the angle counts from another turn
+  // After turns over the top, the angle no longer counts from the lowest position of the swing.
+  if (std::abs(first.value) >= run.model.gravity.top()) return std::nullopt;
   const auto n = static_cast<double>(periods);
   const double damped_frequency = 2 * kPi * n / (last.time - first.time);
   const double decrement = std::log(first.value / last.value) / n;

@@ -22,7 +22,7 @@ using Eigen::Index;
 /// Data that is the same for every left-out part. Times are true s from the first sample.
 struct Task {
   const Recording& used;
-  FitOptions options;        // options of the fits to the rest
+  FitOptions options;        // options of the fits to the remaining samples
   Eigen::VectorXd instants;  // N
   double begin;              // begin of the motion
   double end;
@@ -42,7 +42,8 @@ Part PartBetween(const Task& task, double from, double to) {
   return {sample(from), to < task.end ? sample(to) : task.used.size()};
 }
 
-/// Uses the estimates of the whole fit as start values. The rest has a gap, so its turning points would be wrong.
+/// Uses the estimates of the whole fit as start values. The remaining samples have a gap, so start values from their
+/// turning points would be wrong.
 StartValues StartAtEstimates(const FitProblem& problem, const FitReport& fit) {
   StartValues start = problem.start;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {
@@ -98,7 +99,8 @@ Recording Without(const Recording& used, const Part& part) {
 }
 
 /// Variance of a reading about the trajectory. A Gaussian σ includes the rounding of the readings; a quantized σ does
-/// not. The scale of a robust family is not a standard deviation, and outliers are among the predicted readings.
+/// not. For a robust family it is the variance of all residuals: the scale of the family is not a standard deviation,
+/// and the predicted readings include outliers.
 double ReadingVariance(const FitReport& fit) {
   const NoiseEstimate& noise = fit.noise;
   const double square = noise.sigma * noise.sigma;
@@ -171,7 +173,7 @@ Prediction NoPrediction(const std::string& reason) {
 
 Prediction PredictionOf(const Sums& sums) {
   if (sums.samples < kMinimumSamples) return NoPrediction("there are too few readings to predict");
-  if (!std::isfinite(sums.squares)) return NoPrediction("a fit to the rest diverges");
+  if (!std::isfinite(sums.squares)) return NoPrediction("a fit to the remaining readings diverges");
   Prediction prediction;
   const auto samples = static_cast<double>(sums.samples);
   prediction.rms = std::sqrt(sums.squares / samples);
@@ -180,7 +182,7 @@ Prediction PredictionOf(const Sums& sums) {
     prediction.standardized = std::sqrt(sums.standardized / samples);
     prediction.samples = sums.samples;
   } else {
-    prediction.reason = "a fit to the rest has no errors: " +
+    prediction.reason = "a fit to the remaining readings has no errors: " +
                         (sums.without_errors.empty() ? "its residuals are all 0" : sums.without_errors);
   }
   return prediction;
@@ -191,17 +193,18 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
   Sums sums;
   for (const Part& part : parts) {
     const Result<void> done = PredictPart(task, part, sums);
-    if (!done) return NoPrediction("a fit to the rest cannot be made: " + done.error().message);
+    if (!done) return NoPrediction("a fit to the remaining readings cannot be made: " + done.error().message);
   }
   return PredictionOf(sums);
 }
 
 }  // namespace
 
-/// A prediction y* has the standard deviation sqrt(s² + J C Jᵀ): s is that of a reading about the trajectory of the fit
-/// to the rest, C is that fit's covariance, J = ∂y*/∂p. The first period is never left out: the start would be
-/// extrapolated backwards in time, where a dissipative motion diverges. The fits to the rest have the kind of start and
-/// the noise of `fit`, and begin at its estimates.
+/// A prediction y* comes from a fit to the remaining samples. Its standard deviation is sqrt(s² + J C Jᵀ): s is the
+/// standard deviation of a reading about the fitted trajectory, C is the covariance of the fitted parameters p, and J =
+/// ∂y*/∂p. The first period is never left out: the start would be extrapolated backwards in time, where a dissipative
+/// motion diverges. The fits have the kind of start and the noise of `fit`, and their search begins at the estimates of
+/// `fit`.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
   if (!task) return NoPrediction(task.error().message);
@@ -216,7 +219,7 @@ Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitO
 }
 
 /// The prediction errors come from a few parameters. Even for the right model `standardized` scatters more about 1 than
-/// in cross-validation, where blocks lie between fitted ones.
+/// in cross-validation, where each block except the last lies between fitted samples.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
   if (!task) return NoPrediction(task.error().message);

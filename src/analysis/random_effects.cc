@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Runs with a variance each and a common variance between them.
+/// K runs, each with its own variance. A further variance between runs is common to all of them.
 struct Scatter {
   VectorXd value, variance;                     // K
   std::optional<double> center = std::nullopt;  // Center of all runs, if it is known.

@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-/// Smaller differences of log-likelihood or BIC count as equal: the added terms came out as 0.
+/// Smaller differences of log-likelihood or BIC count as 0: the estimates of the added terms are then 0.
 constexpr double kSame = 1e-3;
 
 /// The rows of one comparison, addressed by index.
@@ -20,8 +20,8 @@ class RankedRows {
  public:
   RankedRows(const std::vector<FitReport>& fits, const Comparison& comparison) : fits_(fits), rows_(comparison.rows) {}
 
-  /// If more than noise is left, a smaller BIC may only hide what is missing. A law that predicts worse than it fits
-  /// must predict better than every law with fewer terms.
+  /// Whether a law leaves more than noise in its residuals, predicts worse than it fits, and does not predict better
+  /// than every law with fewer terms. Its smaller BIC is then no reason to recommend it.
   bool IsRefuted(std::size_t i) const {
     constexpr double kAsWell = 1.25, kBetter = 0.95;
     const ComparisonRow& row = rows_[i];
@@ -56,7 +56,7 @@ class RankedRows {
     return best == rows_.size() || IsNear(best) ? "" : rows_[best].model;
   }
 
-  /// Models with a smaller BIC that do not predict better.
+  /// Refuted models that have a smaller BIC than the chosen one.
   std::vector<std::string> RefutedModels(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -80,7 +80,8 @@ class RankedRows {
     return chosen;
   }
 
-  /// Index of the row with the next BIC that is not near; the number of rows if there is none.
+  /// Index of the row with the smallest BIC among the rows that are not near the smallest one; the number of rows if
+  /// there is none.
   std::size_t RunnerUp() const {
     std::size_t next = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -98,7 +99,7 @@ class RankedRows {
   std::vector<std::string> UndecidedModels(std::size_t chosen) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      // A law whose added terms came out as 0 is the same as the chosen one.
+      // A law whose added terms are estimated as 0 is the same as the chosen one.
       if (i == chosen || !IsNear(i) || IsSame(i, chosen)) continue;
       names.push_back(rows_[i].model);
     }
@@ -126,7 +127,7 @@ std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& oth
                    : ", although it predicts the last 40 % " + times + " times worse";
 }
 
-/// Describes doubts of the fit about its own law.
+/// Says whether the residuals show a lack of fit or are autocorrelated.
 std::string DescribeDoubts(const ComparisonRow& row, const FitReport& fit) {
   if (row.lack_of_fit) {
     return "; but the residuals are more than noise (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
@@ -164,9 +165,9 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
     comparison.reason += judged == 1 ? "the only one that converged" : "no other is better";
   }
   if (const std::vector<std::string> refuted = ranked.RefutedModels(chosen); !refuted.empty()) {
-    comparison.reason +=
-        "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +
-        " a smaller BIC, but residuals that are not noise, and no better prediction of the last 40 %, or none";
+    comparison.reason += "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +
+                         " a smaller BIC, but residuals that are more than noise, and a prediction of the last 40 % "
+                         "that is missing or not better";
   }
   if (const std::string other = ranked.ByAicc(); !other.empty()) comparison.reason += "; AICc would choose " + other;
   comparison.reason += DescribeDoubts(row, fits[chosen]);

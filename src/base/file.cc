@@ -76,7 +76,7 @@ Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view
   }
   if (used > max_bytes) {
     return Fault(path.string(), "the file has more than " + std::to_string(max_bytes) + " bytes, too many for a " +
-                                    std::string(kind) + " file; name another, or split it");
+                                    std::string(kind) + " file; give a smaller file, or split it");
   }
   bytes.resize(used);
   return bytes;

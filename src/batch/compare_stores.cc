@@ -59,8 +59,8 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
                               .getInt64();
 }
 
-/// Keeps the largest ones in a heap whose front is the smallest of them.
-void Keep(MovedParameter moved, std::vector<MovedParameter>& largest) {
+/// Adds a change to the kMaxListed largest ones, a heap whose front is the smallest of them.
+void AddToLargest(MovedParameter moved, std::vector<MovedParameter>& largest) {
   const auto more = [](const MovedParameter& a, const MovedParameter& b) { return a.errors > b.errors; };
   largest.push_back(std::move(moved));
   std::ranges::push_heap(largest, more);
@@ -79,7 +79,7 @@ void CompareParameter(const SQLite::Statement& row, StoreComparison& comparison)
     ++comparison.identical;
     return;
   }
-  if (sqlite::Text(row, 3) != sqlite::Text(row, 8)) {  // one with a rig, the other without
+  if (sqlite::Text(row, 3) != sqlite::Text(row, 8)) {  // only one of the two fits had a rig
     ++comparison.without_error;
     return;
   }
@@ -96,9 +96,9 @@ void CompareParameter(const SQLite::Statement& row, StoreComparison& comparison)
     return;
   }
   ++comparison.moved;
-  Keep({sqlite::Text(row, 0), sqlite::Text(row, 1), sqlite::Text(row, 2), sqlite::Text(row, 3), before.getDouble(),
-        after.getDouble(), moved},
-       comparison.most_moved);
+  AddToLargest({sqlite::Text(row, 0), sqlite::Text(row, 1), sqlite::Text(row, 2), sqlite::Text(row, 3),
+                before.getDouble(), after.getDouble(), moved},
+               comparison.most_moved);
 }
 
 }  // namespace

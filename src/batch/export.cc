@@ -46,14 +46,14 @@ std::string JsonLine(const SQLite::Statement& row) {
   return line + "null,\"error\":" + JsonText(error) + "}\n";
 }
 
-/// Statistics of table fits whose names need no explanation.
+/// Columns of table fits; the CSV columns have the same names.
 constexpr std::array<const char*, 18> kStatistics = {
     "status",       "reason",     "used_samples", "effective_samples", "residual_unit",
     "rms_residual", "sigma",      "noise_model",  "lag1_correlation",  "log_likelihood",
     "aic",          "aicc",       "bic",          "durbin_watson",     "ljung_box_p",
     "runs_p",       "iterations", "evaluations"};
 
-/// Members of table quantities; the column of the first one has only the quantity's name.
+/// Columns of table quantities. The CSV column of the estimate is named after the quantity alone.
 constexpr std::array<const char*, 6> kMembers = {"estimate", "std_error", "lower95", "upper95", "systematic_std_error",
                                                  "unit"};
 
@@ -64,7 +64,7 @@ std::string FieldOf(const SQLite::Column& value) {
   return CsvField(value.getString());
 }
 
-/// Columns before the manifest's other columns: id, path, rig, calibration.
+/// Number of CSV columns before the manifest's other columns: id, path, rig, calibration.
 constexpr int kOfTheRun = 4;
 
 /// The CSV table of a store.

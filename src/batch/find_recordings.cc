@@ -32,7 +32,7 @@ Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
     entries.push_back(*at);
   }
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory) {
-    return Fault(folder.string(), "this folder cannot be read; check its permissions, or name another");
+    return Fault(folder.string(), "this folder cannot be read; check its permissions, or name another folder");
   }
   std::ranges::sort(entries, {}, [](const fs::directory_entry& entry) { return entry.path().filename(); });
   return entries;
@@ -60,7 +60,7 @@ Result<void> Find(const fs::path& folder, std::span<const std::string> parts, st
   return {};
 }
 
-/// Splits a path into the folder before its first pattern, which is used as it is, and the remaining parts.
+/// Splits a path into the folder before its first pattern and the remaining parts. The folder is used literally.
 std::pair<fs::path, std::vector<std::string>> Cut(const fs::path& path) {
   fs::path folder;
   std::vector<std::string> parts;

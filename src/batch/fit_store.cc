@@ -28,7 +28,7 @@ using fit_store::kListedColumns;
 /// Largest number of runs read for one list.
 constexpr int kMaxListed = 1000;
 
-/// How long an answer is kept for repeated requests.
+/// Deletes answers that are older than a day. Until then repeated requests get them.
 constexpr const char* kForgetAnswers =
     "DELETE FROM answers WHERE created < strftime('%Y-%m-%dT%H:%M:%SZ', 'now', '-1 day')";
 
@@ -85,11 +85,11 @@ struct FitStore::State {
   void EndRound(Result<void> done, std::shared_ptr<Round> next);
 
   StoreLock lock;          // first member, so it is held as long as the file is open
-  std::mutex write_mutex;  // for the members below up to the reader
+  std::mutex write_mutex;  // for `writer`, `round` and `over`
   Store writer;
   std::shared_ptr<Round> round = std::make_shared<Round>();
   std::condition_variable over;
-  std::mutex read_mutex;  // for the reader
+  std::mutex read_mutex;  // for `reader`
   Store reader;
 };
 
@@ -113,7 +113,7 @@ Result<void> FitStore::State::Write(const Work& work) {
 /// The first waiting thread commits for all threads whose work is done by then.
 Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& held) {
   const std::shared_ptr<Round> own_round = round;
-  auto next = std::make_shared<Round>();  // allocated while no thread waits for it
+  auto next = std::make_shared<Round>();  // allocated now: an exception later would leave other threads waiting
   if (!std::exchange(own_round->has_committer, true)) {
     constexpr std::chrono::microseconds kCommitDelay{300};  // short compared with a commit and with a fit
     over.wait_for(held, kCommitDelay, [&] { return own_round->is_over; });
@@ -123,7 +123,7 @@ Result<void> FitStore::State::WaitUntilCommitted(std::unique_lock<std::mutex>& h
   return own_round->done;
 }
 
-/// Waiting threads get the error even after an exception.
+/// Converts an exception to an error, so that waiting threads get it.
 Result<void> FitStore::State::TryCommit() {
   try {
     return writer.Commit();
@@ -151,13 +151,13 @@ Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& ha
   const auto run = writer.Add(entry);
   if (!run) return tl::unexpected(run.error());
   SQLite::Database& database = writer.database();
-  const auto keep = [&](const SharedFile& file, const std::string& sha256) {
-    return file ? std::optional(fit_store::KeepFile(database, file->bytes, sha256)) : std::nullopt;
+  const auto store = [&](const SharedFile& file, const std::string& sha256) {
+    return file ? std::optional(fit_store::StoreFile(database, file->bytes, sha256)) : std::nullopt;
   };
   SQLite::Statement add(database, "INSERT INTO requests VALUES(?, ?, ?, ?, ?, ?, ?)");
   sqlite::Bind(add, *run, batch, order.created, order.flags,
-               fit_store::KeepFile(database, order.files.data.bytes, hashes.data), keep(order.files.rig, hashes.rig),
-               keep(order.files.calibration, hashes.calibration))
+               fit_store::StoreFile(database, order.files.data.bytes, hashes.data), store(order.files.rig, hashes.rig),
+               store(order.files.calibration, hashes.calibration))
       .exec();
   return {};
 }
@@ -172,7 +172,8 @@ void FitStore::State::StoreAnswer(const std::optional<RequestKey>& key, const st
 
 FitStore::FitStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-/// Leaves one file that can be copied, unless another process is reading it.
+/// Moves the write-ahead log into the file, so that this file alone can be copied. This is not possible while another
+/// process reads.
 FitStore::~FitStore() {
   state_->writer.Rollback();
   { const Store closing = std::move(state_->reader); }

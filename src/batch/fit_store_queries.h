@@ -26,7 +26,7 @@ inline constexpr const char* kBatches = R"sql(
 SELECT batches.batch, batches.id, batches.created, count(run), count(exit_code), count(reason)
   FROM batches LEFT JOIN requests USING(batch) LEFT JOIN runs USING(run) )sql";
 
-/// The text values of a filter with their parameter names in ConditionsOf.
+/// The texts that a filter sets, each with its parameter name in ConditionsOf.
 inline std::vector<std::pair<std::string, std::string>> TextConditions(const FitFilter& filter) {
   std::vector<std::pair<std::string, std::string>> texts = {{":batch", filter.batch},
                                                             {":name", filter.name},
@@ -37,7 +37,8 @@ inline std::vector<std::pair<std::string, std::string>> TextConditions(const Fit
   return texts;
 }
 
-/// Only the conditions that a filter sets, so that SQLite can use indices; instr has no wildcards.
+/// The SQL conditions that a filter sets. Conditions that are not set are left out, so that SQLite can use indices.
+/// Names are searched with instr, which has no wildcards.
 inline std::string ConditionsOf(const FitFilter& filter) {
   std::string conditions = "WHERE true";
   if (filter.before) conditions += " AND run < :before";
@@ -98,8 +99,8 @@ inline std::vector<ListedModel> ModelsOf(SQLite::Database& database, std::int64_
   return models;
 }
 
-/// The number of the file with these bytes; equal files are stored once.
-inline std::int64_t KeepFile(SQLite::Database& database, const std::string& bytes, const std::string& sha256) {
+/// Stores a file unless an equal one is stored already. Returns its number.
+inline std::int64_t StoreFile(SQLite::Database& database, const std::string& bytes, const std::string& sha256) {
   SQLite::Statement find(database, "SELECT file FROM files WHERE sha256 = ?");
   if (sqlite::Bind(find, sha256).executeStep()) return find.getColumn(0).getInt64();
   SQLite::Statement add(database, "INSERT INTO files(sha256, bytes) VALUES(?, ?)");

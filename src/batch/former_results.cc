@@ -12,7 +12,7 @@ namespace pendulum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Names = std::pair<std::string_view, std::string_view>;  // in versions 1 and 2
+using Names = std::pair<std::string_view, std::string_view>;  // a name in version 1, and in version 2
 
 constexpr std::array kKeys = {Names{"alone", "separate"},
                               Names{"disagreeing", "outliers"},
@@ -46,7 +46,7 @@ Json JoinedReason(const Json& why, const Json& reason) {
   return second.find(first) == std::string::npos ? first + "; " + second : second;
 }
 
-/// A value under this key of version 1 with the names of version 2.
+/// Replaces the names of version 1 in a value by the names of version 2. `key`: the key of the value in version 1.
 Json Translated(const Json& value, std::string_view key) {
   if (value.is_string()) {
     const auto text = value.get<std::string>();

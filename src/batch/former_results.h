@@ -6,7 +6,7 @@
 
 namespace pendulum {
 
-/// A stored result JSON of schema version 1 with the names of version 2; any other text unchanged.
+/// Converts a stored result JSON of schema version 1 to the names of version 2; returns any other text unchanged.
 /// src/docs/reference.md has the table of names.
 std::string WithCurrentNames(std::string_view result);
 

@@ -58,7 +58,7 @@ class CsvRows {
       if (!has_delimiter_ && lines_.line().find_first_not_of(" \t") != std::string::npos)
         ChooseDelimiter(lines_.line());
       if (!Parse(lines_.line()) || !Parse("\n")) return QuoteInFieldError();
-      if (goes_on_) return CarriageReturnError();
+      if (continues_after_end_) return CarriageReturnError();
       if (row_bytes_ > kLongestRow) return TooLongError();
       if (!complete_ && row_.fields.empty() && !in_quotes()) {
         row_.line = lines_.number() + 1;
@@ -89,7 +89,7 @@ class CsvRows {
     }
     const auto take_field = [](void* field, std::size_t size, void* self) {
       auto& rows = *static_cast<CsvRows*>(self);
-      rows.goes_on_ = rows.goes_on_ || rows.complete_;
+      rows.continues_after_end_ = rows.continues_after_end_ || rows.complete_;
       rows.row_.fields.emplace_back(static_cast<const char*>(field), size);
     };
     const auto end_row = [](int, void* self) { static_cast<CsvRows*>(self)->complete_ = true; };
@@ -122,13 +122,13 @@ class CsvRows {
   }
 
   static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
-  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // default 128: 10^5 copies of a long row
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // bytes; 128, the default, copies a row 10^5 times
 
   LineReader lines_;
   csv_parser parser_{};
   Row row_;
   std::size_t quotes_ = 0, row_bytes_ = 0;
-  bool complete_ = false, goes_on_ = false, has_delimiter_ = false;
+  bool complete_ = false, continues_after_end_ = false, has_delimiter_ = false;
 };
 
 /// Columns with a meaning; other columns are kept as they are.
@@ -167,8 +167,8 @@ class Header {
       const auto* const known = std::ranges::find(kColumns, names_[i]);
       if (known == kColumns.end()) {
         columns[names_[i]] = row.fields[i];
-      } else if (const auto taken = Take(*known, row.fields[i], entry); !taken) {
-        return Fault(where + ": column " + names_[i], taken.error().message);
+      } else if (const auto set = SetField(*known, row.fields[i], entry); !set) {
+        return Fault(where + ": column " + names_[i], set.error().message);
       }
     }
     if (entry.id.empty()) entry.id = entry.path;
@@ -182,7 +182,7 @@ class Header {
  private:
   Header(std::string file, std::vector<std::string> names) : file_(std::move(file)), names_(std::move(names)) {}
 
-  static Result<void> TakeTime(const std::string& field, std::optional<double>& time) {
+  static Result<void> SetTime(const std::string& field, std::optional<double>& time) {
     if (field.empty()) return {};
     double number = 0;
     const char* end = field.data() + field.size();
@@ -194,7 +194,7 @@ class Header {
     return {};
   }
 
-  static Result<void> Take(std::string_view column, const std::string& field, ManifestEntry& entry) {
+  static Result<void> SetField(std::string_view column, const std::string& field, ManifestEntry& entry) {
     if (column == "path" && field.empty()) {
       return Error(StatusCode::kDataLoss, "it is empty; name a recording or delete the row");
     }
@@ -208,8 +208,8 @@ class Header {
         return tl::unexpected(models.error());
       }
     }
-    if (column == "from_s") return TakeTime(field, entry.from);
-    if (column == "to_s") return TakeTime(field, entry.to);
+    if (column == "from_s") return SetTime(field, entry.from);
+    if (column == "to_s") return SetTime(field, entry.to);
     return {};
   }
 

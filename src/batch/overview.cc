@@ -56,7 +56,7 @@ std::string ReasonOf(std::string reason, const std::string& path) {
   return reason.erase(0, std::min(begin, reason.size()));
 }
 
-/// A reason without numbers, which differ between runs.
+/// A reason with # in place of each number, because numbers differ between runs.
 std::string KindOf(const std::string& reason) {
   std::string kind;
   for (const char c : reason) {
@@ -70,8 +70,8 @@ std::string KindOf(const std::string& reason) {
 
 struct Failures {
   std::int64_t fits = 0;
-  std::string reason;  ///< Reason of the first run; common to all unless they differ.
-  bool differ = false;
+  std::string reason;   ///< Reason of the first run, with numbers.
+  bool differ = false;  ///< Other runs have other numbers in their reason.
   std::vector<std::string> models, examples;
 };
 

@@ -152,9 +152,9 @@ class Refitter {
   /// The loop of each thread.
   void Work() {
     try {
-      while (std::optional<StoredRun> run = Take()) {
+      while (std::optional<StoredRun> run = NextRun()) {
         const std::optional<RunOutcome> outcome = TryOne(*run);
-        Done(*run, outcome ? &*outcome : nullptr);
+        Record(*run, outcome ? &*outcome : nullptr);
       }
     } catch (const std::exception& error) {  // out of memory between two runs
       const std::scoped_lock lock(mutex_);
@@ -169,8 +169,8 @@ class Refitter {
   static constexpr int kPage = 256;
   static constexpr std::chrono::seconds kCommitInterval{1};
 
-  /// The outcome of a run; std::nullopt if it is current. An exception, from a bug or lack of memory, affects only this
-  /// run, and only this time.
+  /// The outcome of a run; std::nullopt if its rows are current. An exception, from a bug or lack of memory, fails only
+  /// this run. The next refit tries it again.
   std::optional<RunOutcome> TryOne(const StoredRun& run) const {
     try {
       return RefitUnless(source_, run.entry, options_,
@@ -189,7 +189,7 @@ class Refitter {
     return run.provenance.Agrees(provenance);
   }
 
-  std::optional<StoredRun> Take() {
+  std::optional<StoredRun> NextRun() {
     const std::scoped_lock lock(mutex_);
     if (error_ || IsStopped()) return std::nullopt;
     if (page_.empty() && !at_end_) {
@@ -209,7 +209,7 @@ class Refitter {
   }
 
   /// Counts a run, and stores its outcome unless its rows are current.
-  void Done(const StoredRun& run, const RunOutcome* outcome) {
+  void Record(const StoredRun& run, const RunOutcome* outcome) {
     const std::scoped_lock lock(mutex_);
     if (error_) return;
     Result<void> stored;

@@ -13,7 +13,7 @@
 
 #include "pendulum/batch/store.h"
 
-/// The rows of a store's tables. They are derived from the result JSON, so the two always agree.
+/// The rows of a store's tables. They are derived from the result JSON, so rows and JSON always agree.
 namespace pendulum {
 
 /// A row of table quantities.
@@ -51,7 +51,7 @@ std::optional<Value> Get(const Json& object, std::string_view key) {
   return found->get<Value>();
 }
 
-/// The number whose key has this prefix and ends with its unit, and that unit.
+/// The number whose key is this prefix with a unit, such as "sigma_rad", and the unit.
 inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(const Json& object,
                                                                                 std::string_view prefix) {
   if (!object.is_object()) return {};

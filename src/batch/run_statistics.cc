@@ -216,7 +216,7 @@ std::optional<double> MinutesOfZone(const std::string& zone) {
   return (sign[0] == '-' ? -1.0 : 1.0) * (kMinutes * hour + minute);
 }
 
-/// A time of day as days, "T12:30", "T12:30:21.6Z"; 0 for an empty text.
+/// A time of day, such as "T12:30" or "T12:30:21.6Z", in days; 0 for an empty text.
 std::optional<double> DaysOfTime(const std::string& time) {
   if (time.empty()) return 0;
   unsigned int hour = 0, minute = 0;

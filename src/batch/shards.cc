@@ -36,8 +36,8 @@ bool IsSound(const fs::path& path) {
   return store && store->Check();
 }
 
-/// Copies the start of an attempt, if there is one: the checkpoint, otherwise the earlier store. A checkpoint also
-/// starts from the earlier store. Damaged files, and files that another attempt removes meanwhile, are skipped.
+/// Copies the store from which an attempt starts, if there is one: the checkpoint, which also contains the rows of the
+/// earlier store, otherwise the earlier store. Skips damaged files and files that another attempt removes meanwhile.
 Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
   for (const fs::path& path : {WithSuffix(shard.store, ".part"), shard.store}) {
     if (!IsSound(path)) continue;
@@ -47,7 +47,7 @@ Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
   return {};
 }
 
-/// Refits into the attempt's own file. It is published as the checkpoint from time to time, and after a stop.
+/// Refits into the attempt's own file, and publishes it as the checkpoint from time to time and after a stop.
 Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, RefitOptions options,
                             const fs::path& attempt) {
   using Clock = std::chrono::steady_clock;
@@ -122,12 +122,12 @@ Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int
     const auto meta = store->Meta();
     if (!meta) return tl::unexpected(meta.error());
     if (!meta->shard || meta->shard->index != k || meta->shard->count != count) {
-      const std::string is =
+      const std::string found =
           meta->shard ? "shard " + std::to_string(meta->shard->index) + "/" + std::to_string(meta->shard->count)
                       : "a whole batch";
-      return Fault(path.string(), "this is the store of " + is + ", not of shard " + std::to_string(k) + "/" +
+      return Fault(path.string(), "this is the store of " + found + ", not of shard " + std::to_string(k) + "/" +
                                       std::to_string(count) +
-                                      "; give the number with which it was made, or another folder");
+                                      "; give the number of shards with which it was made, or another folder");
     }
     if (!meta->complete || !store->Check()) missing.push_back(k);
   }
@@ -153,7 +153,7 @@ std::string AssignmentsOf(SQLite::Database& database, const std::string& table) 
   return sqlite::Text(columns, 0);
 }
 
-/// Replaces the rows of a table by those of the attached store `shard`, for the runs in that store.
+/// Replaces the rows of a table by the rows of the attached store `shard`, for the runs in `shard`.
 void ReplaceRows(SQLite::Database& database, const std::string& table) {
   database.exec("DELETE FROM main." + table +
                 " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id))");
@@ -162,8 +162,8 @@ void ReplaceRows(SQLite::Database& database, const std::string& table) {
                 " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id");
 }
 
-/// Copies the attached store `shard` into the tables and replaces the rows of the same runs.
-void TakeStore(SQLite::Database& database) {
+/// Copies the rows of the attached store `shard` into this store. Rows of the same runs are replaced.
+void CopyAttachedShard(SQLite::Database& database) {
   const std::string runs = ColumnsOf(database, "runs");
   database.exec("INSERT INTO main.runs(" + runs + ") SELECT " + runs +
                 " FROM shard.runs WHERE true ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
@@ -177,8 +177,8 @@ void TakeStore(SQLite::Database& database) {
   database.exec("UPDATE main.meta SET value = '' WHERE key IN ('shard', 'shard_count')");
 }
 
-/// Attaches the stores one at a time, because SQLite attaches at most ten.
-Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Store& store) {
+/// Copies all shards into the store. They are attached one at a time, because SQLite attaches at most ten.
+Result<std::int64_t> CopyShards(const fs::path& folder, std::int64_t count, Store& store) {
   return sqlite::Guard(store.name(), [&]() -> Result<std::int64_t> {
     SQLite::Database& database = store.database();
     database.exec("PRAGMA synchronous = OFF");  // the complete file is synchronised at the end
@@ -188,7 +188,7 @@ Result<std::int64_t> TakeShards(const fs::path& folder, std::int64_t count, Stor
       SQLite::Statement attach(database, "ATTACH ? AS shard");
       sqlite::Bind(attach, sqlite::FileName(ShardPath(folder, k).string())).exec();
       SQLite::Transaction all(database);
-      TakeStore(database);
+      CopyAttachedShard(database);
       runs += database.execAndGet("SELECT count(*) FROM shard.runs").getInt64();
       all.commit();
       database.exec("DETACH shard");
@@ -259,7 +259,7 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
   {
     auto target = Store::Open(merged.path(), Store::Mode::kWrite);
     if (!target) return tl::unexpected(target.error());
-    runs = TakeShards(folder, count, *target);
+    runs = CopyShards(folder, count, *target);
   }
   if (!runs) return runs;
   if (auto published = Publish(merged.path(), store); !published) return tl::unexpected(published.error());

@@ -69,7 +69,7 @@ CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the
   path TEXT PRIMARY KEY, code INTEGER, message TEXT, bytes BLOB);
 )";
 
-/// A packed file open for reading. SQLite itself serializes threads.
+/// A packed file that is open for reading. SQLite serializes threads; the mutex protects the statement of Read.
 class PackedFile {
  public:
   explicit PackedFile(const fs::path& path)
@@ -79,10 +79,10 @@ class PackedFile {
 
   Result<void> Check() {
     const int id = database_.execAndGet("PRAGMA application_id").getInt();
-    if (id != kPackId) return Fault(name_, "this SQLite file was not made by refit_pendulums pack; name one that was");
+    if (id != kPackId) return Fault(name_, "this SQLite file was not made by refit_pendulums pack; name a packed file");
     const int version = database_.execAndGet("PRAGMA user_version").getInt();
     if (version == kPackVersion) return {};
-    return Fault(name_, "it was packed in form " + std::to_string(version) + ", and this program knows form " +
+    return Fault(name_, "it was packed in format " + std::to_string(version) + ", but this program reads format " +
                             std::to_string(kPackVersion) + "; pack it again");
   }
 
@@ -134,7 +134,7 @@ Result<Source> OpenPack(const fs::path& path) {
   return sqlite::Guard(name, [&]() -> Result<Source> {
     SQLite::Database probe(sqlite::FileName(name), SQLite::OPEN_READONLY);
     if (probe.execAndGet("PRAGMA application_id").getInt() != kPackId || !probe.tableExists("files")) {
-      return Fault(name, "this SQLite file was not made by refit_pendulums pack; name one that was");
+      return Fault(name, "this SQLite file was not made by refit_pendulums pack; name a packed file");
     }
     const auto pack = std::make_shared<PackedFile>(path);
     if (const auto checked = pack->Check(); !checked) return tl::unexpected(checked.error());
@@ -149,13 +149,16 @@ Result<void> CheckReplaceable(const fs::path& path) {
   std::error_code unknown;
   const fs::file_type type = fs::status(path, unknown).type();
   if (type == fs::file_type::not_found) return {};
-  if (type != fs::file_type::regular) return CannotWrite(path.string(), "it is not a regular file; name one");
+  if (type != fs::file_type::regular) {
+    return CannotWrite(path.string(), "it is not a regular file; name a regular file");
+  }
   if (IsSqlite(path) && OpenPack(path)) return {};
-  return Error(StatusCode::kInvalidArgument,
-               path.string() + ": this file exists and is not a packed file, and pack would replace it; name another");
+  return Error(
+      StatusCode::kInvalidArgument,
+      path.string() + ": this file exists and is not a packed file, and pack would replace it; name another file");
 }
 
-/// A packed file in progress.
+/// A packed file that is being written.
 class Packer {
  public:
   Packer(const std::string& path, const Source& source)
@@ -166,7 +169,7 @@ class Packer {
         add_file_(database_, "INSERT INTO files VALUES(?, ?, ?, ?)"),
         has_file_(database_, "SELECT 1 FROM files WHERE path = ?") {}
 
-  Result<void> Take(const ManifestEntry& entry) {
+  Result<void> Add(const ManifestEntry& entry) {
     sqlite::Bind(add_entry_, entry.position, entry.id, entry.path, entry.rig, entry.calibration, entry.from, entry.to,
                  entry.models, entry.columns)
         .exec();
@@ -255,7 +258,7 @@ Result<PackCounts> Pack(const Source& source, const fs::path& path) {
   const TemporaryStore unfinished(WithSuffix(path, ".unfinished"));
   auto packed = sqlite::Guard(path.string(), [&]() -> Result<PackCounts> {
     Packer packer(unfinished.path().string(), source);
-    const auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Take(entry); });
+    const auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Add(entry); });
     if (!taken) return tl::unexpected(taken.error());
     packer.Commit();
     return packer.counts();

@@ -15,17 +15,17 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/status.h"
 
-/// Helpers for SQLite in the stores: no exception of SQLite leaves a function of ours.
+/// Helpers for SQLite in the stores. Guard converts exceptions of SQLite to errors.
 namespace pendulum::sqlite {
 
-/// Converts SQLite's error to a status for the file of that name.
-inline tl::unexpected<Status> Refusal(const std::string& name, const SQLite::Exception& error) {
+/// Converts an exception of SQLite to an error about the file `name`.
+inline tl::unexpected<Status> ErrorFromSqlite(const std::string& name, const SQLite::Exception& error) {
   const std::string words = error.what();
   switch (error.getErrorCode()) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return Error(StatusCode::kTryAgain, name + ": another process uses it; try again when that process is done");
-    case SQLITE_NOTADB: return Error(StatusCode::kDataLoss, name + ": this is not an SQLite file; name another");
+    case SQLITE_NOTADB: return Error(StatusCode::kDataLoss, name + ": this is not an SQLite file; name an SQLite file");
     case SQLITE_CORRUPT:
       return Error(StatusCode::kDataLoss,
                    name + ": the file is damaged (" + words + "); restore it, or start with a new file");
@@ -47,13 +47,13 @@ inline Result<void> CheckReadable(const std::string& name) {
   return Fault(name, "the file cannot be read; check its permissions");
 }
 
-/// The result of `work`, or SQLite's error for the file of that name. Content that contradicts the tables is damage.
+/// The result of `work`, or SQLite's error about the file `name`. Content that cannot be parsed means a damaged file.
 template <typename Work>
 auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
   try {
     return work();
   } catch (const SQLite::Exception& error) {
-    return Refusal(name, error);
+    return ErrorFromSqlite(name, error);
   } catch (const nlohmann::json::exception& error) {
     return Error(StatusCode::kDataLoss,
                  name + ": the file is damaged (" + error.what() + "); restore it, or start with a new file");

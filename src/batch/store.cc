@@ -74,7 +74,7 @@ Result<void> CheckKind(const std::string& name, SQLite::Database& database, Stor
   const bool empty = database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
   if (empty && mode != Store::Mode::kRead) return {};
   if (id != kStoreId) {
-    return Fault(name, "this is not a result store of refit_pendulums; name one, or a file that does not exist yet");
+    return Fault(name, "this is not a result store of refit_pendulums; name a result store or a new file");
   }
   if (version < 1) return Fault(name, "the store is damaged (version " + std::to_string(version) + "); restore it");
   if (version <= static_cast<int>(kStoreMigrations.size())) return {};
@@ -133,8 +133,8 @@ struct Store::State {
     return sqlite::Bind(get, key).executeStep() ? sqlite::Text(get, 0) : "";
   }
 
-  Result<std::string> TakeBatch(const Source& source);
-  void TakeShard(const std::optional<Shard>& shard, StoreMeta& meta);
+  Result<std::string> FillBatchTable(const Source& source);
+  void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const RunOutcome& outcome, std::int64_t run);
 
@@ -148,8 +148,8 @@ struct Store::State {
   std::unique_ptr<SQLite::Statement> run_of, add_run, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
 };
 
-/// Fills the table of this batch with all entries; returns their hash.
-Result<std::string> Store::State::TakeBatch(const Source& source) {
+/// Fills the temporary table `batch` with all entries; returns their hash.
+Result<std::string> Store::State::FillBatchTable(const Source& source) {
   database.exec("DROP TABLE IF EXISTS temp.batch");
   database.exec(kBatchTable);
   SQLite::Statement add(database, "INSERT OR IGNORE INTO batch VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
@@ -174,10 +174,11 @@ Result<std::string> Store::State::TakeBatch(const Source& source) {
   return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
 }
 
-/// Removes runs outside the shard from the batch and from the store.
-void Store::State::TakeShard(const std::optional<Shard>& shard, StoreMeta& meta) {
+/// Removes runs outside the shard from the batch and from the store. Without a shard, removes waiting runs that are no
+/// longer in the manifest.
+void Store::State::RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta) {
   meta.runs = database.execAndGet("SELECT count(*) FROM batch").getInt64();
-  // Runs requested from a service belong to no manifest.
+  // Runs requested from a service belong to no manifest and stay.
   const std::string other_manifest = "id NOT IN (SELECT id FROM batch) AND run NOT IN (SELECT run FROM requests)";
   if (!shard) {  // results of runs that are no longer in the manifest stay
     database.exec("DELETE FROM runs WHERE exit_code IS NULL AND " + other_manifest);
@@ -247,7 +248,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     return tl::unexpected(checked.error());
   }
   if (fs::is_directory(path, unknown)) return Fault(name, "this is a directory; name a store in it");
-  if (fs::is_other(path, unknown)) return Fault(name, "this is not a regular file; name one");
+  if (fs::is_other(path, unknown)) return Fault(name, "this is not a regular file; name a regular file");
   if (const auto readable = sqlite::CheckReadable(name); mode == Mode::kRead && !readable) {
     return tl::unexpected(readable.error());
   }
@@ -273,14 +274,14 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
   return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
     SQLite::Transaction all(state_->database, SQLite::TransactionBehavior::IMMEDIATE);
     StoreMeta meta{std::string(kVersion), "", "", shard, 0, false};
-    auto manifest = state_->TakeBatch(source);
+    auto manifest = state_->FillBatchTable(source);
     if (!manifest) return tl::unexpected(manifest.error());
     auto options = Sha256(options_json);
     if (!options) return tl::unexpected(options.error());
     meta.manifest_sha256 = *std::move(manifest);
     meta.options_sha256 = *std::move(options);
-    state_->TakeShard(shard, meta);
-    state_->database.exec(kTakeRuns);
+    state_->RestrictToShard(shard, meta);
+    state_->database.exec(kUpdateRuns);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
     state_->SetMeta("version", meta.version);

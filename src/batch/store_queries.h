@@ -8,7 +8,7 @@ inline constexpr const char* kBatchTable = R"sql(
 CREATE TEMP TABLE batch(position INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, path TEXT, rig TEXT, calibration TEXT,
   from_s REAL, to_s REAL, models TEXT, columns TEXT, place TEXT))sql";
 
-inline constexpr const char* kTakeRuns = R"sql(
+inline constexpr const char* kUpdateRuns = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   SELECT id, position, path, rig, calibration, from_s, to_s, models, columns FROM batch WHERE true ORDER BY position
   ON CONFLICT(id) DO UPDATE SET position = excluded.position, path = excluded.path, rig = excluded.rig,

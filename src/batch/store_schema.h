@@ -9,8 +9,9 @@ namespace pendulum {
 /// PRAGMA application_id of a result store: "Pend" in ASCII.
 inline constexpr int kStoreId = 0x50656e64;
 
-/// The migration of a store's tables from version n - 1 to n (PRAGMA user_version), n from 1 on. A released version
-/// never changes; a new one is appended. SQLite keeps the comments, so .schema explains the tables.
+/// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
+/// released migration is never changed; a new one is appended. SQLite keeps the comments, so .schema explains the
+/// tables.
 inline constexpr std::array<std::string_view, 3> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)

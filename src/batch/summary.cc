@@ -44,18 +44,18 @@ struct Quantity {
   std::string model, name, unit;
 };
 
-/// Its values, and the names of its runs.
+/// The values of a quantity, and the names of its runs.
 struct QuantityRuns {
   RunValues values;
   std::vector<std::string> ids, groups;  ///< `ids`: one per run; `groups`: one per group.
   bool dates = false;
 };
 
-/// Manifest columns that are columns of table runs.
+/// Manifest columns that have their own column in table runs.
 constexpr std::array<std::string_view, 7> kOwnColumns = {"id",     "path", "rig",   "calibration",
                                                          "from_s", "to_s", "models"};
 
-/// SQL for a run's value in the manifest column given by the next parameter.
+/// SQL for a run's value in a manifest column. The next parameter of the statement must be the column's name.
 std::string ValueOf(const std::string& column) {
   const bool own = std::ranges::find(kOwnColumns, column) != kOwnColumns.end();
   return own ? "iif(? = '', NULL, runs." + column + ")" : "(SELECT value FROM json_each(columns) WHERE key = ?)";
@@ -178,7 +178,7 @@ Json TrendJson(const QuantityRuns& runs, const SummaryOptions& options, const st
   const auto trend = FitTrend(runs.values, outliers);
   if (!trend) return nullptr;
   const std::string column = options.trend_by.empty() ? "position" : options.trend_by;
-  const std::string per = runs.dates ? "a day" : options.trend_by.empty() ? "a run" : "for 1 of " + column;
+  const std::string per = runs.dates ? "per day" : options.trend_by.empty() ? "per run" : "per unit of " + column;
   return {{"column", column},
           {"unit", runs.dates ? Json("days since 1970-01-01") : Json(nullptr)},
           {"slope", trend->slope},
@@ -262,7 +262,7 @@ bool NamesSeveralRigs(SQLite::Database& database) {
   return database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> ''").getInt() > 1;
 }
 
-/// Number of runs whose value in the column gives no order, and one such value.
+/// Number of runs whose value in the column is neither a number nor a date, and one such value.
 std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, const std::string& column) {
   std::pair<std::int64_t, std::string> found;
   if (column.empty()) return found;
@@ -302,7 +302,7 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
                         " runs is neither a number nor a date such as 2026-03-01, for example " + Quoted(example) +
                         "; trends leave these runs out");
   }
-  if (store["versions"].size() > 1) add("mixed_versions", "the fits are of several versions of the program");
+  if (store["versions"].size() > 1) add("mixed_versions", "the fits come from several versions of the program");
   if (store["cpus"].size() > 1) {
     add("several_cpus", "the fits were made on several types of CPU, whose last bits differ");
   }

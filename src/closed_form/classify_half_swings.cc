@@ -52,7 +52,8 @@ Slip SlipOf(const TurningPointTable& table, std::size_t i) {
 
 /// Whether time slips in half swing i: samples were lost, or the pendulum was touched. If a turning point is merely
 /// located late, the next half swing is shorter by the same amount; that is not a slip. The last half swing has no
-/// successor to check. Its turning point counts only if it stands out, because before a rest its time is uncertain.
+/// successor to check. Its slip counts only if the amplitude of the last turning point is above the threshold, because
+/// the time of a turning point just before standstill is uncertain.
 bool HasTimeSlip(const TurningPointTable& table, std::size_t i) {
   const Slip slip = SlipOf(table, i);
   const auto stays = [&](double neighbour) { return std::abs(slip.deviation + neighbour) > slip.limit; };
@@ -62,7 +63,7 @@ bool HasTimeSlip(const TurningPointTable& table, std::size_t i) {
 }
 
 /// Whether the amplitude grows in half swing i and stays larger. A single turning point may be an outlier; at the edges
-/// of a gap two may be.
+/// of a gap, two may be outliers.
 bool GainsAmplitude(const TurningPointTable& table, std::size_t i, bool near_gap) {
   const std::size_t end = std::min<std::size_t>(i + (near_gap ? 4 : 3), table.points.size());
   const double before = std::max(table.Amplitude(i > 0 ? i - 1 : 0), table.Amplitude(i));

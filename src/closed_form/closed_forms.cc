@@ -14,14 +14,14 @@
 namespace pendulum {
 namespace {
 
-/// A law is rejected if turning points like these have a smaller probability under it.
+/// A law is rejected if the probability of its chi-square is smaller than this.
 constexpr double kRejected = 0.01;
 
 std::string Describe(const EnvelopeLaw& law) {
   return law.shape + " (" + law.term + " friction only, p " + ProbabilityText(law.probability) + ")";
 }
 
-/// A sentence: which law the amplitudes follow.
+/// A sentence that says which law the amplitudes follow.
 std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
   constexpr double kMaxDescribedChi2 = 10;
   const double richest = laws.richest_chi_square / laws.richest_freedom;
@@ -39,8 +39,8 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
   return "as " + followed + (rejected.empty() ? "; the turning points exclude none" : "; not as " + rejected);
 }
 
-/// Describes how the fitted law fails although all friction terms together fit. Uses the F test, which allows for
-/// turning points that scatter more than their errors.
+/// Describes the misfit of the fitted law if all friction terms together fit much better; otherwise empty. Uses the F
+/// test, which allows for turning points that scatter more than their errors.
 std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeComparison& laws) {
   constexpr double kMaxP = 1e-4;
   constexpr double kMaxRemainingShare = 0.5;  // other terms must explain at least half of what the law leaves
@@ -74,7 +74,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
   if (!model.gravity.is_linear() && !recording.is_calibrated()) {
     return Error(StatusCode::kFailedPrecondition, "the readings are in " + recording.unit +
                                                       ", but closed forms of this model need an angle or a rate; "
-                                                      "--closed_form_only gives those for small angles");
+                                                      "--closed_form_only gives closed forms for small angles");
   }
   const double origin = recording.time[0];
   const Recording timed = InTrueSeconds(TurningPointView(recording));

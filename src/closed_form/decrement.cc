@@ -25,9 +25,9 @@ using Eigen::VectorXd;
 
 /// The least-squares problem for x = (zero, natural frequency, friction (K), amplitude and time of each run).
 ///
-/// A turning point outside the runs only determines the zero. Amplitude and time of a run are those of its first
-/// turning point. For a rate sensor, whose readings peak between turning points, they are those of the turning point
-/// before its first peak.
+/// Turning points outside the runs are not used. Amplitude and time of a run are those of its first turning point. The
+/// readings of a rate sensor peak between turning points of the angle; the amplitude and time of a run are then those
+/// of the turning point before the first peak.
 class DecrementProblem {
  public:
   DecrementProblem(const TurningPointTable& table, const MotionModel& model, std::vector<bool> included,
@@ -183,7 +183,7 @@ class DecrementProblem {
   const std::stop_token& stop_;
   std::vector<bool> included_;
   std::vector<TurningPointRun> runs_;
-  std::vector<Index> rows_;                 // of the first residual of each run
+  std::vector<Index> rows_;                 // index of the first residual of each run
   std::vector<Eigen::Matrix2d> whitening_;  // for each turning point in the table
   Index points_ = 0;                        // number of turning points in the runs
 };
@@ -197,7 +197,7 @@ struct LeastSquares {
 };
 
 /// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is below a hundredth of the
-/// standard errors. These are multiplied by sqrt(chi2 / dof) if that exceeds 1.
+/// standard errors, which are multiplied by sqrt(chi2 / dof) if this factor exceeds 1.
 std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMaxSteps = 100;
   constexpr double kSmallStep = 1e-4;  // squared, in standard errors
@@ -275,7 +275,7 @@ double RestTorque(const Decrement& decrement) {
   return torque;
 }
 
-/// Whether the law has no reference rate. The turning points give no start value for one.
+/// Whether the law has no reference rate. The turning points give no start value for a reference rate.
 bool IsLinear(const MotionModel& model) {
   bool linear = true;
   FrictionModels::Visit(model.friction, [&]<typename F>() { linear = !HasRateScale<F>; });

@@ -16,8 +16,8 @@
 namespace pendulum {
 namespace {
 
-/// ∫ T dθ over one half swing of the amplitude, for each parameter at 1 and the others at 0, except a reference rate,
-/// which keeps its value. The substitution θ = A sin φ makes the integrand smooth at the ends.
+/// ∫ T dθ over one half swing of this amplitude. In entry k, parameter k is 1 and the other parameters are 0, except a
+/// reference rate, which keeps its value. The substitution θ = A sin φ makes the integrand smooth at the ends.
 template <FrictionModel F>
 Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency,
                                     double reference_rate) {
@@ -118,8 +118,8 @@ double LargestRate(Gravity gravity, const TurningPointTable& table, double natur
 
 }  // namespace
 
-/// At a turning point the energy is U = 1 - cos A. Between two of them friction takes ∫ T(ω(θ)) dθ, with
-/// ω(θ) = ω0 sqrt(2 (cos θ - cos A)) and A the mean amplitude.
+/// At a turning point the energy is U = 1 - cos A. Between two turning points friction takes ∫ T(ω(θ)) dθ, with
+/// ω(θ) = ω0 sqrt(2 (cos θ - cos A)) and the mean amplitude A.
 std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const TurningPointTable& table,
                                          double natural_frequency) {
   std::vector<EnergyBalance> balances;

@@ -73,11 +73,11 @@ bool IsSteady(const Recording& recording, const TurningPointTable& table, Index 
   return std::abs(line[1]) < 3 * noise && scatter < 2 * noise;
 }
 
-/// Begins in the steady part at the end of a hold, or where the hold ends if it is not steady: a moving hand does not
-/// hold.
+/// The swing begins with the steady part at the end of a hold. If no part is steady, the hand was moving, and the swing
+/// begins where the hold ends.
 Beginning SteadyPart(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
   constexpr Index kMinSamples = 8;
-  // The release also lies somewhere within the band.
+  // The last samples within the band may follow the release, so only the first 70 % count as held.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kMinSamples; begin += (held - begin + 1) / 2) {
     if (IsSteady(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
@@ -85,7 +85,7 @@ Beginning SteadyPart(const Recording& recording, const TurningPointTable& table,
   return {last, {WindowBegin::Reason::kUnsteadyHold}};
 }
 
-/// The hold that contains the first turning point of a run, if the reading stays near it for longer than in a swing.
+/// The hold at the first turning point of a run, if the reading stays near this point for longer than in a swing.
 std::optional<Beginning> HoldBefore(const Recording& recording, const TurningPointTable& table, std::size_t turn) {
   const bool rate = recording.quantity == Quantity::kRate;
   // For a rate the hold is at its zero, a quarter period before its first turning point.
@@ -103,8 +103,8 @@ std::optional<Beginning> HoldBefore(const Recording& recording, const TurningPoi
   return SteadyPart(recording, table, begin, LastWithin(recording, end, level, band));
 }
 
-/// Begins at the next turning point after a fall from near the upright, which contains no information on the release,
-/// or after turns over the top.
+/// After turns over the top, or a fall from near the upright, the swing begins at the next turning point. Such a fall
+/// contains no information on the release.
 std::optional<Beginning> BeginAfterFall(const TurningPointTable& table, std::size_t turn) {
   constexpr double kUpright = 165 * kRadFromDeg;
   constexpr double kOverTheTop = 185 * kRadFromDeg;
@@ -170,7 +170,7 @@ struct Ending {
 
 Ending FindEnding(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   const Index turn = table.points[run.last].sample;
-  // A hand that moves the pendulum next may have held it before, so no rest belongs to the swing.
+  // The hand that moves the pendulum afterwards may have held it before, so a standstill does not belong to the swing.
   if (run.last < table.half_swings()) return {turn, {WindowEnd::Reason::kBeforeMove}};
   const Index limit = recording.size() - 1;
   if (IsStopped(recording, table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
@@ -225,8 +225,8 @@ double Decay(const TurningPointTable& table, std::size_t first, std::size_t last
   return MedianOf(amplitude, last + 1 - third, third) / MedianOf(amplitude, first, third);
 }
 
-/// Whether the amplitude decreases over turning points [first, last], either clearly or by three standard errors. The
-/// start of the recording is not a turning point.
+/// Whether the amplitude decreases over turning points [first, last], either clearly or by three standard errors. Skips
+/// point 0, which may be the start of the recording.
 bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last) {
   first = std::max<std::size_t>(first, 1);
   constexpr double kClearly = 0.95;
@@ -245,8 +245,8 @@ bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last)
   return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
 }
 
-/// Share of the half swings in which the amplitude climbs by at least a tenth over three or more half swings. The start
-/// of the recording is not a turning point.
+/// Share of the half swings that belong to a rise of the amplitude by at least a tenth over three or more half swings.
+/// Skips point 0, which may be the start of the recording.
 double RisingShare(const TurningPointTable& table) {
   constexpr std::size_t kMinRise = 3;
   std::size_t climbing = 0;
@@ -268,7 +268,7 @@ double RisingShare(const TurningPointTable& table) {
   return static_cast<double>(climbing) / static_cast<double>(table.half_swings());
 }
 
-/// Handles repeated turning points that are not a free swing: an error, or a swing that beats.
+/// Returns an error if the turning points are not a free swing, a swing if it beats, and otherwise std::nullopt.
 Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording, const TurningPointTable& table,
                                                      const std::vector<TurningPointRun>& runs) {
   constexpr double kMaxRisingShare = 0.2;
@@ -288,9 +288,9 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   const double largest = std::ranges::max(table.Amplitudes());
   const bool scattered = 3 * free < turns && (free < kMinFreePoints || table.Amplitude(longest->first) < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
-  // A motion that begins at rest and climbs was not released.
-  const bool from_rest = climbs && table.Amplitude(1) < 0.35 * largest;
-  if (from_rest || Decay(table, 0, turns - 1) > kDecayed) {
+  // A motion that begins near standstill and grows was not released.
+  const bool from_standstill = climbs && table.Amplitude(1) < 0.35 * largest;
+  if (from_standstill || Decay(table, 0, turns - 1) > kDecayed) {
     if (climbs) return NoSwing("the amplitude rises repeatedly: the pendulum is driven");
     return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
                    " in a row belong to a free swing, with equal times between them and decreasing amplitude: the "

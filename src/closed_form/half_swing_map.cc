@@ -128,7 +128,8 @@ class HalfSwingPath {
     return loss;
   }
 
-  /// The rate is largest where g(θ) = -T(ω). A few rounds suffice, because T hardly changes there.
+  /// The rate is largest where the torques of gravity and friction cancel. A few rounds suffice, because the friction
+  /// torque hardly changes there.
   void FindPeak(const Nodes& loss, double after, HalfSwingEnd& end) const {
     constexpr int kMaxRounds = 50;
     constexpr double kSame = 1e-13;

@@ -25,7 +25,7 @@ struct Shape {
 };
 
 Shape ShapeFor(double samples_per_period, double period) {
-  if (samples_per_period < 14) return {2, period / 4};  // a sixth of a period has too few
+  if (samples_per_period < 14) return {2, period / 4};  // a sixth of a period has too few samples
   return {samples_per_period >= 36 ? 6 : samples_per_period >= 24 ? 4 : 2, period / 6};
 }
 

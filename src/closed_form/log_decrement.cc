@@ -30,8 +30,8 @@ struct PeriodSpan {
   const TurningPoint& to() const { return table.points[last()]; }
 };
 
-/// Inputs of the formulas: two times [s], two readings relative to the zero, and the mean over the half swings of their
-/// period divided by that of a small swing.
+/// Inputs of the formulas: two times [s], two readings relative to the zero, and the mean period ratio: the period of
+/// each half swing divided by the period of a small swing, averaged over the half swings.
 using Inputs = Eigen::Matrix<double, 5, 1>;
 using Outputs = Eigen::Matrix<double, kFormulas, 1>;
 

@@ -15,7 +15,7 @@
 namespace pendulum {
 namespace {
 
-/// Subtracts the mean of the values from `begin` on.
+/// Subtracts the mean of values[begin] to the last value from each of these values.
 void Centre(std::size_t begin, std::vector<double>& values) {
   const auto count = static_cast<double>(values.size() - begin);
   double mean = 0;
@@ -34,7 +34,7 @@ std::vector<double> CrossingTimes(const Recording& recording, const TurningPoint
   return times;
 }
 
-/// The times that these crossings would have at ω0 = 1.
+/// The times that the zero crossings would have at ω0 = 1.
 std::vector<double> CrossingPhases(const TurningPointTable& table, Gravity gravity, double natural_frequency) {
   std::vector<double> phases;
   for (const auto& [first, last] : table.Runs()) {
@@ -49,7 +49,7 @@ std::vector<double> CrossingPhases(const TurningPointTable& table, Gravity gravi
   return phases;
 }
 
-/// ω0 from the slope of the crossings, common to all runs. Amplitudes are computed with the ω0 given.
+/// ω0 from the slope of the crossings, common to all runs. Amplitudes of a rate are computed with `natural_frequency`.
 double FrequencyAtAmplitudesOf(const std::vector<double>& time, const TurningPointTable& table, Gravity gravity,
                                double natural_frequency) {
   const std::vector<double> phase = CrossingPhases(table, gravity, natural_frequency);
@@ -71,8 +71,8 @@ double AngleAmplitude(Quantity quantity, double amplitude, double natural_freque
   return std::min(gravity.AngleOfChord(chord), largest);
 }
 
-/// Fits a least-squares line of time on reading to the samples within 0.35 of the smaller amplitude, or uses the two
-/// samples around the passage.
+/// Fits a least-squares line of time on reading to the samples within 0.35 of the smaller amplitude. With too few such
+/// samples, interpolates between the two samples around the passage.
 double ZeroCrossing(const Recording& recording, const TurningPointTable& table, std::size_t point) {
   const TurningPoint &from = table.points[point - 1], &to = table.points[point];
   const double zero = table.zero.value;

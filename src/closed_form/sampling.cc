@@ -14,21 +14,21 @@ namespace {
 
 using Eigen::Index;
 
-/// With fewer samples per period a turning point, a parabola through three of them, is wrong by more than 1 % of the
-/// amplitude.
+/// With fewer samples per period, a turning point from a parabola through three samples is wrong by more than 1 % of
+/// the amplitude.
 constexpr double kMinPerPeriod = 8;
 
-/// The recommended number; turning points are then accurate to a thousandth.
+/// The recommended number of samples per period; turning points are then accurate to a thousandth of the amplitude.
 constexpr double kGoodPerPeriod = 20;
 
 /// With fewer levels peak to peak the amplitude is accurate only to some percent, regardless of the noise. Near rest
 /// every swing has few levels.
 constexpr double kMinCounts = 8;
 
-/// An interval longer than this many typical ones contains missing readings.
+/// If an interval is longer than this many typical intervals, readings are missing in it.
 constexpr double kGap = 3;
 
-/// Above this share of the interval, methods that count samples instead of using time stamps fail.
+/// If the jitter exceeds this share of the interval, methods that count samples instead of using time stamps fail.
 constexpr double kMuchJitter = 0.1;
 
 void DescribeIntervals(const Eigen::VectorXd& time, Sampling& sampling) {
@@ -123,7 +123,7 @@ void WarnOfCounts(const Sampling& sampling, std::vector<Warning>& warnings) {
   warnings.push_back({"few_counts", "the swing spans only " + NumberText(sampling.start_counts) +
                                         " levels of the sensor at first and " + NumberText(sampling.end_counts) +
                                         " at the end, so turning points are inaccurate; release from a larger angle or "
-                                        "use a sensor with a smaller resolution"});
+                                        "use a sensor with a finer resolution"});
 }
 
 }  // namespace

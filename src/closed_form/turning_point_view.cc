@@ -31,12 +31,12 @@ Extremes ExtremesOf(const Recording& recording) {
 
 /// The passages through the bottom, which are maxima of the reading.
 std::vector<TurningPoint> Bottoms(const Recording& upright, const TurningPointTable& table) {
-  constexpr double kAlike = 0.25;  // of a swing, which decreases with energy, but by less in one swing
+  constexpr double kAlike = 0.25;  // of the reading's range; the loss of energy in one swing is smaller
   std::vector<TurningPoint> bottoms;
   for (std::size_t i = 0; i < table.half_swings(); ++i) {  // maxima and minima alternate
     if (table.points[i].value > table.points[i + 1].value) bottoms.push_back(table.points[i]);
   }
-  // The first may be the start of the recording in the middle of a swing.
+  // The first entry may be the start of the recording in the middle of a swing.
   if (bottoms.size() < 2) return bottoms;
   const double swing = bottoms[1].value - upright.value.minCoeff();
   if (bottoms[1].value - bottoms[0].value > kAlike * swing) bottoms.erase(bottoms.begin());

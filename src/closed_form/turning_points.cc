@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Indices of confirmed turning points, preceded by the first candidate: the start of the recording or a sample of its
+/// Indices of turning points. The first one is only a candidate: it may be the start of the recording or a sample of a
 /// hold.
 std::vector<Index> TurningSamples(const Eigen::VectorXd& value, double threshold) {
   std::vector<Index> points;
@@ -76,8 +76,8 @@ double TurningThreshold(const Recording& recording, double noise) {
   return std::max({deviations * noise, 2 * recording.resolution, 0.03 * range});
 }
 
-/// The turning points that move by more than the threshold, preceded by the first candidate, which may be the start or
-/// lie in a hold. May be empty.
+/// The turning points after which the reading moves by more than the threshold. The first entry is only a candidate: it
+/// may be the start of the recording or lie in a hold. May be empty.
 TurningPointTable FindCandidates(const Recording& recording) {
   TurningPointTable table;
   table.quantity = recording.quantity;
@@ -93,8 +93,8 @@ TurningPointTable FindCandidates(const Recording& recording) {
   return table;
 }
 
-/// Whether the first candidate is a turning point. It may also be the start of the recording or lie in its hold. Then
-/// all earlier readings are equal to it, or differ only by noise.
+/// Whether the first candidate is a turning point. It may also be the start of the recording or lie in a hold. Then all
+/// earlier readings are equal to it, or differ only by noise.
 bool IsTurningPoint(const Recording& recording, const TurningPointTable& table, Index first) {
   constexpr Index kMinHeld = 8;  // fewer samples cannot distinguish noise from a slope
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();

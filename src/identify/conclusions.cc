@@ -39,7 +39,7 @@ void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std
   }
 }
 
-/// The frequency that the rig's geometry predicts is rough, but not by a factor of two.
+/// The rig's geometry predicts the frequency only roughly, but an error of a factor of two means a wrong unit.
 void WarnOfFrequency(const Sampling& sampling, Identification& identification) {
   constexpr double kMaxRatio = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);

@@ -25,7 +25,7 @@
 namespace pendulum {
 namespace {
 
-/// One chosen swing on its way through the pipeline: Take -> FitAlone -> (FitTogether) -> Conclude.
+/// A chosen swing as input of the pipeline TakeSwing -> FitAlone -> (FitTogether) -> CompleteIdentification.
 struct Swing {
   std::string path;
   Recording recording;
@@ -34,8 +34,8 @@ struct Swing {
   int release = 0;  ///< Number of the swing if several swings of its recording were chosen, otherwise 0.
 };
 
-/// Takes the swing with that number (from 1) out of a prepared recording. The last chosen swing takes over the samples,
-/// because a copy of a long recording is large.
+/// Takes the swing with the number `release` (from 1) out of a prepared recording. The last chosen swing takes over the
+/// samples, because a copy of a long recording is large.
 Swing TakeSwing(PreparedRecording& from, int release) {
   const bool last = release == from.swings.chosen.back();
   Swing swing;
@@ -71,7 +71,7 @@ Result<RunModels> FitAlone(const IdentifyOptions& options, const FitOptions& fit
   return RunModels{{}, *std::move(models), {}};
 }
 
-/// Whether fit m is checked, by itself.
+/// Whether fit m is checked; `main` is the index of the main fit.
 bool IsChecked(Checks checks, std::size_t m, std::size_t main) {
   return checks == Checks::kFull || (checks == Checks::kStandard && m == main);
 }
@@ -144,8 +144,7 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
   return identification;
 }
 
-// ---- Several recordings of one pendulum
-// ------------------------------------------------------------------------------
+// ---- Several recordings of one pendulum -----------------------------------------------------------------------------
 
 Result<std::vector<Swing>> TakeAllSwings(std::vector<PreparedRecording> recordings) {
   std::vector<Swing> swings;
@@ -244,8 +243,8 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   return runs;
 }
 
-/// Adds the warnings of the separate fit that the joint fit does not repeat: about window, sampling, other local
-/// minima.
+/// Adds the warnings of the separate fit about the window, the sampling and other local minima, unless the joint fit
+/// repeats them. kOfTheFit lists warnings that the joint fit gives itself if they apply.
 void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& identification) {
   constexpr std::array<std::string_view, 8> kOfTheFit = {
       "lack_of_fit",         "correlated_residuals", "zero_drift", "noise_below_resolution",

@@ -24,7 +24,7 @@ bool IsDeterminable(Gravity gravity) {
   return !(HasConstantTorque<F> && gravity.is_linear());
 }
 
-/// A model's name, which outlives all models: they only refer to it.
+/// A model with its own name. The models returned to callers only refer to these names.
 struct NamedModel {
   std::string name;
   std::string_view friction;
@@ -75,7 +75,9 @@ Result<std::vector<MotionModel>> FindMotionModels(std::string_view names) {
     const std::string name(names.substr(begin, end - begin));
     begin = end + 1;
     const auto found = FindMotionModel(name);
-    if (!found) return Error(StatusCode::kInvalidArgument, found.error().message + "; or all, by itself");
+    if (!found)
+      return Error(StatusCode::kInvalidArgument,
+                   found.error().message + "; or give 'all' by itself for every friction law");
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
       return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + name + " twice");
     }

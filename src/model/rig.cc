@@ -60,7 +60,7 @@ void SetFromRodAndBob(RigValues values, Rig& rig) {
 
 void SetFromTorque(RigValues values, Rig& rig) { rig.gravity_torque = values[0]; }
 
-/// MODEL.md eq. (1.2) in its first form, G = mass center_of_mass gravity.
+/// MODEL.md eq. (1.2) in its first form: G = mass · center_of_mass · gravity.
 void SetFromBody(RigValues values, Rig& rig) {
   const RigValue mass = values[0], distance = values[1], gravity = values[2];
   rig.gravity_torque =
@@ -108,7 +108,7 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
   for (const auto& item : rig.items()) {
     if (item.key() == kInertia.name || Has(*form, item.key())) continue;
     return Fault(name, Quoted(identifying_key) + " and " + Quoted(item.key()) +
-                           " belong to different descriptions of a rig, which cannot be mixed; it is " +
+                           " belong to different descriptions of a rig, which cannot be mixed; a rig is " +
                            std::string(kFormsText));
   }
   for (const std::string_view key : form->keys) {

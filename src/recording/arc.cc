@@ -47,15 +47,16 @@ tl::unexpected<Status> NoArc(const std::string& why, const std::string& otherwis
                                                     "; choose one coordinate with --value_column" + otherwise);
 }
 
-/// Checks that the direction from the centre to the middle of the points is down. It is undetermined if the points lie
-/// all round the centre: a swing beyond the horizontal has as many points above. In units of the radius.
+/// Checks that the middle of the points, which is the origin, is far enough from the centre to show where down is. This
+/// is undetermined if the points lie all round the centre: a swing far beyond the horizontal has as many points above
+/// the centre as below. Distances are in units of the radius.
 Result<void> CheckDownDirection(const VectorXd& y, const Circle& circle) {
   constexpr double kMinDepth = 0.2;  // the middle of a sine of 2 rad is J0(2) = 0.22 radii below the centre
   const double middle = -circle[1] / circle[2];
   const VectorXd height = (y.array() - circle[1]) / (middle < 0 ? -circle[2] : circle[2]);
   if (std::abs(middle) >= kMinDepth && height.maxCoeff() >= -height.minCoeff()) return {};
   return NoArc("the middle of the points is " + NumberText(std::abs(middle), 2) +
-                   " radii from its centre; with less than " + NumberText(kMinDepth, 2) +
+                   " radii from the centre of the circle; with less than " + NumberText(kMinDepth, 2) +
                    ", or with points farther away on the other side, the downward direction is unknown",
                ", or leave out the turns over the top");
 }

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Check = Result<void>;
 
-/// Digits of a time in a message: a double keeps 15 digits, and a counter is not shown with an exponent.
+/// Digits of a time in a message: all that a double keeps, so that a counter is shown without an exponent.
 constexpr int kDigits = 15;
 
 std::string Count(Index count, const std::string& one) {
@@ -68,13 +68,13 @@ class ClockRepair {
   bool MakeUniform(double grid);
   Check RemoveRowsWithSharedStamps();
   Check RemoveBackwardRows();
-  void Keep(const std::vector<bool>& keep);
+  void KeepRows(const std::vector<bool>& keep);
   void WarnOfScatter();
 
   RawSamples samples_;
 };
 
-/// All steps agree to a tenth of their mean: nothing to repair, regardless of the grid.
+/// True if all steps agree within 9 % of their mean. Then nothing has to be repaired, whatever the grid.
 bool ClockRepair::IsUniform() const {
   const Index steps = size() - 1;
   if (steps < 1) return true;
@@ -108,7 +108,7 @@ double ClockRepair::MedianStep() const {
 
 // ---- Counters that wrap around -----------------------------------------------------------------------------------
 
-/// The rows where the counter wraps around; empty if it is not this counter.
+/// The rows where the counter wraps around; empty if the times cannot come from this counter.
 std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   std::vector<Index> wraps;
   for (Index i = 0; i < size(); ++i) {
@@ -119,8 +119,8 @@ std::vector<Index> ClockRepair::Wraps(const Counter& counter) const {
   return wraps;
 }
 
-/// Whether the steps across the wrap are like the others. A 16-bit counter wraps so often that a clock set back, or a
-/// long gap, could look the same. Its steps must therefore all be alike, except short gaps.
+/// Whether the steps across the wraps are like the other steps. A range of 16 bits is so short that a clock set back,
+/// or a long gap, could look like a wrap. All steps of a 16-bit counter must therefore be alike, except short gaps.
 bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wraps) const {
   constexpr double kUsualSteps = 10, kAlike = 2, kShortGap = 1.0 / 64;
   const double usual = MedianStep();
@@ -198,7 +198,8 @@ Index ClockRepair::CountUnusualSteps(double grid) const {
   return std::ranges::count_if(steps, [usual](double step) { return step != usual; });
 }
 
-/// Replaces the stamps by the middle of the uniform clocks that agree with all of them to half a grid step.
+/// Replaces the stamps by the middle of the uniform clocks that agree with all of them to half a grid step. Returns
+/// false if there is no such clock.
 bool ClockRepair::MakeUniform(double grid) {
   const double first = time()[0];
   const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
@@ -223,7 +224,8 @@ bool ClockRepair::MakeUniform(double grid) {
   return true;
 }
 
-/// Warns of stamps that increase although rounded. With regular sampling and gaps, nearly all steps would be equal.
+/// Warns of coarse stamps that increase but fit no uniform clock. There is no warning if nearly all steps are equal,
+/// because then the sampling is regular with some gaps.
 void ClockRepair::WarnOfScatter() {
   constexpr double kMinUnusualShare = 0.1;
   const std::optional<double> grid = Grid();
@@ -278,11 +280,11 @@ Check ClockRepair::RemoveRowsWithSharedStamps() {
   Warn("time_repeated", first + 1,
        many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
            "; one of each group of equal rows was kept");
-  Keep(keep);
+  KeepRows(keep);
   return {};
 }
 
-void ClockRepair::Keep(const std::vector<bool>& keep) {
+void ClockRepair::KeepRows(const std::vector<bool>& keep) {
   LineNumbers lines;
   Index kept = 0;
   for (Index i = 0; i < size(); ++i) {
@@ -326,14 +328,16 @@ Check ClockRepair::RemoveBackwardRows() {
                             " would have to be left out to make times increase; correct or sort the rows");
   }
   Warn("time_not_increasing", first, sentence + "; the fewest rows were left out to make times increase, " + many);
-  Keep(keep);
+  KeepRows(keep);
   return {};
 }
 
 Result<RawSamples> ClockRepair::Repair() {
   if (IsUniform()) return std::move(samples_);
   Unwrap();
-  constexpr Index kMinUnusualSteps = 8;  // So many lost rows are not spread evenly by chance (8!/8^8 = 0.2 %).
+  // A uniform clock fits stamps with lost rows only if the losses are spread evenly. The probability that 8 losses fall
+  // into 8 different eighths of the recording is 8!/8^8 = 0.2 %.
+  constexpr Index kMinUnusualSteps = 8;
   if (IsNotDecreasing()) {
     const std::optional<double> grid = Grid();
     std::vector<bool> keep;

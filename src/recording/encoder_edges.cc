@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-/// The step from the previous row in fractions of a count; 0 for the first row.
+/// The step from the previous row, in whole multiples of 1 / `parts` count; 0 for the first row.
 double StepTo(const Recording& recording, Index i, double parts = 1) {
   return i == 0 ? 0 : std::round(parts * (recording.value[i] - recording.value[i - 1]) / recording.resolution);
 }
@@ -25,7 +25,7 @@ bool HasUnevenStamps(const Recording& recording) {
   return intervals[last * 9 / 10] > kUneven * intervals[last / 10];
 }
 
-/// Runs of rows in one direction: the beginning of each, and the end.
+/// The first row of each run of rows in one direction, followed by the number of rows.
 std::vector<Index> RunsOf(const Recording& recording) {
   std::vector<Index> begins = {0};
   double direction = 0;
@@ -52,8 +52,7 @@ std::vector<bool> MarkSlips(const Recording& recording) {
   return slips;
 }
 
-/// Whether the direction changes between two rows one count apart, so that the angle turned within the count of the
-/// first.
+/// Whether the next row is one count back, so that the turning point lies within the count of row i.
 bool ReversesAfter(const Recording& recording, Index i) {
   if (i == 0 || i + 1 == recording.size()) return false;
   const double next = StepTo(recording, i + 1);

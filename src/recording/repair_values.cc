@@ -26,7 +26,8 @@ bool IsCalibratedAngle(const Recording& recording) {
 /// Makes an angle continuous if the sensor wraps around after a turn.
 void Unwrap(Recording& recording) {
   Eigen::VectorXd& value = recording.value;
-  // Such a sensor shows at most one turn, and without the jump a step is no longer a jump.
+  // The readings of such a sensor span at most one turn. A step is a jump if less than a quarter turn remains when
+  // whole turns are removed from it.
   constexpr double kRounding = 1.01;
   if (!IsCalibratedAngle(recording) || value.maxCoeff() - value.minCoeff() > kTurn * kRounding) return;
   Index jumps = 0;
@@ -63,7 +64,7 @@ void KeepMarkedSamples(const std::vector<bool>& kept, Recording& recording) {
   recording.value.conservativeResize(count);
 }
 
-/// The smallest step between readings: their resolution, or the quantile `share` of the changes.
+/// The smallest step between readings: the quantile `share` of the changes, but at least the resolution.
 double SmallestStep(const Recording& recording, double share) {
   std::vector<double> steps;
   steps.reserve(static_cast<std::size_t>(recording.size()));
@@ -95,7 +96,7 @@ Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smalles
   return tops;
 }
 
-/// If the file gives no range, takes an extreme at which swings are clipped as an end of the sensor's range.
+/// If the file gives no range, uses an extreme at which swings are clipped as an end of the sensor's range.
 void DetectSaturation(double smallest_step, Recording& recording) {
   constexpr Index kMinTops = 3;
   if (recording.range) return;
@@ -135,7 +136,7 @@ void WarnOfEventRows(double smallest_step, Recording& recording) {
 constexpr Index kStaleReach = 6;  // samples on either side that are examined for stale readings
 
 /// Readings that repeat the previous one although their neighbours change by many times the smallest step. amid_change:
-/// the range of the neighbours is that large. amid_motion: the neighbours move that far in one direction.
+/// the neighbours have a large range. amid_motion: the neighbours move far in one direction.
 struct Repeats {
   std::vector<bool> amid_change;
   std::vector<bool> amid_motion;
@@ -167,8 +168,8 @@ Repeats FindRepeats(double smallest_step, const Recording& recording) {
   return repeats;
 }
 
-/// Whether readings change both before sample `first` and after sample `last`. They do not at the end of a hold, nor
-/// where a pendulum stops.
+/// Whether readings change both before sample `first` and after sample `last`. At the end of a hold and where
+/// a pendulum stops, they change on one side only.
 bool ChangesOnBothSides(const Eigen::VectorXd& value, Index first, Index last, double smallest_step) {
   constexpr double kChange = 3;  // smallest steps
   const double before = value[first - 1] - value[std::max<Index>(first - 1 - kStaleReach, 0)];
@@ -204,8 +205,8 @@ void RemoveStaleReadings(double smallest_step, Recording& recording) {
                            " readings only repeat the previous one while the pendulum moves; they are left out"});
 }
 
-/// Distance of each reading to the line through its two neighbours. Stores medians over blocks; At() returns the
-/// largest of the three blocks around a sample.
+/// The scale of the distances of readings to the line through their two neighbours. Stores the median of each block;
+/// At() returns the largest median of the three blocks around a sample.
 class LocalScale {
  public:
   explicit LocalScale(const Recording& recording) {
@@ -239,15 +240,15 @@ double Extrapolated(const Recording& recording, Index a, Index b, Index i) {
   return recording.value[b] + slope * (recording.time[i] - recording.time[b]);
 }
 
-/// Marks readings that neither the two previous nor the two following ones predict. A kick or a release is predicted
-/// from one side.
+/// Marks readings that neither the two previous nor the two following ones predict. A reading at a kick or a release is
+/// predicted from one side.
 struct Spikes {
   std::vector<bool> kept;
   Index count = 0;
 };
 
 Spikes FindSpikes(double smallest_step, const Recording& recording) {
-  constexpr double kSigmaPerMedian = 1.21;  // for the distance of Gaussian noise to the line through its neighbours
+  constexpr double kSigmaPerMedian = 1.21;  // standard deviation of Gaussian noise / median of the distances
   constexpr double kSteps = 2.5;
   const double deviations = 2 * std::sqrt(2 * std::log(static_cast<double>(recording.size()))) + 0.5;
   const double far_in_medians = kSigmaPerMedian * deviations;
@@ -267,7 +268,7 @@ Spikes FindSpikes(double smallest_step, const Recording& recording) {
 }
 
 void RemoveSpikes(double smallest_step, Recording& recording) {
-  constexpr int kMaxPasses = 4;  // neighbours of a spike are judged again without it
+  constexpr int kMaxPasses = 4;  // the neighbours of a spike are examined again without the spike
   constexpr Index kMinSamplesPerRemoved = 10;
   Spikes spikes = FindSpikes(smallest_step, recording);
   if (spikes.count == 0) return;

@@ -50,8 +50,8 @@ Levels DistinctReadings(const Levels& sorted) {
   return nearly_all ? repeated : all;
 }
 
-/// Small gaps between neighbours and fractions of them. If any two levels are adjacent, one of these is nearly the
-/// step.
+/// Small gaps between neighbours and fractions of them. If any two levels are adjacent, one of the candidates is
+/// nearly the step.
 Levels Candidates(const Levels& levels) {
   Levels gaps;
   for (std::size_t i = 1; i < levels.size(); ++i) gaps.push_back(levels[i] - levels[i - 1]);
@@ -65,15 +65,16 @@ Levels Candidates(const Levels& levels) {
   return candidates;
 }
 
-/// Improves a step using the distances between levels within `reach`; std::nullopt if these are not multiples of it.
+/// Improves a step using the distances between levels up to `reach`; std::nullopt if too many distances are not
+/// multiples of the step.
 std::optional<double> ImprovedStep(const Levels& levels, double step, double reach) {
   constexpr double kNear = 0.25;
   constexpr double kMaxFarShare = 0.3;  // share of the pairs; half for random readings
   constexpr double kOutliers = 2;
-  // Omits the last levels, which may be outliers and would otherwise be paired with all levels below.
+  // Omits the highest 2 % of levels, which may be outliers and would otherwise be paired with all levels below.
   const double highest = levels[levels.size() - 1 - levels.size() / 50];
-  double moment = 0;
-  double inertia = 0;
+  double sum_of_products = 0;
+  double sum_of_squares = 0;
   double far = 0;
   double pairs = 0;
   for (std::size_t i = 0, j = 0; i < levels.size(); ++i) {
@@ -90,14 +91,14 @@ std::optional<double> ImprovedStep(const Levels& levels, double step, double rea
       ++far;
       continue;
     }
-    moment += whole * (levels[j] - levels[i]);
-    inertia += whole * whole;
+    sum_of_products += whole * (levels[j] - levels[i]);
+    sum_of_squares += whole * whole;
   }
-  if (inertia == 0 || far > kMaxFarShare * pairs + kOutliers) return std::nullopt;
-  return moment / inertia;
+  if (sum_of_squares == 0 || far > kMaxFarShare * pairs + kOutliers) return std::nullopt;
+  return sum_of_products / sum_of_squares;
 }
 
-/// Step and offset from least squares, and the rms distance of all levels to this grid.
+/// The step from a least-squares fit of step and offset, and the rms distance of all levels to the fitted grid.
 struct LevelGrid {
   double step = 0;
   double spread = 0;  ///< In steps.
@@ -157,18 +158,19 @@ bool IsSignificant(const Levels& levels, const LevelGrid& grid) {
   return grid.spread < kLargestSpread && (static_cast<double>(levels.size()) - fitted) * gain > kEvidence;
 }
 
-/// Even spacing without gaps or repeats: a ramp, not levels.
+/// True if nearly all readings are distinct and nearly all levels of the grid occur. This is a ramp, not a sensor with
+/// levels.
 bool IsRamp(const Levels& levels, const LevelGrid& grid, std::size_t readings) {
   constexpr double kNearlyAll = 0.9;
   const double possible = (levels.back() - levels.front()) / grid.step + 1;
-  const auto met = static_cast<double>(levels.size());
-  return met > kNearlyAll * static_cast<double>(readings) && met > kNearlyAll * possible;
+  const auto found = static_cast<double>(levels.size());
+  return found > kNearlyAll * static_cast<double>(readings) && found > kNearlyAll * possible;
 }
 
 }  // namespace
 
 /// Returns the spacing of the sensor's own levels. If more than one in twenty distinct readings lie halfway between
-/// these, as averages of two readings do, it returns the finer spacing.
+/// these levels, as averages of two readings do, returns the finer spacing.
 double FindResolution(const Eigen::VectorXd& value) {
   constexpr double kFinest = 1e-6;
   if (value.size() < static_cast<Index>(kMinLevels)) return 0;

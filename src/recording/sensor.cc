@@ -41,7 +41,7 @@ class CalibrationReader {
     return Fault(key, "is " + JsonForMessage(value) + "; it must be " + rule);
   }
 
-  /// The value of an optional key, or nullptr.
+  /// The value of an optional key; nullptr if the key is missing or null.
   const Json* Find(std::string_view key) const {
     const auto found = json_.find(key);
     return found == json_.end() || found->is_null() ? nullptr : &*found;
@@ -141,8 +141,8 @@ Check CalibrationReader::CheckCovariance() const {
     for (Eigen::Index j = 0; j < i; ++j) {
       const double scale = std::sqrt(matrix(i, i)) * std::sqrt(matrix(j, j));
       if (std::abs(matrix(i, j) - matrix(j, i)) > kRounding * scale) {
-        return Fault("covariance", "is not symmetric: " + NumberText(matrix(i, j)) + " and " +
-                                       NumberText(matrix(j, i)) + " are symmetric to each other and must be equal");
+        return Fault("covariance", "is not symmetric: the mirrored elements " + NumberText(matrix(i, j)) + " and " +
+                                       NumberText(matrix(j, i)) + " must be equal");
       }
       if (std::abs(matrix(i, j)) > (1 + kRounding) * scale) {
         return Fault("covariance", "has the covariance " + NumberText(matrix(i, j)) +

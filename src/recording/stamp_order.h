@@ -11,7 +11,7 @@
 /// Ranges of rows whose time stamps are out of order, and the fewest rows to remove from each.
 namespace pendulum {
 
-/// Rows [begin, end) whose stamps are out of order among themselves: all rows before are earlier, all after are later.
+/// Rows [begin, end) whose stamps are out of order. All rows before them are earlier; all rows after them are later.
 struct UnorderedRows {
   Eigen::Index begin;
   Eigen::Index end;
@@ -34,7 +34,7 @@ inline std::vector<UnorderedRows> FindUnorderedRows(const Eigen::VectorXd& time)
 
 /// Keeps a longest increasing sequence of the rows (patience sorting, O(n log n)). Returns how many rows it drops.
 inline Eigen::Index DropOutOfOrderRows(const Eigen::VectorXd& time, UnorderedRows rows, std::vector<bool>& keep) {
-  std::vector<Eigen::Index> tails;  // For sequences of each length, the smallest last row.
+  std::vector<Eigen::Index> tails;  // For each length, the row with the earliest stamp that ends a sequence.
   std::vector<Eigen::Index> before(rows.end - rows.begin,
                                    Eigen::Index{-1});  // The previous row in each row's sequence.
   for (Eigen::Index i = rows.begin; i < rows.end; ++i) {

@@ -9,7 +9,7 @@
 /// Finds uniform clocks that agree with stamps rounded to whole steps.
 namespace pendulum {
 
-/// The clocks a + b i within half a step of every stamp, i = 0, 1, ...; in steps.
+/// The clocks a + b i, i = 0, 1, ..., that are within half a step of every stamp. All values are in steps.
 struct UniformClock {
   double start;            ///< a, the middle of the possible values.
   double slope;            ///< b, the middle of the possible values, > 0.
@@ -42,9 +42,12 @@ inline double LargestSlope(const Eigen::VectorXd& y, double height) {
 }
 
 /// The middle of all clocks that agree with the stamps [whole steps]; std::nullopt if no increasing clock agrees.
-/// Truncated instead of rounded stamps give the same slopes, and starts half a step later. Needs at least two stamps.
+/// If stamps are truncated instead of rounded, the slopes are the same, but the true start is half a step later. Needs
+/// at least two stamps.
 inline std::optional<UniformClock> FindUniformClock(const Eigen::VectorXd& stamps) {
-  constexpr double kHeight = 1 + 1e-6;  // Width of the band of stamps; a stamp halfway may be rounded either way.
+  // Width of the band that contains the stamps: one step, and a little more because a stamp halfway between two steps
+  // may be rounded up or down.
+  constexpr double kHeight = 1 + 1e-6;
   const double largest = LargestSlope(stamps, kHeight);
   const double least = -LargestSlope(-stamps, kHeight);
   if (!(least > 0) || least > largest) return std::nullopt;

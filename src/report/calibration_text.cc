@@ -91,7 +91,8 @@ std::string CorrelationText(const CalibrationFit& fit) {
 
 // --- points ---------------------------------------------------------------------------------------------------------
 
-/// All points in the order of the table, or those with the largest residuals, the largest first.
+/// All points in the order of the table; of more than kShownPoints, those with the largest residuals, the largest
+/// first.
 std::vector<Index> ShownPoints(const CalibrationFit& fit) {
   std::vector<Index> points(fit.residual.size());
   std::iota(points.begin(), points.end(), Index{0});
@@ -101,7 +102,8 @@ std::vector<Index> ShownPoints(const CalibrationFit& fit) {
   return points;
 }
 
-/// Three digits of the largest residual; less than a millionth of the angles counts as 0.
+/// Decimals that show three digits of the largest residual. A residual below a millionth of the largest angle is only a
+/// numerical error, so the decimals do not follow it.
 int Decimals(const CalibrationTable& table, const CalibrationFit& fit) {
   constexpr double kNothing = 1e-6;
   const double scale = std::max(std::abs(fit.residual[fit.largest]), kNothing * table.angle.cwiseAbs().maxCoeff());
@@ -177,7 +179,8 @@ std::string LackOfFitText(const CalibrationTable& table, const CalibrationFit& f
                std::to_string(table.line[fit.largest]) + "), are " +
                (ratio >= 2 ? MagnitudeText(ratio) + " it (" + NumberText(ratio, 2) + " counts)"
                            : "of its size (" + NumberText(ratio, 2) + " counts)") +
-               ". " + rounding + ", but they have " + Short(*fit.calibration.residual_std_dev) + " " + unit + test +
+               ". " + rounding + ", but the residuals' standard deviation is " +
+               Short(*fit.calibration.residual_std_dev) + " " + unit + test +
                ": lack of fit. The sensor deviates from the curve, or the angles were set less accurately than the "
                "sensor resolves them.");
 }
@@ -211,7 +214,7 @@ std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit
   const std::optional<SensorRange>& range = fit.calibration.input_range;
   const auto turn = range ? FindTurningReading(fit.calibration, range->low, range->high) : std::nullopt;
   if (turn) {
-    text += " In the sensor's range it turns at about " + NumberText(*turn, 4) + " " + table.input +
+    text += " In the sensor's range the curve turns at about " + NumberText(*turn, 4) + " " + table.input +
             ": readings beyond it would give wrong angles.";
   }
   return Prose(text);

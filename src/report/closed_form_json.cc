@@ -67,7 +67,7 @@ Json RowJson(const ClosedFormRow& row) {
       .Set("unit", Json(row.unit))
       .Set("z", row.z, missing)
       .Set("agrees", row.agrees ? Json(*row.agrees) : Json(nullptr))
-      .Set("reason", Json(nullptr))  // unless there is one
+      .Set("reason", Json(nullptr))  // Done() writes the reasons here if there are any
       .Done();
 }
 

@@ -52,7 +52,7 @@ Cells EstimateCells(const ReportedEstimate& reported, const Conversion& conversi
   return {"", "", numbers.Value(), numbers.Error(), std::string(conversion.unit)};
 }
 
-/// `in_degrees`: repeats values in radians in degrees.
+/// `in_degrees`: adds a row in degrees below each value in radians.
 Table EstimateTable(const std::vector<ReportedEstimate>& estimates, bool in_degrees) {
   std::vector<Cells> rows;
   for (const ReportedEstimate& reported : estimates) {
@@ -114,12 +114,12 @@ void AddDecrement(const Identification& identification, Section& section) {
 
 // --- the check -------------------------------------------------------------------------------------------------------
 
-/// z to 0.1 standard deviations, which is accurate enough.
+/// z with one decimal.
 std::string ZText(const std::optional<double>& z) { return z && std::isfinite(*z) ? RoundedText(*z, {1, 0}) : "-"; }
 
 constexpr const char* kDiffers = "NO";
 
-/// The fit rounded by its own error; without an error to the decimal of the closed form.
+/// The fitted value is rounded by its error; without an error it has the last decimal of the closed form.
 Cells CheckCells(const ClosedFormRow& row) {
   const QuantityNumbers numbers(row.closed_form, row.std_error);
   const std::string value = numbers.Error().empty() ? numbers.Number(row.closed_form) : numbers.Value();
@@ -195,7 +195,9 @@ Section TurningPointSection(const Identification& identification) {
   Table table{TurningPointColumns(forms.table, std::string(shown.unit)), {}};
   if (left_out > 0) {
     table.rows_before = listed.first;
-    table.left_out = "... " + std::to_string(left_out) + " more: --series";
+    table.left_out = "... " + std::to_string(left_out) +
+                     (left_out == 1 ? " more turning point" : " more turning points") +
+                     "; write all of them with --series";
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (left_out > 0 && i == listed.first) i += left_out;

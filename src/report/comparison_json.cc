@@ -94,7 +94,7 @@ Json HalvesJson(const Constancy& constancy) {
       .Done();
 }
 
-/// Fixed friction has no numbers; that needs no reason.
+/// If the friction is fixed, its numbers are null and no reason is given.
 Json WindowJson(const AmplitudeRow& row) {
   return NumberObject()
       .Set("from_s", row.from)

@@ -90,7 +90,7 @@ bool HasPredictions(const Comparison& comparison) {
   });
 }
 
-/// Adds explanations that the rows' numbers do not give.
+/// Says why a model is not compared, and why a prediction is missing.
 void AddReasons(const Comparison& comparison, Section& section) {
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
@@ -101,7 +101,7 @@ void AddReasons(const Comparison& comparison, Section& section) {
     const std::string& second = row.forward.reason;
     if (!first.empty()) section.AddText(row.model + ", left-out blocks: " + Sentence(first));
     if (!second.empty())
-      section.AddText(row.model + ", last part: " + (second == first ? "the same." : Sentence(second)));
+      section.AddText(row.model + ", last part: " + (second == first ? "for the same reason." : Sentence(second)));
   }
 }
 
@@ -123,9 +123,9 @@ Section ComparisonSection(const Comparison& comparison, const Conversion& shown)
   section.AddText(Sentence(comparison.criterion));
   if (HasPredictions(comparison)) {
     section.AddText(
-        "Prediction of samples that were left out of the fit, block by block, and of the last part from the "
-        "first: rms of measured - predicted, and rms of the same over its predicted standard deviation, which is 1 if "
-        "model and errors are right.");
+        "Prediction of samples that were left out of the fit: block by block, and of the last part from the "
+        "first part. rms: of measured - predicted; standardized: rms of this difference over its predicted standard "
+        "deviation, which is 1 if model and errors are right.");
     section.Add(PredictionTable(comparison, shown));
   }
   AddReasons(comparison, section);
@@ -194,7 +194,7 @@ bool HasTrend(const Constancy& constancy) {
   return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
 }
 
-bool HaveHalvesDiffered(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
+bool DoHalvesDiffer(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
 
 /// Whether a table shows friction below 0, which is outside the fit's own bound.
 bool HasNegativeFriction(const Constancy& constancy) {
@@ -202,7 +202,7 @@ bool HasNegativeFriction(const Constancy& constancy) {
     return row.name != kAsymmetry.name && (row.first < 0 || row.second < 0);
   };
   const auto in_window = [](const AmplitudeRow& row) { return row.friction < 0; };
-  return (HaveHalvesDiffered(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
+  return (DoHalvesDiffer(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
          (HasTrend(constancy) && std::ranges::any_of(constancy.windows, in_window));
 }
 
@@ -220,7 +220,7 @@ Sections ConstancySections(const Identification& identification, std::size_t fit
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
   section.AddText(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
-  if (HaveHalvesDiffered(*constancy)) section.Add(HalvesTable(*constancy));
+  if (DoHalvesDiffer(*constancy)) section.Add(HalvesTable(*constancy));
   if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
   if (HasNegativeFriction(*constancy)) {
     section.AddText("Parts are fitted without bounds, so a single part may show friction below 0.");

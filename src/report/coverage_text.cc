@@ -105,18 +105,18 @@ std::string RuleText(const CoverageRule& rule) {
 }
 
 constexpr std::string_view kColumns =
-    "Coverage is the share of recordings whose 95 % interval contains the truth, with its own 95 % interval (Clopper "
-    "and "
-    "Pearson). A recording without an interval, because the fit did not converge or began otherwise, counts as not "
-    "covered. `rms error` is that of the estimates; `error/bound` compares each with the Cramér-Rao bound of its own "
-    "recording, by the noise really simulated; `std error/error` is the mean standard error over the rms error. Zero "
-    "and release vary from recording to recording, within a count and a sampling interval.";
+    "Coverage is the share of recordings whose 95 % interval contains the true value; [95 %] is the confidence "
+    "interval of this share (Clopper and Pearson). A recording counts as not covered if the fit did not converge, or "
+    "if it found the other kind of start and so lacks the parameter. `rms error` is the rms error of the estimates. "
+    "`error/bound` is the rms of each error over the Cramér-Rao bound of its recording for the simulated noise. `std "
+    "error/error` is the mean standard error over the rms error. The zero angle varies between recordings within a "
+    "count, and the release within a sampling interval.";
 
 /// Explains the differences for sets of recordings.
 std::string SetsText(std::span<const CoverageStudy> studies) {
   return "Here the fits are joint fits of " + Counted(studies) +
-         " recordings of one rig, released from 0.7 to 1.3 times the scenario's angle. The bound is that of the shared "
-         "parameters, from the readings of the whole set.";
+         " recordings of one rig, released from 0.7 to 1.3 times the scenario's angle. Only shared parameters are "
+         "counted; their Cramér-Rao bound is computed from the readings of the whole set.";
 }
 
 /// Explains the rules, with the numbers used for the verdicts.

@@ -111,7 +111,7 @@ std::string OpenIntervals(const FitReport& fit) {
   std::string text;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.open_interval == OpenInterval::kClosed) continue;
-    text += " That of " + std::string(parameter.info.name) +
+    text += " The interval of " + std::string(parameter.info.name) +
             " is open: " + std::string(Sentence(parameter.open_interval)) + ".";
   }
   return text;
@@ -121,13 +121,14 @@ std::string OpenIntervals(const FitReport& fit) {
 void DescribeIdentifiability(const FitReport& fit, Section& section) {
   for (const Identifiability& known : fit.identifiability) {
     if (known.verdict == Identifiability::Verdict::kIdentifiable) continue;
-    std::string traded;
+    std::string compensation;
     for (const std::string& name : known.direction) {
-      if (name != known.parameter) traded += (traded.empty() ? " (traded for " : ", ") + name;
+      if (name == known.parameter) continue;
+      compensation += (compensation.empty() ? " (its effect can be compensated by " : ", ") + name;
     }
-    if (!traded.empty()) traded += ")";
-    section.AddText(known.parameter + " is " + std::string(VerdictName(known.verdict)) + traded + ": " + known.advice +
-                    ".");
+    if (!compensation.empty()) compensation += ")";
+    section.AddText(known.parameter + " is " + std::string(VerdictName(known.verdict)) + compensation + ": " +
+                    known.advice + ".");
   }
 }
 
@@ -280,8 +281,8 @@ Section StatisticsSection(const FitReport& fit) {
           {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
           {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
           {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-          {"autocorrelation", fit.noise.autocorrelation.Name() + "; for a constant the samples are worth " +
-                                  NumberText(std::round(statistics.effective_samples)) + " independent ones"},
+          {"autocorrelation", fit.noise.autocorrelation.Name() + "; for estimating a constant, equivalent to " +
+                                  NumberText(std::round(statistics.effective_samples)) + " independent samples"},
           {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
           {"AIC, AICc, BIC",
            FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)},

@@ -119,7 +119,7 @@ Json WholeStatisticsJson(const Identification& identification, const FitReport& 
       .Done();
 }
 
-/// With numbers if all of them are shared.
+/// The equation with its numbers; null unless all physical parameters are shared and the fit succeeded.
 Json EquationJson(const Identification& identification, std::size_t index) {
   const FitReport& fit = identification.fits[index];
   const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();

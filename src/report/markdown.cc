@@ -53,7 +53,7 @@ std::string Emphasized(const std::string& text, Emphasis emphasis) {
 
 // --- tables ----------------------------------------------------------------------------------------------------------
 
-/// A Markdown table by columns; texts are escaped.
+/// Columns and rows of a Markdown table, with escaped texts.
 struct PipeTable {
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows;

@@ -41,7 +41,8 @@ class Units {
   std::optional<double> gravity_torque_;
 };
 
-/// Two digits, the most to which errors are rounded. Three from 100 on, because two would need a power of ten.
+/// An error with two digits, the most that PdgRounding gives an error; from 100 on with three, because two digits would
+/// need a power of ten.
 std::string ErrorText(double error) { return NumberText(error, error < 100 ? kErrorDigits : kErrorDigits + 1); }
 
 std::string BiasCell(const std::optional<double>& share) {
@@ -148,15 +149,15 @@ std::string BiasText(const Plan& plan, bool has_bound) {
 
 /// Warns that the bound assumes the right alias of the frequency.
 std::string SlowText(const Plan& plan) {
-  constexpr double kPerSwing = 7;  // as IsUndersampled
+  constexpr double kPerSwing = 7;  // samples; the limit of IsUndersampled
   const double frequency = 1 / (2 * kPi * std::sqrt(plan.truth.front()));
   const bool slow = std::ranges::any_of(
       plan.rows, [&](const PlanRow& row) { return row.factor == "rate" && row.value < kPerSwing * frequency; });
   if (!slow) return "";
   const auto hz = [](double value) { return NumberText(value, kDegreeDigits) + " Hz"; };
   return "Below " + hz(kPerSwing * frequency) + ", seven samples a swing, a fit needs a rig whose inertia bounds the " +
-         "frequency, and near " + hz(frequency) + " or " + hz(2 * frequency) +
-         ", once or twice a swing, it stays ambiguous even then. ";
+         "frequency; near " + hz(frequency) + " or " + hz(2 * frequency) +
+         ", one or two samples a swing, the frequency stays ambiguous even with a rig. ";
 }
 
 std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {

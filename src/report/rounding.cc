@@ -13,8 +13,8 @@
 namespace pendulum {
 namespace {
 
-constexpr int kMaxDigits = 12;        // significant digits of a value: more are of no use to a reader
-constexpr int kMinExponent = -4;      // smaller numbers are shown with a power of ten, as with %g
+constexpr int kMaxDigits = 12;        // significant digits of a value; a reader has no use for more
+constexpr int kMinExponent = -4;      // numbers below 1e-4 are shown with a power of ten, as with %g
 constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
 
 /// The three leading decimal digits (100 to 999) of x != 0, and the power of ten of the first one.

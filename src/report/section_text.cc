@@ -21,7 +21,7 @@ std::string IndentOf(int count) {
   return blanks;
 }
 
-/// Renders block by block.
+/// Renders the blocks of a section as text.
 class TextRenderer {
  public:
   explicit TextRenderer(TextStyle style) : style_(style) {}

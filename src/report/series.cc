@@ -42,7 +42,7 @@ Json NumbersJson(const Eigen::VectorXd& values, SeriesDetail detail) {
   return json;
 }
 
-/// Numbers of N samples; null where they are of another size.
+/// The values as an array; null unless there is one value for each of the `samples` samples.
 Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDetail detail) {
   return values.size() == samples ? NumbersJson(values, detail) : Json(nullptr);
 }
@@ -50,8 +50,8 @@ Json SamplesJson(const Eigen::VectorXd& values, Eigen::Index samples, SeriesDeta
 Json ExtremaJson(const Recording& used) {
   Json json = Json::array();
   if (used.quantity == Quantity::kAcceleration)
-    return json;  // turning points of an acceleration are not the
-                  // pendulum's
+    return json;  // an acceleration does not turn where the
+                  // pendulum does
   const Result<TurningPointTable> table = FindTurningPoints(used);
   if (!table) return json;
   for (const TurningPoint& point : table->points) json.push_back(Json::array({point.time, point.value}));
@@ -98,7 +98,7 @@ Json ModelJson(const FitReport& fit, const TextbookOverlay& overlay, Eigen::Inde
   return json;
 }
 
-/// Whether the samples do not show the motion: they are no angle, some are missing, or they are few in a period.
+/// Whether the samples do not show the motion: they are not angles, some are missing, or a period has few of them.
 bool HidesMotion(const Recording& used, const std::optional<Sampling>& sampling) {
   constexpr double kFewPerPeriod = 12;
   if (used.quantity != Quantity::kAngle) return true;
@@ -107,7 +107,7 @@ bool HidesMotion(const Recording& used, const std::optional<Sampling>& sampling)
   return sampling->gaps > 0 || (per_period > 0 && per_period < kFewPerPeriod);
 }
 
-/// Null where there is no motion, or it cannot be traced.
+/// The fitted motion at equal steps; null if there is none or its trajectory cannot be computed.
 Json MotionJson(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, SeriesDetail detail) {
   constexpr double kPointsPerPeriod = 60;  // straight lines between them are off by at most 0.14 % of the amplitude
   const double max_steps = detail == SeriesDetail::kAll ? 1e5 : 2e4;
@@ -134,7 +134,7 @@ Json MotionJson(const Recording& used, const FitReport& fit, const std::optional
   return json;
 }
 
-/// By model; null where the samples show the motions.
+/// The fitted motion of each model; null if the samples themselves show the motion.
 Json MotionsJson(const Recording& used, const Identification& identification, SeriesDetail detail) {
   Json json;
   if (!HidesMotion(used, identification.sampling)) return json;

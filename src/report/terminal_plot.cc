@@ -17,7 +17,7 @@ using Eigen::Index;
 constexpr int kWidth = 79, kUpperLines = 14, kLowerLines = 10;  // size of the plots on the terminal
 constexpr int kColumns = 67, kUpperRows = 11, kLowerRows = 5;   // inside their frames
 
-/// The readings of a column of the plot, from the smallest to the largest.
+/// The smallest and the largest reading in a column of the plot.
 struct Span {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -30,7 +30,7 @@ struct Span {
   }
 };
 
-/// Spans of columns with equal durations over the recording.
+/// The span of each column; the columns divide the recording into parts of equal duration.
 std::vector<Span> SpansOf(const Recording& used, const Eigen::VectorXd& values, double factor) {
   std::vector<Span> spans(kColumns);
   if (values.size() != used.size()) return spans;
@@ -63,7 +63,7 @@ std::string PointsOf(double time, const Span& span, double row, bool filled) {
   return points;
 }
 
-/// A named data block of a script. gnuplot refuses a block without points, so there is always one outside the plot.
+/// A named data block of a script. gnuplot refuses a block without points, so a point outside the plot is always added.
 std::string DataBlock(const std::string& name, const Recording& used, const std::vector<Span>& spans, double row,
                       bool filled) {
   const double from = used.time[0];
@@ -75,7 +75,7 @@ std::string DataBlock(const std::string& name, const Recording& used, const std:
   return name + " << EndOfData\n" + (lines.empty() ? "-1e9 0\n" : lines) + "EndOfData\n";
 }
 
-/// A range that keeps the largest value off the frame of `rows` rows, and is not empty for 0.
+/// The y range of a plot of `rows` rows: the largest value does not touch the frame, and 0 gives a range, too.
 std::string RangeOf(double largest, int rows) {
   const double shown = largest > 0 ? largest : 1.0;
   const std::string end = NumberText(shown * (1 + 2.0 / rows), 6);

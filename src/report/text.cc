@@ -18,7 +18,7 @@
 namespace pendulum {
 namespace {
 
-/// The free swings of the recording, with a mark at the fitted one.
+/// The free swings of the recording; the fitted one is marked.
 std::string ReleasesText(const DataSummary& data) {
   std::string text;
   for (std::size_t i = 0; i < data.releases.size(); ++i) {

@@ -115,7 +115,7 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   return {};
 }
 
-/// Every parameter that a flag may name: those of all models, and of every possible start and sensor.
+/// Every parameter that a flag may name: the parameters of all models, and of every possible start and sensor.
 std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& models) {
   std::vector<ParameterInfo> infos;
   for (const MotionModel& model : models) {
@@ -280,17 +280,19 @@ std::vector<RunFlag> MakeTable() {
   model["default"] = RunFlags().model;
   const Json seed = {{"type", "integer"}, {"minimum", 0}, {"maximum", 1'000'000'000'000'000}, {"default", 1}};
   const Json number = {{"type", "number"}};
-  const std::string models = "Model of the motion, one of " + MotionModelNames() +
-                             ", several of them between commas to compare, or all; default coulomb.";
+  const std::string models = "Model of the motion: one of " + MotionModelNames() +
+                             "; several separated by commas, to compare them; or all; default coulomb.";
   return {
       {.name = "rig",
        .value = &RunFlags::rig,
-       .help = "Rig file (JSON, SI units) that gives the gravity torque; without it torques are in its units.",
+       .help = "Rig file (JSON, SI units) that gives the gravity torque; default none, with torques in units of the "
+               "gravity torque.",
        .label = "What I know of the pendulum",
        .is_local = true},
       {.name = "calibration",
        .value = &RunFlags::calibration,
-       .help = "Calibration file (JSON) that turns counts or volts into an angle; default the file's own.",
+       .help = "Calibration file (JSON) that converts counts or volts to an angle; default the calibration in the "
+               "recording.",
        .label = "Calibration file",
        .is_local = true},
       {.name = "model",
@@ -326,89 +328,95 @@ std::vector<RunFlag> MakeTable() {
        .example = "12.5"},
       {.name = "fix",
        .value = &RunFlags::fix,
-       .help = "Parameters to hold, name=value,... in SI (rad, s; torques as in the report); default none.",
+       .help = "Parameters to fix at a value, name=value,... in SI (rad, s; torques in the unit of the report); "
+               "default none.",
        .schema = TextSchema(),
        .example = "zero_angle=0",
        .needs_fit = true},
       {.name = "init",
        .value = &RunFlags::init,
-       .help = "Initial values of parameters, name=value,... as in --fix; default estimated from the data.",
+       .help = "Initial values of parameters, name=value,... in the units of --fix; default estimated from the data.",
        .schema = TextSchema(),
        .example = "viscous=0.004",
        .needs_fit = true},
       {.name = "bounds",
        .value = &RunFlags::bounds,
-       .help = "Bounds of parameters, name=low:high,... as in --fix, either may be left out; default none.",
+       .help = "Bounds of parameters, name=low:high,... in the units of --fix; low or high may be left out; default "
+               "none.",
        .schema = TextSchema(),
        .example = "coulomb=0:0.1",
        .needs_fit = true},
       {.name = "prior",
        .value = &RunFlags::prior,
-       .help = "Prior knowledge, name=mean:std_dev,... as in --fix; default none.",
+       .help = "Prior knowledge of parameters, name=mean:std_dev,... in the units of --fix; default none.",
        .schema = TextSchema(),
        .example = "inertia=0.079:0.001",
        .needs_fit = true},
       {.name = "closed_form_only",
        .value = &RunFlags::closed_form_only,
-       .help = "Make no fit: period, decrement, inertia and friction from the turning points alone, also of counts or "
-               "volts without a calibration.",
+       .help = "Make no fit: compute period, decrement, inertia and friction from the turning points alone. This also "
+               "works for counts or volts without a calibration.",
        .schema = {{"type", "boolean"}, {"default", false}}},
       {.name = "time_column",
        .value = &RunFlags::time_column,
-       .help = "Column of times, name or number from 1 on, with :s, :ms or :us where the name has no unit; none uses "
-               "--sample_rate_hz instead; default by name.",
+       .help = "Column of times: its name, or its number from 1; add :s, :ms or :us if the name has no unit. none: use "
+               "--sample_rate_hz instead. Default: found by its name.",
        .label = "Column of times",
        .schema = TextSchema(),
        .example = "1:ms"},
       {.name = "value_column",
        .value = &RunFlags::value_column,
-       .help = "Column of the angle or rate, name or number from 1 on; default by the unit in its name.",
+       .help = "Column of the angle or rate: its name, or its number from 1; default found by the unit in its name.",
        .label = "Column of the angle",
        .schema = TextSchema(),
        .example = "angle_deg"},
       {.name = "unit",
        .value = &RunFlags::unit,
-       .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default that in the "
-               "column's name.",
+       .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default the unit in "
+               "the column's name.",
        .label = "Unit of the values",
        .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",
        .value = &RunFlags::sample_rate_hz,
-       .help = "Samples per second of a file without times; default its line # sample_rate_hz.",
+       .help = "Samples per second of a file without times; default the value in its line # sample_rate_hz.",
        .label = "Samples per second",
        .schema = {{"type", "number"}, {"exclusiveMinimum", 0}}},
       {.name = "resolution",
        .value = &RunFlags::resolution,
-       .help = "Spacing of the sensor's levels, in the file's unit; 0 is none; default the file's, or found in it.",
+       .help = "Spacing of the sensor's levels, in the file's unit; 0: no levels; default given in the file, or found "
+               "in its values.",
        .schema = {{"type", "number"}, {"minimum", 0}}},
       {.name = "range",
        .value = &RunFlags::range,
-       .help = "Smallest and largest value of the sensor, low,high in the file's unit; readings there are censored.",
+       .help = "Smallest and largest value of the sensor, low,high in the file's unit; readings at these ends are "
+               "treated as censored.",
        .schema = TextSchema(),
        .example = "0,1023"},
       {.name = "noise",
        .value = &RunFlags::noise,
-       .help = "Noise of the readings: gaussian, quantized (rounded to levels), edges (rows that come when a count "
-               "changes) or auto (edges of such rows, else quantized where rounding matters); default auto.",
+       .help = "Noise of the readings: gaussian, quantized (rounded to levels), edges (one row for each change of a "
+               "count) or auto (edges for files with such rows, otherwise quantized if rounding matters); default "
+               "auto.",
        .label = "Noise of the sensor",
        .words = WordsOf(kNoises),
        .needs_fit = true},
       {.name = "loss",
        .value = &RunFlags::loss,
-       .help = "Robust alternative for recordings with outliers: huber, student or none; default none.",
+       .help = "Robust noise model for recordings with outliers: huber, student or none; default none.",
        .label = "Outliers",
        .words = WordsOf(kLosses),
        .needs_fit = true},
       {.name = "interval",
        .value = &RunFlags::interval,
-       .help = "95 % intervals by covariance, profile, bootstrap or auto (profile near a bound); default auto.",
+       .help = "Method of the 95 % intervals: covariance, profile, bootstrap or auto (profile near a bound); default "
+               "auto.",
        .label = "95 % intervals",
        .words = WordsOf(kIntervals),
        .needs_fit = true},
       {.name = "checks",
        .value = &RunFlags::checks,
-       .help = "Which fits are checked against closed forms and for constancy: none, standard (the recommended one; of "
-               "several recordings constancy of all) or full (all); default standard.",
+       .help = "Which fits are checked against closed forms and for constancy: none, standard (the recommended model; "
+               "in a joint fit, the constancy of all models) or full (all models); default standard.",
        .words = WordsOf(kChecks),
        .needs_fit = true},
       {.name = "seed",
@@ -418,8 +426,8 @@ std::vector<RunFlag> MakeTable() {
        .needs_fit = true},
       {.name = "threads",
        .value = &RunFlags::threads,
-       .help = "Threads of the bootstrap, of long recordings and of several, 0 for all cores; the result does not "
-               "depend on it; default 0.",
+       .help = "Number of threads, for the bootstrap, long recordings and several recordings; it does not change the "
+               "result; default 0, one per core.",
        .needs_fit = true,
        .is_local = true},
   };

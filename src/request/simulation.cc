@@ -47,7 +47,7 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
   const auto named = std::ranges::find_if(
       models, [&](const MotionModel& other) { return other.gravity == *gravity && other.friction == model->friction; });
   if (named != models.end()) return *named;
-  model->gravity = *gravity;  // a fit cannot determine it, but it can be simulated
+  model->gravity = *gravity;  // a fit cannot determine the law of gravity, but it can be simulated
   return model;
 }
 

@@ -12,7 +12,7 @@ namespace pendulum::wire {
 
 /// Framing of the body of an answer.
 struct Framing {
-  std::optional<std::size_t> length;  ///< For Content-Length; std::nullopt: chunks, or until the end.
+  std::optional<std::size_t> length;  ///< Content-Length; std::nullopt: in chunks, or until the connection ends.
   bool is_chunked = false;
   bool keeps_alive = false;
 };

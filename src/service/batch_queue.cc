@@ -43,7 +43,7 @@ BatchProgress::Run* BatchProgress::Find(const std::string& id) {
   return found == places_.end() ? nullptr : &runs_[found->second];
 }
 
-void BatchProgress::Done(const std::string& id, int exit_code, const std::string& reason) {
+void BatchProgress::MarkDone(const std::string& id, int exit_code, const std::string& reason) {
   const std::scoped_lock lock(mutex_);
   Run* run = Find(id);
   if (run == nullptr) return;
@@ -166,14 +166,14 @@ void BatchQueue::Work() {
   LowerThreadPriority();
   constexpr std::chrono::seconds kShortest{1}, kLongest{60};
   std::chrono::seconds pause = kShortest;
-  while (const auto run = Take()) {
+  while (const auto run = NextRun()) {
     const auto settled = TryOne(*run);
     if (!settled) PutBack(*run, settled.error(), pause);
     pause = settled ? kShortest : std::min(2 * pause, kLongest);
   }
 }
 
-std::optional<FitStore::Waiting> BatchQueue::Take() {
+std::optional<FitStore::Waiting> BatchQueue::NextRun() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return is_stopping_ || !waiting_.empty(); });
   if (is_stopping_) return std::nullopt;
@@ -231,7 +231,7 @@ Result<void> BatchQueue::StoreOutcome(const FitStore::Waiting& run, const RunOut
     if (is_removed) {
       progress.MarkRemoved(run.id);
     } else {
-      progress.Done(run.id, outcome.exit_code, outcome.reason);
+      progress.MarkDone(run.id, outcome.exit_code, outcome.reason);
     }
   });
   return {};

@@ -36,7 +36,7 @@ class BatchProgress {
   /// Progress of a stored batch.
   explicit BatchProgress(std::vector<ListedFit> fits);
 
-  void Done(const std::string& id, int exit_code, const std::string& reason);
+  void MarkDone(const std::string& id, int exit_code, const std::string& reason);
   void MarkRemoved(const std::string& id);
 
   /// The run at a place, if it and all runs before it are done or deleted; otherwise std::nullopt.
@@ -92,13 +92,13 @@ class BatchQueue {
 
   std::size_t waiting() const;
 
-  /// Starts no more runs; unfinished ones are left for the next start.
+  /// Starts no more runs; unfinished runs are left for the next start of the service.
   void Stop();
 
  private:
   Result<void> StartThreads(int threads);
   void Work();
-  std::optional<FitStore::Waiting> Take();
+  std::optional<FitStore::Waiting> NextRun();
   Result<void> TryOne(const FitStore::Waiting& run);
   Result<void> FitOne(const FitStore::Waiting& run);
   Result<void> StoreOutcome(const FitStore::Waiting& run, const RunOutcome& outcome);

@@ -13,7 +13,7 @@ class ByteBudget {
   explicit ByteBudget(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   bool is_full() const { return taken_ >= max_bytes_; }
-  bool is_exceeded() const { return taken_ > max_bytes_; }  ///< Only answers can exceed it.
+  bool is_exceeded() const { return taken_ > max_bytes_; }  ///< Only answers can exceed the limit.
   std::size_t taken() const { return taken_; }
 
  private:

@@ -13,7 +13,7 @@
 namespace pendulum::wire {
 namespace {
 
-/// A client must take this much within one limit: with 30 s, 9 kB/s are enough.
+/// A client must receive this many bytes within one time limit: with 30 s, 9 kB/s are enough.
 constexpr std::size_t kPiece = std::size_t{256} << 10;
 
 constexpr std::chrono::seconds kLingerTime{2};

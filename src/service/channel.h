@@ -17,9 +17,9 @@ namespace pendulum::wire {
 namespace asio = boost::asio;
 using Code = boost::system::error_code;
 
-/// A socket whose every wait ends: by data, by the other side, or by a time limit. One read and one write at a time,
-/// all on the thread of its io_context. A callback must own its object, so the object lives as long as an operation
-/// runs.
+/// A socket on which no operation waits forever: it ends with data, when the other side closes, or at a time limit. One
+/// read and one write at a time, all on the thread of its io_context. A callback must own its object, so the object
+/// lives as long as an operation runs.
 class Channel : public std::enable_shared_from_this<Channel> {
  public:
   using Done = std::function<void(const Code&, std::size_t)>;
@@ -67,7 +67,7 @@ class Channel : public std::enable_shared_from_this<Channel> {
   bool is_late_ = false;
   std::string peer_;
   std::string head_, body_;         ///< Data being sent.
-  std::size_t sent_of_answer_ = 0;  ///< Sent bytes of both.
+  std::size_t sent_of_answer_ = 0;  ///< Sent bytes of head_ and body_.
   std::size_t sent_ = 0, discarded_ = 0;
   std::array<char, 4096> discard_buffer_ = {};
 };

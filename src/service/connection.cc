@@ -76,11 +76,11 @@ void Connection::Read() {
   channel_->Read(asio::buffer(bytes_.data() + size, more),
                  [self = shared_from_this(), size](const Code& code, std::size_t bytes) {
                    self->bytes_.resize(size + bytes);
-                   self->Take(code, bytes);
+                   self->HandleInput(code, bytes);
                  });
 }
 
-void Connection::Take(const Code& code, std::size_t bytes) {
+void Connection::HandleInput(const Code& code, std::size_t bytes) {
   if (stage_ == Stage::kClosed) return;
   if (!code && bytes > 0) return Parse();
   if (stage_ == Stage::kIdle || (stage_ == Stage::kHead && bytes_.empty())) return Close();
@@ -101,7 +101,7 @@ void Connection::Parse() {
   ParseBody();
 }
 
-/// True if the head is complete: the body can be read or the request is done.
+/// True if ParseBody can continue with the received bytes. Otherwise more bytes are awaited or an answer is sent.
 bool Connection::ParseHead() {
   while (bytes_.starts_with("\r\n")) bytes_.erase(0, 2);  // RFC 9112, section 2.2
   const auto size = parser_->ReadHead(bytes_);
@@ -178,11 +178,11 @@ void Connection::Dispatch() {
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
   WorkQueue& queue = lane == Lane::kFit ? serving_.fits : serving_.quick;
-  const bool is_reserved = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
+  const bool is_queued = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
     auto response = std::make_shared<HttpResponse>(self->Handle(offered));
     asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
   });
-  if (!is_reserved) Refuse({429, "too many requests are waiting; try again later"});
+  if (!is_queued) Refuse({429, "too many requests are waiting; try again later"});
 }
 
 /// Runs on a thread of a lane, which owns the request meanwhile.

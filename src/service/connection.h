@@ -22,7 +22,7 @@ namespace pendulum::wire {
 
 class Connection;
 
-/// Data shared by all connections of a server. For the I/O thread only, except for the numbers.
+/// Data shared by all connections of a server. For the I/O thread only, except for the atomic members.
 struct Serving {
   const ServerOptions& options;
   HttpHandler& handler;
@@ -53,13 +53,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Closes at once, in any state.
   void Close();
 
-  /// How long it has waited for a complete request head; zero while a request is processed.
+  /// How long the connection has waited for a complete request head; zero while a request is processed.
   std::chrono::steady_clock::duration waited() const;
 
  private:
   void NextRequest();
   void Read();
-  void Take(const Code& code, std::size_t bytes);
+  void HandleInput(const Code& code, std::size_t bytes);
   void Parse();
   bool ParseHead();
   std::optional<Refused> RefusalOfHead() const;

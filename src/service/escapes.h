@@ -10,7 +10,7 @@
 
 namespace pendulum {
 
-/// The value of a hexadecimal digit in either case; -1 for other characters.
+/// The value of a hexadecimal digit in upper or lower case; -1 for other characters.
 constexpr int HexValue(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
   if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
@@ -77,7 +77,7 @@ inline bool IsUtf8(std::string_view text) {
   return true;
 }
 
-/// Whether a character in UTF-8 is in C0 or C1, or is DEL; terminals may interpret these.
+/// Whether a UTF-8 character is a control character (C0, C1 or DEL), which terminals may interpret.
 constexpr bool IsControl(std::string_view character) {
   if (character.size() == 1) return (character[0] >= 0 && character[0] < 0x20) || character[0] == 0x7F;
   return character.size() == 2 && character[0] == '\xC2' && (character[1] & 0xE0) == 0x80;

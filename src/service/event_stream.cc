@@ -45,8 +45,8 @@ void EventStream::End() {
   if (is_waiting_) timer_.cancel();
 }
 
-/// Detects that the client closes the connection. Unexpected input is ignored; afterwards a closed connection is
-/// detected when data is sent.
+/// Detects that the client closes the connection. Unexpected input is ignored; after such input a closed connection is
+/// detected only when data is sent.
 void EventStream::Watch() {
   channel_->Read(asio::buffer(unexpected_input_), [self = shared_from_this()](const Code& code, std::size_t) {
     if (code) self->channel_->Close();

@@ -17,7 +17,7 @@ namespace pendulum::wire {
 /// requested only after the client has received the previous ones, so nothing accumulates.
 class EventStream : public std::enable_shared_from_this<EventStream> {
  public:
-  /// `done` is called once at any end; true: the client received everything.
+  /// `done` is called once, when the stream ends; its argument is true if the client received everything.
   EventStream(std::shared_ptr<Channel> channel, NextEvents next, bool is_chunked, const ServerOptions& options,
               std::function<void(bool)> done);
 

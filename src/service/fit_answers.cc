@@ -28,13 +28,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-HttpResponse Located(HttpResponse response, const std::string& id) {
+HttpResponse WithLocation(HttpResponse response, const std::string& id) {
   response.fields.push_back({"Location", "/v1/fits/" + id});
   return response;
 }
 
-/// The answer for a run that could not be fitted. Only its sentence was stored, so the status follows from the exit
-/// code.
+/// The answer for a run that could not be fitted. Only its message and exit code were stored, so the status follows
+/// from the exit code.
 HttpResponse UnfittedAnswer(const ListedFit& fit) {
   const int exit_code = fit.exit_code.value_or(0);
   for (const StatusCode code : {StatusCode::kInvalidArgument, StatusCode::kDataLoss, StatusCode::kFailedPrecondition,
@@ -63,7 +63,7 @@ HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
 }
 
 /// Fits the request and stores the fit.
-HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
+HttpResponse FitAndStore(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
   const auto begin = std::chrono::steady_clock::now();
   FitOrder order{MakeId(),
                  UtcTimeText(),
@@ -75,7 +75,7 @@ HttpResponse FitAndKeep(ServiceState& state, FitRequest request, const std::opti
   if (fitted.error) return ProblemAnswer(*fitted.error);
   if (const auto kept = state.store->Add(order, fitted.outcome, key); !kept) return ProblemAnswer(kept.error());
   state.fitter.Remember(order.id, fitted.run);
-  return Located(JsonAnswer(fitted.outcome.result), order.id);
+  return WithLocation(JsonAnswer(fitted.outcome.result), order.id);
 }
 
 /// Passes the fit of a stored run and its name to a function. The fit is repeated unless it is remembered.
@@ -167,7 +167,7 @@ HttpResponse PostFit(ServiceState& state, const Call& call) {
   return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
     auto request = ParseFitRequest(call.http, call.target, state.options.limits);
     if (!request) return ProblemResponse(request.error());
-    return FitAndKeep(state, *std::move(request), key);
+    return FitAndStore(state, *std::move(request), key);
   });
 }
 
@@ -179,7 +179,7 @@ HttpResponse PostRefit(ServiceState& state, const Call& call) {
     if (!flags) return ProblemAnswer(flags.error());
     auto request = ParseRefitRequest(call.http, call.target, *std::move(flags), std::move(kept->order.files));
     if (!request) return ProblemResponse(request.error());
-    return FitAndKeep(state, *std::move(request), key);
+    return FitAndStore(state, *std::move(request), key);
   });
 }
 
@@ -255,7 +255,8 @@ HttpResponse GetSeries(ServiceState& state, const Call& call) {
 HttpResponse GetResiduals(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string& name) {
     if (run.fits.empty()) {
-      return ProblemAnswer({StatusCode::kNotFound, "there are only closed forms, and no fit with residuals"});
+      return ProblemAnswer(
+          {StatusCode::kNotFound, "this run has only closed forms and no fit, so there are no residuals"});
     }
     return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run, run.MainFit()), "residuals of " + name);
   });

@@ -102,26 +102,26 @@ class FormReader {
  public:
   explicit FormReader(FitRequest& request) : request_(request) {}
 
-  Result<void> Take(const FormPart& part) {
+  Result<void> ReadPart(const FormPart& part) {
     if (part.name == "data") {
       request_.data.push_back({NameOf(part.filename), std::string(part.content)});
       return {};
     }
-    if (part.name == "rig") return TakeFile(part, request_.rig);
-    if (part.name == "calibration") return TakeFile(part, request_.calibration);
-    if (part.name == "options") return TakeOptions(part);
+    if (part.name == "rig") return ReadFilePart(part, request_.rig);
+    if (part.name == "calibration") return ReadFilePart(part, request_.calibration);
+    if (part.name == "options") return ReadOptionsPart(part);
     return Error(StatusCode::kInvalidArgument,
                  "the form has a part " + Quoted(part.name) + "; it may have data, rig, calibration and options");
   }
 
  private:
-  static Result<void> TakeFile(const FormPart& part, SharedFile& file) {
+  static Result<void> ReadFilePart(const FormPart& part, SharedFile& file) {
     if (file) return RepeatedPartError(part.name);
     file = Share({part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)});
     return {};
   }
 
-  Result<void> TakeOptions(const FormPart& part) {
+  Result<void> ReadOptionsPart(const FormPart& part) {
     if (std::exchange(has_options_, true)) return RepeatedPartError(part.name);
     const auto object = ParseJsonObject(part.content, "options", "set of options", R"({"model": "coulomb"})");
     if (!object) return Error(StatusCode::kInvalidArgument, object.error().message);
@@ -141,7 +141,7 @@ Result<void> ReadForm(std::string_view content_type, const std::string& body, Fi
   if (!parts) return tl::unexpected(parts.error());
   FormReader reader(request);
   for (const FormPart& part : *parts) {
-    if (auto taken = reader.Take(part); !taken) return taken;
+    if (auto read = reader.ReadPart(part); !read) return read;
   }
   return {};
 }
@@ -206,7 +206,7 @@ bool IsRecording(std::string_view type) {
       "application/octet-stream",
       "application/vnd.ms-excel",  // the type of CSV on Windows
       "application/zip",
-      "application/x-zip-compressed",  // its name on Windows
+      "application/x-zip-compressed",  // the type of zip on Windows
       "application/x-matlab-data",
   };
   return std::ranges::find(kTypes, type) != kTypes.end();
@@ -384,7 +384,7 @@ ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const Req
   request.calibration = std::move(files.calibration);
   if (!http.body.empty()) {
     const std::string type = TypeOf(http);
-    if (type != "application/json") return WrongKind(type, "application/json, or the body empty");
+    if (type != "application/json") return WrongKind(type, "application/json, or the body must be empty");
     if (auto read = ReadJson(http.body, request, name); !read) return Refused(read.error());
   }
   if (!request.data.empty()) {

@@ -29,7 +29,7 @@ class Fitter {
  public:
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
 
-  /// The result is that of fit_pendulum, without a path.
+  /// Fits one run. The result is the same as from fit_pendulum, but has no path.
   FittedRun Fit(const IdentifyOptions& asked, RunFiles files);
 
   /// The fit of run `id`, made from these options and files: the remembered one, or a new one.

@@ -21,11 +21,11 @@ constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// In all other answers nothing runs, even if a browser displays them.
+/// No script of other answers runs, even if a browser displays them.
 constexpr const char* kDataPolicy = "default-src 'none'; frame-ancestors 'none'; sandbox";
 
 /// Adds the security fields that every answer has.
-HttpResponse Guarded(HttpResponse response) {
+HttpResponse WithSecurityFields(HttpResponse response) {
   const auto type = std::ranges::find(response.fields, "Content-Type", &HttpField::name);
   const bool is_file =
       std::ranges::find(response.fields, "Content-Disposition", &HttpField::name) != response.fields.end();
@@ -42,14 +42,14 @@ HttpResponse Guarded(HttpResponse response) {
   return response;
 }
 
-HttpResponse GuardedProblem(const Problem& problem) { return Guarded(ProblemResponse(problem)); }
+HttpResponse SecureProblem(const Problem& problem) { return WithSecurityFields(ProblemResponse(problem)); }
 
-/// The server passes HEAD as GET and drops the content.
+/// The method whose route answers a request: HEAD is answered as GET, and the server drops the content.
 std::string_view MethodOf(const HttpRequest& request) {
   return request.method == "HEAD" ? "GET" : std::string_view(request.method);
 }
 
-/// As ParseTarget. People add a slash to the address of the guide, as they do for folders elsewhere.
+/// As ParseTarget, but /docs/ means /docs: people add a slash to the address of the guide, as for folders elsewhere.
 Result<RequestTarget> TargetOf(std::string_view target) { return ParseTarget(target == "/docs/" ? "/docs" : target); }
 
 }  // namespace
@@ -83,15 +83,15 @@ std::optional<HttpResponse> FittingService::RefuseHead(const HttpRequest& reques
   const Match match = target ? FindRoute(MethodOf(request), target->path) : Match{};
   // Access is checked first, so an unauthorized client cannot find out which paths exist.
   const Audience audience = match.route == nullptr ? Audience::kTokenHolders : match.route->audience;
-  if (const auto refused = RefuseAccess(request, state_->options.access, audience)) return GuardedProblem(*refused);
-  if (!target) return GuardedProblem(ProblemOf(target.error()));
+  if (const auto refused = RefuseAccess(request, state_->options.access, audience)) return SecureProblem(*refused);
+  if (!target) return SecureProblem(ProblemOf(target.error()));
   if (match.allowed.empty()) {
-    return GuardedProblem(
+    return SecureProblem(
         {ProblemKind::kNotFound, "there is nothing at " + target->path + "; GET /openapi.json lists the paths", {}});
   }
-  if (match.route == nullptr) return GuardedProblem(MethodNotAllowed(request.method, match.allowed));
+  if (match.route == nullptr) return SecureProblem(MethodNotAllowed(request.method, match.allowed));
   if (match.route->query == QueryKind::kOwn) return std::nullopt;
-  if (const auto checked = CheckQuery(*target, {}); !checked) return GuardedProblem(ProblemOf(checked.error()));
+  if (const auto checked = CheckQuery(*target, {}); !checked) return SecureProblem(ProblemOf(checked.error()));
   return std::nullopt;
 }
 
@@ -99,11 +99,11 @@ HttpResponse FittingService::Handle(const HttpRequest& request) {
   if (auto refused = RefuseHead(request)) return *std::move(refused);
   auto target = TargetOf(request.target);
   const Match match = FindRoute(MethodOf(request), target->path);
-  return Guarded(match.route->answer(*state_, {request, *std::move(target), match.id}));
+  return WithSecurityFields(match.route->answer(*state_, {request, *std::move(target), match.id}));
 }
 
 HttpResponse FittingService::Refusal(int status, const std::string& detail) const {
-  return GuardedProblem(ProblemOf(status, detail));
+  return SecureProblem(ProblemOf(status, detail));
 }
 
 void FittingService::Count(const Answered& answered) {

@@ -38,7 +38,7 @@ Result<std::string> BoundaryOf(std::string_view content_type) {
   return std::string(*boundary);
 }
 
-/// A boundary line: from the line end before it to the end of its own line end.
+/// A boundary line, from the line end before it to its own line end, both included.
 struct BoundaryLine {
   std::size_t begin, end;
   bool is_last;
@@ -50,7 +50,7 @@ class BoundaryLines {
   BoundaryLines(std::string_view body, const std::string& boundary)
       : body_(body), mark_(std::string(kLineEnd) + "--" + boundary) {}
 
-  /// The first line; the body may begin with it.
+  /// The first boundary line; the body may begin with it.
   std::optional<BoundaryLine> First() const {
     const std::string_view at_begin = std::string_view(mark_).substr(kLineEnd.size());
     if (body_.starts_with(at_begin)) {
@@ -59,7 +59,7 @@ class BoundaryLines {
     return FindFrom(0);
   }
 
-  /// The next line; it may begin with the line end of `line`.
+  /// The boundary line after `line`; it may begin with the line end of `line`.
   std::optional<BoundaryLine> NextAfter(const BoundaryLine& line) const { return FindFrom(line.end - kLineEnd.size()); }
 
  private:
@@ -116,7 +116,7 @@ struct PartReader {
     return Wrong("has no blank line below its head; write one, with lines that end in CR LF");
   }
 
-  Result<void> TakeField(std::string_view line, PartHead& head) const {
+  Result<void> ReadField(std::string_view line, PartHead& head) const {
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos || !IsToken(line.substr(0, colon))) {
       return Wrong("has the line " + Quoted(line) + " in its head; write Name: value");
@@ -145,7 +145,7 @@ struct PartReader {
         line += piece;
         text.remove_prefix(std::min(text.size(), piece.size() + kLineEnd.size()));
       } while (text.starts_with(' ') || text.starts_with('\t'));
-      if (auto taken = TakeField(line, head); !taken) return tl::unexpected(taken.error());
+      if (auto read = ReadField(line, head); !read) return tl::unexpected(read.error());
     }
     return head;
   }
@@ -160,7 +160,7 @@ struct PartReader {
     return ParseFieldParameters(text.substr(kind.size()), place + " of the form", Backslash::kEscapesQuotes);
   }
 
-  /// RFC 8187, section 3.2: charset, language and escaped bytes.
+  /// Decodes an extended value (RFC 8187, section 3.2): charset, language and escaped bytes.
   Result<std::string> DecodeExtended(std::string_view value) const {
     const std::size_t charset = value.find('\'');
     const std::size_t language = charset == std::string_view::npos ? charset : value.find('\'', charset + 1);
@@ -236,7 +236,7 @@ Result<std::vector<FormPart>> ParseFormData(std::string_view content_type, std::
     const auto next = lines.NextAfter(*line);
     if (!next) return reader.Wrong("has no boundary after it; end the form with " + Quoted("--" + *boundary + "--"));
     if (parts.size() == kMaxFormParts) {
-      return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send it in several");
+      return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send several forms");
     }
     auto part = reader.Read(body.substr(line->end, std::max(next->begin, line->end) - line->end));
     if (!part) return tl::unexpected(part.error());

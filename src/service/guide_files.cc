@@ -43,8 +43,8 @@ Result<GuideFile> ReadGuideFile(const std::string& folder, std::string_view path
   const fs::path root = folder.empty() ? fs::path() : fs::canonical(folder, fault);
   if (fault || root.empty()) {
     return Error(StatusCode::kNotFound,
-                 "the user guide is not installed; build it with scripts/docs and start serve_pendulum with --docs, "
-                 "the folder of the guide");
+                 "the user guide is not installed; build it with scripts/docs, and start serve_pendulum with --docs "
+                 "and the folder of the guide");
   }
   const fs::path file = fs::canonical(root / fs::path(path), fault);
   if (fault || !Contains(root, file) || !fs::is_regular_file(file, fault)) {

@@ -15,7 +15,7 @@ struct GuideFile {
 };
 
 /// Reads a file of the user guide, a static site in a folder. `path` is relative to the folder: "recordings.html".
-/// kNotFound: the folder is empty text or does not exist, or it has no such file. A path that leaves the folder, also
+/// kNotFound: `folder` is an empty text or does not exist, or it has no such file. A path that leaves the folder, also
 /// by a symbolic link, counts as a file that does not exist.
 Result<GuideFile> ReadGuideFile(const std::string& folder, std::string_view path);
 

@@ -15,11 +15,12 @@ Result<std::string> IdempotencyKey(const HttpRequest& request) {
   };
   const auto values = request.Fields("Idempotency-Key");
   if (values.empty()) return "";
-  if (values.size() > 1) return wrong("comes twice; keep one of them");
+  if (values.size() > 1) return wrong("is given more than once; keep one of them");
   const std::string_view key = WithoutBlanks(values.front());
   if (key.empty()) return wrong("is empty; give each request its own key, or none");
   if (key.size() > kLongestIdempotencyKey) {
-    return wrong("has " + std::to_string(key.size()) + " bytes; it may have " + std::to_string(kLongestIdempotencyKey));
+    return wrong("has " + std::to_string(key.size()) + " bytes; it may have at most " +
+                 std::to_string(kLongestIdempotencyKey));
   }
   if (std::ranges::all_of(key, [](char c) { return c > ' ' && c < '\x7F'; })) return std::string(key);
   return wrong(Quoted(key) + " has characters other than visible ASCII; write a random number or a UUID");

@@ -18,12 +18,13 @@ struct LivePoint {
 struct LiveExtremes {
   explicit LiveExtremes(LivePoint only) : least(only), largest(only) {}
 
-  void Take(const LiveExtremes& next) {
+  /// Includes the extremes of the samples that follow.
+  void Include(const LiveExtremes& next) {
     if (next.least.value < least.value) least = next.least;
     if (next.largest.value >= largest.value) largest = next.largest;
   }
 
-  /// Appends both in the order of their times; skips a point that is not after the previous one.
+  /// Appends both points in the order of their times; skips a point that is not later than the last one in `points`.
   void AppendTo(std::vector<LivePoint>& points) const {
     const bool is_falling = largest.time < least.time;
     for (const LivePoint& point : {is_falling ? largest : least, is_falling ? least : largest}) {
@@ -40,11 +41,11 @@ class WholeRun {
  public:
   static constexpr std::size_t kMaxPoints = 4000;
 
-  void Take(LivePoint point) {
+  void Add(LivePoint point) {
     if (!first_) first_ = point;
     last_ = point;
     if (!blocks_.empty() && in_last_block_ < block_size_) {
-      blocks_.back().Take(LiveExtremes(point));
+      blocks_.back().Include(LiveExtremes(point));
       ++in_last_block_;
       return;
     }
@@ -63,11 +64,11 @@ class WholeRun {
   }
 
  private:
-  static constexpr std::size_t kMaxBlocks = kMaxPoints / 2 - 2;  // even, with room for the ends
+  static constexpr std::size_t kMaxBlocks = kMaxPoints / 2 - 2;  // even; leaves room for the first and the last point
 
   void Merge() {
     for (std::size_t i = 0; i < blocks_.size(); i += 2) {
-      blocks_[i].Take(blocks_[i + 1]);
+      blocks_[i].Include(blocks_[i + 1]);
       blocks_[i / 2] = blocks_[i];
     }
     blocks_.erase(blocks_.begin() + kMaxBlocks / 2, blocks_.end());
@@ -75,20 +76,20 @@ class WholeRun {
   }
 
   std::vector<LiveExtremes> blocks_;
-  std::size_t block_size_ = 2, in_last_block_ = 0;  // samples; a block of two keeps both
+  std::size_t block_size_ = 2, in_last_block_ = 0;  // samples; a block of two loses none
   std::optional<LivePoint> first_;
   LivePoint last_{};
 };
 
 /// Reduces incoming samples to at most fifty per second of recording time: all samples at low rates, otherwise the
-/// extremes of short blocks. Each point uses a fiftieth of a second.
+/// extremes of short blocks. Each point stands for a fiftieth of a second.
 class SparsePoints {
  public:
-  /// Takes a sample and appends the finished points.
-  void Take(LivePoint point, std::vector<LivePoint>& points) {
+  /// Adds a sample and appends the finished points to `points`.
+  void Add(LivePoint point, std::vector<LivePoint>& points) {
     if (block_ && point.time >= next_point_time_ + 2 * kPointInterval) Flush(points);
     if (block_) {
-      block_->Take(LiveExtremes(point));
+      block_->Include(LiveExtremes(point));
     } else if (!has_begun_ || point.time >= next_point_time_) {
       points.push_back(point);
       next_point_time_ = point.time + kPointInterval;
@@ -98,7 +99,7 @@ class SparsePoints {
     }
   }
 
-  /// Appends the unfinished block, if no sample follows for now.
+  /// Appends the unfinished block. Call it if no more samples follow for now.
   void Flush(std::vector<LivePoint>& points) {
     if (!block_) return;
     block_->AppendTo(points);

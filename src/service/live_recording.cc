@@ -42,7 +42,7 @@ std::string LiveEvent(std::string_view name, const std::string& data) {
 }
 
 std::string SamplesJson(const std::vector<LivePoint>& points) {
-  constexpr int kDigits = 7;  // more than the resolution of any sensor
+  constexpr int kDigits = 7;  // finer than the resolution of any sensor
   std::string times, values;
   for (const LivePoint& point : points) {
     (times += times.empty() ? "" : ",") += NumberText(point.time);
@@ -69,7 +69,7 @@ Result<std::string> WholeLinesOf(int descriptor, const std::string& name) {
     size += static_cast<std::size_t>(added);
     if (size == room) room += kBlock;
   }
-  return Fault(name, "it is larger than 64 MiB; fit the file itself");
+  return Fault(name, "it is larger than 64 MiB; fit this file with fit_pendulum");
 }
 
 Result<std::string> WholeLinesOf(const std::filesystem::path& run) {
@@ -84,9 +84,9 @@ Result<std::string> WholeLinesOf(const std::filesystem::path& run) {
   return bytes;
 }
 
-/// What one listener has received.
+/// The data that one listener has received.
 struct LiveCursor {
-  std::string said;          // The last status sent.
+  std::string status;        // The last status sent.
   bool has_samples = false;  // The run so far was sent.
   std::uint64_t run = 0;     // Number of the run.
   std::uint64_t next = 0;    // Number of the next point to send.
@@ -131,7 +131,7 @@ class LiveRecording::Reader {
       run_ = LiveRun();
       ++number_;
     }
-    run_.Take(news.lines);
+    run_.Read(news.lines);
     has_more_ = news.has_more;
     if (!tail_.is_growing() && !has_more_) run_.FlushPoints();
     polled_ = std::chrono::steady_clock::now();
@@ -150,9 +150,9 @@ class LiveRecording::Reader {
 
   static void AppendStatus(const LiveStatus& status, LiveCursor& cursor, std::string& text) {
     std::string json = LiveStatusJson(status);
-    if (json == cursor.said) return;
+    if (json == cursor.status) return;
     text += LiveEvent("state", json);
-    cursor.said = std::move(json);
+    cursor.status = std::move(json);
   }
 
   void AppendSamples(LiveCursor& cursor, std::string& text) const {

@@ -20,7 +20,7 @@ std::optional<double> NumberOf(std::string_view field) {
   return number;
 }
 
-/// The text before the first comma, and the text from there to the next.
+/// The text before the first comma, and the text between the first and the second comma.
 struct FirstColumns {
   std::string_view time, value;
 };
@@ -42,15 +42,15 @@ std::string UnitOf(std::string_view column) {
 
 }  // namespace
 
-std::optional<LivePoint> LiveRows::Take(std::string_view line) {
+std::optional<LivePoint> LiveRows::Read(std::string_view line) {
   line = WithoutBlanks(line.substr(0, line.ends_with('\r') ? line.size() - 1 : line.size()));
   if (line.starts_with('#')) {
-    if (!has_names_) TakeComment(WithoutBlanks(line.substr(1)));
+    if (!has_names_) ReadComment(WithoutBlanks(line.substr(1)));
     return std::nullopt;
   }
   if (line.empty()) return std::nullopt;
   if (!has_names_) {
-    TakeNames(line);
+    ReadNames(line);
     return std::nullopt;
   }
   const auto [time_text, value_text] = FirstColumnsOf(line);
@@ -62,7 +62,7 @@ std::optional<LivePoint> LiveRows::Take(std::string_view line) {
   return LivePoint{*time, shown};
 }
 
-void LiveRows::TakeComment(std::string_view text) {
+void LiveRows::ReadComment(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) return;
   const std::string_view key = text.substr(0, colon), value = text.substr(colon + 1);
@@ -72,7 +72,7 @@ void LiveRows::TakeComment(std::string_view text) {
   if (auto calibration = ParseCalibration(WithoutBlanks(value), "calibration")) calibration_ = *std::move(calibration);
 }
 
-void LiveRows::TakeNames(std::string_view line) {
+void LiveRows::ReadNames(std::string_view line) {
   has_names_ = true;
   unit_ = UnitOf(WithoutBlanks(FirstColumnsOf(line).value));
   if (calibration_ && calibration_->input != unit_) calibration_.reset();

@@ -15,15 +15,15 @@ class LiveRows {
  public:
   /// The sample of a line; std::nullopt for comments, column names, and rows that are invalid or not later than the
   /// last one.
-  std::optional<LivePoint> Take(std::string_view line);
+  std::optional<LivePoint> Read(std::string_view line);
 
   bool has_begun() const { return has_names_; }                ///< The column names were read.
   const std::string& unit() const { return unit_; }            ///< Unit of the values.
   const std::optional<double>& rate() const { return rate_; }  ///< Hz
 
  private:
-  void TakeComment(std::string_view text);
-  void TakeNames(std::string_view line);
+  void ReadComment(std::string_view text);
+  void ReadNames(std::string_view line);
 
   bool has_names_ = false;
   std::string unit_;

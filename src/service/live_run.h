@@ -15,7 +15,7 @@ namespace pendulum {
 
 /// The part of a run that was read so far.
 struct LiveRun {
-  static constexpr std::size_t kMaxLatest = 4000;  // 80 s of points; a listener that is further behind starts again
+  static constexpr std::size_t kMaxLatest = 4000;  // 80 s of points; a listener that is further behind restarts
 
   LiveRows rows;
   WholeRun whole;
@@ -26,30 +26,30 @@ struct LiveRun {
 
   std::uint64_t latest_end() const { return latest_begin + latest.size(); }
 
-  void Keep(const std::vector<LivePoint>& points) {
+  void AppendLatest(const std::vector<LivePoint>& points) {
     latest.insert(latest.end(), points.begin(), points.end());
     for (; latest.size() > kMaxLatest; ++latest_begin) latest.pop_front();
   }
 
-  void Take(std::string_view lines) {
+  void Read(std::string_view lines) {
     std::vector<LivePoint> settled;
     while (!lines.empty()) {
       const std::string_view line = lines.substr(0, lines.find('\n'));
       lines.remove_prefix(std::min(lines.size(), line.size() + 1));
-      const auto point = rows.Take(line);
+      const auto point = rows.Read(line);
       if (!point) continue;
       ++samples;
-      whole.Take(*point);
-      sparse.Take(*point, settled);
+      whole.Add(*point);
+      sparse.Add(*point, settled);
     }
-    Keep(settled);
+    AppendLatest(settled);
   }
 
-  /// Appends points that wait for more samples of their block, if none arrive.
+  /// Appends the points of the unfinished block. Call it if no more samples arrive.
   void FlushPoints() {
     std::vector<LivePoint> settled;
     sparse.Flush(settled);
-    Keep(settled);
+    AppendLatest(settled);
   }
 };
 

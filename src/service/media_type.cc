@@ -88,7 +88,7 @@ Result<FieldParameters> ParseFieldParameters(std::string_view text, std::string_
     text.remove_prefix(1);
     const bool is_quoted = text.starts_with('"');
     std::optional<std::string> value = is_quoted ? TakeQuoted(text, backslash) : TakeToken(text);
-    if (!value) return WrongParameters(what, item, "whose quotes do not close, or hold a control character");
+    if (!value) return WrongParameters(what, item, "whose quotes do not close, or contain a control character");
     if (value->empty() && !is_quoted) return WrongParameters(what, item, "whose value must be in quotes");
     if (!names.insert(name).second) return WrongParameters(what, name, "which is given twice; keep one of them");
     parameters.emplace_back(std::move(name), *std::move(value));

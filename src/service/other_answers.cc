@@ -270,7 +270,7 @@ HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
   const auto file = ReadGuideFile(state.options.docs, call.id);
   if (!file) return ProblemAnswer(file.error());
   HttpResponse response = PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));
-  // The guide needs no script, and its files are those of a folder that the operator chooses.
+  // No script may run: the guide needs none, and the operator may choose any folder.
   response.fields.push_back({"Content-Security-Policy",
                              "default-src 'none'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action "
                              "'none'; frame-ancestors 'none'"});

@@ -60,7 +60,7 @@ ProblemKind KindOf(StatusCode code) {
   return ProblemKind::kInternal;
 }
 
-/// kWrongRequest or kInternal for a status that several kinds share.
+/// The kind of an HTTP status; kWrongRequest or kInternal if several kinds share the status, or if it is unknown.
 ProblemKind KindOfHttpStatus(int status) {
   constexpr int kUnprocessable = 422, kServerErrors = 500;
   const auto* const found = std::ranges::find(kKindsOfProblem, status, &KindOfProblem::status);

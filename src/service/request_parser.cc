@@ -14,7 +14,7 @@
 namespace pendulum::wire {
 namespace {
 
-/// Limit for the line of a chunk's size, or for the trailer, before it is complete.
+/// Limit for an incomplete line with a chunk's size, and for an incomplete trailer, in bytes.
 constexpr std::size_t kMaxBetweenChunks = std::size_t{8} << 10;
 
 constexpr std::size_t kFirstCapacity = std::size_t{64} << 10;
@@ -50,7 +50,7 @@ Refused TooMuchAtOnce() { return {429, "too many bytes are being received and se
 RequestParser::RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget)
     : max_head_(max_head), max_body_(max_body), held_(budget) {
   header_limit(static_cast<std::uint32_t>(max_head));
-  // Append checks the limit, after the handler. Without a limit Boost 1.74 would refuse every length.
+  // Append checks the limit, after the handler has seen the head. Without a limit Boost 1.74 would refuse every length.
   body_limit(std::numeric_limits<std::uint64_t>::max());
 }
 
@@ -130,7 +130,7 @@ std::optional<Refused> RequestParser::ReadTarget() {
     const std::string authority = target.substr(kScheme.size(), path - kScheme.size());
     const auto host = request_.Field("Host");
     if (!host || !IsSameWord(*host, authority)) {
-      return Refused{400, "the request's target names host \"" + authority + "\", its Host field another"};
+      return Refused{400, "the request's target names host \"" + authority + "\", but its Host field names another"};
     }
     target.erase(0, path);
     if (!target.starts_with('/')) target.insert(0, "/");
@@ -170,7 +170,7 @@ std::size_t RequestParser::Append(View body, Code& code) {
     return 0;
   }
   const std::size_t size = text.size() + body.size();
-  if (size > text.capacity()) {  // allocates exactly the known size
+  if (size > text.capacity()) {  // allocates at most the size if it is known
     const std::size_t more = std::max(kFirstCapacity, 2 * size);
     text.reserve(head_.is_chunked ? more : std::min<std::size_t>(more, head_.content_length));
   }

@@ -35,8 +35,8 @@ struct RequestHead {
   std::uint64_t content_length = 0;
 };
 
-/// Parses one request from the bytes of a connection. It is stricter than Beast if a head has two readings, so a proxy
-/// cannot take one request for two (RFC 9112, section 11.2).
+/// Parses one request from the bytes of a connection. It refuses ambiguous heads that Beast accepts, because a proxy
+/// might see another end of the request and take one request for two (RFC 9112, section 11.2).
 class RequestParser final : private boost::beast::http::basic_parser<true> {
  public:
   RequestParser(std::size_t max_head, std::size_t max_body, ByteBudget& budget);
@@ -51,7 +51,7 @@ class RequestParser final : private boost::beast::http::basic_parser<true> {
 
   const RequestHead& head() const { return head_; }
 
-  /// The part received so far.
+  /// The part of the request that was received so far.
   HttpRequest& request() { return request_; }
 
   /// Frees the memory and budget of an answered request.

@@ -89,7 +89,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DecodedQuery(std::strin
   return parameters;
 }
 
-/// Length of the text before the authority of a target in absolute form; std::nullopt for other forms.
+/// Length of "http://" or "https://" at the beginning of a target in absolute form; 0 for other forms.
 std::size_t SchemeLength(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (IsSameWord(target.substr(0, scheme.size()), scheme)) return scheme.size();

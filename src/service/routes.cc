@@ -56,8 +56,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/docs/{path}", Lane::kQuick, kAll, QueryKind::kNone, GetGuideFile},
 };
 
-/// The text that the path has for {id}, one segment, or for {path} at the end, any number of them. It is empty if the
-/// pattern has neither. Returns std::nullopt if the path is not an instance of the pattern.
+/// The text of the path in place of {id} (one segment) or of {path} at the end (any number of segments). It is empty if
+/// the pattern has neither. Returns std::nullopt if the path does not match the pattern.
 std::optional<std::string_view> MatchPath(std::string_view pattern, std::string_view path) {
   constexpr std::string_view kId = "{id}", kRest = "{path}";
   if (pattern.ends_with(kRest)) {

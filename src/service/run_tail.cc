@@ -51,7 +51,7 @@ std::optional<RunTail::FileIdentity> RunTail::Find(const std::filesystem::path& 
   return ::stat(path.c_str(), &status) == 0 ? IdentityOf(status) : std::nullopt;
 }
 
-/// Returns whether there was anything to forget.
+/// Closes the followed file; returns whether there was one.
 bool RunTail::Forget() {
   offset_ = 0;
   head_.clear();
@@ -72,11 +72,11 @@ bool RunTail::IsSameFile(const FileIdentity& file) const {
 RunTail::News RunTail::Look() {
   News news;
   const auto part = Find(part_), run = Find(run_);
-  const auto& there = part ? part : run;
+  const auto& current = part ? part : run;
   is_growing_ = part && part->age < kRunTailSilence;
-  if (!there || !IsSameFile(*there)) {
+  if (!current || !IsSameFile(*current)) {
     news.is_another = Forget();
-    if (there) descriptor_ = OpenRegularFile(part ? part_ : run_);
+    if (current) descriptor_ = OpenRegularFile(part ? part_ : run_);
   }
   if (descriptor_ >= 0) ReadOn(news);
   return news;
@@ -88,14 +88,14 @@ void RunTail::ReadOn(News& news) {
     const std::string_view bytes = ReadAt(descriptor_, offset_, room);
     if (bytes.empty()) return;
     if (head_.size() < kRunTailHead) head_ += bytes.substr(0, kRunTailHead - head_.size());
-    TakeBytes(bytes, news.lines);
+    AppendCompleteLines(bytes, news.lines);
     offset_ += bytes.size();
     taken += bytes.size();
   }
   news.has_more = true;
 }
 
-void RunTail::TakeBytes(std::string_view bytes, std::string& lines) {
+void RunTail::AppendCompleteLines(std::string_view bytes, std::string& lines) {
   const std::size_t end = bytes.rfind('\n');
   const bool is_too_long = unfinished_.size() + bytes.size() > kRunTailLongestLine;
   if (end == std::string_view::npos) {

@@ -20,7 +20,7 @@ class RunTail {
  public:
   /// New data since the last look.
   struct News {
-    bool is_another = false;  ///< The lines are from another file than before; without lines there is no file.
+    bool is_another = false;  ///< The lines come from another file than before, or the file is gone.
     bool has_more = false;    ///< There is more data than one look reads.
     std::string lines;        ///< Complete lines, some megabytes at most.
   };
@@ -50,7 +50,7 @@ class RunTail {
   bool IsSameFile(const FileIdentity& file) const;
   bool Forget();
   void ReadOn(News& news);
-  void TakeBytes(std::string_view bytes, std::string& lines);
+  void AppendCompleteLines(std::string_view bytes, std::string& lines);
 
   std::filesystem::path run_, part_;
   int descriptor_ = -1;  // Descriptor of the followed file.
@@ -58,7 +58,7 @@ class RunTail {
   std::uintmax_t offset_ = 0;      // Offset of the next byte.
   std::string head_;               // The first bytes, which identify the run.
   std::string unfinished_;         // A line without its end.
-  bool is_line_too_long_ = false;  // The rest of the line is skipped.
+  bool is_line_too_long_ = false;  // The remainder of the line is skipped.
 };
 
 }  // namespace pendulum

@@ -29,7 +29,7 @@ using ErrorCode = boost::system::error_code;
 /// Pause after a failed accept, for example without free file descriptors; an immediate retry would fail too.
 constexpr std::chrono::milliseconds kAfterFailedAccept{100};
 
-/// Rejected connections that get an answer at the same time; further ones are closed without an answer.
+/// Limit for rejected connections that get an answer at the same time; further ones are closed without an answer.
 constexpr std::size_t kMaxRejected = 64;
 
 std::size_t ThreadsOf(int threads) {
@@ -53,13 +53,13 @@ struct Server::State {
   Result<void> Bind();
   void Accept();
   void CloseLongestIdle();
-  void Take(tcp::socket socket);
+  void AddConnection(tcp::socket socket);
   void Forget(const std::shared_ptr<wire::Connection>& connection);
   void BeginStop();
   void EndStop();
   void DropAll();
 
-  // Members are in an order in which each is destroyed before those it refers to.
+  // The order matters: each member is destroyed before the members to which it refers.
   const ServerOptions options;
   wire::ByteBudget budget;
   asio::io_context io{1};
@@ -98,7 +98,7 @@ void Server::State::Accept() {
     if (!acceptor.is_open()) return;
     if (!code) {
       Accept();  // first, so an exception below affects only this connection
-      return Take(std::move(socket));
+      return AddConnection(std::move(socket));
     }
     pause.expires_after(kAfterFailedAccept);
     pause.async_wait([this](const ErrorCode&) {
@@ -116,7 +116,7 @@ void Server::State::CloseLongestIdle() {
   longest_idle.value()->Close();
 }
 
-void Server::State::Take(tcp::socket socket) {
+void Server::State::AddConnection(tcp::socket socket) {
   ++accepted;
   if (connections.size() >= options.max_connections) CloseLongestIdle();
   const bool exceeds_limit = connections.size() >= options.max_connections;

@@ -35,7 +35,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A flag as requests have it: without dashes.
+/// The help text of a flag with all flag names as requests write them: without dashes.
 std::string DescriptionOf(const RunFlag& flag) {
   std::string text = flag.help;
   for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.erase(at, 2);

@@ -17,13 +17,13 @@ struct Example {
   std::string_view rig;        ///< JSON; empty: none.
 };
 
-/// Some of datasets/, each with known true values.
+/// Recordings from datasets/ whose true values are known.
 std::span<const Example> Examples();
 
 /// openapi.json with the schema of results inserted.
 std::string OpenApiDocument();
 
-/// ServicePage with the flags of RunFlagTable that have a field in its form.
+/// The service's page, with the flags of RunFlagTable that have a field in its form.
 const std::string& FilledServicePage();
 
 // Bytes of embedded files (embed_file.cmake): openapi.json and the schema it refers to, recordings and rigs of

@@ -28,7 +28,8 @@ using prometheus::Family;
 using prometheus::Gauge;
 using prometheus::Histogram;
 
-/// s, for answers and fits: a short fit takes some ten milliseconds, the longest permitted one half a minute.
+/// Bounds of the histograms of answers and fits, s. A short fit takes some ten milliseconds, the longest one that a
+/// request may take by default 30 s.
 const std::vector<double> kSeconds = {0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
 
 double Seconds(std::chrono::duration<double> time) { return time.count(); }
@@ -63,7 +64,7 @@ struct ServiceMetrics::State {
     return BuildGauge().Name(name).Help(help).Register(registry).Add({});
   }
 
-  /// Counters kept elsewhere; their values are copied.
+  /// A counter without labels. Text copies the values that are counted elsewhere.
   Counter& AddCounter(const std::string& name, const std::string& help) {
     return BuildCounter().Name(name).Help(help).Register(registry).Add({});
   }
@@ -92,7 +93,7 @@ struct ServiceMetrics::State {
   Counter& refused =
       AddCounter("pendulum_http_requests_refused_total", "Requests that were dropped before they were processed.");
 
-  std::mutex mutex;  // for the members below and the counters kept elsewhere
+  std::mutex mutex;  // for `server` and for the counters that Text copies
   std::function<ServerCounts()> server;
 };
 

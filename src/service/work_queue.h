@@ -22,7 +22,7 @@ class WorkQueue {
   WorkQueue& operator=(WorkQueue&&) = delete;
   ~WorkQueue();
 
-  /// False if all threads are busy and the queue is full, or it is closed. `work` must not throw.
+  /// Queues work. False if all threads are busy and the queue is full, or if it is closed. `work` must not throw.
   bool Offer(std::function<void()> work);
 
   /// Drops waiting work and returns when running work is done.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrates a sensor of angles from a table, or plans one: flags, files and exit codes.
+// Calibrates an angle sensor from a table of points, or plans a sensor: flags, files and exit codes.
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,17 +39,18 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"input_range", &Flags::input_range,
        "Range of the sensor, low,high, in the unit of the readings; default unknown."},
       {"json", &Flags::json, "Where to write the calibration for fit_pendulum; - is standard output; default nowhere."},
-      {"plot", &Flags::plot, "Where to write an SVG of curve and residuals (needs gnuplot); default nowhere."},
-      {"plan", &Flags::plan, "Plans a potentiometer and converter instead, and prints their resolution. Default off."},
+      {"plot", &Flags::plot, "Where to write an SVG plot of curve and residuals (needs gnuplot); default nowhere."},
+      {"plan", &Flags::plan,
+       "Instead of calibrating, plans a potentiometer and a converter and prints their resolution. Default off."},
       {"bits", &Flags::bits,
-       "Of the converter, 1 to 32; default 10 in a plan. With --data the range is 0 to 2^bits - 1."},
+       "Bits of the converter, 1 to 32; default 10 in a plan. With --data, the range is 0 to 2^bits - 1."},
       {"reference_voltage", &Flags::reference_voltage,
-       "In a plan: references of the converter in V, between commas; default 5."},
-      {"supply_voltage", &Flags::supply_voltage, "In a plan: V across the potentiometer; default 5."},
+       "In a plan: reference voltages of the converter in V, separated by commas; default 5."},
+      {"supply_voltage", &Flags::supply_voltage, "In a plan: voltage across the potentiometer in V; default 5."},
       {"potentiometer_range_deg", &Flags::potentiometer_range_deg,
        "In a plan: electrical travel of the potentiometer, deg; default 270."},
       {"divider", &Flags::divider,
-       "In a plan: V at the converter for 1 V at the wiper, R2/(R1+R2); default 1, no divider."},
+       "In a plan: voltage at the converter in V for 1 V at the wiper, R2/(R1+R2); default 1, no divider."},
   };
 }
 

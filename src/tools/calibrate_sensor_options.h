@@ -24,7 +24,7 @@ struct CalibrateSensorFlags : CalibrationFlags {
   std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// The task of calibrate_sensor: a plan of sensors if there are any, otherwise a calibration.
+/// The task of calibrate_sensor: a plan if `plan` has sensors, otherwise a calibration.
 struct CalibrateSensorOptions : CalibrationOptions {
   std::string data;  ///< As in the flags.
   std::string json;  ///< As in the flags.
@@ -40,7 +40,7 @@ struct CalibrateSensorOptions : CalibrationOptions {
 
 /// Checks the flags and converts them to options.
 ///
-/// kInvalidArgument: neither a table nor a plan, or both; a flag that belongs to the other task; a number outside its
+/// kInvalidArgument: neither a table nor a plan, or both of them; a flag of the other task; a number outside its
 /// domain; an argument without a flag. The message names the flag.
 Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorFlags& flags);
 

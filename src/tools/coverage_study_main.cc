@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulates and fits recordings of many kinds and tells how often the 95 % intervals contain the truth: flags,
+// Simulates and fits recordings of many kinds and reports how often the 95 % intervals contain the true values: flags,
 // progress, files and exit codes.
 #include <chrono>
 #include <string>
@@ -19,28 +19,28 @@ namespace {
 constexpr std::string_view kName = "coverage_study";
 
 constexpr const char* kUsage =
-    "Do the 95 % intervals of fit_pendulum contain the truth 95 % of the time? Simulated recordings, fitted and "
-    "counted.\n"
+    "Do the 95 % intervals of fit_pendulum contain the truth 95 % of the time? Simulates recordings, fits them and "
+    "counts.\n"
     "\n"
     "  coverage_study --scenario white_0.25,to_rest --count 1000\n"
     "\n"
-    "Exit codes: 0 done, whatever the tables say, 2 wrong flags, 70 a bug, 73 an output cannot be written.\n"
+    "Exit codes: 0 done, even if a line of the tables fails, 2 wrong flags, 70 a bug, 73 an output cannot be written.\n"
     "\n";
 
 using Flags = CoverageFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
-      {"scenario", &Flags::scenario, "Scenarios, name,..., or all; --list shows them."},
-      {"count", &Flags::count, "Recordings of each scenario; default 1000."},
+      {"scenario", &Flags::scenario, "Names of scenarios, separated by commas, or all; --list shows them."},
+      {"count", &Flags::count, "Number of recordings of each scenario; default 1000."},
       {"runs", &Flags::runs,
-       "Recordings of one rig, released from different angles and fitted together, in each of --count sets; default 1, "
-       "separate recordings."},
+       "Number of recordings in each of --count sets; those of a set are of one rig, released from different angles, "
+       "and fitted together. Default 1: each recording is fitted alone."},
       {"seed", &Flags::seed, "Seed of the first recording; recording i has seed + i; default 1."},
-      {"threads", &Flags::threads,
-       "Threads, on which the result does not depend; default 0, as many as there are cores."},
+      {"threads", &Flags::threads, "Number of threads; it does not change the result; default 0, one per core."},
       {"markdown", &Flags::markdown,
-       "Where else to write the tables, as Markdown; - is standard output; default nowhere."},
+       "Where to write the tables as Markdown, besides the text; - is standard output, instead of the text; default "
+       "nowhere."},
       {"list", &Flags::list, "Lists the scenarios and exits; default off."},
   };
 }

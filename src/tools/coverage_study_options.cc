@@ -42,7 +42,8 @@ Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags
   CoverageStudyOptions options;
   options.list = flags.list;
   if (!flags.list && flags.scenario.empty()) {
-    return BadFlag("--scenario is missing: names of scenarios, comma-separated, or all; --list shows them");
+    return BadFlag(
+        "--scenario is missing; give names of scenarios, separated by commas, or all; --list shows the names");
   }
   auto scenarios = FindCoverageScenarios(flags.scenario.empty() ? "all" : flags.scenario);
   if (!scenarios) return BadFlag("--scenario: " + scenarios.error().message);

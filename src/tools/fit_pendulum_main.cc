@@ -36,9 +36,9 @@ constexpr const char* kUsage =
     "Exit codes: 0 converged, 1 fitted but not converged, not identifiable or not a free swing, 2 wrong flags,\n"
     "3 file not found, 4 unreadable data, calibration or rig, 5 no swing in the data or too little, 70 a bug,\n"
     "73 an output cannot be written.\n"
-    "With several models, the code is that of the recommended one; with recordings that are fitted separately, the\n"
-    "largest. Results that can be fitted are written. Several recordings are assumed to be of one rig and fitted\n"
-    "together; --shared none fits each separately.\n"
+    "With several models, the code belongs to the recommended model; with recordings that are fitted separately, it\n"
+    "is the largest. All fits that succeed are written. Several recordings are assumed to be of one rig and are\n"
+    "fitted together; --shared none fits each separately.\n"
     "\n";
 
 using Flags = FitPendulumFlags;
@@ -46,23 +46,23 @@ using Flags = FitPendulumFlags;
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
       {"data", &Flags::data,
-       "Recording, or several of one rig between commas, fitted together (--shared): CSV whose header names the "
-       "columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
+       "Recording, or several of one rig, separated by commas and fitted together (--shared): CSV whose header names "
+       "the columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
        "Graphical Analysis, Capstone and ROS; MAT-files; - is standard input."},
-      {"data_list", &Flags::data_list, "File that lists recordings, one path a line, instead of --data; default none."},
+      {"data_list", &Flags::data_list, "File with one path of a recording per line, instead of --data; default none."},
       {"shared", &Flags::shared,
-       "Parameters that several recordings share: all (inertia and friction), some of their names, or none (each "
-       "recording is fitted separately); default all for several recordings, none for one recording's releases."},
+       "Parameters that several recordings share: all (inertia and friction), a list of names, or none (each recording "
+       "is fitted separately); default all for several recordings, none for several releases of one recording."},
       {"json", &Flags::json, "Where to write the result as JSON; - is standard output; default nowhere."},
       {"residuals", &Flags::residuals,
-       "Where to write the samples and residuals as CSV; - is standard output; default nowhere."},
+       "Where to write samples and residuals as CSV; - is standard output; default nowhere."},
       {"series", &Flags::series,
        "Where to write samples, turning points and models as JSON; - is standard output; default nowhere."},
       {"report", &Flags::report,
        "Where to write the result as a page (HTML, one file); - is standard output; default nowhere."},
       {"markdown", &Flags::markdown, "Where to write the result as Markdown; - is standard output; default nowhere."},
       {"terminal_plot", &Flags::terminal_plot,
-       "Draws recording, fit and residuals in the terminal, by gnuplot; default off."},
+       "Draws recording, fit and residuals in the terminal (needs gnuplot); default off."},
   };
 }
 

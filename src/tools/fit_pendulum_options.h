@@ -29,8 +29,8 @@ struct FitPendulumFlags : RunFlags, FitOutputs {
   std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
 };
 
-/// Whether recordings are fitted together. By default several recordings are, and several releases of one recording are
-/// not.
+/// Whether recordings are fitted together. By default several recordings are fitted together, and several releases of
+/// one recording are fitted separately.
 enum class Sharing { kByDefault, kNothing, kAsked };
 
 /// The task of fit_pendulum.

@@ -38,7 +38,7 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
     if (count > 1 && IsStandardOutput(options.residuals)) {
       return Error(StatusCode::kInvalidArgument, "--residuals " + options.residuals +
                                                      " takes one recording, but there are " + std::to_string(count) +
-                                                     "; name a file, which is then numbered");
+                                                     "; give a file name, to which the number is added");
     }
     return CheckOutputs(options.JointOutputs(static_cast<int>(count)), setup.inputs);
   }
@@ -46,7 +46,8 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
   for (const NamedFile& output : options.Outputs()) {
     if (!IsStandardOutput(output.path)) continue;
     return Error(StatusCode::kInvalidArgument, output.flag + " " + output.path + " takes one fit, but there are " +
-                                                   std::to_string(count) + "; name a file, which is then numbered");
+                                                   std::to_string(count) +
+                                                   "; give a file name, to which the number is added");
   }
   std::vector<NamedFile> outputs;
   for (std::size_t i = 0; i < count; ++i) {
@@ -57,7 +58,7 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
 
 namespace {
 
-/// All recordings together; their number decides whether the outputs can be written.
+/// Fits all recordings together. Before the fit it checks the outputs, whose number is the number of recordings.
 Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<PreparedRecording> recordings;
   std::size_t count = 0;
@@ -84,7 +85,7 @@ Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& opt
     return runs;
   }
   const std::size_t files = setup.paths.size();
-  std::size_t count = files;  // of places: at least one for each recording
+  std::size_t count = files;  // number of runs; a recording that cannot be read counts as one
   for (const std::string& path : setup.paths) {
     auto one = PrepareFile(path, options, setup.rig);
     if (!one) {

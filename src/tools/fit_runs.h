@@ -14,23 +14,24 @@
 
 namespace pendulum {
 
-/// What the runs need beside their flags.
+/// What has been read before the fits.
 struct Setup {
-  std::vector<std::string> paths;  ///< Of the recordings.
-  std::vector<NamedFile> inputs;   ///< All that is read.
+  std::vector<std::string> paths;  ///< Paths of the recordings.
+  std::vector<NamedFile> inputs;   ///< All input files, with their flags.
   std::optional<Rig> rig;
 };
 
-/// Reads rig, calibration (into the options) and list of recordings. Errors as their readers.
+/// Reads the rig, the calibration (into the options) and the list of recordings. Errors as the functions that read
+/// them.
 Result<Setup> ReadSetup(FitPendulumOptions& options);
 
-/// Numbered outputs are other files than those that were named; data of several fits have no place on one stream.
-/// kInvalidArgument, kCannotWrite: as CheckOutputs, or standard output for more than one.
+/// Checks the outputs of `count` runs, because several runs write numbered files instead of the named ones.
+/// kInvalidArgument, kCannotWrite: as CheckOutputs; kInvalidArgument: data of several runs for standard output.
 Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup& setup, std::size_t count);
 
-/// The runs of all recordings, in their order: one that cannot be fitted keeps its place, and the others go on. A joint
-/// fit is one run, and none where one of its recordings cannot be fitted.
-/// kInvalidArgument, kCannotWrite: outputs that are one too many once the releases are counted.
+/// Fits all recordings and returns the runs in the order of the recordings. A recording that cannot be fitted has an
+/// error at its place, and the others are fitted. A joint fit is one run; it fails if one recording cannot be fitted.
+/// kInvalidArgument, kCannotWrite: as CheckNumberedOutputs, once the number of releases is known.
 Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup);
 
 }  // namespace pendulum

@@ -66,7 +66,7 @@ tl::unexpected<Status> WrongFlag(const std::string& name, const std::string& why
 }
 
 /// False for a number flag whose value is not a number; gflags checks the range of the type.
-bool Fits(const FlagInfo& flag, std::string_view value) {
+bool HasValidType(const FlagInfo& flag, std::string_view value) {
   if (flag.type == "string" || flag.type == "bool") return true;
   const char* end = value.data() + value.size();
   double number = 0;
@@ -93,7 +93,7 @@ Result<GivenFlag> CheckFlag(std::span<const std::string> arguments, std::span<co
   if (!joined && arguments.size() == 1) return WrongFlag(name, "needs a value");
   const std::string value = joined ? body.substr(equals + 1) : arguments[1];
   if (value.empty()) return WrongFlag(name, "has an empty value; leave the flag out for its default");
-  if (!Fits(*flag, value)) {
+  if (!HasValidType(*flag, value)) {
     return WrongFlag(name, "is '" + value + "'; it must be a" + (flag->type == "double" ? " number" : "n integer"));
   }
   return GivenFlag{flag, value, joined ? 1U : 2U};
@@ -107,8 +107,8 @@ Result<void> CheckGivenOnce(const GivenFlag& flag, std::map<std::string, std::st
   const auto [earlier, is_first] = values.emplace(name, flag.value);
   if (is_first) return {};
   if (std::ranges::find(kLists, name) == kLists.end()) return WrongFlag(name, "is given twice; leave one of them out");
-  return WrongFlag(name, "is given twice; what it names stands between commas: --" + name + " " + earlier->second +
-                             "," + flag.value);
+  return WrongFlag(name, "is given twice; give all values in one flag, separated by commas: --" + name + " " +
+                             earlier->second + "," + flag.value);
 }
 
 }  // namespace

@@ -31,11 +31,11 @@ struct FlagInfo {
   std::string name;             ///< Without dashes.
   std::string help;             ///< Meaning, unit and default.
   std::string type = "string";  ///< gflags' type: bool (no value in a following argument), string, double, int32, ...
-  bool own = true;              ///< Of the tool, not of a library: in --help and suggestions.
+  bool own = true;              ///< Defined by the tool, not by a library. Only own flags are in --help.
 };
 
 /// Parses the arguments (without the program's name) by gflags' grammar, without setting flags. Returns the arguments
-/// that belong to no flag. Without this check gflags would exit with 1.
+/// that belong to no flag. Without this check gflags itself would report an error and exit with 1.
 ///
 /// kInvalidArgument: an unknown flag (the nearest own flag is suggested), a flag without a value or with an empty one,
 /// an invalid number, a repeated flag other than a switch.

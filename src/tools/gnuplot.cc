@@ -25,8 +25,8 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// A file without a name, deleted when closed. With pipes parent and child could wait for each other; with such files
-/// they cannot.
+/// A file without a name, deleted when closed. With pipes, parent and child could wait for each other forever; with
+/// files they cannot.
 using TemporaryFile = std::unique_ptr<std::FILE, Close>;
 
 std::string Contents(std::FILE* file) {

@@ -11,7 +11,7 @@ namespace pendulum {
 Result<void> CheckGnuplot();
 
 /// Runs gnuplot from PATH with the script and returns its standard output. No shell and none of the user's start files
-/// are used. kCannotWrite: gnuplot is missing or fails; the message includes its own.
+/// are used. kCannotWrite: gnuplot is missing or fails; the message includes gnuplot's message.
 Result<std::string> RunGnuplot(const std::string& script);
 
 }  // namespace pendulum

@@ -34,7 +34,7 @@ struct Span {
 
 }  // namespace
 
-void LiveTrace::Take(double time, double value, double counts, double full_scale) {
+void LiveTrace::Add(double time, double value, double counts, double full_scale) {
   points_.push_back({time, value});
   while (time - points_.front().time > kSeconds) points_.pop_front();
   counts_ = counts;

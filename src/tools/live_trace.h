@@ -14,11 +14,11 @@ class LiveTrace {
  public:
   static constexpr double kSeconds = 10;  ///< Shown duration.
 
-  /// `unit`: of the values, deg or counts.
+  /// `unit`: unit of the values, deg or counts.
   explicit LiveTrace(std::string_view unit) : unit_(unit) {}
 
-  /// Adds a sample: time [s], value [unit], and its reading [counts, of `full_scale`].
-  void Take(double time, double value, double counts, double full_scale);
+  /// Adds a sample: time [s], value [unit], and the converter's reading from 0 to `full_scale` [counts].
+  void Add(double time, double value, double counts, double full_scale);
 
   /// The plot: kRows lines of less than `width` and at most 77 columns; blank without samples.
   std::vector<std::string> Plot(std::size_t width = 80) const;
@@ -47,7 +47,8 @@ class RedrawnLines {
  public:
   explicit RedrawnLines(int descriptor) : descriptor_(descriptor) {}
 
-  /// Lines are cut to less than `width` bytes, one column each: a longer line would continue on the next line.
+  /// Lines are cut to less than `width` bytes, each byte one column, because a longer line would continue on the next
+  /// line.
   void Draw(const std::vector<std::string>& lines, std::size_t width);
 
  private:

@@ -182,7 +182,7 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
 
 namespace {
 
-/// Output to a stream is written at once, because it cannot be undone.
+/// Collects all pieces before writing, because output to a stream cannot be undone if a later piece is an error.
 Result<void> WriteStreamOfPieces(const std::string& path, int count,
                                  const std::function<Result<std::string>(int)>& piece) {
   Output output{path, ""};

@@ -45,11 +45,11 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
 /// message.
 Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability = Durability::kSynchronised);
 
-/// Writes piece(0) to piece(count - 1) in order, like one text of WriteOutputs, without holding the whole file in
-/// memory. If a piece is an error, nothing is written.
+/// Writes piece(0) to piece(count - 1) in order, like one text of WriteOutputs. A file is written piece by piece and is
+/// never whole in memory; the text of a stream is. If a piece is an error, nothing is written.
 Result<void> WritePieces(const std::string& path, int count, const std::function<Result<std::string>(int)>& piece);
 
-/// Takes one piece of a text; an error ends the writing.
+/// Writes one piece of a text; an error ends the writing.
 using PieceSink = std::function<Result<void>(std::string_view)>;
 
 /// Writes the pieces that `run` passes to its argument. A file appears when it is complete; a stream gets each piece at
@@ -71,10 +71,10 @@ class PartFile {
   PartFile& operator=(PartFile&&) = delete;
   ~PartFile();
 
-  /// Whether the part of an earlier recording exists.
+  /// Whether a part file exists, from an earlier recording.
   bool Exists() const;
 
-  /// Creates it or empties it. kCannotWrite.
+  /// Creates the part file, or empties an existing one. kCannotWrite.
   Result<void> Open();
 
   /// kCannotWrite.
@@ -83,7 +83,7 @@ class PartFile {
   /// Writes the appended text to the disk. kCannotWrite.
   Result<void> Synchronise();
 
-  /// Call it when the complete recording is written.
+  /// Deletes the part file. To be called when the complete recording is written.
   void Remove();
 
   const std::string& path() const { return path_; }

@@ -37,7 +37,7 @@ constexpr const char* kUsage =
     "  record_pendulum --port /dev/ttyACM0 --out run.csv --seconds 60\n"
     "  record_pendulum --port /dev/ttyACM0 --out run.csv --until_rest --fit --rig rig.json --model coulomb\n"
     "\n"
-    "Ctrl-C ends a recording regularly. Meanwhile the samples are in run.csv.part, which can be fitted as it is.\n"
+    "Ctrl-C ends a recording normally. Until the end, the samples are in run.csv.part, which can be fitted already.\n"
     "Exit codes: 0 recorded (with --fit those of fit_pendulum), 1 recorded, but samples are missing or the logger was\n"
     "lost, 2 wrong flags, 3 no such port or file, 4 no logger answers, or a file cannot be read, 70 a bug, 73 an "
     "output\n"
@@ -62,26 +62,26 @@ using Flags = RecordPendulumFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
-      {"port", &Flags::port, "Serial port of the logger, such as /dev/ttyACM0; default the only one."},
-      {"out", &Flags::out, "Where the recording goes (CSV); - is standard output."},
+      {"port", &Flags::port, "Serial port of the logger, such as /dev/ttyACM0; default the only port that there is."},
+      {"out", &Flags::out, "Where to write the recording (CSV); - is standard output."},
       {"seconds", &Flags::seconds, "How long to record, s; default until Ctrl-C."},
-      {"until_rest", &Flags::until_rest, "Stop when the pendulum has swung and come to rest. Default off."},
-      {"overwrite", &Flags::overwrite, "Replace a recording that is there. Default off."},
+      {"until_rest", &Flags::until_rest, "Stops when the pendulum has swung and come to rest. Default off."},
+      {"overwrite", &Flags::overwrite, "Replaces the file of --out if it exists. Default off."},
       {"rate_hz", &Flags::rate_hz, "Samples per second; default 200."},
-      {"oversample", &Flags::oversample, "Conversions that are averaged for one sample, 1 to 64; default 1."},
+      {"oversample", &Flags::oversample, "Number of conversions that are averaged to one sample, 1 to 64; default 1."},
       {"baud", &Flags::baud, "Baud rate of the sketch; default 115200."},
       {"calibration", &Flags::calibration,
-       "Calibration file (JSON) to put into the recording; default the one in the logger."},
+       "Calibration file (JSON) to write into the recording; default the calibration in the logger."},
       {"store_calibration", &Flags::store_calibration,
-       "Stores this calibration file in the logger instead of recording."},
+       "Instead of recording, stores this calibration file in the logger."},
       {"counts", &Flags::counts,
-       "Prints the mean reading of one second in counts, for a calibration table, instead of recording. Default off."},
-      {"info", &Flags::info, "Shows the logger's description of itself instead of recording. Default off."},
-      {"list", &Flags::list, "Lists the serial ports instead of recording. Default off."},
-      {"fit", &Flags::fit, "Fits the recording, as fit_pendulum does. Default off."},
-      {"rig", &Flags::rig, "Of --fit: rig file (JSON, SI units); default none."},
+       "Instead of recording, prints the mean reading of one second in counts, for a calibration table. Default off."},
+      {"info", &Flags::info, "Instead of recording, shows board, firmware and calibration of the logger. Default off."},
+      {"list", &Flags::list, "Instead of recording, lists the serial ports. Default off."},
+      {"fit", &Flags::fit, "Fits the finished recording as fit_pendulum does. Default off."},
+      {"rig", &Flags::rig, "With --fit: rig file (JSON, SI units); default none."},
       {"model", &Flags::model,
-       "Of --fit: model of the motion, several between commas to compare, or all; default coulomb."},
+       "With --fit: model of the motion; several separated by commas, to compare them; or all; default coulomb."},
   };
 }
 
@@ -149,7 +149,8 @@ Result<int> Fit(FitPendulumOptions options) {
 std::string PartRemark(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   const PartFile part(options.out);
   if (!part.Exists()) return "";
-  return recorded.part_file_error.empty() ? "; it is in " + part.path() : "; its beginning is in " + part.path();
+  return recorded.part_file_error.empty() ? "; the recording is in " + part.path()
+                                          : "; the beginning of the recording is in " + part.path();
 }
 
 /// Writes the recording, removes its part file, and prints a summary.
@@ -164,7 +165,7 @@ Result<void> SaveRecording(const RecordPendulumOptions& options, const RecordedR
   return {};
 }
 
-/// Checks before the swing whether a requested fit lacks a calibration to angles.
+/// Refuses a fit without a calibration to angles, before the pendulum swings.
 Result<void> CheckCalibrated(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
                              const pendulum_logger::Info& info) {
   const auto needs_angle = [](const std::string& model) { return !FindMotionModel(model)->gravity.is_linear(); };
@@ -181,7 +182,7 @@ void WarnOfSlowLine(const RecordPendulumOptions& options) {
   PrintMessage(kRecordToolName, "warning: " + NumberText(options.rate.Hz(), 4) +
                                     " samples a second are more than the " + NumberText(capacity, 4) +
                                     " that a line of " + std::to_string(options.baud) +
-                                    " baud carries; the rest will be lost");
+                                    " baud carries; the remaining samples will be lost");
 }
 
 Result<int> Record(const RecordPendulumOptions& options, const std::optional<Calibration>& given,

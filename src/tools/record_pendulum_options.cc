@@ -26,7 +26,7 @@ Result<RecordTask> ChooseTask(const RecordPendulumFlags& flags) {
   const auto count = std::ranges::count(asked, true, &RequestedTask::first);
   if (count == 0) {
     return BadFlag(
-        "--out is missing: where the recording goes; --counts, --store_calibration, --info and --list need none");
+        "--out is missing; name the file for the recording, or give --counts, --store_calibration, --info or --list");
   }
   if (count > 1) {
     return BadFlag("give only one of --out, --counts, --store_calibration, --info and --list");

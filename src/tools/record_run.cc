@@ -21,8 +21,8 @@ namespace {
 
 namespace wire = pendulum_logger;
 
-constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kSaySeconds = 10;
-constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // the longer of both applies
+constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kReportSeconds = 10;
+constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // the longer one of the two times applies
 constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
 
 /// Whether standard output is a pipe whose reader has closed it.
@@ -31,7 +31,7 @@ bool IsOutputClosed() {
   return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
-/// Whether this many seconds have passed since it was last due.
+/// A timer that is due when `seconds` have passed since it was last due.
 class PeriodicTimer {
  public:
   explicit PeriodicTimer(double seconds) : seconds_(seconds) {}
@@ -68,12 +68,12 @@ class RunInProgress {
   Result<void> Begin();
   void Trim();
   void ReceiveUntilOver();
-  void Take(const TimedMessage& received);
-  void TakeData(const wire::Data& data, double host_time);
+  void ProcessMessage(const TimedMessage& received);
+  void ProcessData(const wire::Data& data, double host_time);
   void EndAsLost(const std::string& why);
   double LongestSilence() const;
   void StopWhenDue(double now);
-  void KeepPart(double now);
+  void WritePartFile(double now);
   void Show(double now);
   std::string LossText() const;
 
@@ -87,9 +87,10 @@ class RunInProgress {
   bool is_live_;
   RestDetector rest_;
   std::size_t rest_samples_ = 0;  // number of samples until rest; 0: not at rest, or not requested
-  PeriodicTimer draw_{kDrawSeconds}, say_{kSaySeconds}, synchronise_{kSynchroniseSeconds}, repeat_{kRepeatSeconds};
-  std::size_t kept_ = 0;                // samples in the part file
-  double silence_ = 0, last_look_ = 0;  // s: time without data while we looked; time of the last look
+  PeriodicTimer draw_{kDrawSeconds}, report_{kReportSeconds}, synchronise_{kSynchroniseSeconds},
+      repeat_{kRepeatSeconds};
+  std::size_t written_ = 0;             // samples in the part file
+  double silence_ = 0, last_poll_ = 0;  // s: time without data; time of the last poll
   double stop_asked_ = 0;
   bool is_stopping_ = false, is_over_ = false;
 };
@@ -122,7 +123,7 @@ void RunInProgress::Trim() {
 Result<void> RunInProgress::Begin() {
   if (auto started = logger_.Start(); !started) return started;
   recorded_.description.begun = UtcTimeText();
-  last_look_ = HostTime();
+  last_poll_ = HostTime();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
   if (!opened) recorded_.part_file_error = opened.error().message;
@@ -133,24 +134,25 @@ void RunInProgress::ReceiveUntilOver() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = HostTime();
-    silence_ += std::min(now - last_look_, 2 * kPollSeconds);  // a suspended process is not a silent logger
-    last_look_ = now;
+    // The limit keeps the time in which this process was suspended from counting as silence of the logger.
+    silence_ += std::min(now - last_poll_, 2 * kPollSeconds);
+    last_poll_ = now;
     if (!received) {
       EndAsLost(received.error().message);
     } else if (*received) {
-      Take(**received);
+      ProcessMessage(**received);
     }
     StopWhenDue(now);
-    KeepPart(now);
+    WritePartFile(now);
     Show(now);
   }
 }
 
-void RunInProgress::Take(const TimedMessage& received) {
+void RunInProgress::ProcessMessage(const TimedMessage& received) {
   if (const auto* data = std::get_if<wire::Data>(&received.message)) {
-    TakeData(*data, received.host_time);
+    ProcessData(*data, received.host_time);
   } else if (const auto* end = std::get_if<wire::End>(&received.message)) {
-    recorded_.run.TakeEnd(*end);
+    recorded_.run.SetEnd(*end);
     if (!is_stopping_) EndAsLost("the logger ended the run on its own");
     is_over_ = true;
   } else if (std::holds_alternative<wire::Info>(received.message)) {
@@ -158,19 +160,19 @@ void RunInProgress::Take(const TimedMessage& received) {
   }
 }
 
-void RunInProgress::TakeData(const wire::Data& data, double host_time) {
+void RunInProgress::ProcessData(const wire::Data& data, double host_time) {
   ReceivedRun& run = recorded_.run;
   const std::size_t first = run.size();
-  if (!run.Take(data, host_time)) return;
+  if (!run.AddFrame(data, host_time)) return;
   silence_ = 0;
   const auto& calibration = recorded_.description.calibration;
   for (std::size_t i = first; i < run.size(); ++i) {
     const double counts = run.Counts(i);
     if (options_.until_rest && rest_samples_ == 0) {
-      rest_.Take(run.Time(i), counts);
+      rest_.AddSample(run.Time(i), counts);
       if (rest_.IsAtRest()) rest_samples_ = i + 1;
     }
-    trace_.Take(run.Time(i), calibration ? calibration->Angle(counts) / kRadFromDeg : counts, counts, kFullScaleCounts);
+    trace_.Add(run.Time(i), calibration ? calibration->Angle(counts) / kRadFromDeg : counts, counts, kFullScaleCounts);
   }
 }
 
@@ -200,7 +202,7 @@ void RunInProgress::StopWhenDue(double now) {
     stop_asked_ = now;
     repeat_.Restart(now);
   } else if (now - stop_asked_ > kStopSeconds) {
-    is_over_ = true;  // without the logger's End frame, which the description reports
+    is_over_ = true;  // the End frame is missing, which the description reports
     return;
   } else if (!repeat_.IsDue(now)) {
     return;
@@ -208,11 +210,11 @@ void RunInProgress::StopWhenDue(double now) {
   if (auto sent = logger_.RequestStop(); !sent) EndAsLost(sent.error().message);
 }
 
-/// Appends the new samples as rows.
-void RunInProgress::KeepPart(double now) {
+/// Appends the new samples to the part file.
+void RunInProgress::WritePartFile(double now) {
   if (!recorded_.part_file_error.empty() || !(is_over_ || synchronise_.IsDue(now))) return;
   std::string rows;
-  for (; kept_ < recorded_.run.size(); ++kept_) rows += RunRow(recorded_.run, kept_);
+  for (; written_ < recorded_.run.size(); ++written_) rows += RunRow(recorded_.run, written_);
   auto kept = part_.Append(rows);
   if (kept) kept = part_.Synchronise();
   if (kept) return;
@@ -235,7 +237,7 @@ void RunInProgress::Show(double now) {
     if (size.rows <= lines.size() + 1) lines.clear();
     lines.push_back(trace_.StatusLine(LossText()));
     lines_.Draw(lines, size.columns);
-  } else if (!is_live_ && say_.IsDue(now) && run.size() > 0) {
+  } else if (!is_live_ && report_.IsDue(now) && run.size() > 0) {
     PrintMessage(kRecordToolName, NumberText(run.Time(run.size() - 1), 4) + " s, " + std::to_string(run.size()) +
                                       " samples, " + LossText());
   }

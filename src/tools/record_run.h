@@ -31,17 +31,17 @@ struct RecordedRun {
   RunEnd end = RunEnd::kStopped;
   std::string loss_reason;      ///< A sentence for kLost.
   int damaged_frames = 0;       ///< Received pieces that were not valid frames.
-  std::string part_file_error;  ///< Why there is no copy on the disk; empty if there is one.
+  std::string part_file_error;  ///< Why the part file is missing or incomplete; empty if it is complete.
 
-  /// The file's text.
+  /// The recording as CSV text.
   std::string Csv() const;
 };
 
 inline constexpr std::string_view kRecordToolName = "record_pendulum";
 
 /// Starts the connected logger, records until the end of the run or until `stop` is true, and stops the logger. During
-/// the run the data is kept in a PartFile. If standard error is a terminal, a live trace is drawn on it; otherwise the
-/// progress is printed from time to time. Losing the logger ends the run and keeps the data. kDataLoss: no data
+/// the run the data is written to a PartFile. If standard error is a terminal, a live trace is drawn on it; otherwise
+/// the progress is printed from time to time. Losing the logger ends the run and keeps the data. kDataLoss: no data
 /// arrived. kTryAgain: stopped before data arrived.
 Result<RecordedRun> RecordRun(const RecordPendulumOptions& options, const pendulum_logger::Info& info,
                               const std::optional<Calibration>& calibration, const std::atomic<bool>& stop,

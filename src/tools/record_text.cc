@@ -14,7 +14,7 @@
 namespace pendulum {
 namespace {
 
-/// The readings of a recording, counts.
+/// Range of the readings of a recording [counts], and how many are saturated.
 struct Readings {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   int saturated = 0;

@@ -30,7 +30,7 @@ namespace {
 std::atomic<bool> stop = false;
 std::atomic<int> stop_signal = 0;
 
-/// The first signal requests an orderly end. A second Ctrl-C stops at once, which a store survives.
+/// The first signal requests an orderly end. A second Ctrl-C stops at once, which does not damage the store.
 void Stop(int signal) {
   constexpr std::string_view kWords =
       "\nrefit_pendulums: stopping after the runs in progress; press Ctrl-C again to stop at once\n";

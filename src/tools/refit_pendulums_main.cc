@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refits batches of recordings into a store of results, and tells what is in it: flags and exit codes.
+// Refits batches of recordings into a store of results, and reports on stores: flags and exit codes.
 #include <string>
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace pendulum {
 namespace {
 
 constexpr const char* kUsage =
-    "Fits all recordings of a batch, as fit_pendulum fits one, into a store of results. Refits only what changed.\n"
+    "Fits all recordings of a batch as fit_pendulum does and stores the results. Refits only the runs that changed.\n"
     "\n"
     "  refit_pendulums --manifest runs.csv --models viscous,coulomb --store results.sqlite\n"
     "  refit_pendulums --data recordings --models all --store results.sqlite\n"
@@ -28,7 +28,7 @@ constexpr const char* kUsage =
     "  refit_pendulums missing --shard_dir out --shard_count 64\n"
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
-    "A run that cannot be read or fitted has a row that says why. After an interruption the same command continues.\n"
+    "A run that cannot be read or fitted gets a row that says why. After an interruption, repeat the same command.\n"
     "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another "
     "status or\n"
     "is missing, 2 wrong flags, 3 file or\n"
@@ -53,29 +53,33 @@ using Flags = RefitFlags;
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
       {"manifest", &Flags::manifest,
-       "Runs to refit: CSV with the column path and optional columns id, rig, calibration, from_s, to_s, models and "
-       "others, paths relative to the CSV file; or a file made by pack; - is standard input."},
+       "Runs to refit: CSV file with the column path (relative to the CSV file) and optional columns such as id, rig, "
+       "calibration, from_s, to_s and models; or a file made by pack; - is standard input."},
       {"data", &Flags::data,
        "Instead of a manifest: folders (all *.csv, *.mat and *.zip files below), patterns such as "
-       "'runs/**/*.txt' and files, between commas."},
+       "'runs/**/*.txt' and files, separated by commas."},
       {"store", &Flags::store, "SQLite file of the results; it is created or updated."},
-      {"force", &Flags::force, "Refits also runs whose data, rig, calibration, options and version have not changed."},
+      {"force", &Flags::force,
+       "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},
       {"retry_failed", &Flags::retry_failed,
-       "Refits also runs that could not be fitted; default off, because the same files fail again."},
+       "Also refits runs that could not be fitted; default off, because the same files fail again."},
       {"shard", &Flags::shard,
        "k/N: refits only part k (from 0) of N, each into its own store out/shard-k.sqlite; default all."},
-      {"scratch", &Flags::scratch, "Folder of a shard until it is complete; default beside the store."},
+      {"scratch", &Flags::scratch,
+       "Folder for the store of a shard until it is complete; default the folder of --store."},
       {"checkpoint_s", &Flags::checkpoint_s,
-       "Seconds between checkpoints of a shard, from which another attempt continues; default 60."},
+       "Seconds between checkpoints of a shard; after an interruption, the next attempt continues from the last one; "
+       "default 60."},
       {"shard_dir", &Flags::shard_dir,
-       "Folder of the stores shard-0.sqlite, shard-1.sqlite, ... of missing and merge."},
-      {"shard_count", &Flags::shard_count, "How many shards there are."},
-      {"out", &Flags::out, "Output of export (.csv or .jsonl), report (.html or .json) or pack."},
+       "For missing and merge: folder with the stores shard-0.sqlite, shard-1.sqlite, ..."},
+      {"shard_count", &Flags::shard_count, "For missing and merge: number of shards, N of --shard."},
+      {"out", &Flags::out, "Output file of export (.csv or .jsonl), report (.html or .json) or pack."},
       {"group_by", &Flags::group_by,
-       "Manifest column of the report: runs with the same value are of one rig; default rig if several are named, else "
-       "all runs are of one rig."},
+       "For report: manifest column in which runs of one rig have the same value; default rig, if the manifest names "
+       "several rigs; otherwise all runs are of one rig."},
       {"trend_by", &Flags::trend_by,
-       "Manifest column of the report, numbers or dates, over which trends are computed; default the position."},
+       "For report: manifest column of numbers or dates along which trends are computed; default the position in the "
+       "manifest."},
   };
 }
 

@@ -105,7 +105,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);
     return BadFlag("'" + flags.positional.front() + "' is not a command; the commands are " + NameList(names) +
-                   ", and none refits");
+                   "; to refit, give no command");
   }
   for (const std::string_view name : kNotForRefit) {
     if (Contains(flags.given, name))
@@ -113,7 +113,9 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   }
   if (flags.store.empty()) return BadFlag("no store was given; name the file for the results with --store");
   if (auto parsed = ParseSource(flags, options); !parsed) return parsed;
-  if (flags.release == "all") return BadFlag("--release all makes several results of a run; a batch has one of each");
+  if (flags.release == "all") {
+    return BadFlag("--release all makes several results per run, but a batch stores one; give one release");
+  }
   auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());
   options.refit.threads = run->fit.threads;

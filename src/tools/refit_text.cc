@@ -79,14 +79,15 @@ std::string ChangedText(const StoreComparison& comparison) {
   for (const ChangedStatus& status : comparison.status_changes) {
     rows.push_back({Printable(status.id), status.model, status.before, status.after});
   }
-  return Heading("Ended otherwise") + AlignedTable({{"run"}, {"model"}, {"before"}, {"after"}}, rows, kTextIndent);
+  return Heading("Ended with another status") +
+         AlignedTable({{"run"}, {"model"}, {"before"}, {"after"}}, rows, kTextIndent);
 }
 
 std::string RemovedFitsText(const StoreComparison& comparison) {
   if (comparison.removed.empty()) return "";
   std::vector<Cells> rows;
   for (const RemovedFit& fit : comparison.removed) rows.push_back({Printable(fit.id), fit.model});
-  return Heading("Gone") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
+  return Heading("Missing in the second store") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
 }
 
 constexpr std::chrono::milliseconds kRedraw{200};
@@ -109,8 +110,8 @@ Result<std::string> StatusText(Store& store) {
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after) {
   std::string text =
       Heading("Fits") + Row("in both", comparison.fits) + Row("in " + before + " only", comparison.only_before) +
-      Row("in " + after + " only", comparison.only_after) + Row("ended otherwise", comparison.changed_status) +
-      Row("runs with other data", comparison.other_data);
+      Row("in " + after + " only", comparison.only_after) +
+      Row("ended with another status", comparison.changed_status) + Row("runs with other data", comparison.other_data);
   text += Heading("Parameters") + Row("identical", comparison.identical) +
           Row("within 1e-9 of their errors", comparison.rounding) +
           Row("within their errors", comparison.within_errors) + Row("moved by more", comparison.moved) +

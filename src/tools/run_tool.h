@@ -16,7 +16,7 @@
 
 namespace pendulum {
 
-/// The description of a tool by its main.
+/// The description of a tool, which its main function gives to RunTool.
 struct Tool {
   std::string_view name;       ///< Used in messages.
   std::string_view main_file;  ///< __FILE__ of the main that defines its flags.
@@ -32,7 +32,7 @@ inline constexpr int kInterrupted = 130;
 void PrintMessage(std::string_view name, std::string_view sentence);
 
 /// Runs a tool: parses flags, handles --help and --version, prints errors and maps them to exit codes. An exception is
-/// a bug, 70.
+/// a bug: exit code 70.
 int RunTool(const Tool& tool, int argc, char** argv);
 
 /// A flag of a tool: its value is a member of the tool's `Flags`, whose initial value is the default.
@@ -45,11 +45,12 @@ struct ToolFlag {
   const char* help;  ///< Meaning, unit and default.
 };
 
-/// Makes the flags of RunFlagTable flags of gflags, which keeps pointers to both arguments.
+/// Registers the flags of RunFlagTable with gflags, which keeps pointers to both arguments.
 void RegisterRunFlags(RunFlags& values, RunFlags& defaults);
 
-/// RunTool of a tool with the flags of `table` and, if Flags has them, those of RunFlagTable. Call it once in a
-/// process. `work` gets their values, and in `positional` the arguments that belong to no flag.
+/// Runs a tool that has the flags of `table` and, if Flags is derived from RunFlags, also the flags of RunFlagTable. It
+/// may be called only once in a process. `work` gets the flags' values; its `positional` has the arguments without a
+/// flag.
 template <typename Flags, typename Work>
 int RunTool(std::string_view name, const char* main_file, const std::string& usage,
             const std::vector<ToolFlag<Flags>>& table, const Work& work, int argc, char** argv) {

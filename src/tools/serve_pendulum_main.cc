@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Serves fits over HTTP, and the page: flags, signals, log and exit codes.
+// Serves fits and the web page over HTTP: flags, signals, log and exit codes.
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -31,12 +31,13 @@ namespace {
 constexpr std::string_view kName = "serve_pendulum";
 
 constexpr const char* kUsage =
-    "Fits recordings of a pendulum over HTTP, and shows a page for it.\n"
+    "Fits recordings of a pendulum over HTTP, by a web page or by requests.\n"
     "\n"
     "  serve_pendulum --store fits.sqlite\n"
     "\n"
     "Then http://localhost:8080 is the page, and curl --data-binary @run.csv --header 'Content-Type: text/csv'\n"
-    "http://localhost:8080/v1/fits?model=coulomb gives the JSON of fit_pendulum; /openapi.json has the rest.\n"
+    "http://localhost:8080/v1/fits?model=coulomb gives the JSON of fit_pendulum; /openapi.json lists all\n"
+    "requests.\n"
     "SIGTERM or Ctrl-C stops it when the requests in progress are answered; batches continue at the next start.\n"
     "\n"
     "Exit codes: 0 stopped, 2 wrong flags, 3 token file not found, 4 a store or token file that cannot be read, 70 a\n"
@@ -51,27 +52,27 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"address", &Flags::address,
        "Address to listen on, IPv4 or IPv6; default 127.0.0.1, which only this machine can reach."},
       {"store", &Flags::store,
-       "File that stores the fits (SQLite, with the tables of refit_pendulums); created if it does not exist."},
-      {"threads", &Flags::threads, "Fits at a time; default 0, as many as there are cores."},
+       "SQLite file that stores the fits, with the tables of refit_pendulums; created if it does not exist."},
+      {"threads", &Flags::threads, "Number of fits at a time; default 0, one per core."},
       {"token_file", &Flags::token_file,
        "File whose first line is the token that a client must send; default the environment variable PENDULUM_TOKEN, "
-       "or none. Needed for an --address that other machines reach."},
+       "or no token. Needed for an --address that other machines can reach."},
       {"allowed_hosts", &Flags::allowed_hosts,
-       "Host names that clients may use besides localhost, between commas, such as a proxy's; default none, and any "
-       "with a token."},
+       "Host names that clients may use besides localhost, separated by commas, such as the name of a proxy; default "
+       "none, or any name if there is a token."},
       {"max_body_mb", &Flags::max_body_mb, "Largest body of a request, MiB; default 32."},
       {"max_samples", &Flags::max_samples, "Longest recording, in samples; default 200000."},
       {"fit_seconds", &Flags::fit_seconds,
-       "Longest time of one fit, s; one of a batch has four times as long; default 30."},
+       "Longest time of one fit, s; a fit of a batch may take four times as long; default 30."},
       {"max_queue", &Flags::max_queue,
-       "Requests that may wait for a thread; one more is refused with 429; default 64."},
-      {"max_batch_runs", &Flags::max_batch_runs, "Recordings of batches that may wait; default 10000."},
-      {"max_connections", &Flags::max_connections, "Connections at a time; default 512."},
-      {"request_seconds", &Flags::request_seconds, "Longest time for a request to come in, s; default 30."},
+       "Number of requests that may wait for a thread; a further request is refused with 429; default 64."},
+      {"max_batch_runs", &Flags::max_batch_runs, "Number of recordings in batches that may wait; default 10000."},
+      {"max_connections", &Flags::max_connections, "Number of connections at a time; default 512."},
+      {"request_seconds", &Flags::request_seconds, "Longest time to receive a request, s; default 30."},
       {"stop_seconds", &Flags::stop_seconds,
-       "How long fits in progress may take when the service stops, s; default 20."},
+       "How long fits in progress may continue when the service stops, s; default 20."},
       {"live", &Flags::live,
-       "The file that a running record_pendulum --out writes, to show it live on the page; default none."},
+       "File that a running record_pendulum --out writes, to show the recording live on the page; default none."},
       {"docs", &Flags::docs,
        "Folder of the user guide, shown at /docs; default the guide installed with this program."},
   };

@@ -43,7 +43,7 @@ Result<void> CheckNumbers(const ServePendulumFlags& flags) {
 
 bool IsLoopbackAddress(const std::string& address) { return address.starts_with("127.") || address == "::1"; }
 
-Result<void> CheckAudience(const ServePendulumFlags& flags, const std::string& token) {
+Result<void> CheckRemoteAccess(const ServePendulumFlags& flags, const std::string& token) {
   if (!token.empty() || IsLoopbackAddress(flags.address)) return {};
   return BadFlag("--address " + flags.address +
                  " is open to other machines, so a token is needed: give a file with --token_file, or set "
@@ -72,7 +72,7 @@ ServerOptions ServerOptionsOf(const ServePendulumFlags& flags) {
   server.max_buffered = std::max(server.max_buffered, kBodiesAtOnce * server.max_body);
   server.request_time = std::chrono::seconds(flags.request_seconds);
   server.wait_time = std::chrono::seconds(flags.fit_seconds);
-  constexpr std::chrono::seconds kLastAnswers{5};  // for answers whose fits are stopped at the end
+  constexpr std::chrono::seconds kLastAnswers{5};  // to send the answers of fits that are stopped
   server.stop_time = std::chrono::seconds(flags.stop_seconds) + kLastAnswers;
   return server;
 }
@@ -102,7 +102,7 @@ Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& 
   if (!flags.docs.empty() && !std::filesystem::is_directory(flags.docs, fault)) {
     return BadFlag("--docs names '" + flags.docs + "'; there is no such folder");
   }
-  if (const auto checked = CheckAudience(flags, token); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckRemoteAccess(flags, token); !checked) return tl::unexpected(checked.error());
   return ServePendulumOptions{flags.store, ServerOptionsOf(flags), ServiceOptionsOf(flags, token)};
 }
 

@@ -57,14 +57,14 @@ Result<void> WriteRecording(const SimulateOptions& all, int index) {
   return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
 }
 
-/// Of the errors from several threads, keeps the one with the smallest index.
+/// The error with the smallest index of all errors that the threads report.
 class FirstError {
  public:
   explicit FirstError(int count) : index_(count) {}
 
   int index() const { return index_; }
 
-  void Take(int index, const Status& status) {
+  void Report(int index, const Status& status) {
     const std::scoped_lock lock(mutex_);
     if (index >= index_) return;
     index_ = index;
@@ -79,12 +79,13 @@ class FirstError {
   Result<void> error_;
 };
 
-/// Numbers are taken in order, so all recordings below a failed one are made, with any number of threads.
+/// Recordings are started in the order of their numbers, so all recordings before the first failed one are written,
+/// whatever the number of threads.
 Result<void> WriteAllRecordings(const SimulateOptions& options) {
   FirstError first(options.count);
   ParallelFor(options.count, options.threads, [&](int index) {
     if (index > first.index()) return;
-    if (auto written = WriteRecording(options, index); !written) first.Take(index, written.error());
+    if (auto written = WriteRecording(options, index); !written) first.Report(index, written.error());
   });
   return first.error();
 }
@@ -111,7 +112,7 @@ Result<void> WriteManifest(const SimulateOptions& options) {
 
 namespace fs = std::filesystem;
 
-/// The folder of a file with symbolic links resolved, so that ".." leads back.
+/// The folder of a file with symbolic links resolved; otherwise ".." in a relative path could lead to another folder.
 fs::path RealFolder(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   std::error_code error;

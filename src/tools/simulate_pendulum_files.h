@@ -12,8 +12,8 @@ namespace pendulum {
 /// finally the manifest. Memory does not grow with the number of recordings.
 ///
 /// The files of a single recording are synchronised as in WriteOutputs. For several recordings the file system is
-/// synchronised once after all files, before the manifest. Of several errors the one of the first recording is
-/// returned; files of other recordings may exist then. Codes of CheckOutputs, WriteOutputs, SimulateRecording,
+/// synchronised once after all files, before the manifest. If several recordings fail, the error of the first of them
+/// is returned; files of other recordings may exist then. Codes of CheckOutputs, WriteOutputs, SimulateRecording,
 /// SimulationOfRecording.
 Result<void> WriteRecordings(const SimulateOptions& options);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulates recordings of a pendulum's free swing, with the truth, or predicts what they will tell: flags, files and
-// exit codes.
+// Simulates recordings of a pendulum's free swing and writes their true parameters, or predicts the standard errors of
+// a fit: flags, files and exit codes.
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ namespace pendulum {
 namespace {
 
 std::string Usage() {
-  return "Recordings of a pendulum's free swing, simulated, with the truth.\n"
+  return "Simulates recordings of a pendulum's free swing and writes their true parameters.\n"
          "\n"
          "  simulate_pendulum --model coulomb --rig rig.json --out run.csv --truth truth.json \\\n"
          "    --set inertia=0.079,viscous=0.003,coulomb=0.004,release_angle=0.423,release_time=1.9\n"
@@ -41,55 +41,58 @@ using Flags = SimulateFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
   static const std::string gravity =
-      "Law of the restoring torque, one of " + NameList(GravityModels::kNames) + "; default the model's own.";
+      "Law of the restoring torque: one of " + NameList(GravityModels::kNames) + "; default the model's own.";
   return {
-      {"model", &Flags::model, "Equation of motion, one of the models named above; default coulomb."},
+      {"model", &Flags::model, "Model of the motion, one of the models named above; default coulomb."},
       {"gravity", &Flags::gravity, gravity.c_str()},
       {"rig", &Flags::rig,
-       "Rig file (JSON, SI units); without it torques and inertia are in units of the gravity torque."},
+       "Rig file (JSON, SI units); default none, with torques and inertia in units of the gravity torque."},
       {"set", &Flags::set,
-       "Parameters, name=value,... in SI: inertia (default the rig's), the model's friction (default 0), "
-       "release_angle and release_time or initial_angle and initial_rate, zero_angle (default 0) or, "
-       "by --unit, rate_bias (default 0), rate_scale, acceleration_bias, acceleration_scale, axis, radius, "
-       "pivot_x, pivot_y."},
+       "True parameters, name=value,... in SI: inertia (default the rig's), the model's friction (default 0), either "
+       "release_angle and release_time or initial_angle and initial_rate, and the parameters of the sensor: zero_angle "
+       "(default 0) or, depending on --unit, rate_bias (default 0), rate_scale, acceleration_bias, acceleration_scale, "
+       "axis, radius, pivot_x, pivot_y."},
       {"spread", &Flags::spread,
-       "Standard deviations, name=std_dev,... in SI, of a normal distribution about --set, from which the truth of "
-       "each recording is drawn with the recording's seed and within the bounds of each parameter; default none."},
+       "Standard deviations, name=std_dev,... in SI. The true parameters of each recording are drawn from a normal "
+       "distribution about --set, with the recording's seed and within the bounds of each parameter; default none."},
       {"out", &Flags::out, "Where to write the recording as CSV; - is standard output."},
+      // gflags asks back about a value "-" of a flag whose help has the word "true".
       {"truth", &Flags::truth,
-       "Where to write the truth, the parameters, as JSON; - is standard output; default nowhere."},
+       "Where to write the simulated parameter values as JSON; - is standard output; default nowhere."},
       {"manifest", &Flags::manifest,
-       "Where to list the recordings as CSV when all are written: path, id, rig, seed and the truth; - is standard "
-       "output; default nowhere."},
+       "Where to write a list of the recordings as CSV: path, id, rig, seed and the parameter values; it is written "
+       "last; - is standard output; default nowhere."},
       {"plan", &Flags::plan,
-       "Makes no recording, but predicts the standard error of each parameter (Cramér-Rao), and how amplitude, "
-       "duration, rate and resolution change it; default off."},
+       "Instead of simulating, predicts the standard error of each parameter (Cramér-Rao) and how amplitude, duration, "
+       "rate and resolution change it; default off."},
       {"count", &Flags::count,
-       "Recordings, with seeds --seed, --seed + 1, ... in run_001.csv, run_002.csv, ...; default 1."},
+       "Number of recordings, with the seeds --seed, --seed + 1, ...; with --out run.csv they are run_001.csv, "
+       "run_002.csv, ...; default 1."},
       {"seed", &Flags::seed, "Seed of noise, jitter and --spread; default 1."},
-      {"threads", &Flags::threads,
-       "Threads, on which the result does not depend; default 0, as many as there are cores."},
+      {"threads", &Flags::threads, "Number of threads; it does not change the result; default 0, one per core."},
       {"duration", &Flags::duration, "Length of the recording, s; default 20."},
       {"rate", &Flags::rate, "Sampling rate, Hz; default 100."},
-      {"start_time", &Flags::start_time, "Clock at the first sample, s; default 0."},
+      {"start_time", &Flags::start_time, "Time stamp of the first sample, s; default 0."},
       {"jitter", &Flags::jitter,
-       "Standard deviation of the sampling instants, s; the time stamps are the true instants; default 0."},
+       "Standard deviation of the sampling times, s; the time stamps are the true times; default 0."},
       {"unit", &Flags::unit,
        "Unit of the recording: deg or rad (angle), deg_s or rad_s (gyro), volts (gyro of unknown scale), m_s2 "
        "(accelerometer), px or m (both coordinates of a point); default deg."},
       {"noise", &Flags::noise, "Standard deviation of the noise before quantization, in --unit; default 0."},
       {"noise_correlation", &Flags::noise_correlation,
-       "AR(1): correlation of each sample's noise with the previous one; default 0, white."},
+       "Correlation of the noise of successive samples (AR(1) noise); default 0, white noise."},
       {"noise_freedom", &Flags::noise_freedom,
-       "Degrees of freedom, above 2, of Student's t noise; --noise is then its scale; default 0, Gaussian."},
+       "Degrees of freedom, above 2, of noise with Student's t distribution; --noise is then its scale; default 0, "
+       "Gaussian noise."},
       {"event_driven", &Flags::event_driven,
-       "Rows of an encoder, only where its count changes; --resolution is then one count and --noise the error of an "
-       "edge; default off."},
-      {"time_noise", &Flags::time_noise, "Standard deviation of the error of an event's stamp, s; default 0."},
-      {"resolution", &Flags::resolution, "Spacing of the sensor's levels, in --unit; default 0, none."},
+       "Writes the rows of an encoder, one for each change of its count; --resolution is then one count and --noise "
+       "the error of an edge; default off."},
+      {"time_noise", &Flags::time_noise,
+       "With --event_driven: standard deviation of the error of a time stamp, s; default 0."},
+      {"resolution", &Flags::resolution, "Spacing of the sensor's levels, in --unit; default 0, no levels."},
       {"range", &Flags::range, "Range of the sensor, low,high in --unit; its levels start at low; default unlimited."},
       {"lose", &Flags::lose,
-       "Lost counts, time:counts,... with times in s: from then on the readings are higher by this many times "
+       "Lost counts, time:counts,... with times in s: from each time on, the readings are higher by counts times "
        "--resolution; default none."},
   };
 }

@@ -94,7 +94,7 @@ class Counter {
 /// One row for each change, preceded by a first row.
 void ReadEvents(const std::vector<CountChange>& changes, const SyntheticOptions& options, double first_count,
                 Recording& recording) {
-  std::mt19937_64 generator(~options.seed);  // a stream different from that of the edges
+  std::mt19937_64 generator(~options.seed);  // independent of the draws for the edges
   boost::random::normal_distribution<double> draw(0, options.time_noise);
   const auto count = static_cast<Eigen::Index>(changes.size());
   recording.time.resize(count + 1);

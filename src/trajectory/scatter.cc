@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kMaxDraws = 1000;
 
-/// mt19937_64 seeded through std::seed_seq, whose algorithm the standard specifies. SimulateRecording seeds with the
-/// number itself, so its draws differ.
+/// mt19937_64 seeded through std::seed_seq, whose algorithm the standard specifies. SimulateRecording seeds
+/// its generator with the number itself, so its draws differ.
 std::mt19937_64 GeneratorOf(std::uint64_t seed) {
   constexpr std::uint64_t kLow = 0xFFFFFFFF;
   constexpr unsigned int kHigh = 32;
@@ -23,9 +23,9 @@ std::mt19937_64 GeneratorOf(std::uint64_t seed) {
   return std::mt19937_64(sequence);
 }
 
-/// The rule that the values break, such as "viscous is -0.1, below 0"; empty if they are admissible.
-std::string Offence(std::span<const ScatteredParameter> parameters, OrderedPair order,
-                    const std::vector<double>& values) {
+/// The rule that the values violate, such as "viscous is -0.1, below 0"; empty if they are admissible.
+std::string ViolatedRule(std::span<const ScatteredParameter> parameters, OrderedPair order,
+                         const std::vector<double>& values) {
   const auto name_and_value = [&](std::size_t i) {
     return std::string(parameters[i].info.name) + " is " + NumberText(values[i]);
   };
@@ -48,17 +48,17 @@ Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter
   std::mt19937_64 generator = GeneratorOf(seed);
   boost::random::normal_distribution<double> draw;
   std::vector<double> values(parameters.size());
-  std::string offence;
+  std::string violation;
   for (int i = 0; i < kMaxDraws; ++i) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       values[k] = parameters[k].mean + parameters[k].std_dev * draw(generator);
     }
-    offence = Offence(parameters, order, values);
-    if (offence.empty()) return values;
+    violation = ViolatedRule(parameters, order, values);
+    if (violation.empty()) return values;
   }
   return Error(StatusCode::kInvalidArgument, "of " + std::to_string(kMaxDraws) + " draws with seed " +
                                                  std::to_string(seed) + " none is within the bounds (in the last, " +
-                                                 offence + "); make the standard deviations smaller");
+                                                 violation + "); make the standard deviations smaller");
 }
 
 }  // namespace pendulum

@@ -42,8 +42,8 @@ class Tracer {
   [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunGeneric(start); }
 #endif
 
-  /// The series of a swing except those that visitors see. They are on the stack, so the compiler knows that nothing
-  /// else changes them.
+  /// The series of a swing, except the segment that visitors see. They are on the stack, so the compiler knows that
+  /// nothing else changes them.
   struct Expander {
     RateSeries<T> rate{};
     SwingExpansion<F, T> expansion;
@@ -133,7 +133,7 @@ class Tracer {
   }
 
   /// Counts a reversal. The margin is the difference between gravity and the friction that could hold the pendulum
-  /// there. Friction with states holds nothing.
+  /// there. Friction with states cannot hold the pendulum.
   void RecordReversal(double gravity) {
     ++summary_.reversals;
     if constexpr (FrictionWithState<F>) return;
@@ -176,7 +176,8 @@ TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& sta
 }
 
 /// Takes the address of TraceTrajectory for every law with the number type TypeOf<F>. A file that defines a variable of
-/// this type compiles all of them. Each number type has its own file because these take the longest to compile.
+/// this type compiles all of these functions. Each number type has its own file, because these functions take the
+/// longest to compile.
 template <template <typename F> typename TypeOf, typename Models = FrictionModels>
 struct TracersOfAllLaws;
 

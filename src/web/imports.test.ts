@@ -11,10 +11,10 @@ const kMayImport: Record<string, string[]> = {
 
 const kSources = import.meta.glob<string>('./{report,service,shared,summary}/**/*.ts', { eager: true, import: 'default', query: '?raw' });
 
-/** "shared", of './shared/units.ts' as it is or as seen from another module. */
+/** The folder of a module, "shared" for './shared/units.ts'. The path may be relative to the module `from`. */
 const folderOf = (module: string, from: string): string => new URL(module, `file:///${from}`).pathname.split('/')[1];
 
-test('modules import only from folders that theirs may use', () => {
+test('modules import only from the folders that their own folder may use', () => {
   expect(Object.keys(kSources).length).toBeGreaterThan(100);
   const wrong = Object.entries(kSources).flatMap(([path, source]) =>
     [...source.matchAll(/\b(?:from|import) '(\.[^']+)'/g)]

@@ -44,8 +44,8 @@ std::vector<Arrival> Arrivals(double seconds, const Delay& delay, Random& random
   return arrivals;
 }
 
-/// Over many runs: the share whose scale is within 1.96 of its standard errors, and the rms of scale error / standard
-/// error.
+/// Over many runs: the share of runs whose scale is within 1.96 standard errors of the truth, and the rms of scale
+/// error / standard error.
 struct Coverage {
   double share = 0, rms = 0;
 };
@@ -174,7 +174,7 @@ TEST(FitDeviceClock, AcceptsArrivalsAtOneInstant) {
   EXPECT_FALSE(FitDeviceClock(arrivals, 0, 0).is_measured);
 }
 
-TEST(HostClockStdDev, IsAtMostThatOfAQuartz) {
+TEST(HostClockStdDev, IsAtMostTheValueOfAQuartz) {
   EXPECT_GT(HostClockStdDev(), 0);
   EXPECT_LE(HostClockStdDev(), 30e-6);
 }

@@ -76,8 +76,8 @@ Bytes AllFrames() { return Hex(kInfoFrame) + Hex(kDataFrame) + Hex(kAckFrame) + 
 
 // ---- The parts of a frame ----------------------------------------------------------------------------------------
 
-// The check value of CRC-16/IBM-3740 (also CCITT-FALSE) in Greg Cook's catalogue. Without bytes it is the initial
-// value.
+// The check value of CRC-16/IBM-3740 (also CCITT-FALSE) in Greg Cook's catalogue. Without bytes, the
+// CRC is the initial value.
 TEST(Crc16, MatchesTheCatalogueCheckValue) {
   const Bytes digits = Text("123456789");
   EXPECT_EQ(wire::Crc16(digits.data(), digits.size()), 0x29B1);
@@ -206,15 +206,15 @@ void ExpectAll(const std::vector<LoggerMessage>& messages) {
 
 TEST(MessageDecoder, ReadsEveryLoggerMessage) {
   MessageDecoder decoder;
-  ExpectAll(decoder.Take(AllFrames()));
+  ExpectAll(decoder.Decode(AllFrames()));
   EXPECT_EQ(decoder.rejected(), 0);
 }
 
-TEST(MessageDecoder, ReadsItByteByByte) {
+TEST(MessageDecoder, ReadsMessagesByteByByte) {
   MessageDecoder decoder;
   std::vector<LoggerMessage> messages;
   for (const std::uint8_t byte : AllFrames()) {
-    const auto completed = decoder.Take({&byte, 1});
+    const auto completed = decoder.Decode({&byte, 1});
     EXPECT_TRUE(byte == 0 || completed.empty());
     messages.insert(messages.end(), completed.begin(), completed.end());
   }
@@ -225,7 +225,7 @@ TEST(MessageDecoder, ReadsTheLargestBlock) {
   wire::Data data = {65535, 0, 0, 0, 16, {}};
   for (int i = 0; i < 16; ++i) data.sums[i] = static_cast<std::uint16_t>(4095 * i);  // up to 61425
   MessageDecoder decoder;
-  const auto messages = decoder.Take(FrameOf(data));
+  const auto messages = decoder.Decode(FrameOf(data));
   ASSERT_THAT(messages, SizeIs(1));
   const auto& read = std::get<wire::Data>(messages[0]);
   EXPECT_EQ(read.sequence, 65535);
@@ -235,13 +235,13 @@ TEST(MessageDecoder, ReadsTheLargestBlock) {
 TEST(MessageDecoder, ReportsOnlyTheVersionOfAnotherProtocol) {
   MessageDecoder decoder;
   // An Info of protocol 2 with two additional unknown bytes, from the Python implementation above.
-  const auto messages = decoder.Take(Hex("07 49 02 07 08 D4 6F 00"));
+  const auto messages = decoder.Decode(Hex("07 49 02 07 08 D4 6F 00"));
   ASSERT_THAT(messages, SizeIs(1));
   ASSERT_TRUE(std::holds_alternative<OtherProtocol>(messages[0]));
   EXPECT_EQ(std::get<OtherProtocol>(messages[0]).version, 2);
   wire::Info old = kInfo;
   old.protocol = 0;
-  const auto second = decoder.Take(FrameOf(old));
+  const auto second = decoder.Decode(FrameOf(old));
   ASSERT_THAT(second, SizeIs(1));
   EXPECT_EQ(std::get<OtherProtocol>(second[0]).version, 0);
 }
@@ -251,7 +251,7 @@ TEST(MessageDecoder, ReportsOnlyTheVersionOfAnotherProtocol) {
 /// Decodes garbage followed by a valid frame, which must be found. Returns the number of rejected pieces.
 int RejectedOf(const Bytes& garbage) {
   MessageDecoder decoder;
-  const auto messages = decoder.Take(garbage + Hex(kAckFrame));
+  const auto messages = decoder.Decode(garbage + Hex(kAckFrame));
   EXPECT_THAT(messages, SizeIs(1)) << testing::PrintToString(garbage);
   EXPECT_TRUE(messages.size() == 1 && std::holds_alternative<wire::Ack>(messages[0]));
   return decoder.rejected();
@@ -269,7 +269,7 @@ TEST(MessageDecoder, FindsTheFrameAfterOneThatIsTooLong) {
   for (const std::size_t length : {51, 52, 53, 255, 256, 257, 308, 10000}) {
     EXPECT_EQ(RejectedOf(Bytes(length, 0x55) + Hex("00")), 1) << length;
   }
-  // The longest payload has 48 bytes. The one of 49 bytes is otherwise valid.
+  // The longest payload has 48 bytes. The payload of 49 bytes is otherwise valid.
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(48, 'Z'))), 1);
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(49, 'Z'))), 1);
 }
@@ -292,7 +292,7 @@ TEST(MessageDecoder, RejectsEveryFlippedBit) {
       Bytes flipped = frame;
       flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1 << bit % 8));
       MessageDecoder decoder;
-      const auto messages = decoder.Take(flipped + Hex("00") + Hex(kAckFrame));
+      const auto messages = decoder.Decode(flipped + Hex("00") + Hex(kAckFrame));
       EXPECT_THAT(messages, SizeIs(1)) << hex << ", bit " << bit;
       EXPECT_GE(decoder.rejected(), 1) << hex << ", bit " << bit;
     }
@@ -334,7 +334,7 @@ Bytes DataPayload(std::uint8_t count, std::size_t sums) {
 
 TEST(MessageDecoder, RejectsDataWithoutTheStatedSamples) {
   MessageDecoder decoder;
-  EXPECT_THAT(decoder.Take(FrameOfPayload(DataPayload(4, 4))), SizeIs(1));
+  EXPECT_THAT(decoder.Decode(FrameOfPayload(DataPayload(4, 4))), SizeIs(1));
   EXPECT_EQ(RejectedOf(FrameOfPayload(DataPayload(4, 3))), 1);
   EXPECT_EQ(RejectedOf(FrameOfPayload(DataPayload(4, 5))), 1);
   EXPECT_EQ(RejectedOf(FrameOfPayload(DataPayload(0, 0))), 1);
@@ -350,9 +350,9 @@ TEST(MessageDecoder, FindsNothingInNoise) {
   Bytes noise(100000);
   std::ranges::generate(noise, [&] { return static_cast<std::uint8_t>(random()); });
   MessageDecoder decoder;
-  EXPECT_THAT(decoder.Take(noise), SizeIs(0));
+  EXPECT_THAT(decoder.Decode(noise), SizeIs(0));
   EXPECT_GT(decoder.rejected(), 200);
-  EXPECT_THAT(decoder.Take(Hex("00") + Hex(kAckFrame)), SizeIs(1));
+  EXPECT_THAT(decoder.Decode(Hex("00") + Hex(kAckFrame)), SizeIs(1));
 }
 
 // ---- Texts for people --------------------------------------------------------------------------------------------

@@ -100,8 +100,8 @@ TEST(ReceivedRun, IsEmptyAtFirst) {
 
 TEST(ReceivedRun, MeasuresTimeFromTheFirstSample) {
   ReceivedRun run(kRate);
-  EXPECT_TRUE(run.Take(Frame(0, 123456, {500, 501, 1023}), 10));
-  EXPECT_TRUE(run.Take(Frame(1, 153456, {0, 512}), 10.02));
+  EXPECT_TRUE(run.AddFrame(Frame(0, 123456, {500, 501, 1023}), 10));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 153456, {0, 512}), 10.02));
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.005, 0.010, 0.015, 0.020}));
   EXPECT_EQ(CountsOf(run), Numbers({500, 501, 1023, 0, 512}));
   EXPECT_EQ(run.Losses().samples, 0);
@@ -109,8 +109,8 @@ TEST(ReceivedRun, MeasuresTimeFromTheFirstSample) {
 
 TEST(ReceivedRun, ReportsTheArrivalTimesOfFrames) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {1, 2, 3}), 7.25);
-  run.Take(Frame(1, 30000, {4}), 7.5);
+  run.AddFrame(Frame(0, 0, {1, 2, 3}), 7.25);
+  run.AddFrame(Frame(1, 30000, {4}), 7.5);
   ASSERT_EQ(run.arrivals().size(), 2);
   EXPECT_DOUBLE_EQ(run.arrivals()[0].device_time, 0.010);  // the time of its last sample
   EXPECT_EQ(run.arrivals()[0].host_time, 7.25);
@@ -123,8 +123,8 @@ TEST(ReceivedRun, ContinuesAcrossTheTickOverflow) {
   for (const std::uint32_t before : {5000U, 10000U, 20000U, 25000U}) {
     ReceivedRun run(kRate);
     const std::uint32_t first = 0U - before;
-    EXPECT_TRUE(run.Take(Frame(0, first, {1, 2, 3}), 0)) << before;
-    EXPECT_TRUE(run.Take(Frame(1, first + 30000U, {4, 5}), 0)) << before;
+    EXPECT_TRUE(run.AddFrame(Frame(0, first, {1, 2, 3}), 0)) << before;
+    EXPECT_TRUE(run.AddFrame(Frame(1, first + 30000U, {4, 5}), 0)) << before;
     EXPECT_EQ(TimesOf(run), Numbers({0, 0.005, 0.010, 0.015, 0.020})) << before;
     EXPECT_EQ(run.Losses().samples, 0);
   }
@@ -134,21 +134,21 @@ TEST(ReceivedRun, ContinuesAcrossTheTickOverflow) {
 TEST(ReceivedRun, CountsHoursOfTicks) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 77;
-  for (int i = 0; i <= 7; ++i, tick += 2000000000U) ASSERT_TRUE(run.Take(Frame(i, tick, {i}), 1000 * i));
+  for (int i = 0; i <= 7; ++i, tick += 2000000000U) ASSERT_TRUE(run.AddFrame(Frame(i, tick, {i}), 1000 * i));
   EXPECT_EQ(run.Time(7), 7000);
   EXPECT_EQ(run.Losses().samples, 7 * 199999);
 }
 
 TEST(ReceivedRun, AveragesConversions) {
   ReceivedRun run({1250, 16});
-  run.Take(Frame(0, 0, {16 * 512, 16 * 512 + 1, 16 * 1023, 8}), 0);
+  run.AddFrame(Frame(0, 0, {16 * 512, 16 * 512 + 1, 16 * 1023, 8}), 0);
   EXPECT_EQ(CountsOf(run), Numbers({512, 512.0625, 1023, 0.5}));
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.010, 0.020, 0.030}));
 }
 
 TEST(ReceivedRun, ReportsSaturation) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {0, 1, 1022, 1023}), 0);
+  run.AddFrame(Frame(0, 0, {0, 1, 1022, 1023}), 0);
   EXPECT_TRUE(run.IsSaturated(0));
   EXPECT_FALSE(run.IsSaturated(1));
   EXPECT_FALSE(run.IsSaturated(2));
@@ -159,7 +159,7 @@ TEST(ReceivedRun, ReportsSaturation) {
 // are 0.
 TEST(ReceivedRun, ReportsSaturationOfSomeConversions) {
   ReceivedRun run({2500, 4});
-  run.Take(Frame(0, 0, {4 * 1023, 4 * 1023 - 1, 4 * 512, 1, 0}), 0);
+  run.AddFrame(Frame(0, 0, {4 * 1023, 4 * 1023 - 1, 4 * 512, 1, 0}), 0);
   EXPECT_TRUE(run.IsSaturated(0));
   EXPECT_TRUE(run.IsSaturated(1));
   EXPECT_FALSE(run.IsSaturated(2));
@@ -171,8 +171,8 @@ TEST(ReceivedRun, ReportsSaturationOfSomeConversions) {
 
 TEST(ReceivedRun, LeavesAGapForLostSamples) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {1, 2}), 0);
-  EXPECT_TRUE(run.Take(Frame(1, 50000, {6}), 0));  // samples 3, 4 and 5 are missing
+  run.AddFrame(Frame(0, 0, {1, 2}), 0);
+  EXPECT_TRUE(run.AddFrame(Frame(1, 50000, {6}), 0));  // samples 3, 4 and 5 are missing
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.005, 0.025}));
   const RunLosses losses = run.Losses();
   EXPECT_EQ(losses.samples, 3);
@@ -183,15 +183,15 @@ TEST(ReceivedRun, LeavesAGapForLostSamples) {
 
 TEST(ReceivedRun, SeparatesLossesOfTheLoggerAndTheLine) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {1, 2}), 0);
+  run.AddFrame(Frame(0, 0, {1, 2}), 0);
   wire::Data late = Frame(2, 70000, {8});  // five are missing: three dropped, two in a damaged frame
   late.dropped = 3;
   late.late = 1;
-  run.Take(late, 0);
+  run.AddFrame(late, 0);
   EXPECT_EQ(run.Losses().dropped, 3);
   EXPECT_EQ(run.Losses().on_line, 2);
   EXPECT_EQ(run.Losses().late, 1);
-  run.TakeEnd({5, 3, 1});
+  run.SetEnd({5, 3, 1});
   const RunLosses losses = run.Losses();
   EXPECT_TRUE(losses.is_end_known);
   EXPECT_EQ(losses.samples, 5);
@@ -203,10 +203,10 @@ TEST(ReceivedRun, SeparatesLossesOfTheLoggerAndTheLine) {
 // At 200 Hz a frame has 8 samples, so there are 25 frames per second.
 TEST(ReceivedRun, FindsMissingSamplesAtBothEnds) {
   ReceivedRun run(kRate);
-  run.Take(Frame(2, 40000, {5, 6}), 0);
+  run.AddFrame(Frame(2, 40000, {5, 6}), 0);
   EXPECT_EQ(run.Losses().samples, 16);  // frames 0 and 1
   EXPECT_EQ(run.Losses().on_line, 16);
-  run.TakeEnd({22, 0, 0});  // and four after it
+  run.SetEnd({22, 0, 0});  // and four samples after the frame
   EXPECT_EQ(run.Losses().samples, 20);
   EXPECT_EQ(run.Losses().on_line, 20);
 }
@@ -217,52 +217,52 @@ TEST(ReceivedRun, DoesNotCountReportedDropsAsLostOnTheLine) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), third = Frame(2, 120000, {13});
   first.dropped = third.dropped = 2;
-  run.Take(first, 0);
-  run.Take(third, 0);
+  run.AddFrame(first, 0);
+  run.AddFrame(third, 0);
   const RunLosses losses = run.Losses();
   EXPECT_EQ(losses.samples, 10);
   EXPECT_EQ(losses.on_line, 8);
   EXPECT_EQ(losses.dropped, 2);
 }
 
-TEST(ReceivedRun, LosesNoFrameAtTheNumberOverflow) {
+TEST(ReceivedRun, CountsNoLossWhenTheFrameNumberOverflows) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 0;
-  for (int i = 0; i < 65540; ++i, tick += 10000) ASSERT_TRUE(run.Take(Frame(i, tick, {i % 1000}), 0));
+  for (int i = 0; i < 65540; ++i, tick += 10000) ASSERT_TRUE(run.AddFrame(Frame(i, tick, {i % 1000}), 0));
   EXPECT_EQ(run.Losses().samples, 0);
   EXPECT_EQ(run.Losses().on_line, 0);
 }
 
-TEST(ReceivedRun, LosesNothingOfACompleteRun) {
+TEST(ReceivedRun, ReportsNoLossesOfACompleteRun) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 40000, {5, 6}), 0);
-  run.TakeEnd({2, 0, 0});
+  run.AddFrame(Frame(0, 40000, {5, 6}), 0);
+  run.SetEnd({2, 0, 0});
   const RunLosses losses = run.Losses();
   EXPECT_EQ(losses.samples, 0);
   EXPECT_EQ(losses.on_line, 0);
   EXPECT_TRUE(losses.is_end_known);
 }
 
-// The counters in a frame stop at 65 535; those in End do not.
+// The counters in a frame stop at 65 535; the counters in End do not.
 TEST(ReceivedRun, UsesTheEndIfFrameCountersSaturate) {
   ReceivedRun run(kRate);
   wire::Data full = Frame(0, 0, {1});
   full.dropped = full.late = 65535;
-  run.Take(full, 0);
+  run.AddFrame(full, 0);
   EXPECT_EQ(run.Losses().late, 65535);
-  run.TakeEnd({1, 1000000, 70000});
+  run.SetEnd({1, 1000000, 70000});
   EXPECT_EQ(run.Losses().dropped, 1000000);
   EXPECT_EQ(run.Losses().late, 70000);
   EXPECT_EQ(run.Losses().samples, 1000000);
 }
 
-// The logger has already dropped two samples when it sends the first frame. The next frame shows where.
+// The logger has already dropped two samples when it sends the first frame. The next frame shows their position.
 TEST(ReceivedRun, CountsLoggerDropsOnce) {
   ReceivedRun run(kRate);
   wire::Data first = Frame(0, 0, {1, 2}), second = Frame(1, 40000, {5});
   first.dropped = second.dropped = 2;
   for (const wire::Data& frame : {first, second}) {
-    run.Take(frame, 0);
+    run.AddFrame(frame, 0);
     EXPECT_EQ(run.Losses().samples, 2);
     EXPECT_EQ(run.Losses().dropped, 2);
     EXPECT_EQ(run.Losses().on_line, 0);
@@ -271,33 +271,33 @@ TEST(ReceivedRun, CountsLoggerDropsOnce) {
 
 // A late conversion spoils its sample. The next sample starts at the next conversion, so the gap is not a whole number
 // of samples.
-TEST(ReceivedRun, AcceptsASampleBetweenTwoOthers) {
+TEST(ReceivedRun, AcceptsAGapThatIsNotAWholeNumberOfSamples) {
   ReceivedRun run({2500, 4});
-  EXPECT_TRUE(run.Take(Frame(0, 0, {100}), 0));
-  EXPECT_TRUE(run.Take(Frame(1, 17500, {104}), 0));  // 7 conversions: 4 of the first sample, 3 of a spoiled one
+  EXPECT_TRUE(run.AddFrame(Frame(0, 0, {100}), 0));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 17500, {104}), 0));  // 7 conversions: 4 of the first sample, 3 of a spoiled one
   EXPECT_EQ(TimesOf(run), Numbers({0, 0.00875}));
   EXPECT_EQ(run.Losses().samples, 1);
-  EXPECT_TRUE(run.Take(Frame(2, 30000, {104}), 0));  // 5 conversions: one was spoiled, which is less than a sample
+  EXPECT_TRUE(run.AddFrame(Frame(2, 30000, {104}), 0));  // 5 conversions: one was spoiled, which is less than a sample
   EXPECT_EQ(run.Losses().samples, 1);
 }
 
 // ---- KeepFirst ---------------------------------------------------------------------------------------------------
 
-/// 0, 1, 2, a gap of one, 4, a gap of two in the lost frame, 7, 8.
+/// Samples 0, 1, 2, a gap of one sample, 4, a gap of two samples in the lost frame, 7, 8.
 ReceivedRun RunWithGaps() {
   ReceivedRun run(kRate);
   wire::Data second = Frame(1, 40000, {4}), fourth = Frame(3, 70000, {7, 8});
   second.dropped = fourth.dropped = 1;
-  run.Take(Frame(0, 0, {0, 1, 2}), 0);
-  run.Take(second, 0);
-  run.Take(fourth, 0);
+  run.AddFrame(Frame(0, 0, {0, 1, 2}), 0);
+  run.AddFrame(second, 0);
+  run.AddFrame(fourth, 0);
   return run;
 }
 
 TEST(ReceivedRun, KeepsTheFirstSamplesAndTheirLosses) {
   ReceivedRun run = RunWithGaps();
   EXPECT_EQ(run.Losses().samples, 3);
-  run.TakeEnd({100, 1, 0});
+  run.SetEnd({100, 1, 0});
   run.KeepFirst(4);
   EXPECT_EQ(CountsOf(run), Numbers({0, 1, 2, 4}));
   const RunLosses losses = run.Losses();
@@ -319,9 +319,9 @@ TEST(ReceivedRun, KeepsAGapBeforeTheLastKeptSample) {
   EXPECT_EQ(run.Losses().dropped, 1);
 }
 
-TEST(ReceivedRun, KeepsAllIfThereAreNoMore) {
+TEST(ReceivedRun, KeepsAllSamplesIfAsManyAreRequested) {
   ReceivedRun run = RunWithGaps();
-  run.TakeEnd({10, 1, 0});  // 6 samples arrived, so 4 were lost on the line
+  run.SetEnd({10, 1, 0});  // 6 samples arrived, so 4 were lost on the line
   for (const std::size_t samples : {std::size_t{1000}, run.size()}) {
     run.KeepFirst(samples);
     EXPECT_EQ(run.size(), 6);
@@ -334,7 +334,7 @@ TEST(ReceivedRun, KeepsAllIfThereAreNoMore) {
 void ExpectContradicts(ReceivedRun& run, const wire::Data& frame) {
   const std::size_t size = run.size(), arrivals = run.arrivals().size();
   const int before = run.Losses().contradicting_frames;
-  EXPECT_FALSE(run.Take(frame, 1)) << frame.tick;
+  EXPECT_FALSE(run.AddFrame(frame, 1)) << frame.tick;
   EXPECT_EQ(run.size(), size);
   EXPECT_EQ(run.arrivals().size(), arrivals);
   EXPECT_EQ(run.Losses().contradicting_frames, before + 1);
@@ -342,56 +342,56 @@ void ExpectContradicts(ReceivedRun& run, const wire::Data& frame) {
 
 TEST(ReceivedRun, IgnoresAFrameThatIsNotLater) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 100000, {1, 2, 3}), 0);
+  run.AddFrame(Frame(0, 100000, {1, 2, 3}), 0);
   ExpectContradicts(run, Frame(1, 100000, {1, 2, 3}));  // the same frame twice
   ExpectContradicts(run, Frame(1, 90000, {1}));
   ExpectContradicts(run, Frame(1, 110000, {1}));
   ExpectContradicts(run, Frame(1, 120000, {1}));
-  EXPECT_TRUE(run.Take(Frame(1, 130000, {4}), 1));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 130000, {4}), 1));
   EXPECT_EQ(run.Losses().samples, 0);
 }
 
 TEST(ReceivedRun, IgnoresAFrameOffTheGrid) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {1}), 0);
+  run.AddFrame(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 10001, {2}));
   ExpectContradicts(run, Frame(1, 9999, {2}));
   ExpectContradicts(run, Frame(1, 25000, {2}));
-  EXPECT_TRUE(run.Take(Frame(1, 10000, {2}), 1));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 10000, {2}), 1));
 }
 
 TEST(ReceivedRun, IgnoresASampleThatOverlapsThePreviousOne) {
   ReceivedRun run({2500, 4});
-  run.Take(Frame(0, 0, {1}), 0);
+  run.AddFrame(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 7500, {2}));
-  EXPECT_TRUE(run.Take(Frame(1, 10000, {2}), 1));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 10000, {2}), 1));
 }
 
 TEST(ReceivedRun, IgnoresSumsBeyondTheConverter) {
   ReceivedRun run(kRate);
   ExpectContradicts(run, Frame(0, 0, {1, 1024}));
-  EXPECT_TRUE(run.Take(Frame(0, 0, {1, 1023}), 0));
+  EXPECT_TRUE(run.AddFrame(Frame(0, 0, {1, 1023}), 0));
   ExpectContradicts(run, Frame(1, 20000, {}));
   ReceivedRun of_means({250, 64});
   ExpectContradicts(of_means, Frame(0, 0, {64 * 1023 + 1}));
-  EXPECT_TRUE(of_means.Take(Frame(0, 0, {64 * 1023}), 0));
+  EXPECT_TRUE(of_means.AddFrame(Frame(0, 0, {64 * 1023}), 0));
 }
 
 // A frame that is half the counter's range later might equally be earlier.
 TEST(ReceivedRun, RejectsAGapOfEighteenMinutes) {
   ReceivedRun run({250, 1});
-  run.Take(Frame(0, 0, {1}), 0);
+  run.AddFrame(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 2147483750U, {2}));  // a multiple of 250, beyond 2^31
-  EXPECT_TRUE(run.Take(Frame(1, 2147483500U, {2}), 1074));
+  EXPECT_TRUE(run.AddFrame(Frame(1, 2147483500U, {2}), 1074));
   EXPECT_EQ(run.Time(1), 1073.74175);
 }
 
 TEST(ReceivedRun, CountsIgnoredFramesAsLost) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0, 0, {1}), 0);
+  run.AddFrame(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 10000, {2000}));
-  run.Take(Frame(2, 20000, {3}), 0);
-  run.TakeEnd({3, 0, 0});
+  run.AddFrame(Frame(2, 20000, {3}), 0);
+  run.SetEnd({3, 0, 0});
   EXPECT_EQ(run.Losses().samples, 1);
   EXPECT_EQ(run.Losses().contradicting_frames, 1);
 }

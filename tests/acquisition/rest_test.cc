@@ -34,7 +34,7 @@ std::optional<double> RestOf(const Motion& motion, double seconds, const Reading
   RestDetector detector;
   for (int i = 0; i < seconds * reading.rate_hz; ++i) {
     const double time = i / reading.rate_hz;
-    detector.Take(time, std::round(motion(time) + (reading.noise > 0 ? noise(random) : 0)));
+    detector.AddSample(time, std::round(motion(time) + (reading.noise > 0 ? noise(random) : 0)));
     if (detector.IsAtRest()) return time;
   }
   return std::nullopt;
@@ -61,7 +61,7 @@ Motion DryFriction(double amplitude, double band) {
   };
 }
 
-/// Held at one angle and released at the time `release`.
+/// A pendulum that is held at one angle and released at the time `release`.
 Motion HeldUntil(double release, const Motion& swing) {
   return [=](double time) { return swing(std::max(0.0, time - release)); };
 }
@@ -82,7 +82,7 @@ TEST(RestDetector, DetectsTheRestOfADecayingSwing) {
   }
 }
 
-TEST(RestDetector, DetectsRestByDryFriction) {
+TEST(RestDetector, DetectsRestAfterDryFriction) {
   for (const double amplitude : {195.0, 205.0, 210.0, 215.0}) {  // it stops at different places within the band
     const auto rest = RestOf(DryFriction(amplitude, 10), 60);
     ASSERT_TRUE(rest) << amplitude;
@@ -105,7 +105,7 @@ TEST(RestDetector, DetectsRestAfterAGapInTheSamples) {
   const Motion swing = Decaying(300, 3);
   for (int i = 0; i < 200 * 60; ++i) {
     const double time = i / 200.0;
-    if (time < 4 || time > 4.8) detector.Take(time, std::round(swing(time)));
+    if (time < 4 || time > 4.8) detector.AddSample(time, std::round(swing(time)));
   }
   EXPECT_TRUE(detector.IsAtRest());
 }
@@ -114,7 +114,7 @@ TEST(RestDetector, ReportsThatItHasSwung) {
   RestDetector detector;
   const Motion swing = Decaying(300, 60);
   EXPECT_FALSE(detector.HasSwung());
-  for (int i = 0; i < 200 * 10; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0)));
+  for (int i = 0; i < 200 * 10; ++i) detector.AddSample(i / 200.0, std::round(swing(i / 200.0)));
   EXPECT_TRUE(detector.HasSwung());
   EXPECT_FALSE(detector.IsAtRest());
 }
@@ -122,9 +122,9 @@ TEST(RestDetector, ReportsThatItHasSwung) {
 TEST(RestDetector, IsFalseAgainAfterAnotherPush) {
   RestDetector detector;
   const Motion swing = Decaying(300, 3);
-  for (int i = 0; i < 200 * 40; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0)));
+  for (int i = 0; i < 200 * 40; ++i) detector.AddSample(i / 200.0, std::round(swing(i / 200.0)));
   EXPECT_TRUE(detector.IsAtRest());
-  for (int i = 200 * 40; i < 200 * 42; ++i) detector.Take(i / 200.0, std::round(swing(i / 200.0 - 40)));
+  for (int i = 200 * 40; i < 200 * 42; ++i) detector.AddSample(i / 200.0, std::round(swing(i / 200.0 - 40)));
   EXPECT_FALSE(detector.IsAtRest());
 }
 
@@ -174,8 +174,8 @@ TEST(RestDetector, IsFalseIfNothingEverMoves) {
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 2, 1}));
 }
 
-// A hand moves it to and fro while looking for the release angle, and holds it there.
-TEST(RestDetector, IsFalseWhileAHandMovesIt) {
+// A hand moves the pendulum to and fro, looking for the release angle, and holds it at that angle.
+TEST(RestDetector, IsFalseWhileAHandMovesThePendulum) {
   const Motion hand = [](double time) {
     const double there = std::clamp((time - 10) / 2, 0.0, 1.0), back = std::clamp((time - 20) / 3, 0.0, 1.0);
     return kMiddle + 280 * there - 60 * back;
@@ -183,7 +183,7 @@ TEST(RestDetector, IsFalseWhileAHandMovesIt) {
   for (const double noise : {0.0, 0.5, 2.0}) EXPECT_FALSE(RestOf(hand, 60, {200, noise, 9})) << noise;
 }
 
-// A hand stops a swing on the way, beyond its last turning point: it did not come to rest by itself.
+// A hand stops the pendulum beyond its last turning point. The pendulum did not come to rest by itself.
 TEST(RestDetector, IsFalseIfASwingIsCaughtAndHeld) {
   const Motion caught = [](double time) { return time < 15.2 ? Decaying(100, 60)(time) : kMiddle + 200; };
   EXPECT_FALSE(RestOf(caught, 60));

@@ -44,7 +44,7 @@ ReceivedRun Sawtooth(const SamplingRate& rate = kRate, int samples = 20) {
     frame.tick = static_cast<std::uint32_t>(i * rate.Ticks());
     frame.count = 1;
     frame.sums[0] = static_cast<std::uint16_t>(rate.oversample * 500 + i % 7);
-    EXPECT_TRUE(run.Take(frame, 0));
+    EXPECT_TRUE(run.AddFrame(frame, 0));
   }
   return run;
 }
@@ -187,7 +187,7 @@ TEST(RunCsv, KeepsTheTimesAfterAGap) {
     frame.tick = static_cast<std::uint32_t>(10000 * i);
     frame.count = 1;
     frame.sums[0] = static_cast<std::uint16_t>(500 + i);
-    ASSERT_TRUE(run.Take(frame, 0));
+    ASSERT_TRUE(run.AddFrame(frame, 0));
   }
   const Recording recording = ReadBack(Description(), run);
   ASSERT_EQ(recording.size(), 18);
@@ -200,7 +200,7 @@ TEST(RunCsv, KeepsEveryTickOfALongRun) {
   ReceivedRun run({251, 1});
   wire::Data frame{};
   frame.count = 1;
-  for (int i = 0; i < 20; ++i, frame.tick += 251 * 4000000U) ASSERT_TRUE(run.Take(frame, 502 * i));
+  for (int i = 0; i < 20; ++i, frame.tick += 251 * 4000000U) ASSERT_TRUE(run.AddFrame(frame, 502 * i));
   const Recording recording = ReadBack(Description(), run);
   ASSERT_EQ(recording.size(), 20);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(recording.time[i], 502.0 * i);

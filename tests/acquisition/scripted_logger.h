@@ -31,8 +31,8 @@ struct LoggerScript {
   enum class Then { kSilence, kUnplugged, kReset, kEnd };
 
   std::vector<std::uint8_t> greeting;           ///< Sent when the board is switched on.
-  std::vector<std::uint8_t> chatter;            ///< Sent all the time.
-  double deaf_seconds = 0;                      ///< Input before this time is lost, as in a boot loader.
+  std::vector<std::uint8_t> chatter;            ///< Sent repeatedly.
+  double deaf_seconds = 0;                      ///< Input is ignored so long after power-on, as by a boot loader.
   bool is_mute = false;                         ///< It never answers.
   bool begins_running = false;                  ///< An earlier program left it running.
   bool forgets_calibration = false;             ///< Its EEPROM stores nothing.
@@ -54,7 +54,7 @@ struct LoggerScript {
 
   std::function<int(double time)> counts = [](double) { return 500; };  ///< The reading at a time since the start [s].
   double frame_seconds = 0.004;  ///< Between frames of 8 samples; shorter than real time, for quick tests.
-  int frames = 1000000;          ///< After these, `then` happens.
+  int frames = 1000000;          ///< After so many frames, `then` happens.
   Then then = Then::kSilence;
   std::set<int> lost_frames;  ///< Lost on the line; numbered from 0.
   bool sends_end = true;

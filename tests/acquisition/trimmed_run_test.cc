@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs cut at the planned end of the recording, and losses of several kinds together.
+// Tests of runs that are cut at the planned end of the recording, and of runs with losses of several kinds.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ pendulum_logger::Data Frame(int number) {
 ReceivedRun RunOf(int last, int first_lost, int last_lost) {
   ReceivedRun run(kRate);
   for (int i = 0; i <= last; ++i) {
-    if (i < first_lost || i > last_lost) run.Take(Frame(i), 0.04 * i);
+    if (i < first_lost || i > last_lost) run.AddFrame(Frame(i), 0.04 * i);
   }
   return run;
 }
@@ -55,7 +55,7 @@ TEST(KeepUntil, CountsALossJustBeforeTheEnd) {
 
 TEST(KeepUntil, IgnoresALossAfterTheEnd) {
   ReceivedRun run = RunOf(60, 50, 55);
-  run.TakeEnd({61 * kBlock, 0, 0});
+  run.SetEnd({61 * kBlock, 0, 0});
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 400U);
   EXPECT_EQ(run.Losses().samples, 0);
@@ -64,7 +64,7 @@ TEST(KeepUntil, IgnoresALossAfterTheEnd) {
 
 TEST(KeepUntil, KeepsAShorterRunUnchanged) {
   ReceivedRun run = RunOf(10, 99, 99);
-  run.TakeEnd({12 * kBlock, 0, 0});
+  run.SetEnd({12 * kBlock, 0, 0});
   run.KeepUntil(2);
   EXPECT_EQ(run.size(), 88U);
   EXPECT_EQ(run.Losses().samples, 8);  // sent after the last frame that arrived
@@ -73,12 +73,12 @@ TEST(KeepUntil, KeepsAShorterRunUnchanged) {
 /// Three conversions were late, so their samples are missing. Then a whole frame is lost after the last one received.
 TEST(Losses, AreSummedOverSeveralKinds) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0), 0);
+  run.AddFrame(Frame(0), 0);
   pendulum_logger::Data late = Frame(1);
   late.tick += static_cast<std::uint32_t>(3 * kRate.Ticks());
   late.late = 3;
-  run.Take(late, 0);
-  run.TakeEnd({3 * kBlock, 0, 3});
+  run.AddFrame(late, 0);
+  run.SetEnd({3 * kBlock, 0, 3});
   EXPECT_EQ(run.Losses().samples, 3 + 8);
   EXPECT_EQ(run.Losses().on_line, 8);
 }
@@ -86,12 +86,12 @@ TEST(Losses, AreSummedOverSeveralKinds) {
 /// The logger dropped 200 000 samples, as its ticks show, but its counter stops at 65535.
 TEST(Losses, AreNotCountedTwiceForASaturatedFrameCounter) {
   ReceivedRun run(kRate);
-  run.Take(Frame(0), 0);
+  run.AddFrame(Frame(0), 0);
   pendulum_logger::Data after = Frame(1);
   after.tick += static_cast<std::uint32_t>(200000 * kRate.Ticks());
   after.dropped = 65535;
-  ASSERT_TRUE(run.Take(after, 1000));
-  run.TakeEnd({2 * kBlock, 200000, 0});
+  ASSERT_TRUE(run.AddFrame(after, 1000));
+  run.SetEnd({2 * kBlock, 200000, 0});
   EXPECT_EQ(run.Losses().samples, 200000);
   EXPECT_EQ(run.Losses().on_line, 0);
 }
@@ -101,8 +101,8 @@ TEST(ReceivedRun, IgnoresAFrameFromTheFuture) {
   ReceivedRun run = RunOf(2, 99, 99);
   pendulum_logger::Data stray = Frame(3);
   stray.tick += static_cast<std::uint32_t>(20000 * kRate.Ticks());  // 100 s
-  EXPECT_FALSE(run.Take(stray, 0.2));
-  EXPECT_TRUE(run.Take(Frame(3), 0.2));
+  EXPECT_FALSE(run.AddFrame(stray, 0.2));
+  EXPECT_TRUE(run.AddFrame(Frame(3), 0.2));
   EXPECT_EQ(run.Losses().samples, 0);
 }
 

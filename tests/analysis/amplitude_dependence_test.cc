@@ -78,7 +78,7 @@ TEST(AmplitudeDependence, FollowsThePeriodForALinearTorque) {
 
 // The span between recordings follows eq. (6.1) at the mean amplitudes of the motion. The estimates weight early swings
 // more than these means do, so a difference of a tenth is allowed.
-TEST(AmplitudeDependence, ReportsPeriodsOfSmallestAndLargestSwings) {
+TEST(AmplitudeDependence, HasASpanThatFollowsFromThePeriods) {
   FittedAlone fits(LinearRuns(1), RigOptions());
   fits.TestConstancies();
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
@@ -87,7 +87,7 @@ TEST(AmplitudeDependence, ReportsPeriodsOfSmallestAndLargestSwings) {
   EXPECT_THAT(DependenceOf(result, "inertia")->span / expected, DoubleNear(1, 0.1));
 }
 
-TEST(AmplitudeDependence, AgreesForComparisonsBetweenRecordingsOnly) {
+TEST(AmplitudeDependence, FollowsThePeriodWithoutTrendsWithinRecordings) {
   const FittedAlone fits(LinearRuns(1), RigOptions());  // the trends within recordings are unknown
   const Homogeneity result = TestHomogeneity(fits.Runs(), {"inertia"});
   const AmplitudeDependence* const inertia = DependenceOf(result, "inertia");
@@ -107,7 +107,7 @@ TEST(AmplitudeDependence, IsReportedIfNoRecordingIsAnOutlier) {
 }
 
 // With less noise the errors of the three larger swings cover the differences that the sine causes, so these three
-// agree. The two small swings do not. Amplitude explains all five, so no recording is to be left out.
+// agree. The two smaller swings do not agree with them. Amplitude explains all five, so no recording is to be left out.
 TEST(AmplitudeDependence, IsReportedIfItExplainsTheDisagreement) {
   FittedAlone fits(FiveRuns(1, 0.002, Gravity::kLinear), RigOptions());
   fits.TestConstancies();
@@ -151,12 +151,12 @@ TEST(AmplitudeDependence, IsRarelyFoundInRunsOfOneRig) {
   });
   EXPECT_LE(std::ranges::count_if(p, [](double one) { return one < 0.05; }), 7);
   EXPECT_LE(std::ranges::count_if(p, [](double one) { return one < 0.001; }), 1);
-  EXPECT_LT(std::ranges::count(p, 1.0), 5);  // the test is made
+  EXPECT_LT(std::ranges::count(p, 1.0), 5);  // nearly all sets were tested
 }
 
 // ---- Fit of a line to numbers --------------------------------------------------------------------------------------
 
-/// A parameter as from TestHomogeneity for separate runs without windows: values with standard errors.
+/// A parameter with these values and standard errors, as TestHomogeneity gives it for runs without windows.
 SharedParameter Numbers(const std::vector<double>& value, const std::vector<double>& error) {
   SharedParameter parameter;
   parameter.name = "inertia";

@@ -101,8 +101,8 @@ TEST(CompareWindows, FindsInertiaFallingWithAmplitudeForLinearGravity) {
   EXPECT_THAT(trends.found.trends[0].slope, DoubleNear(-kInertia0 / 8, 0.05 * kInertia0 / 8));
 }
 
-// Drag c ω² takes 8/3 c ω³ A³ per swing, viscous friction π b ω A². A viscous fit therefore finds b + 8 / (3π) c ω A
-// (in this swing ω falls by about 1 % below its small-angle value).
+// Per swing, drag c ω² dissipates the energy 8/3 c ω² A³ and viscous friction π b ω A². A viscous fit therefore finds b
+// + 8 / (3π) c ω A (in this swing ω falls by about 1 % below its small-angle value).
 TEST(CompareWindows, FindsViscousFrictionRisingWithAmplitudeForDrag) {
   const double drag = 0.0005 / kTextbookTorque;
   SyntheticOptions run = RunOf("drag", 1e-4);
@@ -119,9 +119,9 @@ TEST(CompareWindows, FindsViscousFrictionRisingWithAmplitudeForDrag) {
   }
 }
 
-// One of two frictions is held at the whole fit's estimate, and all windows share its error. Slopes over their standard
-// errors must have a variance of 1: for 40 runs 0.52 to 1.67 in 99 of 100 cases (χ² of 40). Of 80 tests at p < 0.05,
-// more than 10 alarms happen once in 500 times (binomial).
+// One of the two friction parameters is held at the whole fit's estimate, and all windows share its error. Slopes over
+// their standard errors must have a variance of 1: for 40 runs 0.52 to 1.67 in 99 of 100 cases (χ² of 40). Of 80 tests
+// at p < 0.05, more than 10 alarms happen once in 500 times (binomial).
 TEST(CompareWindows, HasErrorsThatMatchTheScatterOfSlopes) {
   std::vector<double> variance = {0, 0};
   int alarms = 0;

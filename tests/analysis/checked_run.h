@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fit beside the closed forms, for tests of the check.
+// A fitted recording, its closed forms and their comparison (CheckClosedForms), for tests.
 #pragma once
 
 #include <algorithm>

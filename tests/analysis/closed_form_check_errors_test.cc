@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check's z: where it comes from, whether it scatters as it says, and where there is none.
+// Tests of z in ClosedFormRow: its scatter for the right model, its computation, and the cases without z.
 #include <cmath>
 #include <functional>
 #include <map>
@@ -98,7 +98,7 @@ TEST(ClosedFormRow, UsesTheDifferenceOfVariancesForWhiteNoise) {
     const double fit = checked.run.fit.Find(parameter)->std_error.value();
     const double deviation = (row.closed_form - row.fit) / *row.z;
     EXPECT_THAT(deviation * deviation / (own * own), DoubleNear(1 - fit * fit / (own * own), 1e-9)) << parameter;
-    EXPECT_GT(fit, 0.1 * own);  // so that the sign of the difference matters
+    EXPECT_GT(fit, 0.1 * own);  // otherwise the sum of the variances would pass the test too
   }
 }
 
@@ -108,11 +108,11 @@ TEST(ClosedFormRow, HasTheSameZFromReadingInfluences) {
   for (const char* model : {"viscous", "drag"}) {
     for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
       const CheckedRun checked = CheckRun(ShortStrongRun(model), model, rig);
-      FittedRun remembering = checked.run;
-      remembering.fit.noise.autocorrelation.kind = Autocorrelation::Kind::kAutoregressive;
-      remembering.fit.noise.autocorrelation.autoregressive = {1e-9};
-      remembering.fit.noise.autocorrelation.interval = 0.02;
-      const CheckedRun there = CheckFit(remembering);
+      FittedRun autocorrelated = checked.run;
+      autocorrelated.fit.noise.autocorrelation.kind = Autocorrelation::Kind::kAutoregressive;
+      autocorrelated.fit.noise.autocorrelation.autoregressive = {1e-9};
+      autocorrelated.fit.noise.autocorrelation.interval = 0.02;
+      const CheckedRun there = CheckFit(autocorrelated);
       for (const ClosedFormRow& row : checked.check.rows) {
         if (!row.quantity.ends_with("_turning_points")) continue;
         EXPECT_THAT(*there.Row(row.quantity).z / *row.z, DoubleNear(1, 0.15)) << model << " " << row.quantity;
@@ -224,7 +224,8 @@ TEST(ClosedFormRow, IsMissingWithoutAnInertiaFromTheRig) {
   EXPECT_FALSE(checked.Has("inertia_point_mass"));
 }
 
-// The clock is 1 % fast, with an uncertainty of that size: the fit's inertia is 2 % off and still agrees.
+// The clock's scale is wrong by 1 %, and its standard deviation is 1 %: the fit's inertia is wrong by 2 % and still
+// agrees.
 TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": 9.81})",
@@ -240,8 +241,8 @@ TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true) << *checked.Row("inertia_geometry").z;
 }
 
-// The text must mention the point mass in both cases: sufficient and insufficient.
-TEST(ClosedFormRow, ReportsWhetherAPointMassIsAdequate) {
+// RejectsAPointMassForAHeavyRod tests the text for a point mass that is not adequate.
+TEST(ClosedFormRow, ReportsAnAdequatePointMass) {
   const Rig rig = Must(ParseRig(
       R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
       "rig"));

@@ -83,8 +83,8 @@ TEST(CheckClosedForms, AgreesCompletelyAtSmallAngles) {
             "7 of 7 closed forms agree with the fit within 3 standard deviations of the difference");
 }
 
-// Small swings with both frictions change by A -> (A - τ) e^(-π ζ) - τ per half swing (Feeny & Liang 1996). The log
-// decrement attributes all of the loss to viscous friction.
+// With viscous and dry friction the amplitude of small swings changes by A -> (A - τ) e^(-π ζ) - τ per half swing
+// (Feeny & Liang 1996). The log decrement attributes all of the loss to viscous friction.
 TEST(CheckClosedForms, AttributesDryFrictionsDecrementToTheFormula) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("coulomb"), "coulomb");
   const double sticking = 0.004 / kTextbookTorque;
@@ -186,8 +186,8 @@ TEST(CheckClosedForms, DoesNotAttributeADriftingZeroToFriction) {
   }
 }
 
-// From 2.6 rad on the corrected formula has an error of 0.05 %. Small angles are not the cause: the formula uses the
-// amplitude in the middle of a half swing for all of it.
+// For a release from 2.6 rad the corrected formula has an error of 0.05 %. Small angles are not the cause: the formula
+// uses the amplitude in the middle of a half swing for all of it.
 TEST(CheckClosedForms, DoesNotClaimSmallAnglesForTheEllipticIntegral) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.release_angle = 2.6;
@@ -233,7 +233,7 @@ TEST(CheckClosedForms, ComparesTheDampingRatioOfTheFit) {
               DoubleNear(viscous / (2 * std::sqrt(inertia * kTextbookTorque)), 1e-9));
 }
 
-TEST(CheckClosedForms, TreatsARateAsARate) {
+TEST(CheckClosedForms, ChecksARateSensor) {
   SyntheticOptions run = TextbookRun("viscous");
   run.quantity = Quantity::kRate;
   run.zero = 0.02;
@@ -271,7 +271,8 @@ TEST(CheckClosedForms, NeedsNoCalibrationForTheLinearModel) {
   }
 }
 
-// A clock that runs k times too fast: inertia changes with k², viscous friction with k, and z stays the same.
+// A slow clock: k true seconds per second of the file. Inertia changes with k², viscous friction with k, and z stays
+// the same.
 TEST(CheckClosedForms, CountsInTrueSeconds) {
   const Recording recording = Must(SimulateRecording(NoisyTextbookRun("viscous")));
   Recording slow = recording;

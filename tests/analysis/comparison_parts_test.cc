@@ -134,12 +134,12 @@ TEST(SharedAutocorrelation, HasOrderEightAtMost) {
   EXPECT_EQ(SharedAutocorrelation(fit).Name(), "AR(8)");
 }
 
-TEST(PerCount, ConvertsDensitiesToProbabilitiesOfLevels) {
+TEST(SumOfLogLevelWidths, ConvertsDensitiesToProbabilitiesOfLevels) {
   Recording recording;
   recording.time = Eigen::VectorXd::LinSpaced(10, 0, 9);
-  EXPECT_EQ(PerCount(recording), 0);
-  recording.resolution = std::exp(-2.0);  // a density of 1 / rad per level of exp(-2) rad, for ten samples
-  EXPECT_DOUBLE_EQ(PerCount(recording), -20);
+  EXPECT_EQ(SumOfLogLevelWidths(recording), 0);
+  recording.resolution = std::exp(-2.0);  // ten readings on levels of exp(-2) rad: 10 ln q
+  EXPECT_DOUBLE_EQ(SumOfLogLevelWidths(recording), -20);
 }
 
 }  // namespace

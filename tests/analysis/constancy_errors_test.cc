@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often the tests of constancy cry wolf where the law holds.
+// False alarm rates of TestConstancy for recordings whose friction law is right.
 #include <string>
 
 #include <gmock/gmock.h>

@@ -189,7 +189,7 @@ TEST(Constancy, IsNotTestedWithoutTurningPoints) {
 }
 
 // The pendulum stops at about 41 s; all half swings are before that.
-TEST(Constancy, IsTestedBeforeTheRest) {
+TEST(Constancy, IsTestedBeforeThePendulumComesToRest) {
   SyntheticOptions run = NoisyTextbookRun("coulomb");
   run.duration = 60;
   run.sample_rate = 50;

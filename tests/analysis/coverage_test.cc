@@ -123,7 +123,7 @@ TEST(StudyCoverage, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(StudyCoverage, GivesRecordingISeedPlusI) {
+TEST(StudyCoverage, UsesSuccessiveSeeds) {
   CoverageOptions options = Options(1);
   double squares = 0;
   for (options.seed = 5; options.seed < 8; ++options.seed) {
@@ -135,7 +135,7 @@ TEST(StudyCoverage, GivesRecordingISeedPlusI) {
               DoubleNear(1, 1e-9));
 }
 
-TEST(StudyCoverage, CountsRecordingsWhenDone) {
+TEST(StudyCoverage, ReportsTheNumberOfRecordingsDone) {
   CoverageOptions options = Options(5);
   std::vector<int> done;
   options.progress = [&](int count) { done.push_back(count); };
@@ -151,7 +151,7 @@ TEST(StudyCoverage, MakesNoErrorComparisonForATruthAtItsBound) {
   EXPECT_TRUE(Row(study, "coulomb").error_over_bound);
 }
 
-// Another start has other parameters: the report lacks those of the true start.
+// A fit with another kind of start has other parameters: its report lacks the parameters of the true start.
 TEST(StudyCoverage, CountsAMissingParameterAsNotCovered) {
   CoverageScenario scenario = Scenario("white_2.5");
   scenario.run.release_time = 0;
@@ -193,7 +193,7 @@ TEST(StudyCoverage, FindsEventsAtLeastAsInformativeAs1KHzReadings) {
     for (const char* parameter : {"inertia", "viscous", "coulomb", "initial_angle", "initial_rate", "zero_angle"}) {
       EXPECT_LE(*Row(by_events, parameter).rms_error, kChance * *Row(by_readings, parameter).rms_error) << parameter;
     }
-    EXPECT_EQ(by_events.rows.size(), 6U) << "what is held is no row";
+    EXPECT_EQ(by_events.rows.size(), 6U) << "a fixed parameter has no row";
   }
 }
 

@@ -38,7 +38,7 @@ std::vector<double> Bounds(const SyntheticOptions& run) {
   return bounds;
 }
 
-/// Changes one of the parameters of FitParameters' order.
+/// Changes the parameter with this index in FitParameters' order.
 SyntheticOptions Moved(SyntheticOptions run, std::size_t parameter, double step) {
   const bool released = run.start == StartKind::kRelease;
   std::vector<double*> places;
@@ -125,11 +125,11 @@ TEST(CramerRaoBounds, GrowByATwelfthOfASquaredCount) {
   EXPECT_THAT(Ratios(Bounds(run), fine), Each(DoubleNear(std::sqrt(1 + 1 / (12 * 1.5 * 1.5)), 1e-3)));
 }
 
-// Each sample has the ReadingInformation of (its mean, log σ), and its mean is that of the trajectory.
+// Each sample has the ReadingInformation about (mean, log σ); the mean is the trajectory's reading.
 TEST(CramerRaoBounds, TreatTheNoiseSizeAsUnknown) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.15 * kCount;
-  run.zero = 0.2 * kCount - run.release_angle;  // off the count's middle, where x and σ are correlated
+  run.zero = 0.2 * kCount - run.release_angle;  // not in the middle of a count, so x and σ are correlated
   run.resolution = kCount;
   const Eigen::MatrixXd jacobian = JacobianByDifferences(run);
   SyntheticOptions clean = run;
@@ -159,7 +159,8 @@ TEST(CramerRaoBounds, GetNothingFromAHoldInTheMiddleOfACount) {
   const std::vector<double> middle = Bounds(run);
   run.release_time += 10;
   run.duration += 10;
-  EXPECT_THAT(Ratios(Bounds(run), middle), Each(DoubleNear(1, 0.1)));  // an equal number of other samples of the swing
+  EXPECT_THAT(Ratios(Bounds(run), middle),
+              Each(DoubleNear(1, 0.1)));  // the swing has equally many samples, at other phases
   SyntheticOptions edge = run;
   edge.release_angle += 0.5 * kCount;
   EXPECT_LT(Bounds(edge)[3], 0.5 * middle[3]);

@@ -45,7 +45,7 @@ TEST(FitModels, EqualsFitRecordingForOneModel) {
 
 // Viscous friction alone leaves residuals of more than a count; coulomb leaves a quarter of a count. Both fits must use
 // one family.
-TEST(FitModels, GivesAllTheNoiseFamilyOfTheSmallestResiduals) {
+TEST(FitModels, UsesTheNoiseFamilyOfTheSmallestResidualsForAllModels) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.duration = 60;
   run.noise = 0.25 * kCount;
@@ -91,7 +91,7 @@ TEST(FitModels, FindsOneFrequencyForAnUndersampledSwing) {
   EXPECT_NEAR(inertia.estimate, truth, 4 * inertia.std_error.value_or(0));
 }
 
-TEST(FitModels, DropsAndReportsParametersOfOtherModels) {
+TEST(FitModels, IgnoresAndReportsParametersOfOtherModels) {
   FitOptions options;
   options.fixed = {{"coulomb", 0.002}};
   const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
@@ -103,7 +103,7 @@ TEST(FitModels, DropsAndReportsParametersOfOtherModels) {
   EXPECT_TRUE(fitted.fits[1].Find("coulomb")->fixed);
 }
 
-TEST(FitModels, RefusesAnUnknownModel) {
+TEST(FitModels, RefusesAnUnknownParameter) {
   FitOptions options;
   options.fixed = {{"lubrication", 1}};
   const Recording recording = Must(SimulateRecording(NoisyRun()));

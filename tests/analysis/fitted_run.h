@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording with its fit, for tests of what compares the two.
+// A recording with its fit, for tests of functions that take both.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often recordings of one rig are said to differ, how often one of another rig is found, and how often joint
-// intervals hold the truth: sets of five recordings of the rig of coverage_scenarios.h.
+// Error rates of TestHomogeneity and of joint fits, for simulated sets of five recordings (coverage_scenarios.h): how
+// often recordings of one rig are reported as disagreeing, how often a recording of another rig is found, and how often
+// joint 95 % intervals contain the true values.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -134,7 +135,7 @@ Tally TallySets(const std::string& scenario_name, int count) {
   return tally;
 }
 
-/// Sets of five recordings, one of which has 3 % more inertia: counts how often only that one is named.
+/// For sets of five recordings, one of which has 3 % more inertia: counts how often only this recording is named.
 int CountNamed(const std::string& scenario_name, int count) {
   const CoverageScenario scenario = ScenarioOf(scenario_name);
   std::vector<char> named(static_cast<std::size_t>(count));
@@ -147,8 +148,9 @@ int CountNamed(const std::string& scenario_name, int count) {
 }
 
 // Of 200 trials at 1 %, more than 7 hits happen once in 1000 times; of 200 at 95 %, fewer than 180 or more than 199
-// once in 300. Information adds up. Inertia hardly correlates with friction, so its error falls by √5. The ratio of the
-// release angles, 1.6, makes the single errors unequal, so their mean is not exactly √5 times as large.
+// hits happen once in 300 times. The information of the recordings adds up. Inertia hardly correlates with friction, so
+// its error falls by √5. The ratio of the release angles, 1.6, makes the single errors unequal, so their mean is not
+// exactly √5 times as large.
 TEST(HomogeneityErrors, AreRightInWhiteNoise) {
   const Tally tally = TallySets("white_2.5", 200);
   EXPECT_EQ(tally.converged, 200);
@@ -160,7 +162,7 @@ TEST(HomogeneityErrors, AreRightInWhiteNoise) {
 }
 
 // Of 100 trials at 1 %, more than 5 hits happen once in 2000 times. At a correlation of 0.9 intervals of single
-// recordings cover 91 % or more (coverage_scenarios.h): of 100, fewer than 82 happen once in 400 times.
+// recordings cover 91 % or more (coverage_scenarios.h): of 100, fewer than 82 hits happen once in 400 times.
 TEST(HomogeneityErrors, AreRightForAutocorrelatedNoise) {
   const Tally tally = TallySets("ar_0.9", 100);
   EXPECT_EQ(tally.converged, 100);

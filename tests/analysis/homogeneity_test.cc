@@ -190,7 +190,7 @@ TEST(Homogeneity, NamesNoOutlierIfAllScatter) {
   EXPECT_THAT(result.verdict, HasSubstr("between recordings inertia scatters by 3.6 %"));
 }
 
-// Four runs scatter by a thousandth, many times their errors; one is thirty times as far away.
+// Four runs scatter by a thousandth, many times their errors; the fifth run is thirty times as far away.
 TEST(Homogeneity, NamesARecordingFarFromTheOthersScatter) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 65);
   const double factors[] = {1.001, 0.9995, 1.03, 0.9985, 1.0005};

@@ -32,8 +32,8 @@ FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
   return options;
 }
 
-/// The fit, with inconstancy added to its errors.
-FittedRun Counted(const SyntheticOptions& simulated, const FitOptions& options) {
+/// The fit with the inconstancy error added.
+FittedRun FitWithInconstancy(const SyntheticOptions& simulated, const FitOptions& options) {
   FittedRun run = FitTo(Must(SimulateRecording(simulated)), options);
   AddInconstancyError(TestConstancy(run.recording, run.fit, options), run.fit);
   return run;
@@ -44,7 +44,7 @@ double SystematicError(const FitReport& fit, std::string_view name) {
 }
 
 TEST(Inconstancy, IsZeroForTheRightLaw) {
-  const FittedRun run = Counted(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
+  const FittedRun run = FitWithInconstancy(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
   EXPECT_FALSE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.systematic_names, IsEmpty());
   EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
@@ -64,19 +64,19 @@ TEST(Inconstancy, IsTheScatterOfWindowsAboutTheWhole) {
   const double expected = std::sqrt(sum_of_squares / static_cast<double>(constancy.windows.size() - 1));
   AddInconstancyError(constancy, run.fit);
   EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
-  EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // Otherwise the windows would contradict the whole fit.
+  EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // so that the scatter is significant
   EXPECT_EQ(run.fit.Find("inertia")->std_error, whole.std_error);
 }
 
-// The purpose: a run of smaller swings, fitted with the same wrong law, differs by many standard errors. The difference
-// must be within the combined total errors.
+// The added error must explain the difference to a run with another amplitude. With the same wrong law, the inertia of
+// the two runs differs by many standard errors, but the difference must be within the combined total errors.
 TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
   const FitOptions options = WithLinearGravity({});
-  const ParameterEstimate first = *Counted(NoisyTextbookRun("viscous"), options).fit.Find("inertia");
+  const ParameterEstimate first = *FitWithInconstancy(NoisyTextbookRun("viscous"), options).fit.Find("inertia");
   for (const double amplitude : {0.6, 0.8, 1.2}) {
     SyntheticOptions run = NoisyTextbookRun("viscous");
     run.release_angle *= amplitude;
-    const ParameterEstimate second = *Counted(run, options).fit.Find("inertia");
+    const ParameterEstimate second = *FitWithInconstancy(run, options).fit.Find("inertia");
     const double difference = std::abs(second.estimate - first.estimate);
     const double std_error = std::hypot(*first.std_error, *second.std_error);
     EXPECT_THAT(difference, Gt(4 * std_error)) << amplitude;
@@ -86,7 +86,7 @@ TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
 }
 
 TEST(Inconstancy, IsReportedWithItsSize) {
-  const FittedRun run = Counted(NoisyTextbookRun("viscous"), WithLinearGravity({}));
+  const FittedRun run = FitWithInconstancy(NoisyTextbookRun("viscous"), WithLinearGravity({}));
   ASSERT_TRUE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("by more than their errors: inertia by 0.000"));
 }
@@ -126,7 +126,8 @@ TEST(Inconstancy, UsesTheHalvesWithoutWindows) {
   EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves. Another run"));
 }
 
-// Windows that alternate have no slope, and the parameters they hold may differ between halves.
+// Estimates that alternate between windows have no trend. A parameter that the windows hold fixed may differ between
+// the halves.
 TEST(Inconstancy, NeedsNoTrend) {
   FitReport fit = FitTo(NoisyTextbookRun("coulomb"), "coulomb", {}).fit;
   Constancy constancy;
@@ -139,7 +140,8 @@ TEST(Inconstancy, NeedsNoTrend) {
                       {"coulomb", "1", 0.001, 0.003, 1e-5, 1e-5, 140}};
   AddInconstancyError(constancy, fit);
   EXPECT_THAT(fit.systematic_names, ElementsAre("coulomb", "viscous"));
-  // coulomb has the windows' scatter, 1e-4 from the middle one; viscous has the halves' scatter.
+  // The error of coulomb is the scatter of the windows (the middle one differs by 1e-4); the error of viscous is the
+  // scatter of the halves.
   EXPECT_THAT(SystematicError(fit, "coulomb"), AllOf(Gt(5e-5), Lt(2e-4)));
   EXPECT_THAT(SystematicError(fit, "viscous"), AllOf(Gt(0.001), Lt(0.003)));
 }

@@ -74,7 +74,7 @@ TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedRecording) {
   }
 }
 
-TEST(CompareJointModels, NestsLikelihoods) {
+TEST(CompareJointModels, GivesARicherLawNoSmallerLikelihood) {
   const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", 11)), kThreeLaws);
   EXPECT_GE(*comparison.rows[1].log_likelihood, *comparison.rows[0].log_likelihood - 1e-3);
   EXPECT_GE(*comparison.rows[2].log_likelihood, *comparison.rows[1].log_likelihood - 1e-3);
@@ -137,7 +137,7 @@ TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
   }
 }
 
-// Three recordings with too little information each determine the common term together. Statistics of independent
+// Three recordings, each with too little information, determine the common term together. Statistics of independent
 // recordings of one rig add up, except for a part from their disagreement, with expectation 2 and rarely above 20.
 TEST(CompareJointModels, AddsTheInformationOfRecordingsOnATerm) {
   std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 41);
@@ -152,7 +152,7 @@ TEST(CompareJointModels, AddsTheInformationOfRecordingsOnATerm) {
   EXPECT_LT(comparison.tests.at(0).p.value_or(1), 1e-6);
 }
 
-TEST(CompareJointModels, SkipsTermsThatEachRecordingAddsItself) {
+TEST(CompareJointModels, GivesNoPForTermsThatAreNotShared) {
   const std::vector<std::string> models = {"viscous", "coulomb"};
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
   const JointModels joint =
@@ -180,8 +180,8 @@ std::vector<Recording> AutocorrelatedRecordings(int count, std::uint64_t seed) {
   return recordings;
 }
 
-// Innovations of an AR(1) with 0.9 are sqrt(1 - 0.81) of its standard deviation. ln L of all N samples together is
-// larger by -N/2 ln 0.19. Each recording has a separate autocorrelation of one or more parameters.
+// The innovations of AR(1) noise with correlation 0.9 have sqrt(1 - 0.81) times its standard deviation. ln L of all N
+// samples together is larger by -N/2 ln 0.19. Each recording has a separate autocorrelation of one or more parameters.
 TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
   const auto [joint, comparison] = Compare(AutocorrelatedRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);

@@ -50,7 +50,7 @@ TEST(FitTogether, RecoversTheTruthForTheTrueLaw) {
   EXPECT_FALSE(joint.joint[0].whole.HasWarning("recordings_disagree"));
 }
 
-// Shared parameters are equal in all recordings; the others differ.
+// Shared parameters are equal in all recordings; the other parameters differ.
 TEST(FitTogether, HasTheSharedEstimatesInEveryRecording) {
   const JointModels joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 7)), {"coulomb"}, PlainOptions());
   const FitReport& whole = joint.joint[0].whole;

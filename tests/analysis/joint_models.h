@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of the textbook's rig with the fits of several models to each, as joint fits take them.
+// Recordings of the textbook's rig, and the fits of several models to each of them, as input of joint fits.
 #pragma once
 
 #include <string>

@@ -67,7 +67,7 @@ ReadingTerms TermsOfDraws(const NoiseModel& noise, const VectorXd& value) {
   return TermsOf(noise, value, VectorXd::Zero(value.size()));
 }
 
-TEST(ScoreCovariance, IsThatOfIndependentScoresForWhiteNoise) {
+TEST(ScoreCovariance, AddsIndependentScoresForWhiteNoise) {
   NoiseModel noise;
   noise.sigma = 0.02;
   const VectorXd value = noise.sigma * Normal(50, 1, 1);
@@ -136,7 +136,7 @@ TEST(Inflation, CorrectsTheVarianceAboutAMean) {
   EXPECT_THAT(variance * Inflation({}, kCount, 1, lost), DoubleNear(1, 0.03));
 }
 
-// A likelihood's σ² is RSS / N; for independent residuals it is too small by (N - k) / N.
+// A likelihood's σ² is RSS / N; for independent residuals it is too small by the factor (N - k) / N.
 TEST(Inflation, CountsParametersOnce) {
   EXPECT_DOUBLE_EQ(Inflation({}, 100, 5, 5), 1);
   NoiseModel quantized;
@@ -144,7 +144,7 @@ TEST(Inflation, CountsParametersOnce) {
   EXPECT_DOUBLE_EQ(Inflation(quantized, 100, 5, 5), 100.0 / 95);
 }
 
-TEST(AutocorrelationOf, IsThatOfTheNoise) {
+TEST(AutocorrelationOf, FindsTheAutocorrelationOfTheNoise) {
   NoiseModel noise;
   noise.sigma = 0.5;
   const VectorXd zero = VectorXd::Zero(2000);
@@ -153,10 +153,10 @@ TEST(AutocorrelationOf, IsThatOfTheNoise) {
     return AutocorrelationOf(noise, Seconds(2000), noise.sigma * z, zero, none);
   };
   EXPECT_EQ(autocorrelation(Normal(2000, 1, 1)).Name(), "white");
-  const Autocorrelation remembered = autocorrelation(Autocorrelated(2000, 0.9, 1));
-  ASSERT_EQ(remembered.Name(), "AR(1)");
+  const Autocorrelation found = autocorrelation(Autocorrelated(2000, 0.9, 1));
+  ASSERT_EQ(found.Name(), "AR(1)");
   // Its standard error is sqrt((1 - φ²) / N) = 0.01.
-  EXPECT_THAT(remembered.autoregressive[0], DoubleNear(0.9, 0.04));
+  EXPECT_THAT(found.autoregressive[0], DoubleNear(0.9, 0.04));
 }
 
 // ---- Linearize -----------------------------------------------------------------------------------------------------
@@ -205,7 +205,7 @@ TEST(LinearizeFit, CountsPriors) {
 }
 
 // Dry friction fitted to a recording without it is at 0 in about half of the recordings.
-TEST(LinearizeFit, FreesWhatABoundHoldsWhenAsked) {
+TEST(LinearizeFit, FreesParametersAtABoundIfRequested) {
   SyntheticOptions run = NoisyRun("viscous");
   FittedRun fitted;
   do {
@@ -216,7 +216,7 @@ TEST(LinearizeFit, FreesWhatABoundHoldsWhenAsked) {
   EXPECT_THAT(LinearOf(fitted, false).free, Contains(2));
 }
 
-TEST(LinearizeFit, IsNothingWithoutAMotion) {
+TEST(LinearizeFit, IsEmptyIfTheMotionCannotBeComputed) {
   FittedRun run = FitTo(NoisyRun(), "coulomb", {});
   const ReadingTerms terms = TermsOf({}, run.recording.value, run.fit.fitted);
   run.fit.parameters[0].estimate = std::numeric_limits<double>::quiet_NaN();

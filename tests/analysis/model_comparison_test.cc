@@ -75,7 +75,7 @@ TEST(CompareModels, HasWeightsThatAddUpToOneAndDifferencesToTheBest) {
 }
 
 // The richer law contains the simpler one and cannot fit worse.
-TEST(CompareModels, NestsLikelihoods) {
+TEST(CompareModels, GivesARicherLawNoSmallerLikelihood) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto [fitted, comparison] =
         Compare(GaussianRecording("coulomb", seed), {"viscous", "coulomb", "drag", "asymmetric"}, kCriteriaOnly);
@@ -97,7 +97,7 @@ TEST(CompareModels, PredictsBetterWithTheRightLaw) {
   EXPECT_THAT(rows[1].cross_validation.standardized, DoubleNear(1, 0.1));
 }
 
-/// The same recording with AR(1) noise of that standard deviation [rad], on levels of the given resolution.
+/// The textbook's swing with AR(1) noise of standard deviation `sigma` [rad], on levels of this resolution.
 Recording CorrelatedRecording(double sigma, double resolution, std::uint64_t seed) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 0;
@@ -116,14 +116,15 @@ TEST(CompareModels, UsesTheAutocorrelation) {
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   EXPECT_LT(comparison.effective_samples, 0.5 * static_cast<double>(fitted.used.size()));
   EXPECT_THAT(comparison.criterion, HasSubstr("autocorrelated residuals"));
-  // An AR(1) with 0.9 has innovations of sqrt(1 - 0.81) of its standard deviation: ln L is larger by -N/2 ln(0.19).
+  // The innovations of AR(1) noise with correlation 0.9 have sqrt(1 - 0.81) times its standard deviation: ln L is
+  // larger by -N/2 ln(0.19).
   const double n = static_cast<double>(fitted.used.size());
   const double gained = *comparison.rows[1].log_likelihood - fitted.fits[1].statistics.log_likelihood;
   EXPECT_NEAR(gained, -0.5 * n * std::log(0.19), 0.1 * n);
 }
 
-// If autocorrelation is ignored, the criterion finds additional laws in it. If it is included, viscous and dry friction
-// are recommended.
+// If autocorrelation is ignored, it looks like additional friction terms. If it is included, the true law is
+// recommended: viscous and dry friction.
 TEST(CompareModels, RecommendsTheTrueLawForAutocorrelatedNoise) {
   int right = 0;
   constexpr int kSeeds = 10;

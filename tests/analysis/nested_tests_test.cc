@@ -35,8 +35,8 @@ TEST(TestNested, UsesHalfAChiSquareForOneBoundedTerm) {
   EXPECT_LT(tests[0].p.value_or(1), 1e-10);
 }
 
-// Two terms at their bound: w_2 = 1/4 + asin ρ / 2π is at most 1/2. Dry friction and drag together can be replaced by
-// less viscous friction, because its power of the rate lies between theirs. Therefore ρ > 0 and w_0 < 1/4.
+// Two terms at their bound: w_2 = 1/4 + asin ρ / 2π is at most 1/2. Dry friction and drag together act like additional
+// viscous friction, because the rate has the powers 0, 2 and 1 in these terms. Therefore ρ > 0 and w_0 < 1/4.
 TEST(TestNested, UsesAMixtureForTwoBoundedTerms) {
   const auto tests = TestsOf(Must(SimulateRecording(NoisyRun("viscous"))), {"viscous", "drag"});
   ASSERT_EQ(tests.size(), 1);

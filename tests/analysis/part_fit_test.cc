@@ -71,7 +71,7 @@ TEST(Parts, FixTheHeldParametersAndTheFitsFixedOnes) {
 }
 
 // The zero is 0.012 rad and drifts by 0.001 rad/s: at 8 s it is 0.020 rad.
-TEST(Parts, StartADriftingZeroAtItsValueThere) {
+TEST(Parts, StartADriftingZeroAtItsValueInThePart) {
   Recording recording = Must(SimulateRecording(QuietRun("viscous")));
   recording.value += 0.001 * recording.time;
   FitOptions options = ModelOptions("viscous");
@@ -143,17 +143,17 @@ struct ExponentialDecay {
   std::vector<double> ends;
 };
 
-// ∫ A^(2/3) dt up to t is 1.5 τ (1 - exp(-t / (1.5 τ))). The test computes where it reaches thirds of the whole. Cuts
-// are at ends of half swings.
+// ∫ A^(2/3) dt up to t is 1.5 τ (1 - exp(-t / (1.5 τ))). The test computes where this integral reaches thirds of its
+// final value. Cuts are at ends of half swings.
 TEST(CutEvenly, MakesEqualIntegralsOfAKnownDecay) {
   const double decay = 12;
   const ExponentialDecay swing(decay);
   const Parts parts(swing.whole.recording, swing.whole.fit, ModelOptions("linear"));
   const std::vector<std::size_t> cuts = CutEvenly(swing.ends, 3, parts);
   ASSERT_EQ(cuts.size(), 4u);
-  const double told = 1 - std::exp((swing.ends.front() - swing.ends.back()) / (1.5 * decay));
+  const double total = 1 - std::exp((swing.ends.front() - swing.ends.back()) / (1.5 * decay));
   for (const std::size_t k : {1u, 2u}) {
-    const double wanted = 0.5 - 1.5 * decay * std::log(1 - told * static_cast<double>(k) / 3);
+    const double wanted = 0.5 - 1.5 * decay * std::log(1 - total * static_cast<double>(k) / 3);
     EXPECT_THAT(swing.ends[cuts[k]], DoubleNear(wanted, 0.55 * swing.half_swing)) << k;
   }
   EXPECT_EQ(cuts.front(), 0u);

@@ -210,8 +210,9 @@ TEST(MakePlan, FindsTheAmplitudeWhereBiasEqualsTheError) {
   }
 }
 
-// Below some amplitude dry friction leaves less than a whole period; above it the decrement has errors.
-TEST(MakePlan, FindsNoAmplitudeBelowOneWholePeriod) {
+// Below some amplitude dry friction leaves less than a whole period. Just above it the bias is already larger than the
+// error, so the plan gives this amplitude.
+TEST(MakePlan, FindsTheAmplitudeWhereOneWholePeriodEnds) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 1e-5;
   const double amplitude = Must(MakePlan(run)).amplitude_of_equal_bias.value();
@@ -252,11 +253,11 @@ TEST(MakePlan, ScalesAngleAndRateOfALinearMovingStart) {
   run.initial_angle = 0.3;
   run.initial_rate = 2;
   const Plan plan = Must(MakePlan(run));
-  EXPECT_THAT(Values(plan, "amplitude")[2], DoubleNear(0.5, 1e-12));  // 0.3, 0.4 = 2 / ω0
+  EXPECT_THAT(Values(plan, "amplitude")[2], DoubleNear(0.5, 1e-12));  // hypot(0.3, 0.4), 0.4 = 2 / ω0
   EXPECT_THAT(Steps(plan, "amplitude", 0), Each(DoubleNear(0.5, 1e-6)));
 }
 
-TEST(MakePlan, KeepsTheAmplitudeOfATumblingPendulum) {
+TEST(MakePlan, HasNoAmplitudesForATumblingPendulum) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.start = StartKind::kMoving;
   run.initial_rate = 2.1 * kFrequency;  // goes over the top above 2 ω0

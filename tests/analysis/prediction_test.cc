@@ -80,8 +80,8 @@ Means MeansOver(int count, SyntheticOptions run, const FitOptions& options) {
   return means;
 }
 
-/// `noise`: difference between a reading and the trajectory. The trajectory's own error is up to 10 % of that.
-void ExpectForeseen(const SyntheticOptions& run, const FitOptions& options, double noise) {
+/// `noise`: standard deviation of a reading about the trajectory. The trajectory's own error is up to 10 % of that.
+void ExpectErrorsAsPredicted(const SyntheticOptions& run, const FitOptions& options, double noise) {
   constexpr int kSeeds = 8;
   const Means means = MeansOver(kSeeds, run, options);
   EXPECT_THAT(means.across, AllOf(Ge(0.97), Le(1.03)));
@@ -97,7 +97,7 @@ double WithRounding(double sigma, double resolution) { return std::sqrt(sigma * 
 TEST(Prediction, HasErrorsOfTheNoiseForTheRightModel) {
   for (const SyntheticOptions& run : {TextbookRun("coulomb"), MovingRun("coulomb")}) {
     SCOPED_TRACE(run.start == StartKind::kRelease ? "release" : "moving");
-    ExpectForeseen(Noisy(run), ModelOptions("coulomb"), kSigma);
+    ExpectErrorsAsPredicted(Noisy(run), ModelOptions("coulomb"), kSigma);
   }
 }
 
@@ -106,7 +106,7 @@ TEST(Prediction, HasErrorsOfTheNoiseForAGyro) {
     SCOPED_TRACE(run.start == StartKind::kRelease ? "release" : "moving");
     run.quantity = Quantity::kRate;
     run.zero = 0.07;
-    ExpectForeseen(Noisy(run, 0.01), ModelOptions("coulomb"), 0.01);
+    ExpectErrorsAsPredicted(Noisy(run, 0.01), ModelOptions("coulomb"), 0.01);
   }
 }
 
@@ -117,12 +117,12 @@ TEST(Prediction, CountsTheRoundingOnceForBothFamilies) {
     SyntheticOptions run = Noisy(TextbookRun("coulomb"), counts * kCount);
     run.resolution = kCount;
     ASSERT_EQ(Predict(run, "coulomb").run.fit.noise.family, family);
-    ExpectForeseen(run, ModelOptions("coulomb"), WithRounding(run.noise, kCount));
+    ExpectErrorsAsPredicted(run, ModelOptions("coulomb"), WithRounding(run.noise, kCount));
   }
 }
 
-// Gaussian noise is requested where rounding is half of it, and quantized noise in the opposite case. σ includes the
-// rounding only for Gaussian noise.
+// Requests Gaussian noise for 0.3 counts, where rounding is half of the variance, and quantized noise for 1.5 counts,
+// where it is small. σ includes the rounding only for Gaussian noise.
 TEST(Prediction, InterpretsSigmaByTheRequestedFamily) {
   for (const auto& [counts, noise] :
        {std::pair(0.3, NoiseFamily::kGaussian), std::pair(1.5, NoiseFamily::kQuantized)}) {
@@ -183,8 +183,9 @@ TEST(PredictForward, IncludesTheErrorsOfParameters) {
 
 // ---- Left-out readings ---------------------------------------------------------------------------------------------
 
-// Cross-validation covers one period after the release to the end; forward prediction the last 40 % after the release.
-TEST(Prediction, CoversThePartAfterTheFirstPeriodOrPart) {
+// Cross-validation covers the time from one period after the release to the end. Forward prediction covers the last 40
+// % of the time after the release.
+TEST(Prediction, CoversTheTimeAfterTheFirstPeriodOrThreeFifths) {
   const Predictions released = Predict(Noisy(TextbookRun("coulomb")), "coulomb");
   const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
   EXPECT_THAT(static_cast<double>(released.across.samples), DoubleNear(100 * (20 - 1.9 - period), 2));

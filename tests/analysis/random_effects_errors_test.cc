@@ -34,7 +34,8 @@ struct Covered {
 
 bool Contains(double lower, double upper, double value) { return lower <= value && value <= upper; }
 
-/// One set: each recording has a separate inertia, drawn about the rig's with that relative standard deviation.
+/// One set: each recording has a separate inertia, drawn about the rig's inertia with the relative standard deviation
+/// `scatter`.
 void CountSet(const CoverageScenario& scenario, double scatter, std::uint64_t set, Covered& covered) {
   std::mt19937_64 generator(900 + set);
   boost::random::normal_distribution<double> normal;

@@ -66,7 +66,8 @@ TEST(SummarizeScatter, SolvesTheEquationOfPauleAndMandel) {
   EXPECT_THAT(effects.mean, DoubleNear(MeanAt(Scattered(), squared), 1e-12));
 }
 
-// Viechtbauer (2007): at the ends Q is the 97.5 % and the 2.5 % point of χ²(4), 11.143287 and 0.484419 (from tables).
+// Viechtbauer (2007): at the ends of the interval Q is the 97.5 % and the 2.5 % point of χ²(4), 11.143287 and 0.484419
+// (from tables).
 TEST(SummarizeScatter, HasAnIntervalFromChiSquare) {
   const RandomEffects effects = Summarize(Scattered());
   EXPECT_THAT(StatisticAt(Scattered(), std::pow(effects.between_lower95, 2)), DoubleNear(11.143287, 1e-5));
@@ -241,17 +242,17 @@ TEST(SummarizeScatter, CoversTheMeanOfScatteredRuns) {
   }
 }
 
-// The error is never below that of runs that agree, and its factor is that of Student's t(4). A normal mean is within
-// 2.776 of its standard deviations in 99.45 of 100 draws, and slightly more often because the error is sometimes
-// larger.
+// The standard error is never below that of runs that agree, and the interval reaches 2.776 standard errors to either
+// side (Student's t(4)). A normal mean is within 2.776 standard deviations in 99.45 of 100 draws, and in slightly more
+// because the standard error is sometimes larger.
 TEST(SummarizeScatter, CoversTheMeanTooOftenWithoutScatter) {
   for (const VectorXd& errors : {kEqualErrors, kUnequalErrors}) {
     EXPECT_THAT(CoverageOf(errors, 0, 2000).mean, AllOf(Ge(0.985), Le(0.9995)));
   }
 }
 
-// Q at the true value is χ²(4) for any errors. For 2000 draws 95 % ± 4 · 0.5 %. Without scatter the interval contains 0
-// unless Q is above the 97.5 % point.
+// Q at the true value is χ²(4) for any errors. 2000 draws give 95 % ± 4 · 0.5 %. Without scatter the interval contains
+// 0 unless Q is above the 97.5 % point.
 TEST(SummarizeScatter, CoversTheScatterBetweenRuns) {
   for (const double between : {1.0, 5.0}) {
     EXPECT_THAT(CoverageOf(kUnequalErrors, between, 2000).between, DoubleNear(0.95, 0.02)) << between;

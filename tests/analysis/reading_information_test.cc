@@ -86,7 +86,7 @@ TEST(ReadingInformation, IsTheSumOverAllReadings) {
 
 // Levels finer than the noise lose as much information as white noise of variance q²/12 (Widrow & Kollar, Quantization
 // Noise, 2008). The next term is of the order (q/σ)⁴ / 288, 2e-4 at σ = 2 q.
-TEST(ReadingInformation, LosesTwelfthsOfASquaredLevelToFineLevels) {
+TEST(ReadingInformation, TreatsFineLevelsAsWhiteNoise) {
   const Eigen::Matrix2d information = ReadingInformation(0.37, 2, 1, {});
   EXPECT_THAT(information(0, 0) * (4 + 1.0 / 12), DoubleNear(1, 3e-4));
 }

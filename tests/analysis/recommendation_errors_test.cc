@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often the right law is recommended: a small part of RECOMMENDATION.md, whose table recommendation_study makes.
+// How often the true law is recommended: a small part of the study in RECOMMENDATION.md (recommendation_study.cc).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace pendulum::recommendation_errors_test {
 namespace {
 
-/// With a true share of 95 %, more than 2 of 12 are wrong in 2 of 100 runs.
+/// If 95 % of all recommendations are right, more than 2 of 12 are wrong in 2 of 100 runs.
 constexpr int kSeeds = 12;
 constexpr int kMaxWrong = 2;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often each friction law is recommended for recordings simulated with a known one, as a Markdown table:
+// Prints a Markdown table: how often each friction law is recommended for recordings simulated with a known law.
 //   GLOG_minloglevel=3 recommendation_study [COUNT [LAW]]
 #include <cstdlib>
 #include <iostream>
@@ -33,7 +33,7 @@ void PrintStudy(int count, std::string_view only) {
     for (const double noise : {0.25, 1.0, 2.5}) PrintCase(law, 20, noise, count);
   }
   if (!only.empty() && only != "stribeck") return;
-  // The slow end of the swing identifies Stribeck friction.
+  // Stribeck friction is identified by the slow end of a swing, so its recordings also last 60 s.
   for (const double noise : {0.25, 1.0, 2.5}) PrintCase(kTrueLaws.back(), 60, noise, count);
 }
 

@@ -80,7 +80,7 @@ TEST(Recommend, NamesEquallyGoodModels) {
                     HasSubstr("BIC lower by 39 than with viscous")));
 }
 
-TEST(Recommend, ReportsWhatIsMissing) {
+TEST(Recommend, ReportsALackOfFit) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   made.comparison.rows[1].lack_of_fit = true;
   made.comparison.rows[1].lag1_correlation = 0.6;
@@ -99,9 +99,9 @@ TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
   EXPECT_EQ(made.comparison.reason,
-            "drag: no other is better; stribeck has a smaller BIC, but residuals that are not noise, and no better "
-            "prediction of the last 40 %, or none; but the residuals are more than noise (lag-1 correlation 0), so the "
-            "model still lacks something");
+            "drag: no other is better; stribeck has a smaller BIC, but residuals that are more than noise, and a "
+            "prediction of the last 40 % that is missing or not better; but the residuals are more than noise (lag-1 "
+            "correlation 0), so the model still lacks something");
   made.comparison.rows[1].forward.rms = 0.6;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");
@@ -121,7 +121,7 @@ TEST(Recommend, ReportsADifferentChoiceByAicc) {
   EXPECT_THAT(made.comparison.reason, HasSubstr("; AICc would choose drag"));
 }
 
-// Next to a refuted law, the weights of the others may all be 0 in double precision.
+// If a refuted law has by far the smallest AICc, Akaike's weights of all other laws may be 0 in double precision.
 TEST(Recommend, UsesAiccOnlyAmongLawsNotRefuted) {
   Compared made = Make({{"viscous", 4000, 1}, {"coulomb", 3000, 1}, {"drag", 50, 1}});
   for (ComparisonRow& row : made.comparison.rows) {

@@ -32,7 +32,7 @@ TEST(NumberText, IsTheShortestTextThatReadsBackExactly) {
   }
 }
 
-TEST(Quoted, KeepsPrintableTextAndEscapesTheRest) {
+TEST(Quoted, KeepsPrintableTextAndEscapesOtherBytes) {
   EXPECT_EQ(Quoted(""), R"("")");
   EXPECT_EQ(Quoted("angle_deg"), R"("angle_deg")");
   EXPECT_EQ(Quoted("θ [°]"), R"("θ [°]")");

@@ -21,7 +21,7 @@ TEST(ExitCode, MatchesTheDocumentedTable) {
   EXPECT_EQ(ExitCode(StatusCode::kTryAgain), 75);     // EX_TEMPFAIL
 }
 
-TEST(ExitCode, IsThatOfABugForAnUnknownCode) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
+TEST(ExitCode, IsTheExitCodeOfABugForAnUnknownStatus) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
 
 TEST(Error, ConvertsToTheErrorOfAnyResult) {
   const Result<int> number = Error(StatusCode::kDataLoss, "swing.csv:3: no number");

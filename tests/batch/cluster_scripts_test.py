@@ -123,7 +123,7 @@ class SubmissionTest(ScriptCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done.stdout
 
-    def test_array_of_what_is_missing_and_a_merge_after_it(self):
+    def test_submits_an_array_of_missing_shards_and_then_a_merge(self):
         self.make("sbatch", 'echo "7;cluster"')
         printed = self.submit("--dir", "out", "--cpus", "3", "--time", "1-0", "--", "--checkpoint_s", "9")
         self.assertEqual(printed, f"7 fits shards 0-2,5 of 8\n7 merges them into {self.folder}/all.sqlite\n")
@@ -139,22 +139,22 @@ class SubmissionTest(ScriptCase):
         self.assertEqual(merge[at + 1:], [str(SCRIPTS), "merge", f"{self.folder}/out", "8", str(self.tool), "--store",
                                           f"{self.folder}/all.sqlite"])
 
-    def test_only_the_merge_when_no_shard_is_missing(self):
+    def test_submits_only_the_merge_if_no_shard_is_missing(self):
         self.make("sbatch", "echo 8")
         self.assertEqual(self.submit(MISSING=""), f"8 merges them into {self.folder}/all.sqlite\n")
         (merge,) = self.called("sbatch")
         self.assertFalse([flag for flag in merge if flag.startswith(("--array", "--dependency"))])
 
-    def test_shards_of_another_request_are_only_where_tasks_begin(self):
+    def test_shards_of_another_request_become_checkpoints(self):
         self.make("sbatch", "echo 8")
         folder = self.folder / "out"
-        shard, begun = folder / "shard-3.sqlite", folder / "shard-3.sqlite.part"
+        shard, checkpoint = folder / "shard-3.sqlite", folder / "shard-3.sqlite.part"
 
         def check(is_kept, *flags, **environment):
             self.environment |= environment
             self.submit("--dir", "out", *flags)
-            self.assertEqual((shard.exists(), begun.exists()), (is_kept, not is_kept))
-            begun.unlink(missing_ok=True)
+            self.assertEqual((shard.exists(), checkpoint.exists()), (is_kept, not is_kept))
+            checkpoint.unlink(missing_ok=True)
             shard.touch()
 
         folder.mkdir()
@@ -179,7 +179,7 @@ class SubmissionTest(ScriptCase):
         self.assertEqual(done.stderr, "sbatch: error: invalid partition\n"
                          "refit_slurm: sbatch has not taken the job refit_shards; see above.\n")
 
-    def test_the_tool_beside_the_scripts_or_on_the_path(self):
+    def test_finds_the_tool_next_to_the_scripts_or_on_the_path(self):
         self.make("sbatch", "echo 8")
         del self.environment["REFIT_PENDULUMS"]
         for scripts, tool in (("share/pendulum", "bin"), ("share", "bin"), ("a/b", "a/b/programs")):
@@ -198,7 +198,7 @@ class SubmissionTest(ScriptCase):
 
 
 class TaskTest(ScriptCase):
-    """refit_task in the environment of Slurm, with a squeue and a scontrol that answer from environment variables."""
+    """Tests refit_task in the environment of Slurm. squeue prints $STATE; scontrol terminates the task as a requeue does."""
 
     def setUp(self):
         super().setUp()
@@ -217,21 +217,21 @@ class TaskTest(ScriptCase):
         self.assertEqual(self.called("refit_pendulums"),
                          [["merge", "--shard_dir", str(self.folder), "--shard_count", "8", "--store", "all.sqlite"]])
 
-    def test_scratch_is_another_disk(self):
+    def test_uses_a_scratch_folder_only_on_another_disk(self):
         self.run_script(*self.arguments, TMPDIR=str(self.programs))
         self.run_script(*self.arguments, TMPDIR="/nowhere")
         self.assertEqual(self.called("refit_pendulums"), [self.shard, self.shard])
         other = "/dev/shm"
         if not os.access(other, os.W_OK) or os.stat(other).st_dev == os.stat(self.folder).st_dev:
-            self.skipTest(f"{other} is no other disk here")
+            self.skipTest(f"{other} is not another disk")
         self.run_script(*self.arguments, TMPDIR=other)
         self.assertEqual(self.called("refit_pendulums")[2], [*self.shard, "--scratch", other])
 
-    def test_another_failure_is_final(self):
+    def test_does_not_requeue_after_another_exit_code(self):
         self.assertEqual(self.run_script(*self.arguments, CODE="5").returncode, 5)
         self.assertEqual(self.called("scontrol"), [])
 
-    def test_again_three_times_and_only_while_it_runs(self):
+    def test_requeues_a_running_task_at_most_three_times(self):
         for count, state, again in (("0", "RUNNING", True), ("2", "RUNNING", True), ("3", "RUNNING", False),
                                     ("0", "COMPLETING", False), ("0", "", False)):
             self.calls.unlink(missing_ok=True)
@@ -239,11 +239,11 @@ class TaskTest(ScriptCase):
             self.assertEqual(self.called("scontrol"), [["requeue", "7_3"]] if again else [])
             self.assertEqual(done.returncode, -signal.SIGTERM if again else 75)
 
-    def test_a_requeue_that_fails_leaves_the_code(self):
+    def test_returns_75_if_the_requeue_fails(self):
         self.make("scontrol", "exit 1")
         self.assertEqual(self.run_script(*self.arguments, CODE="75").returncode, 75)
 
-    def test_a_signal_is_handed_on_and_waited_for(self):
+    def test_passes_a_signal_to_the_tool_and_waits_for_it(self):
         task = subprocess.Popen(**self.command(*self.arguments, STOPPABLE="1"))
         self.addCleanup(task.communicate)
         self.addCleanup(task.kill)

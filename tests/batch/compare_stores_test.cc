@@ -175,7 +175,7 @@ TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
   EXPECT_EQ(comparison.status_changes[0].id, "b");
 }
 
-TEST_F(CompareStoresTest, CountsFitsThatOneOfThemHas) {
+TEST_F(CompareStoresTest, CountsFitsInOnlyOneOfTheStores) {
   const StoreComparison comparison =
       Compare({{"a", 1.0, 0.1}, {"b", 1.0, 0.1}}, {{"b", 1.0, 0.1}, {"c", 1.0, 0.1}, {"d", 1.0, 0.1}});
   EXPECT_EQ(comparison.fits, 1);

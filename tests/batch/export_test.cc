@@ -110,7 +110,7 @@ std::vector<Row> RowsOf(Store& store) {
     EXPECT_EQ(rows[i].size(), rows[0].size());
     named.emplace_back();
     for (std::size_t k = 0; k < std::min(rows[i].size(), rows[0].size()); ++k) {
-      EXPECT_TRUE(named.back().emplace(rows[0][k], rows[i][k]).second) << rows[0][k] << " stands twice";
+      EXPECT_TRUE(named.back().emplace(rows[0][k], rows[i][k]).second) << rows[0][k] << " occurs twice";
     }
   }
   return named;
@@ -211,7 +211,7 @@ TEST_F(ExportTest, WritesNumbersThatReadBackExactly) {
   }
   EXPECT_EQ(rows[0].at("model"), "coulomb");
   EXPECT_EQ(rows[0].at("recommended") == "1", RefittedOutcome().result["comparison"]["recommended"] == "coulomb");
-  EXPECT_EQ(rows[1].at("coulomb"), "");  // model viscous does not have it
+  EXPECT_EQ(rows[1].at("coulomb"), "");  // model viscous has no such parameter
   EXPECT_EQ(rows[1].at("coulomb_unit"), "");
 }
 
@@ -228,7 +228,7 @@ TEST_F(ExportTest, WritesFailedRunsToo) {
   }
 }
 
-TEST_F(ExportTest, WritesAHeaderWithoutRefittedRuns) {
+TEST_F(ExportTest, WritesOnlyAHeaderWithoutRefittedRuns) {
   Store store = Make({EntryOf("a", {{"x", "1"}})});
   EXPECT_THAT(RowsOf(store), IsEmpty());
   EXPECT_THAT(Rfc4180Rows(CsvOf(store)), ElementsAre(Contains("x")));
@@ -280,7 +280,7 @@ TEST_F(ExportTest, NamesRigAndCalibrationOfEachRun) {
   EXPECT_EQ(rows[2].at("rig") + rows[2].at("calibration"), "");
 }
 
-TEST_F(ExportTest, WritesIdsInAnyScript) {
+TEST_F(ExportTest, WritesIdsWithAnyCharacters) {
   const std::vector<std::string> ids = {"a,\"b\"",    "line\nline", "cr\r\nlf", " blank ", "\ttab",
                                         "semi;colon", "π 振り子",   "\"",       ",",       "\"\"",
                                         "\\",         "'",          "=1+1",     "#"};

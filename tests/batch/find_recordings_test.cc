@@ -71,7 +71,7 @@ TEST_F(FindRecordingsTest, IgnoresATrailingSlash) {
   EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
 }
 
-TEST_F(FindRecordingsTest, KeepsTheGivenFormOfTheFolder) {
+TEST_F(FindRecordingsTest, ReturnsPathsWithTheFolderAsGiven) {
   EXPECT_THAT(FindRecordings("datasets/runs_?.csv").value(),
               ElementsAre("datasets/runs_1.csv", "datasets/runs_2.csv", "datasets/runs_3.csv", "datasets/runs_4.csv"));
   EXPECT_THAT(FindRecordings("datasets").value(), Contains("datasets/coulomb.csv"));
@@ -106,7 +106,7 @@ TEST_F(FindRecordingsTest, MatchesAnyNumberOfFoldersWithTwoAsterisks) {
   EXPECT_THAT(Find("a/b/**"), ElementsAre("a/b/c/p1.csv", "a/b/p1.csv", "a/b/q.txt"));
 }
 
-TEST_F(FindRecordingsTest, MatchesPatternLettersLiterally) {
+TEST_F(FindRecordingsTest, DistinguishesUpperAndLowerCaseInPatterns) {
   Make({"A.CSV", "c.csv"});
   EXPECT_THAT(Find("*.csv"), ElementsAre("c.csv"));
 }
@@ -155,7 +155,7 @@ TEST_F(FindRecordingsTest, FollowsANamedLinkToAFolder) {
   EXPECT_THAT(Find("link/*.csv"), ElementsAre("link/y.csv"));
 }
 
-TEST_F(FindRecordingsTest, NamesWhatIsNotFound) {
+TEST_F(FindRecordingsTest, ReportsPathsAndPatternsThatAreNotFound) {
   Make({"a/b.txt"});
   const std::string folder = folder_.string();
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
@@ -179,8 +179,9 @@ TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
   }
   for (const char* pattern : {"locked", "", "*/*.csv", "**/*.csv"}) {
     EXPECT_EQ(FaultOf(pattern).code, StatusCode::kDataLoss) << pattern;
-    EXPECT_EQ(FaultOf(pattern).message,
-              (folder_ / "locked").string() + ": this folder cannot be read; check its permissions, or name another");
+    EXPECT_EQ(
+        FaultOf(pattern).message,
+        (folder_ / "locked").string() + ": this folder cannot be read; check its permissions, or name another folder");
   }
   EXPECT_THAT(Find("a/*.csv"), ElementsAre("a/x.csv"));
   if (self == 0) {

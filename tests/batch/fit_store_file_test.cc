@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The store of a service as a file: on the disk when it says so, beside others, and where there is no room.
+// Tests of FitStore: durability, other processes, older stores and a full disk.
 #include <atomic>
 #include <csignal>
 #include <cstddef>
@@ -63,7 +63,7 @@ class FitStoreFileTest : public fit_orders::FitStoreFolder {
 
 // ---- On the disk ---------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreFileTest, IsDurableWhenItReturns) {
+TEST_F(FitStoreFileTest, StoresEachChangeOnTheDiskBeforeReturning) {
   Add("a");
   EXPECT_THAT(IdsInACopy(), ElementsAre("a"));
   ASSERT_TRUE(Store().AddBatch("batch", kCreated, OrdersOf({"b", "c"}), std::nullopt));
@@ -103,7 +103,7 @@ TEST_F(FitStoreFileTest, KeepsConcurrentAdditions) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM fits"), kThreads * kRuns);
 }
 
-TEST_F(FitStoreFileTest, RefusesOnlyTheFaultyOneOfManyWrites) {
+TEST_F(FitStoreFileTest, RefusesOnlyTheFaultyOnesOfConcurrentWrites) {
   constexpr int kThreads = 8, kRuns = 20;
   FitStore& store = Store();
   Add("taken");
@@ -143,13 +143,13 @@ TEST_F(FitStoreFileTest, IsNotBlockedByReaders) {
   ASSERT_TRUE(rows.executeStep());
   Add("b");  // while the read is in progress
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs"), 2);
-  EXPECT_FALSE(rows.executeStep());  // it sees the state at its start
+  EXPECT_FALSE(rows.executeStep());  // the reader sees the state at the start of its query
   rows.reset();
   EXPECT_EQ(pendulum::Store::Open(path_, pendulum::Store::Mode::kRead)->Count()->runs, 2);
 }
 
 // Another process keeps the file open while the service ends and restarts.
-TEST_F(FitStoreFileTest, OpensBesideALongReader) {
+TEST_F(FitStoreFileTest, OpensWhileAnotherProcessReads) {
   Add("a");
   const SQLite::Database reader(path_, SQLite::OPEN_READONLY);
   SQLite::Statement rows(reader, "SELECT id FROM runs");
@@ -174,7 +174,7 @@ TEST_F(FitStoreFileTest, RejectsOtherFiles) {
   const auto store = FitStore::Open(path_);
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(store.error().message, path_ + ": this is not an SQLite file; name another");
+  EXPECT_EQ(store.error().message, path_ + ": this is not an SQLite file; name an SQLite file");
   EXPECT_THAT(folder_.Names(), ElementsAre("fits.sqlite"));
 }
 
@@ -187,7 +187,7 @@ TEST_F(FitStoreFileTest, ReportsDamage) {
   EXPECT_THAT(kept.error().message, StartsWith(path_ + ": the file is damaged ("));
 }
 
-// ---- Older stores, and those of refit_pendulums --------------------------------------------------------------------
+// ---- Older stores, and stores of refit_pendulums -------------------------------------------------------------------
 
 /// A store of the first version with one refitted run.
 void MakeFirstVersion(const std::string& path) {
@@ -209,12 +209,12 @@ TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM quantities WHERE name = 'hysteresis'"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE result = '{\"schema_version\":2,\"reason\":\"x\"}'"), 1);
-  EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the other one was not requested from a service
+  EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the old run was not requested from a service
   EXPECT_EQ(Store().Find("old").error().code, StatusCode::kNotFound);
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);
 }
 
-TEST_F(FitStoreFileTest, ContinuesAfterAManifestRefitIntoTheSameFile) {
+TEST_F(FitStoreFileTest, KeepsItsRunsIfAManifestIsRefittedIntoTheSameFile) {
   ASSERT_TRUE(Store().AddBatch("batch", kCreated, OrdersOf({"a", "b"}), std::nullopt));
   Close();
   {
@@ -232,7 +232,7 @@ TEST_F(FitStoreFileTest, ContinuesAfterAManifestRefitIntoTheSameFile) {
 
 // ---- Full disk -----------------------------------------------------------------------------------------------------
 
-/// Limits the files of this process to so many bytes, like a full disk.
+/// Limits each file that this process writes to `bytes` bytes. Writing fails as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {
@@ -322,7 +322,7 @@ TEST_F(FitStoreFileTest, KeepsEveryRunStoredByManyThreadsOnAFullDisk) {
       EXPECT_EQ(NumberOutside("SELECT count(*) FROM results WHERE id = '" + id + "'"), 1) << id;
     }
   }
-  EXPECT_LT(count, 1 + kThreads * kRuns);  // it was full at times
+  EXPECT_LT(count, 1 + kThreads * kRuns);  // some writes failed
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM requests"), count);
   Add("last");
 }

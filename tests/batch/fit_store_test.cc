@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a service keeps: adding, finding, listing, deleting, batches, answers.
+// Tests of FitStore: adding, finding, listing and deleting runs; batches; answers to repeated requests.
 #include "pendulum/batch/fit_store.h"
 
 #include <array>
@@ -121,7 +121,7 @@ TEST_F(FitStoreTest, ReportsUnknownIds) {
   EXPECT_THAT(Store().RunsOf("a").value(), IsEmpty());
 }
 
-TEST_F(FitStoreTest, AcceptsAnIdOnce) {
+TEST_F(FitStoreTest, AcceptsAnIdOnlyOnce) {
   Add("a");
   const auto again = Store().Add(OrderOf("a"), OutcomeOf({}), std::nullopt);
   ASSERT_FALSE(again);
@@ -172,7 +172,7 @@ TEST_F(FitStoreTest, ListsAdjacentPages) {
   EXPECT_THAT(Listed(filter), IsEmpty());
 }
 
-TEST_F(FitStoreTest, FindsNamesByPart) {
+TEST_F(FitStoreTest, FindsRunsByAPartOfTheirName) {
   FitOrder order = OrderOf("a");
   order.files.data.name = "Run_07 100%.csv";
   Add(order);
@@ -182,7 +182,7 @@ TEST_F(FitStoreTest, FindsNamesByPart) {
     filter.name = name;
     EXPECT_THAT(Listed(filter), ElementsAre("a")) << name;
   }
-  for (const char* name : {"_", "%", "un_"}) {  // wildcards have no effect, and names must match completely
+  for (const char* name : {"_", "%", "un_"}) {  // _ and % are not wildcards
     filter.name = name;
     EXPECT_THAT(Listed(filter), ElementsAre("a")) << name;
   }
@@ -190,7 +190,7 @@ TEST_F(FitStoreTest, FindsNamesByPart) {
   EXPECT_THAT(Listed(filter), IsEmpty());
 }
 
-TEST_F(FitStoreTest, FindsModelsAndStatesOfOneFit) {
+TEST_F(FitStoreTest, FiltersByModelAndStatusOfTheSameFit) {
   Add(OrderOf("a"), OutcomeOf({FitOf("viscous", 1), FitOf("coulomb", 1, "not_converged")}));
   Add(OrderOf("b"), OutcomeOf({FitOf("drag", 1)}));
   Add(OrderOf("c"), FailureOf("no swing", 5));
@@ -208,7 +208,7 @@ TEST_F(FitStoreTest, FindsModelsAndStatesOfOneFit) {
   EXPECT_THAT(listed("linear", ""), IsEmpty());
 }
 
-TEST_F(FitStoreTest, FindsRunsOfABatchAndSinceATime) {
+TEST_F(FitStoreTest, FiltersByBatchAndTime) {
   Add(OrderOf("a", "2026-11-22T23:59:59Z"));
   Add(OrderOf("b", "2026-11-23T00:00:00Z"));
   AddBatch("night", {"c"});
@@ -228,7 +228,7 @@ TEST_F(FitStoreTest, FindsRunsOfABatchAndSinceATime) {
 
 // ---- Deleting ------------------------------------------------------------------------------------------------------
 
-TEST_F(FitStoreTest, StoresAFileOnceWhileARunUsesIt) {
+TEST_F(FitStoreTest, StoresEqualFilesOnceWhileARunUsesThem) {
   FitOrder one = OrderOf("a"), other = OrderOf("b"), third = OrderOf("c");
   one.files.rig = other.files.rig = Share({"rig", "{}"});
   other.files.data.bytes = one.files.data.bytes;
@@ -293,7 +293,7 @@ TEST_F(FitStoreTest, ListsBatchesLatestFirstInPages) {
   EXPECT_EQ(Store().ListBatches(1, std::nullopt)->front().runs, 2);
 }
 
-TEST_F(FitStoreTest, DeletesOneBatchWithItsRunsOnly) {
+TEST_F(FitStoreTest, DeletesABatchWithOnlyItsRuns) {
   Add("alone");
   AddBatch("first", {"a", "b"});
   AddBatch("second", {"c"});
@@ -307,7 +307,7 @@ TEST_F(FitStoreTest, DeletesOneBatchWithItsRunsOnly) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM files"), 2);
 }
 
-TEST_F(FitStoreTest, KeepsABatchWhoseRunsWereDeletedSingly) {
+TEST_F(FitStoreTest, KeepsABatchWhoseRunsWereDeletedOneByOne) {
   AddBatch("first", {"a", "b"});
   ASSERT_TRUE(Store().DeleteFit("a") && Store().DeleteFit("b"));
   EXPECT_EQ(Store().FindBatch("first")->runs, 0);

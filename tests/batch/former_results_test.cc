@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A text that equals a former key or code, as a path or a message may, is no name and stays.
+// A path or a message that equals a former key or code is not a name and stays unchanged.
 TEST(WithCurrentNames, RenamesKeysWarningCodesAndParametersOfVersion1) {
   const std::string former = R"({
     "schema_version": 1,
@@ -40,7 +40,7 @@ TEST(WithCurrentNames, RenamesKeysWarningCodesAndParametersOfVersion1) {
   EXPECT_EQ(Json::parse(WithCurrentNames(former)), Json::parse(current));
 }
 
-TEST(WithCurrentNames, LeavesOtherTextsAsTheyAre) {
+TEST(WithCurrentNames, DoesNotChangeOtherTexts) {
   for (const std::string text : {"", "{}", "[1]", "no JSON", R"({"schema_version": 2, "why": 1})"}) {
     EXPECT_EQ(WithCurrentNames(text), text);
   }

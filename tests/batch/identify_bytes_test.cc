@@ -27,10 +27,10 @@ std::string FileText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A short swing in counts of the sensor with the calibration kCalibration.
 constexpr const char* kCalibration =
     R"({"input": "counts", "angle_unit": "deg", "coefficients": [-50, 0.2], "input_range": [0, 1023]})";
 
+/// A short swing in counts of a sensor with the calibration kCalibration.
 std::string CountsText() {
   SyntheticOptions truth = small_batch::Truth(1);
   const auto recording = SimulateRecording(truth);
@@ -49,7 +49,7 @@ Status FaultOf(const IdentifyOptions& options, RunFiles files) {
   return run ? Status{StatusCode::kInternal, ""} : run.error();
 }
 
-// The comparison fits the files as fit_pendulum does, which reads them itself.
+// The expected result comes from the functions with which fit_pendulum reads and fits files.
 TEST(IdentifyBytes, EqualsTheFitOfTheFiles) {
   const IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   const std::string data = "datasets/textbook_rig.csv", rig = "datasets/textbook_rig.json";

@@ -41,8 +41,8 @@ void ExpectStopped(const Result<Identification>& run) {
   EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
 }
 
-/// Stops a run at `count` instants spread evenly over its duration. The result must be that of a complete run, byte for
-/// byte, or an error.
+/// Stops a run at `count` instants spread evenly over its duration. The result must equal the result of a complete run
+/// byte for byte, or be an error.
 void StopEverywhere(IdentifyOptions options, const PreparedRecording& swings, int count) {
   const Clock::time_point begin = Clock::now();
   const std::string whole = ToJsonText(Must(FitFirst(options, swings)));
@@ -68,7 +68,7 @@ TEST(StoppedFitRuns, AreCompleteOrMissingWithSeveralModels) {
   StopEverywhere(options, Read("datasets/coulomb.csv", options), 6);
 }
 
-TEST(StoppedFitRuns, AreCompleteOrMissingOnTheWayToRest) {
+TEST(StoppedFitRuns, AreCompleteOrMissingForARunToStandstill) {
   const IdentifyOptions options = OptionsFor({"coulomb"});
   StopEverywhere(options, Read("datasets/to_rest.csv", options), 6);
 }
@@ -81,14 +81,14 @@ TEST(StoppedFitRuns, AreCompleteOrMissingWithAnyIntervals) {
   }
 }
 
-TEST(StoppedFitRuns, AreCompleteOrMissingOnCoarseLevels) {
+TEST(StoppedFitRuns, AreCompleteOrMissingWithCoarseQuantization) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.resolution = kCount;
   const IdentifyOptions options = OptionsFor({"coulomb"});
   StopEverywhere(options, Must(PrepareRecording(Must(SimulateRecording(run)), {}, std::nullopt)), 6);
 }
 
-TEST(StoppedFitRuns, AreErrorsFromTheStart) {
+TEST(StoppedFitRuns, AreErrorsIfStoppedBeforeTheStart) {
   std::stop_source stop;
   stop.request_stop();
   for (const bool closed_form_only : {false, true}) {
@@ -122,7 +122,7 @@ TEST(StoppedFitRuns, NameEachOfSeveralSwings) {
   }
 }
 
-TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
+TEST(StoppedFitRuns, AreErrorsIfStoppedDuringABootstrap) {
   IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   options.fit.interval = IntervalMethod::kBootstrap;
   const PreparedRecording swings = Read("datasets/coulomb.csv", options);
@@ -138,7 +138,7 @@ TEST(StoppedFitRuns, AreErrorsWhenABootstrapReportsItsProgress) {
   }
 }
 
-/// 2000 readings of a pendulum of 0.7 Hz, one every 50.3 s: each trial trajectory has a hundred thousand periods.
+/// 2000 readings of a pendulum of 0.7 Hz, one every 50.3 s: each trial trajectory has 70 000 periods.
 Recording OneReadingAMinute() {
   SyntheticOptions run;
   run.model = Must(FindMotionModel("viscous"));
@@ -174,7 +174,7 @@ TEST(IdentifyEachThatMayBeStopped, GivesTheSameResultIfNotStopped) {
   }
 }
 
-TEST(IdentifyEachThatMayBeStopped, HaveTheSameProvenance) {
+TEST(IdentifyEachThatMayBeStopped, HasTheSameProvenance) {
   IdentifyOptions options = OptionsFor({"coulomb"});
   const std::string never = OptionsJson(options);
   std::stop_source stop;

@@ -8,7 +8,7 @@
 
 #include "pendulum/batch/store.h"
 
-/// Outcomes of runs without a fit.
+/// Outcomes of runs, made by hand without fitting.
 namespace pendulum::made_outcomes {
 
 using Json = nlohmann::ordered_json;

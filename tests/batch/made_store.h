@@ -30,8 +30,8 @@ inline std::string PlainManifest(std::size_t runs) {
 /// A store with runs made by hand.
 class MadeStoreTest : public testing::Test {
  protected:
-  /// Begins a batch of that manifest and stores for each run the outcome of make(position); std::nullopt: the run stays
-  /// pending.
+  /// Begins a batch of that manifest. Stores the outcome make(position) of each run; if it is std::nullopt, the run
+  /// stays pending.
   Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
     folder_.Write("runs.csv", manifest);
     const auto source = OpenSource(folder_ / "runs.csv");

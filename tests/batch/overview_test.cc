@@ -53,7 +53,7 @@ TEST_F(OverviewTest, GroupsFailuresByReasonWithoutNamesAndNumbers) {
   EXPECT_THAT(failures[1]["examples"], ElementsAre("run12.csv", "run13.csv"));
 }
 
-TEST_F(OverviewTest, KeepsTheReasonIfAllFailAlike) {
+TEST_F(OverviewTest, KeepsNumbersOfAReasonThatAllRunsShare) {
   Store store = StoreOf(PlainManifest(2), [](std::size_t i) {
     return FailureOf("run" + std::to_string(i) + ".csv: the window [100, 200] s leaves 0 samples", 5);
   });

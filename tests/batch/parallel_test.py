@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refit_parallel with GNU parallel, tasks that die and one that is stopped: parallel_test.py PATH_OF_refit_pendulums.
+"""Tests refit_parallel with GNU parallel, a crashed task and a stop: parallel_test.py PATH_OF_refit_pendulums.
 
 simulate_pendulum is taken from the same folder. Exit code 77 if GNU parallel is not installed.
 """
@@ -19,7 +19,7 @@ import refit_case
 
 SHARDS = 4
 
-# Like ssh it passes its command to a shell of the host, which is this machine.
+# Replaces ssh: it passes the command to a shell of this machine.
 FAKE_SSH = """#!/bin/bash
 while [[ $1 == -* ]]; do shift; done
 echo "$1" >> "$SSH_LOG"
@@ -49,7 +49,7 @@ class ParallelTest(refit_case.RefitCase):
         self.addCleanup(process.terminate)
         return process
 
-    def test_a_crashed_task_is_tried_again(self):
+    def test_repeats_a_crashed_task(self):
         alone = self.start_of_one_process()
         run = self.start()
         _, work = self.hold_shard()
@@ -58,7 +58,7 @@ class ParallelTest(refit_case.RefitCase):
         self.check_store(SHARDS)
         self.assertEqual(refit_case.rows(self.store), refit_case.rows(self.store_of_one_process(alone)))
 
-    def test_what_is_stopped_goes_on_when_asked_again(self):
+    def test_continues_after_a_stop(self):
         run = self.start()
         shard, work = self.hold_shard()
         processes.kill(work, signal.SIGCONT)  # a stopped process would get SIGHUP when its shell ends
@@ -70,7 +70,7 @@ class ParallelTest(refit_case.RefitCase):
         self.refit()
         self.check_store(SHARDS)
 
-    def test_only_the_shards_that_are_missing_are_fitted(self):
+    def test_fits_only_missing_shards(self):
         self.refit()
         before = refit_case.rows(self.store)
         (self.shards / "shard-2.sqlite").unlink()
@@ -80,12 +80,12 @@ class ParallelTest(refit_case.RefitCase):
         self.assertEqual(refit_case.rows(self.store), before)
         self.assertNotIn("fits", self.refit())
 
-    def test_what_always_fails_ends_without_a_store(self):
+    def test_makes_no_store_if_every_task_fails(self):
         self.assertIn("refit_parallel: shards 0-3 of 4 are missing; ", self.refit("--models", "nonsense", code=1))
         self.assertIn("nonsense", self.log(0))
         self.assertFalse(self.store.exists())
 
-    def test_hosts_do_the_same(self):
+    def test_fits_on_other_hosts(self):
         # GNU parallel uses this path as a part of a command.
         ssh = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="ssh-", dir="/tmp"))) / "ssh"
         ssh.write_text(FAKE_SSH, encoding="utf-8")

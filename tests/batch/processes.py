@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds processes with /proc, and stops them so that a test cannot be too late."""
+"""Finds processes through /proc. Stops and continues them, so that a test can act at a defined point of their work."""
 
 import contextlib
 import os
@@ -43,7 +43,7 @@ def kill(pids, number=signal.SIGKILL):
             os.kill(pid, number)
 
 
-def is_told(pid, number):
+def has_signal(pid, number):
     """Whether the signal is pending for the stopped process, or the process has ended."""
     lines = read(pid, "status").decode().splitlines()
     waiting = [int(line.split()[1], 16) for line in lines if line.startswith(("SigPnd:", "ShdPnd:"))]
@@ -58,10 +58,10 @@ def wait_until(what, condition, seconds):
         if result:
             return result
         time.sleep(0.05)
-    raise TimeoutError(f"after {seconds} s still not: {what}")
+    raise TimeoutError(f"after {seconds} s this is still not true: {what}")
 
 
-def release_when_told(pids, number=signal.SIGTERM):
+def continue_when_signalled(pids, number=signal.SIGTERM):
     """Continues stopped processes when the signal is pending for all of them."""
-    wait_until(f"{pids} are told", lambda: all(is_told(pid, number) for pid in pids), 20)
+    wait_until(f"the signal is pending for {pids}", lambda: all(has_signal(pid, number) for pid in pids), 20)
     kill(pids, signal.SIGCONT)

@@ -112,15 +112,15 @@ TEST(OptionsJson, DependsOnEveryOption) {
   for (const Change& change : changes) {
     const std::string json = JsonAfter(change);
     const auto [other, is_new] = known.emplace(json, change.name);
-    EXPECT_TRUE(is_new) << change.name << " is as " << other->second << ": " << json;
+    EXPECT_TRUE(is_new) << change.name << " gives the same JSON as " << other->second << ": " << json;
     EXPECT_TRUE(nlohmann::json::parse(json).is_object());
     EXPECT_EQ(json, JsonAfter(change));
   }
 }
 
-// A new member causes a compile error here: add it to the changes above or to the options without effect below. `model`
-// is the first of `models`; rig and calibration are hashed separately; users cannot set `start_values` and
-// `sensor_start`; `shared` is for joint identifications, of which a batch has none.
+// A new member causes a compile error here: add it to the changes above or to the options without effect below. Some
+// members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; users
+// cannot set `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, checks, closed_form_only, shared] = options;
@@ -139,7 +139,7 @@ TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {
   EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](IdentifyOptions& o) { o.read.most_unpacked_bytes = 1; }}));
 }
 
-// Their bytes are hashed separately.
+// The bytes of rig and calibration are hashed separately.
 TEST(OptionsJson, ExcludesRigAndCalibration) {
   const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"rig", [](IdentifyOptions& o) { o.fit.rig = Rig{{1.8, 0}, {}, {}}; }}));

@@ -23,7 +23,7 @@ SKIPPED = 77
 def skip_without(programs):
     """Skips this test if a program is not installed; in continuous integration that is a failure."""
     if programs:
-        print(f"without {', '.join(programs)} there is nothing to test: scripts/install_dependencies --cluster")
+        print(f"this test needs {', '.join(programs)}; install with scripts/install_dependencies --cluster")
         sys.exit(1 if os.environ.get("PENDULUM_CI") == "1" else SKIPPED)
 
 
@@ -124,7 +124,7 @@ class RefitCase(unittest.TestCase):
                 processes.kill(work, signal.SIGCONT)
             return None
 
-        return processes.wait_until("a shard is in work", hold, 20)
+        return processes.wait_until("a shard is being fitted", hold, 20)
 
     def log(self, shard):
         path = self.shards / f"logs/shard-{shard}.log"

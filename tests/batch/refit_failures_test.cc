@@ -124,7 +124,7 @@ TEST_F(RefitTest, DetectsAMissingNamedRig) {
   EXPECT_EQ(ValueOf("SELECT exit_code FROM runs"), "0");
 }
 
-TEST_F(RefitTest, ExplainsAFailedRun) {
+TEST_F(RefitTest, UpdatesTheReasonOfAFailedRun) {
   folder_.Write("runs.csv", "path,id\nnowhere.csv,a\n");
   RefitAll(coulomb_);
   fs::create_directory(folder_ / "nowhere.csv");
@@ -157,7 +157,7 @@ TEST_F(RefitTest, UsesModelsAndWindowOfTheManifest) {
             ResultAlone(of_c, folder_ / "0.csv", std::nullopt, "0.csv"));
 }
 
-// ---- Stopped, ended, counted ---------------------------------------------------------------------------------------
+// ---- Stops, counts and errors --------------------------------------------------------------------------------------
 
 TEST_F(RefitTest, ResumesAfterAStop) {
   WriteBatch(folder_, 6);
@@ -232,7 +232,7 @@ Source Slow(const Source& source, std::chrono::milliseconds delay) {
   return slow;
 }
 
-TEST_F(RefitTest, ReturnsTheErrorOfACheckpoint) {
+TEST_F(RefitTest, ReturnsTheErrorOfTheCommitCallback) {
   WriteBatch(folder_, 4);
   const auto source = OpenSource(folder_ / "runs.csv");
   auto store = Store::Open(store_, Store::Mode::kWrite);

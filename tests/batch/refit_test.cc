@@ -159,7 +159,7 @@ TEST_F(RefitTest, DetectsOneChangedByte) {
   WriteBatch(folder_, 3);
   RefitAll(coulomb_);
   std::string text = folder_.Read("1.csv");
-  text.back() = ' ';  // equivalent to the line break
+  text.back() = ' ';  // a blank in place of the last line break; the values are the same
   folder_.Write("1.csv", text);
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());
@@ -178,7 +178,7 @@ TEST_F(RefitTest, DetectsAChangedRigOrCalibration) {
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
   folder_.Write("calibration.json", std::string(kCalibration) + "\n");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("d"));
-  RefitOptions with_rig = coulomb_;  // for entries that name none
+  RefitOptions with_rig = coulomb_;  // for entries that name no rig
   with_rig.rig = small_batch::kRigText;
   EXPECT_THAT(Refitted(with_rig), ElementsAre("c", "d"));
   EXPECT_THAT(Refitted(with_rig), IsEmpty());

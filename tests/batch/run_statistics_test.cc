@@ -124,7 +124,7 @@ TEST(FindOutliers, FindTheFarthestFirstWithItsDistance) {
 }
 
 // Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and the scale is 1.4826 · 0.5.
-TEST(FindOutliers, UseTheScatterWithoutErrors) {
+TEST(FindOutliers, UseTheScatterIfThereAreNoErrors) {
   const auto outliers = FindOutliers(OneGroup({10, 11, 9, 10.5, 30, 9.5, 10}));
   ASSERT_THAT(outliers, SizeIs(1));
   EXPECT_EQ(outliers[0].run, 4);
@@ -132,7 +132,7 @@ TEST(FindOutliers, UseTheScatterWithoutErrors) {
 }
 
 // st.norm.isf((1 - 0.95 ** (1 / 6)) / 2) = 2.63104 for six runs.
-TEST(FindOutliers, StartAtTheLimitOfSidak) {
+TEST(FindOutliers, ExceedTheLimitOfSidak) {
   for (const auto& [value, count] : {std::pair{2.631, 0}, std::pair{2.632, 1}}) {
     EXPECT_THAT(FindOutliers(OneGroup({-0.2, 0.1, 0, -0.1, value, 0}, 1)), SizeIs(count)) << value;
   }
@@ -153,9 +153,11 @@ TEST(FindOutliers, NeedFiveRuns) {
   EXPECT_THAT(FindOutliers(OneGroup({})), IsEmpty());
 }
 
-TEST(FindOutliers, NeedAScale) { EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty()); }
+TEST(FindOutliers, AreMissingWithoutScatterAndErrors) {
+  EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty());
+}
 
-// ---- Repeat --------------------------------------------------------------------------------------------------------
+// ---- AnalyzeRepeatability ------------------------------------------------------------------------------------------
 
 // Weights 1, 1, 1/4: mean 25.5 / 2.25, chi2 = (4/3)² + (2/3)² + (8/3)² / 4 = 4. With two degrees of freedom p is
 // exp(-chi2 / 2).
@@ -195,7 +197,8 @@ TEST(AnalyzeRepeatability, CombinesGroupsByTheirDegreesOfFreedom) {
   EXPECT_NEAR(repeatability->ScatterRatio(), std::sqrt(8), 1e-9);
 }
 
-/// Number of batches reported as disagreeing; they have `runs` runs of three rigs, and right errors.
+/// Number of batches with a verdict other than kAgrees, although their errors are right. Each of three rigs has `runs`
+/// runs.
 int FalseVerdicts(int batches, std::size_t runs) {
   int verdicts = 0;
   for (int seed = 0; seed < batches; ++seed) {

@@ -97,15 +97,14 @@ TEST(FitTrend, NeedsADegreeOfFreedomAndTwoOrders) {
   EXPECT_FALSE(FitTrend(apart, {}));
 }
 
-TEST(FitTrend, IsMissingWithoutScatter) {
+TEST(FitTrend, FindsNoTrendWithoutScatter) {
   const auto trend = FitTrend(OneGroup({5, 5, 5}), {});
   ASSERT_TRUE(trend);
   EXPECT_EQ(trend->slope, 0);
   EXPECT_EQ(trend->p, 1);
 }
 
-// ---- ParseOrderValue
-// -------------------------------------------------------------------------------------------------------
+// ---- ParseOrderValue -----------------------------------------------------------------------------------------------
 
 TEST(ParseOrderValue, AcceptsNumbers) {
   bool is_date = true;
@@ -137,7 +136,7 @@ TEST(ParseOrderValue, ConvertsDatesToDays) {
   }
 }
 
-TEST(ParseOrderValue, IsNegativeForOtherLaws) {
+TEST(ParseOrderValue, RejectsOtherTexts) {
   for (const char* text : {"", "monday", "12 deg", "nan", "inf", "1,5", "2026-02-30", "2026-13-01", "2026-03", "--",
                            "01.03.2026", "03/01/2026"}) {
     bool is_date = true;

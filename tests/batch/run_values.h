@@ -26,8 +26,8 @@ inline RunValues OneGroup(const std::vector<double>& estimates, double std_error
   return values;
 }
 
-/// `rigs` rigs with distances of at least 5. Each has `runs` normal values with that standard deviation; all quoted
-/// errors are 1.
+/// `rigs` rigs whose mean values are 50 apart. Each rig has `runs` normal values with standard deviation `std_dev`; all
+/// quoted errors are 1.
 inline RunValues NormalRuns(std::size_t rigs, std::size_t runs, double std_dev, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   boost::random::normal_distribution<double> normal(0, std_dev);

@@ -96,7 +96,7 @@ void Damage(const fs::path& store) {
   file << std::string(fs::file_size(store) - end, '\x5a');
 }
 
-TEST_F(ShardsTest, RestartFromACheckpointDamagedFartherBack) {
+TEST_F(ShardsTest, RestartFromACheckpointDamagedAfterItsFirstPages) {
   std::atomic<bool> stop = false;
   RefitOne(0, 1, StoppingAfter(3, stop));
   Damage(out_ / "shard-0.sqlite.part");
@@ -135,8 +135,8 @@ TEST_F(ShardsTest, KeepNoRunsOfAnotherShard) {
   EXPECT_EQ(AllRows(store_), RowsAtOnce());
 }
 
-// --store results.sqlite instead of out/shard-0.sqlite: days of work must not be lost.
-TEST_F(ShardsTest, RemoveNoRunsFromACompleteStore) {
+// A user may give --store results.sqlite instead of out/shard-0.sqlite by mistake. Days of work must not be lost.
+TEST_F(ShardsTest, DoNotReplaceTheStoreOfAWholeBatch) {
   RefitInto(store_, folder_ / "runs.csv", options_);
   const std::vector<std::string> rows = AllRows(store_);
   ShardOptions at = At(0);

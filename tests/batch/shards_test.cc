@@ -49,7 +49,7 @@ TEST(ShardPath, IsThePathOfAShardsStore) {
 
 // ---- Merging -------------------------------------------------------------------------------------------------------
 
-TEST_F(ShardsTest, GiveTheStoreOfASingleRefit) {
+TEST_F(ShardsTest, GiveTheSameStoreAsOneRefit) {
   const std::vector<std::string> at_once = RowsAtOnce();
   for (const std::int64_t count : {1, 2, 3, 9}) {  // with nine shards two are empty
     fs::remove_all(out_);
@@ -198,7 +198,7 @@ TEST_F(ShardsTest, AreRefusedForAnotherVersion) {
   EXPECT_THAT(Refusal(Merge(2)), HasSubstr("shard of another batch"));
 }
 
-TEST_F(ShardsTest, AreRefusedForAnotherNumber) {
+TEST_F(ShardsTest, AreRefusedForAnotherNumberOfShards) {
   AllShards(3);
   EXPECT_THAT(Refusal(Merge(2)), AllOf(HasSubstr("shard-0.sqlite"), HasSubstr("0/3")));
   fs::rename(ShardPath(out_, 0), ShardPath(out_, 2));

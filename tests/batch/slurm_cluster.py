@@ -115,7 +115,7 @@ class SlurmCluster:
 
     def wait_for_end(self, jobs, seconds):
         """Waits until none of the jobs is in the queue; sbatch --wait would poll with growing pauses."""
-        processes.wait_until(f"the end of the jobs {jobs}", lambda: not self._unfinished(jobs), seconds)
+        processes.wait_until(f"the jobs {jobs} have ended", lambda: not self._unfinished(jobs), seconds)
 
     def job(self, name):
         """scontrol's information about a job or a task (12_3), also after its end."""
@@ -123,7 +123,7 @@ class SlurmCluster:
         return dict(word.split("=", 1) for word in words if "=" in word)
 
     def terminate_task(self, name, wait_for_it):
-        """Sends SIGTERM to the shell of a task; wait_for_it() returns when it has arrived.
+        """Sends SIGTERM to the shell of a task; wait_for_it() returns when the signal has arrived.
 
         Slurm 22.05 delivers the signal but asks for a repetition anyway; scancel would then repeat it 5 s later and hit the next
         attempt.
@@ -146,11 +146,11 @@ class SlurmCluster:
         daemon.wait()
 
     def close(self):
-        """Ends jobs, then all slurmd, then slurmctld, then munged; none survives, in any state."""
+        """Ends jobs, then all slurmd, then slurmctld, then munged. Kills daemons that do not end."""
         if "slurmctld" in self.daemons:
             with contextlib.suppress(Exception):
                 self.client("scancel", "--quiet", f"--user={os.getuid()}")
-                processes.wait_until("an empty queue", lambda: not self.queue(), 5)
+                processes.wait_until("the queue is empty", lambda: not self.queue(), 5)
         self._stop(self.nodes)
         for node in self.nodes:
             processes.kill(self._tasks_of(node))

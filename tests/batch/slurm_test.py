@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refit_slurm on a real Slurm of three nodes, one of which fails: slurm_test.py PATH_OF_refit_pendulums.
+"""Tests refit_slurm on a real Slurm of three nodes, one of which fails: slurm_test.py PATH_OF_refit_pendulums.
 
 simulate_pendulum is taken from the same folder. Exit code 77 if Slurm is not installed.
 """
@@ -49,13 +49,13 @@ class SlurmTest(refit_case.RefitCase):
 
         return self.hold_shard(tasks)
 
-    def test_every_fit_once_though_a_node_dies_and_a_task_is_stopped(self):
+    def test_fits_every_run_once_although_a_node_fails_and_a_task_is_stopped(self):
         alone = self.start_of_one_process()
         fits, merge = self.refit()
         (lost, _), (stopped, work) = self.hold_shard_of(fits, "n2"), self.hold_shard_of(fits, "n3")
         self.cluster.kill_node("n2")
         self.assertFalse((self.shards / f"shard-{lost}.sqlite").exists())
-        self.cluster.terminate_task(f"{fits}_{stopped}", lambda: processes.release_when_told(work))
+        self.cluster.terminate_task(f"{fits}_{stopped}", lambda: processes.continue_when_signalled(work))
         sentence = f"refit_task: {fits}_{stopped} was stopped before its end and goes back into the queue"
         self.wait_for_end(fits, merge)
 
@@ -78,11 +78,11 @@ class SlurmTest(refit_case.RefitCase):
 
         self.assertIsNone(self.refit()[0])
 
-    def test_what_is_cancelled_stays_so_and_goes_on_when_asked_again(self):
+    def test_a_cancelled_job_stays_cancelled_until_the_next_request(self):
         fits, merge = self.refit()
         shard, work = self.hold_shard_of(fits, "n1")
         self.cluster.client("scancel", fits)
-        processes.release_when_told(work)
+        processes.continue_when_signalled(work)
         self.wait_for_end(fits, merge)
         self.assertIn("CANCELLED", self.states(fits))
         self.assertEqual(self.cluster.job(merge)["JobState"], "CANCELLED")
@@ -99,4 +99,4 @@ if __name__ == "__main__":
     try:
         unittest.main()
     finally:
-        SlurmTest.doClassCleanups()  # unittest skips it after an interruption
+        SlurmTest.doClassCleanups()  # unittest skips this after an interruption

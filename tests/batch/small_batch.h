@@ -47,7 +47,7 @@ class Folder {
     return text.str();
   }
 
-  /// Sorted names of the files in it with this prefix.
+  /// Sorted names of the files in the folder that begin with `prefix`.
   std::vector<std::string> Names(const std::string& prefix = "") const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {
@@ -76,7 +76,7 @@ inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
   return options;
 }
 
-/// Such a recording as CSV with exact numbers.
+/// A simulated recording as CSV with exact numbers.
 inline std::string RecordingText(const SyntheticOptions& options) {
   const auto recording = SimulateRecording(options);
   if (!recording) {
@@ -106,7 +106,7 @@ inline IdentifyOptions OptionsFor(const std::vector<std::string>& models) {
   return options;
 }
 
-/// Options of a refit with one thread, unless the environment requests all cores.
+/// Options of a refit with one thread and the models in this order.
 inline RefitOptions OptionsWith(const std::vector<std::string>& models) {
   RefitOptions options;
   options.run.models = models;

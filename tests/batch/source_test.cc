@@ -174,7 +174,7 @@ TEST_F(SourceTest, GivesTheSameBytesFromAPackWithoutTheFiles) {
   EXPECT_EQ(packed.read("cal.json").value(), "\"'; DROP TABLE files; --");
 }
 
-TEST_F(SourceTest, ReportsAFilesErrorFromAPack) {
+TEST_F(SourceTest, ReportsTheErrorOfAFileFromAPack) {
   Write("runs.csv", "path\nruns/none.csv\nruns\npipe.csv\n");
   ASSERT_EQ(::mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   const Source source = OpenSource(folder_ / "runs.csv").value();
@@ -292,7 +292,7 @@ TEST_F(SourceTest, RefusesOtherSqliteFiles) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kDataLoss);
   EXPECT_EQ(other.error().message,
-            pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name one that was");
+            pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name a packed file");
 }
 
 TEST_F(SourceTest, RefusesOtherSqliteFilesWithATableOfFiles) {
@@ -301,7 +301,7 @@ TEST_F(SourceTest, RefusesOtherSqliteFilesWithATableOfFiles) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kDataLoss);
   EXPECT_EQ(other.error().message,
-            pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name one that was");
+            pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name a packed file");
 }
 
 TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
@@ -311,7 +311,7 @@ TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, StatusCode::kDataLoss);
   EXPECT_EQ(newer.error().message,
-            pack_.string() + ": it was packed in form 2, and this program knows form 1; pack it again");
+            pack_.string() + ": it was packed in format 2, but this program reads format 1; pack it again");
 }
 
 TEST_F(SourceTest, RefusesATruncatedPack) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The store as a file: what is in it after a process, beside others, and what is none.
+// Tests of Store: durability, several processes, damaged files, and files that are not stores.
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -179,7 +179,7 @@ TEST_F(StoreFileTest, RefusesFoldersAndTexts) {
   std::ofstream(path_) << "path,id\na.csv,1\n";
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
-    EXPECT_EQ(FaultOf(mode).message, path_ + ": this is not an SQLite file; name another");
+    EXPECT_EQ(FaultOf(mode).message, path_ + ": this is not an SQLite file; name an SQLite file");
   }
   EXPECT_EQ(fs::file_size(path_), 16);
 }
@@ -189,7 +189,7 @@ TEST_F(StoreFileTest, RefusesOtherSqliteFiles) {
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message,
-              path_ + ": this is not a result store of refit_pendulums; name one, or a file that does not exist yet");
+              path_ + ": this is not a result store of refit_pendulums; name a result store or a new file");
   }
 }
 

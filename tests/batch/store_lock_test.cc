@@ -81,7 +81,7 @@ TEST_F(StoreLockTest, HasOneOwnerAtATime) {
   EXPECT_TRUE(IsFree());
 }
 
-TEST_F(StoreLockTest, ExcludesOtherProcessesUntilItsOwnIsKilled) {
+TEST_F(StoreLockTest, ExcludesOtherProcessesUntilItsOwnerIsKilled) {
   Holder holder(store_);
   const auto other = StoreLock::Take(store_);
   ASSERT_FALSE(other);
@@ -92,7 +92,7 @@ TEST_F(StoreLockTest, ExcludesOtherProcessesUntilItsOwnIsKilled) {
   EXPECT_FALSE(fs::exists(file_));
 }
 
-TEST_F(StoreLockTest, FollowsAMove) {
+TEST_F(StoreLockTest, StaysLockedWhenMoved) {
   auto lock = StoreLock::Take(store_);
   ASSERT_TRUE(lock);
   {
@@ -108,7 +108,7 @@ TEST_F(StoreLockTest, LocksEachStoreSeparately) {
   EXPECT_TRUE(StoreLock::Take(folder_ / "other.sqlite"));
 }
 
-TEST_F(StoreLockTest, IdentifiesAStoreByAnyName) {
+TEST_F(StoreLockTest, LocksTheSameStoreThroughALink) {
   std::ofstream(store_) << "x";
   fs::create_symlink("results.sqlite", folder_ / "link.sqlite");
   const auto lock = StoreLock::Take(folder_ / "link.sqlite");

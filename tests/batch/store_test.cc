@@ -277,7 +277,7 @@ TEST_F(StoreTest, CountsItsRunsAndFits) {
   EXPECT_EQ(counts.failed, 2);
 }
 
-TEST_F(StoreTest, DescribesItself) {
+TEST_F(StoreTest, StoresTheMetaDataOfItsBatch) {
   const std::string options = R"({"models":["coulomb"]})";
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
   const StoreMeta begun = store.Begin(SourceOfIds({"a"}), std::nullopt, options).value();
@@ -298,7 +298,7 @@ TEST_F(StoreTest, DescribesItself) {
 }
 
 // The reason of a failure names the file, so it is not valid for a file with another name.
-TEST_F(StoreTest, ForgetsAFailureIfTheFileChanged) {
+TEST_F(StoreTest, UpdatesAFailureIfThePathChanged) {
   RefitOptions options;
   options.run.models = {"coulomb"};
   Store store = Store::Open(path_, Store::Mode::kWrite).value();
@@ -335,7 +335,7 @@ TEST_F(StoreTest, NamesAFileInItsResultLikeTheManifest) {
   }
 }
 
-TEST_F(StoreTest, ListsOnlyRunsOfTheBatch) {
+TEST_F(StoreTest, RefusesAnOutcomeOfAnUnknownRun) {
   Store store = Make({"a"});
   const auto put = store.Put("z", RefittedOutcome());
   ASSERT_FALSE(put);

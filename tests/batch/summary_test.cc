@@ -180,7 +180,7 @@ TEST_F(SummaryTest, ExcludesOutliersFromTheTrend) {
   EXPECT_EQ(trend["unit"], nullptr);
   EXPECT_NEAR(trend["slope"].get<double>(), 0.5, 0.001);
   EXPECT_LT(trend["p"].get<double>(), 1e-12);
-  EXPECT_THAT(trend["text"], AllOf(StartsWith("it changes by 0.5"), HasSubstr(" kg m^2 a run (p ")));
+  EXPECT_THAT(trend["text"], AllOf(StartsWith("it changes by 0.5"), HasSubstr(" kg m^2 per run (p ")));
   EXPECT_THAT(trend["points"], SizeIs(20));
   EXPECT_EQ(trend["points_total"], 20);
   EXPECT_EQ(trend["points"][3]["x"], 3);
@@ -226,7 +226,7 @@ TEST_F(SummaryTest, FindsTrendsOverDates) {
   EXPECT_EQ(trend["column"], "date");
   EXPECT_EQ(trend["unit"], "days since 1970-01-01");
   EXPECT_NEAR(trend["slope"].get<double>(), -0.25, 0.002);
-  EXPECT_THAT(trend["text"], HasSubstr(" kg m^2 a day (p "));
+  EXPECT_THAT(trend["text"], HasSubstr(" kg m^2 per day (p "));
   EXPECT_EQ(trend["points"][0]["x"], 20513);  // 2026-03-01
 }
 
@@ -239,7 +239,7 @@ TEST_F(SummaryTest, FindsTrendsOverNumbers) {
   const Json trend = ParameterOf(SummaryOf(store, {"", "temperature"}), "viscous", "inertia")["trend"];
   EXPECT_EQ(trend["unit"], nullptr);
   EXPECT_NEAR(trend["slope"].get<double>(), 0.5, 0.002);
-  EXPECT_THAT(trend["text"], HasSubstr(" for 1 of temperature (p "));
+  EXPECT_THAT(trend["text"], HasSubstr(" per unit of temperature (p "));
 }
 
 TEST_F(SummaryTest, RecognizesDatesIfTheLastRunHasNone) {
@@ -250,7 +250,7 @@ TEST_F(SummaryTest, RecognizesDatesIfTheLastRunHasNone) {
   const Json trend = ParameterOf(SummaryOf(store, {"", "date"}), "viscous", "inertia")["trend"];
   EXPECT_THAT(trend["points"], SizeIs(9));
   EXPECT_EQ(trend["unit"], "days since 1970-01-01");
-  EXPECT_THAT(trend["text"], HasSubstr(" a day (p "));
+  EXPECT_THAT(trend["text"], HasSubstr(" per day (p "));
 }
 
 TEST_F(SummaryTest, ThinsThePointsOfManyRuns) {
@@ -327,7 +327,7 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
             (folder_ / "store.sqlite").string() + ": no run is refitted yet; refit some first");
 }
 
-TEST_F(SummaryTest, GivesTheOverviewWithOrWithoutParameters) {
+TEST_F(SummaryTest, ContainsTheOverview) {
   Store store = StoreOf(PlainManifest(3), [](std::size_t i) {
     return i == 0 ? FailureOf("no swing", 5) : OutcomeOf({FitOf("viscous", 10)});
   });

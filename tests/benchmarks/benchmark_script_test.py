@@ -31,14 +31,14 @@ class RefusalTest(unittest.TestCase):
     def test_folder_is_missing(self):
         self.check_script(["--bin"], 2, "benchmark: --bin is without its folder.")
 
-    def test_nothing_is_built(self):
+    def test_benchmarks_are_not_built(self):
         with tempfile.TemporaryDirectory() as folder:
             self.check_script(["--bin", folder], 1, f"{folder}/pendulum_benchmarks is missing; cmake --preset release")
 
     def test_recording_is_missing(self):
         self.check_python(["/nowhere.csv"], 1, "scipy_users: /nowhere.csv cannot be read: ")
 
-    def test_header_is_another(self):
+    def test_header_is_wrong(self):
         self.check_python([TOP / "datasets/textbook_rig.json"], 1, "has no header time_s,angle_deg, or no samples")
 
     def test_no_repetitions(self):

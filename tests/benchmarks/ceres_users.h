@@ -170,8 +170,9 @@ class UsersResiduals {
   double gravity_torque_;
 };
 
-/// The same with every call inlined, which a typical user does not request. Otherwise g++ 12 stops inlining early. That
-/// costs a sixth more time for a Jacobian in a separate file, and up to three times as much next to other templates.
+/// UsersResiduals with every call inlined, which a typical user does not request. Without it g++ 12 stops inlining
+/// early, which costs a sixth more time for a Jacobian in a separate file, and up to three times as much next to other
+/// templates.
 template <template <typename> typename Swing>
 class FlattenedResiduals : public UsersResiduals<Swing> {
  public:

@@ -140,9 +140,9 @@ class CvodesSwing {
  private:
   static constexpr double kAbsolute = 0.1;  // rad, rad/s: small values
 
-  /// Tolerances of the sensitivities follow from those of the state and the parameters' sizes. Only the state controls
-  /// the steps, as is CVODES' default. Control by the sensitivities too took a third to a half longer, with the same
-  /// solution.
+  /// The tolerances of the sensitivities follow from the tolerances of the state and the parameters' sizes. Only the
+  /// state controls the steps, which is CVODES' default. With control by the sensitivities, too, a solve took a third
+  /// to a half longer and gave the same solution.
   void InitSensitivities() {
     s_.reset(N_VCloneVectorArray(kSensitivities, y_.get()));
     for (int i = 0; i < kSensitivities; ++i) N_VConst(0.0, s_.get()[i]);

@@ -92,7 +92,8 @@ struct Totals {
   typename R::Vector sums[W] = {};
 };
 
-/// Adds the products of columns FIRST .. LAST - 1 with themselves and all later ones, and their sums, in registers.
+/// Adds the products of each column from FIRST to LAST - 1 with itself and all later columns, and the columns' sums, in
+/// registers.
 template <int FIRST, int LAST, typename R, int W>
 PENDULUM_INLINE void AddProducts(const ColumnBlock<W>& block, Totals<R, W>& totals) {
   using Vector = typename R::Vector;

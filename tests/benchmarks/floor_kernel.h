@@ -21,7 +21,7 @@ struct FloorSegment {
   std::array<std::array<double, kFloorColumns>, kFloorMaxOrder + 1> coefficient;
 };
 
-/// N samples each: s, and rad without the zero. They must outlive their users.
+/// Times [s] and values [rad, without the zero] of N samples; the arrays must outlive this object.
 struct FloorSamples {
   const double* time = nullptr;
   const double* value = nullptr;

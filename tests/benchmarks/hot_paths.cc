@@ -42,7 +42,7 @@ void FitAgain(int count, double counts_of_noise, std::optional<NoiseFamily> nois
   }
 }
 
-/// By the name of the benchmark that times the same work.
+/// The work of each hot path, by the name of the benchmark that times it.
 const std::map<std::string, std::function<void(int)>>& HotPaths() {
   static const std::map<std::string, std::function<void(int)>> paths = {
       {"sensitivities/coulomb/release", EvaluateSums},

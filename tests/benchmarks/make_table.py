@@ -7,8 +7,8 @@
 
 --benchmarks is Google Benchmark's output, --scipy that of scipy_users.py. --instructions has a line for each run of
 hot_paths: its name, the number of repetitions, and the instructions of the whole program. A time is the median of the
-repetitions' CPU times, a ratio that of two medians. Its spread is the middle half of the ratios of all pairs of a
-repetition of the one and a repetition of the other, because repetitions run in random order and are not paired. If
+repetitions' CPU times; a ratio is the quotient of two medians. The spread of a ratio is the middle half of the ratios
+of all pairs of repetitions of the two benchmarks, because repetitions run in random order and are not paired. If
 something is missing or failed, the exit code is 1, each failure has a sentence, and the table shows the gap. A ratio
 outside its bounds is not an error.
 """
@@ -33,7 +33,7 @@ Limit = collections.namedtuple("Limit", "what name counter sign bound")
 REFERENCE = "smoothed_rk4"
 TRAJECTORY = (f"{REFERENCE}/trajectory", "floor/trajectory")
 COUNTERS = ("max_error_rad", "max_jacobian_error", "std_errors_from_optimum", "bytes_per_sample", "share_of_cores")
-# Rad: the permitted error in any case, for which this one is below 1e-8.
+# With a permitted error of 5e-7 rad, the error on the reference run is below 1e-8 rad.
 WITHIN_1E8 = "sensitivities/max_trace_error:5e-7"
 SENSITIVITIES = (f"{REFERENCE}/sensitivities", "floor/sensitivities")
 FIT = (f"{REFERENCE}/solve", None)
@@ -44,14 +44,14 @@ LEGEND = pathlib.Path(__file__).with_name("legend.md")  # the recording, the col
 # In the order of the tables; * stands for any number.
 TABLE = [
     Group("One trajectory, 2000 samples",
-          "The sum of the residuals' squares at given parameters; the residuals themselves for those who use Ceres.", [
+          "The sum of the squared residuals at given parameters; for code that uses Ceres, the residuals themselves.", [
         Row("trajectory/coulomb/release", *TRAJECTORY),
         *(Row(f"{solver}/trajectory", *TRAJECTORY) for solver in SOLVERS),
         Row("floor/trajectory", *TRAJECTORY)]),
     Group("One trajectory with sensitivities to 6 parameters, 2000 samples",
-          "What one iteration of a fit needs: this program's sums of products of residuals and derivatives; the "
-          "residuals and their Jacobian for those who use Ceres. `max_trace_error:E` is to be within E rad anywhere, "
-          "`coulomb/release` as near as a fit is unless told otherwise.", [
+          "What one iteration of a fit needs: for this program, the sums of products of residuals and derivatives; for "
+          "code that uses Ceres, the residuals and their Jacobian. `max_trace_error:E` has a trajectory within E rad "
+          "everywhere; `coulomb/release` has the default tolerance of a fit.", [
         Row("sensitivities/coulomb/release", *SENSITIVITIES),
         Row("sensitivities/max_trace_error:*", *SENSITIVITIES),
         *(Row(f"{solver}/sensitivities", *SENSITIVITIES) for solver in SOLVERS),
@@ -59,9 +59,9 @@ TABLE = [
         Row("cvodes/rtol:1e-8/sensitivities", *SENSITIVITIES),
         Row("floor/sensitivities", *SENSITIVITIES)]),
     Group("A fit, 2000 samples",
-          "`fit` is all from raw samples to error bars: the free swing, start values, solve, covariance. The others "
-          "are the solve alone, from what a user would guess of the rig and the plot, or (`from_our_start`) from the "
-          "start values that `fit` finds.", [
+          "`fit` includes all steps from raw samples to error bars: the free swing, start values, solve and covariance. "
+          "The other benchmarks are the solve alone. It begins at values that a user would guess from the rig and the "
+          "plot, or (`from_our_start`) at the start values that `fit` finds.", [
         Row("fit", *FIT),
         *(Row(f"{solver}/{what}", *FIT) for solver in (*SOLVERS, "tiny_solver")
           for what in ("solve", "solve_from_our_start")),
@@ -69,51 +69,53 @@ TABLE = [
         Row("scipy", *FIT),
         Row("lmfit", *FIT)]),
     Group("Noise below a count",
-          "The same fit to the same swing with noise of so many counts, its readings taken as numbers with Gaussian "
-          "noise or (`quantized`) as the levels that the noisy angle was rounded to.", [
+          "The same fit to the same swing with noise of 0.5 or 0.25 counts. The readings are treated as numbers with "
+          "Gaussian noise or (`quantized`) as the levels to which the noisy angle was rounded.", [
         Row(f"fit/counts:{counts}/{family}") for counts in ("0.5", "0.25") for family in ("gaussian", "quantized")]),
-    Group("Parts of a fit, and what follows one",
-          "`parse_csv` reads the file's text, `find_window` finds the free swing, `start_values` is where the solve "
-          "begins, `covariance` what follows it, `json` writes the report, `file_to_json` is all of them and the "
-          "solve. `profile` finds the profile-likelihood intervals of all parameters after a fit, `bootstrap` is a "
-          "fit whose intervals are those of 999 refits, on one thread.", [
+    Group("Parts of a fit, and steps after it",
+          "`parse_csv` reads the file's text, `find_window` finds the free swing, `start_values` computes the start of "
+          "the solve, `covariance` is the step after the solve, and `json` writes the report. `file_to_json` is all of "
+          "these steps and the solve. `profile` finds the profile-likelihood intervals of all parameters after a fit. "
+          "`bootstrap` is a fit with intervals from 999 refits, on one thread.", [
         Row(name) for name in ("parse_csv", "find_window", "start_values", "covariance", "json", "file_to_json",
                                "profile", "bootstrap")]),
     Group("Numbers of samples",
-          "The same 20 s at other rates. `fit_memory` is a fit too; its bytes are the most that the process held in "
-          "memory meanwhile, beyond what it held before.", [
+          "The same 20 s at other rates. `fit_memory` is also a fit; its bytes are the increase of the process's "
+          "resident memory, at its peak during the fit.", [
         *(Row(f"{what}/samples:{size}", None, f"floor/{what}/samples:{size}")
           for what in ("trajectory", "sensitivities") for size in SIZES),
         *(Row(f"fit/samples:{size}") for size in SIZES),
         *(Row(f"floor/{what}/samples:*") for what in ("trajectory", "sensitivities")),
         Row("fit_memory/samples:1000000")]),
     Group("A batch",
-          "`batch/refit` reads, fits and stores 100 files on all cores, after it has made their result JSON one by one on "
-          "one thread; the time is that of both.", [Row("batch/refit")]),
+          "`batch/refit` makes the result JSON of 100 files one by one on one thread, then reads, fits and stores them "
+          "on all cores; the time includes both parts.", [Row("batch/refit")]),
 ]
 
-INLINED = "the same with every call inlined ([[gnu::flatten]])"
+INLINED = "with every call inlined ([[gnu::flatten]])"
 REQUIRED = [
     Ratio("sensitivities: times faster than smoothed_rk4", "smoothed_rk4/sensitivities", WITHIN_1E8, "≥", 5),
-    Ratio(f"sensitivities: {INLINED}", "smoothed_rk4_flattened/sensitivities", WITHIN_1E8),
-    Limit("their largest error [rad]", WITHIN_1E8, "max_error_rad", "≤", 1e-8),
-    Ratio("sensitivities as exact as in a fit: times faster than smoothed_rk4",
+    Ratio(f"sensitivities: times faster than smoothed_rk4 {INLINED}",
+          "smoothed_rk4_flattened/sensitivities", WITHIN_1E8),
+    Limit("sensitivities: largest error of the trajectory [rad]", WITHIN_1E8, "max_error_rad", "≤", 1e-8),
+    Ratio("sensitivities with the tolerance of a fit: times faster than smoothed_rk4",
           "smoothed_rk4/sensitivities", "sensitivities/coulomb/release"),
-    Ratio("sensitivities: times faster than CVODES, rtol 1e-6",
+    Ratio("sensitivities with the tolerance of a fit: times faster than CVODES, rtol 1e-6",
           "cvodes/rtol:1e-6/sensitivities", "sensitivities/coulomb/release", "≥", 50),
     Ratio("fit: times faster than smoothed_rk4's solve", "smoothed_rk4/solve", "fit", "≥", 6, 10),
-    Ratio(f"fit: {INLINED}", "smoothed_rk4_flattened/solve", "fit"),
+    Ratio(f"fit: times faster than smoothed_rk4's solve {INLINED}", "smoothed_rk4_flattened/solve", "fit"),
     Ratio("file to JSON: times faster than SciPy's fit", "scipy", "file_to_json", "≥", 1000),
     Ratio("file to JSON: times faster than lmfit's fit", "lmfit", "file_to_json", "≥", 1000),
-    *(Ratio(f"quantized fit: times as long as the Gaussian one, {counts} counts",
+    *(Ratio(f"quantized fit: time relative to a Gaussian fit, noise of {counts} counts",
             f"fit/counts:{counts}/quantized", f"fit/counts:{counts}/gaussian", "≤", 5, 3)
       for counts in ("0.5", "0.25")),
-    Ratio("one of bootstrap's 999 refits, in fits", "bootstrap", "fit", "≤", 0.5, offset=1, scale=1 / 999),
-    Ratio("a sample's time in a fit of 10^6, in those of 10^5",
+    Ratio("bootstrap: time of one of the 999 refits, relative to a fit",
+          "bootstrap", "fit", "≤", 0.5, offset=1, scale=1 / 999),
+    Ratio("time per sample in a fit of 10^6 samples, relative to a fit of 10^5",
           "fit/samples:1000000", "fit/samples:100000", "≤", 1.25, scale=0.1),
-    Limit("memory of a fit of 10^6 samples [bytes a sample]",
+    Limit("memory of a fit of 10^6 samples [bytes per sample]",
           "fit_memory/samples:1000000", "bytes_per_sample", "<", 200),
-    Limit("a batch's throughput, storing included, over cores times files to JSON on one",
+    Limit("batch: throughput including storage, relative to cores times the throughput of one thread",
           "batch/refit", "share_of_cores", "≥", 0.85),
 ]
 
@@ -287,7 +289,7 @@ def accuracy_text(result):
     if "std_errors_from_optimum" in result:
         parts.append(f"{result['std_errors_from_optimum']:.1e} standard errors from the optimum")
     if "bytes_per_sample" in result:
-        parts.append(f"{number(result['bytes_per_sample'])} bytes a sample")
+        parts.append(f"{number(result['bytes_per_sample'])} bytes per sample")
     if "relative_errors" in result:
         parts.append(f"{max(result['relative_errors'].values()):.0%} from the truth at worst")
     return ", ".join(parts)
@@ -327,15 +329,16 @@ def markdown(results):
         f"{at['cpu']}, {at['cores']} cores, load {at['load_before']} before; {at['compiler']}; {results['date']}; "
         "from the top folder:", "", "```sh", results["command"], "```", "", LEGEND.read_text(),
         "Written by `tests/benchmarks/make_table.py`.", "",
-        "## What is asked for", "",
+        "## Requirements", "",
         "Ratios of medians; in parentheses the middle half of the ratios of all pairs of repetitions. A line without a "
-        "target is for information.", "",
+        "target is for information. `stretch` is a further target beyond the required one.", "",
         "| | target | measured | |", "|---|---|---|---|", *map(requirement_text, results["required"]), ""]
     for group in TABLE:
         lines += group_text(group, results["table"][group.title])
     lines += ["## Instructions", "",
-              "How many machine instructions one more call of what the benchmark of that name times executes, counted "
-              "by valgrind, of the form for AVX2, the widest that it knows: the same on a busy machine.", "", "| | instructions each |", "|---|---|",
+              "Machine instructions of one more call of the code that the benchmark with this name times, counted by "
+              "valgrind. It runs the AVX2 code, because it knows no wider instructions. The number does not depend on "
+              "the load of the machine.", "", "| | instructions each |", "|---|---|",
               *(f"| `{name}` | {f'{count:,.0f}' if count else 'missing'} |"
                 for name, count in results["instructions"].items())]
     return "\n".join(lines) + "\n"

@@ -78,11 +78,11 @@ class RequirementTest(unittest.TestCase):
     def test_speed_and_accuracy_of_sensitivities(self):
         results = self.results(runs(make_table.WITHIN_1E8, [100], max_error_rad=2e-8), runs(THEIRS, [490]))
         self.check(results["sensitivities: times faster than smoothed_rk4"], 4.9, False)
-        self.check(results["their largest error [rad]"], 2e-8, False)
+        self.check(results["sensitivities: largest error of the trajectory [rad]"], 2e-8, False)
 
-    def test_inlined_is_for_information(self):
+    def test_ratio_of_inlined_code_has_no_target(self):
         result = self.results(runs(make_table.WITHIN_1E8, [100]), runs("smoothed_rk4_flattened/sensitivities", [217]))[
-            "sensitivities: the same with every call inlined ([[gnu::flatten]])"]
+            "sensitivities: times faster than smoothed_rk4 with every call inlined ([[gnu::flatten]])"]
         self.assertAlmostEqual(result["value"], 2.17)
         self.assertNotIn("met", result)
         self.assertEqual(make_table.requirement_text(result), f"| {result['what']} | none | 2.17 (2.17 to 2.17) |  |")
@@ -96,20 +96,20 @@ class RequirementTest(unittest.TestCase):
     def test_a_refit_of_the_bootstrap(self):
         # One fit of 10 us and 999 refits of 4 us.
         results = self.results(runs("fit", [10]), runs("bootstrap", [4006]))
-        self.check(results["one of bootstrap's 999 refits, in fits"], 0.4, True)
+        self.check(results["bootstrap: time of one of the 999 refits, relative to a fit"], 0.4, True)
 
     def test_cost_linear_in_samples(self):
         results = self.results(runs("fit/samples:100000", [2.5], "ms"), runs("fit/samples:1000000", [30], "ms"))
-        self.check(results["a sample's time in a fit of 10^6, in those of 10^5"], 1.2, True)
+        self.check(results["time per sample in a fit of 10^6 samples, relative to a fit of 10^5"], 1.2, True)
 
-    def test_users_of_python(self):
+    def test_speed_relative_to_python(self):
         results = self.results(runs("file_to_json", [4], "ms"))
         self.check(results["file to JSON: times faster than SciPy's fit"], 1250, True)
         self.check(results["file to JSON: times faster than lmfit's fit"], 1000, True)
 
     def test_memory(self):
         results = self.results(runs("fit_memory/samples:1000000/iterations:1", [1], bytes_per_sample=200.0))
-        self.check(results["memory of a fit of 10^6 samples [bytes a sample]"], 200, False)
+        self.check(results["memory of a fit of 10^6 samples [bytes per sample]"], 200, False)
 
 
 class TextTest(unittest.TestCase):
@@ -123,7 +123,7 @@ class TextTest(unittest.TestCase):
         self.assertEqual([make_table.time_text(time) for time in (0.25, 43.21, 1270, 6.5e6)],
                          ["0.250 µs", "43.2 µs", "1.27 ms", "6.50 s"])
 
-    def test_filter_is_of_whole_names(self):
+    def test_filter_matches_whole_names(self):
         pattern = make_table.benchmark_filter()
         for name in (OURS, "fit", "fit_memory/samples:1000000/iterations:1", "sensitivities/max_trace_error:1e-6"):
             self.assertTrue(re.search(pattern, name), name)
@@ -131,7 +131,7 @@ class TextTest(unittest.TestCase):
                      "fit_jointly/white_2.5/recordings:2", "fit/counts:0x5/gaussian"):
             self.assertFalse(re.search(pattern, name), name)
 
-    def test_rows_of_any_number_are_in_order(self):
+    def test_expanded_rows_are_sorted_by_their_number(self):
         found = measured([run for error in ("1e-06", "0.001", "1e-12")
                           for run in runs(f"sensitivities/max_trace_error:{error}", [1])] + runs(OURS, [1]))
         expanded = make_table.expand(make_table.Row("sensitivities/max_trace_error:*"), found)
@@ -170,14 +170,14 @@ class ProcessTest(unittest.TestCase):
                       table)
         self.assertEqual(json.loads((self.folder / "RESULTS.json").read_text())["instructions"]["fit"], 100)
 
-    def test_what_is_missing_is_named(self):
+    def test_missing_benchmarks_are_named(self):
         code, complaints, table = self.make([run for run in everything() if run["run_name"] != THEIRS])
         self.assertEqual(code, 1)
         self.assertIn(f"make_table: the benchmark {THEIRS} is missing.\n", complaints)
         self.assertIn("'sensitivities: times faster than smoothed_rk4' could not be measured", complaints)
         self.assertIn(f"| `{THEIRS}` | missing |", table)
 
-    def test_what_failed_is_named(self):
+    def test_failed_benchmarks_are_named(self):
         failed = {"run_name": THEIRS, "run_type": "iteration", "error_occurred": True, "error_message": "no trajectory"}
         code, complaints, _ = self.make([run for run in everything() if run["run_name"] != THEIRS] + [failed])
         self.assertEqual(code, 1)

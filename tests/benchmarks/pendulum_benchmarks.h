@@ -19,14 +19,14 @@ void RegisterJointBenchmarks();
 /// batch/refit: a batch of files on all cores, and the share of the cores' capacity that it uses.
 void RegisterBatchBenchmarks();
 
-/// smoothed_rk4/..., located_rk4/..., the same _flattened, located_odeint/...: code written by hand with Ceres, for
+/// smoothed_rk4/..., located_rk4/..., both also _flattened, located_odeint/...: code written by hand with Ceres, for
 /// comparison; see users_costs.h.
 void RegisterCeresBenchmarks();
 
 /// tiny_solver/...: our trajectory's N residuals solved by ceres::TinySolver.
 void RegisterTinySolverBenchmarks();
 
-/// cvodes/rtol:R/...: the same with SUNDIALS' forward sensitivities.
+/// cvodes/rtol:R/...: residuals and derivatives by SUNDIALS' forward sensitivities, solved by Ceres.
 void RegisterCvodesBenchmarks();
 
 /// floor/trajectory/..., floor/sensitivities/...: the minimum arithmetic for the samples, for any implementation.

@@ -41,7 +41,7 @@ const Rig& ReferenceRig();
 /// The reference run: Coulomb friction, white noise of `counts` counts, rounded to counts of 0.1985 deg.
 Recording ReferenceRecording(int samples = kSamples, double counts = 1);
 
-/// That recording as a CSV file's text.
+/// The reference run as the text of a CSV file.
 std::string ReferenceCsv();
 
 /// A recording prepared for one model, and parameters at which its trajectory is evaluated. Parameters of the reference
@@ -54,15 +54,15 @@ struct EvaluationPoint {
 /// With kMoving, the samples before the release are left out.
 EvaluationPoint MakeEvaluationPoint(std::string_view model, StartKind start, int samples = kSamples);
 
-/// Largest difference [rad] between readings and those of the trajectory at a local tolerance of 1e-17.
+/// Largest difference [rad] between `readings` and the readings of a trajectory computed at a local tolerance of 1e-17.
 double MaxReadingError(const EvaluationPoint& point, const Eigen::VectorXd& readings);
 
-/// Largest difference between derivatives of the readings with respect to the parameters in SI (N x 6) and those of
-/// that trajectory, relative to the largest entry of their column.
+/// Largest difference between `jacobian`, the derivatives of the readings with respect to the parameters in SI (N x 6),
+/// and the derivatives of that trajectory, relative to the largest entry of the column.
 double MaxJacobianError(const EvaluationPoint& point, const Eigen::MatrixXd& jacobian);
 
 /// Largest distance of estimates from the least-squares optimum of the reference run, in standard errors. The optimum
-/// is that of the trajectory at a local tolerance of 1e-17, fully converged.
+/// is fully converged and belongs to a trajectory computed at a local tolerance of 1e-17.
 double DistanceFromOptimum(const Parameters& estimates);
 
 }  // namespace pendulum::benchmarks

@@ -5,9 +5,10 @@
 The trajectory comes from solve_ivp (LSODA), with dry friction smoothed to tanh(omega / 0.01 rad/s) and derivatives by
 finite differences. scipy.optimize.least_squares and lmfit.minimize fit six parameters. rtol is 1e-8 and the relative
 step of the differences 1e-3, as chosen by a user who knows that smaller steps are lost in the integrator's noise. With
-this rtol and the default step, neither finds the optimum. For rtol from 1e-6 to 1e-10 and steps from 1e-6 to 1e-3, no
-combination with which both find it is much faster. Prints one JSON object; seconds are the CPU time of each repetition
-of the fit alone. Exit codes: 1 a package or the file is missing or the file is not such a recording, 2 wrong flags.
+this rtol and the default step, neither package finds the optimum. Of all combinations of rtol from 1e-6 to 1e-10 and
+steps from 1e-6 to 1e-3 with which both packages find it, none is much faster. Prints one JSON object; seconds are the
+CPU time of each repetition of the fit alone. Exit codes: 1 a package or the file is missing or the file is not such a
+recording, 2 wrong flags.
 """
 
 import argparse

@@ -70,15 +70,15 @@ TEST(ClassifyHalfSwings, DetectsTimeSlipsOfAFortiethOfAPeriod) {
   EXPECT_EQ(verdicts[HalfSwingAt(table, 5.25)], Verdict::kFree);
 }
 
-/// The last turning point comes 60 ms early. If it stands out, time has slipped. If it hardly stands out, as before a
-/// rest, its time is uncertain.
+/// The last turning point comes 60 ms early. If its amplitude is above the threshold, time has slipped. If not, as just
+/// before standstill, its time is uncertain.
 TEST(ClassifyHalfSwings, TrustsTheTimeOfALastTurningPointAboveTheThreshold) {
-  for (const bool stands_out : {true, false}) {
+  for (const bool above_threshold : {true, false}) {
     const Recording recording = Sampled(Decaying);
     TurningPointTable table = FindAllTurningPoints(recording);
     table.points.back().time -= 0.06;
-    table.threshold = table.Amplitude(table.half_swings()) * (stands_out ? 0.9 : 1.1);
-    EXPECT_EQ(ClassifyHalfSwings(recording, table).back(), stands_out ? Verdict::kIrregular : Verdict::kFree);
+    table.threshold = table.Amplitude(table.half_swings()) * (above_threshold ? 0.9 : 1.1);
+    EXPECT_EQ(ClassifyHalfSwings(recording, table).back(), above_threshold ? Verdict::kIrregular : Verdict::kFree);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that the errors of the closed forms are true: 200 simulated recordings of the reference rig for each friction.
+// Tests of the standard errors of FitDecrement, with 200 simulated recordings of the reference rig for each friction
+// law.
 #include <algorithm>
 #include <cmath>
 #include <string>

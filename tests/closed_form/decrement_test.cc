@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 constexpr MotionModel kViscousModel = {"viscous", "viscous", Gravity::kSine};
 constexpr MotionModel kDragModel = {"drag", "drag", Gravity::kSine};
 
-/// ω0 = 5 rad/s. The swing is simulated by a library other than this project's trajectory.
+/// ω0 = 5 rad/s. SimulateDecay does not use this project's trajectory.
 Decay AllThree() {
   Decay decay;
   decay.viscous = 0.002;

@@ -36,7 +36,7 @@ constexpr char kUnsteady[] = "after the release: the hold before it is not stead
 constexpr char kToTheEnd[] = "the end of the recording";
 constexpr char kBeforeAMove[] = "the last turning point before the pendulum is moved";
 
-// ---- What people do with a pendulum, in pieces --------------------------------------------------------------------
+// ---- Pieces of recordings -----------------------------------------------------------------------------------------
 
 Recording Still(double angle, double duration) {
   return Sample([=](double) { return angle; }, duration, kRate);
@@ -48,7 +48,8 @@ Recording Guided(double from, double to, double duration) {
   return Sample([=](double t) { return from + (to - from) * share(t); }, duration, kRate);
 }
 
-/// Released at `amplitude`. It loses 0.05 rad per second, and a share by viscous friction.
+/// Released at `amplitude`. It loses 5 % of its amplitude per second by viscous friction, and 0.004 rad per half swing
+/// by dry friction.
 Recording Swing(double amplitude, double duration, Quantity quantity = Quantity::kAngle) {
   Decay decay{kOmega, 0.004, 0.002, 0, std::abs(amplitude), duration, quantity};
   Recording recording = SimulateDecay(decay);
@@ -180,7 +181,7 @@ TEST(FindFreeSwings, BeginsAtTheNextTurningPointNearTheUpright) {
 
 TEST(FindFreeSwings, FindsTheHoldOfARateSensor) {
   const Recording recording =
-      Joined({Still(0, 2), Swing(0.5, 15, Quantity::kRate)}, 0.01);  // the quantity is that of Still
+      Joined({Still(0, 2), Swing(0.5, 15, Quantity::kRate)}, 0.01);  // Joined takes the quantity from Still
   Recording rate = recording;
   rate.quantity = Quantity::kRate;
   const FreeSwing swing = OnlySwing(rate);
@@ -253,7 +254,7 @@ TEST(FindFreeSwings, EndsIfAHandStopsIt) {
   EXPECT_THAT(found.to, AllOf(Gt(stop - kHalfPeriod), Lt(stop)));
 }
 
-// ---- Several swings, and what does not break one ------------------------------------------------------------------
+// ---- Several swings, and disturbances within a swing --------------------------------------------------------------
 
 TEST(FindFreeSwings, FindsEveryRelease) {
   const Recording recording = Joined({Still(0.5, 2), Swing(0.5, 12), Guided(Swing(0.5, 12).value.tail(1)[0], -0.8, 1),
@@ -319,7 +320,7 @@ TEST(FindFreeSwings, MarksABeatingSwing) {
 
 // ---- What is not a free swing -------------------------------------------------------------------------------------
 
-std::string Refusal(const Recording& recording) {
+std::string ErrorMessage(const Recording& recording) {
   const auto swings = FindFreeSwings(recording);
   if (swings) return "accepted";
   EXPECT_EQ(swings.error().code, StatusCode::kFailedPrecondition);
@@ -327,29 +328,29 @@ std::string Refusal(const Recording& recording) {
 }
 
 TEST(FindFreeSwings, RefusesAConstantReading) {
-  EXPECT_EQ(Refusal(Still(0.3, 10)),
+  EXPECT_EQ(ErrorMessage(Still(0.3, 10)),
             "the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
 TEST(FindFreeSwings, RefusesAReadingWithoutTurningPoints) {
-  EXPECT_EQ(Refusal(Joined({Still(0.3, 2), Guided(0.3, 0, 1), Still(0, 5)})),
+  EXPECT_EQ(ErrorMessage(Joined({Still(0.3, 2), Guided(0.3, 0, 1), Still(0, 5)})),
             "turning points above the noise between neighbouring samples: 0; at least three turning points, with five "
             "samples or more between them, are needed: choose a window of free swing, or record for longer");
 }
 
 TEST(FindFreeSwings, RefusesADrivenSwing) {
   const auto growing = [](double t) { return 0.1 * std::exp(0.05 * t) * std::sin(kOmega * t); };
-  EXPECT_EQ(Refusal(Joined({Sample(growing, 30, kRate)})),
+  EXPECT_EQ(ErrorMessage(Joined({Sample(growing, 30, kRate)})),
             "the amplitude rises repeatedly: the pendulum is driven; choose a window of free swing with --from and "
             "--to");
   const auto steady = [](double t) { return 0.4 * std::sin(kOmega * t); };
-  EXPECT_EQ(Refusal(Joined({Sample(steady, 20, kRate)})),
+  EXPECT_EQ(ErrorMessage(Joined({Sample(steady, 20, kRate)})),
             "the amplitude does not decay over 31 half swings: the pendulum is driven, or its friction is too small to "
             "see; give --from and --to to fit this window anyway");
 }
 
 TEST(FindFreeSwings, DoesNotCountAStartInMotionAsAClimb) {
-  // It loses a two-hundredth of its amplitude per half swing, and starts where it passes its rest position.
+  // It loses about 0.4 % of its amplitude per half swing, and starts where it passes its rest position.
   const Recording swing = SimulateDecay({kOmega, 0, 0.001, 0, 0.5, 9});
   const Recording recording = Joined({Part(swing, Crossing(swing, 0))}, 0.01);
   ExpectWhole(recording, OnlySwing(recording));
@@ -363,7 +364,7 @@ TEST(FindFreeSwings, RefusesAPendulumMovedByHand) {
     pieces.push_back(Guided(angles[i - 1], angles[i], 0.6 + 0.2 * static_cast<double>(i % 4)));
   }
   EXPECT_EQ(
-      Refusal(Joined(pieces)),
+      ErrorMessage(Joined(pieces)),
       "of 10 turning points no more than 3 in a row belong to a free swing, with equal times between them and "
       "decreasing amplitude: the pendulum was moved by hand or motor, or held at one angle after another; choose a "
       "window of free swing with --from and --to");
@@ -372,8 +373,9 @@ TEST(FindFreeSwings, RefusesAPendulumMovedByHand) {
 TEST(FindFreeSwings, AsksForTheUnitIfASwingExceedsTheUpright) {
   const Recording in_degrees =
       Sample([](double t) { return 25 * std::exp(-0.02 * t) * std::cos(kOmega * t); }, 20, kRate);
-  EXPECT_THAT(Refusal(in_degrees), testing::HasSubstr("to both sides, but beyond 180 deg a pendulum goes over the top; "
-                                                      "check the unit of the column in the header or in"));
+  EXPECT_THAT(ErrorMessage(in_degrees),
+              testing::HasSubstr("to both sides, but beyond 180 deg a pendulum goes over the top; "
+                                 "check the unit of the column in the header or in"));
 }
 
 TEST(FindFreeSwings, DoesNotTreatCountsAsAnAngle) {

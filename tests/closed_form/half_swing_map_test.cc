@@ -46,7 +46,7 @@ HalfSwingEnd ByRungeKutta(const Friction& p, double amplitude) {
     rate = next;
     time += kStep;
   }
-  const double a = acceleration(angle, rate);  // the rest is a parabola
+  const double a = acceleration(angle, rate);  // the remaining motion is a parabola
   end.amplitude = angle - 0.5 * rate * rate / a;
   end.duration = time - rate / a;
   return end;

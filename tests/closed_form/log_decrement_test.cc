@@ -62,7 +62,7 @@ TEST(LogDecrement, ScattersAsItsErrorsPredict) {
   for (const double mean_square : squares) EXPECT_NEAR(std::sqrt(mean_square), 1, 0.2);  // 4 standard deviations
 }
 
-TEST(LogDecrement, TakesTheLongerPeriodOfLargeSwingsForInertia) {
+TEST(LogDecrement, AttributesTheLongerPeriodOfLargeSwingsToInertia) {
   constexpr double kAmplitude = 0.8;  // rad
   const auto swing = [](double t) { return UndampedAngle(kAmplitude, 1 / (kNatural * kNatural), t); };
   const TurningPointTable table = Must(LocateTurningPoints(Sample(swing, 15, 100)));

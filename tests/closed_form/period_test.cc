@@ -57,12 +57,12 @@ TEST(AngleAmplitude, FollowsFromEnergyForAPeakRate) {
 
 constexpr double kOmega = 5.0;  // rad/s
 
-/// Turning points at 5 t - 0.9 = n π, zero crossings half a period later.
+/// Turning points at 5 t - 0.9 = n π, zero crossings a quarter of a period later.
 double Cosine(double t) { return 0.1 + std::cos(kOmega * t - 0.9); }
 
 double CrossingAfterTurn(double number) { return ((number + 0.5) * kPi + 0.9) / kOmega; }
 
-TEST(ZeroCrossing, IsThatOfACosine) {
+TEST(ZeroCrossing, MatchesACosine) {
   const Recording recording = Sample(Cosine, 8, 100, 1000);  // on a clock that starts at 1000 s
   const TurningPointTable table = Must(FindTurningPoints(recording));
   ASSERT_EQ(table.half_swings(), 11U);
@@ -101,8 +101,8 @@ TEST(ZeroCrossing, NeedsOnlyTwoSamples) {
 
 // ---- Natural frequency from a recording ---------------------------------------------------------------------------
 
-// Near the top, the angle and the rate around their peaks differ more and more from a parabola. The amplitudes come out
-// too small, and so does the correction of the period.
+// Near the top, the angle and the rate around their peaks differ more and more from a parabola. The amplitudes found
+// are too small, and so is the correction of the period.
 
 double FrequencyOf(const Recording& recording) {
   return Must(NaturalFrequency(recording, Must(FindTurningPoints(recording)), Gravity::kSine));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Swings for tests of the closed forms. None of them uses this project's trajectory: Jacobi's elliptic functions
-// without friction, Runge-Kutta steps with friction.
+// Swings for tests of the closed forms. None of them uses this project's trajectory. Swings without friction use
+// Jacobi's elliptic functions, swings with friction use Runge-Kutta steps.
 #pragma once
 
 #include <cmath>

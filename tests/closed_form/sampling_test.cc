@@ -47,7 +47,7 @@ std::string MessageOf(const Sampling& sampling, const std::string& code) {
 
 TEST(ApparentFrequency, FoldsAtHalfTheRate) {
   // Examples of the textbook: a cosine of 0.76 Hz sampled at 1 Hz has the samples of 0.24 Hz. Sampled once per cycle it
-  // stands still. Sampled at 5/3 of its frequency it appears to swing at 2/3 of it.
+  // appears at rest. Sampled at 5/3 of its frequency it appears to swing at 2/3 of it.
   EXPECT_NEAR(ApparentFrequency(0.76, 1), 0.24, 1e-12);
   EXPECT_NEAR(ApparentFrequency(0.76, 0.76), 0, 1e-12);
   EXPECT_NEAR(ApparentFrequency(0.76, 0.76 * 5 / 3), 0.76 * 2 / 3, 1e-12);
@@ -155,7 +155,7 @@ TEST(SamplingWarnings, ReportARateJustAboveTwiceTheFrequency) {
               ElementsAre("nearly_aliased", "samples_near_period"));
 }
 
-TEST(SamplingWarnings, CompareFrequenciesOnlyIfAliased) {
+TEST(DescribeSampling, UsesTheRigsFrequencyOnlyIfItAliases) {
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 100, 300), 0.5 / 0.76, 0.78).frequency_hz, 0.76, 1e-12);
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 1, 30), 0.5 / 0.24, 0.78).frequency_hz, 0.78, 1e-12);
 }

@@ -80,7 +80,8 @@ TEST(IsAlongRod, DistinguishesAlongFromAcross) {
   EXPECT_TRUE(IsAlongRod(Acceleration(-kPi / 2, 0.05)));
 }
 
-/// From two swings to a hundred times the duration of the motion, which dry friction ends; also with strong friction.
+/// Durations from two swings to a hundred times the duration of the motion, which dry friction ends; without viscous
+/// friction, with little and with much.
 TEST(IsAlongRod, DistinguishesAlongFromAcrossWithoutGravity) {
   for (const double viscous : {0.0, 0.05, 1.0}) {
     for (const Eigen::Index samples : {300, 2000, 10000, 100000}) {

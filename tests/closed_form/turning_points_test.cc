@@ -23,7 +23,7 @@ constexpr double kOmega = 5.0;   // rad/s
 
 double DampedSine(double t) { return std::exp(-kDecay * t) * std::sin(kOmega * t); }
 
-/// Its turning points before `end`: tan(ω t) = ω / γ, once per half period.
+/// The turning points of DampedSine before `end`: tan(ω t) = ω / γ, once per half period.
 std::vector<TurningPoint> TurningPointsOfDampedSine(double end) {
   std::vector<TurningPoint> points;
   for (double t = std::atan(kOmega / kDecay) / kOmega; t < end; t += kPi / kOmega) {

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the lab guide datasets/ACTIVITY.md, command by command, on a simulated board in real time.
 
-activity_test.py BUILD_FOLDER            runs the guide. The output must match the guide, numbers within 5 % and three of the
-                                         last digit; the recordings must match datasets/, and the fits the true values
+activity_test.py BUILD_FOLDER            runs the guide. The output must match the guide, numbers within 5 % plus three
+                                         units of the last digit; the recordings must match datasets/, and the fits the
+                                         true values
 activity_test.py BUILD_FOLDER --update   writes the output into the guide, and the recordings into datasets/
 """
 

@@ -50,7 +50,7 @@ class Bench {
     return ack && ack->command == Command::kKind ? ack->status : -1;
   }
 
-  /// Records for `seconds` at that rate, from start to stop; calls `midway` in the middle.
+  /// Starts a run, records for `seconds` at that rate and stops it; calls `midway` in the middle.
   ReceivedRun& Record(const SamplingRate& rate, double seconds, const std::function<void()>& midway = {}) {
     Status(pendulum_logger::SetRate{rate.period, rate.oversample});
     run_.emplace(rate);
@@ -91,11 +91,11 @@ class Bench {
       text_ += static_cast<char>(each.byte);
       if (const auto byte = line_ ? line_(each.byte) : each.byte) bytes.push_back(*byte);
     }
-    for (const LoggerMessage& message : decoder_.Take(bytes)) {
+    for (const LoggerMessage& message : decoder_.Decode(bytes)) {
       messages_.push_back(message);
       if (!run_) continue;
-      if (const auto* data = std::get_if<pendulum_logger::Data>(&message)) run_->Take(*data, board_.time());
-      if (const auto* end = std::get_if<pendulum_logger::End>(&message)) run_->TakeEnd(*end);
+      if (const auto* data = std::get_if<pendulum_logger::Data>(&message)) run_->AddFrame(*data, board_.time());
+      if (const auto* end = std::get_if<pendulum_logger::End>(&message)) run_->SetEnd(*end);
     }
   }
 

@@ -158,7 +158,7 @@ TEST(PendulumLogger, LosesSamplesButShiftsNoneIfInterruptsAreLate) {
   const auto hold = [&bench] { bench.board().HoldInterrupts(0.0105); };
   const ReceivedRun& run = bench.Record(Rate(1000), 2, hold);
   const RunLosses losses = run.Losses();
-  EXPECT_GE(losses.late, 9U);  // ten or eleven matches were due meanwhile
+  EXPECT_GE(losses.late, 9U);  // ten or eleven matches were due while interrupts were blocked
   EXPECT_GE(losses.samples, 9);
   EXPECT_LE(losses.samples, 13);
   EXPECT_EQ(losses.contradicting_frames, 0);
@@ -248,7 +248,7 @@ TEST(PendulumLogger, AnswersAQuestionMarkInWords) {
   bench.RunFor(0.2);
   // 0.1985 · 437 - 49.6077 = 37.1368
   EXPECT_THAT(bench.text(), testing::HasSubstr("A0 = 437 of 1023 counts, 37.14 deg; 200.00 Hz, runs so far: 0\r\n"));
-  EXPECT_EQ(bench.Status(wire::Command<wire::kStop>{}), wire::kDone);  // the question has not confused it
+  EXPECT_EQ(bench.Status(wire::Command<wire::kStop>{}), wire::kDone);  // the board still understands commands
 }
 
 TEST(SimulatedBoard, DetectsFaultsThatABoardWouldNotTolerate) {

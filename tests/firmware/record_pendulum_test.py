@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Tests the whole chain in real time: simulated potentiometer, firmware, line, record_pendulum and fit_pendulum must
-recover the true values. record_pendulum_test.py BUILD_FOLDER. All recordings run in parallel, because they mostly wait."""
+recover the true values. Usage: record_pendulum_test.py BUILD_FOLDER. All recordings run in parallel, because they
+mostly wait."""
 
 import concurrent.futures
 import json
@@ -23,8 +24,8 @@ SWING = ["--rig", RIG, "--set", "inertia=0.079,viscous=0.002,coulomb=0.004,relea
 DEG_PER_COUNT = 270 / 1024
 CALIBRATION = {"input": "counts", "angle_unit": "deg", "input_range": [0, 1023],
                "coefficients": [0.5 * DEG_PER_COUNT - 135, DEG_PER_COUNT]}
-# Board, samples per second, conversions per sample, clock error [ppm, positive: too fast], counts of noise, of
-# nonlinearity.
+# Board, samples per second, conversions per sample, clock error [ppm, positive: too fast], noise [counts], nonlinearity
+# [counts].
 BENCHES = {
     "uno_200": ("uno", 200, 1, 3000, 0.5, 0.5),
     "uno_1000": ("uno", 1000, 1, -1500, 0.5, 0.25),
@@ -53,12 +54,12 @@ class RecordPendulumTest(unittest.TestCase):
         (cls.folder / "calibration.json").write_text(json.dumps(CALIBRATION))
         cls.record_all()
         if not cls.is_quiet():
-            print("the machine stood still for a while; everything once more")
+            print("the computer stalled during the recordings; recording everything again")
             cls.record_all()
 
     @classmethod
     def is_quiet(cls):
-        """Whether no recorder saw its computer stall: the clocks are then known ten times better than this."""
+        """Whether the computer never stalled. The clocks are then known ten times better than this limit."""
         errors = [metadata(cls.folder / f"{name}.csv").get("clock_scale_std_dev", "1") for name in BENCHES]
         return max(map(float, errors)) < 300e-6
 
@@ -110,7 +111,7 @@ class RecordPendulumTest(unittest.TestCase):
                     self.assertAlmostEqual(time, i / rate, delta=1e-9)
                 self.assertEqual(metadata(self.folder / f"{name}.csv")["lost_samples"], "0")
 
-    def test_the_resonator_is_corrected_to_the_error_that_is_stated(self):
+    def test_the_clock_is_corrected_within_the_stated_error(self):
         for name, (_, _, _, ppm, *_) in BENCHES.items():
             with self.subTest(name):
                 said = metadata(self.folder / f"{name}.csv")
@@ -118,7 +119,7 @@ class RecordPendulumTest(unittest.TestCase):
                 self.assertLess(error, 0.003)  # measured; 35e-6 unless the machine is very busy
                 self.assertLess(abs(scale - 1 / (1 + 1e-6 * ppm)), 4 * error)
 
-    def test_the_fit_gives_the_truth_back(self):
+    def test_the_fit_recovers_the_true_values(self):
         for name in BENCHES:
             with self.subTest(name):
                 done = tool("fit_pendulum", "--data", self.folder / f"{name}.csv", "--rig", RIG, "--json", "-")
@@ -132,7 +133,7 @@ class RecordPendulumTest(unittest.TestCase):
                     print(f"{name}: {parameter} {found['estimate']:.6g} ± {error:.2g}, z {z:.2f}")
                     self.assertLess(abs(z), 4, f"{parameter} {found}")
 
-    def test_a_pulled_cable_loses_nothing_that_came(self):
+    def test_a_pulled_cable_loses_no_received_samples(self):
         done = self.done["unplugged"]
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("check the cable", done.stdout)
@@ -141,7 +142,7 @@ class RecordPendulumTest(unittest.TestCase):
         self.assertGreaterEqual(len(rows), 1600 - 2 * 8)
         self.assertFalse((self.folder / "unplugged.csv.part").exists())
 
-    def test_damage_is_counted_and_what_is_kept_is_right(self):
+    def test_damaged_samples_are_counted_and_kept_samples_are_right(self):
         done = self.done["damaged"]
         self.assertEqual(done.returncode, 1, done.stderr)
         rows = self.values("damaged")
@@ -154,7 +155,7 @@ class RecordPendulumTest(unittest.TestCase):
         for (before, a), (after, b) in zip(rows, rows[1:]):
             self.assertLessEqual(abs(b - a), steepest * (after - before) * 1000 + 2)
 
-    def test_a_boot_loader_is_waited_for(self):
+    def test_the_recorder_waits_for_a_boot_loader(self):
         done = self.done["boot"]
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len(self.values("boot")), 400)

@@ -21,7 +21,7 @@ struct BoardOptions {
   std::function<int(double)> counts;     ///< The converter's reading of its input at that time since power-on [s].
   std::function<void(double)> on_start;  ///< Called when the first conversion of a run is sampled [s].
   std::vector<std::uint8_t> eeprom;      ///< From address 0; the rest is erased.
-  bool keeps_log = true;                 ///< Of every conversion: 16 bytes each.
+  bool keeps_log = true;                 ///< Whether every conversion is logged, with 16 bytes each.
 };
 
 /// A conversion of the hardware.
@@ -97,15 +97,15 @@ class SimulatedBoard {
 
   BoardOptions options_;
   avr_t* avr_ = nullptr;
-  avr_irq_t* converter_ = nullptr;  // its input, channel 0
-  avr_irq_t* trigger_ = nullptr;    // its auto trigger
-  avr_irq_t* input_ = nullptr;      // of the UART
+  avr_irq_t* converter_ = nullptr;  // input of the converter, channel 0
+  avr_irq_t* trigger_ = nullptr;    // auto trigger of the converter
+  avr_irq_t* input_ = nullptr;      // input of the UART
   std::uint32_t idle_address_ = 0;
   int data_end_ = 0, least_stack_ = 0;
   bool is_match_pending_ = false;
   std::optional<double> start_;
   std::uint64_t first_ = 0;  // cycle of the first trigger of the run
-  // Cycles: when the line to the host is free, when the next byte may come.
+  // Cycles at which the line to the host is free, and at which the next byte may reach the board.
   std::uint64_t line_free_ = 0, next_input_ = 0;
   std::deque<std::uint8_t> to_board_;
   std::vector<LineByte> to_host_;

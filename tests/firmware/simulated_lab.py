@@ -8,7 +8,7 @@ import time
 
 
 class Logger:
-    """Runs simulated_logger of a build, behind the pseudo terminal `port` in a folder, until the block ends."""
+    """Runs simulated_logger of a build, behind the pseudo terminal `port` in a folder, until the with block ends."""
 
     def __init__(self, build, folder, *flags, board="uno", name="ttyPENDULUM"):
         self.port = pathlib.Path(folder) / name
@@ -30,4 +30,4 @@ class Logger:
         said = self.process.communicate(timeout=60)[0]
         self.faults = json.loads(said)
         if any(self.faults.values()) or self.process.returncode != 0:
-            raise AssertionError(f"the board did what it must not: {said}")
+            raise AssertionError(f"the simulated board reports faults: {said}")

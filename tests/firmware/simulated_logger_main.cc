@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated logger: the firmware in simavr, a pendulum on its potentiometer, and a pseudo terminal as its serial
-// port, in real time. For the tests of record_pendulum, and for users without an Arduino.
+// A simulated logger in real time: the firmware in simavr, a pendulum on the potentiometer, and a pseudo terminal as
+// the serial port. For the tests of record_pendulum, and for users without an Arduino.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -34,27 +34,27 @@
 
 DEFINE_string(firmware, "", "ELF file of pendulum_logger.");
 DEFINE_string(board, "uno", "uno or mega; default uno.");
-DEFINE_string(link, "", "Path that is made to stand for the serial port.");
+DEFINE_string(link, "", "Path at which a link to the serial port is created.");
 DEFINE_string(eeprom, "", "File that keeps the EEPROM from one power-on to the next; default none.");
-DEFINE_string(truth, "", "Where to write what is true of the run (JSON); default nowhere.");
+DEFINE_string(truth, "", "File for the true values of the run (JSON); default none.");
 DEFINE_string(rig, "", "Rig file; default none.");
 DEFINE_string(model, "coulomb", "Model of the motion; default coulomb.");
-DEFINE_string(set, "", "Parameters, name=value,... The release is so long after the logger was started.");
+DEFINE_string(set, "", "Parameters, name=value,...; release_time is counted from the first sample.");
 DEFINE_string(hold_deg, "", "Angles on the sensor's scale at which the pendulum is held in the first runs, deg,...");
 DEFINE_string(release_angles, "",
-              "Release angles of the runs after these, rad,...; the last one stays; default --set.");
-DEFINE_double(reference_voltage, 5, "Of the converter, V; default 5.");
-DEFINE_double(supply_voltage, 5, "Across the potentiometer, V; default 5.");
+              "Release angles of the later runs, rad,...; further runs use the last one; default: from --set.");
+DEFINE_double(reference_voltage, 5, "Reference of the converter, V; default 5.");
+DEFINE_double(supply_voltage, 5, "Supply across the potentiometer, V; default 5.");
 DEFINE_double(potentiometer_range_deg, 270, "Electrical travel of the potentiometer, deg; default 270.");
 DEFINE_double(noise, 0, "Standard deviation of the noise before rounding, counts; default 0.");
 DEFINE_double(nonlinearity, 0, "Bow of the converter at half scale, counts; default 0.");
-DEFINE_double(supply_ripple, 0, "Relative ripple of the supply, which is the reference too; default 0.");
+DEFINE_double(supply_ripple, 0, "Relative ripple of the supply, which is also the reference; default 0.");
 DEFINE_double(clock_ppm, 0, "How much too fast the board's resonator is, ppm; default 0.");
 DEFINE_double(flip, 0, "Probability that a byte on its way to the host has one wrong bit; default 0.");
 DEFINE_double(drop, 0, "Probability that a byte on its way to the host is lost; default 0.");
 DEFINE_double(unplug_after, 0, "Seconds after the start of a run when the cable is pulled; default never.");
-DEFINE_double(boot_seconds, 0, "How long a boot loader listens, and babbles, before the firmware runs; default 0.");
-DEFINE_uint64(seed, 1, "Of noise and line; default 1.");
+DEFINE_double(boot_seconds, 0, "Seconds during which a boot loader sends bytes before the firmware runs; default 0.");
+DEFINE_uint64(seed, 1, "Seed of the noise and of the line errors; default 1.");
 
 namespace pendulum {
 namespace {
@@ -131,8 +131,8 @@ class PseudoTerminal {
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
   ~PseudoTerminal() { Close(); }
 
-  /// Bytes without room now are written with the next ones: a machine that was suspended reads many at once. Bytes that
-  /// nobody reads are lost.
+  /// Bytes for which there is no room now are written with the next bytes, because a machine that was suspended reads
+  /// many at once. Bytes that nobody reads are lost.
   void Write(const std::vector<std::uint8_t>& bytes) {
     constexpr std::size_t kMaxUnread = std::size_t{1} << 16;
     unread_.insert(unread_.end(), bytes.begin(), bytes.end());

@@ -52,9 +52,9 @@ inline std::vector<double> TextbookParameters(const MotionModel& model) {
   return parameters;
 }
 
-/// Whether a short run hardly determines all parameters of a law. Examples are friction of slow motion alone, or a
-/// share by which the directions differ, which acts almost like a shift of the zero. Fits then end at bounds, or not
-/// identifiable.
+/// Whether a short run hardly determines all parameters of a law. Examples are a friction that differs in slow motion
+/// only, or a share by which friction differs between the directions, which acts almost like a shift of the zero. Fits
+/// then end at bounds or not identifiable.
 inline bool IsHardlyDetermined(const MotionModel& model) {
   return FindOrderedPair(model).larger >= 0 ||
          std::ranges::any_of(PhysicalParameters(model),
@@ -91,7 +91,8 @@ inline SyntheticOptions MovingRun(std::string_view model) {
 }
 
 /// A swing of 0.6 rad for 30 s at 100 Hz, measured by a sensor with some noise.
-inline SyntheticOptions Seen(Quantity quantity, SensorKind kind, std::vector<double> parameters, double noise) {
+inline SyntheticOptions MeasuredSwing(Quantity quantity, SensorKind kind, std::vector<double> parameters,
+                                      double noise) {
   SyntheticOptions options;
   options.parameters = {1 / 22.0, 0.05 / 22, 0.05 / 22};
   options.start = StartKind::kMoving;
@@ -144,8 +145,8 @@ inline std::vector<double> Deviations(const FitReport& report, const std::vector
   return deviations;
 }
 
-/// Expects every parameter within 4.5 of its standard errors of the truth; twelve parameters miss that once in 12 000
-/// fits.
+/// Expects every parameter within 4.5 standard errors of the truth. With twelve parameters, a correct fit fails this
+/// once in 12 000.
 inline void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
   ASSERT_EQ(fit.termination, Termination::kConverged) << fit.reason;
   const std::vector<double> truth = TrueParameters(options);
@@ -157,7 +158,7 @@ inline void ExpectTruth(const SyntheticOptions& options, const FitReport& fit) {
   }
 }
 
-/// The names of the attempts whose result the fit is.
+/// The names of the attempts that led to the fit.
 inline std::vector<std::string> KeptAttempts(const FitReport& fit) {
   std::vector<std::string> names;
   for (const AttemptRecord& attempt : fit.solver.attempts) {

@@ -52,9 +52,9 @@ struct Fitted {
   Errors StandardErrors() const { return ComputeErrors(*problem, *cost, solution, optimum, correlation); }
 };
 
-/// Fits like FitRecording, from Search to the maximum likelihood. If `remembers`, estimates the residuals'
+/// Fits like FitRecording, from Search to the maximum likelihood. If `with_autocorrelation`, estimates the residuals'
 /// autocorrelation.
-inline Fitted FitOpenly(Recording recording, FitOptions options, bool remembers = false) {
+inline Fitted FitWithInternals(Recording recording, FitOptions options, bool with_autocorrelation = false) {
   Fitted fitted;
   fitted.recording = std::move(recording);
   fitted.options = std::move(options);
@@ -70,7 +70,7 @@ inline Fitted FitOpenly(Recording recording, FitOptions options, bool remembers 
   if (!optimum) throw std::runtime_error("the trajectory cannot be computed at the solution");
   fitted.optimum = *optimum;
   fitted.residuals = QuantileResiduals(fitted.solution.noise, fitted.recording.value, fitted.solution.readings);
-  if (remembers) {
+  if (with_autocorrelation) {
     Eigen::VectorXd readings;
     Eigen::MatrixXd jacobian;
     fitted.cost->Readings(fitted.solution.parameters, &readings, &jacobian);

@@ -68,8 +68,8 @@ inline SyntheticOptions Released(double angle, std::uint64_t seed) {
   return run;
 }
 
-/// An accurate angle, a coarse angle at another sample rate, and a gyro's rate of a start in motion. The noise is far
-/// above the counts.
+/// An accurate angle, a coarse angle at another sample rate, and a gyro's rate from a start in motion. The noise is
+/// larger than one count.
 inline Recordings MixedRecordings(std::uint64_t seed = 1) {
   SyntheticOptions coarse = Released(0.8, seed + 1);
   coarse.sample_rate = 60;
@@ -83,7 +83,7 @@ inline Recordings MixedRecordings(std::uint64_t seed = 1) {
   return {Must(SimulateRecording(Released(0.5, seed))), Must(SimulateRecording(coarse)), Must(SimulateRecording(gyro))};
 }
 
-/// Two recordings with their separate fits; a problem refers to them.
+/// Two recordings with their separate fits. The result of Problem() refers to them.
 struct TwoRuns {
   FitOptions options;
   Recordings recordings = {Must(SimulateRecording(Released(0.3, 1))), Must(SimulateRecording(Released(0.6, 2)))};
@@ -113,7 +113,8 @@ inline Estimates EstimatesOf(const FitReport& fit, const std::vector<std::string
   return {value, fit.covariance(rows, rows)};
 }
 
-/// (Σ C⁻¹)⁻¹ Σ C⁻¹ p with (Σ C⁻¹)⁻¹: the best linear unbiased combination of independent estimates.
+/// The best linear unbiased combination of independent estimates p with covariances C: the estimate (Σ C⁻¹)⁻¹ Σ C⁻¹ p
+/// with the covariance (Σ C⁻¹)⁻¹.
 inline Estimates Combine(const std::vector<Estimates>& parts) {
   Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(parts[0].value.size(), parts[0].value.size());
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(parts[0].value.size());

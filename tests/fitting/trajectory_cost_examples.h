@@ -82,7 +82,7 @@ void ForEachCase(Visitor&& visit) {
   }
 }
 
-/// Data of the typical parameters, and a trial near these.
+/// Data simulated with the typical parameters, and trial parameters near them.
 struct Example {
   std::vector<double> trial;
   TrajectoryData data;

@@ -32,7 +32,7 @@ void Check(std::string_view content_type, std::string_view body) {
 }  // namespace
 }  // namespace pendulum
 
-/// The first line is the content type; if it is empty, that of a form with a short boundary.
+/// The first line of the input is the content type; if it is empty, a form with a short boundary is assumed.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = pendulum::TextOf(data, size);
   const std::string_view line = text.substr(0, text.find('\n'));

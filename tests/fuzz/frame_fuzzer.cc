@@ -19,7 +19,7 @@ template <class Message>
 void RequireSame(const Message& message) {
   std::vector<std::uint8_t> bytes = CommandBytes(message);
   MessageDecoder decoder;
-  const std::vector<LoggerMessage> again = decoder.Take(bytes);
+  const std::vector<LoggerMessage> again = decoder.Decode(bytes);
   Require(again.size() == 1 && std::holds_alternative<Message>(again.front()) && decoder.rejected() == 0);
   Require(CommandBytes(std::get<Message>(again.front())) == bytes);
 }
@@ -32,15 +32,15 @@ void Check(std::span<const std::uint8_t> bytes) {
   ReceivedRun run(SamplingRate{static_cast<std::uint16_t>(choice % 2 == 0 ? 10000 : 250),
                                static_cast<std::uint8_t>(1 + choice % 64)});
   RestDetector rest;
-  for (const LoggerMessage& message : decoder.Take(bytes)) {
+  for (const LoggerMessage& message : decoder.Decode(bytes)) {
     std::visit([](const auto& each) { RequireSame(each); }, message);
-    if (const auto* data = std::get_if<pendulum_logger::Data>(&message)) run.Take(*data, 0);
-    if (const auto* end = std::get_if<pendulum_logger::End>(&message)) run.TakeEnd(*end);
+    if (const auto* data = std::get_if<pendulum_logger::Data>(&message)) run.AddFrame(*data, 0);
+    if (const auto* end = std::get_if<pendulum_logger::End>(&message)) run.SetEnd(*end);
   }
   for (std::size_t i = 0; i < run.size(); ++i) {
     Require(i == 0 || run.Time(i) > run.Time(i - 1));
     Require(run.Counts(i) >= 0 && run.Counts(i) <= kFullScaleCounts);
-    rest.Take(run.Time(i), run.Counts(i));
+    rest.AddSample(run.Time(i), run.Counts(i));
     rest.IsAtRest();
   }
   Require(run.Losses().samples >= 0 && run.Losses().on_line >= 0);

@@ -21,7 +21,7 @@ inline Calibration CountsToDegrees() {
   return calibration;
 }
 
-/// Options that a user may give with the file; the last byte selects them.
+/// Options that a user may give with the file; `choice`, the last byte of the input, selects them.
 inline ReadOptions Options(std::uint8_t choice) {
   const std::array<ReadOptions, 8> options = {
       ReadOptions(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any request gets a documented, well-formed answer. What it created can be requested, and deleted.
+// Any request gets a documented, well-formed answer. A fit or batch that it creates can be requested and deleted.
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -11,7 +11,7 @@
 namespace pendulum::conclusions_test {
 namespace {
 
-/// 100 samples at 50 Hz, on a clock whose seconds are so many true ones.
+/// 100 samples at 50 Hz on a clock whose second lasts `clock_scale` true seconds.
 Recording EvenSamples(double clock_scale) {
   Recording recording;
   recording.time = Eigen::VectorXd::LinSpaced(100, 0, 1.98);
@@ -32,8 +32,8 @@ TEST(AddConclusions, DerivesTheFrequencyFromTheHalfPeriod) {
   EXPECT_FALSE(report.sampling->expected_frequency_hz);
 }
 
-// sqrt(G / I_O) / 2π = sqrt(1.8 / 0.05) / 2π = 6 / 2π Hz in true seconds; 1.1 times as many cycles in one of the
-// file's.
+// sqrt(G / I_O) / 2π = sqrt(1.8 / 0.05) / 2π = 6 / 2π Hz in true seconds; 1.1 times as many cycles per second of the
+// file's clock.
 TEST(AddConclusions, PredictsTheFrequencyFromTheRigOnTheFilesClock) {
   FreeSwing swing;
   swing.half_period = 0.625;

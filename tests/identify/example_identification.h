@@ -24,8 +24,8 @@ inline ParameterEstimate ExampleParameter(const ParameterInfo& info, std::string
   return parameter;
 }
 
-/// A converged fit of the textbook rig with invented numbers: inertia and viscous free, coulomb at its bound, the rest
-/// fixed. The only correlation is 0.5.
+/// A converged fit of the textbook rig with invented numbers: inertia, viscous friction and release angle are free,
+/// coulomb is at its bound, and the zero is fixed. Inertia and viscous friction have a correlation of 0.5.
 inline FitReport ExampleFit() {
   FitReport fit;
   fit.model = {"coulomb", "coulomb", Gravity::kSine};
@@ -129,7 +129,7 @@ inline ClosedForms ExampleClosedForms() {
   return forms;
 }
 
-/// A row that differs, one that agrees, and one without an error; only the summary of the overlay.
+/// Three rows: one differs, one agrees, and one has no error. Of the overlay only the summary is set.
 inline ClosedFormCheck ExampleCheck() {
   ClosedFormCheck check;
   check.rows = {{"inertia_small_angle", "1 / ω_n² of the linear formulas", "kg m^2", 0.0802, 0.0002, 0.079, 0.0001,
@@ -142,7 +142,7 @@ inline ClosedFormCheck ExampleCheck() {
   return check;
 }
 
-/// Halves that agree, and an inertia that depends on amplitude; friction is fixed. Invented numbers.
+/// Halves that agree, and an inertia that depends on amplitude; the windows have no friction. Invented numbers.
 inline Constancy ExampleConstancy() {
   Constancy constancy;
   constancy.halves = {{"inertia", "kg m^2", 0.079, 0.0791, 0.00025, 0.0004, 0.25},
@@ -159,7 +159,7 @@ inline Constancy ExampleConstancy() {
   return constancy;
 }
 
-/// Only halves that agree, and no trend.
+/// The same with a trend that is not significant.
 inline Constancy ExampleConstant() {
   Constancy constancy = ExampleConstancy();
   constancy.trends[0].p = 0.5;
@@ -204,7 +204,7 @@ inline Comparison ExampleComparison() {
   return comparison;
 }
 
-/// A run with a rig with uncertain masses, and one warning of the recording.
+/// A run with a rig whose values have errors, and one warning of the recording.
 inline Identification ExampleIdentification() {
   Identification report;
   report.data.path = "swing.csv";

@@ -25,7 +25,7 @@ inline SharedParameter ExampleSharedInertia() {
   return inertia;
 }
 
-/// Invented numbers, except those of inertia.
+/// All numbers except those of inertia are invented.
 inline Homogeneity ExampleHomogeneity() {
   SharedParameter viscous = ExampleSharedInertia();
   viscous.name = "viscous";
@@ -59,8 +59,8 @@ inline FitReport ExampleSharedFit() {
   return whole;
 }
 
-/// The example's recording as run.csv, and a second one, "b c.csv", of an earlier release and in motion from the start.
-/// The second one has neither closed forms nor constancy.
+/// The example's recording as run.csv, and a second recording "b c.csv", which begins in motion and has neither closed
+/// forms nor constancy.
 inline Identification ExampleJointIdentification() {
   Identification report;
   report.rig = ExampleIdentification().rig;
@@ -104,7 +104,8 @@ inline Identification ExampleComparedJointIdentification() {
   return report;
 }
 
-/// The example without a joint trajectory: it has only the numbers of the separate fits.
+/// The example with failed fits, because no joint motion can be computed: it has only the estimates of the separate
+/// fits.
 inline Identification ExampleFailedJointIdentification() {
   Identification report = ExampleJointIdentification();
   const auto fail = [](FitReport& fit) {

@@ -61,7 +61,7 @@ TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
   EXPECT_EQ(one->known.rig->gravity_torque.std_dev, 0.01);
   EXPECT_EQ(one->samples, 1500);  // 15 s at 100 Hz (src/docs/examples.md)
   EXPECT_THAT(one->swings.chosen, ElementsAre(1));
-  EXPECT_THAT(one->recording.warnings, IsEmpty());  // the report has them
+  EXPECT_THAT(one->recording.warnings, IsEmpty());  // they are in `known`
 }
 
 TEST_F(PrepareFileTest, PrefersAGivenRig) {

@@ -5,7 +5,7 @@
   run_clang_tidy.py --all        all of them
   run_clang_tidy.py BASE         those that differ from a revision of git, or include a header that differs, directly or
                                  through others; all of them if the checks or the build differ
-  run_clang_tidy.py --self_test  shows on a small tree what the cache remembers
+  run_clang_tidy.py --self_test  tests on a small tree what the cache remembers
 
 A file without findings is remembered in ~/.cache/pendulum_lint (or XDG_CACHE_HOME). It is not checked again until the
 file, a header that it includes, the checks, its compile command or a Debian package with headers changes. Needs the
@@ -82,7 +82,7 @@ def tidy_command(digest):
     include = output("llvm-config-19", "--includedir").strip()
     plugin = build_once(BUILD / f"skip_system_headers_{digest[:16]}.so", "clang++-19", "-std=c++17", "-fPIC", "-shared", "-fno-rtti",
                         f"-I{include}", "tests/lint/skip_system_headers.cc")
-    # It includes the templates that it instantiates, which halves the time per file.
+    # The precompiled header contains the instantiated templates, which halves the time per file.
     header = build_once(BUILD / f"precompiled_{digest[:16]}.pch", "clang++-19", "-fpch-instantiate-templates",
                         *COMPILE_OPTIONS, "-x", "c++-header", "tests/lint/precompiled.h")
     return ["clang-tidy-19", "-p", BUILD, "--quiet", "--warnings-as-errors=*", f"--load={plugin}", "--extra-arg=-Xclang",
@@ -135,7 +135,7 @@ class Lint:
                     mark.unlink()
 
 
-def finds_what_is_planted(command):
+def finds_planted_errors(command):
     """Whether clang-tidy reports a C array in a source file and another in a header that it includes."""
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         source, header = pathlib.Path(folder, "src/planted.cc"), pathlib.Path(folder, "src/planted.h")
@@ -167,7 +167,7 @@ def run(base):
     lint = Lint(tree, commands, digest, tidy_command(digest), CACHE)
     unknown = [path for path in sources if not lint.is_clean(path)]
     print(f"lint: clang-tidy on {len(unknown)} files; {len(sources) - len(unknown)} are known to be clean", flush=True)
-    if unknown and not finds_what_is_planted(lint.command):
+    if unknown and not finds_planted_errors(lint.command):
         fail("clang-tidy does not find the C arrays that were planted for it: its plugin or its checks are at fault.")
     findings = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -200,22 +200,22 @@ def self_test():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text)
         source = root / "src/a/x.cc"
-        expect(False, "a file that was never looked at is clean")
+        expect(False, "a file that was never checked counts as clean")
         if check("sh", "-c", "echo wrong; exit 1") != "wrong\n":
-            failures.append("a finding is not told")
+            failures.append("a finding is not printed")
         if check("sh", "-c", "kill -9 $$") is None:
-            failures.append("a program that was killed finds nothing")
-        expect(False, "a finding is remembered as none")
+            failures.append("a killed program counts as no finding")
+        expect(False, "a file with a finding is remembered as clean")
         check("sh", "-c", f"echo >> {root}/include/pendulum/a/x.h")
-        expect(False, "a header that changed meanwhile is clean")
+        expect(False, "a file whose header changed during the check is remembered as clean")
         check("true")
         expect(True, "a clean file is not remembered")
         (root / "include/pendulum/a/other.h").write_text("int i;\n")
-        expect(True, "a header that is not included matters")
-        expect(False, "other checks do not matter", digest="other checks")
-        expect(False, "another compile command does not matter", how="c++ -O2 x.cc")
+        expect(True, "a changed header that is not included makes the file unknown")
+        expect(False, "the file still counts as clean with other checks", digest="other checks")
+        expect(False, "the file still counts as clean with another compile command", how="c++ -O2 x.cc")
         (root / "include/pendulum/a/y.h").write_text("#pragma once\nint i;\n")
-        expect(False, "a header that a header includes does not matter")
+        expect(False, "a change of an indirectly included header is not noticed")
     return failures
 
 

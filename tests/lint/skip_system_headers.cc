@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clang-tidy plugin (--load) that shows the checks only the project's own declarations. clang-tidy 19 matches those
-// of all headers and then discards the findings in system headers, which takes 85 % of its time.
+// A clang-tidy plugin (--load) that shows the checks only the project's own declarations. clang-tidy 19 matches the
+// declarations of all headers and then discards the findings in system headers, which takes 85 % of its time.
 
 #include <memory>
 #include <string>

@@ -82,7 +82,7 @@ TEST(Dual, HasNoDerivativesForANumber) {
     EXPECT_EQ(number.v[i], 0);
     EXPECT_EQ(parameter.v[i], i == 3 ? 1 : 0);
   }
-  EXPECT_EQ(number, parameter) << "numbers are compared";
+  EXPECT_EQ(number, parameter) << "derivatives are not compared";
 }
 
 TEST(Partials, AddTheProductWithABroadcastNumber) {

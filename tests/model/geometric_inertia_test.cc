@@ -57,7 +57,7 @@ TEST(GeometricInertias, AreGivenForRodAndBobAndPointMass) {
   EXPECT_THAT(inertias[1].value, DoubleNear((kRod + kBob) * kLength * kLength, 1e-15));
 }
 
-// dI = l² dM + l²/3 dm + 2 l (M + m/3) dl; for the point mass l² dm and M + m instead.
+// dI = l² dM + l²/3 dm + 2 l (M + m/3) dl; for the point mass dI = l² dM + l² dm + 2 l (M + m) dl.
 TEST(GeometricInertias, HaveFirstOrderErrors) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   const double square = kLength * kLength;
@@ -69,7 +69,7 @@ TEST(GeometricInertias, HaveFirstOrderErrors) {
 }
 
 // The fitted inertia is I/G, which the recording determines, times G = (M + m/2) g l: d ln G = dM / (M + m/2) + dm / (2
-// M + m) + dl / l + dg / g. These errors are the same as those of the geometry.
+// M + m) + dl / l + dg / g. The geometric inertia has the same errors dM, dm and dl.
 TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
   const std::vector<GeometricInertia> inertias = Inertias(kRodAndBob);
   const double square = kLength * kLength;
@@ -119,7 +119,7 @@ TEST(GeometricInertias, DifferByTheErrorOfGravityAlone) {
   }
 }
 
-TEST(GeometricInertias, TakeAnInertiaThatTheFileNames) {
+TEST(GeometricInertias, UseAnInertiaGivenInTheFile) {
   const std::vector<GeometricInertia> inertias = Inertias(
       R"({"gravity_torque": {"value": 1.8, "std_dev": 0.009}, "inertia": {"value": 0.08, "std_dev": 0.0003}})");
   ASSERT_THAT(inertias, SizeIs(1));

@@ -43,8 +43,8 @@ TEST(MotionModels, LinearIsViscousFrictionWithLinearGravity) {
   EXPECT_EQ(model->gravity, Gravity::kLinear);
 }
 
-// Asymmetric friction has a constant torque, which under linear gravity is the same as another zero.
-TEST(MotionModels, CombineEachFrictionLawWithEachGravityThatDetermineIt) {
+// Asymmetric friction has a constant torque. Under linear gravity it has the same effect as a shift of the zero.
+TEST(MotionModels, CombineFrictionAndGravityLawsThatAFitCanDetermine) {
   std::set<std::pair<std::string_view, std::string_view>> pairs;
   for (const MotionModel& model : MotionModels()) pairs.emplace(model.gravity.name(), model.friction);
   EXPECT_EQ(pairs.size(), GravityModels::kNames.size() * FrictionModels::kNames.size() - 1);

@@ -132,7 +132,7 @@ TEST(ParseRig, NamesAMissingKey) {
   EXPECT_THAT(FaultOf(R"({"gravity_torque": {"std_dev": 1}})"), HasSubstr(R"("gravity_torque" has no "value")"));
 }
 
-TEST(ParseRig, AsksWhichDescriptionIsMeant) {
+TEST(ParseRig, RefusesAnIncompleteDescription) {
   for (const char* const text : {"{}", R"({"gravity": 9.81})", R"({"inertia": 0.076})"}) {
     EXPECT_THAT(FaultOf(text), HasSubstr("the rig has no complete description; it must be {\"bob_mass\""));
   }

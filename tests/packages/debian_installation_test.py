@@ -75,13 +75,13 @@ class DebianInstallationTest(unittest.TestCase):
     def read(self, path):
         return (self.root / path).read_text()
 
-    def test_service_is_there_and_neither_enabled_nor_started(self):
+    def test_service_is_installed_but_neither_enabled_nor_started(self):
         self.dpkg("--install", self.whole)
         self.assertTrue((self.root / "usr/bin/serve_pendulum").exists())
         self.assertEqual(self.systemctl("is-enabled", UNIT), "disabled")
         self.assertEqual([path for path in self.files() if path.startswith("etc/systemd")], [])
 
-    def test_token_is_secret_and_another_one_in_each_installation(self):
+    def test_token_is_secret_and_differs_between_installations(self):
         tokens = set()
         for _ in range(2):
             self.dpkg("--install", self.package)
@@ -91,7 +91,7 @@ class DebianInstallationTest(unittest.TestCase):
             self.dpkg("--purge", "pendulum")
         self.assertEqual(len(tokens), 2)
 
-    def test_upgrade_keeps_what_the_administrator_decided(self):
+    def test_upgrade_keeps_the_changes_of_the_administrator(self):
         self.dpkg("--install", self.package)
         (self.root / "etc/default/serve_pendulum").write_text('OPTIONS="--port 9000"\n')
         (self.root / "etc/pendulum/token").write_text("of the administrator\n")
@@ -102,7 +102,7 @@ class DebianInstallationTest(unittest.TestCase):
         self.assertEqual(self.read("etc/pendulum/token"), "of the administrator\n")
         self.assertEqual(self.systemctl("is-enabled", UNIT), "enabled")
 
-    def test_upgrade_brings_a_new_conffile_where_the_old_one_is_as_it_was(self):
+    def test_upgrade_replaces_an_unchanged_conffile(self):
         self.dpkg("--install", self.package)
         self.dpkg("--install", self.later)
         self.assertIn("# of version 99", self.read("etc/default/serve_pendulum"))
@@ -130,7 +130,7 @@ class DebianInstallationTest(unittest.TestCase):
         self.assertFalse((self.root / "etc/pendulum").exists())
         self.assertFalse((self.root / "var/lib/private/pendulum").exists())
 
-    def test_purge_leaves_a_store_with_something_in_it_and_says_so(self):
+    def test_purge_keeps_a_store_that_is_not_empty_and_says_so(self):
         self.dpkg("--install", self.package)
         store = self.root / "var/lib/private/pendulum/fits.sqlite"
         store.parent.mkdir(parents=True)
@@ -141,7 +141,7 @@ class DebianInstallationTest(unittest.TestCase):
         self.assertTrue((self.root / "var/lib/pendulum").is_symlink())
         self.assertEqual(store.read_text(), "fits")
 
-    def test_scripts_are_refused_an_action_that_dpkg_does_not_know(self):
+    def test_scripts_refuse_an_unknown_action(self):
         scripts = self.root / "control"
         packed.output("dpkg-deb", "--control", self.package, scripts)
         done = subprocess.run([scripts / "postinst", "destroy"], capture_output=True, text=True,

@@ -67,19 +67,19 @@ class DebianTest(unittest.TestCase):
         self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libprometheus-cpp-core1.0", "libssl3", "libstdc++6"})
         self.assertEqual({path.name for path in (self.root / "usr/bin").iterdir()}, tool_names())
 
-    def test_the_guide_goes_along_where_the_service_looks_for_it(self):
+    def test_the_guide_is_where_the_service_looks_for_it(self):
         pages = {path.stem for path in (self.root / "usr/share/doc/pendulum/html").glob("*.html")}
         self.assertLessEqual({path.stem for path in (empty_root.TOP / "src/docs").glob("*.md")}, pages)
 
-    def test_configuration_is_the_administrators(self):
+    def test_configuration_files_are_conffiles(self):
         self.assertEqual(output("dpkg-deb", "--info", self.tools, "conffiles"), "/etc/default/serve_pendulum\n")
 
-    def test_changelog_is_of_this_version(self):
+    def test_changelog_has_this_version(self):
         log = empty_root.TOP / "src/packages/debian/changelog"
         self.assertEqual(output("dpkg-parsechangelog", "--file", log, "--show-field", "Version"),
                          output("dpkg-deb", "--field", self.tools, "Version"))
 
-    def test_lintian_finds_no_error_and_warns_of_nothing(self):
+    def test_lintian_finds_no_error_and_no_warning(self):
         root = ["--allow-root"] if os.geteuid() == 0 else []
         done = subprocess.run(["lintian", *root, "--fail-on", "error,warning", self.tools, self.development],
                               capture_output=True, text=True)
@@ -93,13 +93,13 @@ class DebianTest(unittest.TestCase):
                                                r"\./usr/share/doc/libpendulum-dev/(?:changelog\.gz|copyright)"])
         self.check_dependencies(self.development, {"libceres-dev", "libeigen3-dev"})
 
-    def test_every_header_is_in_it(self):
+    def test_development_package_has_every_header(self):
         ours = {path.relative_to(empty_root.TOP) for path in (empty_root.TOP / "include").rglob("*.h")}
         ours.add(pathlib.Path("include/pendulum_logger/frame.h"))  # from firmware/
         packed = {path.relative_to(self.root / "usr") for path in (self.root / "usr/include").rglob("*.h")}
         self.assertEqual(packed, ours)
 
-    def test_cmake_finds_it(self):
+    def test_cmake_finds_the_installed_package(self):
         with tempfile.TemporaryDirectory() as folder:
             output("cmake", "-S", empty_root.TOP / "tests/consumer", "-B", folder, "-D", f"CMAKE_PREFIX_PATH={self.root}/usr")
             cache = (pathlib.Path(folder) / "CMakeCache.txt").read_text()

@@ -29,9 +29,9 @@ def fill(root, program):
         shutil.copy(path if path.startswith("/") else TOP / path, target)
 
 
-def tell_origin(root, tool):
-    """The loader reads the program's path from /proc and uses only its folder. This link replaces /proc, so no right to
-    mount is needed; it is the same for all tools of a folder."""
+def link_proc_self_exe(root, tool):
+    """Replaces /proc/self/exe by a link to the tool, because the loader reads the program's folder from it and mounting
+    /proc would need root rights. All tools of a folder can use the same link."""
     link = root / "proc/self/exe"
     link.parent.mkdir(parents=True)
     link.symlink_to(tool)

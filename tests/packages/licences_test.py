@@ -17,7 +17,7 @@ import packed
 
 SOURCES = empty_root.TOP / "src"
 PLACES = [pathlib.Path("/usr/include" + folder) for folder in ("", "/eigen3", "/hdf5/serial")]
-# Parts of the compiler, in every program: their licences permit that without a notice (GCC Runtime Library Exception).
+# Parts of the compiler that every program contains. Their licences need no notice (GCC Runtime Library Exception).
 COMPILERS = {"gcc-12", "glibc", "linux"}
 # Shared libraries that the static library Ceres needs. The copyright file names them in a sentence. They are separate
 # packages with their own licences, which the tarball includes.
@@ -71,36 +71,36 @@ class LicencesTest(packed.DebianFilesTest):
         # boost1.74.
         cls.sources = {debian_source(name) for name in cls.named - {"boost", "uplot"}} | {"boost1.74"}
 
-    def test_every_library_that_a_tool_is_linked_with_is_named(self):
+    def test_every_linked_library_is_named(self):
         linked = {tool.name: libraries(tool) for tool in (self.root / "usr/bin").iterdir()}
         package_of = owners(set().union(*linked.values()))
         for tool, paths in linked.items():
             for path in paths:
                 self.assertIn(debian_source(package_of[path]), self.sources | COMPILERS | CERES, f"{tool} is linked with {path}")
 
-    def test_every_header_that_is_compiled_in_is_of_a_package_that_is_named(self):
+    def test_the_package_of_every_included_header_is_named(self):
         packages = packages_of_headers()
         self.assertGreaterEqual(len(packages), 8)
         sources = {debian_source(package) for package in packages}
         self.assertEqual(sources - COMPILERS - self.sources, set())
 
-    def test_nothing_is_named_that_is_not_in_them(self):
+    def test_only_packed_software_is_named(self):
         sources = {debian_source(package) for package in packages_of_headers()}
         self.assertEqual(self.sources - sources, set())
 
-    def test_what_the_pages_are_built_from_is_named(self):
+    def test_the_sources_of_the_pages_are_named(self):
         page = json.loads((SOURCES / "web/package.json").read_text())
         self.assertEqual(set(page["dependencies"]), {"uplot"})
         self.assertIn("uplot", self.named)
         self.assertIn("Copyright (c) 2022 Leon Sorokin", self.text)
 
-    def test_texts_are_whole(self):
+    def test_licence_texts_are_complete(self):
         for name in self.named - {"boost", "uplot"}:
             self.assertIn(pathlib.Path(f"/usr/share/doc/{name}/copyright").read_text(), self.text, name)
         self.assertIn("Boost Software License - Version 1.0", self.text)
         self.assertTrue(self.text.startswith("pendulum: "))
 
-    def test_libraries_package_and_tarball_have_the_same(self):
+    def test_libraries_package_and_tarball_have_the_same_licences(self):
         folder = self.folder / "development"
         packed.output("dpkg-deb", "--extract", empty_root.only_one(self.packages, "libpendulum-dev_*.deb"), folder)
         self.assertEqual((folder / "usr/share/doc/libpendulum-dev/copyright").read_text(), self.text)

@@ -30,10 +30,10 @@ class ManTest(packed.DebianFilesTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout, done.stderr
 
-    def test_each_tool_has_one(self):
+    def test_each_tool_has_a_page(self):
         self.assertEqual(set(self.pages), packed.tool_names())
 
-    def test_each_is_in_the_tarball_too(self):
+    def test_the_tarball_has_each_page(self):
         with tarfile.open(empty_root.only_one(self.packages, "pendulum-*.tar.gz")) as archive:
             members = {pathlib.PurePath(name).name for name in archive.getnames() if "/share/man/man1/" in name}
             self.assertEqual(members, {path.name for path in self.pages.values()})
@@ -50,13 +50,13 @@ class ManTest(packed.DebianFilesTest):
         for name, page in self.pages.items():
             self.assertRegex(packed.output("lexgrog", page), rf': "{name} - [a-z].{{20,80}}"\n\Z')
 
-    def test_sections_are_there_in_their_order(self):
+    def test_sections_are_in_the_usual_order(self):
         for name, page in self.pages.items():
             headings = re.findall(r"^[A-Z][A-Z ]+[A-Z]$", self.render(page)[0], re.MULTILINE)
             self.assertEqual(headings[:len(SECTIONS)], SECTIONS, name)
             self.assertEqual(headings[-1], "SEE ALSO", name)
 
-    def test_every_flag_is_in_it_with_all_that_help_says(self):
+    def test_every_flag_has_the_description_of_help(self):
         for name, page in self.pages.items():
             text = " ".join(self.render(page)[0].split())
             said = packed.flags(self.root / "usr/bin" / name)
@@ -64,7 +64,7 @@ class ManTest(packed.DebianFilesTest):
             for flag, description in said.items():
                 self.assertIn(f" --{flag} {description}", text, name)
 
-    def test_exit_codes_are_those_of_help(self):
+    def test_exit_codes_equal_those_of_help(self):
         for name, page in self.pages.items():
             text = self.render(page)[0]
             section = text[text.index("\nEXIT STATUS\n"):].split("\n\n")
@@ -75,8 +75,8 @@ class ManTest(packed.DebianFilesTest):
             self.assertEqual(listed, [int(code) for code in codes], name)
             self.assertLessEqual({0, 2, 70}, set(listed), name)
 
-    def test_pages_that_it_refers_to_are_ours_or_known(self):
-        # In packages that ours suggests, or in the system.
+    def test_pages_in_see_also_exist(self):
+        # Pages of the system, and of packages that our package suggests.
         others = {"curl", "gnuplot", "nginx", "sqlite3", "systemctl"}
         for name, page in self.pages.items():
             section = self.render(page)[0].partition("\nSEE ALSO\n")[2]

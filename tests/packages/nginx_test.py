@@ -25,7 +25,7 @@ BIN = pathlib.Path()
 NAME = "pendulum.example.org"
 TOKEN = "0123456789abcdef" * 4
 RECORDING = empty_root.TOP / empty_root.DATA[0]
-PATIENCE = 60  # s, for answers that come at once unless they are lost
+PATIENCE = 60  # s; answers usually come at once, so a longer wait means that one is lost
 
 
 def free_ports(count):
@@ -154,7 +154,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertEqual((answer.json()["status"], answer.json()["code"]), (status, code))
         self.assertEqual(answer.fields["strict-transport-security"], "max-age=31536000")
 
-    def test_nginx_finds_nothing_to_say_of_the_example(self):
+    def test_nginx_accepts_the_example_without_a_warning(self):
         self.assertEqual(self.checked.returncode, 0, self.checked.stderr)
         self.assertNotIn("[warn]", self.checked.stderr)
 
@@ -173,12 +173,12 @@ class NginxTest(packed.DebianFilesTest):
                                 capture_output=True, text=True, check=True).stdout
         self.assertEqual(answer.body.decode(), fitted.replace(json.dumps(str(RECORDING)), "null"))
 
-    def test_token_is_asked_for_through_nginx(self):
+    def test_token_is_required_through_nginx(self):
         self.check_problem(self.post_recording("/v1/fits", token=None), 401, "unauthorized")
         self.check_problem(self.post_recording("/v1/fits", token="another one"), 401, "unauthorized")
         self.assertEqual(self.ask("/healthz", token=None).status, 200)
 
-    def test_page_of_this_origin_may_ask_and_another_may_not(self):
+    def test_only_pages_of_this_origin_may_send_requests(self):
         own = self.ask("/v1/fits", "--header", f"Origin: https://{NAME}:{self.https}", "--header", "Sec-Fetch-Site: same-origin")
         self.assertEqual(own.status, 200, own.body)
         other = self.ask("/v1/fits", "--header", "Origin: https://elsewhere.example.org")
@@ -190,7 +190,7 @@ class NginxTest(packed.DebianFilesTest):
         answer = self.ask("/v1/fits", "--data-binary", f"@{large}", "--header", "Content-Type: text/csv")
         self.check_problem(answer, 413, "too_large")
 
-    def test_limits_and_times_are_in_step_with_the_flags(self):
+    def test_limits_and_times_match_the_flags(self):
         """Compares the texts, so that a change of one default requires the change of the other."""
         text = (self.root / "usr/share/doc/pendulum/examples/nginx.conf").read_text()
         default = packed.default_numbers(self.root / "usr/bin/serve_pendulum")
@@ -198,7 +198,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertGreater(int(re.search(r"proxy_read_timeout (\d+)s;", text)[1]), default["fit_seconds"])
         self.assertEqual(re.search(r"server 127\.0\.0\.1:(\d+);", text)[1], str(default["port"]))
 
-    def test_streams_of_the_service_are_the_ones_that_nginx_does_not_buffer(self):
+    def test_nginx_buffers_no_stream_of_the_service(self):
         """nginx passes chunks from the service on at once, so only its configuration shows whether it may wait."""
         location = re.search(r"location ~ (\S+) \{([^}]*)\}", self.example())
         self.assertIn("proxy_buffering off;", location[2])
@@ -207,7 +207,7 @@ class NginxTest(packed.DebianFilesTest):
         self.assertEqual(len(streams), 2)
         self.assertEqual({path for path in paths if re.search(location[1], path.replace("{id}", "4f1c"))}, streams)
 
-    def test_metrics_are_not_for_the_world(self):
+    def test_metrics_are_not_public(self):
         self.assertEqual(self.ask("/metrics").status, 404)
 
     def stream(self, path):
@@ -245,7 +245,7 @@ class NginxTest(packed.DebianFilesTest):
             part.flush()
             self.assertEqual(self.next_samples(lines), [0.3])
 
-    def test_events_of_a_batch_come_to_their_end(self):
+    def test_events_of_a_batch_arrive_completely(self):
         runs = [item for _ in range(2) for item in ("--form", f"data=@{RECORDING};type=text/csv")]
         made = self.ask("/v1/batches?model=viscous", *runs)
         self.assertEqual(made.status, 202, made.body)
@@ -261,7 +261,7 @@ class NginxTest(packed.DebianFilesTest):
         command += ["--output", os.devnull] * count + [f"https://{NAME}:{self.https}/healthz"] * (count - 1)
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
-    def test_too_many_requests_of_one_address_are_told_so(self):
+    def test_too_many_requests_of_one_address_get_429(self):
         answers = set()
         for _ in range(10):  # on a stalled machine they are not simultaneous, and all are accepted
             if len(answers) < 2:

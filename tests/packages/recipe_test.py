@@ -46,7 +46,7 @@ class RecipeTest(unittest.TestCase):
         for sections in (self.build_sections, self.final_sections):
             yield from ((name, "\n".join(lines)) for name, lines in sections.items() if name in SCRIPTS)
 
-    def test_stages_and_sections_are_apptainers(self):
+    def test_stages_and_sections_are_known_to_apptainer(self):
         self.assertEqual(self.build, {"Bootstrap": "docker", "From": "debian:12", "Stage": "build"})
         self.assertEqual(self.final, {"Bootstrap": "docker", "From": "debian:12-slim", "Stage": "final"})
         for sections in (self.build_sections, self.final_sections):
@@ -56,7 +56,7 @@ class RecipeTest(unittest.TestCase):
         self.assertEqual(list(self.final_sections),
                          ["files from build", "environment", "runscript", "test", "labels", "help"])
 
-    def test_files_are_in_the_sources(self):
+    def test_files_exist_in_the_sources(self):
         for line in self.build_sections["files"]:
             source, target = line.split()
             self.assertTrue((empty_root.TOP / source).exists(), source)
@@ -66,7 +66,7 @@ class RecipeTest(unittest.TestCase):
         for line in self.final_sections["labels"]:
             self.assertRegex(line.strip(), r"\A[a-z.]+ \S.*\Z")
 
-    def test_scripts_are_a_shells(self):
+    def test_scripts_are_valid_shell(self):
         for name, script in self.scripts():
             done = subprocess.run(["sh", "-n"], input=script, capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
@@ -96,7 +96,7 @@ class RecipeTest(unittest.TestCase):
             (image / target[1:]).mkdir(parents=True)
             shutil.copytree(folder / "stage" / source[1:], image / target[1:] / pathlib.Path(source).name)
         empty_root.fill(image, BIN / "fit_pendulum")
-        empty_root.tell_origin(image, "/opt/pendulum/bin/fit_pendulum")
+        empty_root.link_proc_self_exe(image, "/opt/pendulum/bin/fit_pendulum")
         (image / "bin").mkdir(exist_ok=True)
         shutil.copy("/bin/sh", image / "bin/sh")
         return image

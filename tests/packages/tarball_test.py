@@ -28,7 +28,7 @@ class TarballTest(unittest.TestCase):
             archive.extractall(cls.root / "of a user/who likes  blanks")
         cls.prefix = cls.root / "of a user/who likes  blanks" / cls.tarball.name.removesuffix(".tar.gz")
         cls.tools = [f"/{path.relative_to(cls.root)}" for path in sorted((cls.prefix / "bin").iterdir())]
-        empty_root.tell_origin(cls.root, cls.tools[0])
+        empty_root.link_proc_self_exe(cls.root, cls.tools[0])
         cls.libraries = sorted((cls.prefix / "lib").iterdir())
 
     def run_tool(self, tool, *arguments, **environment):
@@ -36,7 +36,7 @@ class TarballTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
-    def test_root_holds_only_glibc_the_data_and_the_tarball(self):
+    def test_root_has_only_glibc_the_data_and_the_tarball(self):
         outside = [path for path in self.root.rglob("*") if path.is_file() and self.prefix not in path.parents]
         libraries = [path for path in outside if path.parent != self.root / "datasets"]
         self.assertGreaterEqual(len(libraries), 3)  # libc, libm, the loader
@@ -54,26 +54,26 @@ class TarballTest(unittest.TestCase):
             name = path.rsplit("/", 1)[1]
             self.assertRegex(self.run_tool(name, "--version"), rf"\A{name} .*\d+\.\d+\.\d+")
 
-    def test_fits_like_the_tool_that_was_not_packed_byte_for_byte(self):
+    def test_results_equal_those_of_the_built_tool_byte_for_byte(self):
         unpacked = subprocess.run([BIN / "fit_pendulum", *empty_root.FIT], cwd=empty_root.TOP, check=True,
                                   capture_output=True, text=True).stdout
         self.assertIn('"inertia"', unpacked)
         self.assertEqual(self.run_tool("fit_pendulum", *empty_root.FIT), unpacked)
 
-    def test_libraries_in_LD_LIBRARY_PATH_are_not_in_the_way(self):
+    def test_libraries_in_LD_LIBRARY_PATH_are_ignored(self):
         modules = self.prefix / "modules of others"
         modules.mkdir()
         for library in self.libraries:
             (modules / library.name).write_text("of another program\n")
         self.run_tool("fit_pendulum", *empty_root.FIT, LD_LIBRARY_PATH=f"/{modules.relative_to(self.root)}")
 
-    def test_tools_look_for_libraries_beside_themselves_and_nowhere_else(self):
+    def test_tools_search_libraries_only_in_their_own_lib_folder(self):
         for path in [*(self.root / tool[1:] for tool in self.tools), *self.libraries]:
             dynamic = subprocess.run(["readelf", "--wide", "--dynamic", path], check=True, capture_output=True, text=True)
             expected = [("RPATH", "$ORIGIN/../lib")] if path.parent.name == "bin" else []
             self.assertEqual(re.findall(r"\((RPATH|RUNPATH)\).*\[(.*)\]", dynamic.stdout), expected, path.name)
 
-    def test_nothing_tells_where_it_was_built(self):
+    def test_no_file_contains_the_build_path(self):
         for path in (path for path in self.prefix.rglob("*") if path.is_file()):
             self.assertNotIn(f"{empty_root.TOP}/".encode(), path.read_bytes(), path.name)
 
@@ -83,7 +83,7 @@ class TarballTest(unittest.TestCase):
         for library in self.libraries:
             self.assertNotRegex(library.name, rf"\A{empty_root.GLIBC}\Z")
 
-    def test_licences_go_along(self):
+    def test_licences_are_included(self):
         for name in ("LICENSE", "README.md"):
             self.assertEqual((self.prefix / name).read_bytes(), (empty_root.TOP / name).read_bytes())
         documents = self.prefix / "share/doc"
@@ -93,14 +93,14 @@ class TarballTest(unittest.TestCase):
             for name in re.findall(r"/usr/share/common-licenses/([A-Za-z0-9]+(?:-\d+(?:\.\d+)*)?)", licence.read_text()):
                 self.assertTrue((documents / "common-licenses" / name).exists(), f"{licence} refers to {name}")
 
-    def test_the_guide_goes_along_with_its_recordings(self):
+    def test_the_guide_is_included_with_its_recordings(self):
         documents = self.prefix / "share/doc/pendulum"
         self.assertLessEqual({path.stem for path in (empty_root.TOP / "src/docs").glob("*.md")},
                              {path.stem for path in (documents / "html").glob("*.html")})
         for path in (empty_root.TOP / "datasets").glob("*.csv"):
             self.assertEqual((documents / "examples/datasets" / path.name).read_bytes(), path.read_bytes())
 
-    def test_scripts_for_clusters_go_along_as_programs(self):
+    def test_scripts_for_clusters_are_included_as_programs(self):
         scripts = empty_root.TOP / "scripts/cluster"
         for script in (path for path in scripts.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
             packed = self.prefix / "share/pendulum" / script.relative_to(scripts)

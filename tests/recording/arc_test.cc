@@ -53,7 +53,7 @@ TEST(FitArc, DetectsTheDirectionOfY) {
 
 /// Over 300 seeds the squared distance to the truth, weighted with the covariance, is χ² with 3 degrees of freedom. Its
 /// mean is 3 ± 0.14.
-TEST(FitArc, HasErrorsAsStated) {
+TEST(FitArc, HasErrorsThatMatchTheCovariance) {
   double sum = 0;
   constexpr int kSeeds = 300;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {

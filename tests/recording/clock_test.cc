@@ -162,11 +162,12 @@ struct Rounding {
   double grid;
   double rate_hz;
   double start;
-  double freedom = 0.1;  // In grid steps: largest error that the stamps permit.
+  double freedom = 0.1;  // Largest error that the stamps permit, in grid steps.
 };
 
-/// Compares with the true clock, from which the stamps were rounded, except for a common shift that rounding hides.
-void ExpectTheClockBack(const Rounding& rounding, const std::function<double(double)>& round) {
+/// Rounds the stamps of a true clock and expects that RepairClock recovers the clock, except for a constant shift,
+/// which rounding hides.
+void ExpectTheTrueClock(const Rounding& rounding, const std::function<double(double)>& round) {
   const auto truth = [&](int i) { return rounding.start + i / rounding.rate_hz; };
   const auto stamp = [&](int i) { return std::round(round(truth(i) / rounding.grid) * rounding.grid * 1e9) / 1e9; };
   const RawSamples repaired = Repaired(Rows(Stamps(900, stamp)));
@@ -183,12 +184,12 @@ TEST(RepairClock, FindsTheUniformClockOfCoarseStamps) {
   // At 29.97 Hz three successive rows share a stamp of 0.1 s, except for one slip in 1000 rows.
   for (const Rounding& rounding : {Rounding{0.1, 30, 0.013}, Rounding{1, 30, 0.4}, Rounding{0.1, 29.97, 100, 0.34},
                                    Rounding{0.01, 30, 3.3}, Rounding{0.1, 12, 0}, Rounding{0.01, 83.1, 0}}) {
-    ExpectTheClockBack(rounding, [](double x) { return std::round(x); });
-    ExpectTheClockBack(rounding, [](double x) { return std::floor(x); });
+    ExpectTheTrueClock(rounding, [](double x) { return std::round(x); });
+    ExpectTheTrueClock(rounding, [](double x) { return std::floor(x); });
   }
 }
 
-/// 100 Hz, rounded by `round`.
+/// Stamps at 100 Hz, rounded to the grid by `round`.
 RawSamples Coarse(int seconds, double grid, double start, const std::function<double(double)>& round) {
   // Whole hundredths are divided, so a stamp halfway between two steps stays halfway: 0.5 s = 50 counts of 0.01 s.
   const double counts = std::round(100 * grid);
@@ -199,12 +200,12 @@ TEST(RepairClock, GivesTheUncertaintyOfTheRate) {
   for (const int seconds : {20, 30}) {
     for (const double grid : {0.1, 0.5, 1.0}) {
       for (const double start : {0.0, 0.03, 0.27, 17.48}) {
-        for (const bool is_cut_off : {false, true}) {
-          const auto round = [&](double x) { return is_cut_off ? std::floor(x) : std::round(x); };
+        for (const bool is_truncated : {false, true}) {
+          const auto round = [&](double x) { return is_truncated ? std::floor(x) : std::round(x); };
           const RawSamples samples = Coarse(seconds, grid, start, round);
           const RawSamples repaired = Repaired(samples);
           const std::string name = std::to_string(seconds) + " s, " + std::to_string(grid) + " s from " +
-                                   std::to_string(start) + (is_cut_off ? ", cut off" : "");
+                                   std::to_string(start) + (is_truncated ? ", truncated" : "");
           ASSERT_EQ(repaired.warnings.at(0).code, "time_rounded") << name;
           EXPECT_LE((repaired.time - samples.time).cwiseAbs().maxCoeff(), (0.5 + 1e-6) * grid) << name;
           const double step = (repaired.time[100 * seconds] - repaired.time[0]) / (100 * seconds);
@@ -218,8 +219,8 @@ TEST(RepairClock, GivesTheUncertaintyOfTheRate) {
   }
 }
 
-/// At both limits the band that contains the stamps is one step wide. Its width is convex in the slope, so it is larger
-/// outside.
+/// At both limits of the slope, the band that contains the stamps is one step wide. The width is convex in the slope,
+/// so the band is wider beyond the limits.
 TEST(RepairClock, AllowsExactlyTheSlopesThatFitAllStamps) {
   std::mt19937 random(19);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -245,8 +246,9 @@ TEST(RepairClock, AllowsExactlyTheSlopesThatFitAllStamps) {
 }
 
 TEST(RepairClock, ReportsTheRepairOfCoarseStamps) {
-  // Rows 2 and 898, and rows 1 and 899, are a third of a step off, towards and away from each other. So 0.3 s is at
-  // most 1 / 896 too long or 1 / 898 too short.
+  // Rounding moves rows 2 and 898 towards each other, and rows 1 and 899 away from each other, by a third of a step
+  // each. A sixth of a step, half a row, remains at each end. So the sampling interval is too long by at most
+  // 1 / 896 or too short by at most 1 / 898.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
             "time_rounded: run.csv:2: the times are rounded to 0.1 s, which is coarse compared with the sampling "
             "interval. They were replaced by a uniform clock of 30 Hz, which assumes uniform sampling. Clocks within "

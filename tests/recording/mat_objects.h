@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-/// Objects for tests in MATLAB's file format, written from what is known of its files, independently of the reader.
+/// Objects for tests in MATLAB's file format. They follow what is known of MATLAB's files, independently of the reader.
 /// This file contains the parts common to all versions.
 namespace pendulum::objects {
 
@@ -18,8 +18,8 @@ struct Array {
   std::vector<std::size_t> sizes;
   std::vector<double> numbers;
   std::string text;
-  std::vector<std::string> names;  // Of a structure's fields.
-  std::vector<Array> parts;        // Its fields, or its cells.
+  std::vector<std::string> names;  // Names of a structure's fields.
+  std::vector<Array> parts;        // Fields of a structure, or cells of an array.
 };
 
 using Fields = std::vector<std::pair<std::string, Array>>;
@@ -63,7 +63,7 @@ class File {
     return classes_.size();
   }
 
-  /// `is_saved`: its class has a function saveobj. Flags and enumerations are in the table, not in a cell.
+  /// `is_saved`: the object's class has a function saveobj. Flags and enumerations are in the table, not in a cell.
   std::size_t AddObject(std::size_t class_id, const Fields& properties, bool is_saved = false,
                         const std::vector<std::pair<std::string, std::uint32_t>>& flags = {}) {
     std::vector<std::uint32_t> block;

@@ -47,7 +47,7 @@ class Writer73 {
   }
 
  private:
-  static void Say(hid_t object, const char* name, int number) {
+  static void WriteNumberAttribute(hid_t object, const char* name, int number) {
     const hid_t space = H5Screate(H5S_SCALAR);
     const hid_t attribute = H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT);
     H5Awrite(attribute, H5T_NATIVE_INT, &number);
@@ -55,7 +55,7 @@ class Writer73 {
     H5Sclose(space);
   }
 
-  static void SayClass(hid_t object, const std::string& name) {
+  static void WriteClassAttribute(hid_t object, const std::string& name) {
     const hid_t space = H5Screate(H5S_SCALAR), type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, name.size());
     const hid_t attribute = H5Acreate2(object, "MATLAB_class", type, space, H5P_DEFAULT, H5P_DEFAULT);
@@ -95,11 +95,11 @@ class Writer73 {
       H5Rcreate(&references.emplace_back(), values_, own.c_str(), H5R_OBJECT, -1);
     }
     const hid_t dataset = Dataset(group, name, cells.sizes, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, references.data());
-    SayClass(dataset, class_name);
+    WriteClassAttribute(dataset, class_name);
     H5Dclose(dataset);
   }
 
-  static void SayFields(hid_t object, const std::vector<std::string>& names) {
+  static void WriteFieldNames(hid_t object, const std::vector<std::string>& names) {
     std::vector<hvl_t> fields;
     for (const std::string& name : names) fields.push_back({name.size(), const_cast<char*>(name.data())});
     const hsize_t size = fields.size();
@@ -114,8 +114,8 @@ class Writer73 {
 
   void WriteStructure(hid_t group, const std::string& name, const Array& structure) {
     const hid_t own = H5Gcreate2(group, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    SayClass(own, "struct");
-    if (!structure.names.empty()) SayFields(own, structure.names);
+    WriteClassAttribute(own, "struct");
+    if (!structure.names.empty()) WriteFieldNames(own, structure.names);
     for (std::size_t i = 0; i < structure.parts.size(); ++i) Write(own, structure.names[i], structure.parts[i]);
     H5Gclose(own);
   }
@@ -128,7 +128,7 @@ class Writer73 {
     if (is_empty) {
       const std::vector<std::uint64_t> sizes(array.sizes.begin(), array.sizes.end());
       dataset = Dataset(group, name, {sizes.size()}, H5T_STD_U64LE, H5T_NATIVE_UINT64, sizes.data());
-      Say(dataset, "MATLAB_empty", 1);
+      WriteNumberAttribute(dataset, "MATLAB_empty", 1);
     } else if (array.kind == "char") {
       const std::vector<std::uint16_t> letters(array.text.begin(), array.text.end());
       dataset = Dataset(group, name, array.sizes, H5T_STD_U16LE, H5T_NATIVE_UINT16, letters.data());
@@ -136,8 +136,8 @@ class Writer73 {
       dataset = Dataset(group, name, array.sizes, TypeOf(array.kind), H5T_NATIVE_DOUBLE, array.numbers.data(),
                         is_packed_ && array.numbers.size() > 6);  // MATLAB compresses larger arrays
     }
-    if (array.kind == "object") Say(dataset, "MATLAB_object_decode", 3);
-    SayClass(dataset, array.kind == "object" ? array.text : array.kind);
+    if (array.kind == "object") WriteNumberAttribute(dataset, "MATLAB_object_decode", 3);
+    WriteClassAttribute(dataset, array.kind == "object" ? array.text : array.kind);
     H5Dclose(dataset);
   }
 

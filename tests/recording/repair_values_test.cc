@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Le;
 
-/// amplitude * cos(5 t) about a middle at 100 Hz, without noise.
+/// middle + amplitude * cos(5 t), sampled at 100 Hz without noise.
 Recording Wave(double amplitude, double middle = 0, Eigen::Index count = 1000) {
   Recording recording;
   recording.time = Eigen::ArrayXd::LinSpaced(count, 0, 0.01 * static_cast<double>(count - 1));
@@ -91,7 +91,7 @@ TEST(RepairValues, UnwrapsALargeSwingBeyondHalfATurn) {
 
 TEST(RepairValues, KeepsAnAngleOfMoreThanATurn) {
   Recording recording = Wave(2.0);
-  recording.value.tail(500).array() += 2 * kPi;  // cause unknown
+  recording.value.tail(500).array() += 2 * kPi;  // a jump of unknown cause
   const Recording repaired = RepairValues(recording);
   EXPECT_EQ(repaired.value, recording.value);
 }

@@ -106,7 +106,7 @@ TEST(FindResolution, IsFoundAfterConversionToRadians) {
             0);
 }
 
-TEST(FindResolution, IsTheSensorsNotTheDecimals) {
+TEST(FindResolution, IsTheSensorsStepNotThePrintedStep) {
   for (const int decimals : {2, 3, 4, 6}) {
     SCOPED_TRACE(decimals);
     EXPECT_EQ(WrongOf200(kPotentiometer,

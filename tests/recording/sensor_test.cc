@@ -95,7 +95,7 @@ TEST(Calibration, FindsTheReadingNearestToTheGivenOne) {
   const Calibration parabola = CalibrationOf(With("coefficients", "[-1, 0, 1]"));
   EXPECT_NEAR(parabola.Reading(3 * kDegree, 1.5), 2, 1e-12);
   EXPECT_NEAR(parabola.Reading(3 * kDegree, -1.5), -2, 1e-12);
-  EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // flat there: neither side is nearer
+  EXPECT_EQ(parabola.Reading(3 * kDegree, 0), 0);  // the slope is 0 there: returns the given reading
 }
 
 TEST(Calibration, ConvertsItsUnit) {
@@ -148,7 +148,7 @@ TEST(ParseCalibration, RefusesAnInvalidCovariance) {
             R"(cal.json: "covariance" has a row of 1 numbers; it must be one row of 2 numbers for each of the 2 )"
             "coefficients");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0.5], [0.25, 1]]")),
-            R"(cal.json: "covariance" is not symmetric: 0.25 and 0.5 are symmetric to each other and must be equal)");
+            R"(cal.json: "covariance" is not symmetric: the mirrored elements 0.25 and 0.5 must be equal)");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 0], [0, -1]]")),
             R"(cal.json: "covariance" has the variance -1; variances must be 0 or more)");
   EXPECT_EQ(FaultOf(With("covariance", "[[1, 3], [3, 4]]")),

@@ -18,7 +18,7 @@ struct Series {
   std::vector<double> times;
   double start = 0, increment = 0.01, length = 8;
   std::string time_unit, data_unit, name;  // Empty: default.
-  bool is_unit_emptied = false;            // For the time.
+  bool is_unit_emptied = false;            // The unit of time is stored as an empty text.
   Array storage = Nothing();
 };
 

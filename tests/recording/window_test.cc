@@ -75,7 +75,7 @@ TEST(SelectWindow, RefusesAStartNotBeforeTheEnd) {
   EXPECT_EQ(FaultOf(15.0, 12.5).message, "the window [15, 12.5] s is empty; its start must be before its end");
 }
 
-TEST(SelectWindow, RefusesFewerThanEightSamplesWithTheSpan) {
+TEST(SelectWindow, RefusesFewerThanEightSamplesAndNamesTheSpans) {
   const Status fault = FaultOf(12.0, 15.0);  // 12, 12.5, ..., 15: seven samples.
   EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(fault.message,

@@ -61,9 +61,10 @@ TEST(CalibrationText, ShowsTheReferenceTableAsPublished) {
     that was not fitted ("left out" above).
     The resolution is 0.1985 deg, one count; the residuals, up to 2.21 deg at
     261 counts (line 5), are an order of magnitude above it (11 counts).
-    Rounding to counts would leave a standard deviation of 0.0573 deg, but they
-    have 1.19 deg (χ², p < 1e-99): lack of fit. The sensor deviates from the
-    curve, or the angles were set less accurately than the sensor resolves them.
+    Rounding to counts would leave a standard deviation of 0.0573 deg, but the
+    residuals' standard deviation is 1.19 deg (χ², p < 1e-99): lack of fit. The
+    sensor deviates from the curve, or the angles were set less accurately than
+    the sensor resolves them.
     A curve of order 2 is not significantly better (F(1, 4) 2.44, p 0.19).
     Outside 19 to 475 counts the curve is extrapolated.
 )");
@@ -128,9 +129,10 @@ TEST(CalibrationText, ExplainsMissingErrors) {
 TEST(CalibrationText, ReportsWhereTheCurveTurnsInTheSensorsRange) {
   // 60 - (x - 60)² / 60 rises up to 60 counts, which is outside the table.
   const CalibrationTable table = TableOf("counts,angle_deg\n0,0\n10,18\n20,33\n30,45\n40,53\n");
-  EXPECT_THAT(Unwrapped(TextOf(table, 2, SensorRange{0, 1023})),
-              AllOf(HasSubstr("sensor's range 0 to 1023 counts"), HasSubstr("In the sensor's range it turns at about "),
-                    EndsWith(" counts: readings beyond it would give wrong angles. ")));
+  EXPECT_THAT(
+      Unwrapped(TextOf(table, 2, SensorRange{0, 1023})),
+      AllOf(HasSubstr("sensor's range 0 to 1023 counts"), HasSubstr("In the sensor's range the curve turns at about "),
+            EndsWith(" counts: readings beyond it would give wrong angles. ")));
   EXPECT_THAT(TextOf(table, 2, SensorRange{0, 45}), Not(HasSubstr("turns")));
 }
 

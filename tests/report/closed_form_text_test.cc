@@ -137,7 +137,7 @@ TEST(ClosedFormText, OmitsTheMiddleOfManyTurningPoints) {
   const std::vector<std::string> lines = TurningPointLines(ReportWithTurningPoints(20));
   ASSERT_EQ(lines.size(), 13);
   EXPECT_THAT(lines[9], StartsWith("        10 "));
-  EXPECT_EQ(lines[10], "    ... 8 more: --series");
+  EXPECT_EQ(lines[10], "    ... 8 more turning points; write all of them with --series");
   EXPECT_THAT(lines[11], StartsWith("        19 "));
   EXPECT_THAT(lines[12], StartsWith("        20 "));
 }
@@ -152,7 +152,7 @@ TEST(ClosedFormText, ListsSixtyTurningPointsWithoutAFit) {
   longer.fits.clear();
   const std::vector<std::string> lines = TurningPointLines(longer);
   ASSERT_EQ(lines.size(), 61);
-  EXPECT_EQ(lines[58], "    ... 1 more: --series");
+  EXPECT_EQ(lines[58], "    ... 1 more turning point; write all of them with --series");
   EXPECT_THAT(lines[60], StartsWith("        61 "));
 }
 

@@ -25,10 +25,10 @@ TEST(ComparisonSections, StartWithTheRecommendation) {
     coulomb           4      0.200   0.0            1   0.12
     drag              -       28.6     -            -   0.12  lack of fit
     BIC of independent residuals.
-    Prediction of samples that were left out of the fit, block by block, and of
-    the last part from the first: rms of measured - predicted, and rms of the
-    same over its predicted standard deviation, which is 1 if model and errors
-    are right.
+    Prediction of samples that were left out of the fit: block by block, and of
+    the last part from the first part. rms: of measured - predicted;
+    standardized: rms of this difference over its predicted standard deviation,
+    which is 1 if model and errors are right.
     model    blocks [deg]  standardized  last part [deg]  standardized
     coulomb         0.201          1.01            0.229          1.12
     drag                -             -                -             -
@@ -59,7 +59,7 @@ TEST(ComparisonSections, ExplainMissingPredictions) {
   const std::string text = ComparisonText(report);
   EXPECT_THAT(text, Not(HasSubstr("standardized")));
   EXPECT_THAT(text, HasSubstr("    coulomb, left-out blocks: shorter than three periods.\n"
-                              "    coulomb, last part: the same.\n    drag is not compared"));
+                              "    coulomb, last part: for the same reason.\n    drag is not compared"));
   row.forward.reason = "it ends early";
   EXPECT_THAT(ComparisonText(report), HasSubstr("    coulomb, last part: it ends early.\n"));
 }
@@ -73,7 +73,7 @@ TEST(ComparisonSections, UseTheUnitOfTheReadings) {
 
 TEST(ComparisonSections, AreEmptyForOneModel) { EXPECT_EQ(ComparisonText(ExampleIdentification()), ""); }
 
-TEST(ConstancySections, AreOneSentenceIfAllIsConstant) {
+TEST(ConstancySections, AreOneSentenceIfNothingChanges) {
   EXPECT_EQ(ConstancyText(ExampleIdentification()),
             "[[Constancy]]\n    inertia and friction are constants of the recording.\n");
 }

@@ -43,7 +43,7 @@ TEST(CoverageText, HasALinePerParameterAndPerScenario) {
             "breeze          1000        998       1       1  a window left open\n");
 }
 
-TEST(CoverageText, NamesWhatMisses) {
+TEST(CoverageText, NamesTheViolatedPartOfTheRule) {
   CoverageStudy study = ExampleStudy();
   study.rows[0].precise = false;
   study.rows[1].precise = false;

@@ -102,7 +102,7 @@ TEST(JointFitJson, ReportsALackOfFitPerRecording) {
   EXPECT_EQ(run["constancy_reason"], "it was not tested");
 }
 
-// The numbers are those of ExampleSharedInertia, calculated there.
+// ExampleSharedInertia contains these numbers and their calculation.
 TEST(JointFitJson, ReportsSeparateEstimates) {
   const Json inertia = HomogeneityOf(ExampleJointIdentification())["parameters"]["inertia"];
   EXPECT_EQ(
@@ -155,7 +155,7 @@ TEST(JointFitJson, ReportsAmplitudeDependence) {
             R"("span":0.0078125,"p_of_remainder":0.75}])");
 }
 
-TEST(JointFitJson, HasAnRmsForCommonUnits) {
+TEST(JointFitJson, HasAnRmsOnlyIfTheReadingsHaveOneUnit) {
   Identification report = ExampleJointIdentification();
   EXPECT_EQ(JointFitJson(report, 0)["statistics"].dump(),
             R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
@@ -174,7 +174,7 @@ TEST(ToJson, ComparesInSigmasForDifferentUnits) {
   EXPECT_EQ(row["cross_validation"]["rms_sigma"], 0.0035);
 }
 
-TEST(JointFitJson, WritesAnEquationIfAllIsShared) {
+TEST(JointFitJson, WritesAnEquationIfAllParametersAreShared) {
   Identification report = ExampleJointIdentification();
   EXPECT_THAT(JointFitJson(report, 0)["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
   report.joint[0].shared = {"inertia", "viscous"};
@@ -191,7 +191,7 @@ TEST(JointFitJson, HasNoNumbersOfAFailedFit) {
   EXPECT_EQ(fit["runs"][1]["parameters"]["inertia"]["reason"], "the fit failed");
 }
 
-// dump() would also write null for each, but without a reason.
+// dump() would write null for each of these numbers, too, but without a reason.
 TEST(JointFitJson, ExplainsNonFiniteNumbers) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Identification report = ExampleJointIdentification();

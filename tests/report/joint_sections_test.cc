@@ -28,7 +28,7 @@ std::vector<std::string> Titles(const Sections& sections) {
   return titles;
 }
 
-/// The section of that title, as text.
+/// The section with this title, as text.
 std::string TextOf(const Identification& report, const std::string& title) {
   for (const Section& section : JointSections(report)) {
     if (section.title == title) return ToText(Sections{section});
@@ -49,7 +49,7 @@ int WidestOf(const std::string& text) {
   return widest;
 }
 
-TEST(JointSections, StartWithTheComparisonAndEndWithOtherLaws) {
+TEST(JointSections, AreInOrder) {
   EXPECT_THAT(Titles(JointSections(ExampleJointIdentification())),
               ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?", "Each recording's own",
                           "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion"));
@@ -180,7 +180,7 @@ TEST(AgreementSection, HasNoUnitForADimensionlessNumber) {
   EXPECT_THAT(Agreement(report), Not(testing::ContainsRegex("0\\.0013[ \n]+1,")));
 }
 
-TEST(JointSections, ShowOwnParametersPerRecording) {
+TEST(JointSections, ShowSeparateParametersOfEachRecording) {
   EXPECT_EQ(TextOf(ExampleJointIdentification(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
        name             value ± std error  unit  95 % interval
     1  release_angle  0.42300 ± 0.00020    rad   [0.42260, 0.42340]
@@ -199,7 +199,7 @@ TEST(JointSections, ShowNoiseAndSeparateStatusPerRecording) {
   EXPECT_THAT(text, HasSubstr("    all          log-likelihood 1234.50, AIC -2457.00, AICc -2456.88, BIC"));
 }
 
-TEST(JointSections, ShowAnEquationOnlyIfAllIsShared) {
+TEST(JointSections, ShowAnEquationOnlyIfAllParametersAreShared) {
   Identification report = ExampleJointIdentification();
   report.joint[0].shared = {"inertia"};
   EXPECT_EQ(TextOf(report, "Equation of motion"), "");

@@ -22,7 +22,8 @@ TEST(TableWithin, IsAnAlignedTableIfItFits) {
   EXPECT_EQ(TableWithin({}, {}, 2, 20), "");
 }
 
-// Value and error stay together: both continue below, next to the name. A row without either is left out there.
+// Value and error stay together: they continue below, next to the name. A row without value and error is left out
+// there.
 TEST(TableWithin, ContinuesBelowWithTheFirstColumn) {
   const std::vector<Column> columns = {{"name"}, {"unit"}, {"value", true}, {"± error", false, 1}};
   EXPECT_EQ(TableWithin(columns, {{"b", "s", "12", "± 3"}, {"c", "m", "", ""}}, 0, 20),
@@ -34,7 +35,7 @@ TEST(TableWithin, ContinuesBelowWithTheFirstColumn) {
             "b        12 ± 3\n");
 }
 
-TEST(TableWithin, KeepsAColumnThatFitsNowhere) {
+TEST(TableWithin, KeepsAColumnWiderThanALine) {
   EXPECT_EQ(TableWithin({{""}, {""}, {""}}, {{"a", "incomprehensible", "b"}}, 0, 8), "a  incomprehensible\n\na  b\n");
 }
 

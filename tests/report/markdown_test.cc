@@ -117,7 +117,7 @@ TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
 )"));
 }
 
-// Unescaped, the stars and bars of a strip would be emphasis and cells.
+// The stars and bars of a strip must be escaped; otherwise Markdown would read them as emphasis and as table cells.
 TEST(ToMarkdown, ShowsStripsVerbatimForAJointFit) {
   EXPECT_THAT(ToMarkdown(ExampleJointIdentification()),
               HasSubstr("| 1 separate | 0.07890 ± 0.00030 | -0.4 | -------\\*-------- |\n"));

@@ -17,7 +17,7 @@ TEST(PdgText, ReproducesThePublishedExamples) {
   EXPECT_EQ(Pdg(0.827, 0.367), "0.8 ± 0.4");
 }
 
-TEST(PdgText, ChangesDigitsAtTheRulesLimits) {
+TEST(PdgText, ChangesTheNumberOfDigitsAtTheLimitsOfTheRule) {
   EXPECT_EQ(Pdg(0.827, 0.100), "0.83 ± 0.10");
   EXPECT_EQ(Pdg(0.827, 0.354), "0.83 ± 0.35");
   EXPECT_EQ(Pdg(0.827, 0.3549), "0.83 ± 0.35");  // three digits are compared without rounding

@@ -176,14 +176,15 @@ FitReport LinearFit() {
   return fit;
 }
 
-/// Its angle and rate t s after the release: A exp(-δ t) (cos ω t + δ/ω sin ω t), δ = b / (2 I_O), ω² = 1 / I_O - δ².
+/// Angle and rate of LinearFit t s after the release: A exp(-δ t) (cos ω t + δ/ω sin ω t), δ = b / (2 I_O), ω² = 1 /
+/// I_O - δ².
 std::array<double, 2> LinearMotion(double t) {
   const double decay = 0.1, frequency = std::sqrt(25 - decay * decay), amplitude = 0.3 * std::exp(-decay * t);
   return {amplitude * (std::cos(frequency * t) + decay / frequency * std::sin(frequency * t)),
           -amplitude * 25 / frequency * std::sin(frequency * t)};
 }
 
-/// 40 samples at 2 Hz from 0 s on, 2.5 a period, and the fit above.
+/// 40 samples at 2 Hz from 0 s on, which is 2.5 samples a period, with LinearFit.
 Identification TwoSamplesASecond() {
   Identification run;
   run.used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
@@ -194,7 +195,7 @@ Identification TwoSamplesASecond() {
 }
 
 // 60 points a period of 2π 0.2 s from 1 to 19.5 s: 884 steps.
-TEST(SeriesJson, HasTheMotionWhereSamplesAreFewInAPeriod) {
+TEST(SeriesJson, HasTheMotionIfAPeriodHasFewSamples) {
   const Identification run = TwoSamplesASecond();
   const Json motion = SeriesJson(run)["motions"]["linear"];
   EXPECT_THAT(Keys(motion), ElementsAre("start_s", "interval_s", "angle_unit", "angle", "rate", "reading"));
@@ -210,7 +211,7 @@ TEST(SeriesJson, HasTheMotionWhereSamplesAreFewInAPeriod) {
   }
 }
 
-// The clock is 2 % slow: its 18.5 s are 18.87 true seconds, in which the pendulum moves.
+// The clock is 2 % slow: 18.5 s on this clock are 18.87 true seconds of motion.
 TEST(SeriesJson, HasTheMotionAtInstantsOfTheFilesClock) {
   Identification run = TwoSamplesASecond();
   run.used.clock_scale = 1.02;
@@ -224,7 +225,7 @@ TEST(SeriesJson, HasTheMotionAtInstantsOfTheFilesClock) {
   }
 }
 
-TEST(SeriesJson, HasTheMotionWhereReadingsAreNoAngleOrMissing) {
+TEST(SeriesJson, HasTheMotionIfReadingsAreMissingOrNotAngles) {
   Identification run = TwoSamplesASecond();
   run.sampling->samples_per_period = 12;
   EXPECT_TRUE(SeriesJson(run)["motions"].is_null());
@@ -238,12 +239,12 @@ TEST(SeriesJson, HasTheMotionWhereReadingsAreNoAngleOrMissing) {
   EXPECT_NEAR(motion["reading"][200].get<double>(), motion["rate"][200].get<double>() + 0.2, 1e-7);
 }
 
-TEST(SeriesJson, HasNoMotionWhereThereIsNone) {
+TEST(SeriesJson, IsNullIfThereIsNoMotion) {
   Identification run = TwoSamplesASecond();
   run.fits[0].termination = Termination::kFailed;
   EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
   run.fits = {LinearFit()};
-  run.fits[0].parameters[0].estimate = 0;  // no inertia: it cannot be traced
+  run.fits[0].parameters[0].estimate = 0;  // without inertia no trajectory can be computed
   EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
   run.fits = {LinearFit()};
   run.fits[0].parameters[3].estimate = 19.5;  // released at the last sample

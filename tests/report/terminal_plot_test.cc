@@ -61,7 +61,7 @@ std::string Joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Number of marks of that kind in the frame of the upper plot.
+/// How often `mark` occurs inside the frame of the upper plot.
 long CountAbove(const std::vector<std::string>& lines, char mark) {
   long count = 0;
   for (std::size_t i = 2; i < 13; ++i) count += std::ranges::count(lines.at(i).substr(9), mark);

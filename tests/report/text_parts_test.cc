@@ -9,7 +9,7 @@ namespace pendulum::text_parts_test {
 namespace {
 
 // 0.0790 ± 0.0012: the leading digits 120 keep two digits (PDG); other numbers have the same last decimal.
-TEST(QuantityNumbers, RoundsAllToTheDecimalOfTheError) {
+TEST(QuantityNumbers, RoundsAllNumbersToTheDecimalOfTheError) {
   const QuantityNumbers numbers(0.07901, 0.0012);
   EXPECT_EQ(numbers.Value(), "0.0790");
   EXPECT_EQ(numbers.Error(), "± 0.0012");

@@ -60,8 +60,8 @@ constexpr const char* kWholeFit = R"([[Data]]
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
-    viscous is weakly identifiable (traded for coulomb): let it swing for
-    longer.
+    viscous is weakly identifiable (its effect can be compensated by coulomb):
+    let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
 [[Derived quantities]]
     natural_frequency  4.778 ± 0.008  rad/s  [4.763, 4.793]
@@ -76,8 +76,8 @@ constexpr const char* kWholeFit = R"([[Data]]
     lag-1 correlation  0.125
     Durbin-Watson      1.750
     Ljung-Box, runs    p 0.04, 0.25
-    autocorrelation    AR(2); for a constant the samples are worth 1200
-                       independent ones
+    autocorrelation    AR(2); for estimating a constant, equivalent to 1200
+                       independent samples
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50
     solver             7 iterations, 15 trajectories, accurate to 2e-10 rad
@@ -132,8 +132,8 @@ TEST(ToText, NamesTheOpenInterval) {
   const std::string text = ToText(report);
   EXPECT_THAT(
       OneLine(text),
-      HasSubstr(
-          "Intervals: profile likelihood. That of viscous is open: the data exclude none of its possible values. "));
+      HasSubstr("Intervals: profile likelihood. The interval of viscous is open: the data exclude none of its possible "
+                "values. "));
   EXPECT_THAT(text, HasSubstr(" N m s/rad  [?, 0.0040]\n"));
 }
 

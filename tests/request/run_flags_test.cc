@@ -24,7 +24,7 @@ std::string Refusal(const RunFlags& flags) {
   return options.error().message;
 }
 
-/// The default flags but for a valid value of this one.
+/// The default flags, except for a valid value of `flag`.
 RunFlags With(const RunFlag& flag) {
   RunFlags flags;
   if (const auto* is_on = std::get_if<bool RunFlags::*>(&flag.value)) {
@@ -36,8 +36,8 @@ RunFlags With(const RunFlag& flag) {
   return flags;
 }
 
-// Otherwise a run would not be fitted again after the flag was changed.
-TEST(RunFlagTable, HasNoFlagThatStoredOptionsLack) {
+// The stored options must contain each flag; otherwise a run would not be fitted again after the flag was changed.
+TEST(RunFlagTable, HasOnlyFlagsThatChangeTheStoredOptions) {
   std::set<std::string> known = {OptionsJson(*MakeIdentifyOptions({}))};
   for (const RunFlag& flag : RunFlagTable()) {
     if (flag.is_local) continue;

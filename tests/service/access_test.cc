@@ -159,7 +159,7 @@ TEST(IsSameSecret, ComparesBytes) {
   EXPECT_FALSE(IsSameSecret("token", "toke"));
 }
 
-// RFC 9110, section 11.1: the scheme in either case, followed by one or more blanks.
+// RFC 9110, section 11.1: the scheme in upper or lower case, followed by one or more blanks.
 TEST(RefuseAccess, AcceptsTheRightToken) {
   EXPECT_EQ(AnswerOfToken(std::string("Bearer ") + kToken), "allowed");
   EXPECT_EQ(AnswerOfToken(std::string("bearer   ") + kToken), "allowed");

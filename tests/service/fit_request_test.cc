@@ -236,8 +236,9 @@ TEST(ParseBatchRequest, LimitsTheLengthOfOptions) {
   EXPECT_THAT(answer(8176), Not(StartsWith("413")));
 }
 
-// A name is used in files and messages, so control characters are refused, as in a query (RequestTarget).
-TEST(ParseFitRequest, RemovesControlCharactersFromNames) {
+// Names are used in files and messages. A name in JSON with control characters is refused, as in a query
+// (RequestTarget); in the filename of a form they are replaced.
+TEST(ParseFitRequest, AcceptsNoControlCharactersInNames) {
   for (const auto& request : {Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\nb"})")),
                               Fit(Post("/v1/fits", "application/json", R"({"data": "", "name": "a\u001b[2J"})")),
                               Fit(Post("/v1/fits", kForm, Form(Part("data", kCsv, "a%0D%0Ab"))))}) {
@@ -287,7 +288,7 @@ ResultOrProblem<FitRequest> Refit(const std::string& query, const std::string& b
                            {{"run.csv", kCsv}, Share({"rig", kRig}), Share({"calibration", kCalibration})});
 }
 
-TEST(ParseRefitRequest, KeepsEverythingElse) {
+TEST(ParseRefitRequest, KeepsAllInputsIfNothingIsChanged) {
   const auto request = Refit("");
   ASSERT_TRUE(request) << request.error().detail;
   EXPECT_THAT(request->flags, UnorderedElementsAre(Pair("model", "drag"), Pair("from", "0.5")));
@@ -317,7 +318,7 @@ TEST(ParseRefitRequest, ReplacesOrRemovesRigAndCalibration) {
 TEST(ParseRefitRequest, RefusesAndExplainsInvalidRequests) {
   EXPECT_EQ(Answer(Refit("", R"({"data": "x"})")), "400 a refit uses the stored recording; leave data out");
   EXPECT_EQ(Answer(Refit("", kCsv, "text/csv")),
-            "415 the Content-Type is \"text/csv\"; it must be application/json, or the body empty");
+            "415 the Content-Type is \"text/csv\"; it must be application/json, or the body must be empty");
   EXPECT_EQ(Answer(Refit("?modle=drag")), "400 --modle is not a flag of this request; did you mean --model?");
   EXPECT_EQ(Answer(Refit("?model=drag&models=drag")),
             "400 --model and --models are the same flag; give only one of them");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of the whole service but for its socket, and their events.
+// Tests of FittingService without a socket: batches and their events.
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -130,7 +130,7 @@ TEST_F(FittingServiceBatchesTest, FitsAllRunsInTheOrderSent) {
   EXPECT_EQ(batch["fits"][1]["reason"], "the reading is constant: no swing");
 }
 
-// A run's answer equals that of a single fit.
+// The answer for a run of a batch equals the answer for a single fit.
 TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForASingleFit) {
   const Json batch = Done(Sent(ThreeRecordings()));
   const auto fit = [&](std::size_t i) { return "/v1/fits/" + batch["fits"][i]["id"].get<std::string>(); };
@@ -146,7 +146,7 @@ TEST_F(FittingServiceBatchesTest, AnswersForEachRunAsForASingleFit) {
 
 TEST_F(FittingServiceBatchesTest, ResumesAtTheNextStart) {
   const std::string location = Sent(ThreeRecordings() + ThreeRecordings());
-  End();  // ends the service in any state
+  End();  // runs may be waiting, in progress or done
   const Json batch = Done(location);
   EXPECT_EQ(batch["runs"], 6);
   EXPECT_EQ(batch["done"], 6);
@@ -155,7 +155,7 @@ TEST_F(FittingServiceBatchesTest, ResumesAtTheNextStart) {
   EXPECT_EQ(Get(location).body, batch.dump(2) + "\n");
 }
 
-TEST_F(FittingServiceBatchesTest, TellsAStoppedClientThatItContinuesLater) {
+TEST_F(FittingServiceBatchesTest, KeepsABatchThatArrivesDuringAStop) {
   Service().Stop();  // no run is started
   const HttpResponse response = Post("/v1/batches?model=viscous", kForm, FormOf(ThreeRecordings()));
   ASSERT_EQ(response.status, 202) << response.body;
@@ -204,7 +204,7 @@ std::int64_t MostMemory() {
 
 void ForgetMostMemory() { std::ofstream("/proc/self/clear_refs") << 5; }  // proc(5)
 
-// A request of one megabyte needs only a few megabytes of memory, even if many runs share a rig.
+// Runs of a batch share one copy of the rig in memory.
 TEST_F(FittingServiceBatchesTest, StoresASharedRigOnce) {
   constexpr std::size_t kRig = 60'000, kRuns = 3000;  // 170 MiB with a separate rig per run
   std::string parts = PartOf("rig", small_batch::kRigText + std::string(kRig, ' '));
@@ -230,7 +230,7 @@ TEST_F(FittingServiceBatchesTest, DeletesABatchWithItsFits) {
   for (const Json& fit : batch["fits"]) EXPECT_EQ(Get("/v1/fits/" + fit["id"].get<std::string>()).status, 404);
   EXPECT_THAT(IdsAt("/v1/fits"), IsEmpty());
   const std::string next = Sent(PartOf("data", Recording(), "a.csv"));
-  EXPECT_EQ(Done(next)["done"], 1);  // its threads still run
+  EXPECT_EQ(Done(next)["done"], 1);  // the threads for batches still run
 }
 
 TEST_F(FittingServiceBatchesTest, EndsTheEventsOfADeletedBatch) {
@@ -310,7 +310,7 @@ TEST_F(FittingServiceBatchesTest, ResumesAfterTheClientsLastEvent) {
   EXPECT_EQ(Listened(location, {{"Last-Event-ID", "none"}}).size(), 4U);
 }
 
-// Waiting runs have no "done" event.
+// While all runs wait, the stream has no events and does not end.
 TEST_F(FittingServiceBatchesTest, SendsNoEventsForWaitingRuns) {
   Service().Stop();
   const std::string location = Sent(ThreeRecordings());
@@ -346,7 +346,7 @@ TEST_F(FittingServiceBatchesTest, StopsARunThatTakesTooLongAndContinues) {
   EXPECT_EQ(batch["fits"][0]["exit_code"], 75);
   const HttpResponse fit = Get("/v1/fits/" + batch["fits"][0]["id"].get<std::string>());
   EXPECT_THAT(AnswerOf(fit), StartsWith("408 the fit was not done after 0.004 s"))
-      << "four times as long as one asked alone";
+      << "a run of a batch has four times the limit of a single fit";
 }
 
 }  // namespace

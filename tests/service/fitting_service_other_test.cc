@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole service but for its socket: all that is no fit and no batch.
+// Tests of FittingService without a socket: simulations, calibrations, models, metrics, page, guide, live recording.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -135,8 +135,8 @@ std::set<std::string> Names(const Json& list) {
   return names;
 }
 
-// Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); no model is nested in one of
-// another gravity.
+// Nesting follows from the formulas of the laws (MODEL.md eq. (2.4) to (2.8)); no model is nested in a
+// model with another gravity.
 TEST_F(FittingServiceOtherTest, ReportsWhichModelsAreNested) {
   const std::map<std::string, std::set<std::string>> expected = {
       {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}},
@@ -168,7 +168,7 @@ TEST_F(FittingServiceOtherTest, HasExamplesThatCanBeFitted) {
     const Json body = {{"data", example["recording"]},
                        {"rig", example["rig"]},
                        {"options", {{"models", example["models"]}, {"closed_form_only", true}}}};
-    // This request takes one model; the test only needs that all names are models.
+    // Checks only that all names in `models` are models.
     const std::string answer = AnswerOf(Post("/v1/fits", "application/json", body.dump()));
     EXPECT_THAT(answer, Not(HasSubstr("there is no model"))) << name;
     const Json one = {
@@ -281,7 +281,7 @@ TEST_F(FittingServiceOtherTest, RestrictsThePageToItsOwnFiles) {
   for (std::size_t at = response.body.find("<script"); at != std::string::npos;
        at = response.body.find("<script", at + 1)) {
     EXPECT_THAT(response.body.substr(at, response.body.find('>', at) - at),
-                AnyOf(HasSubstr("src="), HasSubstr("application/json")));  // data are not run
+                AnyOf(HasSubstr("src="), HasSubstr("application/json")));  // JSON data is not run as a script
   }
 }
 
@@ -344,7 +344,7 @@ TEST_F(FittingServiceOtherTest, ServesNothingOutsideTheGuide) {
   }
 }
 
-TEST_F(FittingServiceOtherTest, SaysThatTheGuideIsNotInstalled) {
+TEST_F(FittingServiceOtherTest, ReportsThatTheGuideIsNotInstalled) {
   EXPECT_THAT(AnswerOf(Get("/docs/index.html")), StartsWith("404 the user guide is not installed"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the whole service refuses: strangers, paths, methods, parameters.
+// Tests of FittingService without a socket: refused clients, paths, methods and parameters.
 #include <string>
 #include <vector>
 
@@ -108,7 +108,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesUnknownParameters) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, RefusesParametersOutOfTheirDomain) {
+TEST_F(FittingServiceRefusalsTest, RefusesParametersOutOfRange) {
   for (const char* text : {"0", "-1", "1.5", "ten", "99999999999999999999", "1%20"}) {
     EXPECT_THAT(Answer("GET", std::string("/v1/fits?limit=") + text), StartsWith("400 limit is '")) << text;
     EXPECT_THAT(Answer("GET", std::string("/v1/fits?before=") + text), StartsWith("400 before is '")) << text;
@@ -143,7 +143,7 @@ TEST_F(FittingServiceRefusalsTest, QueuesCalculationsSeparately) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, AnswersForTheServerToo) {
+TEST_F(FittingServiceRefusalsTest, MakesTheRefusalsOfTheServer) {
   for (const int status : {400, 408, 413, 417, 429, 431, 500, 503}) {
     const HttpResponse response = Service().Refusal(status, "because");
     EXPECT_EQ(response.status, status);
@@ -152,7 +152,7 @@ TEST_F(FittingServiceRefusalsTest, AnswersForTheServerToo) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, WritesNothingThatWouldEndAHeader) {
+TEST_F(FittingServiceRefusalsTest, WritesNoLineBreaksIntoHeaderFields) {
   const HttpResponse fit = Post("/v1/fits?closed_form_only=true", "application/json",
                                 Json{{"data", Recording()}, {"name", "a\r\nSet-Cookie: x=1"}}.dump());
   if (fit.status != 200) return;  // the service may refuse such a name

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole service but for its socket: single fits, and what hangs on them.
+// Tests of FittingService without a socket: single fits, repeated requests, refits, and lists of fits.
 #include "pendulum/service/fitting_service.h"
 
 #include <set>
@@ -41,7 +41,7 @@ using testing::StrCaseEq;
 
 class FittingServiceTest : public asked_service::ServiceTest {};
 
-/// The fit by fit_pendulum with these models.
+/// The fit that fit_pendulum makes with these models.
 Identification FitOf(const std::vector<std::string>& models, RunFiles files) {
   return IdentifyBytes(small_batch::OptionsFor(models), std::move(files)).value();
 }
@@ -175,7 +175,7 @@ TEST_F(FittingServiceTest, RecognizesAFormWithAnotherBoundary) {
   EXPECT_EQ(FieldOf(again, "Idempotency-Replayed"), "true");
 }
 
-// A short boundary may also occur in the data: two forms that differ only there are different requests.
+// A short boundary may also occur in the data. Two forms that differ only at such a place are different requests.
 TEST_F(FittingServiceTest, DistinguishesFormsWhoseDataContainTheBoundary) {
   const Fields key = {{"Idempotency-Key", "k1"}};
   const auto post = [&](const std::string& name) {
@@ -280,7 +280,7 @@ TEST_F(FittingServiceTest, GivesAllSamplesRegardlessOfTheWindow) {
   EXPECT_EQ(samples["time_s"].size(), 320U);
   EXPECT_EQ(samples["measured"].size(), 320U);
   EXPECT_EQ(samples["time_s"][0], 0.0);
-  EXPECT_NEAR(samples["measured"][0].get<double>(), 0.4, 0.02);  // held at the release angle
+  EXPECT_NEAR(samples["measured"][0].get<double>(), 0.4, 0.02);  // the pendulum is held at the release angle
 }
 
 TEST_F(FittingServiceTest, ThinsLongRecordings) {

@@ -137,7 +137,7 @@ TEST(ParseFormData, ReadsAFormOfPythonsEmail) {
 // ---- Examples from the standards -----------------------------------------------------------------------------------
 
 // RFC 2046, section 5.1.1, the boundaries of its example. Preamble and epilogue are ignored. The last line end before a
-// boundary belongs to the boundary, a second one before it to the part.
+// boundary belongs to the boundary; a line end before that one belongs to the part.
 TEST(ParseFormData, SkipsPreambleAndEpilogue) {
   const std::string body =
       "This is the preamble.  It is to be ignored, though it\r\nis a handy place for composers to include an\r\n"
@@ -170,7 +170,7 @@ TEST(ParseFormData, DecodesOnlyTheEscapesOfBrowsers) {
   EXPECT_EQ(NamesOf("name=\"%2522\"; filename=\"%%22\""), "%2522|%\"");
 }
 
-TEST(ParseFormData, ReadsNamesInBackslashesAndSemicolons) {
+TEST(ParseFormData, ReadsNamesThatContainBackslashesAndSemicolons) {
   EXPECT_EQ(NamesOf(R"(name="a;b"; filename="c:\runs\\x; name=\"y\".csv")"), "a;b|c:\\runs\\x; name=\"y\".csv");
 }
 
@@ -336,11 +336,11 @@ TEST(ParseFormData, LimitsTheNumberOfParts) {
   std::string body;
   for (std::size_t i = 0; i < kMaxFormParts; ++i) body += part;
   EXPECT_EQ(PartsOf(kType, body + "--X--").size(), kMaxFormParts);
-  EXPECT_EQ(FaultOf(body + part + "--X--"), "the form has more than 20000 parts; send it in several");
+  EXPECT_EQ(FaultOf(body + part + "--X--"), "the form has more than 20000 parts; send several forms");
 }
 
 // A parser that restarts at every line, or at every byte of a line, would need quadratic time.
-TEST(ParseFormData, ReadsLongBodiesOfNearBoundaries) {
+TEST(ParseFormData, ReadsLongBodiesWithTextLikeABoundary) {
   constexpr std::size_t kBytes = std::size_t{1} << 21;
   const std::string head = "--X\r\n" + Named("name=a") + "\r\n\r\n";
   for (const std::string piece :

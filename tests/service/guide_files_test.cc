@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A guide of two pages and a picture, and a secret beside its folder.
+/// A guide with a page, a style sheet, a picture and a file without an ending, and secret files outside its folder.
 class ReadGuideFileTest : public testing::Test {
  protected:
   ReadGuideFileTest() {
@@ -70,7 +70,7 @@ TEST_F(ReadGuideFileTest, FollowsALinkThatStaysInside) {
   EXPECT_EQ(Answer("home.html"), "text/html; charset=utf-8: <p>Guide</p>");
 }
 
-TEST_F(ReadGuideFileTest, SaysHowToInstallAGuideThatIsMissing) {
+TEST_F(ReadGuideFileTest, ExplainsHowToInstallAMissingGuide) {
   for (const std::string& folder : {std::string(), (folder_ / "none").string()}) {
     const auto file = ReadGuideFile(folder, "index.html");
     ASSERT_FALSE(file);

@@ -25,7 +25,7 @@ TEST(Field, IsMissingIfAbsent) {
   EXPECT_EQ(request.Field("Hos"), std::nullopt);
   EXPECT_EQ(request.Field("Hosts"), std::nullopt);
   EXPECT_EQ(request.Field(""), std::nullopt);
-  EXPECT_EQ(request.Field("Host"), "") << "which is there";
+  EXPECT_EQ(request.Field("Host"), "") << "an empty field is not missing";
 }
 
 TEST(Field, IsTheFirstIfRepeated) {

@@ -40,7 +40,7 @@ TEST(IdempotencyKey, MayBeAbsent) {
 
 TEST(IdempotencyKey, IsLimitedTo255Bytes) {
   EXPECT_EQ(KeyOf(std::string(255, 'k')), std::string(255, 'k'));
-  EXPECT_EQ(KeyOf(std::string(256, 'k')), "refused: the Idempotency-Key has 256 bytes; it may have 255");
+  EXPECT_EQ(KeyOf(std::string(256, 'k')), "refused: the Idempotency-Key has 256 bytes; it may have at most 255");
 }
 
 TEST(IdempotencyKey, IsRefusedIfInvalid) {
@@ -53,7 +53,7 @@ TEST(IdempotencyKey, IsRefusedIfInvalid) {
   const auto twice = IdempotencyKey(Post({{"Idempotency-Key", "a"}, {"idempotency-key", "a"}}));
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(twice.error().message, "the Idempotency-Key comes twice; keep one of them");
+  EXPECT_EQ(twice.error().message, "the Idempotency-Key is given more than once; keep one of them");
 }
 
 }  // namespace

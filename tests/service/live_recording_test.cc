@@ -167,7 +167,7 @@ TEST_F(LiveRecordingTest, UsesCompleteLinesOnly) {
   EXPECT_EQ(*live_.Bytes(), kCounts + "0,500\n0.005,501\r\n");
 }
 
-// Rows after the requested time are only in the part file.
+// The part file may have rows after the requested duration; the complete recording has none.
 TEST_F(LiveRecordingTest, ReadsTheCompleteRecordingWhenAvailable) {
   Begin(kCounts + Rows(0, 1218));
   const NextEvents next = live_.Listen();
@@ -324,7 +324,7 @@ TEST_F(LiveRecordingTest, SendsAtMostFiftyPointsPerSecondWithExtremes) {
   }
 }
 
-TEST_F(LiveRecordingTest, RestartsForAListenerThatIsMinutesLate) {
+TEST_F(LiveRecordingTest, RestartsForAListenerThatIsMinutesBehind) {
   Begin(kCounts + Rows(0, 10));
   const NextEvents prompt = live_.Listen(), late = live_.Listen();
   Hear(prompt);
@@ -363,13 +363,13 @@ TEST_F(LiveRecordingTest, ThinsALongRunButKeepsEndsAndExtremes) {
   }
 }
 
-TEST_F(LiveRecordingTest, LimitsItsBytesToThoseOfAFit) {
+TEST_F(LiveRecordingTest, LimitsTheSizeOfItsBytes) {
   Begin(kCounts);
   fs::resize_file(part_, (std::uintmax_t{1} << 29) + 1);  // a sparse file: it uses no disk space
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 64 MiB; fit the file itself");
+  EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 64 MiB; fit this file with fit_pendulum");
 }
 
 TEST_F(LiveRecordingTest, IsThreadSafe) {

@@ -19,7 +19,7 @@ using testing::Optional;
 struct Read {
   explicit Read(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
-      const auto point = rows.Take(line);
+      const auto point = rows.Read(line);
       if (!point) continue;
       times.push_back(point->time);
       values.push_back(point->value);
@@ -62,12 +62,12 @@ TEST(LiveRows, SkipsInvalidRows) {
 
 TEST(LiveRows, StartsAtTheColumnNames) {
   LiveRows rows;
-  EXPECT_FALSE(rows.Take("# range: 0,1023"));
-  EXPECT_FALSE(rows.Take("\r"));
+  EXPECT_FALSE(rows.Read("# range: 0,1023"));
+  EXPECT_FALSE(rows.Read("\r"));
   EXPECT_FALSE(rows.has_begun());
-  EXPECT_FALSE(rows.Take("time_s,adc_counts"));
+  EXPECT_FALSE(rows.Read("time_s,adc_counts"));
   EXPECT_TRUE(rows.has_begun());
-  EXPECT_TRUE(rows.Take("0,1"));
+  EXPECT_TRUE(rows.Read("0,1"));
 }
 
 TEST(LiveRows, ReadsTheUnitFromTheColumn) {
@@ -92,8 +92,7 @@ TEST(LiveRows, ReadsTheSamplingRateFromTheFile) {
   EXPECT_FALSE(Read({"time_s,adc_counts", "# sample_rate_hz: 200"}).rows.rate());
 }
 
-// Expected values: 1.5 counts - 20 is the angle in degrees; in radians it is multiplied by 180/pi, 130 rad = 7448.4513
-// deg.
+// Expected values: the angle is 1.5 counts - 20, in degrees or radians; 130 rad = 130 * 180 / pi deg = 7448.4513 deg.
 TEST(LiveRows, ShowsCalibratedCountsInDegrees) {
   const Read deg({CalibrationLine("deg", "counts"), "time_s,adc_counts", "0,100", "1,0"});
   EXPECT_EQ(deg.rows.unit(), "deg");

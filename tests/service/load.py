@@ -79,7 +79,7 @@ class Client:
             self.need = end + 4 + int(length or 0)
         if self.need is None or len(self.received) < self.need:
             return False
-        self.judge(selector)
+        self.check_answer(selector)
         return True
 
     def fail(self, selector):
@@ -90,7 +90,7 @@ class Client:
             self.next -= 1
         self.close(selector)
 
-    def judge(self, selector):
+    def check_answer(self, selector):
         status, body = int(self.head[9:12]), self.received[self.body_begin:]
         self.answered += 1
         self.outcome.times.append(time.monotonic() - self.begun)

@@ -88,7 +88,7 @@ TEST(ParseMediaType, RefusesInvalidParameters) {
   EXPECT_THAT(fault("a=\"b\"c"), HasSubstr("\"c\", where a semicolon must be"));
   for (const char* open :
        {"a=\"", "a=\"b", "a=\"b\\\"", "a=\"b\\", "a=\"\x01\"", "a=\"\r\n\"", "a=\"\x7F\"", "a=\"\\\n\""}) {
-    EXPECT_THAT(fault(open), HasSubstr("whose quotes do not close, or hold a control character")) << open;
+    EXPECT_THAT(fault(open), HasSubstr("whose quotes do not close, or contain a control character")) << open;
   }
   EXPECT_EQ(fault("a=1; b=2; A=3"),
             "the parameters of the content type have \"a\", which is given twice; keep one of them");

@@ -144,7 +144,7 @@ TEST(MethodNotAllowed, ListsTheAllowedMethods) {
             R"(the method "PO\x0d\x0aST" is not allowed here; allowed are GET, DELETE)");
 }
 
-// Unicode 15, section 3.9: U+FFFD for each invalid byte of UTF-8; the rest follows RFC 8259, section 7.
+// Unicode 15, section 3.9: U+FFFD for each invalid byte of UTF-8; other characters follow RFC 8259, section 7.
 TEST(ProblemResponse, AcceptsADetailOfAnyBytes) {
   EXPECT_EQ(JsonOf({ProblemKind::kUnusableData, "a\xFF\"\\\n" + std::string(1, '\0') + "π", {}})["detail"],
             "a\uFFFD\"\\\n" + std::string(1, '\0') + "π");

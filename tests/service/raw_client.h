@@ -75,7 +75,7 @@ class RawClient {
     return TakeAhead(found + end.size());
   }
 
-  /// Reads one answer, whose body has a Content-Length, is chunked, or ends with the connection.
+  /// Reads one answer. Its body has a Content-Length, is chunked, or ends with the connection.
   RawAnswer Read(bool is_of_head = false) {
     RawAnswer answer;
     answer.head = ReadUntil("\r\n\r\n");

@@ -49,7 +49,7 @@ TEST(ParseTarget, GivesPathAndQueryOfAPlainTarget) {
   EXPECT_EQ(PathOf("/app.js"), "/app.js");
 }
 
-// RFC 3986, section 2.1: digits in either case; 2.3: an escaped unreserved character equals the character.
+// RFC 3986, section 2.1: digits in upper or lower case; 2.3: an escaped unreserved character equals the character.
 TEST(ParseTarget, DecodesEscapesInThePath) {
   EXPECT_EQ(PathOf("/v1/%66its"), "/v1/fits");
   EXPECT_EQ(PathOf("/%7Euser/%7euser/~"), "/~user/~user/~");

@@ -73,7 +73,7 @@ TEST_F(ServerEventsTest, ArriveWithoutChunksOverHttp10) {
   EXPECT_EQ(answer.body, "data: 1\n\ndata: 2\n\ndata: 3\n\n");
 }
 
-TEST_F(ServerEventsTest, AreNotSentToHead) {
+TEST_F(ServerEventsTest, AreNotSentForHead) {
   Start();
   RawClient client = Connect();
   const RawAnswer answer = client.Ask("HEAD /events HTTP/1.1\r\nHost: a\r\n\r\n");
@@ -105,7 +105,7 @@ TEST_F(ServerEventsTest, EndForAClientThatDisconnects) {
   }
   const int asked = asked_;
   EXPECT_EQ(Connect().Ask(Get("/")).status, 200);
-  EXPECT_EQ(asked_, asked) << "nobody asks for what nobody hears";
+  EXPECT_EQ(asked_, asked) << "no events are requested without a client";
 }
 
 TEST_F(ServerEventsTest, EndForAClientThatDoesNotRead) {

@@ -95,7 +95,7 @@ TEST_F(ServerLimitsTest, LimitsAllBodiesTogether) {
   options_.max_connections = 20;
   Start();
   std::vector<RawClient> clients;
-  for (int i = 0; i < 3; ++i) {  // each announces 99999 of 300000 bytes and sends all but one of them
+  for (int i = 0; i < 3; ++i) {  // each announces 100000 bytes and sends all but the last one
     clients.push_back(Connect());
     clients.back().Send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n" + std::string(99'999, 'x'));
   }
@@ -195,7 +195,7 @@ TEST_F(ServerLimitsTest, ClosesIdleConnectionsForNewOnes) {
   EXPECT_TRUE(slow.IsEnded());
   EXPECT_TRUE(silent.IsEnded());
   handler_.gate.count_down();
-  EXPECT_EQ(fit.Read().status, 200) << "who is being answered stays";
+  EXPECT_EQ(fit.Read().status, 200) << "a connection whose request is processed is not closed";
 }
 
 TEST_F(ServerLimitsTest, RejectsAFloodOfConnections) {
@@ -227,7 +227,7 @@ TEST_F(ServerLimitsTest, RejectsARequestThatArrivesTooSlowly) {
   }
 }
 
-TEST_F(ServerLimitsTest, IgnoresEmptyLines) {
+TEST_F(ServerLimitsTest, DoesNotAnswerEmptyLines) {
   options_.request_time = milliseconds(200);
   Start();
   RawClient client = Connect();
@@ -256,7 +256,7 @@ TEST_F(ServerLimitsTest, ClosesAConnectionWithoutARequest) {
   EXPECT_EQ(used.Ask(Get("/")).status, 200);
   EXPECT_TRUE(Connect().IsEnded());
   EXPECT_TRUE(used.IsEnded());
-  EXPECT_EQ(answered().size(), 1) << "nothing was asked, nothing is answered";
+  EXPECT_EQ(answered().size(), 1) << "a connection without a request gets no answer";
 }
 
 TEST_F(ServerLimitsTest, DropsAnAnswerThatIsNotRead) {
@@ -297,7 +297,7 @@ TEST_F(ServerLimitsTest, WaitsForFileDescriptors) {
   RawClient late = Connect();  // takes the last file descriptor, so accept fails
   EXPECT_TRUE(late.is_connected());
   late.Send(Get("/late"));
-  EXPECT_EQ(early.Ask(Get("/")).status, 200) << "meanwhile";
+  EXPECT_EQ(early.Ask(Get("/")).status, 200) << "while accept fails";
   EXPECT_EQ(server_->Count().accepted, 1);
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(late.Read().body, "GET /late\n");
@@ -316,7 +316,7 @@ TEST_F(ServerLimitsTest, ServesOthersDespiteTwoHundredSlowClients) {
     EXPECT_TRUE(!is_asking || quick.Ask(Post("/quick", "body")).status == 200);
   }
   EXPECT_EQ(server_->Count().connections, 201);
-  EXPECT_EQ(server_->Count().running, 0) << "none of them holds a thread";
+  EXPECT_EQ(server_->Count().running, 0) << "no slow client blocks a thread";
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 class ServerStopTest : public Served {
  protected:
   /// Stops the server while `client` waits for a fit; the gate stays closed.
-  RawClient StopWithAFitUnderWay() {
+  RawClient StopDuringAFit() {
     RawClient client = Connect();
     client.Send(Get("/fit"));
     EXPECT_TRUE(Eventually([&] { return handler_.waiting == 1; }));
@@ -54,7 +54,7 @@ TEST_F(ServerStopTest, ClosesIdleConnections) {
 
 TEST_F(ServerStopTest, AnswersRequestsInProgressAndCloses) {
   Start();
-  RawClient client = StopWithAFitUnderWay();
+  RawClient client = StopDuringAFit();
   handler_.gate.count_down();
   const RawAnswer answer = client.Read();
   EXPECT_EQ(answer.status, 200);
@@ -77,12 +77,12 @@ TEST_F(ServerStopTest, AnswersRequestsWaitingInALane) {
   EXPECT_EQ(waiting.Read().body, "GET /fit?waits\n");
 }
 
-TEST_F(ServerStopTest, ReadsTheRestOfAnAcceptedRequest) {
+TEST_F(ServerStopTest, ReadsTheRemainderOfAnAcceptedRequest) {
   Start();
   RawClient client = Connect();
   client.Send("POST /late HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\n\r\nbo");
   EXPECT_TRUE(Eventually([&] { return handler_.heads == 1; }));
-  RawClient fit = StopWithAFitUnderWay();
+  RawClient fit = StopDuringAFit();
   EXPECT_EQ(client.Ask("dy").body, "POST /late\nbody");
 }
 
@@ -91,8 +91,8 @@ TEST_F(ServerStopTest, RefusesLaterRequests) {
   RawClient client = Connect();
   client.Send(Get("/first") + "GET /second HTTP/1.1\r\nHo");
   EXPECT_EQ(client.Read().body, "GET /first\n");
-  EXPECT_TRUE(Eventually([&] { return answered().size() == 1; })) << "from then on it is in its second request";
-  RawClient fit = StopWithAFitUnderWay();
+  EXPECT_TRUE(Eventually([&] { return answered().size() == 1; })) << "the server now reads the second request";
+  RawClient fit = StopDuringAFit();
   const RawAnswer answer = client.Ask("st: a\r\n\r\n");
   EXPECT_EQ(answer.status, 503);
   EXPECT_EQ(answer["retry-after"], "1");
@@ -106,8 +106,8 @@ TEST_F(ServerStopTest, RespectsTheTimeLimit) {
   RawClient slow = Connect();
   slow.Send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\n\r\nbo");
   EXPECT_TRUE(Eventually([&] { return handler_.heads == 1; }));
-  RawClient client = StopWithAFitUnderWay();
-  EXPECT_TRUE(client.IsEnded()) << "though its handler has not returned";
+  RawClient client = StopDuringAFit();
+  EXPECT_TRUE(client.IsEnded()) << "although its handler has not returned";
   EXPECT_TRUE(slow.IsEnded());
   EXPECT_EQ(server_->Count().running, 1);
   StopAndJoin();

@@ -92,7 +92,7 @@ TEST_F(ServerTest, AnswersHeadWithTheHeadOfGet) {
   const RawAnswer get = client.Ask(Get("/page"));
   EXPECT_EQ(head.status, 200);
   EXPECT_EQ(head["content-length"], std::to_string(get.body.size()));
-  EXPECT_EQ(get.body, "GET /page\n") << "what the handler was asked";
+  EXPECT_EQ(get.body, "GET /page\n") << "the handler gets HEAD as GET";
   EXPECT_TRUE(Eventually([&] { return answered().size() == 2; }));
   EXPECT_EQ(answered()[0].method, "HEAD");
   EXPECT_EQ(answered()[1].method, "GET");
@@ -162,7 +162,7 @@ TEST_F(ServerTest, ReadsNoBodyOfARejectedHead) {
   EXPECT_EQ(handler_.calls, 0);
 }
 
-TEST_F(ServerTest, LetsARefusedClientReadTheAnswer) {
+TEST_F(ServerTest, LetsARejectedClientReadTheAnswer) {
   Start();
   RawClient client = Connect();
   client.Send("POST /refused HTTP/1.1\r\nHost: a\r\nContent-Length: 90000\r\n\r\n");
@@ -257,13 +257,13 @@ TEST_F(ServerTest, ReportsEachAnswer) {
   RawClient client = Connect();
   const RawAnswer answer = client.Ask(Post("/some?where", "body"));
   EXPECT_TRUE(Eventually([&] { return answered().size() == 1; }));
-  const Answered told = answered().at(0);
-  EXPECT_EQ(told.method, "POST");
-  EXPECT_EQ(told.target, "/some?where");
-  EXPECT_EQ(told.peer, "127.0.0.1");
-  EXPECT_EQ(told.status, 200);
-  EXPECT_EQ(told.bytes, answer.head.size() + answer.body.size());
-  EXPECT_GT(told.time.count(), 0);
+  const Answered report = answered().at(0);
+  EXPECT_EQ(report.method, "POST");
+  EXPECT_EQ(report.target, "/some?where");
+  EXPECT_EQ(report.peer, "127.0.0.1");
+  EXPECT_EQ(report.status, 200);
+  EXPECT_EQ(report.bytes, answer.head.size() + answer.body.size());
+  EXPECT_GT(report.time.count(), 0);
 }
 
 TEST(Listen, RefusesAnInvalidAddress) {

@@ -45,7 +45,7 @@ class Server:
         self.start(port)
 
     def start(self, port=0):
-        """Starts or restarts it and waits for the line with the port."""
+        """Starts or restarts the server and waits for the line with the port."""
         environment = {name: value for name, value in os.environ.items() if name != "PENDULUM_TOKEN"}
         command = [TOOL, "--port", str(port), "--store", "fits.sqlite", *map(str, self.flags)]
         if self.process:
@@ -78,7 +78,7 @@ class Server:
         self.process.communicate(timeout=TIMEOUT_S)
 
     def stop(self, number=signal.SIGTERM):
-        """Stops it like an operator does; returns its exit code."""
+        """Stops the server like an operator does; returns its exit code."""
         if self.is_alive():
             self.process.send_signal(number)
         self.process.communicate(timeout=TIMEOUT_S)
@@ -267,7 +267,7 @@ class Lab(unittest.TestCase):
         """Waits until holds() is true and returns its value."""
         end = time.monotonic() + seconds
         while not (found := holds()):
-            self.assertLess(time.monotonic(), end, f"never: {what}")
+            self.assertLess(time.monotonic(), end, f"after {seconds} s this is still not true: {what}")
             time.sleep(0.05)
         return found
 

@@ -20,10 +20,10 @@ PAGE_POLICY = {"default-src 'none'", "script-src 'self'", "style-src 'self'", "i
                "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'"}
 
 
-class Guarded(Lab):
-    """The fields that every answer has."""
+class SecurityFields(Lab):
+    """Checks the security fields that every answer has."""
 
-    def check_guarded(self, response):
+    def check_security_fields(self, response):
         for name, value in (("x-content-type-options", "nosniff"), ("referrer-policy", "no-referrer"),
                             ("cross-origin-resource-policy", "same-origin")):
             self.assertEqual(response.headers.get(name), value, response)
@@ -31,10 +31,10 @@ class Guarded(Lab):
         self.assertNotIn("access-control-allow-origin", response.headers)
 
 
-class Headers(Guarded, Served):
+class Headers(SecurityFields, Served):
     FLAGS = ("--max_body_mb", "1")
 
-    def test_every_kind_of_answer_is_guarded(self):
+    def test_every_kind_of_answer_has_the_security_fields(self):
         fit = self.server.post_csv("/v1/fits", SHORT)
         place = fit.headers["location"]
         parts = [data_part("a.csv", SHORT)]
@@ -57,11 +57,11 @@ class Headers(Guarded, Served):
                     self.server.raw(b"GET / HTTP/1.1\r\nHost: a\r\nX: " + b"x" * 300000 + b"\r\n\r\n")]
         seen = set()
         for answer in answers:
-            self.check_guarded(answer)
+            self.check_security_fields(answer)
             seen.add(answer.status)
         self.assertLessEqual({200, 202, 204, 400, 403, 404, 405, 413, 415, 431}, seen)
 
-    def test_the_page_may_load_its_own_parts_alone(self):
+    def test_the_page_may_load_only_its_own_files(self):
         bodies = set()
         for target in PAGES:
             page = self.server.get(target)
@@ -86,7 +86,7 @@ class Headers(Guarded, Served):
             self.assertEqual(head.headers["content-length"], str(len(got.body)), target)
             self.assertEqual(head.headers["content-type"], got.headers["content-type"], target)
 
-    def test_methods_that_a_place_does_not_know_are_405(self):
+    def test_methods_that_a_path_does_not_allow_are_405(self):
         cases = {"/v1/fits": ("PUT", {"GET", "POST"}), "/v1/fits/1": ("POST", {"GET", "DELETE"}), "/healthz": ("POST", {"GET"}),
                  "/v1/batches": ("DELETE", {"GET", "POST"}), "/v1/simulations": ("GET", {"POST"}),
                  "/v1/calibrations": ("GET", {"POST"}),
@@ -97,13 +97,13 @@ class Headers(Guarded, Served):
             self.check_problem(answer, 405, "method_not_allowed")
             self.assertEqual({each.strip() for each in answer.headers["allow"].split(",")} - {"HEAD", "OPTIONS"}, allowed, target)
 
-    def test_methods_that_are_none_are_refused(self):
+    def test_unknown_methods_are_refused(self):
         for method in ("TRACE", "BREW", "CONNECT", "get"):
             answer = self.server.ask(method, "/v1/models")
             self.assertIn(answer.status, (400, 405, 501), method)  # RFC 9110, section 9.1
             self.check_problem(answer, answer.status, answer.json()["code"])
 
-    def test_places_that_are_none_are_404(self):
+    def test_unknown_paths_are_404(self):
         for target in ("/v1", "/v2/fits", "/v1/fits/1/2/3", "/v1/fitss", "/index.html", "/fits/1/2", "/V1/fits"):
             self.check_problem(self.server.get(target), 404, "not_found")
         for target in ("/v1/", "/v1/fits/", "//", "/v1//fits", "/v1/fits/1/"):
@@ -119,12 +119,12 @@ class Headers(Guarded, Served):
         self.check_problem(self.server.post_csv("/v1/batches", SHORT), 415, "unsupported_media_type")
         self.check_problem(self.server.post_csv("/v1/fits", SHORT, Content_Encoding="gzip"), 415, "unsupported_media_type")
 
-    def test_a_type_that_is_not_there_is_answered_or_406(self):
+    def test_an_unavailable_accept_type_is_answered_or_406(self):
         answer = self.server.get("/v1/models", Accept="image/png")
         self.assertIn(answer.status, (200, 406))  # RFC 9110, section 12.5.1 leaves the choice to the server
 
 
-class Origins(Guarded, Served):
+class Origins(SecurityFields, Served):
     """Without a token only pages of this machine's own service may send requests."""
 
     FLAGS = ("--allowed_hosts", "lab.example,other.example")
@@ -140,7 +140,7 @@ class Origins(Guarded, Served):
             for target in ("/v1/models", "/", "/v1/fits", "/metrics"):
                 self.check_problem(self.server.get(target, Host=host), 403, "forbidden")
 
-    def test_requests_without_a_host_or_with_two_are_wrong(self):
+    def test_requests_without_a_host_or_with_two_are_refused(self):
         for head in (b"", b"Host: localhost\r\nHost: evil.example\r\n", b"Host: a b\r\n"):
             answer = self.server.raw(b"GET /v1/models HTTP/1.1\r\n" + head + b"Connection: close\r\n\r\n")
             self.assertIn(answer.status, (400, 403), head)
@@ -162,7 +162,7 @@ class Origins(Guarded, Served):
             self.assertEqual(self.server.get("/v1/fits", Sec_Fetch_Site=site).status, 200, site)
 
 
-class Tokens(Guarded):
+class Tokens(SecurityFields):
     def check_token(self, server, token):
         for headers in ({}, {"Authorization": "Bearer wrong"}, {"Authorization": f"Bearer {token}x"},
                         {"Authorization": f"Bearer {token[:-1]}"},
@@ -172,7 +172,7 @@ class Tokens(Guarded):
                 answer = server.ask(method, target, **headers)
                 self.check_problem(answer, 401, "unauthorized")
                 self.assertRegex(answer.headers["www-authenticate"], "^Bearer")
-                self.check_guarded(answer)
+                self.check_security_fields(answer)
                 self.assertNotIn(token.encode(), answer.body)
         for target in ("/healthz", "/", "/fits", "/app.js", "/app.css"):
             self.assertEqual(server.get(target).status, 200, target)
@@ -212,7 +212,7 @@ class Idempotency(Served):
         self.assertEqual(self.count(), before + 1)
         self.assertNotEqual(self.server.post_csv("/v1/fits?model=viscous", SHORT).headers["location"], first.headers["location"])
 
-    def test_a_repetition_of_a_batch_makes_no_other(self):
+    def test_a_repeated_batch_is_made_once(self):
         body, content_type = multipart([data_part("a.csv", SHORT), data_part("b.csv", SHORT)])
         answers = [self.server.ask("POST", "/v1/batches", body, Content_Type=content_type, Idempotency_Key="batch-1")
                    for _ in range(3)]
@@ -230,7 +230,7 @@ class Idempotency(Served):
                                "bad_request")
         self.assertEqual(self.server.post_csv("/v1/fits", SHORT, Idempotency_Key="!" + "~" * 254).status, 200)
 
-    def test_repetitions_at_once_make_one_fit(self):
+    def test_simultaneous_repetitions_make_one_fit(self):
         before, answers = self.count(), []
         data = (DATASETS / "coulomb.csv").read_bytes()
 
@@ -254,8 +254,8 @@ class Idempotency(Served):
             self.check_problem(self.server.post_csv("/v1/fits?model=no", SHORT, Idempotency_Key="key-4"), 400, "bad_request")
 
 
-class Beginnings(Lab):
-    """The exit code identifies why the server does not start."""
+class FailedStarts(Lab):
+    """The exit code tells why the server does not start."""
 
     def check_refused(self, code, pattern, *flags, store="other.sqlite"):
         done = subprocess.run([TOOL, *(["--store", store] if store else []), *map(str, flags)], cwd=self.folder,
@@ -282,7 +282,7 @@ class Beginnings(Lab):
             port = taken.getsockname()[1]
             self.check_refused(73, str(port), "--port", port)
 
-    def test_a_store_that_is_none_exits_4(self):
+    def test_a_file_that_is_not_a_store_exits_4(self):
         (self.folder / "text.sqlite").write_text("this is no store\n" * 100)
         with sqlite3.connect(self.folder / "strange.sqlite") as database:
             database.execute("CREATE TABLE recipes (name TEXT)")
@@ -313,10 +313,10 @@ class Beginnings(Lab):
             self.assertRegex(done.stdout, pattern)
 
 
-class Curious(Curl):
+class CurlFeatures(Curl):
     """Special features of curl: a body announced with Expect, a persistent connection, chunks."""
 
-    def test_bodies_are_taken_as_curl_sends_them(self):
+    def test_bodies_are_accepted_as_curl_sends_them(self):
         expected = self.fitted("coulomb.csv")
         for arguments in (["-H", "Expect: 100-continue"], ["-H", "Transfer-Encoding: chunked"], ["--http1.0"], ["--compressed"]):
             answer = self.curl("/v1/fits", "--data-binary", "@coulomb.csv", "-H", "Content-Type: text/csv", *arguments)

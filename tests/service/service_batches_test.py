@@ -92,7 +92,7 @@ class Batches(Batched, Served):
             (self.folder / name).write_bytes(content)
         return [name for pair in zip(good, [*BAD, None]) for name in pair if name]
 
-    def test_results_equal_those_of_fit_pendulum_and_reasons_too(self):
+    def test_results_and_reasons_equal_those_of_fit_pendulum(self):
         names, options = self.write_mixture(), {"model": "viscous,coulomb", "noise": "gaussian"}
         flags = ["--model", "viscous,coulomb", "--noise", "gaussian", "--rig", RIG]
         batch = self.post_batch(self.server, names, f"?{query_of({'model': options['model']})}",
@@ -126,7 +126,7 @@ class Batches(Batched, Served):
         self.assertEqual(last.kind, "done")
         self.assertEqual((last.json()["runs"], last.json()["done"]), (runs, runs))
 
-    def test_events_tell_each_run_once_while_it_goes_and_afterwards(self):
+    def test_events_report_each_run_once_during_and_after_the_batch(self):
         names = self.write_mixture()
         batch = self.post_batch(self.server, names, "?model=viscous")
         streams, threads = [[], [], []], []
@@ -145,7 +145,7 @@ class Batches(Batched, Served):
             self.assertEqual({key: event.json()[key] for key in ("name", "exit_code", "reason")},
                              {key: fit[key] for key in ("name", "exit_code", "reason")})
 
-    def test_a_stream_goes_on_after_the_last_event_id(self):
+    def test_a_stream_continues_after_the_last_event_id(self):
         names = self.simulate(5, seed=50)
         batch = self.post_batch(self.server, names, "?model=viscous")
         seen = self.stream(self.server, batch, most=2)
@@ -158,7 +158,7 @@ class Batches(Batched, Served):
             self.assertEqual(found[-1].kind, "done", beyond)
             self.assertIn(len(found), (1, 6), beyond)
 
-    def test_what_waits_says_so_and_what_is_deleted_is_gone(self):
+    def test_waiting_runs_are_409_and_deleted_runs_are_404(self):
         names = self.simulate(MANY, seed=100)
         batch = self.post_batch(self.server, names, f"?{query_of(SLOW)}")
         last = batch["fits"][-1]["id"]
@@ -192,7 +192,7 @@ class Batches(Batched, Served):
         page = self.server.get(f"/v1/batches?limit=1&before={page['next']}").json()
         self.assertEqual([each["id"] for each in page["batches"]], made[2:])
 
-    def test_a_rig_that_is_none_is_told_at_once_or_by_each_run(self):
+    def test_an_invalid_rig_is_reported_at_once_or_by_each_run(self):
         name = self.simulate(1, seed=500)[0]
         answer = self.server.post_parts("/v1/batches",
                                         [data_part(name, (self.folder / name).read_bytes()), json_part("rig", {"bob_mas": 3})])
@@ -203,7 +203,7 @@ class Batches(Batched, Served):
         self.assertEqual((done["failed"], done["fits"][0]["exit_code"]), (1, 4))
         self.assertRegex(done["fits"][0]["reason"], '"bob_mas" is not a key of a rig')
 
-    def test_batches_that_cannot_be_are_refused_whole(self):
+    def test_invalid_batches_are_refused_completely(self):
         count = len(self.server.get("/v1/batches?limit=1000").json()["batches"])
         self.check_problem(self.server.post_parts("/v1/batches", [json_part("rig", {})]), 400, "bad_request", "data")
         name = self.simulate(1, seed=400)[0]
@@ -237,7 +237,7 @@ class Survival(Batched):
             except (OSError, http.client.HTTPException):
                 time.sleep(0.02)
 
-    def test_killed_under_load_it_keeps_every_batch_and_fit_that_it_acknowledged(self):
+    def test_keeps_every_acknowledged_batch_and_fit_when_killed_under_load(self):
         names = self.simulate(MANY)
         server = self.serve()
         batches, answers, is_over = [], [], threading.Event()
@@ -265,15 +265,16 @@ class Survival(Batched):
         self.assertLessEqual({status for _, status, _, _ in answers}, {200, 429})
         self.check_store(server)
 
-    def test_a_disk_that_is_full_for_a_while_costs_no_run(self):
+    def test_no_run_is_lost_while_the_disk_is_full(self):
         names = self.simulate(2 if IS_SANITIZED else 12)
         server = self.serve()
         batch = self.post_batch(server, names, "?model=all")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
         self.assertEqual(server.post_csv("/v1/fits", (self.folder / names[0]).read_bytes()).status, 507)
         self.assertEqual(server.get(f"/v1/batches/{batch['id']}").json()["state"], "running")
-        told = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again within \d+ s\n")
-        self.wait_until(lambda: told.search(server.log()), "a run is put back")  # requests would fill the log, limited too
+        pattern = re.compile(rb"run \w+ of batch \w+ waits: cannot write fits\.sqlite: .*; it is tried again within \d+ s\n")
+        # The log is read instead of sending requests, which would fill it: its size is limited, too.
+        self.wait_until(lambda: pattern.search(server.log()), "a run waits for its next try")
         self.assertRegex(server.get("/metrics").body, rb"\npendulum_batch_retried_runs_total [1-9]")
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "all"))
@@ -292,7 +293,7 @@ class Survival(Batched):
         with open(self.folder / "fits_table.csv", newline="", encoding="utf-8") as file:
             self.assertGreater(len(list(csv.DictReader(file))), 0)
 
-    def test_terminated_it_answers_what_is_under_way_and_goes_on_with_batches_later(self):
+    def test_answers_running_requests_after_sigterm_and_continues_batches_later(self):
         names = self.simulate(MANY)
         server = self.serve("--stop_seconds", "120")
         batch = self.post_batch(server, names, "?model=viscous,coulomb")
@@ -313,19 +314,19 @@ class Survival(Batched):
         self.check_complete(server, batch, lambda name: self.result(name, "--model", "viscous,coulomb"))
         self.check_store(server)
 
-    def test_a_fit_that_takes_too_long_then_is_told_so(self):
+    def test_a_fit_that_takes_longer_than_the_stop_gets_503(self):
         data = (self.folder / self.simulate(1)[0]).read_bytes()
         server = self.serve("--stop_seconds", "0")
         answers = []
         asking = threading.Thread(target=lambda: answers.append(server.post_csv(f"/v1/fits?{query_of(ENDLESS)}", data)))
         asking.start()
-        self.wait_until(lambda: b"requests_running 2" in server.get("/metrics").body, "the fit is under way, beside the question")
+        self.wait_until(lambda: b"requests_running 2" in server.get("/metrics").body, "the fit and the request for the metrics run")
         server.process.send_signal(signal.SIGTERM)
         self.assertEqual(server.process.wait(TIMEOUT_S), 0)
         asking.join(TIMEOUT_S)
         self.assertEqual([(answer.status, answer.headers["retry-after"]) for answer in answers], [(503, "5")])
 
-    def test_an_interrupt_ends_it_as_well_streams_included(self):
+    def test_an_interrupt_ends_the_server_and_its_streams(self):
         server = self.serve()
         batch = self.post_batch(server, self.simulate(MANY), f"?{query_of(SLOW)}")
         response = server.open(f"/v1/batches/{batch['id']}/events")
@@ -334,7 +335,7 @@ class Survival(Batched):
         try:
             found += events(response)
         except http.client.IncompleteRead:
-            pass  # truncated by the crash, not closed
+            pass  # the stream ends without its last chunk
         response.close()
         self.assertNotIn("done", [event.kind for event in found])
 
@@ -355,7 +356,7 @@ class Survival(Batched):
 class Live(Lab):
     """A recording that grows, as record_pendulum writes it: run.csv.part, then run.csv."""
 
-    def test_a_recording_is_told_as_it_grows(self):
+    def test_a_growing_recording_is_sent_as_events(self):
         server = self.serve("--live", "run.csv")
         self.assertEqual(server.get("/v1/live").json()["state"], "waiting")
         rows = (DATASETS / "runs_1.csv").read_text().splitlines(keepends=True)

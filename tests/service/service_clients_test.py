@@ -112,7 +112,7 @@ class SameSentences(Curl):
                 (self.folder / name).write_text(text)
                 self.check_mistake(name)
 
-    def test_flags_that_cannot_be(self):
+    def test_invalid_flags(self):
         for options in ({"model": "nothing"}, {"unit": "counts"}, {"interval": "x"}, {"range": "3"}, {"fix": "inertia"},
                         {"fix": "mass=3"}, {"init": "inertia=x"}, {"from": "x"}, {"noise": "pink"}, {"seed": "-3"},
                         {"model": "coulomb,coulomb"}, {"start": "late"}, {"release": "0"}, {"release": "9"}, {"from": "100"},
@@ -149,7 +149,7 @@ class SameSentences(Curl):
         self.check_same_problem(self.curl("/v1/fits", "-F", "data=@coulomb.csv", "-F", f"calibration=@{CALIBRATION}"), exit_code,
                                 sentence)
 
-    def test_unknown_parameters_are_refused_with_the_nearest(self):
+    def test_unknown_parameters_are_refused_with_the_nearest_name(self):
         for target in ("/v1/fits?modle=linear", "/v1/fits?moddel=linear&name=a.csv"):
             self.check_problem(self.post_file(target, "coulomb.csv"), 400, "bad_request", r"mod\w+.*did you mean.*model")
         self.check_problem(self.post_value("/v1/fits", {"data": COULOMB.decode(), "options": {"intervall": "profile"}}), 400,
@@ -163,7 +163,7 @@ class SameSentences(Curl):
         answer = self.curl("/v1/fits?model=linear", "-F", "data=@coulomb.csv", "-F", 'options={"model": "linear"}')
         self.check_problem(answer, 400, "bad_request", "model")
 
-    def test_flags_of_the_command_line_alone_are_unknown(self):
+    def test_flags_only_of_the_command_line_are_unknown(self):
         for flag in ("json", "threads", "data", "rig", "shared", "report", "help"):
             self.check_problem(self.post_file(f"/v1/fits?{flag}=1", "coulomb.csv"), 400, "bad_request", flag)
         self.check_problem(self.post_file("/v1/fits?release=all", "coulomb.csv"), 400, "bad_request", "release")
@@ -231,7 +231,7 @@ class Stored(Curl):
         self.check_problem(self.curl(f"{place}/refits?model=nothing", method="POST"), 400, "bad_request", "no model 'nothing'")
         self.check_problem(self.curl("/v1/fits/none/refits", method="POST"), 404, "not_found")
 
-    def test_a_refit_of_a_list_of_values_may_hold_readings_of_another_calibration(self):
+    def test_a_refit_may_add_a_calibration(self):
         answer = self.curl("/v1/fits?model=linear", "-F", "data=@counts.csv")
         again = self.post_value(answer.headers["location"] + "/refits",
                                 {"calibration": json.loads(CALIBRATION.read_text()), "options": {"model": "viscous"}})

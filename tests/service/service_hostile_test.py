@@ -42,7 +42,7 @@ class Hostile(Served):
 
 
 class Places(Hostile):
-    def test_paths_lead_nowhere_else(self):
+    def test_paths_reach_no_other_files(self):
         up = ("..", "%2e%2e", "%252e%252e", "..%2f..", "%2e%2e%5c", "..\\..", "..%5c..", "%c0%ae%c0%ae", "..;", "....//", "%00",
               ".%00.")
         for base in ("/", "/v1/fits/", "/v1/examples/", "/app.js/", "/fits/", "/docs/"):
@@ -56,7 +56,7 @@ class Places(Hostile):
                        b"//etc/passwd", b"*", b"etc/passwd"):
             self.refused(self.server.raw(request(b"GET", target)), 400, 404, 405)
 
-    def test_targets_that_are_none(self):
+    def test_invalid_targets(self):
         for target in (b"/v1/fits?name=%", b"/v1/fits?name=%zz", b"/v1/fits?name=%ff", b"/v1/fits?name=%00", b"/v1/fits?%=1",
                        b"/v1/fits?=1", b"/v1/fits?&&=&"):
             answer = self.server.raw(request(b"GET", target))
@@ -75,7 +75,7 @@ class Places(Hostile):
         self.refused(self.server.raw(request(b"GET", b"/v1/fits?" + query)), 400, 413, 414, 431)
         self.refused(self.server.raw(request(b"GET", b"/v1/fits?" + query[:4000])), 400)
 
-    def test_headers_beyond_bounds(self):
+    def test_too_large_headers(self):
         self.check_problem(self.server.raw(request(b"GET", b"/", b"X: " + b"x" * 10**6)), 431, "headers_too_large")
         self.check_problem(self.server.raw(request(b"GET", b"/", *[b"X%d: 1" % i for i in range(10**5)])), 431,
                            "headers_too_large")
@@ -99,7 +99,7 @@ class Places(Hostile):
                     self.assertRegex(file.headers["content-disposition"], r'^attachment[^\r\n]*$')
         self.assertNotIn(b"\n127.0.0.1 forged", self.server.log())
 
-    def test_filenames_may_hold_anything_harmless(self):
+    def test_any_filename_is_harmless(self):
         for name in ('"; filename="other.csv', "a\r\nX: 1", "../../../etc/passwd", "..\\..\\a.csv", "C:\\run.csv", "\0.csv",
                      "x" * 5000, "<b>.csv", ""):
             part = "data", name.replace('"', "%22").replace("\r\n", "%0D%0A"), "text/csv", SHORT
@@ -115,7 +115,7 @@ class Places(Hostile):
 
 
 class Bodies(Hostile):
-    def test_files_that_are_no_recordings(self):
+    def test_files_that_are_not_recordings(self):
         zeros = io.BytesIO()
         with zipfile.ZipFile(zeros, "w", zipfile.ZIP_DEFLATED) as file:
             file.writestr("run.csv", b"\0" * (50 << 20))
@@ -126,7 +126,7 @@ class Bodies(Hostile):
                      b"time_s,angle_deg\n0,\xff\xfe\n1,2\n"):
             self.refused(self.server.post_csv("/v1/fits", data), 400, 413, 422)
 
-    def test_a_body_that_is_compressed_is_not_opened(self):
+    def test_compressed_bodies_are_refused(self):
         bomb = gzip.compress(b"\0" * (100 << 20))
         for coding in ("gzip", "deflate", "br", "GZIP, gzip"):
             self.refused(self.server.post_csv("/v1/fits", bomb, Content_Encoding=coding), 400, 415)
@@ -136,7 +136,7 @@ class Bodies(Hostile):
             if answer:
                 self.refused(answer, 400, 408, 411, 415, 501)
 
-    def test_json_that_is_none_or_too_much(self):
+    def test_invalid_or_too_deep_json(self):
         deep = 100_000
         texts = [b"[" * deep + b"]" * deep, b'{"data":' * deep + b"1" + b"}" * deep, b'{"options":' + b'{"a":' * deep,
                  b"[" * (5 << 20), b"",
@@ -148,7 +148,7 @@ class Bodies(Hostile):
             for target in ("/v1/fits", "/v1/simulations"):
                 self.refused(self.server.ask("POST", target, text, Content_Type="application/json"), 400, 422)
 
-    def test_options_with_numbers_that_are_none(self):
+    def test_options_with_invalid_numbers(self):
         for value in ("NaN", "Infinity", "-Infinity", "1e999", "-1e999", "1" * 10**5, '"nan"', '"inf"', "null", "[]", "{}"):
             for key in ("from", "seed", "resolution", "release", "sample_rate_hz"):
                 text = '{"data": %s, "options": {"%s": %s}}' % (json.dumps(SHORT.decode()), key, value)
@@ -169,7 +169,7 @@ class Bodies(Hostile):
                      '{"data": %s, "rig": {"gravity_torque": 1, "gravity_torque": 2}}' % data):
             self.refused(self.server.ask("POST", "/v1/fits", text.encode(), Content_Type="application/json"), 400, 422)
 
-    def test_rigs_that_hurt(self):
+    def test_extreme_rigs(self):
         for rig in ({"gravity_torque": 1e308}, {"gravity_torque": 5e-324}, {"gravity_torque": [1] * 1000},
                     {"gravity_torque": {"value": 1, "std_dev": -1}},
                     {"gravity_torque": "x" * 10**6}, {"x" * 10**6: 1}, {"gravity_torque": True}):
@@ -178,13 +178,13 @@ class Bodies(Hostile):
             if answer.status != 200:
                 self.refused(answer, 400, 422)
 
-    def test_calibrations_that_hurt(self):
+    def test_extreme_calibrations(self):
         for table in (b"counts,angle_deg\n" + b"1,1\n" * 200000, b"counts,angle_deg\n" + b"1e308,1e308\n-1e308,-1e308\n0,0\n",
                       b"counts,angle_deg\nnan,nan\n1,2\n",
                       b"\0" * 10**6, b"counts,angle_deg\n1,1\n1,2\n1,3\n"):
             self.refused(self.server.post_csv("/v1/calibrations?order=5", table), 400, 413, 422)
 
-    def test_lengths_that_are_wrong(self):
+    def test_wrong_body_lengths(self):
         def post(*fields, body=b""):
             return self.server.raw(request(b"POST", b"/v1/fits", b"Content-Type: text/csv", *fields, body=body))
         for length in (b"-1", b"x", b"1e3", b"99999999999999999999999999", b"0x10", b"1, 2", b""):
@@ -199,7 +199,7 @@ class Bodies(Hostile):
             self.refused(post(b"Transfer-Encoding: chunked", body=chunks), 400, 408, 413, 431)
         self.refused(post(b"Transfer-Encoding: chunked", body=b"1\r\nx\r\n" * 300000 + b"0\r\n\r\n"), 413, 422)
 
-    def test_a_body_that_never_comes_whole_times_out(self):
+    def test_an_incomplete_body_times_out(self):
         answer = self.server.raw(request(b"POST", b"/v1/fits", b"Content-Type: text/csv", b"Content-Length: 100", body=b"time_s"))
         if answer:  # or the connection was closed
             self.check_problem(answer, 408, "timed_out")
@@ -211,7 +211,7 @@ class Bodies(Hostile):
             problem = self.check_problem(answer, 413, "too_large", "20 ?000|20001")
             self.assertEqual(problem["exit_code"], 4)
 
-    def test_a_body_beyond_the_bound(self):
+    def test_a_too_large_body(self):
         self.check_problem(self.server.post_csv("/v1/fits", b"1" * (17 << 20)), 413, "too_large", "16")
 
 
@@ -230,7 +230,7 @@ class Parts(Hostile):
         body, content_type = multipart([data_part("a.csv", SHORT)] * 51)
         self.check_problem(self.post(body, content_type, "/v1/batches"), 413, "too_large", "50")
 
-    def test_forms_that_are_broken(self):
+    def test_invalid_forms(self):
         data = b'--b\r\nContent-Disposition: form-data; name="data"\r\n\r\n' + SHORT
         for body in (b"", b"--b", b"--b\r\n", b"--b--", data, data + b"\r\n--b", data + b"\r\n--c--\r\n",
                      b"--b\r\n\r\n" + SHORT + b"\r\n--b--\r\n",
@@ -244,7 +244,7 @@ class Parts(Hostile):
                              "multipart/form-data; boundary=" + "b" * 1000, 'multipart/form-data; boundary="b'):
             self.refused(self.post(data + b"\r\n--b--\r\n", content_type), 400, 415)
 
-    def test_parts_that_are_twice_or_strangers_or_none(self):
+    def test_repeated_unknown_or_missing_parts(self):
         rig = json_part("rig", {"gravity_torque": 1.0})
         data = data_part("a.csv", SHORT)
         for parts in ([data, data], [data, rig, rig], [rig], [], [data, json_part("stranger", {})],
@@ -288,7 +288,7 @@ class Overload(Lab):
         self.assertEqual((done["failed"], done["fits"][0]["exit_code"]), (1, 75))
         self.assertIn("not done after 4 s", done["fits"][0]["reason"])  # four times the limit of a single fit
 
-    def test_a_full_queue_refuses_and_the_rest_is_answered(self):
+    def test_a_full_queue_refuses_and_other_requests_are_answered(self):
         server = self.serve("--threads", "1", "--max_queue", "2")
         answers = self.at_once(server, 16, COULOMB, {"model": "viscous,coulomb,drag"})
         fitted = [answer for answer in answers if answer.status == 200]
@@ -300,7 +300,7 @@ class Overload(Lab):
         self.assertLess(len(fitted), 16)
         self.assertEqual(server.post_csv("/v1/fits?closed_form_only=true", SHORT).status, 200)
 
-    def test_what_is_quick_is_answered_while_fits_take_every_thread(self):
+    def test_quick_requests_are_answered_while_fits_use_every_thread(self):
         server = self.serve("--threads", "1", "--fit_seconds", "5")
         slow = threading.Thread(target=lambda: server.post_csv(f"/v1/fits?{query_of(LONG_FIT)}", COULOMB))
         slow.start()

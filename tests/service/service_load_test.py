@@ -88,7 +88,7 @@ class Load(Lab):
 
 
 class Crowd(Load):
-    def test_many_clients_get_right_answers_and_the_memory_stays(self):
+    def test_many_clients_get_right_answers_and_memory_does_not_grow(self):
         server = self.serve()
         requests, seconds, resident = self.mixture(server), ARGUMENTS.seconds, []
         begin = time.monotonic()
@@ -112,7 +112,7 @@ class Crowd(Load):
         self.assertEqual(len(listed["fits"]), 1)
         self.assertEqual(server.stop(), 0)
 
-    def test_fits_alone_are_as_many_as_a_batch_makes(self):
+    def test_the_rate_of_fits_is_close_to_that_of_a_batch(self):
         server = self.serve()
         begin = time.monotonic()
         outcome = load.drive(server.port, self.fits(server), CLIENTS, ARGUMENTS.seconds / 2)
@@ -147,22 +147,22 @@ class Misbehaving(Load):
 
     def ended(self, connections, seconds=60):
         """The answers to connections until the server closed them, within a time limit."""
-        selector, told, end = selectors.DefaultSelector(), {}, time.monotonic() + seconds
+        selector, received, end = selectors.DefaultSelector(), {}, time.monotonic() + seconds
         for each in connections:
             each.setblocking(False)
             selector.register(each, selectors.EVENT_READ)
-            told[each] = b""
+            received[each] = b""
         while selector.get_map() and time.monotonic() < end:
             for key, _ in selector.select(1):
                 try:
                     content = key.fileobj.recv(1 << 16)
                 except OSError:
                     content = b""
-                told[key.fileobj] += content
+                received[key.fileobj] += content
                 if not content:
                     selector.unregister(key.fileobj)
-        self.assertEqual(len(selector.get_map()), 0, "connections that the server never ended")
-        return list(told.values())
+        self.assertEqual(len(selector.get_map()), 0, "connections that the server never closed")
+        return list(received.values())
 
     def drip(self, connections, content):
         """Returns a function that sends one more byte on each connection, as long as the server accepts it."""
@@ -177,22 +177,22 @@ class Misbehaving(Load):
             place[0] = min(place[0] + 1, len(content) - 1)
         return one_byte
 
-    def test_headers_that_come_byte_by_byte(self):
+    def test_headers_sent_byte_by_byte(self):
         slow = self.connections(200)
         self.check_others(self.drip(slow, b"GET /v1/fits HTTP/1.1\r\nHost: localhost\r\nX-Slow: " + b"x" * 100000))
-        for told in self.ended(slow):
-            self.assertIn(told[9:12], (b"", b"408"), told[:200])
+        for received in self.ended(slow):
+            self.assertIn(received[9:12], (b"", b"408"), received[:200])
 
-    def test_bodies_that_come_byte_by_byte(self):
+    def test_bodies_sent_byte_by_byte(self):
         slow = self.connections(200)
         head = b"POST /v1/fits HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\nContent-Length: 100000\r\n\r\n"
         for each in slow:
             each.sendall(head)
         self.check_others(self.drip(slow, b"1" * 100000))
-        for told in self.ended(slow):
-            self.assertIn(told[9:12], (b"", b"408"), told[:200])
+        for received in self.ended(slow):
+            self.assertIn(received[9:12], (b"", b"408"), received[:200])
 
-    def test_connections_that_say_nothing_or_half_and_go(self):
+    def test_connections_without_a_complete_request(self):
         self.connections(100)  # they send nothing
         for number in range(200):
             with self.server.connect() as connection:
@@ -201,7 +201,7 @@ class Misbehaving(Load):
         # Silent clients do not delay the stop. server_limits_test checks their time limit.
         self.assertEqual(self.server.stop(), 0)
 
-    def test_clients_that_go_before_their_answer(self):
+    def test_clients_that_leave_before_their_answer(self):
         fit = self.fits(self.server)[0].content
         for number in range(40):
             with self.server.connect() as connection:
@@ -210,7 +210,7 @@ class Misbehaving(Load):
                     connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")  # closes with a reset
         self.check_others()
 
-    def test_bodies_beyond_the_bound(self):
+    def test_too_large_bodies(self):
         post = b"POST /v1/fits HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\n"
         chunk = b"10000\r\n" + b"1" * 65536 + b"\r\n"
 
@@ -238,7 +238,7 @@ class Misbehaving(Load):
         before = self.server.resident_bytes()
         self.check_others(ask)
         self.assertLess(self.server.resident_bytes() - before, 256 << 20)
-        self.wait_until(lambda: all(self.is_ended(each) for each in deaf), "the server ends who never reads", 90)
+        self.wait_until(lambda: all(self.is_ended(each) for each in deaf), "the server closes connections that are not read", 90)
 
     def is_ended(self, connection):
         """Whether the server has closed a connection: sending on it causes a reset."""
@@ -257,7 +257,7 @@ class Misbehaving(Load):
             each.sendall(f"GET {batch}/events HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
         self.check_others()
 
-    def test_connections_beyond_the_bound_are_told(self):
+    def test_too_many_connections_get_503(self):
         self.server.stop()
         self.server = Server(self.folder, "--max_connections", "20")
         self.addCleanup(self.end, self.server)

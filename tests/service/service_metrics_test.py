@@ -80,7 +80,7 @@ class Metrics(Served):
                 self.assertTrue(all(re.fullmatch("[a-z_]+", label) for label in sample.labels), sample)
         self.assertTrue(any(kind == "histogram" and name.endswith("_seconds") for name, kind in types.items()))
 
-    def test_counters_rise_by_what_was_done(self):
+    def test_counters_count_each_request_and_fit(self):
         before = self.samples(("counter",))
         for number in range(3):
             self.assertEqual(self.server.post_csv(f"/v1/fits?seed={number}", SHORT).status, 200)
@@ -106,7 +106,7 @@ class Metrics(Served):
             now = {key: value for key, value in self.samples(("counter",)).items() if "/metrics" not in str(key[1])}
             last.append(now)
             return len(last) > 3 and sum(now.values()) == sum(last[-2].values()) == sum(last[-3].values()) or len(last) > 40
-        self.wait_until(still, "the counters rest")
+        self.wait_until(still, "the counters no longer change")
         return last[-1]
 
     def test_runs_of_batches_are_counted(self):
@@ -142,7 +142,7 @@ class Metrics(Served):
         self.assertGreaterEqual(total * (1 + 1e-9), least, what)  # each value is above the bound of the bucket below
         self.assertEqual(count == 0, total == 0, what)
 
-    def test_a_histogram_counts_as_many_as_were_asked(self):
+    def test_a_histogram_counts_every_request(self):
         def counted():
             return sum(value for (name, labels), value in self.samples(("histogram",)).items()
                        if name.endswith("_count") and re.search("request|http", name))
@@ -151,7 +151,7 @@ class Metrics(Served):
             self.server.get("/v1/models")
         self.wait_until(lambda: counted() >= before + 5, "five requests are counted")
 
-    def test_strangers_make_no_series(self):
+    def test_unknown_paths_and_methods_make_no_series(self):
         before = len(self.samples())
         for number in range(60):
             self.server.get(f"/stranger/{number}")
@@ -159,7 +159,7 @@ class Metrics(Served):
             self.server.ask(f"BREW{number}", "/v1/fits")
         self.assertLess(len(self.samples()), before + 60)
 
-    def test_gauges_fall_back(self):
+    def test_gauges_return_to_zero(self):
         self.server.post_csv("/v1/fits", SHORT)
 
         def at_rest():

@@ -48,12 +48,12 @@ class Simulations(Curl):
                                   "-H", "Accept: text/csv")
                 self.assertEqual((alone.status, alone.type, alone.body.decode()), (200, "text/csv", recording))
 
-    def test_numbers_may_be_numbers(self):
+    def test_values_may_be_json_numbers(self):
         recording, _ = self.expected(False, {**self.CASES[0][1], "duration": "2.5", "rate": "40", "seed": "3"})
         answer = self.post_value("/v1/simulations", {**self.CASES[0][1], "duration": 2.5, "rate": 40, "seed": 3})
         self.assertEqual(answer.json()["recording"], recording)
 
-    def test_mistakes_are_told_as_simulate_pendulum_tells_them(self):
+    def test_errors_equal_those_of_simulate_pendulum(self):
         for options in ({"model": "nothing"}, {"duration": "-1"}, {"rate": "0"}, {"set": "inertia=0.05"}, {"unit": "counts"},
                         {"noise": "-1"},
                         {"set": "mass=3"}, {"gravity": "none"}, {"set": "inertia=0.05,release_angle=0,release_time=0.1"}):
@@ -64,7 +64,7 @@ class Simulations(Curl):
                 self.check_same_problem(self.post_value("/v1/simulations", options), code, sentence)
         self.check_problem(self.post_value("/v1/simulations", {"ratee": "3"}), 400, "bad_request", "ratee.*did you mean.*rate")
 
-    def test_a_simulation_without_bounds_is_refused(self):
+    def test_a_too_large_simulation_is_refused(self):
         answer = self.post_value("/v1/simulations", {**SWING, "duration": "1e6", "rate": "1000"})
         self.check_problem(answer, 413, "too_large", "200000")
 
@@ -113,9 +113,10 @@ class Calibrations(Curl):
                 code, _, sentence = run_tool("calibrate_sensor", "--data", name, folder=self.folder)
                 problem = self.check_problem(self.post_file("/v1/calibrations", name), 422, "unusable_data")
                 self.assertEqual(problem["exit_code"], code)
-                self.assertEqual(problem["detail"].partition(": ")[2], sentence.partition(": ")[2])  # here a table has no name
+                # Only the sentences are compared, because the service does not know the name of the table.
+                self.assertEqual(problem["detail"].partition(": ")[2], sentence.partition(": ")[2])
 
-    def test_flags_that_cannot_be(self):
+    def test_invalid_flags(self):
         for options in ({"order": "0"}, {"order": "9"}, {"order": "x"}, {"bits": "77"}, {"input_range": "3,1"},
                         {"bits": "8", "input_range": "0,255"}):
             with self.subTest(**options):
@@ -137,7 +138,7 @@ class Knowledge(Curl):
 
     def test_models_are_those_of_the_command_line(self):
         _, out, _ = run_tool("fit_pendulum", "--help", folder=self.folder)
-        listed = " ".join(out.decode().split()).partition("Model of the motion, one of ")[2].partition(", several")[0].split(", ")
+        listed = " ".join(out.decode().split()).partition("Model of the motion: one of ")[2].partition("; several")[0].split(", ")
         models = self.curl("/v1/models").json()["models"]
         self.assertEqual([model["name"] for model in models], listed)
         by_name = {model["name"]: model for model in models}
@@ -174,11 +175,11 @@ class Knowledge(Curl):
                 self.assertEqual((answer.status, answer.body), (200, self.fitted("example.csv", *flags)))
         self.check_problem(self.curl("/v1/examples/none"), 404, "not_found", "none")
 
-    def test_health_tells_the_version(self):
+    def test_health_reports_the_version(self):
         _, out, _ = run_tool(self.server.process.args[0].name, "--version", folder=self.folder)
         self.assertEqual(self.curl("/healthz").json(), {"status": "ok", "version": out.decode().split()[1]})
 
-    def test_nothing_is_live_without_live(self):
+    def test_there_is_no_live_recording_without_the_flag(self):
         for target in ("/v1/live", "/v1/live/events", "/v1/live/recording"):
             self.check_problem(self.curl(target), 404, "not_found", "--live")
 

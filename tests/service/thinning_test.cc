@@ -51,7 +51,7 @@ TEST(Thin, KeepsOneSampleOfAConstantBlock) {
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, 5.0), 6), ElementsAre(0, 1, 4, 8));
 }
 
-// Blocks have equal durations: a burst gets one, a gap gets no samples.
+// The two blocks have equal durations. Each contains one group of samples; the gap between the groups has none.
 TEST(Thin, GivesNoSamplesInAGap) {
   const Numbers time = {0, 1, 2, 3, 97, 98, 99, 100};
   EXPECT_THAT(Thin(time, Numbers{0, 1, 2, 3, 4, 5, 6, 7}, 6), ElementsAre(0, 1, 3, 4, 6, 7));

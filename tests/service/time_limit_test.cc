@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds kShort{40}, kNever{3'600'000};
 
-/// Waits for a stop much longer than expected; true: it came.
+/// Waits for a stop, much longer than it should take; returns whether it came.
 bool IsStopped(const std::stop_token& token) {
   constexpr std::chrono::seconds kPatience{20};
   std::mutex mutex;
@@ -50,7 +50,7 @@ TEST(TimeLimit, StopsEachAfterItsOwnTime) {
   EXPECT_GE(Clock::now() - begin, kShort);
 }
 
-TEST(TimeLimit, WatchesWorkAfterAStoppedOne) {
+TEST(TimeLimit, StopsWorkThatBeginsAfterAStop) {
   TimeLimit limit(kShort);
   const TimeLimit::Watch first(limit);
   ASSERT_TRUE(IsStopped(first.token()));

@@ -15,7 +15,7 @@ namespace {
 
 using wire::WorkQueue;
 
-TEST(WorkQueue, AcceptsWorkForItsThreadsAndPlaces) {
+TEST(WorkQueue, AcceptsWorkForItsThreadsAndItsQueue) {
   WorkQueue queue(2, 3);
   std::latch gate(1), begun(2);
   std::atomic<int> done = 0;
@@ -37,7 +37,7 @@ TEST(WorkQueue, AcceptsWorkForItsThreadsAndPlaces) {
   EXPECT_TRUE(queue.Offer([] {}));
 }
 
-TEST(WorkQueue, AcceptsWorkForItsThreadsWithoutPlaces) {
+TEST(WorkQueue, AcceptsWorkForItsThreadsWithoutAQueue) {
   WorkQueue queue(1, 0);
   std::latch gate(1);
   EXPECT_TRUE(queue.Offer([&] { gate.wait(); }));
@@ -70,7 +70,7 @@ TEST(WorkQueue, DropsWaitingWorkAndFinishesRunningWorkOnClose) {
   EXPECT_TRUE(queue.Offer([&, held] { has_run_later = true; }));
   begun.wait();
   std::thread opener([&] {
-    while (held.use_count() > 1) std::this_thread::yield();  // until it is destroyed
+    while (held.use_count() > 1) std::this_thread::yield();  // until the waiting work is destroyed
     gate.count_down();
   });
   queue.Close();

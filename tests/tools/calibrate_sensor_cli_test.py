@@ -169,7 +169,7 @@ class CalibrateSensorTest(unittest.TestCase):
                              "counts,angle_deg\n" + "".join(f"{i},{i}\n" for i in range(1_000_000)))
         self.check_bad_table("this line is longer than 1 MiB", "x" * 3_000_000)
 
-    def test_the_longest_table_is_calibrated_in_a_moment(self):
+    def test_the_longest_table_is_calibrated_in_time(self):
         table = "volts,angle_rad\n" + "".join(f"{i / 1000},{math.sin(i / 1e4)}\n" for i in range(10_000))
         done = self.check_done("--data", "-", "--order", "5", "--plot", "cal.svg", input=table)
         self.assertIn("(the 50 with the largest residuals)", done.stdout)

@@ -61,7 +61,7 @@ TEST(PositionalArguments, RefusesARepeatedFlag) {
   EXPECT_EQ(Refusal({"--clock-scale", "1", "x", "-clock_scale", "1"}),
             "--clock_scale is given twice; leave one of them out");
   EXPECT_EQ(Refusal({"--data", "a.csv", "--from=1", "--data", "b.csv"}),
-            "--data is given twice; what it names stands between commas: --data a.csv,b.csv");
+            "--data is given twice; give all values in one flag, separated by commas: --data a.csv,b.csv");
   EXPECT_THAT(Positional({"--data", "a.csv", "--residuals", "--data", "--", "--data"}), ElementsAre("--data"));
   EXPECT_THAT(Positional({"--help", "--help"}), IsEmpty());
 }

@@ -4,8 +4,8 @@
 
   corruption_battery.py [FOLDER_OF_THE_TOOLS] [--count 100] [--hazard gaps,knock] [--seed 1] [--jobs 2] [--keep FOLDER]
 
-For each hazard at each strength, `count` recordings are simulated, corrupted and fitted in the way of a user. A run
-ends in one of
+For each hazard at each strength, `count` recordings are simulated, corrupted and fitted as a user would. A run ends in
+one of
 
   fits            exit 0 and every parameter within 4 of its error bars of the true value
   beyond 4        exit 0 and a parameter between 4 and 5, which may be chance
@@ -37,7 +37,7 @@ import subprocess
 import sys
 import tempfile
 
-import hazards_of_motion  # noqa: F401, for it registers hazards
+import hazards_of_motion  # noqa: F401, because the import registers hazards
 from hazards import HAZARDS
 from simulated_lab import Lab, Recording
 
@@ -89,7 +89,7 @@ class Verdict:
 
     @property
     def judged(self) -> list[float]:
-        """The z values that must look Gaussian."""
+        """The z values that must follow a normal distribution."""
         return [] if self.excused or self.kind not in ("fits", "beyond 4", "WRONG") else list(self.z.values())
 
 
@@ -278,7 +278,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tools", nargs="?", type=pathlib.Path, default=ROOT / "build/release/bin")
     parser.add_argument("--count", type=int, default=100, help="recordings of each hazard and strength")
-    parser.add_argument("--hazard", default="", help="only these, separated by commas")
+    parser.add_argument("--hazard", default="", help="only these hazards, separated by commas")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", type=pathlib.Path, help="an empty folder in which the files of every run stay")

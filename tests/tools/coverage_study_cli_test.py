@@ -60,11 +60,11 @@ class CoverageStudyTest(unittest.TestCase):
         self.assertRegex(lines[0], r"^coverage_study: white_2\.5: 1 of 10 recordings, \d+\.\d s$")
         self.assertRegex(lines[19], r"^coverage_study: moving: 10 of 10 recordings, \d+\.\d s$")
 
-    def test_exits_0_when_parameters_miss(self):
+    def test_exits_0_even_if_parameters_fail(self):
         done = self.check_done("--scenario", "ar_0.9", "--count", "1")
         self.assertIn("ar_0.9", done.stdout)
 
-    def test_writes_markdown_beside_the_table_or_instead(self):
+    def test_writes_markdown_in_addition_to_the_table_or_instead_of_it(self):
         done = self.check_done("--scenario", "moving", "--count", "2", "--markdown", "coverage.md")
         self.assertTrue(done.stdout.startswith("scenario"))
         page = (self.folder / "coverage.md").read_text()

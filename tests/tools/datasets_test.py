@@ -34,7 +34,7 @@ class DatasetsTest(unittest.TestCase):
         for name in names:
             self.assertEqual((pathlib.Path(folder) / name).read_bytes(), (DATASETS / name).read_bytes(), name)
 
-    def test_script_reproduces_them_byte_for_byte(self):
+    def test_script_reproduces_the_recordings_byte_for_byte(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([ROOT / "scripts/make_datasets", BINARY.parent, folder], check=True)
             self.check_reproduced(folder, FOREIGN)
@@ -51,7 +51,7 @@ class DatasetsTest(unittest.TestCase):
                 known = "*_truth.json" if path.name.endswith("_truth.json") else path.name
                 self.assertIn(f"`{known}`", guide)
 
-    def test_foreign_files_are_what_people_hand_over(self):
+    def test_foreign_files_have_their_typical_formats(self):
         excel = (DATASETS / "excel_export.csv").read_bytes()
         self.assertTrue(excel.startswith(b"\xef\xbb\xbfTime (s);Angle (deg)\r\n0;"))
         self.assertEqual(excel.count(b"\n"), excel.count(b"\r\n"))
@@ -92,7 +92,7 @@ class DatasetsTest(unittest.TestCase):
         period = (times[falls[-1]] - times[falls[0]]) / (len(falls) - 1)
         self.assertAlmostEqual(2 * math.pi / period, 4.8, delta=0.1)  # published: about 4.8 rad/s
 
-    def test_pendulum_of_to_rest_rests_from_50_s_on_and_swings_at_40_s(self):
+    def test_to_rest_swings_at_40_s_and_rests_from_50_s_on(self):
         times, values = samples("to_rest")
         rest = [value for time, value in zip(times, values) if time >= 50]
         swing = [value for time, value in zip(times, values) if 39 <= time < 41]

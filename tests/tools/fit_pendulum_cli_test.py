@@ -127,7 +127,7 @@ class BadFlags(CliTest):
     def test_positional_argument(self):
         self.assert_flags_refused("'run.csv' does not belong to a flag; .*--data", "run.csv")
 
-    def test_unknown_model_lists_those_there_are(self):
+    def test_unknown_model_lists_the_models(self):
         self.assert_flags_refused("viscous, coulomb, drag, .*linear, linear_coulomb", "--data", "run.csv", "--model", "columb")
 
     def test_a_model_named_twice(self):
@@ -146,7 +146,7 @@ class BadFlags(CliTest):
         self.assert_flags_refused("--from 5 s does not lie before --to 2 s", "--data", "run.csv", "--from", "5", "--to",
                                   "2")
 
-    def test_flags_in_a_file_are_refused_with_2_too(self):
+    def test_wrong_flags_in_a_file_exit_2(self):
         self.write("flags", "--colour=red\n")
         self.assertEqual(self.run_tool("--flagfile", "flags").returncode, 2)
 
@@ -158,14 +158,14 @@ class BadOutputs(CliTest):
     def test_folder(self):
         self.assert_refused(73, "directory", "--data", "run.csv", "--json", str(self.folder))
 
-    def test_is_checked_before_the_data_are_read(self):
+    def test_outputs_are_checked_before_the_data_are_read(self):
         self.assert_refused(73, "no/fit.json", "--data", "nowhere.csv", "--json", "no/fit.json")
 
-    def test_the_data_themselves(self):
+    def test_output_over_the_data(self):
         self.assert_refused(2, "--residuals", "--data", "run.csv", "--residuals", "./run.csv")
         self.assertEqual((self.folder / "run.csv").read_text(encoding="utf-8"), GOOD_DATA)
 
-    def test_one_file_twice(self):
+    def test_two_outputs_in_one_file(self):
         self.assert_refused(2, "--json", "--data", "run.csv", "--json", "x", "--residuals", "./x")
 
     def test_an_old_result_survives_a_failure(self):
@@ -198,14 +198,14 @@ class GoodRun(CliTest):
             self.assertLess(abs(parameter["estimate"] - swing.TRUTH[name]), 4 * parameter["std_error"], name)
         self.assertEqual(result["data"]["samples"], GOOD_DATA.count("\n") - 1)
 
-    def test_table_shows_what_people_look_for(self):
+    def test_table_has_all_sections(self):
         table, _ = self.fit("--rig", "rig.json")
         for part in ("[[Parameters]]", "inertia", "kg m^2", " ± ", "95 % interval", "th'' + ", " sin th = 0",
                      "[[Correlations]]", "[[Sampling]]", "[[Closed forms]]", "[[Closed forms against the fit]]",
                      "[[Turning points]]"):
             self.assertIn(part, table)
 
-    def test_without_a_rig_torques_are_in_units_of_gravitys(self):
+    def test_torques_are_in_units_of_gravity_torque_without_a_rig(self):
         table, result = self.fit()
         self.assertIsNone(result["rig"])
         inertia = result["fits"][0]["parameters"]["inertia"]
@@ -244,7 +244,7 @@ class GoodRun(CliTest):
             difference = float(row["measured_rad"]) - float(row["fitted_rad"])
             self.assertAlmostEqual(float(row["residual_rad"]), difference, delta=1e-15)
 
-    def test_the_check_stands_beside_the_fit(self):
+    def test_result_compares_the_fit_with_closed_forms(self):
         _, result = self.fit("--rig", "rig.json")
         rows = result["fits"][0]["closed_form"]
         self.assertTrue(rows)
@@ -255,7 +255,7 @@ class GoodRun(CliTest):
         inertia = result["closed_forms"]["decrement"]["parameters"]["inertia"]
         self.assertLess(abs(inertia["estimate"] - swing.TRUTH["inertia"]), 4 * inertia["std_error"])
 
-    def test_series_holds_samples_turning_points_and_models(self):
+    def test_series_has_samples_turning_points_and_models(self):
         _, result = self.fit("--series", "series.json")
         series = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
         samples = result["data"]["used_samples"]
@@ -269,12 +269,12 @@ class GoodRun(CliTest):
         self.assertEqual(len(peaks), result["closed_forms"]["turning_points"])
         self.assertGreaterEqual(len(series["extrema"]), len(peaks))
 
-    def test_dash_makes_standard_output_the_file_alone(self):
+    def test_dash_writes_only_that_file_to_standard_output(self):
         run = self.run_tool("--data", "run.csv", "--json", "-")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(strict_json(run.stdout)["schema_version"], 2)
 
-    def test_leaves_only_the_files_asked_for(self):
+    def test_writes_only_the_requested_files(self):
         before = self.names()
         self.fit("--residuals", "/dev/null")
         self.assertEqual(self.names(), before | {"fit.json"})
@@ -319,7 +319,7 @@ class ClosedFormsOnly(CliTest):
             estimate = forms["decrement"]["parameters"][name]
             self.assertLess(abs(estimate["estimate"] - value), 4 * estimate["std_error"], name)
 
-    def test_tells_people_the_turning_points_and_nothing_of_a_fit(self):
+    def test_text_has_turning_points_but_no_fit(self):
         run = self.run_tool("--data", "run.csv", "--closed_form_only")
         self.assertEqual((run.returncode, run.stderr), (0, ""))
         self.assertRegex(run.stdout, r"(?s)\[\[Data\]\].*\[\[Sampling\]\].*\[\[Closed forms\]\].*\[\[Turning points\]\]")
@@ -347,7 +347,7 @@ class ClosedFormsOnly(CliTest):
         viscous = swing.TRUTH["viscous"] / swing.GRAVITY_TORQUE
         self.assertAlmostEqual(forms["linear"]["viscous"]["estimate"] / viscous, 1, delta=0.05)
 
-    def test_counts_are_refused_without_the_switch(self):
+    def test_a_fit_refuses_counts(self):
         self.write("counts.csv", GOOD_DATA.replace("angle_deg", "adc_counts"))
         self.assert_refused(4, "calibrat", "--data", "counts.csv", "--json", "fit.json")
 
@@ -357,7 +357,7 @@ class ClosedFormsOnly(CliTest):
         self.assertEqual(series["models"], {})
         self.assertTrue(series["peaks"])
 
-    def test_refuses_what_only_a_fit_needs(self):
+    def test_refuses_flags_that_need_a_fit(self):
         self.assert_flags_refused("--residuals needs a fit, but --closed_form_only makes none", "--data", "run.csv",
                                   "--closed_form_only", "--residuals", "r.csv")
 
@@ -369,7 +369,7 @@ class ClosedFormsOnly(CliTest):
 
 
 class Answers(CliTest):
-    def test_help_shows_our_flags_only(self):
+    def test_help_shows_only_the_tools_flags(self):
         run = self.run_tool("--help")
         self.assertEqual(run.returncode, 0)
         for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "series",
@@ -378,7 +378,7 @@ class Answers(CliTest):
             self.assertRegex(run.stdout, rf"(?m)^  --{flag} ")
         self.assertNotIn("logtostderr", run.stdout)
 
-    def test_version_is_the_projects(self):
+    def test_prints_the_projects_version(self):
         project = re.search(r"VERSION ([0-9.]+)\n", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8").split("project(")[1])
         self.assertEqual(self.run_tool("--version").stdout, f"fit_pendulum {project.group(1)}\n")
 

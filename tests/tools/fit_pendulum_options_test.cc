@@ -127,8 +127,8 @@ TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
 TEST(MakeFitPendulumOptions, ListsTheModels) {
   FitPendulumFlags flags = WithData();
   flags.model = "columb";
-  EXPECT_EQ(Refusal(flags),
-            "--model: there is no model 'columb'; the models are " + MotionModelNames() + "; or all, by itself");
+  EXPECT_EQ(Refusal(flags), "--model: there is no model 'columb'; the models are " + MotionModelNames() +
+                                "; or give 'all' by itself for every friction law");
 }
 
 TEST(MakeFitPendulumOptions, AcceptsSeveralModelsInOrder) {

@@ -89,13 +89,14 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
   EXPECT_TRUE(CheckNumberedOutputs(options, {}, 1));
   const auto checked = CheckNumberedOutputs(options, {}, 2);
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().message, "--series - takes one fit, but there are 2; name a file, which is then numbered");
+  EXPECT_EQ(checked.error().message,
+            "--series - takes one fit, but there are 2; give a file name, to which the number is added");
 }
 
 // ---- Joint fits -----------------------------------------------------------------------------------------------------
 
-/// Options for recordings of src/docs/examples.md of one rig: I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m,
-/// released at 0.2 and 0.45 rad.
+/// Options for two recordings of one rig from src/docs/examples.md: I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004
+/// N m, released at 0.2 and 0.45 rad.
 FitPendulumOptions TwoRunsOptions() {
   FitPendulumFlags flags;
   flags.data = "datasets/runs_1.csv,datasets/runs_2.csv";
@@ -206,7 +207,7 @@ TEST(CheckNumberedOutputs, AllowsAJointResultOnStandardOutput) {
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(checked.error().message,
-            "--residuals - takes one recording, but there are 2; name a file, which is then numbered");
+            "--residuals - takes one recording, but there are 2; give a file name, to which the number is added");
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ def _hand_contact(lab: Lab, percent: float) -> Recording:
 def _knock(lab: Lab, percent: float) -> Recording:
     """In mid swing the rate changes by a share of its peak; a negative share removes energy.
 
-    The knock comes while the swing is well above the noise: residuals cannot show later ones. Weaker knocks are
-    excluded for the same reason: at 5 % some leave no trace, and friction changes by 8 of its standard errors.
+    The knock comes while the swing is well above the noise, because residuals cannot show a later knock. Knocks of 5 %
+    are excluded, because some leave no trace in the residuals but change friction by 8 of its standard errors.
     """
     first = lab.swing()
     sample = int(lab.rng.uniform(0.3, 0.6) * len(first.rows))
@@ -104,7 +104,8 @@ def _long_rest(lab: Lab, seconds: float) -> Recording:
 def _upright(lab: Lab, degrees: float) -> Recording:
     lab.amplitude = math.radians(degrees)
     if "coulomb" in lab.law:
-        lab.law["coulomb"] = min(lab.law["coulomb"], 0.5 * math.sin(lab.amplitude))  # otherwise dry friction holds it there
+        # With more dry friction the pendulum would stay at the release angle.
+        lab.law["coulomb"] = min(lab.law["coulomb"], 0.5 * math.sin(lab.amplitude))
     lab.start = lab.released()
     return lab.swing()
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on several recordings of one rig with one fit of all of them.
+"""Tests of joint fits: fit_pendulum fits several recordings of one rig together.
 
   joint_fit_cli_test.py PATH/TO/fit_pendulum
 """
@@ -59,7 +59,7 @@ class JointTest(unittest.TestCase):
         return json.loads(self.fit("--data", data, "--rig", "rig.json", *flags, "--json", "-", stdin=stdin).stdout)
 
     def assert_refused(self, code, sentence, *flags):
-        """Checks that the tool exits with the code and that sentence, and writes no file."""
+        """Checks that the tool exits with the code, prints the sentence, and writes no file."""
         before = self.names()
         run = self.run_tool(*flags, "--json", "fit.json", "--residuals", "r.csv")
         self.assertEqual(run.returncode, code, run.stderr)
@@ -72,7 +72,7 @@ class JointTest(unittest.TestCase):
 
 
 class JointFit(JointTest):
-    def test_is_one_result_of_all_recordings(self):
+    def test_gives_one_result_for_all_recordings(self):
         result = self.joint()
         (fit,) = result["fits"]
         self.assertEqual(fit["status"], "converged")
@@ -92,7 +92,7 @@ class JointFit(JointTest):
             for name in PHYSICAL:
                 self.assertEqual(run["parameters"][name], fit["parameters"][name])
 
-    def test_the_order_of_recordings_is_that_of_their_names(self):
+    def test_recordings_stay_in_the_given_order(self):
         result = self.joint(data="b.csv,a.csv")
         self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["b.csv", "a.csv"])
         for name in PHYSICAL:
@@ -100,7 +100,7 @@ class JointFit(JointTest):
             other = result["fits"][0]["parameters"][name]
             self.assertLess(abs(first["estimate"] - other["estimate"]), 0.1 * first["std_error"])
 
-    def test_recordings_alone_are_what_their_own_fits_say(self):
+    def test_separate_estimates_equal_single_fits(self):
         homogeneity = self.joint()["fits"][0]["homogeneity"]
         for k, name in enumerate(("a.csv", "b.csv")):
             alone = self.joint(data=name)["fits"][0]["parameters"]["inertia"]
@@ -127,7 +127,7 @@ class JointFit(JointTest):
                 residual = float(rows[i]["measured_rad"]) - float(rows[i]["fitted_rad"])
                 self.assertAlmostEqual(float(rows[i]["residual_rad"]), residual, delta=1e-12)
 
-    def test_text_markdown_and_page_tell_of_all(self):
+    def test_text_markdown_and_page_show_all_recordings(self):
         run = self.fit("--data", "a.csv,b.csv", "--rig", "rig.json", "--report", "page.html", "--markdown", "fit.md")
         for text in (run.stdout, self.read("fit.md")):
             for words in ("a.csv", "b.csv", "Do the recordings agree?", "Each recording's own"):
@@ -144,17 +144,17 @@ class JointFit(JointTest):
         self.assertLess(first, second)
         self.assertLess(second, run.stdout.index("[[Recordings]]"))
 
-    def test_a_list_is_fitted_together(self):
+    def test_recordings_of_a_list_are_fitted_together(self):
         self.write("list.txt", "# two\na.csv\n\nb.csv\n")
         listed = self.fit("--data_list", "list.txt", "--rig", "rig.json", "--json", "-").stdout
         self.assertEqual(json.loads(listed), self.joint())
 
-    def test_standard_input_is_one_of_several(self):
+    def test_standard_input_can_be_one_recording(self):
         result = self.joint(data="-,b.csv", stdin=A)
         self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["standard input", "b.csv"])
         self.assertEqual(result["fits"][0]["parameters"], self.joint()["fits"][0]["parameters"])
 
-    def test_names_with_blanks_and_letters_of_all_kinds(self):
+    def test_file_names_with_blanks_and_non_ascii_letters(self):
         names = ("my run ①.csv", "Mañana_τ.csv")
         self.write(names[0], A)
         self.write(names[1], B)
@@ -165,7 +165,7 @@ class JointFit(JointTest):
         self.assertLessEqual({"ré s_001.csv", "ré s_002.csv"}, self.names())
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot draws the picture")
-    def test_no_name_steers_a_terminal(self):
+    def test_a_file_name_cannot_control_the_terminal(self):
         self.write("a\x1B[2J.csv", A)  # ECMA-48: clears the screen
         run = self.fit("--data", "a\x1B[2J.csv,b.csv", "--terminal_plot")
         self.assertEqual([line for line in run.stdout.splitlines() if "\x1B" in line], [])
@@ -176,13 +176,13 @@ class JointFit(JointTest):
                  for threads in ("1", "2")}
         self.assertEqual(len(texts), 1)
 
-    def test_several_models_are_compared_by_all_recordings(self):
+    def test_models_are_compared_over_all_recordings(self):
         result = self.joint("--model", "viscous,coulomb")
         self.assertEqual([fit["model"] for fit in result["fits"]], ["viscous", "coulomb"])
         self.assertEqual([row["model"] for row in result["comparison"]["rows"]], ["viscous", "coulomb"])
         self.assertEqual(result["comparison"]["recommended"], "coulomb")
 
-    def test_models_are_compared_by_the_fits_alone_where_recordings_disagree(self):
+    def test_models_are_compared_by_separate_fits_if_recordings_disagree(self):
         self.write("b.csv", OTHER)
         run = self.run_tool("--data", "a.csv,b.csv", "--model", "viscous,coulomb", "--json", "fit.json")
         self.assertEqual(run.returncode, 1, run.stderr)
@@ -201,7 +201,7 @@ class JointFit(JointTest):
         for name in PHYSICAL:
             self.assert_near(fit["parameters"][name], swing.TRUTH[name])
 
-    def test_the_releases_of_one_recording(self):
+    def test_fits_the_releases_of_one_recording(self):
         self.write("two.csv", swing.two_releases())
         result = self.joint("--release", "all", "--shared", "all", data="two.csv")
         (fit,) = result["fits"]
@@ -213,7 +213,7 @@ class JointFit(JointTest):
 
 
 class SharedParameters(JointTest):
-    def test_what_is_not_shared_is_each_recordings_own(self):
+    def test_each_recording_has_its_own_unshared_parameters(self):
         (fit,) = self.joint("--shared", "inertia")["fits"]
         self.assertEqual(list(fit["parameters"]), ["inertia"])
         self.assertIsNone(fit["equation"])
@@ -224,7 +224,7 @@ class SharedParameters(JointTest):
         for run in fit["runs"]:
             self.assert_near(run["parameters"]["viscous"], swing.TRUTH["viscous"])
 
-    def test_friction_that_differs_is_not_shared(self):
+    def test_recordings_with_different_friction_agree_if_it_is_not_shared(self):
         self.write("b.csv", swing.angle_csv(sigma=0.002, truth=dict(LOW, coulomb=0.006), seed=33))
         self.assertIs(self.joint()["fits"][0]["homogeneity"]["agrees"], False)
         (fit,) = self.joint("--shared", "inertia")["fits"]
@@ -232,7 +232,7 @@ class SharedParameters(JointTest):
         self.assert_near(fit["runs"][0]["parameters"]["coulomb"], 0.004)
         self.assert_near(fit["runs"][1]["parameters"]["coulomb"], 0.006)
 
-    def test_a_shared_parameter_is_held(self):
+    def test_a_shared_parameter_can_be_fixed(self):
         (fit,) = self.joint("--fix", "coulomb=0.004")["fits"]
         self.assertEqual(list(fit["homogeneity"]["parameters"]), ["inertia", "viscous"])
         for parameters in (fit["parameters"], *(run["parameters"] for run in fit["runs"])):
@@ -240,13 +240,13 @@ class SharedParameters(JointTest):
             self.assertIs(parameters["coulomb"]["fixed"], True)
         self.assert_near(fit["parameters"]["viscous"], swing.TRUTH["viscous"])
 
-    def test_nothing_is_compared_when_all_is_held(self):
+    def test_nothing_is_compared_if_all_parameters_are_fixed(self):
         (fit,) = self.joint("--fix", "inertia=0.079,viscous=0.003,coulomb=0.004")["fits"]
         self.assertIsNone(fit["homogeneity"]["p"])
         self.assertEqual(fit["homogeneity"]["reason"], "all shared parameters are fixed, so there is nothing to compare")
 
     # Inverse variances add: a prior as accurate as the data halves the variance for any number of recordings.
-    def test_a_prior_on_what_is_shared_counts_once(self):
+    def test_a_prior_of_a_shared_parameter_counts_once(self):
         flags = ("--fix", "viscous=0.003,coulomb=0.004")
         (without,) = self.joint(*flags)["fits"]
         error = without["parameters"]["inertia"]["std_error"]
@@ -258,7 +258,7 @@ class SharedParameters(JointTest):
 
 
 class Refusals(JointTest):
-    def test_two_pendulums_are_written_and_said_to_be_two(self):
+    def test_two_different_pendulums_are_reported_and_written(self):
         self.write("b.csv", OTHER)
         run = self.run_tool("--data", "a.csv,b.csv", "--json", "fit.json")
         self.assertEqual(run.returncode, 1, run.stderr)
@@ -268,7 +268,7 @@ class Refusals(JointTest):
         self.assertIs(fit["homogeneity"]["agrees"], False)
         self.assertIsNone(fit["parameters"]["inertia"]["std_error"])
 
-    def test_the_one_that_is_of_another_rig_is_named(self):
+    def test_names_the_recording_of_another_rig(self):
         self.write("c.csv", swing.angle_csv(truth=dict(LOW, release_angle=0.35), seed=34))
         self.write("other.csv", swing.angle_csv(truth=dict(swing.TRUTH, inertia=0.0794), seed=35))
         result = self.joint(data="a.csv,other.csv,b.csv,c.csv")
@@ -289,7 +289,7 @@ class Refusals(JointTest):
         self.assert_refused(5, "flat.csv: the reading is constant, so there is no swing; check the sensor, or choose "
                             "another column", "--data", "a.csv,flat.csv")
 
-    def test_there_is_nothing_to_share_in_one_swing(self):
+    def test_one_swing_has_nothing_to_share(self):
         self.assert_refused(2, "--shared is for several recordings, or several releases of one (--release all), but "
                                "there is only one swing", "--data", "a.csv", "--shared", "all")
 
@@ -297,22 +297,22 @@ class Refusals(JointTest):
         self.assert_refused(2, "--shared names 'mass', which recordings cannot share; they can share inertia, viscous, "
                             "coulomb, or all, or none", "--data", "a.csv,b.csv", "--shared", "inertia,mass")
 
-    def test_no_bootstrap_of_several(self):
+    def test_no_bootstrap_of_a_joint_fit(self):
         self.assert_refused(2, "--interval bootstrap is only for separate fits (--shared none); for a joint fit use "
                                "covariance or profile", "--data", "a.csv,b.csv", "--interval", "bootstrap")
 
-    def test_residuals_of_several_have_no_place_on_one_stream(self):
+    def test_residuals_of_several_recordings_need_files(self):
         run = self.run_tool("--data", "a.csv,b.csv", "--residuals", "-")
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertEqual(run.stdout, "")
-        self.assertEqual(run.stderr, "fit_pendulum: --residuals - takes one recording, but there are 2; name a file, "
-                                     "which is then numbered\n")
+        self.assertEqual(run.stderr, "fit_pendulum: --residuals - takes one recording, but there are 2; give a file "
+                                     "name, to which the number is added\n")
 
-    def test_no_residuals_are_written_over_an_input(self):
+    def test_residuals_do_not_overwrite_an_input(self):
         self.write("r_002.csv", B)
         self.assert_refused(2, "--residuals r_002.csv would overwrite the input of --data", "--data", "a.csv,r_002.csv")
 
-    def test_recordings_that_tell_of_different_rigs(self):
+    def test_recordings_that_describe_different_rigs(self):
         self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
         self.write("b.csv", f"# rig: {json.dumps(dict(swing.RIG, bob_mass=0.4))}\n" + B)
         self.assert_refused(4, "a.csv and b.csv describe different rigs (# rig), but recordings that are fitted "
@@ -333,7 +333,7 @@ class Refusals(JointTest):
                                "line # resolution: VALUE into each file instead", "--data", "a.csv,rad.csv", "--resolution", "0.1")
 
     # result.schema.json: the format in which a message names its recording.
-    def test_warnings_say_whose_they_are(self):
+    def test_warnings_name_their_recording(self):
         prior = ("--prior", "inertia=0.0795:0.000001")
         messages = [warning["message"] for warning in self.joint(*prior)["warnings"] if warning["code"] == "prior_conflict"]
         self.assertEqual([message.split(": ")[0] for message in messages], ["each recording"])
@@ -341,7 +341,7 @@ class Refusals(JointTest):
         messages = [warning["message"] for warning in self.joint(data="b.csv,gap.csv")["warnings"]]
         self.assertTrue(any(message.startswith("recording 2 (gap.csv): ") for message in messages), messages)
 
-    def test_recordings_that_tell_of_one_rig(self):
+    def test_recordings_that_describe_one_rig(self):
         expected = self.joint()["fits"]
         self.write("a.csv", f"# rig: {json.dumps(swing.RIG)}\n" + A)
         for text in (B, f"# rig: {json.dumps(swing.RIG)}\n" + B):  # the rig is given in one file or in both

@@ -30,12 +30,12 @@ LiveTrace TraceOf(const std::function<double(double)>& value, double begin, doub
   LiveTrace trace("deg");
   for (int i = 0; i <= std::lround(100 * (end - begin)); ++i) {
     const double time = begin + i / 100.0;
-    trace.Take(time, value(time), 512, 1023);
+    trace.Add(time, value(time), 512, 1023);
   }
   return trace;
 }
 
-/// The plot part of a row, after the number and the bar.
+/// The part of a row after the label and the bar.
 std::string Picture(const std::string& row) { return row.substr(row.find('|') + 1); }
 
 double Label(const std::string& row) { return std::stod(row); }
@@ -86,7 +86,7 @@ TEST(LiveTrace, SpansTheLowestToTheHighestValue) {
   EXPECT_THAT(rows.back(), AllOf(HasSubstr("deg"), HasSubstr("last 10 s")));
 }
 
-// A step up after 5 of 10 s: the left half is low, the right half is high, the rest is empty.
+// A step up after 5 of 10 s: the left half of the plot has marks only at the bottom, the right half only at the top.
 TEST(LiveTrace, DrawsAStepAtItsTime) {
   const auto rows = TraceOf([](double t) { return t < 5 ? -20.0 : 20.0; }, 0, 10).Plot();
   const std::string top = Picture(rows[0]), bottom = Picture(rows[10]);
@@ -124,7 +124,7 @@ TEST(LiveTrace, DrawsRestAsACentredLine) {
 TEST(LiveTrace, LeavesAGapWithoutSamples) {
   LiveTrace trace("counts");
   for (int i = 0; i <= 1000; ++i) {
-    if (i < 400 || i > 600) trace.Take(i / 100.0, i, i, 1023);
+    if (i < 400 || i > 600) trace.Add(i / 100.0, i, i, 1023);
   }
   const auto marked = MarkedColumns(trace.Plot());
   EXPECT_FALSE(marked[marked.size() / 2]);
@@ -135,7 +135,7 @@ TEST(LiveTrace, LeavesAGapWithoutSamples) {
 
 TEST(LiveTrace, ShowsTimeRateAndValue) {
   LiveTrace trace("deg");
-  for (int i = 0; i <= 2480; ++i) trace.Take(i / 200.0, -12.34, 465, 1023);
+  for (int i = 0; i <= 2480; ++i) trace.Add(i / 200.0, -12.34, 465, 1023);
   EXPECT_THAT(trace.StatusLine("lost 0"),
               AllOf(StartsWith("12.4 s  200 Hz  -12.3 deg  "), HasSubstr("["), EndsWith("]  lost 0")));
 }
@@ -143,7 +143,7 @@ TEST(LiveTrace, ShowsTimeRateAndValue) {
 /// The text in the brackets and after them for this reading, full scale 1023 counts.
 std::string LevelOf(double counts) {
   LiveTrace trace("counts");
-  trace.Take(0, counts, counts, 1023);
+  trace.Add(0, counts, counts, 1023);
   const std::string line = trace.StatusLine("|");
   return line.substr(line.find('['), line.find("  |") - line.find('['));
 }
@@ -166,7 +166,7 @@ TEST(LiveTrace, WarnsAtTheEndsOfTheConverter) {
 
 TEST(LiveTrace, HasNoRateForOneSample) {
   LiveTrace trace("counts");
-  trace.Take(3, 500, 500, 1023);
+  trace.Add(3, 500, 500, 1023);
   EXPECT_THAT(trace.StatusLine("x"), StartsWith("3.0 s  0 Hz  500.0 counts  "));
 }
 

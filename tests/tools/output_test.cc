@@ -150,7 +150,7 @@ TEST_F(OutputTest, WritesNothingIfOneFileIsUnwritable) {
   EXPECT_TRUE(Names().empty());
 }
 
-TEST_F(OutputTest, WritesMoreFilesAtOnceThanAHundred) {
+TEST_F(OutputTest, WritesMoreThanAHundredFiles) {
   std::vector<Output> outputs;
   for (int i = 0; i < 150; ++i) outputs.push_back({Path(std::to_string(i)), "text " + std::to_string(i)});
   EXPECT_EQ(Write(outputs), "");

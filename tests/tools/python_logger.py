@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A logger simulated in Python over a pseudo terminal, and a folder for its recordings.
 
-It follows the text of src/docs/hardware.md, "The protocol", and shares no code with the C++ of firmware or host. A logger
+It implements "The protocol" in src/docs/hardware.md and shares no code with the C++ of firmware or host. A logger
 stores for the tests: its samples of all runs (`taken`), the received commands (`commands`), and received bytes that
 were not a frame (`garbage`).
 """
@@ -175,8 +175,8 @@ class PythonLogger(Line):
         self.period, self.oversample = 10000, 1
         self.is_running = self.is_silent = self.is_endless = False
         self.taken, self.commands, self.garbage = [], [], []
-        self.dropped = self.more_sent = 0  # dropped by the logger; excess of E's count over the sent samples
-        self.raw = self.heard = b""  # all received bytes, and those of an incomplete frame
+        self.dropped = self.more_sent = 0  # samples: dropped by the logger; excess of the End frame's count
+        self.raw = self.heard = b""  # all received bytes; the bytes of an incomplete frame
 
     # Input from the host.
 
@@ -303,7 +303,7 @@ class Lab(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def start(self, line, *arguments, **options):
-        """line: a Line, or the path of a port."""
+        """Starts the tool. `line`: a Line, or the path of a port."""
         if isinstance(line, Line):
             line.release()
         port = line.port if isinstance(line, Line) else line
@@ -389,5 +389,5 @@ def each_test(suite):
 
 
 def load_in_parallel(_loader, tests, _pattern):
-    """The function for a module's load_tests."""
+    """A module assigns this function to load_tests, so that its tests run in parallel."""
     return ParallelSuite(tests)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs fit_pendulum on files from other sources: files that are read, and files that are refused, with sentence and
-exit code.
+"""Tests of fit_pendulum with files from other sources: files that it reads, and files that it refuses with an exit code
+and a sentence.
 
   read_cli_test.py PATH/TO/fit_pendulum
 """
@@ -80,7 +80,7 @@ class ReadTest(unittest.TestCase):
         return [warning["code"] for warning in result["warnings"]]
 
 
-class WhatIsRead(ReadTest):
+class AcceptedFiles(ReadTest):
     def test_counts_through_a_calibration(self):
         self.write("counts.csv", table("time_s,adc_counts\n", lambda t, a: f"{t},{counts(a)}"))
         self.assert_finds_the_truth("--data", "counts.csv", "--calibration", "cal.json")
@@ -139,8 +139,8 @@ class WhatIsRead(ReadTest):
         writer.join()
 
 
-class WhatIsRefused(ReadTest):
-    def test_two_candidates(self):
+class RefusedFiles(ReadTest):
+    def test_two_columns_that_could_be_the_quantity(self):
         self.assert_data_refused(
             4, 'bad.csv:1:18: columns "angle_deg" and "gyro_rad_s" could both be the quantity; choose one with '
             "--value_column", "time_s,angle_deg,gyro_rad_s\n0,1,2\n")
@@ -190,7 +190,7 @@ class WhatIsRefused(ReadTest):
             4, 'run.csv:1:1: column "angle_deg" is in deg, but the calibration is for counts; leave --calibration out',
             "--data", "run.csv", "--calibration", "cal.json")
 
-    def test_files_that_are_no_calibration(self):
+    def test_files_without_a_valid_calibration(self):
         self.write("bad.json", json.dumps({**CALIBRATION, "coefficients": [1, 0]}))
         self.assert_refused(4, 'bad.json: "coefficients" has no slope, so that every reading would be the same angle; '
                             "give [offset, slope]", "--data", "run.csv", "--calibration", "bad.json")
@@ -212,7 +212,7 @@ class WhatIsRefused(ReadTest):
             with self.subTest(flags=flags):
                 self.assert_refused(2, sentence, "--data", "run.csv", *flags)
 
-    def test_a_rig_in_the_file_that_is_none(self):
+    def test_an_invalid_rig_in_the_file(self):
         text = '# rig: {"bob_mass": -1}\n' + swing.angle_csv()
         run = self.run_tool("--data", self.write("bad.csv", text))
         self.assertEqual(run.returncode, 4)

@@ -55,7 +55,7 @@ class DamagedFrames(Lab):
         return lost
 
     def check_harm(self, harm, most=2):
-        """most: number of frames that one damaged frame may cost."""
+        """most: number of frames that may be lost because of one damaged frame."""
         damage = Damage(harm)
         with PythonLogger(speed=2, damage=damage) as logger:
             out, _ = self.record(logger, "--seconds", SECONDS, code=1)
@@ -120,7 +120,7 @@ class DamagedFrames(Lab):
         self.assertEqual(self.read()[1]["lost_samples"], str(BLOCK))
         self.assertIn(f"; {BLOCK} lost", out)
 
-    def test_frames_that_cannot_be_are_left_out(self):
+    def test_frames_with_impossible_content_are_ignored(self):
         """Frames with a correct CRC but impossible content are ignored."""
         events = {10: lambda logger: logger.send(logger.data_payload(logger.tick + 123, [1] * 8)),
                   12: lambda logger: logger.send(logger.data_payload(logger.tick, [500, 1024])),
@@ -136,7 +136,7 @@ class DamagedFrames(Lab):
         self.check_rows(logger, logger.taken[:SAMPLES])
         self.assertIn("frames contradicted the run", out)
 
-    def test_samples_that_found_no_room_in_the_logger(self):
+    def test_samples_that_did_not_fit_into_the_logger(self):
         events = {10: lambda logger: logger.drop(5), 30: lambda logger: logger.drop(100)}
         with PythonLogger(speed=2, events=events) as logger:
             out, _ = self.record(logger, "--seconds", SECONDS, code=1)
@@ -145,7 +145,7 @@ class DamagedFrames(Lab):
 
 
 class Ends(Lab):
-    def test_more_was_sent_than_came(self):
+    def test_more_samples_were_sent_than_arrived(self):
         with PythonLogger() as logger:
             logger.more_sent = 8
             process = self.start(logger, "--out", "run.csv")
@@ -156,7 +156,7 @@ class Ends(Lab):
         self.assertEqual(self.read()[1]["lost_samples"], "8")
         self.assertIn("; 8 lost", out)
 
-    def test_what_is_lost_after_the_time_asked_for_is_not_missing(self):
+    def test_losses_after_the_requested_time_do_not_count(self):
         with PythonLogger(speed=2, damage=lambda number, data: b"" if number > 50 else data) as logger:
             stop = logger.stop
             logger.stop = lambda content: time.sleep(0.1) or stop(content)  # so that more frames arrive
@@ -166,7 +166,7 @@ class Ends(Lab):
         self.assertEqual(self.read()[1]["lost_samples"], "0")
         self.assertIn("none lost", out)
 
-    def test_how_much_was_sent_is_never_told(self):
+    def test_the_number_of_sent_samples_never_arrives(self):
         with PythonLogger(speed=2) as logger:
             logger.is_endless = True
             out, _ = self.record(logger, "--seconds", 2, code=1)
@@ -183,10 +183,10 @@ class Ends(Lab):
         self.assertGreaterEqual(len(logger.taken), 400)
         self.check_rows(logger, logger.taken)
 
-    def test_the_port_goes_away(self):
+    def test_the_port_disappears(self):
         self.lose(PythonLogger.unplug, "was disconnected", "--seconds", 10)
 
-    def test_the_port_goes_away_without_a_time_asked_for(self):
+    def test_the_port_disappears_in_a_run_of_unlimited_length(self):
         self.lose(PythonLogger.unplug, "was disconnected")
 
     def test_the_logger_falls_silent(self):
@@ -217,7 +217,7 @@ class Ends(Lab):
         self.assertIn("none lost", out)
         self.check_rows(logger, logger.taken[:1200])
 
-    def test_nothing_ever_comes(self):
+    def test_no_data_arrives(self):
         with PythonLogger(events={0: PythonLogger.fall_silent}) as logger:
             self.check_refused(logger, 4, "nothing was recorded: the logger stopped sending", "--out", "run.csv")
 
@@ -227,7 +227,7 @@ class BadPorts(Lab):
         self.check_refused("/dev/ttyNone0", 3, "there is no port /dev/ttyNone0", "--out", "run.csv")
         self.check_refused("/dev/ttyNone0", 3, "there is no port /dev/ttyNone0", "--info")
 
-    def test_no_port_but_a_file(self):
+    def test_a_file_instead_of_a_port(self):
         (self.folder / "port").write_text("a file")
         self.check_refused("port", 4, "port is not a serial port", "--out", "run.csv")
         self.check_refused("/dev/null", 4, "/dev/null is not a serial port", "--out", "run.csv")
@@ -244,7 +244,7 @@ class BadPorts(Lab):
         self.assertFalse((self.folder / "second.csv").exists())
         self.check_rows(logger, logger.taken[:400], "first.csv")
 
-    def test_nothing_answers(self):
+    def test_no_logger_answers(self):
         with Line() as line:
             self.check_refused(line, 4, f"no logger answers on {line.port}", "--out", "run.csv")
 
@@ -283,13 +283,13 @@ class BadLoggers(Lab):
             line.speak = lambda: line.waiting.extend(b"" if line.waiting else frame(b"I\x02more"))
             self.check_refused(line, 4, "speaks version 2 of the protocol", "--info")
 
-    def test_another_clock_than_the_host_counts_with(self):
-        """Its times would be wrong by a constant factor."""
+    def test_a_logger_with_another_tick_rate(self):
+        """The recorded times would be wrong by a constant factor."""
         with PythonLogger(ticks=1_000_000) as logger:
             self.check_refused(logger, 4, "1000000", "--out", "run.csv", "--seconds", 1)
 
-    def test_another_converter_than_the_host_knows(self):
-        """Its readings would be taken for saturated, or get a wrong range."""
+    def test_a_logger_with_another_converter(self):
+        """The readings would be counted as saturated, or the recording would give a wrong range."""
         with PythonLogger(bits=12) as logger:
             self.check_refused(logger, 4, "12", "--out", "run.csv", "--seconds", 1)
 
@@ -323,13 +323,13 @@ class BadLoggers(Lab):
             self.record(logger, "--seconds", 2)
         self.check_rows(logger, logger.taken[:400])
 
-    def test_a_start_that_is_given_up_is_taken_back(self):
+    def test_a_failed_start_is_followed_by_a_stop(self):
         """The start may have succeeded with only the answers lost, so the host must stop the logger."""
         with PythonLogger(answers={b"S": None}) as logger:
             self.check_refused(logger, 4, "", "--out", "run.csv")
         self.assertEqual(logger.commands[-1], b"X")
 
-    def test_a_board_that_boots_and_babbles_before_it_answers(self):
+    def test_a_board_that_sends_boot_messages_before_it_answers(self):
         with PythonLogger(speed=2) as logger:
             logger.is_silent = True
             process = self.start(logger, "--out", "run.csv", "--seconds", 1)
@@ -341,7 +341,7 @@ class BadLoggers(Lab):
         self.check_rows(logger, logger.taken[:200])
 
     def test_a_logger_that_is_slow_to_answer(self):
-        """It answers each attempt; answers to later attempts arrive among the following frames."""
+        """The logger answers each repeated command; the late answers arrive among the following frames."""
         with PythonLogger(speed=2) as logger:
             obey = logger.obey
             late = []

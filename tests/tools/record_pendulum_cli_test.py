@@ -35,7 +35,7 @@ class GoodRuns(Lab):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout
 
-    def test_rows_are_the_samples_and_remarks_tell_where_they_are_from(self):
+    def test_file_has_the_samples_and_remarks_about_the_logger(self):
         with PythonLogger(runs=6) as logger:
             out, err = self.record(logger, "--seconds", 3)
         self.check_rows(logger, logger.taken[:600])
@@ -53,14 +53,14 @@ class GoodRuns(Lab):
         self.assertEqual(err, "")
         self.assertIn("damping_ratio", self.check_fit("--closed_form_only"))
 
-    def test_commands_are_those_of_the_protocol_each_behind_a_0(self):
+    def test_commands_follow_the_protocol_each_after_a_0_byte(self):
         with PythonLogger(speed=3) as logger:
             self.record(logger, "--seconds", 1)
         self.assertEqual(logger.garbage, [])
         self.assertEqual(logger.raw, b"".join(b"\0" + frame(command) for command in logger.commands))
         self.assertEqual(logger.commands, [b"X", b"I", b"R" + struct.pack("<HB", 10000, 1), b"S", b"X"])
 
-    def test_times_go_on_when_the_tick_counter_begins_again(self):
+    def test_times_increase_when_the_tick_counter_overflows(self):
         with PythonLogger(speed=2, first_tick=2**32 - 3_000_000) as logger:
             self.record(logger, "--seconds", 3)
         self.check_rows(logger, logger.taken[:600])
@@ -78,20 +78,20 @@ class GoodRuns(Lab):
         self.assertIn("each row is the mean of 4 conversions", remarks)
         self.assertIn("200 at 100 Hz, 2 s, each the mean of 4 conversions; none lost", out)
 
-    def test_a_rate_that_no_logger_has_is_the_nearest(self):
+    def test_records_at_the_nearest_possible_rate(self):
         with PythonLogger(speed=2) as logger:
             self.record(logger, "--seconds", 1, "--rate_hz", 300)
         self.assertIn(b"R" + struct.pack("<HB", 6667, 1), logger.commands)
         self.assertEqual(float(self.read()[1]["sample_rate_hz"]), 2e6 / 6667)
         self.check_rows(logger, logger.taken[:300])
 
-    def test_the_highest_rate_warns_of_the_line_and_is_recorded(self):
+    def test_the_highest_rate_is_recorded_with_a_warning(self):
         with PythonLogger() as logger:
             _, err = self.record(logger, "--seconds", 1, "--rate_hz", 8000)
         self.assertIn("warning: 8000 samples a second are more than the", err)
         self.check_rows(logger, logger.taken[:8000])
 
-    def test_until_rest_ends_after_the_swing_not_while_it_is_held(self):
+    def test_until_rest_ends_after_the_swing_not_during_the_hold(self):
         swinging = swing(decay_s=2, amplitude=200)
         with PythonLogger(speed=10, swing=lambda seconds: 712 if seconds < 8 else swinging(seconds - 8)) as logger:
             out, _ = self.record(logger, "--until_rest")
@@ -103,7 +103,7 @@ class GoodRuns(Lab):
         self.assertGreater(max(abs(counts - 512) for _, counts in rows[-2400:]), 2)  # in the last 12 s: not stopped too late
         self.assertGreater(end, 17)
 
-    def test_what_never_rests_ends_after_its_time(self):
+    def test_a_swing_that_never_rests_ends_after_the_given_time(self):
         with PythonLogger(speed=2) as logger:
             out, _ = self.record(logger, "--until_rest", "--seconds", 2)
         self.assertIn("ended after the time asked for", out)
@@ -127,14 +127,14 @@ class GoodRuns(Lab):
         self.assertLess(float(named["clock_scale_std_dev"]), 0.003)
         self.assertRegex(out, r"clock \d+ ± \d+ ppm fast compared with this computer's")
 
-    def test_a_clock_beyond_any_resonator_is_not_believed(self):
+    def test_an_implausible_clock_is_not_used(self):
         with PythonLogger(speed=4) as logger:
             out, _ = self.record(logger, "--seconds", 12)
         self.assertIn("differ by more than any resonator explains", out)
         named = self.read()[1]
         self.assertEqual((named["clock_scale"], named["clock_scale_std_dev"]), ("1", "0.003"))
 
-    def test_fit_follows_the_recording(self):
+    def test_fits_the_recording(self):
         with PythonLogger(speed=2, is_calibrated=1, calibration=single(LINE + [0, 0, 0])) as logger:
             out, _ = self.record(logger, "--seconds", 4, "--fit", "--model", "linear")
         self.check_rows(logger, logger.taken[:800])
@@ -145,7 +145,7 @@ class GoodRuns(Lab):
         self.assertAlmostEqual(fit["derived"]["natural_frequency"]["estimate"], 2 * math.pi, delta=0.003)
         self.assertAlmostEqual(fit["derived"]["damping_ratio"]["estimate"], 1 / (20 * 2 * math.pi), delta=0.0002)
 
-    def test_standard_output_takes_the_recording_and_standard_error_the_report(self):
+    def test_recording_on_standard_output_report_on_standard_error(self):
         with PythonLogger(speed=3) as logger:
             done = subprocess.run([TOOL, "--port", logger.port, "--out", "-", "--seconds", "1"], cwd=self.folder, text=True,
                                   capture_output=True, timeout=TIMEOUT_S)
@@ -155,7 +155,7 @@ class GoodRuns(Lab):
         (self.folder / "run.csv").write_text(done.stdout)
         self.check_rows(logger, logger.taken[:200])
 
-    def test_a_logger_that_a_killed_recorder_left_running_begins_anew(self):
+    def test_a_logger_left_running_by_a_killed_recorder_is_restarted(self):
         with PythonLogger() as logger:
             killed = self.start(logger, "--out", "killed.csv")
             self.wait_for_samples(logger, 200)
@@ -174,7 +174,7 @@ class Forgetful(PythonLogger):
 
 
 class Calibrations(Lab):
-    def test_info_tells_what_the_logger_is(self):
+    def test_info_describes_the_logger(self):
         with PythonLogger(firmware=0x0203, board=2, reference=3, runs=41) as logger:
             out, _ = self.run_tool(logger, "--info")
             for words in (logger.port, "version 2.3", "Arduino Mega 2560", "internal voltage (2.56 V)", "41 so far",
@@ -193,14 +193,14 @@ class Calibrations(Lab):
         self.assertEqual(err, "")
         self.assertEqual(list(self.folder.iterdir()), [])
 
-    def test_counts_that_are_interrupted_are_no_mean_of_a_second(self):
+    def test_interrupted_counts_give_no_mean(self):
         with PythonLogger(speed=0.2) as logger:
             process = self.start(logger, "--counts")
             self.wait_for_samples(logger, 40)
             process.send_signal(signal.SIGINT)
             self.finish(process, code=130)
 
-    def test_a_stored_calibration_comes_back_and_into_the_recording(self):
+    def test_a_stored_calibration_is_shown_and_recorded(self):
         self.write_calibration("cal.json", LINE, COVARIANCE)
         with PythonLogger(speed=3) as logger:
             out, _ = self.run_tool(logger, "--store_calibration", "cal.json")
@@ -215,13 +215,13 @@ class Calibrations(Lab):
         low, high = (f"{LINE[0] + LINE[1] * each:.4g}" for each in (min(counts), max(counts)))
         self.assertIn(f"counts, {low} to {high} deg", out)
 
-    def test_a_given_calibration_wins(self):
+    def test_a_given_calibration_takes_precedence(self):
         self.write_calibration("mine.json", [-100, 0.2])
         with PythonLogger(speed=3, is_calibrated=1, calibration=single(LINE + [0, 0, 0])) as logger:
             self.record(logger, "--seconds", 1, "--calibration", "mine.json")
         self.assertEqual(json.loads(self.read()[1]["calibration"])["coefficients"], [-100, 0.2])
 
-    def test_what_a_logger_cannot_use_is_refused(self):
+    def test_unusable_calibrations_are_refused(self):
         self.write_calibration("volts.json", LINE, unit="volts")
         self.write_calibration("curve.json", [*LINE, 1e-5])
         with PythonLogger() as logger:
@@ -232,7 +232,7 @@ class Calibrations(Lab):
             self.check_refused(logger, 3, "none.json", "--out", "run.csv", "--fit", "--rig", "none.json")
         self.assertEqual([each for each in logger.commands if each[:1] in b"WS"], [])
 
-    def test_a_logger_that_forgets_is_found_out(self):
+    def test_a_calibration_that_the_logger_does_not_keep_is_detected(self):
         self.write_calibration("cal.json", LINE)
         with Forgetful() as logger:
             self.check_refused(logger, 4, "does not return the calibration", "--store_calibration", "cal.json")
@@ -248,7 +248,7 @@ class Files(Lab):
             self.record(logger, "--seconds", 1, "--overwrite")
         self.check_rows(logger, logger.taken[:200])
 
-    def test_the_part_of_an_earlier_crash_is_not_lost_unasked(self):
+    def test_the_part_file_of_an_earlier_crash_is_kept(self):
         (self.folder / "run.csv.part").write_text("precious\n")
         with PythonLogger(speed=3) as logger:
             self.check_refused(logger, 73, "run.csv.part holds an interrupted recording", "--out", "run.csv",
@@ -280,7 +280,7 @@ class Files(Lab):
         self.assertGreater(len(rows), 300)
         self.assertEqual(rows, self.expected(logger, logger.taken[:len(rows)]))
 
-    def test_what_was_written_before_the_disk_was_full_is_named(self):
+    def test_a_full_disk_message_names_the_part_file(self):
         self.assertIn("run.csv.part", self.fill_the_disk()[1])
 
 

@@ -112,7 +112,7 @@ TEST(MakeRecordPendulumOptions, FitsTheRecording) {
   EXPECT_EQ(options.fit->rig, "rig.json");
 }
 
-// fit_pendulum separates recordings by commas; here the name is always one file.
+// fit_pendulum splits --data at commas, but record_pendulum fits the one file that it has written.
 TEST(MakeRecordPendulumOptions, FitsAFileWithCommasInItsName) {
   for (const char* name : {"5 deg, short.csv", "a,,b.csv", "last,", "-,-"}) {
     Flags flags = Recording();
@@ -142,7 +142,7 @@ TEST(MakeRecordPendulumOptions, StoresACalibration) {
   EXPECT_EQ(options.Inputs()[0].path, "cal.json");
 }
 
-// The user has given --store_calibration, so a message must not mention --calibration.
+// The user gave --store_calibration, so the file's flag in messages must not be --calibration.
 TEST(MakeRecordPendulumOptions, NamesTheFlagForTheStoredCalibration) {
   Flags flags;
   flags.store_calibration = "cal.json";

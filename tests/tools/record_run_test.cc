@@ -192,7 +192,7 @@ RecordedRun RecordedUntil(Then then, Laboratory& laboratory) {
   return recorded;
 }
 
-/// A logger that does this after ten frames, 80 samples.
+/// A logger that sends ten frames, 80 samples, and then does `then`.
 LoggerScript TenFramesAnd(Then then) {
   LoggerScript script = WithSawtooth();
   script.frames = 10;
@@ -295,7 +295,7 @@ TEST(RecordRun, ChangesNothingIfTheLoggerDoesNotStart) {
 
 // ---- The copy on the disk ----------------------------------------------------------------------------------------
 
-TEST(RecordRun, HasAPartFileOnTheDiskMeanwhile) {
+TEST(RecordRun, WritesAPartFileDuringTheRun) {
   Laboratory laboratory(WithSawtooth());
   std::string meanwhile;
   std::thread user([&] {

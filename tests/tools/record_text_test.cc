@@ -40,7 +40,7 @@ RecordedRun Recorded(const std::vector<int>& counts = {500, 540, 460, 500}) {
     frame.tick = static_cast<std::uint32_t>(10000 * recorded.run.size());
     frame.count = 1;
     frame.sums[0] = static_cast<std::uint16_t>(reading);
-    EXPECT_TRUE(recorded.run.Take(frame, 0));
+    EXPECT_TRUE(recorded.run.AddFrame(frame, 0));
   }
   recorded.end = RunEnd::kSeconds;
   recorded.description.logger = Uno();
@@ -113,7 +113,7 @@ TEST(RecordText, ShowsOversampling) {
   wire::Data frame{};
   frame.count = 1;
   frame.sums[0] = 16 * 500 + 4;
-  ASSERT_TRUE(recorded.run.Take(frame, 0));
+  ASSERT_TRUE(recorded.run.AddFrame(frame, 0));
   recorded.description.logger = Uno();
   EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("1 at 100 Hz, 0.01 s, each the mean of 16 conversions"),
                                         HasSubstr("500.25 to 500.25 of")));

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings from other sources, each fitted with --model alone, as by a user without further knowledge.
+"""Recordings from other sources, each fitted with no flag but --model, as by a user without further knowledge.
 
 PENDULUM_RECORDINGS names their folder; without it the test is skipped. The expected values are fits by an independent
 program in windows chosen by a person (Runge-Kutta, tanh for the sign of the rate, SciPy least squares), and published

@@ -50,27 +50,27 @@ class RefitCommandsTest : public testing::Test {
     return options;
   }
 
-  /// The exit code, or that of the error; the output is in said_ and printed_.
+  /// Runs the command and returns its exit code, or the exit code of its error; stores the output.
   int Run(const RefitPendulumsOptions& options) {
     CaptureStderr();
     CaptureStdout();
     const auto code = RunRefitCommand(options);
-    printed_ = GetCapturedStdout();
-    said_ = GetCapturedStderr();
-    if (!code) said_ += code.error().message;
+    stdout_text_ = GetCapturedStdout();
+    stderr_text_ = GetCapturedStderr();
+    if (!code) stderr_text_ += code.error().message;
     return code ? *code : ExitCode(code.error().code);
   }
 
   const fs::path folder_ = testing::TempDir() + "refit_commands_test_" + std::to_string(getpid());
-  std::string printed_, said_;
+  std::string stdout_text_, stderr_text_;
 };
 
 TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunHasItsRows) {
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
-  EXPECT_THAT(said_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
-  EXPECT_THAT(printed_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
+  EXPECT_THAT(stderr_text_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
+  EXPECT_THAT(stdout_text_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
   EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
-  EXPECT_THAT(printed_, HasSubstr("in the store                    2\n"));
+  EXPECT_THAT(stdout_text_, HasSubstr("in the store                    2\n"));
 }
 
 TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {
@@ -79,7 +79,7 @@ TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {
   EXPECT_EQ(Run(options), 3);
   std::ofstream(options.rig) << "{}";
   EXPECT_EQ(Run(options), 4);
-  EXPECT_THAT(said_, HasSubstr("rig.json"));
+  EXPECT_THAT(stderr_text_, HasSubstr("rig.json"));
   EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
 }
 
@@ -88,7 +88,7 @@ TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = "-";
   EXPECT_EQ(Run(options), 0);
-  EXPECT_THAT(printed_, HasSubstr("id,path,rig,calibration,model,recommended,status,"));
+  EXPECT_THAT(stdout_text_, HasSubstr("id,path,rig,calibration,model,recommended,status,"));
   options.out = folder_ / "a.jsonl";
   EXPECT_EQ(Run(options), 0);
   std::string line;
@@ -105,7 +105,7 @@ TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
   ASSERT_EQ(::mkfifo(options.out.c_str(), 0600), 0);
   std::ostringstream text;
   std::thread reader([&] { text << std::ifstream(options.out).rdbuf(); });
-  EXPECT_EQ(Run(options), 0) << said_;
+  EXPECT_EQ(Run(options), 0) << stderr_text_;
   reader.join();
   EXPECT_THAT(text.str(), HasSubstr("id,path,rig"));
   EXPECT_TRUE(fs::is_fifo(options.out));
@@ -135,10 +135,10 @@ TEST_F(RefitCommandsTest, ListsMissingShardsAndMergesThem) {
   shards.shard_dir = folder_ / "out";
   shards.shard_count = 2;
   EXPECT_EQ(Run(shards), 0);
-  EXPECT_EQ(printed_, "0\n");
+  EXPECT_EQ(stdout_text_, "0\n");
   shards.command = RefitCommand::kMerge;
   EXPECT_EQ(Run(shards), 3);
-  EXPECT_THAT(said_, HasSubstr("of 2 shards these are missing: 0"));
+  EXPECT_THAT(stderr_text_, HasSubstr("of 2 shards these are missing: 0"));
 }
 
 TEST_F(RefitCommandsTest, MergesCompleteShards) {
@@ -147,42 +147,42 @@ TEST_F(RefitCommandsTest, MergesCompleteShards) {
     options.refit.shard = Shard{k, 2};
     options.shard.store = ShardPath(folder_, k);
     options.stores = {options.shard.store};
-    ASSERT_EQ(Run(options), 0) << said_;
+    ASSERT_EQ(Run(options), 0) << stderr_text_;
   }
   RefitPendulumsOptions merge = Options(RefitCommand::kMerge);
   merge.shard_dir = folder_;
   merge.shard_count = 2;
   EXPECT_EQ(Run(merge), 0);
-  EXPECT_THAT(said_, HasSubstr("2 runs of 2 shards merged into " + merge.stores[0]));
+  EXPECT_THAT(stderr_text_, HasSubstr("2 runs of 2 shards merged into " + merge.stores[0]));
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
-  EXPECT_THAT(said_, HasSubstr("0 runs refitted, 2 were current"));
+  EXPECT_THAT(stderr_text_, HasSubstr("0 runs refitted, 2 were current"));
   merge.command = RefitCommand::kMissing;
   EXPECT_EQ(Run(merge), 0);
-  EXPECT_EQ(printed_, "");
+  EXPECT_EQ(stdout_text_, "");
 }
 
 TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
   RefitPendulumsOptions options = Options(RefitCommand::kReport);
   options.out = folder_ / "summary.json";
   EXPECT_EQ(Run(options), 3);  // the store does not exist
-  EXPECT_THAT(said_, HasSubstr("a.sqlite: there is no such store"));
+  EXPECT_THAT(stderr_text_, HasSubstr("a.sqlite: there is no such store"));
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
-  EXPECT_EQ(Run(options), 0) << said_;
+  EXPECT_EQ(Run(options), 0) << stderr_text_;
   std::ifstream file(options.out);
   const auto json = nlohmann::json::parse(file);
   EXPECT_EQ(json["store"]["runs"], 2);
   options.out = folder_ / "summary.html";
-  EXPECT_EQ(Run(options), 0) << said_;
+  EXPECT_EQ(Run(options), 0) << stderr_text_;
   std::string line;
   std::getline(std::ifstream(options.out) >> std::ws, line);
   EXPECT_THAT(line, HasSubstr("<!"));
   options.out = folder_ / "summary.pdf";
   EXPECT_EQ(Run(options), 2);
-  EXPECT_THAT(said_, HasSubstr("the name must end with .html for a page"));
+  EXPECT_THAT(stderr_text_, HasSubstr("the name must end with .html for a page"));
   options.out = folder_ / "summary.html";
   options.summary.group_by = "room";
   EXPECT_EQ(Run(options), 2);
-  EXPECT_THAT(said_, HasSubstr("--group_by: the manifest has no column 'room'"));
+  EXPECT_THAT(stderr_text_, HasSubstr("--group_by: the manifest has no column 'room'"));
   options.out = options.stores[0];
   EXPECT_EQ(Run(options), 2);  // the output is the store itself
 }
@@ -190,12 +190,12 @@ TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
 TEST_F(RefitCommandsTest, RefitsItsOwnPack) {
   RefitPendulumsOptions pack = Options(RefitCommand::kPack);
   pack.out = folder_ / "runs.pack";
-  ASSERT_EQ(Run(pack), 0) << said_;
+  ASSERT_EQ(Run(pack), 0) << stderr_text_;
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions packed = Options(RefitCommand::kRefit);
   packed.manifest = pack.out;
   EXPECT_EQ(Run(packed), 0);
-  EXPECT_THAT(said_, HasSubstr("0 runs refitted, 2 were current"));
+  EXPECT_THAT(stderr_text_, HasSubstr("0 runs refitted, 2 were current"));
   pack.out = pack.manifest;
   EXPECT_EQ(Run(pack), 2);
 }
@@ -214,7 +214,7 @@ TEST_F(RefitCommandsTest, DoesNotRefitAStoreInUse) {
   const auto lock = StoreLock::Take(folder_ / "a.sqlite");
   ASSERT_TRUE(lock);
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 75);
-  EXPECT_THAT(said_, HasSubstr("another process writes to this file"));
+  EXPECT_THAT(stderr_text_, HasSubstr("another process writes to this file"));
 }
 
 /// Refits twice; the second time after a signal, which only the child process gets.

@@ -24,7 +24,7 @@ SIMULATED = ["--model", "coulomb", "--rig", str(RIG), "--duration", "6", "--rate
 
 
 def rows(store, tables=("runs", "fits", "quantities")):
-    """All rows of a store, with runs named by their ids: equal for every way to make the store."""
+    """All rows of a store, with runs named by their ids, so that rows of stores made in different ways are equal."""
     found = {}
     with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as database:
         database.row_factory = sqlite3.Row

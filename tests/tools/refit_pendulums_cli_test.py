@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests refit_pendulums like a user: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
+"""Tests of refit_pendulums as a process: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
 
 import csv
 import json
@@ -98,10 +98,10 @@ class SameAsFitPendulum(Lab):
         self.assertEqual(turned, expected)
 
 
-class Survival(Lab):
+class Interruptions(Lab):
     """No run is lost, and none is stored twice."""
 
-    def test_killed_at_random_moments_it_goes_on_to_the_same_store(self):
+    def test_a_refit_killed_at_random_moments_ends_with_the_same_store(self):
         manifest = self.manifest(self.simulate(MANY))
         begin = time.monotonic()
         self.refit(manifest, "whole.sqlite")
@@ -122,7 +122,7 @@ class Survival(Lab):
         self.refit(manifest, "killed.sqlite")
         self.assertEqual(self.rows("killed.sqlite"), self.rows("whole.sqlite"))
 
-    def test_ctrl_c_stores_what_was_done_and_says_how_much_is_left(self):
+    def test_ctrl_c_keeps_finished_runs_and_reports_the_number_left(self):
         manifest = self.manifest(self.simulate(MANY))
         for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 75)):
             process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "stopped.sqlite", "--force")
@@ -154,7 +154,7 @@ class Survival(Lab):
         self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile")[1])
         self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile", "--force")[1])
 
-    def test_a_full_disk_is_said_and_the_store_stays_sound(self):
+    def test_a_full_disk_is_reported_and_the_store_stays_valid(self):
         manifest = self.manifest(self.simulate(60))
         self.refit(manifest, "whole.sqlite")
         small = self.folder / "small"
@@ -172,7 +172,7 @@ class Survival(Lab):
         self.refit(manifest, "full.sqlite")
         self.assertEqual(self.rows("full.sqlite"), self.rows("whole.sqlite"))
 
-    def test_a_limit_to_the_size_of_files_is_a_full_disk(self):
+    def test_a_file_size_limit_is_reported_like_a_full_disk(self):
         manifest = self.manifest(self.simulate(60))
         _, said = self.refit(manifest, "a.sqlite", code=73,
                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300000, 300000)))
@@ -181,7 +181,7 @@ class Survival(Lab):
         self.refit(manifest, "whole.sqlite")
         self.assertEqual(self.rows("a.sqlite"), self.rows("whole.sqlite"))
 
-    def test_a_read_only_store_is_said_and_left_as_it_is(self):
+    def test_a_read_only_store_is_reported_and_unchanged(self):
         manifest = self.manifest(self.simulate(2))
         self.refit(manifest, "a.sqlite")
         before = (self.folder / "a.sqlite").read_bytes()
@@ -194,7 +194,7 @@ class Survival(Lab):
         out, _ = self.run_tool("status", "--store", "a.sqlite", preexec_fn=as_nobody)
         self.assertIn("in the store                    2", out)
 
-    def test_a_store_that_is_in_use_is_to_be_tried_again(self):
+    def test_a_store_in_use_exits_75(self):
         manifest = self.manifest(self.simulate(MANY))
         process = self.start("--manifest", manifest, "--models", "viscous,coulomb", "--store", "a.sqlite")
         self.wait_for("a.sqlite.lock")
@@ -232,7 +232,7 @@ class HostileManifests(Lab):
                 self.assertRegex(row["reason"], r"\w+ \w+")
         self.assertEqual(stored["runs", "text.csv", None, None]["reason"].split(" ")[0], "text.csv:2:3:")
 
-    def test_names_may_hold_anything(self):
+    def test_file_names_may_contain_any_characters(self):
         good = (self.folder / self.simulate(1)[0]).read_bytes()
         names = ["with blanks.csv", 'a "quote".csv', "a,comma;semi.csv", "line\nbreak.csv", "ünïcode 摆.csv", "-dash.csv",
                  "<script>alert(1)</script>.csv".replace("/", "|"), "'; DROP TABLE runs; --.csv", "percent %s %n.csv", "x" * 200 + ".csv"]
@@ -250,7 +250,7 @@ class HostileManifests(Lab):
         with open(self.folder / "a.csv", newline="", encoding="utf-8") as file:
             self.assertEqual([row["note"] for row in csv.DictReader(file)], [name for name in names for _ in range(2)])
 
-    def test_what_is_wrong_with_a_manifest_is_said_with_its_line(self):
+    def test_manifest_errors_name_the_line(self):
         for text, words in {
             "path,id\na.csv,1\nb.csv,1\n": 'bad.csv:3: the id "1" is also at bad.csv:2',
             "id\n1\n": "bad.csv:1: the header has no column path",
@@ -282,7 +282,7 @@ class HostileManifests(Lab):
         stored = self.rows("a.sqlite")
         self.assertEqual([key[1] for key in stored if key[0] == "runs"], [f"run {i}" for i in range(5 * lines // 10000, 6 * lines // 10000)])
 
-    def test_folders_and_patterns_are_gone_through_without_loops(self):
+    def test_folders_and_patterns_are_searched_without_loops(self):
         self.simulate(2, "runs")
         (self.folder / "runs" / "deep" / "er").mkdir(parents=True)
         shutil.copy(self.folder / "runs" / "run_001.csv", self.folder / "runs" / "deep" / "er" / "a.csv")
@@ -302,7 +302,7 @@ class HostileManifests(Lab):
             self.assertEqual(sorted(key[1] for key in self.rows(store) if key[0] == "runs"), ids)
 
 
-class Reading(Lab):
+class Reports(Lab):
     """Commands that report on a store."""
 
     def test_export_report_and_comparison(self):
@@ -327,7 +327,7 @@ class Reading(Lab):
         self.assertIn("the manifest has no column 'day'; it has date",
                       self.run_tool("report", "--store", "a.sqlite", "--out", "a.html", "--group_by", "day", code=2)[1])
 
-    def test_comparison_tells_what_moved(self):
+    def test_comparison_reports_changed_values(self):
         manifest = self.manifest(self.simulate(3))
         self.refit(manifest, "a.sqlite")
         self.refit(manifest, "b.sqlite", "--threads", "1")
@@ -365,7 +365,7 @@ class Reading(Lab):
         os.close(reader)
         self.assertRegex(shown.decode(), r"\r\[#+\.+\] \d+ of 60 runs \(\d+ %\), [\d.]+ a second, \d+ s left")
 
-    def test_wrong_flags_are_said(self):
+    def test_wrong_flags_are_reported(self):
         for arguments, words in {
             (): "no store was given",
             ("--store", "a.sqlite"): "no runs were given",
@@ -383,7 +383,7 @@ class Reading(Lab):
         }.items():
             self.assertIn(words, self.run_tool(*arguments, code=2)[1])
 
-    def test_what_is_no_store_is_refused_and_left_as_it_is(self):
+    def test_files_that_are_no_stores_are_refused_and_unchanged(self):
         manifest = self.manifest(self.simulate(1))
         (self.folder / "text").write_text("these are notes\n" * 100)
         with sqlite3.connect(self.folder / "other.sqlite") as database:

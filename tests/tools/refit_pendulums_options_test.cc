@@ -81,7 +81,7 @@ TEST(MakeRefitPendulumsOptions, RefusesInvalidShards) {
   }
 }
 
-TEST(MakeRefitPendulumsOptions, NamesTheFaultOfARefit) {
+TEST(MakeRefitPendulumsOptions, NamesTheWrongFlagOfARefit) {
   const std::vector<std::pair<std::string, std::function<void(RefitFlags&)>>> wrong = {
       {"no store was given", [](RefitFlags& f) { f.store.clear(); }},
       {"no runs were given", [](RefitFlags& f) { f.manifest.clear(); }},

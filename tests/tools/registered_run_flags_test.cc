@@ -10,7 +10,7 @@
 namespace pendulum::registered_run_flags_test {
 namespace {
 
-TEST(RegisterRunFlags, MakesEachFlagOfTheTableKnownToGflagsOnce) {
+TEST(RegisterRunFlags, RegistersEachFlagOfTheTableOnce) {
   static RunFlags values, defaults;  // gflags keeps pointers to both
   RegisterRunFlags(values, defaults);
   for (const RunFlag& flag : RunFlagTable()) {

@@ -39,7 +39,7 @@ class Schema(unittest.TestCase):
     def test_holds_for_the_example(self):
         VALIDATOR.validate(EXAMPLE)
 
-    def test_wants_every_key_and_no_other(self):
+    def test_requires_every_key_and_no_other(self):
         for path in ([], ["tool"], ["data"], ["fits", 0], ["fits", 0, "parameters", "viscous"], ["fits", 0, "noise"],
                      ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"],
                      ["fits", 0, "systematic_covariance"], ["fits", 0, "identifiability", 0],
@@ -69,22 +69,22 @@ class Schema(unittest.TestCase):
             result = result[step]
         return result
 
-    def test_wants_a_reason_for_a_missing_standard_error(self):
+    def test_requires_a_reason_for_a_missing_standard_error(self):
         self.assert_refused(lambda result: result["fits"][0]["parameters"]["coulomb"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["derived"]["damping_ratio"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["closed_form"][2].pop("reason"))
 
-    def test_wants_a_reason_for_missing_constancy(self):
+    def test_requires_a_reason_for_missing_constancy(self):
         self.assert_refused(lambda result: result["fits"][1].pop("constancy_reason"))
         self.assert_refused(lambda result: result["fits"][0].update(constancy_reason="too short"))
         self.assert_refused(lambda result: result["fits"][0]["constancy"]["halves"].update(p=None))
 
-    def test_wants_a_reason_for_missing_predictions_and_tests(self):
+    def test_requires_a_reason_for_missing_predictions_and_tests(self):
         self.assert_refused(lambda result: result["comparison"]["rows"][0].update(forward_prediction=None))
         self.assert_refused(lambda result: result["comparison"]["rows"][0].update(is_compared=False))
         self.assert_refused(lambda result: result["comparison"]["tests"][0].update(p=None))
 
-    def test_knows_a_criterion_unless_there_is_no_likelihood(self):
+    def test_requires_a_criterion_unless_there_is_no_likelihood(self):
         self.assert_refused(lambda result: result["comparison"].update(criterion=None))
         self.assert_refused(lambda result: result["comparison"].update(likelihood="none"))
         result = copy.deepcopy(EXAMPLE)
@@ -96,7 +96,7 @@ class Schema(unittest.TestCase):
         result["comparison"] = None
         VALIDATOR.validate(result)
 
-    def test_wants_a_reason_for_missing_closed_forms(self):
+    def test_requires_a_reason_for_missing_closed_forms(self):
         for key in ("linear", "decrement"):
             self.assert_refused(lambda result, key=key: result["closed_forms"].update({key: None}))
             result = copy.deepcopy(EXAMPLE)
@@ -112,26 +112,26 @@ class Schema(unittest.TestCase):
         result["reason"] = "only 2 turning points can be located"
         VALIDATOR.validate(result)
 
-    def test_wants_one_unit_for_residuals(self):
+    def test_requires_one_unit_for_residuals(self):
         self.assert_refused(lambda result: result["data"].update(resolution_rad_s=None))
 
-    def test_knows_four_outcomes(self):
+    def test_allows_only_four_outcomes(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="ok"))
 
-    def test_knows_five_kinds_of_noise(self):
+    def test_allows_only_five_kinds_of_noise(self):
         for model in ("gaussian", "quantized", "huber", "student", "edges"):
             result = copy.deepcopy(EXAMPLE)
             result["fits"][0]["noise"]["model"] = model
             VALIDATOR.validate(result)
         self.assert_refused(lambda result: result["fits"][0]["noise"].update(model="cauchy"))
 
-    def test_knows_three_verdicts(self):
+    def test_allows_only_three_verdicts(self):
         self.assert_refused(lambda result: result["fits"][0]["identifiability"][0].update(verdict="perhaps"))
 
-    def test_wants_no_statistics_of_a_failed_fit(self):
+    def test_requires_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
 
-    def test_is_of_one_recording_or_of_several(self):
+    def test_requires_all_parts_for_one_or_all_for_several_recordings(self):
         for key in ("data", "closed_forms", "calibration"):
             self.assert_refused(lambda result, key=key: result.update({key: [result[key], result[key]]}))
         self.assert_refused(lambda result: result["fits"][0].update(shared=["inertia"]))
@@ -215,7 +215,7 @@ class JointSchema(unittest.TestCase):
         VALIDATOR.validate(self.result)
         self.assertEqual(len(self.result["data"]), 2)
 
-    def test_wants_every_key_and_no_other(self):
+    def test_requires_every_key_and_no_other(self):
         homogeneity = ["fits", 1, "homogeneity"]
         for path in ([], ["data", 1], ["fits", 1], ["fits", 1, "parameters", "viscous"], ["fits", 1, "statistics"],
                      ["fits", 1, "covariance"], ["fits", 1, "solver"], homogeneity,
@@ -231,7 +231,7 @@ class JointSchema(unittest.TestCase):
             with self.subTest(path=path, unknown=True):
                 self.assert_refused(lambda result: Schema.at(result, path).update(unknown=1))
 
-    def test_wants_all_of_it_to_be_of_several(self):
+    def test_requires_every_part_in_its_joint_form(self):
         for key in ("data", "calibration", "closed_forms"):
             self.assert_refused(lambda result, key=key: result.update({key: result[key][0]}))
             self.assert_refused(lambda result, key=key: result[key].pop())
@@ -240,7 +240,7 @@ class JointSchema(unittest.TestCase):
         self.assert_refused(lambda result: result["fits"][0]["runs"].pop())
         self.assert_refused(lambda result: result["data"][0].update(start=None))
 
-    def test_wants_a_reason_for_missing_closed_forms(self):
+    def test_requires_a_reason_for_missing_closed_forms(self):
         self.assert_refused(lambda result: result["closed_forms"].__setitem__(1, None))
 
         def with_reason(result):
@@ -249,7 +249,7 @@ class JointSchema(unittest.TestCase):
 
         self.assert_holds(with_reason)
 
-    def test_wants_a_reason_for_a_missing_test(self):
+    def test_requires_a_reason_for_a_missing_test(self):
         none = {"statistic": None, "p": None, "agrees": None, "parameters": {}, "amplitude_dependence": []}
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none))
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(reason="there is one"))
@@ -257,23 +257,23 @@ class JointSchema(unittest.TestCase):
         self.assert_holds(lambda result: result["fits"][0]["homogeneity"].update(none))
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none, agrees=True))
 
-    def test_wants_a_reason_for_what_a_recording_does_not_tell(self):
+    def test_requires_a_reason_for_an_undetermined_estimate(self):
         inertia = ["fits", 0, "homogeneity", "parameters", "inertia", "runs", 0]
         none = {"estimate": None, "std_error": None, "z": None}
         self.assert_refused(lambda result: Schema.at(result, inertia).update(none))
         none["reason"] = "the recording on its own does not determine it"
         self.assert_holds(lambda result: Schema.at(result, inertia).update(none))
 
-    def test_knows_how_a_recording_alone_ends(self):
+    def test_allows_only_the_outcomes_of_a_separate_fit(self):
         run = ["fits", 0, "runs", 0]
         self.assert_holds(lambda result: Schema.at(result, run).update(separate="not_converged: too few iterations"))
         for wrong in ("ok", "not_converged", "converged: so it is"):
             self.assert_refused(lambda result, wrong=wrong: Schema.at(result, run).update(separate=wrong))
 
-    def test_wants_no_statistics_of_a_failed_fit(self):
+    def test_requires_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
 
-    def test_wants_one_unit_for_residuals(self):
+    def test_requires_one_unit_for_residuals(self):
         self.assert_refused(lambda result: result["fits"][0]["statistics"].update(rms_residual_rad_s=0.1))
         self.assert_holds(lambda result: result["fits"][0]["statistics"].pop("rms_residual_rad"))
         self.assert_holds(lambda result: Schema.with_sigma(result["comparison"]["rows"][0], "rms_residual"))
@@ -313,16 +313,16 @@ class JointResults(unittest.TestCase):
     def test_some_parameters_shared(self):
         self.assert_valid([self.first, self.second], "--shared", "inertia", rig=swing.RIG)
 
-    def test_a_model_without_what_is_shared_fails(self):
+    def test_a_model_without_the_shared_parameters_fails(self):
         result = self.assert_valid([self.first, self.second], "--model", "viscous,coulomb", "--shared", "coulomb")
         self.assertEqual(result["fits"][0]["status"], "failed")
         self.assertNotIn("fixed", result["fits"][0]["homogeneity"]["reason"])
 
-    def test_recordings_that_cannot_be_traced(self):
+    def test_trajectories_that_cannot_be_computed(self):
         (fit,) = self.assert_valid([self.first, self.second], "--fix", "viscous=1e6", status="failed")["fits"]
         self.assertIsNone(fit["runs"][0]["amplitude_rad"])
 
-    def test_all_that_is_shared_held(self):
+    def test_all_shared_parameters_fixed(self):
         self.assert_valid([self.first, self.second], "--fix", "inertia=0.0438,viscous=0.0017,coulomb=0.0022")
 
     def test_at_a_bound(self):
@@ -335,13 +335,13 @@ class JointResults(unittest.TestCase):
         (fit,) = self.assert_valid([self.first, self.second], "--model", "drag", "--to", "4.5")["fits"]
         self.assertIn("constancy_reason", fit["runs"][0])
 
-    def test_friction_that_the_recordings_do_not_tell(self):
+    def test_friction_that_the_recordings_do_not_determine(self):
         recordings = [swing.angle_csv(sigma=0.002, truth=dict(truth, coulomb=0.0), seed=seed)
                       for seed, truth in ((40, swing.TRUTH), (41, LOW))]
         (fit,) = self.assert_valid(recordings, "--model", "stribeck", status="not_identifiable")["fits"]
         self.assertTrue(fit["reason"])  # the last digits decide which of the equally good points it reports
 
-    def test_starts_that_are_held_where_one_is_not(self):
+    def test_a_fixed_release_angle_that_is_wrong_for_one_recording(self):
         (fit,) = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")["fits"]
         self.assertIs(fit["runs"][1]["parameters"]["release_angle"]["fixed"], True)
 

@@ -75,7 +75,7 @@ TEST(MakeServePendulumOptions, StoreEachFlag) {
   EXPECT_EQ(options->server.max_body, 200U * 1024 * 1024);
   EXPECT_GE(options->server.max_buffered, options->server.max_body);  // room for the largest request
   EXPECT_EQ(options->server.request_time, std::chrono::seconds(9));
-  EXPECT_EQ(options->server.stop_time, std::chrono::seconds(5)) << "to tell those whose fits are stopped";
+  EXPECT_EQ(options->server.stop_time, std::chrono::seconds(5)) << "5 s to answer the clients whose fits are stopped";
   EXPECT_EQ(options->service.threads, 3);
   EXPECT_EQ(options->service.limits.max_samples, 1000U);
   EXPECT_EQ(options->service.limits.max_runs, 6U);

@@ -21,8 +21,8 @@ EACH = ("--shared", "none")
 FLAT = "time_s,angle_deg\n" + "".join(f"{k / 100:.2f},3.0\n" for k in range(500))
 FLAT_SENTENCE = ("flat.csv: the reading is constant, so there is no swing; check the sensor, or choose another "
                  "column")
-NO_HOLD = ("the recording does not begin with a hold: by the first fall, the release was before the first sample; "
-           "use --start moving")
+NO_HOLD = ("the recording does not begin with a hold: the first swing shows that the release was before the first "
+           "sample; use --start moving")
 
 
 def without_hold(text):
@@ -59,7 +59,7 @@ class SeveralFits(unittest.TestCase):
         return run
 
     def assert_refused(self, code, sentence, *flags):
-        """Checks that the tool exits with the code and that sentence, and writes no file."""
+        """Checks that the tool exits with the code, prints the sentence, and writes no file."""
         before = self.names()
         run = self.run_tool(*flags)
         self.assertEqual(run.returncode, code, run.stderr)
@@ -104,18 +104,18 @@ class SeveralFits(unittest.TestCase):
         self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s of hold, one sample each
         self.assertNotIn("fit_003.json", self.names())
 
-    def test_a_release_that_there_is_not(self):
+    def test_a_release_that_does_not_exist(self):
         self.assert_refused(2, "two.csv: there is no free swing 3 in the recording; it has 2", "--data", "two.csv", "--release",
                             "3", "--json", "fit.json")
 
-    def test_several_fits_have_no_place_on_one_stream(self):
-        sentence = " - takes one fit, but there are 2; name a file, which is then numbered"
+    def test_several_fits_need_files(self):
+        sentence = " - takes one fit, but there are 2; give a file name, to which the number is added"
         self.assert_refused(2, "--json" + sentence, "--data", "a.csv,b.csv", *EACH, "--json", "-")
         self.assert_refused(2, "--residuals" + sentence, "--data", "two.csv", "--release", "all", "--json", "fit.json",
                             "--residuals", "-")
 
-    def test_the_stream_is_refused_before_any_recording_is_read(self):
-        sentence = "--json - takes one fit, but there are 2; name a file, which is then numbered"
+    def test_standard_output_is_refused_before_any_recording_is_read(self):
+        sentence = "--json - takes one fit, but there are 2; give a file name, to which the number is added"
         self.write("junk.csv", "junk\n")
         self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--json", "-")
         self.assert_refused(2, sentence, "--data", "junk.csv,nowhere.csv", *EACH, "--release", "all", "--json",
@@ -133,7 +133,7 @@ class SeveralFits(unittest.TestCase):
             self.assertIn(f"{name}.csv", run.stdout)
         self.assertFalse(self.names() & {"fit_002.json", "r_002.csv", "fit.json"})
 
-    def test_one_that_cannot_be_fitted_leaves_the_others_and_their_numbers(self):
+    def test_a_failed_recording_does_not_change_the_numbers_of_the_others(self):
         self.write("flat.csv", FLAT)
         self.write("list.txt", "a.csv\nflat.csv\nb.csv\n")
         self.assert_first_and_last_written(5, FLAT_SENTENCE, "--data", "a.csv,flat.csv,b.csv")
@@ -141,7 +141,7 @@ class SeveralFits(unittest.TestCase):
         self.assert_first_and_last_written(3, "nowhere.csv: there is no such file; check the path", "--data",
                                            "a.csv,nowhere.csv,b.csv")
 
-    def test_a_sentence_among_several_names_its_recording(self):
+    def test_a_message_names_its_recording(self):
         self.write("moving.csv", without_hold(swing.angle_csv()))
         self.assert_first_and_last_written(5, "moving.csv: " + NO_HOLD, "--data", "a.csv,moving.csv,b.csv", "--start",
                                            "release")
@@ -160,14 +160,14 @@ class SeveralFits(unittest.TestCase):
         self.assert_refused(5, FLAT_SENTENCE + "\nfit_pendulum: nowhere.csv: there is no such file; check the path",
                             "--data", "flat.csv,nowhere.csv", *EACH, "--json", "fit.json")
 
-    def test_all_releases_of_several_recordings_are_numbered_on(self):
+    def test_releases_of_several_recordings_are_numbered_consecutively(self):
         self.write("flat.csv", FLAT)
         run = self.run_tool("--data", "flat.csv,two.csv,a.csv", *EACH, "--release", "all", "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
         written = {name: json.loads(self.read(name))["data"]["path"] for name in self.names() if "fit_" in name}
         self.assertEqual(written, {"fit_002.json": "two.csv", "fit_003.json": "two.csv", "fit_004.json": "a.csv"})
 
-    def test_one_release_that_cannot_be_fitted_leaves_the_other(self):
+    def test_a_failed_release_does_not_affect_the_other(self):
         self.write("two.csv", without_hold(swing.two_releases()))
         run = self.run_tool("--data", "two.csv", "--release", "all", "--start", "release", "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
@@ -181,7 +181,7 @@ class SeveralFits(unittest.TestCase):
         self.assert_refused(2, f"--json {name} would overwrite the input of {flag}", *flags)
         self.assertEqual(self.read(name), before)
 
-    def test_nothing_is_written_over_an_input(self):
+    def test_no_output_overwrites_an_input(self):
         self.write("fit_002.json", swing.angle_csv())
         self.write("list.txt", "a.csv\nfit_002.json\n")
         self.write("one.txt", "a.csv\n")
@@ -189,12 +189,13 @@ class SeveralFits(unittest.TestCase):
         self.assert_kept("fit_002.json", "--data_list", "--data_list", "list.txt", *EACH, "--json", "fit.json")
         self.assert_kept("a.csv", "--data_list", "--data_list", "one.txt", "--json", "a.csv")
 
-    def test_no_release_is_written_over_an_input(self):
+    def test_no_output_of_a_release_overwrites_an_input(self):
         self.write("fit_002.json", swing.two_releases())
         self.assert_kept("fit_002.json", "--data", "--data", "fit_002.json", "--release", "all", "--json", "fit.json")
 
     def test_flags_given_twice(self):
-        self.assert_refused(2, "--data is given twice; what it names stands between commas: --data a.csv,b.csv",
+        self.assert_refused(2, "--data is given twice; give all values in one flag, separated by commas: --data "
+                               "a.csv,b.csv",
                             "--data", "a.csv", "--data", "b.csv")
         self.assert_refused(2, "--model is given twice; leave one of them out", "--data", "a.csv", "--model", "viscous",
                             "--model=drag")

@@ -75,7 +75,7 @@ class SimulatePendulumTest(unittest.TestCase):
         self.check_refused(2, "--noise_correlation is 2", *NOISY, "--noise_correlation", "2", "--out", "run.csv")
         self.check_refused(2, "--noise_freedom is 1", *NOISY, "--noise_freedom", "1", "--out", "run.csv")
 
-    def test_count_numbers_the_files_and_counts_the_seeds_up(self):
+    def test_count_numbers_the_files_and_increments_the_seeds(self):
         self.check_made(*NOISY, "--out", "run.csv", "--truth", "truth.json", "--count", "3", "--seed", "5")
         names = sorted(path.name for path in self.folder.iterdir())
         self.assertEqual(names, [f"run_00{i}.csv" for i in (1, 2, 3)] + [f"truth_00{i}.json" for i in (1, 2, 3)])
@@ -86,7 +86,7 @@ class SimulatePendulumTest(unittest.TestCase):
     def truths(self, pattern="truth_*.json"):
         return [json.loads(path.read_text()) for path in sorted(self.folder.glob(pattern))]
 
-    def test_spread_scatters_the_truth_about_what_was_set(self):
+    def test_spread_scatters_the_truth_about_the_given_values(self):
         count = 400
         self.check_made("--set", MOTION, *SHORT, "--spread", "inertia=0.001,release_angle=0.02", "--count", str(count),
                         "--out", "run.csv", "--truth", "truth.json")
@@ -99,7 +99,7 @@ class SimulatePendulumTest(unittest.TestCase):
         self.assertEqual({truth["viscous"] for truth in truths}, {0.001})
         self.assertEqual([truth["seed"] for truth in truths], list(range(1, count + 1)))
 
-    def test_spread_moves_the_recording_and_leaves_its_noise_alone(self):
+    def test_spread_changes_the_motion_but_not_the_noise(self):
         def values(text):
             return [math.radians(float(line.split(",")[1])) for line in text.splitlines()[2:]]
 
@@ -167,7 +167,7 @@ class SimulatePendulumTest(unittest.TestCase):
         self.check_refused(2, "--spread contradicts --plan", *NOISY, "--plan", "--spread", "inertia=0.001")
         self.check_refused(2, "--threads is 1025; it must be 0 to 1024", *made, "--threads", "1025")
 
-    def test_clock_starts_where_asked_and_stamps_increase(self):
+    def test_clock_starts_at_the_given_time_and_stamps_increase(self):
         text = self.check_made("--set", MOTION, "--out", "-", "--start_time", "100", "--jitter", "0.02")
         times = [float(line.split(",")[0]) for line in text.splitlines()[2:]]
         self.assertEqual(times[0], 100)

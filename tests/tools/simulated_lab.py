@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A lab with a random pendulum: simulate_pendulum makes its free swings, this module the motions by hand."""
+"""A lab with a random pendulum. simulate_pendulum makes the free swings, and this module the motions by hand."""
 
 import csv
 import dataclasses
@@ -15,7 +15,7 @@ Start = dict[str, float]  # release_angle and release_time, or initial_angle and
 
 @dataclasses.dataclass
 class Recording:
-    """A file of a user, and its true values."""
+    """A recording as a user has it, and the true parameters."""
 
     rows: list[Row]
     truth: dict[str, float]  # the law and zero_angle or rate_bias; empty if the motion is not a free swing

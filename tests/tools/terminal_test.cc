@@ -56,7 +56,7 @@ int OpenTerminal(const Descriptor& controller) {
   return ::open(::ptsname(controller.value()), O_RDWR | O_NOCTTY);
 }
 
-class OfATerminal : public testing::Test {
+class TerminalTest : public testing::Test {
  protected:
   WithVariable terminal_{"TERM", "xterm"};
   WithVariable no_color_{"NO_COLOR", nullptr};
@@ -64,26 +64,26 @@ class OfATerminal : public testing::Test {
   Descriptor end_{OpenTerminal(controller_)};
 };
 
-TEST_F(OfATerminal, HasColour) {
+TEST_F(TerminalTest, HasColour) {
   ASSERT_GE(end_.value(), 0);
   EXPECT_TRUE(WantsColour(end_.value()));
 }
 
-TEST_F(OfATerminal, HasNoColourWithNonEmptyNoColor) {
+TEST_F(TerminalTest, HasNoColourWithNonEmptyNoColor) {
   const WithVariable zero("NO_COLOR", "0");  // any value disables colours
   EXPECT_FALSE(WantsColour(end_.value()));
   const WithVariable empty("NO_COLOR", "");
   EXPECT_TRUE(WantsColour(end_.value()));
 }
 
-TEST_F(OfATerminal, HasNoColourIfUnsupported) {
+TEST_F(TerminalTest, HasNoColourIfUnsupported) {
   for (const char* kind : {"dumb", "", static_cast<const char*>(nullptr)}) {
     const WithVariable terminal("TERM", kind);
     EXPECT_FALSE(WantsColour(end_.value()));
   }
 }
 
-TEST_F(OfATerminal, HasNoColourElsewhere) {
+TEST_F(TerminalTest, HasNoColourElsewhere) {
   const Descriptor null(::open("/dev/null", O_WRONLY));
   EXPECT_FALSE(WantsColour(null.value()));
   EXPECT_FALSE(WantsColour(-1));

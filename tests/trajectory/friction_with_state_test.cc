@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectories of a friction law with a state, by the law of P. R. Dahl, "A solid friction model", Aerospace
+// Trajectories of a friction law with a state, tested with the law of P. R. Dahl, "A solid friction model", Aerospace
 // Corporation TOR-158(3107-18), 1968. The product has no such law yet.
 #include <array>
 #include <cmath>
@@ -79,7 +79,8 @@ constexpr std::array<double, 5> kParameters = {kInertia, kViscousTorque, kSlidin
 double Angle(const Segment<double>& segment, double tau) { return EvaluateSeries(segment.angle, segment.order, tau); }
 
 // Along a half swing z is a function of the angle alone: dz/dθ = 1 - s z σ/τ_c, so
-// z = s z∞ + (z_0 - s z∞) exp(-|θ - θ_0| / z∞) with z∞ = τ_c/σ. With it the equation of motion must hold everywhere.
+// z = s z∞ + (z_0 - s z∞) exp(-|θ - θ_0| / z∞) with z∞ = τ_c/σ. With this z the equation of motion must hold
+// everywhere.
 TEST(FrictionWithState, ObeysTheEquationOfMotionWithTheStateAsAFunctionOfTheAngle) {
   constexpr double kSlidingState = kSliding / kStiffness;
   double z = 0, reversal_angle = kAngle, direction = -1;
@@ -105,7 +106,8 @@ TEST(FrictionWithState, ObeysTheEquationOfMotionWithTheStateAsAFunctionOfTheAngl
   }
 }
 
-// Bristles hold with any torque up to τ_c: the pendulum ends on them, between ± τ_c, and swings there without an end.
+// Bristles hold any torque up to τ_c. The pendulum therefore ends where gravity's torque is within ± τ_c, and
+// oscillates there on the bristles indefinitely.
 TEST(FrictionWithState, EndsInSmallOscillationsOnTheBristles) {
   TraceSummary summary;
   const auto segments =
@@ -115,11 +117,12 @@ TEST(FrictionWithState, EndsInSmallOscillationsOnTheBristles) {
   EXPECT_DOUBLE_EQ(segments.back().end, kEnd);
   const double last = Angle(segments.back(), segments.back().end - segments.back().start);
   EXPECT_LT(std::abs(std::sin(last)), kSliding * 1.01);
-  // More reversals than the free swing's half periods of π sqrt(I) have room for: the bristles are stiffer.
+  // There are more reversals than half periods π sqrt(I) of the free swing, because the bristles are stiffer than
+  // gravity.
   EXPECT_THAT(summary.reversals, Gt(kEnd / (kPi * std::sqrt(kInertia))));
 }
 
-TEST(FrictionWithState, HasTheDerivativesByAllParameters) {
+TEST(FrictionWithState, HasTheDerivativesWithRespectToAllParameters) {
   using T = ReleaseDual<Dahl>;
   const auto& p = kParameters;
   const auto segments = Trace<T>({Gravity::kSine, T(p[0], 0), {T(p[1], 1), T(p[2], 2), T(p[3], 3)}}, T(p[4], 4));

@@ -22,7 +22,7 @@ using testing::EndsWith;
 using testing::StartsWith;
 
 constexpr int kSeeds = 4000;
-const double kDraws = std::sqrt(kSeeds);
+const double kRootOfSeeds = std::sqrt(kSeeds);
 constexpr double kTolerance = 4;  // standard errors: a correct generator fails one check in 16,000
 
 constexpr ParameterInfo kBounded{"viscous", "b", "", "", 0.0, kUnbounded, ""};
@@ -54,11 +54,11 @@ double ShareWithin(double width, double center, const Eigen::VectorXd& x) {
 TEST(ScatterParameters, IsNormalAboutTheMeansWithTheStandardDeviations) {
   const Eigen::MatrixXd draws = Draws({{kReleaseAngle, -0.4, 0.05}, {kInertia, 0.08, 0.001}});
   const auto check = [](const Eigen::VectorXd& x, double mean, double std_dev) {
-    EXPECT_THAT(Mean(x), DoubleNear(mean, kTolerance * std_dev / kDraws));
-    EXPECT_THAT(StdDev(x), DoubleNear(std_dev, kTolerance * std_dev / (kDraws * std::numbers::sqrt2)));
+    EXPECT_THAT(Mean(x), DoubleNear(mean, kTolerance * std_dev / kRootOfSeeds));
+    EXPECT_THAT(StdDev(x), DoubleNear(std_dev, kTolerance * std_dev / (kRootOfSeeds * std::numbers::sqrt2)));
     // The shares of a normal distribution within one and two standard deviations.
-    EXPECT_THAT(ShareWithin(std_dev, mean, x), DoubleNear(0.6827, kTolerance * 0.4654 / kDraws));
-    EXPECT_THAT(ShareWithin(2 * std_dev, mean, x), DoubleNear(0.9545, kTolerance * 0.2084 / kDraws));
+    EXPECT_THAT(ShareWithin(std_dev, mean, x), DoubleNear(0.6827, kTolerance * 0.4654 / kRootOfSeeds));
+    EXPECT_THAT(ShareWithin(2 * std_dev, mean, x), DoubleNear(0.9545, kTolerance * 0.2084 / kRootOfSeeds));
   };
   check(draws.col(0), -0.4, 0.05);
   check(draws.col(1), 0.08, 0.001);
@@ -66,10 +66,10 @@ TEST(ScatterParameters, IsNormalAboutTheMeansWithTheStandardDeviations) {
 
 TEST(ScatterParameters, DrawsParametersAndSeedsIndependently) {
   const Eigen::MatrixXd draws = Draws({{kReleaseAngle, 0, 1}, {kZeroAngle, 0, 1}});
-  EXPECT_THAT(Correlation(draws.col(0), draws.col(1)), DoubleNear(0, kTolerance / kDraws));
+  EXPECT_THAT(Correlation(draws.col(0), draws.col(1)), DoubleNear(0, kTolerance / kRootOfSeeds));
   Eigen::VectorXd next(kSeeds);
   next << draws.col(0).tail(kSeeds - 1), draws(0, 0);
-  EXPECT_THAT(Correlation(draws.col(0), next), DoubleNear(0, kTolerance / kDraws));
+  EXPECT_THAT(Correlation(draws.col(0), next), DoubleNear(0, kTolerance / kRootOfSeeds));
 }
 
 TEST(ScatterParameters, IsIndependentOfTheNoiseOfTheSameSeed) {
@@ -87,7 +87,7 @@ TEST(ScatterParameters, IsIndependentOfTheNoiseOfTheSameSeed) {
   }
   const Eigen::MatrixXd draws = Draws({{kReleaseAngle, 0, 1}, {kZeroAngle, 0, 1}});
   for (const auto& [k, i] : {std::pair{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
-    EXPECT_THAT(Correlation(draws.col(k), noise.col(i)), DoubleNear(0, kTolerance / kDraws));
+    EXPECT_THAT(Correlation(draws.col(k), noise.col(i)), DoubleNear(0, kTolerance / kRootOfSeeds));
   }
 }
 
@@ -96,8 +96,8 @@ TEST(ScatterParameters, IsHalfNormalAboveABoundAtTheMean) {
   EXPECT_GE(x.minCoeff(), 0);
   // The half-normal distribution: mean σ √(2/π), variance σ² (1 - 2/π).
   const double std_dev = 2 * std::sqrt(1 - 2 / std::numbers::pi);
-  EXPECT_THAT(Mean(x), DoubleNear(2 * std::sqrt(2 / std::numbers::pi), kTolerance * std_dev / kDraws));
-  EXPECT_THAT(StdDev(x), DoubleNear(std_dev, kTolerance * std_dev / kDraws));
+  EXPECT_THAT(Mean(x), DoubleNear(2 * std::sqrt(2 / std::numbers::pi), kTolerance * std_dev / kRootOfSeeds));
+  EXPECT_THAT(StdDev(x), DoubleNear(std_dev, kTolerance * std_dev / kRootOfSeeds));
 }
 
 TEST(ScatterParameters, RespectsTheOrderOfTwoParameters) {
@@ -105,7 +105,7 @@ TEST(ScatterParameters, RespectsTheOrderOfTwoParameters) {
   const Eigen::VectorXd difference = draws.col(1) - draws.col(0);
   EXPECT_GE(difference.minCoeff(), 0);
   // The difference of two independent normal variables is normal. Truncated at 0 it is half-normal with mean 2 σ / √π.
-  EXPECT_THAT(Mean(difference), DoubleNear(2 * 0.5 / std::sqrt(std::numbers::pi), kTolerance * 0.5 / kDraws));
+  EXPECT_THAT(Mean(difference), DoubleNear(2 * 0.5 / std::sqrt(std::numbers::pi), kTolerance * 0.5 / kRootOfSeeds));
 }
 
 TEST(ScatterParameters, IsTheMeanWithoutScatterAndReproducible) {

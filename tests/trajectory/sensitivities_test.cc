@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares derivatives carried by dual numbers with differences, closed forms and the theory of reversals.
+// Compares derivatives from dual numbers with central differences, closed forms and the theory of reversals.
 
 #include <algorithm>
 #include <array>
@@ -155,7 +155,7 @@ void ExpectColumn(const Experiment<F>& experiment, const Curve<typename Experime
   const bool is_release_time = experiment.kind == StartKind::kRelease && parameter + 1 == experiment.kParameters;
   const bool is_share =
       parameter > 0 && parameter <= kFrictionParameters<F> && std::isfinite(F::kParameters[parameter - 1].upper);
-  const double step = (is_share ? 1e-4 : 1e-6) * std::abs(experiment.p[parameter]);  // a share has small effects
+  const double step = (is_share ? 1e-4 : 1e-6) * std::abs(experiment.p[parameter]);  // a share has a small effect
   const Curve<double> plus = experiment.TraceShifted(parameter, step);
   const Curve<double> minus = experiment.TraceShifted(parameter, -step);
   std::array<std::vector<double>, 3> instants = {dual.reversals, plus.reversals, minus.reversals};

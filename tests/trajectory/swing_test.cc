@@ -112,7 +112,7 @@ Series<double> Expand(const Pendulum<F, double>& pendulum, double direction, dou
   return swing.angle.angle;
 }
 
-// θ = s (A cos ω0 τ + ...); with dry friction x = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ.
+// θ = -s τ_c + (A + s τ_c) cos ω0 τ + (v / ω0) sin ω0 τ from the angle A and the rate v in direction s.
 TEST(SwingExpansion, IsSineAndCosineForLinearGravityAndDryFriction) {
   const Pendulum<CoulombFriction, double> pendulum{Gravity::kLinear, 0.25, {0, 0.125}};
   for (const double direction : {1.0, -1.0}) {
@@ -181,7 +181,7 @@ TEST(FirstReversal, IsTheNextRootFromRest) {
   EXPECT_THAT(Reversal(rate, 2, 1.0, 0.2), Lt(0));
 }
 
-// 1 - 1e6 τ²: Halley's method alone would leave the interval if it started at its end.
+// 1 - 1e6 τ²: Halley's method alone, started at the end of the interval, would leave the interval.
 TEST(FirstReversal, IsFoundNearTheStartOfALongStep) {
   const Series<double> rate = Coefficients({1, 0, -1e6});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));

@@ -131,7 +131,7 @@ TEST(SimulateRecording, FollowsTheEllipticFunctionsOfTheUndampedPendulum) {
 }
 
 // Dry friction alone reduces the amplitude of the linear pendulum by 2 τ_c/G per half swing: 0.43, -0.37, ..., 0.07,
-// -0.01. There |θ| < τ_c/G = 0.03 and friction holds it.
+// -0.01. At the last angle |θ| < τ_c/G = 0.03, and friction holds the pendulum.
 TEST(SimulateRecording, StopsAtTheEndOfTheDryFrictionStaircase) {
   SyntheticOptions options;
   options.model = {"coulomb", "coulomb", Gravity::kLinear};

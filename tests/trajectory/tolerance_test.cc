@@ -37,8 +37,8 @@ double GlobalError(double amplitude, double tolerance) {
   return largest;
 }
 
-// Compares with the elliptic functions. Rounding is amplified like a tolerance of 2e-17 (measured). Beyond 177 deg it
-// causes more than 1e-10 rad.
+// Compares with the elliptic functions. Rounding is amplified like a tolerance of 2e-17 (measured). Beyond 177 deg
+// rounding causes errors of more than 1e-10 rad.
 TEST(TraceTolerance, KeepsTheRequestedErrorUpToRounding) {
   for (const double degrees : {1.0, 10.0, 24.0, 60.0, 90.0, 120.0, 150.0, 170.0, 175.0, 178.0, 179.0}) {
     const double amplitude = degrees * kRadFromDeg;
@@ -50,7 +50,7 @@ TEST(TraceTolerance, KeepsTheRequestedErrorUpToRounding) {
   }
 }
 
-TEST(TraceTolerance, IsWithinAFactorOfAHundredOfTheNeededOne) {
+TEST(TraceTolerance, IsWithinAFactorOfAHundredOfTheNeededTolerance) {
   for (const double degrees : {60.0, 90.0, 150.0}) {
     const double amplitude = degrees * kRadFromDeg;
     EXPECT_THAT(GlobalError(amplitude, 100 * TraceTolerance(1e-8, amplitude)), Ge(1e-8)) << degrees << " deg";
@@ -75,7 +75,7 @@ TEST(TraceTolerance, IsNeverBelowRounding) {
   EXPECT_EQ(TraceTolerance(0, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-20, 0.4), 1e-17);
   EXPECT_EQ(TraceTolerance(1e-12, kPi), 1e-17);
-  EXPECT_EQ(TraceTolerance(1e-12, 20), 1e-17);  // an escape over the top has no amplitude
+  EXPECT_EQ(TraceTolerance(1e-12, 20), 1e-17);  // a motion over the top has no amplitude
 }
 
 }  // namespace

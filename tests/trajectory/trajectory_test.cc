@@ -47,7 +47,7 @@ Trace TraceOf(const Pendulum<F, double>& pendulum, const Start<double>& start, c
 }
 
 /// Linear gravity, ω0 = 5 rad/s, dry friction alone. Released at 0.43 it turns at -0.37, 0.31, ..., 0.07, -0.01. Each
-/// half swing reduces the amplitude by 2 τ_c. At the end |θ| < τ_c = 0.03 and friction holds it.
+/// half swing reduces the amplitude by 2 τ_c. At the end |θ| < τ_c = 0.03 and friction holds the pendulum.
 const std::vector<double> kStaircase = {0.04, 0, 0.03};
 constexpr double kHalfSwing = kPi / 5;  // s
 
@@ -112,7 +112,7 @@ TEST(Trajectory, NeverStopsWithoutDryFriction) {
 }
 
 TEST(Trajectory, HasTheSmallestMarginOfAllReversals) {
-  // It turns at 0.31 (margin 0.28). The trace ends on the way to -0.37 + 0.06.
+  // The pendulum turns at 0.31 (margin 0.28). The trace ends on the way to the next turning point at -0.25.
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, -0.37, 0}, Until(1.5 * kHalfSwing));
   EXPECT_EQ(trajectory.summary().reversals, 1);
   EXPECT_THAT(trajectory.summary().smallest_reversal_margin, DoubleNear(0.28, 1e-12));
@@ -149,7 +149,7 @@ TEST(Rest, HoldsAtAnAngleWhereGravityDoesNotExceedDryFriction) {
   }
 }
 
-// Turning points 0.09, -0.03: at |θ| = τ_c, equal up to rounding, it stays.
+// The turning points are 0.09 and -0.03. At -0.03, |θ| = τ_c up to rounding, and the pendulum must stay.
 TEST(Rest, HoldsAtEqualityDespiteRounding) {
   const Trajectory trajectory = Staircase({StartKind::kRelease, 0, 0.09, 0}, Until(5, 1e-17));
   EXPECT_EQ(trajectory.summary().reversals, 1);
@@ -169,7 +169,8 @@ TEST(MovingStart, NeverMovesAtRateZeroInsideTheRestBand) {
   EXPECT_EQ(TraceOf(pendulum, {StartKind::kMoving, 0, 0.02, 0}, Until(1)).summary.outcome, Outcome::kNeverMoved);
 }
 
-// θ - x and θ' move on the ellipse of the half swing. Upwards x = -0.03, so it turns at -0.03 + sqrt(0.23² + 0.3²).
+// In a half swing θ - x and θ' / ω0 move on a circle. In an upward half swing x = -τ_c = -0.03, so the pendulum turns
+// at -0.03 + sqrt(0.23² + 0.3²).
 TEST(MovingStart, ContinuesInTheDirectionOfItsRate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.2, 1.5}, Until(10));
   const double turn = std::atan2(0.3, 0.23) / 5;
@@ -181,8 +182,8 @@ TEST(MovingStart, ContinuesInTheDirectionOfItsRate) {
 
 TEST(MovingStart, MovesInsideTheRestBandWithARate) {
   const Trajectory trajectory = Staircase({StartKind::kMoving, 0, 0.0, 0.05}, Until(3));
-  // It moves on an ellipse about x = -0.03 with 0.05 / ω0 = 0.01, so it stops at hypot(0.03, 0.01) - 0.03, within the
-  // band.
+  // θ + 0.03 and θ' / ω0 move on a circle of radius hypot(0.03, 0.05 / 5). The pendulum stops where θ + 0.03 equals
+  // this radius, which is within the band.
   EXPECT_EQ(trajectory.summary().reversals, 1);
   EXPECT_THAT(trajectory.Angle(3), DoubleNear(std::hypot(0.03, 0.01) - 0.03, 1e-12));
 }

@@ -7,7 +7,7 @@
 
 namespace pendulum {
 
-/// The JSON in the script element of that id.
+/// The JSON in the script element with this id.
 inline nlohmann::ordered_json Embedded(const std::string& html, const std::string& id) {
   const std::size_t element = html.find("id=\"" + id + "\"");
   const std::size_t begin = html.find('>', element) + 1;

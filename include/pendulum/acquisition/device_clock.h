@@ -11,7 +11,8 @@ struct Arrival {
   double device_time, host_time;  ///< s
 };
 
-/// Of a ceramic resonator, the clock of an Uno or Mega: within 0.5 % of its nominal frequency.
+/// Relative standard deviation of a ceramic resonator, the clock of an Uno or Mega. It is within 0.5 % of its nominal
+/// frequency.
 inline constexpr double kResonatorStdDev = 0.003;
 
 /// The rate of a device's clock.
@@ -23,6 +24,7 @@ struct DeviceClock {
   bool is_implausible = false;
 };
 
+/// The scale of a resonator differs from 1 by less than this.
 inline constexpr double kMaxDeviation = 0.02;
 
 /// Compares the device's clock with the host's, MODEL.md eqs. (12.1) and (12.2). A frame is never early and usually a

@@ -60,8 +60,8 @@ class Logger {
   template <typename Pick>
   auto Exchange(const std::vector<std::uint8_t>& commands, int tries, const Pick& pick);
   Result<void> Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what);
-  tl::unexpected<Status> Refused(const OtherProtocol& other) const;
-  Result<pendulum_logger::Info> Checked(const pendulum_logger::Info& info) const;
+  tl::unexpected<Status> OtherProtocolError(const OtherProtocol& other) const;
+  Result<pendulum_logger::Info> CheckInfo(const pendulum_logger::Info& info) const;
   tl::unexpected<Status> NoAnswer(double seconds) const;
   tl::unexpected<Status> NoAnswerTo(std::uint8_t kind) const;
 

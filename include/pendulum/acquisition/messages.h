@@ -26,9 +26,9 @@ using LoggerMessage = std::variant<pendulum_logger::Info, pendulum_logger::Data,
 class MessageDecoder {
  public:
   /// Returns the messages that these bytes complete.
-  std::vector<LoggerMessage> Take(std::span<const std::uint8_t> bytes);
+  std::vector<LoggerMessage> Decode(std::span<const std::uint8_t> bytes);
 
-  /// Number of pieces between two zeros that were not a frame, or not a message of a logger.
+  /// Number of pieces of data between two zero bytes that were not a frame, or not a message of a logger.
   int rejected() const { return rejected_; }
 
  private:

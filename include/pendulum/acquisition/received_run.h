@@ -29,10 +29,10 @@ std::optional<SamplingRate> NearestRate(double hz, int oversample);
 
 /// The losses of a run.
 struct RunLosses {
-  std::int64_t samples = 0;      ///< All missing samples: gaps in time stamps, and samples after the last one.
-  std::uint32_t dropped = 0;     ///< Those that the logger dropped because the line was too slow.
+  std::int64_t samples = 0;      ///< All missing samples: in gaps of the time stamps, and after the last sample.
+  std::uint32_t dropped = 0;     ///< Samples that the logger dropped because the line was too slow.
   std::uint32_t late = 0;        ///< Conversions that could not start in time.
-  std::int64_t on_line = 0;      ///< Those lost on the line, from frame numbers or the reported total.
+  std::int64_t on_line = 0;      ///< Samples lost on the line, from frame numbers or the reported total.
   int contradicting_frames = 0;  ///< Frames left out: their CRC is right, but they are impossible in this run.
   bool is_end_known = false;     ///< The logger has reported how many samples it sent.
 };
@@ -46,14 +46,14 @@ class ReceivedRun {
   /// Adds a frame that was completely received at `host_time` [s]. Returns false and ignores the frame if it
   /// contradicts the run: it is not later than the previous samples, much later than the host's time allows, off the
   /// grid of conversions, or contains more counts than the converter can give.
-  bool Take(const pendulum_logger::Data& frame, double host_time);
+  bool AddFrame(const pendulum_logger::Data& frame, double host_time);
 
-  void TakeEnd(const pendulum_logger::End& end) { end_ = end; }
+  void SetEnd(const pendulum_logger::End& end) { end_ = end; }
 
   /// Keeps the first `samples` samples and forgets later ones and the losses after them. Do not add frames afterwards.
   void KeepFirst(std::size_t samples);
 
-  /// Keeps the samples before `time` [s on the logger's clock] and forgets later ones likewise.
+  /// Keeps the samples before `time` [s on the logger's clock], like KeepFirst.
   void KeepUntil(double time);
 
   std::size_t size() const { return ticks_.size(); }

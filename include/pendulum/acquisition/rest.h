@@ -14,7 +14,7 @@ class RestDetector {
   static constexpr double kRestSeconds = 5;
 
   /// Adds the next sample: time [s], increasing, and reading [counts].
-  void Take(double time, double counts);
+  void AddSample(double time, double counts);
 
   bool IsAtRest() const;
 
@@ -42,7 +42,7 @@ class RestDetector {
   std::deque<Block> blocks_;  // of the last kRestSeconds
   std::deque<double> turns_;  // readings at the last turning points
   double extreme_ = 0;        // extreme reading since the last turning point
-  int direction_ = 0;         // direction of the motion since then
+  int direction_ = 0;         // direction of the motion since the last turning point
   bool is_begun_ = false;
 };
 

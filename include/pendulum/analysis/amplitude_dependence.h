@@ -14,7 +14,8 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
 /// Tests whether a linear dependence on amplitude² explains the differences of a parameter. One line is fitted to the
 /// estimates of whole recordings and to the slopes within recordings (Constancy; MODEL.md eq. (10.4)). A whole
 /// recording is placed at the weighted mean of amplitude² of its windows. amplitudes: K, rad, used for recordings
-/// without windows. Returns std::nullopt with fewer than three numbers for the line, or if all amplitudes are equal.
+/// without windows. Returns std::nullopt if there are fewer than three estimates and slopes, or if all amplitudes are
+/// equal.
 std::optional<AmplitudeDependence> TestAmplitudeDependence(const std::vector<RunAlone>& runs,
                                                            const SharedParameter& parameter,
                                                            const std::vector<double>& amplitudes);

@@ -9,8 +9,8 @@
 
 namespace pendulum {
 
-/// Fits windows between these ends of half swings [s, file's clock] (CutEvenly). Adds the windows and their trends with
-/// amplitude to the result. Returns the reason if there is no trend, otherwise an empty string.
+/// Cuts windows at `ends` of half swings [s, file's clock] (CutEvenly) and fits them. Adds the windows and their trends
+/// with amplitude to the result. Returns the reason if there is no trend, otherwise an empty string.
 std::string CompareWindows(const Recording& used, const Parts& parts, const std::vector<double>& ends,
                            const FitReport& fit, const FitOptions& options, Constancy& result);
 

@@ -24,23 +24,23 @@ struct ClosedFormRow {
   std::optional<double> std_error;  ///< Standard error of closed_form, if there is one.
   double fit = 0;
   std::optional<double> fit_std_error;  ///< 0 if the parameter was fixed.
-  /// Difference over its standard deviation. Both estimates use the same readings, so that deviation is sqrt(se² -
-  /// se_fit²) (J. A. Hausman, Econometrica 46:1251, 1978). If residuals are autocorrelated, or the difference of
-  /// variances is small, it is computed from the response of both estimates to noise with that autocorrelation
-  /// (MODEL.md eq. (6.11)). Absent without a standard error.
+  /// Difference over its standard deviation. The closed form and the fit use the same readings; the standard deviation
+  /// of their difference is then sqrt(se² - se_fit²) (J. A. Hausman, Econometrica 46:1251, 1978). If residuals are
+  /// autocorrelated, or the difference of variances is small, it is computed from the response of both estimates to
+  /// noise with the autocorrelation of the residuals (MODEL.md eq. (6.11)). Absent without a standard error.
   std::optional<double> z;
   std::optional<bool> agrees;  ///< |z| < kAgrees
-  std::string why;             ///< Cause of a difference, or of a missing z; empty if both agree.
+  std::string why;             ///< Cause of a difference, or of a missing z; empty if closed form and fit agree.
 };
 
 inline constexpr double kAgrees = 3;
 
 /// Trajectories with the textbook's numbers: inertia and viscous friction from the linear formulas, start and zero from
-/// the fit. For N samples; empty if the linear formulas gave no numbers.
+/// the fit. Values at the N used samples; empty if the linear formulas gave no numbers.
 struct TextbookOverlay {
   Eigen::VectorXd linear, nonlinear;                         ///< N, rad or rad/s: small-angle and sine gravity.
   double linear_rms = 0, nonlinear_rms = 0, fitted_rms = 0;  ///< rad or rad/s, of measured - modelled.
-  std::string summary;                                       ///< Says which model is nearer, and why.
+  std::string summary;                                       ///< Says which model is nearer to the readings, and why.
 };
 
 /// Comparison of a fit with the closed forms of the same recording.
@@ -50,11 +50,12 @@ struct ClosedFormCheck {
   std::string summary;  ///< Says how many rows agree.
 };
 
-/// Compares a fit that is not kFailed with closed forms of its model, and with the inertia from the rig's geometry. The
-/// formula is applied to the fitted model's own trajectory to find the cause of a difference: with small angles, with
-/// its own angles, at the recording's time stamps and on the sensor's levels (MODEL.md eq. (6.12)). `used` holds the
-/// fitted samples. After a stop request the function returns early and its rows are meaningless. Cost: a few
-/// milliseconds; tens of milliseconds if something differs; seconds with thousands of turning points.
+/// Compares a fit with the closed forms of its model, and with the inertia from the rig's geometry; empty for a fit
+/// that is kFailed. To find the cause of a difference, the formula is applied to the fitted model's trajectory: with
+/// small angles, with the fitted angles, at the recording's time stamps, and on the sensor's levels (MODEL.md eq.
+/// (6.12)). `used` holds the fitted samples. After a stop request the function returns early and its rows are
+/// meaningless. Cost: a few milliseconds; tens of milliseconds if something differs; seconds with thousands of turning
+/// points.
 ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,
                                  const std::optional<Rig>& rig, const std::stop_token& stop = {});
 

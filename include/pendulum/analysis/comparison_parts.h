@@ -10,23 +10,24 @@
 
 namespace pendulum {
 
-/// The part of a row that needs no other model: parameters, residuals, and the reason if it is not compared.
+/// The part of a row that needs no other model: parameters, residuals, and the reason if the fit is not compared.
 ComparisonRow DescribeFit(const FitReport& fit);
 
-/// The judged fit with the smallest AICc. Autocorrelated residuals do not exclude the other fits: a wrong law leaves
-/// such residuals. nullptr: no fit converged.
+/// The converged fit with the smallest AICc. Fits with autocorrelated residuals are included, because every wrong law
+/// leaves such residuals. nullptr: no fit converged.
 const FitReport* BestFit(const std::vector<FitReport>& fits);
 
 /// Residuals of a fit, linearized about its estimates. Parameters at a bound may move away from it if `with_bounded`;
-/// otherwise they stay there. std::nullopt: the trajectory cannot be computed.
+/// otherwise they stay at it. std::nullopt: the trajectory cannot be computed.
 std::optional<CorrelatedResiduals> ResidualsOf(const Recording& used, const FitReport& fit, const FitOptions& options,
                                                bool with_bounded);
 
-/// The term that converts log L from densities to probabilities of levels; the fits use the same term.
-double PerCount(const Recording& used);
+/// N ln q for N readings with resolution q; 0 without a resolution. Added to log L, it converts densities to
+/// probabilities of levels; the fits add the same term.
+double SumOfLogLevelWidths(const Recording& used);
 
-/// The autocorrelation that all models share: that of the best model, of low order. Misfit looks like a process of very
-/// high order; a low order whitens it nearly as well in a fraction of the time.
+/// The autocorrelation used for all models: that of the best model, with order 8 at most. Misfit looks like a process
+/// of very high order; a low order whitens it nearly as well in a fraction of the time.
 Autocorrelation SharedAutocorrelation(const FitReport& best);
 
 /// Describes the likelihood behind the criteria, in words.
@@ -38,7 +39,7 @@ Likelihood ChooseLikelihood(const FitReport& best, double resolution);
 /// Sets AIC and AICc with `samples`, and BIC with `effective_samples`, for a row that has a log-likelihood.
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row);
 
-/// Sets the differences to the best model, and Akaike's weights.
+/// Sets the differences to the smallest BIC, and Akaike's weights.
 void SetDifferences(std::vector<ComparisonRow>& rows);
 
 }  // namespace pendulum

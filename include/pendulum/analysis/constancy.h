@@ -55,11 +55,11 @@ inline constexpr double kNotConstant = 1e-3;
 
 /// Fits two parts of the recording with about equal information (the earlier one is shorter) and compares them (G. C.
 /// Chow, Econometrica 28:591, 1960). Each part has at least three periods after the release. Also fits three to eight
-/// such windows; their trend with amplitude is weighted by the covariance that their estimates have if the whole fit is
-/// right. Priors and values of the start belong to the whole recording and are not used for its parts. Samples after
-/// the last turning point are left out. `reason` is set if `fit` did not converge on `used` with `options`, the
-/// recording is undersampled or too short, or a part does not converge. Cost: up to ten fits of parts, some
-/// milliseconds for 2000 samples.
+/// such windows and tests their trend with amplitude, using the covariance that the windows' estimates have if the
+/// whole fit is right. Priors and values of the start belong to the whole recording and are not used for its parts.
+/// Samples after the last turning point are left out. `reason` is set if `fit` did not converge on `used` with
+/// `options`, the recording is undersampled or too short, or a part does not converge. Cost: up to ten fits of parts,
+/// some milliseconds for 2000 samples.
 Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOptions& options);
 
 }  // namespace pendulum

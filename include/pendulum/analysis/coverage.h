@@ -14,10 +14,10 @@ namespace pendulum {
 
 /// Size, seed and threads of a coverage study.
 struct CoverageOptions {
-  int count = 1000;        ///< Recordings, or sets of them; at least 1.
+  int count = 1000;        ///< Number of recordings, or of sets of recordings; at least 1.
   int runs = 1;            ///< Recordings per set, fitted together; 1: each recording alone.
   std::uint64_t seed = 1;  ///< Recording i (0-based) has seed + i; recording k of set i has seed + i · runs + k.
-  int threads = 0;         ///< 0: one per core. The result does not depend on it.
+  int threads = 0;         ///< 0: one per core. The result does not depend on the number.
   std::function<void(int done)> progress;  ///< Called with the number of recordings done, by one thread at a time.
 };
 
@@ -25,11 +25,12 @@ struct CoverageOptions {
 struct CoverageRow {
   std::string parameter;
   std::string unit;
-  bool at_bound = false;                  ///< The true value is at the parameter's bound.
-  int covered = 0, without_interval = 0;  ///< Recordings whose 95 % interval contains the true value; without interval.
+  bool at_bound = false;     ///< The true value is at the parameter's bound.
+  int covered = 0;           ///< Number of recordings whose 95 % interval contains the true value.
+  int without_interval = 0;  ///< Number of recordings without an interval.
   double coverage = 0, coverage_lower = 0, coverage_upper = 1;  ///< covered / recordings and its BinomialInterval95.
-  std::optional<double> rms_error;                              ///< Of converged estimates, in `unit`.
-  /// Root mean square of error / Cramér-Rao bound of its recording, over converged fits; absent without a bound.
+  std::optional<double> rms_error;                              ///< Of the estimates of converged fits, in `unit`.
+  /// Root mean square, over converged fits, of error / Cramér-Rao bound of the same recording; absent without a bound.
   std::optional<double> error_over_bound;
   /// Mean standard error / rms error, over the fits that give a standard error.
   std::optional<double> std_error_over_error;
@@ -41,18 +42,18 @@ struct CoverageRow {
 /// Results of a scenario that was simulated and fitted many times.
 struct CoverageStudy {
   CoverageScenario scenario;
-  int recordings = 0;  ///< Or sets.
+  int recordings = 0;  ///< Number of recordings, or of sets of recordings.
   int runs = 1;        ///< Recordings per set.
   int converged = 0;
-  int failed = 0;                 ///< Fits without any report; the others have one and may not have converged.
+  int failed = 0;                 ///< Number of fits without a report. A fit with a report may not have converged.
   std::vector<CoverageRow> rows;  ///< P, in FitParameters' order.
 };
 
 /// Simulates the recordings of a scenario and fits each with FitRecording, from start values found in its data. The
 /// recordings of a set are fitted together with FitJointly; they are released from 0.7 to 1.3 times the scenario's
 /// angle, and only shared parameters are counted. An interval with one end is unbounded on the other side. A missing
-/// interval, or a parameter missing from the report, counts as not covered. kInvalidArgument, kFailedPrecondition: as
-/// SimulateRecording, for the first recording that cannot be made; count or threads out of their domain. Cost: some
+/// interval, or a parameter missing from the report, counts as not covered. Errors: as SimulateRecording, for the first
+/// recording that cannot be made; kInvalidArgument also for count, runs or threads out of their domain. Cost: some
 /// milliseconds per recording.
 Result<CoverageStudy> StudyCoverage(const CoverageScenario& scenario, const CoverageOptions& options);
 

@@ -25,21 +25,23 @@ inline constexpr CoverageRule kAtBoundRule = {0.94, 0.99};
 struct CoverageScenario {
   std::string name;         ///< As in --scenario: words and numbers, "white_0.25".
   std::string description;  ///< One line.
-  SyntheticOptions run;     ///< Torques and inertia divided by G; seed, zero and release_time vary between recordings.
+  SyntheticOptions run;     ///< Torques and inertia divided by G; ScenarioRun varies some values between recordings.
   FitOptions fit;
   CoverageRule rule;
 };
 
-/// All scenarios. They simulate the rig of datasets/textbook_rig.json with viscous and dry friction, sampled at 100 Hz
-/// by a potentiometer of 0.1985 deg per count or, for "fine", without counts.
+/// All scenarios. They simulate the rig of datasets/textbook_rig.json. Most have viscous and dry friction and a
+/// potentiometer of 0.1985 deg per count, sampled at 100 Hz. Others have readings without counts, or another sensor: a
+/// gyro, an accelerometer, a camera or an encoder.
 std::vector<CoverageScenario> CoverageScenarios();
 
 /// The scenarios of a comma-separated list of names, "white_2.5,no_noise", in that order, or `all`. kInvalidArgument:
 /// an empty list, an unknown name (the message lists the known names) or a repeated name.
 Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& names);
 
-/// The recording of a seed: independent noise, and zero and release shifted within ± half a count and ± half a sampling
-/// interval.
+/// The options of the recording with this seed. Its noise is independent of other seeds. The zero is shifted by at most
+/// half a count and the release by at most half a sampling interval. The parameters of a sensor that has priors are
+/// drawn from the priors.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed);
 
 }  // namespace pendulum

@@ -17,14 +17,17 @@ std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run);
 /// The Cramér-Rao bound of each parameter of a simulated recording: no unbiased estimate has a smaller standard
 /// deviation. The bound is for the simulated noise, with its size unknown; J (N x P): the readings' sensitivities at
 /// the true values.
-///   white Gaussian noise     JᵀJ / σ², or with levels Σ of ReadingInformation, cut off by the range
+///   white Gaussian noise     JᵀJ / σ²; on levels the sum of ReadingInformation, with the sensor's range
 ///   AR(1) noise              Jᵀ R^-1 J; levels of spacing q count as additional white noise of variance q²/12
-///   Student's t noise        (ν + 1) / (ν + 3) JᵀJ / s², s its scale
+///   Student's t noise        (ν + 1) / (ν + 3) JᵀJ / s², with the scale s
+///   edges of an encoder      JᵀWJ, 1 / W = variance of an edge + (rate · standard deviation of a time stamp)²
 ///
 /// time N, s, increasing: the time stamps of the samples, from SimulateRecording.
 /// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of the restoring torque G).
 /// All bounds are absent:
-/// - without noise,
+/// - without noise, except for edges,
+/// - for an encoder read at equal intervals,
+/// - for a sensor whose parameters have priors,
 /// - for a range, unless the noise is white Gaussian noise on levels,
 /// - for Student's t noise that is correlated or on levels,
 /// - if the trajectory cannot be computed.

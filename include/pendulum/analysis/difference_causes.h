@@ -33,7 +33,7 @@ std::optional<FormulaStages> ApplyInStages(const FittedMotion& motion, const Rec
 
 /// Difference between a formula and the fit, split by cause.
 struct DifferenceCauses {
-  double formula = 0;     ///< Remains at small angles: the formula's friction is not the model's.
+  double formula = 0;     ///< The difference at small angles: the formula assumes other friction than the model.
   double drift = 0;       ///< The zero drifts.
   double amplitude = 0;   ///< The angles are not small.
   double sampling = 0;    ///< Samples are missing near the turning points.
@@ -43,8 +43,8 @@ struct DifferenceCauses {
   double total() const { return formula + drift + amplitude + sampling + resolution + recording; }
 };
 
-/// Splits the difference of formula `k`. closed_form: its value for the recording; fit: the fit's value; all are
-/// multiplied by `scale`.
+/// Splits the difference (closed_form - fit) of formula `k`. closed_form: the formula's value for the recording; fit:
+/// the fit's value, in the same unit. `scale` converts the values in `stages` to this unit.
 DifferenceCauses SplitDifference(const FormulaStages& stages, Eigen::Index k, double scale, double closed_form,
                                  double fit);
 
@@ -55,8 +55,8 @@ struct CauseNames {
   std::string misfit;  ///< Used if the recording's part exceeds 3 standard deviations of noise.
 };
 
-/// Lists the parts that are at least a fifth of the difference, the largest first. std_dev: of the difference by noise
-/// alone, in `unit`.
+/// Lists the parts that are at least a fifth of the difference, the largest first. std_dev: standard deviation of the
+/// difference that noise alone causes, in `unit`.
 std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const std::string& unit,
                            const CauseNames& names);
 

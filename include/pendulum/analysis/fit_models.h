@@ -30,9 +30,10 @@ OptionsForModel ForModel(const FitOptions& options, const std::string& model, co
 /// Names of inertia and of all friction parameters of the models.
 std::vector<std::string> PhysicalNames(const std::vector<std::string>& models);
 
-/// Fits each model to one free swing. The window is that of the richest law among them (FitSwing). All fits start like
-/// that one and use the noise family chosen for the model with the smallest residuals. With one model it equals
-/// FitSwing. Errors as FitSwing; a failure of only one of several models is a report that is kFailed.
+/// Fits each model to one free swing. The richest law among the models determines the window (FitSwing) and the kind of
+/// start. All fits use the noise family chosen for the model with the smallest residuals. With one model the result
+/// equals that of FitSwing. Errors as FitSwing; if the richest law can be fitted and another model cannot, its report
+/// is kFailed.
 Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models);
 

@@ -62,7 +62,7 @@ class FittedMotion {
   std::vector<double> parameters_;  // P, units of the restoring torque G, times from the first sample
   std::vector<double> reported_;    // P: the report's unit per unit of parameters_.
   Eigen::VectorXd instants_;
-  std::vector<double> against_;  // N, of edges that lag: the factor of their lag at the recording's instants.
+  std::vector<double> against_;  // N, only for edges that lag: factor of the lag at the recording's instants.
   std::stop_token stop_;
 };
 

@@ -26,7 +26,7 @@ struct RunAlone {
 /// A shared parameter estimated from one recording alone, without bounds.
 struct RunEstimate {
   std::optional<double> value, std_error;  ///< Estimate, parameter's unit; absent: not determined.
-  std::optional<double> z;                 ///< Difference to the mean of the others over its standard deviation.
+  std::optional<double> z;  ///< (value - mean of the other recordings) / standard deviation of this difference.
 };
 
 /// One shared parameter over K recordings.
@@ -48,7 +48,7 @@ struct AmplitudeDependence {
   std::string name, unit;  ///< Name and unit of the parameter.
   double slope = 0;        ///< unit per rad²
   double slope_std_error = 0;
-  double p = 1;       ///< Probability that no slope explains as much, by the F test against the remaining scatter.
+  double p = 1;       ///< Probability that a slope explains as much by chance (F test against the remaining scatter).
   double span = 0;    ///< slope · (largest - smallest amplitude² of a recording) / mean.
   double rest_p = 1;  ///< p of the differences that the slope does not explain, by χ².
 
@@ -63,9 +63,11 @@ struct Homogeneity {
   std::vector<SharedParameter> parameters;  ///< Without fixed parameters.
   std::vector<double> amplitudes;           ///< K, rad: rms over the motion.
   std::vector<AmplitudeDependence> amplitude_dependence;
-  std::vector<int> disagreeing;  ///< 0-based; disagree with a majority or with its scatter; often empty.
-  std::string reason;            ///< Why there is no test; empty if there is one.
-  std::string verdict;           ///< Sentences.
+  /// 0-based indices of recordings that disagree with a majority, or are far outside the scatter of the others; often
+  /// empty.
+  std::vector<int> disagreeing;
+  std::string reason;   ///< Why there is no test; empty if there is one.
+  std::string verdict;  ///< Sentences.
 
   bool agrees() const { return p.value_or(1) >= kDisagree; }
 

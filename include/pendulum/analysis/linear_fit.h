@@ -21,7 +21,7 @@ namespace pendulum {
 /// Derivatives of each of N readings' log-likelihood l with respect to its modelled value m [rad or rad/s].
 struct ReadingTerms {
   Eigen::VectorXd score;        ///< N, ∂l/∂m, 1 / unit of m
-  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; for a robust family the mean
+  Eigen::VectorXd information;  ///< N, -∂²l/∂m², 1 / unit of m²; for a robust family the mean over the readings
 };
 
 /// Terms of N measured values and N modelled readings, rad or rad/s.
@@ -32,21 +32,23 @@ ReadingTerms TermsOf(const NoiseModel& noise, const Eigen::VectorXd& value, cons
 Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& autocorrelation,
                                 const ReadingTerms& terms, const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 
-/// The autocorrelation of N residuals. time: true s; jacobian: N x K, by all parameters fitted to them. White if the
-/// Ljung-Box test does not doubt it (p > 0.05).
+/// The autocorrelation of N residuals. time: true s; jacobian: N x K, derivatives with respect to all parameters fitted
+/// to the residuals. The result is white if the Ljung-Box test gives p > 0.05.
 Autocorrelation AutocorrelationOf(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& value,
                                   const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian,
                                   const std::stop_token& stop = {});
 
-/// Correction factor for a variance from N residuals; the free parameters took `lost` of N variances.
+/// Correction factor for a variance estimated from residuals. The fit of `free` parameters has reduced the expected sum
+/// of squares by `lost` variances.
 double Inflation(const NoiseModel& noise, Eigen::Index samples, Eigen::Index free, double lost);
 
 /// A fit as a linear function of the readings' scores about its solution, over F parameters.
 struct LinearFit {
-  std::vector<Eigen::Index> free;  ///< F, neither fixed nor, if `with_bounds`, at a bound.
-  Eigen::MatrixXd jacobian;        ///< N x P, of the readings with respect to the report's parameters.
-  Eigen::MatrixXd inverse;         ///< F x F, inverse of the information: products of the report's units.
-  Eigen::MatrixXd influence;       ///< N x F: its transpose times the scores is the estimates' change [report's units].
+  /// F parameters: neither fixed nor of the sensor nor, if `with_bounds`, at a bound.
+  std::vector<Eigen::Index> free;
+  Eigen::MatrixXd jacobian;   ///< N x P, of the readings with respect to the report's parameters.
+  Eigen::MatrixXd inverse;    ///< F x F, inverse of the information: products of the report's units.
+  Eigen::MatrixXd influence;  ///< N x F: its transpose times the scores is the estimates' change [report's units].
 };
 
 /// std::nullopt: the trajectory cannot be computed, the readings do not determine the F parameters, or a stop was

@@ -16,30 +16,29 @@ enum class Likelihood {
   kIndependent,  ///< The likelihood of the fits: residuals without autocorrelation.
   kCorrelated,   ///< Gaussian with the autocorrelation of the best model's residuals, and q²/12 for rounding (eq.
                  ///< (9.1)).
-  kNone,         ///< No criterion: noise below half a count or a robust loss, with autocorrelation; or no fit
-                 ///< converged.
+  kNone,         ///< No criterion, because no likelihood is known or no fit converged; Comparison::criterion says why.
 };
 
 /// One model among those compared.
 struct ComparisonRow {
   std::string model;
   bool judged = false;  ///< Converged: it has criteria (if there are any) and may be recommended.
-  int parameters = 0;   ///< Free parameters that are not at a bound 0, including those of the noise.
+  int parameters = 0;   ///< Number of free parameters that are not at a bound 0, including those of the noise.
   double rms = 0;       ///< rad or rad/s, of the residuals.
   std::optional<double> log_likelihood, aic, aicc, bic;  ///< Densities in 1/rad or 1/(rad/s), or probabilities.
-  std::optional<double> delta_bic;                       ///< To the smallest.
+  std::optional<double> delta_bic;                       ///< Difference to the smallest BIC.
   std::optional<double> akaike_weight;  ///< exp(-ΔAICc / 2) over their sum (Burnham & Anderson 2002, section 2.9)
   Prediction cross_validation, forward;
   double lag1_correlation = 0;  ///< Lag-1 correlation of the quantile residuals.
   double ljung_box_p = 1;
   bool lack_of_fit = false;  ///< The fit reports that more than noise is left in its residuals.
-  std::string reason;        ///< Why it is not compared; empty if it is.
+  std::string reason;        ///< Why the model is not compared; empty if it is compared.
 };
 
 /// Test whether a law needs the parameters that it adds to a simpler one.
 struct NestedTest {
   std::string simpler, richer;
-  std::vector<std::string> added;  ///< Parameters
+  std::vector<std::string> added;  ///< Parameters that only the richer law has.
   double statistic = 0;            ///< 2 (log L of richer - log L of simpler), at least 0
   std::string null;                ///< Distribution of the statistic if the simpler law is true, in words.
   std::optional<double> p;

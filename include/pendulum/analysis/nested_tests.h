@@ -21,9 +21,9 @@ struct ComparedRuns {
 };
 
 /// Likelihood-ratio tests of all pairs of models where one is nested in the other and both have a log-likelihood in
-/// `rows` (one per fit; MODEL.md eq. (9.3)). A rate of the richer law may have no meaning in the simpler one. Then
-/// SupremumTail tests only against the richest law within it, for independent residuals. `likelihood` is that of the
-/// rows. There is no p if options restrict an added parameter.
+/// `rows` (one per fit; MODEL.md eq. (9.3)). A rate of the richer law may have no meaning in the simpler one. Such a
+/// law is tested only against the largest law nested in it, with SupremumTail, and only for independent residuals.
+/// `likelihood` is the likelihood of the rows. There is no p if options restrict an added parameter.
 std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vector<ComparisonRow>& rows,
                                    const FitOptions& options, Likelihood likelihood);
 

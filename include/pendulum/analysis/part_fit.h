@@ -23,15 +23,15 @@ double NextDoubleAfter(double time);
 /// A second fit to a part of the recording.
 struct PartFit {
   Recording part;
-  Eigen::Index first = 0;  ///< Index of its first sample among those used.
+  Eigen::Index first = 0;  ///< Index of the part's first sample among the used samples.
   FitReport fit;
   std::string reason;  ///< Why there is no fit; empty if it converged.
 
   bool converged() const { return reason.empty(); }
 };
 
-/// Parts of a fitted recording. Each part is fitted with a separate start, which begins at the whole fit's motion.
-/// Keeps references.
+/// Parts of a fitted recording. Each part is fitted with a separate start; its search begins at the whole fit's motion.
+/// Keeps references to the arguments.
 class Parts {
  public:
   Parts(const Recording& used, const FitReport& fit, const FitOptions& options);

@@ -22,7 +22,7 @@ struct PlanRow {
   std::string_view unit;    ///< rad, s, Hz, and rad/s for the resolution of a rate.
   double value = 0;         ///< Value of the factor, in `unit`; of an angle its magnitude.
   bool is_base = false;
-  std::vector<std::optional<double>> std_errors;  ///< P, the smallest possible ones: those of CramerRaoBounds.
+  std::vector<std::optional<double>> std_errors;  ///< P, the smallest possible ones (CramerRaoBounds).
   std::optional<double> linear_bias;              ///< LinearInertiaBias; absent with less than one whole period.
   std::string reason;                             ///< Why there is no such recording; empty if there is one.
 };
@@ -32,11 +32,12 @@ struct Plan {
   std::vector<ParameterInfo> parameters;  ///< P, FitParameters of the base.
   std::vector<double> truth;              ///< P, in units of the restoring torque G.
   std::size_t physical = 0;               ///< Number of inertia and friction parameters; these come first.
-  std::vector<PlanRow> rows;              ///< Factor by factor, values increasing; each has the base case.
-  std::optional<double> noise_of_levels;  ///< q/√12 [rad or rad/s], used as the noise if there is none.
-  /// The amplitude [rad] where |linear_bias| equals the relative error of inertia, to 1e-4 of itself; the other factors
-  /// are those of the base. Above it the bias is larger, except where the effects of friction and finite amplitude
-  /// cancel. Below it the bias is smaller, or there is no whole period. May be absent.
+  std::vector<PlanRow> rows;              ///< Grouped by factor, with increasing values; each group has the base case.
+  std::optional<double> noise_of_levels;  ///< q/√12 [rad or rad/s], used as the noise if the base has none.
+  /// The amplitude [rad] where |linear_bias| equals the relative error of inertia, with a relative accuracy of 1e-4;
+  /// the other factors are those of the base. At larger amplitudes the bias exceeds the error, except where the effects
+  /// of friction and finite amplitude cancel. At smaller ones the bias is smaller than the error, or there is no whole
+  /// period. May be absent.
   std::optional<double> amplitude_of_equal_bias;
 };
 

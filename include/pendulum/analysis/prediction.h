@@ -17,14 +17,14 @@ struct Prediction {
 };
 
 /// Blocked cross-validation (P. Burman, E. Chow and D. Nolan, Biometrika 81:351, 1994). The recording is cut into
-/// kBlocks blocks of equal duration. Each block in turn is left out and predicted by a fit to the rest. The blocks
-/// begin one period after the release (or the first sample); every fit includes that period. `used` holds the samples
-/// of `fit`, which converged; `options` are those of `fit`. There is no prediction for fewer than kMinPeriods, for a
-/// recording that IsUndersampled, or if a fit fails. Cost: kBlocks fits.
+/// kBlocks blocks of equal duration. Each block in turn is left out and predicted by a fit to the remaining samples.
+/// The blocks begin one period after the release (or the first sample); every fit includes that period. `used` holds
+/// the samples of `fit`, which converged; `options` are those of `fit`. There is no prediction for fewer than
+/// kMinPeriods, for a recording that IsUndersampled, or if a fit fails. Cost: kBlocks fits.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options);
 
-/// Fits the hold and the first kFirstPart of the time after the release (or the first sample), and predicts the rest.
-/// Otherwise as CrossValidate, with one fit.
+/// Fits the hold and the first kFirstPart of the time after the release (or the first sample), and predicts the
+/// remaining readings. Otherwise as CrossValidate, with one fit.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options);
 
 inline constexpr int kBlocks = 5;

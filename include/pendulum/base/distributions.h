@@ -3,10 +3,10 @@
 
 namespace pendulum {
 
-// Statistical distributions, computed by Boost.Math. Its headers take seconds to compile, so of the libraries only
-// distributions.cc includes them. All numbers are dimensionless. The caller ensures that x and f are finite and at
-// least 0, t is not NaN, degrees of freedom are above 0 (not necessarily whole) and probabilities lie strictly between
-// 0 and 1. Otherwise Boost throws std::domain_error or std::overflow_error.
+// Statistical distributions, computed by Boost.Math. The headers of Boost.Math take seconds to compile, so in the
+// libraries only distributions.cc includes them. All numbers are dimensionless. The caller ensures that x and f are
+// finite and at least 0, t is not NaN, degrees of freedom are above 0 (not necessarily whole) and probabilities lie
+// strictly between 0 and 1. Otherwise Boost throws std::domain_error or std::overflow_error.
 
 /// The quantile of the standard normal distribution: the x with P(X < x) = `probability`.
 double NormalQuantile(double probability);

@@ -37,7 +37,7 @@ class StagedFile {
   StagedFile& operator=(StagedFile&&) = delete;
   ~StagedFile();
 
-  /// Whether `name` is the name of such a temporary file. Its process may still run or may have been killed.
+  /// Whether `name` is the name of such a temporary file. Its writer may still run or may have been killed.
   static bool IsTemporary(std::string_view name) { return name.starts_with(kPrefix) && name.ends_with(kSuffix); }
 
   Result<void> Open();

@@ -15,7 +15,7 @@ enum class StatusCode {
   kDataLoss,            ///< A file exists but cannot be read as what it should be.
   kFailedPrecondition,  ///< The data are readable but contain no swing, or too little of one.
   kCannotWrite,         ///< An output cannot be written.
-  kTryAgain,            ///< Something else, such as another process, is using it. A later attempt may succeed.
+  kTryAgain,            ///< A resource is in use, for example by another process. A later attempt may succeed.
   kInternal,            ///< A bug in this program.
 };
 

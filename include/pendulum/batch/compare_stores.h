@@ -14,10 +14,10 @@ namespace pendulum {
 struct MovedParameter {
   std::string id, model, name, unit;
   double before = 0, after = 0;  ///< Estimates in `unit`.
-  double errors = 0;             ///< Change of the estimate or of its error, over the smaller standard error.
+  double errors = 0;             ///< The larger change (estimate or its error), divided by the smaller standard error.
 };
 
-/// A fit with another status: "converged", "failed" ...
+/// A fit whose status has changed, such as from "converged" to "failed".
 struct ChangedStatus {
   std::string id, model, before, after;
 };
@@ -34,12 +34,12 @@ struct StoreComparison {
   std::int64_t fits = 0;                         ///< Fits in both stores.
   std::int64_t other_data = 0;                   ///< Runs whose recording has changed.
   std::int64_t identical = 0;                    ///< Parameters equal bit for bit, including the error.
-  std::int64_t rounding = 0;                     ///< Equal within kRounding standard errors, as on another type of CPU.
+  std::int64_t rounding = 0;                     ///< Equal within kRounding standard errors; typical of another CPU.
   std::int64_t within_errors = 0;                ///< Equal within one standard error.
   std::int64_t moved = 0;                        ///< Different by more than one standard error.
-  std::int64_t without_error = 0;                ///< Different values without errors, or in another unit.
+  std::int64_t without_error = 0;                ///< Different values without standard errors or in different units.
   std::int64_t changed_status = 0;
-  std::vector<MovedParameter> most_moved;     ///< At most kMaxListed, the largest first.
+  std::vector<MovedParameter> most_moved;     ///< At most kMaxListed, the largest change first.
   std::vector<ChangedStatus> status_changes;  ///< At most kMaxListed.
   std::vector<RemovedFit> removed;            ///< At most kMaxListed.
   std::vector<std::string> cpus_before, cpus_after;
@@ -48,7 +48,7 @@ struct StoreComparison {
   static constexpr int kMaxListed = 100;
 };
 
-/// Errors: those of the stores.
+/// Compares the results of two stores. Errors: of the stores.
 Result<StoreComparison> CompareStores(Store& before, Store& after);
 
 }  // namespace pendulum

@@ -13,8 +13,8 @@ namespace pendulum {
 /// Pattern ("runs/2026-*/*.csv", "**/pendulum?.csv"): the files whose path matches part by part (fnmatch(3)); a part **
 /// matches any number of folders. Hidden files and folders match only a pattern that begins with a dot. Links to
 /// folders below the named folder are not followed, to avoid loops; links to files are.
-/// Any other path stands for itself. kNotFound: no file found. kDataLoss: a folder cannot be read, so its content is
-/// unknown.
+/// The path of an existing file is returned unchanged, even if it looks like a pattern. kNotFound: no file found.
+/// kDataLoss: a folder cannot be read, so its content is unknown.
 Result<std::vector<std::string>> FindRecordings(const std::string& pattern);
 
 }  // namespace pendulum

@@ -20,11 +20,11 @@ namespace pendulum {
 struct FitOrder {
   std::string id;       ///< Unique among all runs.
   std::string created;  ///< RFC 3339, UTC.
-  std::string flags;    ///< The options, a JSON object of texts by the names of flags.
+  std::string flags;    ///< The options: a JSON object with the names and values of flags, all as texts.
   RunFiles files;
 };
 
-/// Identifies a repeated request, which is not processed again: its key, and the SHA-256 of its content.
+/// The key of a request and the SHA-256 of its content. They identify a repetition, which is not processed again.
 struct RequestKey {
   std::string key, request_sha256;
 };
@@ -59,7 +59,7 @@ struct ListedFit {
   std::vector<ListedModel> models;
 };
 
-/// The runs of a list; empty fields match any run.
+/// Selects the runs of a list; an empty field matches any run.
 struct FitFilter {
   int limit = 50;
   std::optional<std::int64_t> before;  ///< Only smaller run numbers.
@@ -80,10 +80,10 @@ struct ListedBatch {
   std::int64_t runs = 0, done = 0, failed = 0;
 };
 
-/// The store of a service: that of refit_pendulums, with the inputs of the runs, for many threads at a time. When a
-/// function that changes it returns, the change is on the disk; several of them share one commit. While it is open no
-/// other process may write. Readers in other processes block nobody (write-ahead log). Errors of all functions: as
-/// Store's; kNotFound for an unknown id.
+/// The store of a service: a store of refit_pendulums that also contains the inputs of the runs. For many threads at a
+/// time. When a function that changes the store returns, the change is on the disk; simultaneous changes share one
+/// commit. While the store is open, no other process may write to it. Readers in other processes block nobody
+/// (write-ahead log). Errors of all functions: as for Store; kNotFound for an unknown id.
 class FitStore {
   struct State;
 
@@ -120,10 +120,12 @@ class FitStore {
   /// The runs of a batch in the order in which they were sent, without models.
   Result<std::vector<ListedFit>> RunsOf(const std::string& batch);
 
-  /// The waiting runs in order: their ids, and the id of their batch.
+  /// A waiting run: its id and the id of its batch.
   struct Waiting {
     std::string id, batch;
   };
+
+  /// All waiting runs, in the order in which they were sent.
   Result<std::vector<Waiting>> WaitingRuns();
 
   Result<std::optional<KnownAnswer>> FindAnswer(const std::string& key);

@@ -9,8 +9,8 @@
 namespace pendulum {
 
 /// The counts of a summary (summary.schema.json): members "models" (fits by model and status), "recommendations" and
-/// "failures". Failures are grouped by reason without file names, and without numbers if these differ. Errors as the
-/// store.
+/// "failures". Failures are grouped by their reasons without file names and numbers. The reason of a group has the
+/// numbers only if they are the same in all its failures. Errors: of the store.
 Result<nlohmann::ordered_json> Overview(Store& store);
 
 }  // namespace pendulum

@@ -7,8 +7,8 @@
 
 namespace pendulum {
 
-/// Everything that determines the rows of a run. A run need not be fitted again while it is unchanged. `cpu` is
-/// reported but not compared: another type of CPU changes only the last bits.
+/// Everything that determines the rows of a run. While the provenance is unchanged, the run need not be fitted again.
+/// `cpu` is reported but not compared: another type of CPU changes only the last bits.
 struct Provenance {
   std::string data_sha256, rig_sha256, calibration_sha256;  ///< Of the bytes; empty: no file; or "unreadable: why".
   std::string options_sha256;                               ///< Hash of OptionsJson of the run's options.

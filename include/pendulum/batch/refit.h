@@ -17,7 +17,7 @@ namespace pendulum {
 /// Progress of a refit: numbers of runs.
 struct RefitCounts {
   std::int64_t runs = 0;      ///< Runs in the batch, or in its shard.
-  std::int64_t current = 0;   ///< Runs with rows of the same data, rig, calibration, options and version.
+  std::int64_t current = 0;   ///< Runs whose rows already have the same data, rig, calibration, options and version.
   std::int64_t refitted = 0;  ///< Runs with new rows.
   std::int64_t unfitted = 0;  ///< Runs of both kinds that could not be fitted.
   bool stopped = false;       ///< Stopped before all runs were processed.
@@ -26,7 +26,7 @@ struct RefitCounts {
 };
 
 struct RefitOptions {
-  IdentifyOptions run;                          ///< Options of every run, changed by its entry.
+  IdentifyOptions run;                          ///< Options of every run; its entry may change some.
   std::optional<std::string> rig, calibration;  ///< JSON, for entries that name none.
   std::optional<Shard> shard;
   int threads = 0;                          ///< Each fits one recording; 0: one per core. Rows do not depend on it.
@@ -37,12 +37,12 @@ struct RefitOptions {
   std::function<Result<void>()> committed;  ///< Called after commits, about once a second; errors end the refit.
 };
 
-/// The result of one run, the same as by fit_pendulum.
+/// Refits one run. The result is the same as from fit_pendulum.
 RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const RefitOptions& options);
 
-/// Refits the runs of the source whose stored rows have another provenance than new rows would have. A run that cannot
-/// be read or fitted gets rows with the reason. Results are stored about once a second; after a stop or a crash at any
-/// time, the next call continues. Errors: of the source's entries and of the store.
+/// Refits the runs of the source that have no rows yet, or whose rows have another provenance than new rows would have.
+/// A run that cannot be read or fitted gets rows with the reason. Results are stored about once a second; after a stop
+/// or a crash at any time, the next call continues. Errors: of the source's entries and of the store.
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options);
 
 }  // namespace pendulum

@@ -18,9 +18,9 @@ struct RunValues {
   std::size_t size() const { return estimate.size(); }
 };
 
-/// Distribution of K values: quartiles, and counts in bins between `from` and `to`. These are at most three
-/// interquartile ranges outside the middle half, so that an outlier does not reduce the histogram to one bar. Bins as
-/// D. Freedman and P. Diaconis, Z. Wahrscheinlichkeitstheorie 57:453 (1981), at most 60.
+/// Distribution of K values: quartiles, and counts in bins between `from` and `to`. These two limits are at most three
+/// interquartile ranges outside the quartiles, so that an outlier does not reduce the histogram to one bar. Bin width:
+/// D. Freedman and P. Diaconis, Z. Wahrscheinlichkeitstheorie 57:453 (1981), with at most 60 bins.
 struct Distribution {
   double minimum = 0, lower_quartile = 0, median = 0, upper_quartile = 0, maximum = 0;
   double mean = 0, std_dev = 0;  ///< std_dev is 0 for one run.
@@ -31,15 +31,15 @@ struct Distribution {
 
 Distribution Describe(const std::vector<double>& values);
 
-/// A run whose value does not belong to its group. `z`: its distance from the group's median over the larger of its own
-/// error and the group's robust scale (1.4826 times the median distance).
+/// A run whose value does not fit its group. `z`: the distance of the value from the group's median, divided by the
+/// larger of the run's standard error and the group's robust scale (1.4826 times the median distance).
 struct Outlier {
   std::size_t run = 0;
   double z = 0;
 };
 
-/// Finds runs whose |z| exceeds a limit that the largest of K normal values exceeds once in twenty batches (Šidák), the
-/// farthest first. A group of fewer than five runs has none.
+/// Finds runs whose z exceeds a limit, the largest z first. The largest of K normal values exceeds this limit in one of
+/// twenty batches (Šidák). A group of fewer than five runs has no outliers.
 std::vector<Outlier> FindOutliers(const RunValues& values);
 
 /// Repeatability of one group: the observed scatter compared with the scatter expected from the errors.
@@ -47,25 +47,26 @@ struct GroupRepeatability {
   std::size_t group = 0, runs = 0;
   double mean = 0, std_error = 0;  ///< Mean weighted by the errors, and its error from these errors alone.
   double chi2 = 0;                 ///< χ² of the values about the mean, with runs - 1 degrees of freedom.
-  double between = 0;              ///< Standard deviation beyond the errors (random_effects.h).
+  double between = 0;              ///< Standard deviation between runs beyond their errors (random_effects.h).
 
   double ScatterRatio() const;
-  double P() const;  ///< Probability of such a chi2 or a larger one if the errors are right.
+  double P() const;  ///< Probability of this chi2 or a larger one if the errors are right.
 };
 
-/// Groups of at least two runs with errors, without outliers, and all groups together (MODEL.md eq. (11.2)).
+/// Repeatability of each group with at least two runs that have errors, and of these groups together (MODEL.md eq.
+/// (11.2)). Outliers are left out.
 struct Repeatability {
   std::vector<GroupRepeatability> groups;
   std::size_t runs = 0, dof = 0;
   double chi2 = 0, between = 0;
-  double lower_p = 0, upper_p = 0;  ///< Probability of a scatter this small, this large, if the errors are right.
+  double lower_p = 0, upper_p = 0;  ///< Probabilities of at most, and at least, this scatter if the errors are right.
   enum class Verdict { kAgrees, kScatterLarger, kScatterSmaller } verdict = Verdict::kAgrees;
 
   double ScatterRatio() const;
 };
 
-/// std::nullopt if no group has two runs with errors. The verdict differs from kAgrees if p is below 1 % and the ratio
-/// is off by 10 %.
+/// std::nullopt if no group has two runs with errors. The verdict differs from kAgrees if p is below 1 % and the
+/// scatter ratio is above 1.1 or below 1 / 1.1.
 std::optional<Repeatability> AnalyzeRepeatability(const RunValues& values, const std::vector<Outlier>& outliers);
 
 /// One least-squares slope of the values over their order, common to all groups; each group has a separate mean. The
@@ -73,14 +74,14 @@ std::optional<Repeatability> AnalyzeRepeatability(const RunValues& values, const
 struct Trend {
   std::size_t runs = 0;
   double slope = 0, std_error = 0;
-  double p = 1;  ///< p of no slope, by Student's t; 1 without scatter.
+  double p = 1;  ///< p-value of the hypothesis of no slope (Student's t); 1 without scatter.
 };
 
-/// std::nullopt without a degree of freedom, or with only one value of the order. Outliers are left out.
+/// std::nullopt without a degree of freedom, or if `order` is constant in each group. Outliers are left out.
 std::optional<Trend> FitTrend(const RunValues& values, const std::vector<Outlier>& outliers);
 
 /// Days since 1970-01-01 of an ISO 8601 date, "2026-03-01", "2026-03-01T12:30:00Z" or "2026-03-01 13:30+01:00" (UTC by
-/// default), or the value of a text that is a number; std::nullopt for other texts. `is_date`: which of both it is.
+/// default), or the value of a text that is a number; std::nullopt for other texts. `is_date`: the text is a date.
 std::optional<double> ParseOrderValue(const std::string& text, bool& is_date);
 
 }  // namespace pendulum

@@ -16,7 +16,7 @@ namespace pendulum {
 struct Source {
   std::string name;  ///< Name in messages.
 
-  /// Passes every entry to `take`, in order of position. Errors of the source, or of `take`, end it.
+  /// Passes every entry to `take`, in order of position. An error of the source or of `take` ends the loop.
   std::function<Result<void>(const EntrySink& take)> for_each;
 
   /// The bytes of a file of an entry (path, rig or calibration), for any thread. kNotFound: no such file. kDataLoss: a
@@ -24,7 +24,7 @@ struct Source {
   std::function<Result<std::string>(const std::string& path)> read;
 };
 
-/// A recording is held in memory while it is fitted.
+/// Limit for a recording, which is in memory while it is fitted.
 inline constexpr std::uintmax_t kMaxRecordingBytes = std::uintmax_t{1} << 29;
 
 /// Opens a path as a packed file if it is one, otherwise as a manifest. kNotFound: no such file.
@@ -34,16 +34,16 @@ Result<Source> OpenSource(const std::filesystem::path& path);
 /// kNotFound: a pattern matches nothing.
 Result<Source> FindSource(const std::vector<std::string>& patterns);
 
-/// Numbers of packed files and of unreadable ones, and the reason for the first unreadable one.
+/// Number of packed files, how many of them are unreadable, and the reason for the first unreadable one.
 struct PackCounts {
   std::int64_t files = 0, unreadable = 0;
   std::string first_reason;
 };
 
 /// Writes the current entries and files of a source into one SQLite file, which is itself a source: table `entries`
-/// (columns as ManifestEntry), table `files` (path, bytes, or why there are none). An existing file is replaced at the
-/// end. kCannotWrite: the file cannot be written. kTryAgain: another process packs into it. Other errors: of the
-/// source. A missing file is not an error here; the refit reports it.
+/// (columns as ManifestEntry), table `files` (path, and bytes or the reason why there are none). An existing file is
+/// replaced at the end. kCannotWrite: the file cannot be written. kTryAgain: another process packs into it. Other
+/// errors: of the source. A missing file is not an error here; the refit reports it.
 Result<PackCounts> Pack(const Source& source, const std::filesystem::path& path);
 
 }  // namespace pendulum

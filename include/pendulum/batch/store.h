@@ -23,8 +23,8 @@ class Database;
 
 namespace pendulum {
 
-/// Part `index`, from 0, of `count` (at most a thousand million) parts of a batch of R runs. With k = index and N =
-/// count it has the positions [R k / N, R (k + 1) / N).
+/// One of `count` (at most a thousand million) parts of a batch; `index` begins at 0. With k = index and N = count, it
+/// has the positions [R k / N, R (k + 1) / N) of R runs.
 struct Shard {
   std::int64_t index = 0;
   std::int64_t count = 1;
@@ -40,9 +40,9 @@ struct Shard {
 struct RunOutcome {
   Provenance provenance;
   int exit_code = 0;                ///< Exit code of fit_pendulum.
-  std::string reason;               ///< Why it could not be fitted; otherwise empty.
-  std::vector<std::string> models;  ///< The requested models; without a result each has a failed row.
-  nlohmann::ordered_json result;    ///< ToJson of its report; null if it could not be fitted.
+  std::string reason;               ///< Why the run could not be fitted; empty if it was fitted.
+  std::vector<std::string> models;  ///< The requested models; if there is no result, each gets a failed row.
+  nlohmann::ordered_json result;    ///< ToJson of the identification; null if the run could not be fitted.
 };
 
 /// A run of the batch with its state in the store.
@@ -60,11 +60,11 @@ struct StoreMeta {
   bool complete = false;
 };
 
-/// Numbers of a store's runs and fits.
+/// Counts of a store's runs and fits.
 struct StoreCounts {
   /// All runs, those not refitted yet, and those that could not be fitted.
   std::int64_t runs = 0, pending = 0, unfitted = 0;
-  std::int64_t earlier = 0;           ///< Not in the last manifest.
+  std::int64_t earlier = 0;           ///< Runs that are not in the last manifest.
   std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
 };
 
@@ -77,9 +77,9 @@ class Store {
  public:
   enum class Mode { kRead, kWrite, kServe };
 
-  /// Updates a store of an older version. kRead: kNotFound, no such file. The other modes create a missing file. kServe
-  /// keeps a log next to it while it is open, so writers do not wait for readers. kDataLoss: not a store, or a newer
-  /// version.
+  /// Updates a store of an older version. kRead needs an existing file (kNotFound: no such file); other modes create a
+  /// missing file. kServe keeps a log next to the file while it is open, so writers do not wait for readers. kDataLoss:
+  /// not a store, or a newer version.
   static Result<Store> Open(const std::filesystem::path& path, Mode mode);
 
   Store(Store&& other) noexcept;
@@ -88,9 +88,10 @@ class Store {
   Store& operator=(const Store&) = delete;
   ~Store();
 
-  /// Starts a batch with the entries of a source, all or a shard of them. New entries are added, those with a known id
-  /// replace the manifest's data, others stay. All or nothing. `options_json`: the options of all fits. kDataLoss: a
-  /// repeated id; kFailedPrecondition: there is no entry.
+  /// Starts a batch with all entries of a source, or with a shard of them. An entry with a new id is added; an entry
+  /// with a known id replaces the manifest's data of that run. Other runs are removed, except runs of a service and,
+  /// without a shard, runs with results. An error changes nothing. `options_json`: the options of all fits. kDataLoss:
+  /// a repeated id; kFailedPrecondition: there is no entry.
   Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json);
 
   /// Returns up to `max_runs` runs of the batch from `position` on, in order.
@@ -101,7 +102,7 @@ class Store {
 
   Result<void> Commit();
 
-  /// Begins a transaction, which the next Commit makes durable, unless one is open.
+  /// Begins a transaction unless one is open. The next Commit makes it durable.
   Result<void> BeginWrite();
 
   /// Discards all changes since the last Commit.

@@ -9,7 +9,7 @@
 namespace pendulum {
 
 /// Prevents other processes of this machine from refitting or merging into the same store. It locks the file
-/// STORE.lock, which is removed with the lock. A killed process releases it. Readers need no lock.
+/// STORE.lock, and removes this file at the end. The lock of a killed process is released. Readers need no lock.
 class StoreLock {
  public:
   /// kTryAgain: another process holds it. kCannotWrite: the lock file cannot be created.

@@ -18,8 +18,8 @@ Result<void> CheckFolderOf(const std::filesystem::path& file);
 /// Copies a file that nobody writes to, completely or not at all. kNotFound: no such file. kCannotWrite: as StagedFile.
 Result<void> Publish(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// An SQLite file that is removed at the end, with its journal, unless it was renamed. Both are also removed at the
-/// beginning: SQLite would apply a journal left by a killed process to the new file.
+/// An SQLite file that is removed at the end, with its journal, unless it was renamed. An old file and journal are also
+/// removed at the beginning: SQLite would apply a journal left by a killed process to the new file.
 class TemporaryStore {
  public:
   explicit TemporaryStore(std::filesystem::path path) : path_(std::move(path)) { Remove(); }

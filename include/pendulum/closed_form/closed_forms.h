@@ -25,11 +25,11 @@ struct ClosedForms {
   std::string no_decrement;            ///< Why `decrement` is missing.
   std::string wrong_law;               ///< How the turning points exclude the model's friction law, or empty.
   std::vector<EnvelopeLaw> envelopes;  ///< One for each friction term alone; empty if they cannot be compared.
-  std::string envelope;                ///< A sentence: which of these laws the amplitudes follow.
+  std::string envelope;                ///< A sentence that says which of these laws the amplitudes follow.
 };
 
-/// Computes them all. kFailedPrecondition: as LocateTurningPoints, or an uncalibrated reading for a model with sine
-/// gravity. kTryAgain: a stop was requested before the end.
+/// Computes all closed forms. kFailedPrecondition: as LocateTurningPoints, or an uncalibrated reading for a model with
+/// sine gravity. kTryAgain: a stop was requested before the end.
 Result<ClosedForms> EstimateClosedForms(const Recording& recording, const MotionModel& model,
                                         const std::stop_token& stop = {});
 

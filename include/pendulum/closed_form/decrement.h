@@ -31,18 +31,19 @@ struct Decrement {
   double Probability() const;
 };
 
-/// Fits the turning points of a model, exact at any amplitude, to those of a recording. Weighted least squares of their
-/// times and values; the unknowns are the amplitude and the time of the first, the zero, the natural frequency and the
-/// friction law (MODEL.md eq. (6.5), (6.7)). With viscous and dry friction this is the decrement of B. F. Feeny & J. W.
-/// Liang, J. Sound Vib. 195:149 (1996), with drag that of P. T. Squire, Am. J. Phys. 54:984 (1986), but without their
-/// small-angle approximation. Without friction it is the period corrected by the elliptic integral. Errors follow from
-/// those of the turning points, times sqrt(chi_square / freedom) if that is above 1. Once the kinks are known, the
-/// turning points are located again. kFailedPrecondition: as LocateTurningPoints, too few turning points for the number
-/// of unknowns, or no such motion. kTryAgain: a stop was requested before the end. Cost: some milliseconds; a second
-/// for a thousand turning points.
+/// Fits the turning points of a model, exact at any amplitude, to the turning points of a recording: weighted least
+/// squares of their times and values. The unknowns are the amplitude and the time of the first turning point of each
+/// run, the zero, the natural frequency and the friction parameters (MODEL.md eq. (6.5), (6.7)). With viscous and dry
+/// friction this is the decrement of B. F. Feeny & J. W. Liang, J. Sound Vib. 195:149 (1996), with drag the decrement
+/// of P. T. Squire, Am. J. Phys. 54:984 (1986), but without their small-angle approximation. Without friction it is the
+/// period corrected by the elliptic integral. Errors follow from the errors of the turning points, multiplied by
+/// sqrt(chi_square / freedom) if this factor is above 1. Once the kinks are known, the turning points are located
+/// again. kFailedPrecondition: as LocateTurningPoints, a law that is not linear in its parameters, too few turning
+/// points for the number of unknowns, or no convergence. kTryAgain: a stop was requested before the end. Cost: some
+/// milliseconds; a second for a thousand turning points.
 Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop = {});
 
-/// The same from turning points that are already located. Friction parameters that are not `included` (K) are 0.
+/// The same fit to turning points that are already located. Friction parameters that are not `included` (K) are 0.
 Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel& model,
                                const std::vector<bool>& included, const std::stop_token& stop = {});
 
@@ -52,7 +53,7 @@ struct EnvelopeLaw {
   std::string shape;  ///< How the amplitudes depend on time: "exponential", ...
   double chi_square = 0;
   int freedom = 0;
-  double probability = 0;  ///< As Decrement::Probability, if the errors that fit the richest law are the true ones.
+  double probability = 0;  ///< As Decrement::Probability, with the errors enlarged until the richest law fits.
 };
 
 /// Fits of friction laws to the turning points: each term of the richest law alone, and all terms together.

@@ -19,7 +19,8 @@ struct EnergyBalance {
   double reference_rate = 0;  ///< rad/s; with it the law is linear in the other parameters. 0 if the law has none.
 };
 
-/// One balance. For a law with a reference rate, one for each of its kRateScales, best explanation first.
+/// One balance. For a law with a reference rate: one balance for each of its kRateScales, sorted by how well they
+/// explain the losses, best first.
 std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const TurningPointTable& table,
                                          double natural_frequency);
 

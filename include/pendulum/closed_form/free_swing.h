@@ -14,7 +14,7 @@ struct FreeSwing {
   double from = 0, to = 0;       ///< s, file's clock; `from`: start of its hold, or first sample in motion
   double half_period = 0;        ///< s, typical
   double amplitude = 0;          ///< rad or rad/s: the largest distance of its turning points from their zero
-  double amplitude_outside = 0;  ///< rad or rad/s: the same for turning points that belong to no free swing
+  double amplitude_outside = 0;  ///< rad or rad/s: the same distance for turning points outside all free swings
   std::vector<double> turns;     ///< s, its turning points
   WindowBegin begins;            ///< Why it begins at `from`.
   WindowEnd ends;                ///< Why it ends at `to`.
@@ -28,9 +28,9 @@ struct FreeSwing {
 /// The free swings of a recording in time order: runs of at least two half swings that ClassifyHalfSwings calls free. A
 /// swing begins with the steady part of the hold before it. Without a hold it begins where the motion towards its first
 /// turning point begins, if that motion takes no longer than a half swing. After a hold within 15 deg of the upright it
-/// begins at the next turning point. It ends one period after the last motion larger than the noise, or before it is
-/// touched. kFailedPrecondition: none; the message states whether the reading is constant, does not turn, is driven, or
-/// was moved by hand.
+/// begins at the next turning point. It ends one period after the last motion larger than the noise, or before the
+/// pendulum is touched. kFailedPrecondition: there is no free swing; the message states whether the reading is
+/// constant, has too few turning points, is in a wrong unit, or shows a pendulum that was driven or moved by hand.
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
 
 }  // namespace pendulum

@@ -42,8 +42,8 @@ std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gr
 std::optional<LogDecrement> ApplyLogDecrement(const TurningPointTable& table, Gravity gravity,
                                               const std::stop_token& stop = {});
 
-/// A line of the table of turning points: damping ratios from pairs of turning points one period apart, and from the
-/// first.
+/// A line of the table of turning points: two damping ratios, from a turning point and the next one on its side, and
+/// from the same turning point and the first one on its side in its run.
 struct DecayRow {
   std::size_t point = 0;           ///< Index in the table.
   std::optional<Estimate> pair;    ///< ζ from this turning point and the next on its side.

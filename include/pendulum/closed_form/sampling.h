@@ -12,17 +12,20 @@ namespace pendulum {
 /// of some ten percent.
 inline constexpr double kExpectedWithin = 0.15;
 
-/// How a recording was sampled compared with the motion of the pendulum. Times and frequencies are on its own clock.
+/// How a recording was sampled compared with the motion of the pendulum. Times and frequencies are on the recording's
+/// clock.
 struct Sampling {
-  double rate_hz = 0;       ///< 1 / median interval.
-  double jitter = 0;        ///< s, scatter of the intervals: 1.4826 times their median deviation.
-  int gaps = 0;             ///< Intervals in which readings are missing.
-  double longest_gap = 0;   ///< s
-  double frequency_hz = 0;  ///< Of the swing: as the rig predicts if that aliases, otherwise as seen; 0: unknown.
+  double rate_hz = 0;      ///< 1 / median interval.
+  double jitter = 0;       ///< s, scatter of the intervals: 1.4826 times their median deviation.
+  int gaps = 0;            ///< Intervals in which readings are missing.
+  double longest_gap = 0;  ///< s
+  /// Of the swing: the rig's frequency if it aliases or the apparent one is unknown, otherwise the apparent one. 0:
+  /// unknown.
+  double frequency_hz = 0;
   /// 0 if the frequency is unknown. nyquist_margin is (rate / 2) / frequency; below 1 the swing aliases.
   double samples_per_period = 0, nyquist_margin = 0;
-  /// Peak-to-peak values of the largest swing and of the last period (at least 8 samples), in resolutions. 0 without a
-  /// resolution.
+  /// Peak-to-peak values of the largest swing and of the last period (at least 8 samples), in levels of the resolution;
+  /// 0 without a resolution.
   double start_counts = 0, end_counts = 0;
   Eigen::Index saturated = 0;                                          ///< Readings at an end of the sensor's range.
   std::optional<double> apparent_frequency_hz, expected_frequency_hz;  ///< From the turning points, and from the rig.
@@ -41,8 +44,8 @@ bool CanAliasWithinRange(double low_hz, double high_hz, double rate_hz);
 Sampling DescribeSampling(const Recording& used, std::optional<double> half_period,
                           std::optional<double> expected_frequency);
 
-/// Problems of the sampling: aliased, nearly_aliased, samples_near_period (and twice), slow_sampling, few_counts, gaps,
-/// jitter. Each message states the problem, its size and what to do.
+/// Problems of the sampling: aliased, nearly_aliased, samples_near_period (one or two samples per period),
+/// slow_sampling, few_counts, gaps, jitter. Each message states the problem, its size and what to do.
 std::vector<Warning> SamplingWarnings(const Sampling& sampling);
 
 }  // namespace pendulum

@@ -12,14 +12,14 @@
 
 namespace pendulum {
 
-/// A turning point of the reading. The errors are those of LocateTurningPoints; 0 and empty before.
+/// A turning point of the reading. LocateTurningPoints sets covariance, first and influence.
 struct TurningPoint {
   double time = 0, value = 0;  ///< s; unit of the recording's values
   Eigen::Index sample = 0;     ///< The largest or smallest sample.
   bool continues = false;      ///< The previous turning point in the table is also the previous one of the motion.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< 2 x 2, of (time, value)
   Eigen::Index first = 0;                                ///< The first of the C samples it was located from.
-  Eigen::Matrix2Xd influence = {};  ///< 2 x C: derivatives of (time, value) with respect to their readings.
+  Eigen::Matrix2Xd influence = {};  ///< 2 x C: derivatives of (time, value) with respect to the C readings.
 };
 
 /// Turning points [first, last] that follow each other: last - first half swings without a gap.
@@ -27,8 +27,8 @@ struct TurningPointRun {
   std::size_t first = 0, last = 0;
 };
 
-/// The kink that dry friction causes at a turning point. The reading is displaced by the sticking angle towards where
-/// it came from.
+/// The kink that dry friction causes at a turning point. The centre of the swing is displaced by the sticking angle
+/// against the direction of motion, which changes at the turning point.
 struct Kink {
   /// τ_c / G [rad; counts or volts for an uncalibrated angle], and rad/s.
   double sticking_angle = 0, natural_frequency = 0;
@@ -44,7 +44,7 @@ struct TurningPointTable {
   double threshold = 0;            ///< The least height of a turning point.
   double half_period = 0;          ///< s, typical
   Estimate zero;                   ///< Of the whole swing.
-  std::vector<double> local_zero;  ///< M: the zero near each turning point, where it may drift; empty: `zero`.
+  std::vector<double> local_zero;  ///< M: the zero near each turning point, if it may drift; empty: `zero`.
   Kink kink;                       ///< The kink that was subtracted from the readings.
   std::vector<TurningPoint> points;
 
@@ -62,14 +62,14 @@ struct TurningPointTable {
   /// Duration of a half swing from this turning point, divided by that of a small swing (MODEL.md eq. (6.1)).
   double Stretch(std::size_t point) const;
 
-  /// How far a reading may differ from that of this turning point and still count as equal: 5 % of the amplitude plus
-  /// noise.
+  /// How far a reading may differ from the value of this turning point and still count as equal: 5 % of the amplitude
+  /// plus three standard deviations of the noise and two resolutions.
   double Tolerance(std::size_t point) const;
 
   /// The runs of at least two turning points that `continues` joins.
   std::vector<TurningPointRun> Runs() const;
 
-  /// The largest amplitude in these runs; 0 without a run.
+  /// The largest amplitude in the runs; 0 without a run.
   double LargestAmplitude() const;
 
   /// Weights w (M) with Σ w_i value_i = mean of (e_{i-1} + 2 e_i + e_{i+1}) / 4 over turning points that follow each
@@ -81,17 +81,17 @@ struct TurningPointTable {
 /// neighbours. Curvature between samples counts as noise; quantized data may give 0.
 double SuccessiveDifferenceNoise(const Recording& recording);
 
-/// Turning points located to O(h³) instead of to one sample. A turning point counts once the reading has moved back by
-/// more than the threshold: the maximum of 2 sqrt(2 ln N) + 1 standard deviations of the noise between neighbours, two
-/// resolutions, and 3 % of the range (of an angle's range at most one turn counts). A hold, or a start in the middle of
-/// a swing, is not one. The zero is the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4. A turning point does not continue
-/// the motion if it lies on the same side of the zero as the previous one, or after a gap in the data longer than 0.6
-/// half periods. kFailedPrecondition: fewer than three; the message gives their number.
+/// Turning points located to O(h³) instead of to one sampling interval h. A turning point counts once the reading has
+/// moved back by more than the threshold: the maximum of 2 sqrt(2 ln N) + 1 standard deviations of the noise between
+/// neighbours, two resolutions, and 3 % of the range (of an angle's range at most one turn counts). A hold, or a start
+/// in the middle of a swing, is not a turning point. The zero is the median of (e_{i-1} + 2 e_i + e_{i+1}) / 4. A
+/// turning point does not continue the motion if it lies on the same side of the zero as the previous one, or after a
+/// gap in the data longer than 0.6 half periods. kFailedPrecondition: fewer than three; the message gives their number.
 Result<TurningPointTable> FindTurningPoints(const Recording& recording);
 
-/// The same turning points for ClassifyHalfSwings, which assumes no free swing: preceded by the first candidate, which
-/// may be the start or lie in a hold, and maybe fewer than three. Has local zeros and the half period of small swings
-/// if there are three; no point continues another.
+/// The same turning points for ClassifyHalfSwings, which does not assume a free swing. The first entry is only a
+/// candidate: it may be the start of the recording or lie in a hold. There may be fewer than three entries. With three
+/// or more, local zeros and the half period of small swings are set. `continues` is never set.
 TurningPointTable FindAllTurningPoints(const Recording& recording);
 
 }  // namespace pendulum

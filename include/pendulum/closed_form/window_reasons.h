@@ -9,16 +9,16 @@ namespace pendulum {
 struct WindowBegin {
   enum class Reason {
     kUnknown,
-    kAsked,                   ///< By the user.
-    kHeld,                    ///< The steady end of a hold; then it was released.
+    kAsked,                   ///< The user gave it.
+    kHeld,                    ///< The steady end of a hold; then the pendulum was released.
     kInMotion,                ///< The recording begins in motion.
-    kReleaseNotUsed,          ///< It was held, but the motion determines the start better than the release does.
+    kReleaseNotUsed,          ///< It was held, but the motion determines the start better than the release.
     kUnsteadyHold,            ///< After a release from a hold that is not steady.
     kAccelerationJump,        ///< After the release, at which an acceleration jumps.
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
-    kDisturbed,               ///< The motion before it does not fit the rest.
+    kDisturbed,               ///< The motion before the window does not fit the later motion.
     kUndersampled,            ///< The recording is undersampled: all of it is used.
     kUndersampledAfterFirst,  ///< As kUndersampled: all except the first reading.
     kUndersampledAfterHold,   ///< As kUndersampled: all except the hold.
@@ -31,14 +31,14 @@ struct WindowBegin {
 struct WindowEnd {
   enum class Reason {
     kUnknown,
-    kAsked,  ///< By the user.
+    kAsked,  ///< The user gave it.
     kEndOfRecording,
     kAtRest,         ///< The pendulum is at rest from about `time`.
     kBeforeMove,     ///< The last turning point before the pendulum is moved.
     kBeforeStop,     ///< The last turning point before the pendulum is stopped.
-    kDisturbed,      ///< The motion after it does not fit the rest.
-    kNotConverging,  ///< A fit that includes the later motion does not converge.
-    kCountsLost,     ///< After it an unknown number of counts was lost.
+    kDisturbed,      ///< The motion after the window does not fit the earlier motion.
+    kNotConverging,  ///< A fit that includes the motion after the window does not converge.
+    kCountsLost,     ///< After the window an unknown number of counts was lost.
   };
   Reason reason = Reason::kUnknown;
   double time = 0;  ///< s, file's clock

@@ -28,15 +28,16 @@ struct DataSummary {
   std::string path, sha256;  ///< Path as given by the user; hash of the file's bytes. Empty if the data is not from a
                              ///< file.
   std::string unit = "rad";  ///< Unit of resolution, residuals and noise: rad, rad/s, counts or volts.
-  Eigen::Index samples = 0, used_samples = 0;  ///< Samples in the file; in the fitted window, at least kMinimumSamples.
+  Eigen::Index samples = 0;  ///< Number of samples in the file.
+  Eigen::Index used_samples = 0;  ///< Number of samples in the fitted window, at least kMinimumSamples.
   double from = 0, to = 0;        ///< Times of the first and the last used sample [s, on the file's clock].
   double resolution = 0;          ///< Spacing of the values; 0: none.
   std::string resolution_source;  ///< "given", "file" or "found"; empty: none.
   double clock_scale = 1;         ///< True seconds per second of the file's clock; the fit uses true seconds.
   double clock_scale_std_dev = 0;
-  std::string begins, ends;                     ///< Reasons for the ends of the window; empty if it was not chosen.
+  std::string begins, ends;                     ///< Why the window begins and ends where it does; may be empty.
   std::vector<std::array<double, 2>> releases;  ///< Begin and end of each free swing found [s].
-  int release = 0;                              ///< Index of the fitted one, from 1; 0: the user gave the window.
+  int release = 0;  ///< Number of the fitted free swing, from 1; 0: the user gave the window.
 
   double duration() const { return to - from; }                                              ///< s
   double sample_rate() const { return static_cast<double>(used_samples - 1) / duration(); }  ///< Hz, mean
@@ -52,9 +53,9 @@ struct JointPart {
   std::vector<std::string> alone;  ///< How each separate fit ended: its status, and the reason if it did not converge.
 };
 
-/// Everything that was identified from a free swing, or from several recordings together. Of a joint identification,
-/// used samples, data, sampling, calibration and closed forms are in `runs`, and `fits` hold what is shared. Reports in
-/// every format are made from it.
+/// Everything that was identified from a free swing, or from several recordings together. In a joint identification,
+/// used samples, data, sampling, calibration and closed forms are in `runs`, and `fits` have only the shared
+/// parameters. Reports in every format are made from it.
 struct Identification {
   Recording used;  ///< The N samples that were fitted, without warnings.
   DataSummary data;

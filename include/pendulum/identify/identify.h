@@ -38,7 +38,7 @@ inline SharedFile Share(NamedBytes file) { return std::make_shared<const NamedBy
 
 /// The files of one run.
 struct RunFiles {
-  NamedBytes data;              ///< The recording. Its name is that of the result's data, too.
+  NamedBytes data;              ///< The recording; its name becomes DataSummary::path.
   SharedFile rig, calibration;  ///< JSON.
 };
 

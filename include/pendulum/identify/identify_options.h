@@ -13,7 +13,7 @@ namespace pendulum {
 /// Which fits are checked. The check against closed forms and the test of constancy take most of the time of a result.
 enum class Checks {
   kNone,      ///< No closed forms, no constancy: inconstancy is not counted among the systematic errors.
-  kStandard,  ///< The main fit. Of several recordings, constancy of all fits: agreement is judged with it.
+  kStandard,  ///< The main fit. For several recordings also the constancy of all fits, for the test of agreement.
   kFull,      ///< All fits.
 };
 
@@ -25,7 +25,7 @@ struct IdentifyOptions {
   FitOptions fit;                   ///< Its model is the first of `models`; its rig is replaced by the recording's.
   Checks checks = Checks::kStandard;
   bool closed_form_only = false;    ///< No fit is made; of `fit`, only the model and the stop token are used.
-  std::vector<std::string> shared;  ///< Of a joint identification: names of the parameters that all recordings share.
+  std::vector<std::string> shared;  ///< For a joint identification: names of the parameters that all recordings share.
 };
 
 }  // namespace pendulum

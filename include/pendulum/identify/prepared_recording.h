@@ -19,7 +19,7 @@ namespace pendulum {
 struct PreparedRecording {
   Recording recording;
   ChosenSwings swings;
-  Eigen::Index samples = 0;  ///< As read, before repairs.
+  Eigen::Index samples = 0;  ///< Number as read; for an event-driven recording including samples for its silences.
   Identification known;      ///< Common to the identifications of all its swings: rig, calibration, warnings.
 };
 
@@ -30,7 +30,8 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 /// The same from a file; "-" is standard input. Errors as ReadRecording too.
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig);
 
-/// The error of one run among several, with its recording and, unless it is 0, its release in the message.
+/// The error of one run among several; adds the recording and, unless it is 0, the number of the release to the
+/// message.
 tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release);
 
 }  // namespace pendulum

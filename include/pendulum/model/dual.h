@@ -9,8 +9,8 @@
 namespace pendulum {
 
 /// Four doubles in one vector. A processor with narrower vectors handles them in pairs. A type that contains quads must
-/// say alignas(kQuadAlignment): code for wider instructions relies on this alignment, and the type guarantees it only
-/// there.
+/// say alignas(kQuadAlignment). Code for wider instructions relies on this alignment, but in other code the type Quad
+/// alone does not guarantee it.
 using Quad [[gnu::vector_size(32)]] = double;
 inline constexpr std::size_t kQuadAlignment = 32;
 
@@ -81,8 +81,8 @@ class Partials {  // NOLINT(cppcoreguidelines-special-member-functions): a move 
 
 static_assert(alignof(Partials<1>) == kQuadAlignment);
 
-/// A dual number: value `a` and partial derivatives `v` with respect to P parameters, like ceres::Jet, which this floor
-/// does not include. It has only the operations that equations of motion need.
+/// A dual number: value `a` and partial derivatives `v` with respect to P parameters, like ceres::Jet, but without
+/// a dependency on Ceres. It has only the operations that equations of motion need.
 template <int P>
 struct Dual {
   Partials<P> v;

@@ -19,10 +19,10 @@ struct MotionModel {
   Gravity gravity;
 };
 
-/// Each friction law with each law of gravity, in the order of the registries, except a friction law whose constant
-/// torque only shifts the zero under linear gravity (asymmetric). With the default gravity, sin, the model
-/// has the name of its friction law. Others are called GRAVITY_FRICTION, as linear_coulomb, and GRAVITY alone means
-/// viscous friction.
+/// All models: each friction law with each law of gravity, in the order of the registries. A friction law with a
+/// constant torque (asymmetric) is not combined with linear gravity, where this torque would only shift the zero. With
+/// the default gravity, sin, a model has the name of its friction law. Other models are called GRAVITY_FRICTION, such
+/// as linear_coulomb; GRAVITY alone means viscous friction.
 std::vector<MotionModel> MotionModels();
 
 /// The model with this name. kInvalidArgument: there is none; the message lists the existing names.

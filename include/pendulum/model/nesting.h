@@ -15,7 +15,7 @@ struct Nesting {
   std::vector<ParameterInfo> added;
   int bounded = 0;  ///< How many are at a bound under the null: a torque that is 0 or equal to another torque.
   int free = 0;     ///< How many are within their bounds under the null.
-  std::vector<std::string_view> unidentified;  ///< No effect under the null; in neither count.
+  std::vector<std::string_view> unidentified;  ///< Without effect under the null; not in `bounded` or `free`.
 };
 
 /// How `simpler` is nested in `richer`: all its parameters also occur there, and the gravity law is the same.
@@ -25,8 +25,8 @@ std::optional<Nesting> FindNesting(const MotionModel& simpler, const MotionModel
 /// The nested model with the most parameters; std::nullopt if no model is nested in this one.
 std::optional<MotionModel> LargestNestedModel(const MotionModel& model);
 
-/// Indices into PhysicalParameters of the pair of which one is never below the other. Both are negative if the law has
-/// no such pair.
+/// Indices into PhysicalParameters of two parameters, of which the law requires that one is never below the other. Both
+/// are negative if the law has no such pair.
 OrderedPair FindOrderedPair(const MotionModel& model);
 
 }  // namespace pendulum

@@ -110,7 +110,7 @@ inline constexpr ParameterInfo kHysteresis{"hysteresis",
                                            kUnbounded,
                                            "angle past an edge at which an encoder changes its count"};
 
-/// Names that parameters had before schema version 2, and their names now. Input may still use the former ones.
+/// Names of parameters before schema version 2, each with its present name. Input may still use the former names.
 inline constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kFormerNames = {
     {{"edge_lag", kHysteresis.name}}};
 

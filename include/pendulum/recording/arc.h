@@ -10,7 +10,7 @@ namespace pendulum {
 /// The circle on which a tracked point moves, computed from its coordinates. Lengths are in the unit of the
 /// coordinates.
 struct Arc {
-  double x = 0, y = 0;  ///< Of its centre, the pivot.
+  double x = 0, y = 0;  ///< Of the centre, which is the pivot.
   double radius = 0;
   double down = 1;             ///< 1 if y increases downwards, as in a picture; -1 if it increases upwards.
   Eigen::Matrix3d covariance;  ///< Of x, y and radius.
@@ -21,9 +21,9 @@ struct Arc {
 };
 
 /// The circle nearest to N points by geometric distance (Gauss-Newton, started from G. Taubin's algebraic fit, IEEE
-/// Trans. Pattern Anal. 13 (1991) 1115). The middle of the points lies below the centre, which determines the direction
-/// of y. kFailedPrecondition: the points lie nearly on a line, so the pivot is undetermined, or all round the pivot, so
-/// the downward direction is undetermined.
+/// Trans. Pattern Anal. 13 (1991) 1115). The middle of the points is assumed to lie below the centre; this determines
+/// the direction of y. kFailedPrecondition: the points lie nearly on a line, so the pivot is undetermined, or all round
+/// the pivot, so the downward direction is undetermined.
 Result<Arc> FitArc(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
 
 }  // namespace pendulum

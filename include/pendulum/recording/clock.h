@@ -27,7 +27,8 @@ class LineNumbers {
   Eigen::Index size() const { return size_; }
 
  private:
-  std::vector<std::pair<Eigen::Index, std::size_t>> jumps_;  // Rows off the previous row's line, and lines.
+  /// Rows that are not on the line after the previous row, and their lines.
+  std::vector<std::pair<Eigen::Index, std::size_t>> jumps_;
   Eigen::Index size_ = 0;
   std::size_t last_line_ = 0;
 };
@@ -39,20 +40,20 @@ struct RawSamples {
   Eigen::VectorXd time;         ///< N x 1, in time_unit, finite, as in the file.
   Eigen::VectorXd value;        ///< N x 1, finite, in any unit.
   Eigen::VectorXd second;       ///< N x 1, the other coordinate of a point; or 0 x 1.
-  LineNumbers lines;            ///< N of them.
+  LineNumbers lines;            ///< Line number of each of the N rows.
   double clock_std_dev = 0;     ///< Relative; of the rate of a clock computed from coarse time stamps.
   std::vector<Warning> warnings;
 };
 
 /// Makes the times increase where that is safe. Each warning gives a count and the first line. time_wrapped: whole ms
-/// or us that start again after 2³² or 2¹⁶ are continued, if the step across is like the others. time_rounded: time
-/// stamps on a grid that is coarse compared with the sampling interval. They are replaced by the middle of the uniform
-/// clocks that agree with all of them; clock_std_dev gives the spread of these. If no clock agrees and the stamps
-/// increase, they are kept. time_repeated: rows that share a time stamp are left out, up to a fifth of all; of
-/// identical rows one is kept. time_not_increasing: stamps go back by at most kMaxStepsBack sampling intervals. As few
-/// rows as possible are left out, up to a twentieth of all. Gaps and uneven sampling cause no warning. kDataLoss: any
-/// other stamps that do not increase; the message has the line, both times and what to do. Cost: one pass, about twenty
-/// if the stamps are not uniform.
+/// or us that start again after 2³² or 2¹⁶ are continued, if the step across the restart is like the other steps.
+/// time_rounded: time stamps on a grid that is coarse compared with the sampling interval. They are replaced by the
+/// middle of the uniform clocks that agree with all of them; clock_std_dev gives the spread of these clocks. If no
+/// clock agrees and the stamps increase, they are kept. time_repeated: rows that share a time stamp are left out, up to
+/// a fifth of all; of identical rows one is kept. time_not_increasing: stamps go back by at most kMaxStepsBack sampling
+/// intervals. As few rows as possible are left out, up to a twentieth of all. Gaps and uneven sampling cause no
+/// warning. kDataLoss: any other stamps that do not increase; the message has the line, both times and what to do.
+/// Cost: one pass, about twenty if the stamps are not uniform.
 Result<RawSamples> RepairClock(RawSamples samples);
 
 /// A clock that goes back by more sampling intervals (median) than this was set back.

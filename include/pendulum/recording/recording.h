@@ -31,14 +31,14 @@ struct Recording {
                              ///< continuous.
   std::string resolution_source;  ///< Its origin: "given" by the user, from the "file", or "found" in the values.
   /// For events (ConvertToEdges): one of the edges between counts, in the unit of value. A reading at a whole number of
-  /// resolutions from it is an edge crossed at its time. A reading halfway between two edges means that the value lies
-  /// between them.
+  /// resolutions from this edge is an edge that was crossed at the reading's time. A reading halfway between two edges
+  /// means that the value lies between them.
   std::optional<double> edge;
   std::optional<SensorRange> range;  ///< The sensor's range, in the unit of value; std::nullopt if unlimited.
-  double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds per second of `time`, which does not include it.
+  double clock_scale = 1, clock_scale_std_dev = 0;  ///< True seconds per second of `time`, which is uncorrected.
   std::optional<Calibration> calibration;           ///< The calibration that converted counts or volts to `value`.
   std::optional<Arc> arc;     ///< The circle about which coordinates, in `unit`, were converted to angles.
-  bool shows_gravity = true;  ///< For an acceleration: false if g was removed, so that it is 0 at rest.
+  bool shows_gravity = true;  ///< For an acceleration: false if it is 0 at rest, because g was removed.
   std::string rig_json;       ///< The rig described in the file itself, as JSON; empty if none.
   std::vector<Warning> warnings;
 

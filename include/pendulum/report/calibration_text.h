@@ -8,8 +8,8 @@
 namespace pendulum {
 
 /// A calibration as text: curve, coefficients ± standard errors (PdgRounding) and their correlations, the points with
-/// residuals (at most the kShownPoints largest), and their interpretation. UTF-8, about 100 columns. `fit` is that of
-/// `table`.
+/// residuals (of more than kShownPoints points, those with the largest residuals), and an interpretation. UTF-8, about
+/// 100 columns. `fit` must be the fit of `table`.
 std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit);
 
 /// The maximal number of points in CalibrationText.

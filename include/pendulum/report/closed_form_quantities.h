@@ -16,7 +16,7 @@ namespace pendulum {
 struct ReportedEstimate {
   std::string name;    ///< Name in JSON.
   std::string symbol;  ///< Symbol in MODEL.md.
-  Estimate estimate;   ///< Estimate in `unit`; as for a fit, without the rig's error.
+  Estimate estimate;   ///< Estimate in `unit`; as in a fit, its error excludes the rig's error.
   std::string unit;    ///< Unit; inertia and torques are in SI with a rig, in units of the restoring torque G without.
 };
 
@@ -25,7 +25,7 @@ struct ReportedEstimate {
 std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravity gravity,
                                               const std::optional<Rig>& rig);
 
-/// Zero, inertia and friction of a decrement, with the names of the fit's parameters; `unit` is that of the readings.
+/// Zero, inertia and friction of a decrement, with the names of the fit's parameters. `unit`: unit of the readings.
 std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,
                                                  const std::optional<Rig>& rig);
 

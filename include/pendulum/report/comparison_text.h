@@ -12,8 +12,8 @@ namespace pendulum {
 /// and the likelihood-ratio tests. Empty without a comparison.
 Sections ComparisonSections(const Identification& identification);
 
-/// Whether the parameters of fit `fit` are constant: a sentence, and tables of those that are not. Empty if it was not
-/// tested.
+/// Whether the parameters of fit `fit` are constant: a sentence, and tables of the parameters that are not, or why this
+/// was not tested. Empty if there is neither a verdict nor a reason.
 Sections ConstancySections(const Identification& identification, std::size_t fit);
 
 }  // namespace pendulum

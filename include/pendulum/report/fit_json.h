@@ -24,7 +24,7 @@ nlohmann::ordered_json ParametersJson(const FitReport& fit);
 
 nlohmann::ordered_json DerivedJson(const FitReport& fit);
 
-/// Names and matrix of the free parameters, in products of their units.
+/// Names of the free parameters, and a matrix with a row and a column for each, in products of their units.
 nlohmann::ordered_json CovarianceJson(const FitReport& fit);
 nlohmann::ordered_json CorrelationJson(const FitReport& fit);
 nlohmann::ordered_json SystematicJson(const FitReport& fit);

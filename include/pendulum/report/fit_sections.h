@@ -13,7 +13,7 @@ namespace pendulum {
 
 /// One fit: model and status, parameters, derived quantities, correlations, noise and statistics, equation of motion.
 /// Numbers are rounded by PdgRounding, intervals to the decimal of their value; angles and rates are also given in
-/// degrees. Correlations of at least 0.1 are listed, the largest first. check: of this fit, or nullptr.
+/// degrees. Correlations of at least 0.1 are listed, the largest first. `check`: the check of this fit, or nullptr.
 Sections FitSections(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check);
 
 /// Parts of FitSections, also used for joint fits: parameters with all their properties, derived quantities,

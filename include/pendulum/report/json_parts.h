@@ -13,7 +13,7 @@ class NumberObject {
  public:
   NumberObject& Set(const std::string& key, nlohmann::ordered_json value);
 
-  /// null with a reason if the number is not finite.
+  /// A number; null with a reason if it is not finite.
   NumberObject& Set(const std::string& key, double value);
 
   /// A number that may be missing, with the reason.

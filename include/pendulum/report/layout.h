@@ -10,7 +10,7 @@ namespace pendulum {
 struct Column {
   std::string header;
   bool right_aligned = false;
-  int gap = 2;  ///< Number of blanks before it.
+  int gap = 2;  ///< Number of blanks before the column.
 };
 
 /// Columns of a UTF-8 text on a terminal. Each code point counts as one (no East Asian wide characters), ANSI colour

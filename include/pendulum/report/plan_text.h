@@ -10,9 +10,9 @@
 namespace pendulum {
 
 /// The plan in plain text: the base case's parameters ± standard errors (PdgRounding), a line per row of the plan with
-/// standard errors and bias to two digits, the amplitude of equal bias, and an explanation. rig: converts units of the
-/// restoring torque G to SI; without it they stay. In the table inertia and friction are in percent of their values,
-/// unless these are 0; start and zero are in their own units. "-" marks a missing value, with an explanation.
+/// standard errors and bias to two digits, the amplitude of equal bias, and an explanation. With a rig, units of the
+/// restoring torque G are converted to SI. In the table inertia and friction are in percent of their values (in their
+/// own units if the value is 0), start and zero in their own units. "-" marks a missing value, with an explanation.
 std::string PlanText(const Plan& plan, const std::optional<Rig>& rig);
 
 }  // namespace pendulum

@@ -8,7 +8,7 @@ namespace pendulum {
 /// The number format of one quantity: x / 10^exponent with `decimals` decimals.
 struct Rounding {
   int decimals = 0;  ///< 0 or more.
-  int exponent = 0;  ///< Not 0 only if a power of ten avoids many zeros.
+  int exponent = 0;  ///< 0 unless a power of ten avoids many zeros.
 };
 
 /// A value and its standard error, printed with " ± " between them.

@@ -17,8 +17,8 @@ namespace pendulum {
 /// The samples and the fit as CSV, one line per sample in SI with all digits of a double:
 /// time_s,measured_rad,fitted_rad,residual_rad,linear_closed_form_rad,nonlinear_closed_form_rad (or ..._rad_s for a
 /// rate), residual = measured - fitted.
-/// used: the N fitted samples. If fit or overlay do not have N numbers, or have one that is not finite, the fields are
-/// empty.
+/// `used`: the N fitted samples. A number that is missing or not finite gives an empty field; a curve that does not
+/// have N numbers is missing in all rows.
 std::string ToResidualCsv(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay = {});
 
 /// The same for fit number `fit` of an identification of one recording, with its overlay if there is one.
@@ -38,7 +38,7 @@ enum class SeriesDetail { kAll, kPage };
 /// turning point on its side. For a joint identification: an array with such an object per recording, in order.
 ///
 /// "motions" are the fitted motions at equal steps from the release, or from the first sample, to the last sample,
-/// about 60 per period, at most 100 001, of kPage 20 001. Point i is at start_s + i interval_s on the file's clock:
+/// about 60 per period, at most 100 001 (kPage: 20 001). Point i is at start_s + i interval_s on the file's clock:
 /// "angle" from the equilibrium [angle_unit], "rate" [angle_unit per true s], "reading" of the sensor [unit]. "motions"
 /// is null if the samples themselves show the motion: readings of an angle, without gaps, at least 12 per period.
 nlohmann::ordered_json SeriesJson(const Identification& identification, SeriesDetail detail = SeriesDetail::kAll);

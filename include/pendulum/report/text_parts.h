@@ -40,12 +40,12 @@ class QuantityNumbers {
  public:
   QuantityNumbers(double value, const std::optional<double>& std_error, double factor = 1);
 
-  /// The value and "± error", to be printed together: brackets of a power of ten enclose both. Without an error: an
-  /// empty text.
+  /// The value and "± error", to be printed together: with a power of ten, "(3.00" and "± 0.12)e-06". Error() is empty
+  /// if there is no error.
   const std::string& Value() const { return text_.value; }
   std::string Error() const { return text_.error.empty() ? "" : "± " + text_.error; }
 
-  /// Another number of the quantity, or the value alone.
+  /// Another number of the quantity, or the value without its error.
   std::string Number(double x) const;
 
   /// A second standard error, "± 0.0010", rounded by its own size; empty if it is missing or not positive.

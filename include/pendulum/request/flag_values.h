@@ -23,8 +23,8 @@ Result<double> ParseNumber(std::string_view flag, std::string_view value, std::s
 
 /// Parses a flag's value that sets parameters, "name=value,name=value", in SI units; an empty text sets none.
 ///
-/// kInvalidArgument: a name that is not in `parameters` (those of `model`), a repeated name, a value that is not a
-/// number or is outside the parameter's bounds.
+/// kInvalidArgument: a name that is not in `parameters` (the parameters of `model`), a repeated name, a value that is
+/// not a number or is outside the parameter's bounds.
 Result<ParameterValues> ParseSettings(std::string_view flag, std::string_view text, std::string_view model,
                                       std::span<const ParameterInfo> parameters);
 

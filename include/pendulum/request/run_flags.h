@@ -52,10 +52,10 @@ struct RunFlag {
   std::string_view name;
   std::variant<std::string RunFlags::*, bool RunFlags::*> value;
   std::string help;             ///< What it is, its unit, and what the default means. Other flags appear as --name.
-  std::string_view label = {};  ///< Of its field in the form of the service; empty: it has no field.
-  std::string_view unit = {};   ///< Of its number, for the label.
+  std::string_view label = {};  ///< Label of its field in the form of the service; empty: no field.
+  std::string_view unit = {};   ///< Unit of its number, for the label.
   std::vector<FlagWord> words = {};         ///< All its values if they are words; an empty word is no value.
-  nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request; of words it is made.
+  nlohmann::ordered_json schema = nullptr;  ///< JSON Schema of its value in a request; generated if it has words.
   std::string example = {};                 ///< A value for the description of the service; empty: none.
   bool needs_fit = false;                   ///< It cannot be combined with --closed_form_only.
   bool is_local = false;                    ///< It names a file or threads; requests do not have it.

@@ -51,7 +51,7 @@ struct OutputUnit {
 
 /// A simulation and the format of its output.
 struct Simulation {
-  SyntheticOptions synthetic;                         ///< Recording i has seed + i; parameters are those of `truth`.
+  SyntheticOptions synthetic;                         ///< Recording i has seed + i; the parameters come from `truth`.
   std::vector<std::pair<std::string, double>> truth;  ///< Parameters by name: SI with a rig, torques over G without.
   std::vector<ScatteredParameter> scattered;  ///< Subset of `truth`, in its order and units; empty without scatter.
   double gravity_torque = 1;                  ///< N m, 1 without a rig: the torques of `truth` are divided by it.

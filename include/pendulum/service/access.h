@@ -34,8 +34,8 @@ bool IsLoopback(std::string_view authority);
 /// Whether an authority is in the list. Entries without a port match any port; case is ignored.
 bool IsListedHost(std::string_view authority, const std::vector<std::string>& allowed_hosts);
 
-/// Whether a browser sent the request from another origin: Sec-Fetch-Site says so and it is not a followed link, or
-/// Origin differs from Host. Clients other than browsers send neither field.
+/// Whether a browser sent the request from another origin: Sec-Fetch-Site says so and the user did not follow a link,
+/// or Origin differs from Host. Clients other than browsers send neither field.
 bool IsCrossSite(const HttpRequest& request);
 
 }  // namespace pendulum

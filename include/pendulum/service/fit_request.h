@@ -55,17 +55,17 @@ inline constexpr const char* kUnnamed = "data";
 ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                             const RequestLimits& limits);
 
-/// Reads the request for a batch: as ParseFitRequest, with a form of one or more parts data.
+/// Reads the request for a batch: as ParseFitRequest, but the body is a form with one or more parts named data.
 ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
                                               const RequestLimits& limits);
 
-/// Reads the changes of a refit from the query or a JSON object. A flag with an empty value removes the previous one. A
-/// new rig or calibration replaces the previous one; null removes it.
+/// Reads the changes of a refit from the query and, if there is a body, from a JSON object. A flag with an empty value
+/// removes the previous flag. A new rig or calibration replaces the previous one; null removes it.
 ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const RequestTarget& target, FlagTexts flags,
                                               RunFiles files);
 
 /// The options of one run of the service with these flags and this calibration. Errors as RunFlagsOf and
-/// MakeIdentifyOptions; kInvalidArgument: release all.
+/// MakeIdentifyOptions; kInvalidArgument: the flag release is `all`.
 Result<IdentifyOptions> IdentifyOptionsOf(const FlagTexts& flags, const SharedFile& calibration);
 
 /// kUnsupportedMediaType: the body has none of these types, or has a content coding.

@@ -29,7 +29,7 @@ struct ServiceOptions {
 struct ServiceState;
 
 /// Answers the requests listed in include/pendulum/service/openapi.json: fits recordings, keeps the results in a store,
-/// runs batches, and serves the page. Everything that it answered with success is on the disk.
+/// runs batches, and serves the page. When a request is answered with success, its result is on the disk.
 class FittingService : public HttpHandler {
  public:
   /// Continues the batches that wait in the store. Errors: of the store.
@@ -53,7 +53,7 @@ class FittingService : public HttpHandler {
   /// Sets the source of the server's numbers in the metrics.
   void CountServer(std::function<ServerCounts()> counts);
 
-  /// Ends batches and reports the stop in health checks. The remaining runs wait for the next start.
+  /// Starts no more runs of batches, and reports the stop in health checks. Remaining runs wait for the next start.
   void Stop();
 
   /// Stops all fits; their requests are answered with 503.

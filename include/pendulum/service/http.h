@@ -34,7 +34,7 @@ struct EventText {
   bool is_last = false;  ///< No more events follow.
 };
 
-/// Called about ten times a second, from one thread at a time, while the client is connected.
+/// Returns the next events. Called about ten times a second, from one thread at a time, while the client is connected.
 using NextEvents = std::function<EventText()>;
 
 struct HttpResponse {
@@ -44,7 +44,7 @@ struct HttpResponse {
   NextEvents events;  ///< If set, a stream of events instead of a body.
 };
 
-/// Queue of a request: kQuick for requests answered at once, kFit for those that calculate.
+/// Queue of a request: kQuick for requests that are answered at once, kFit for requests that calculate.
 enum class Lane { kQuick, kFit };
 
 /// Answers requests; called from any number of threads at a time.
@@ -65,7 +65,7 @@ class HttpHandler {
 
   virtual HttpResponse Handle(const HttpRequest& request) = 0;
 
-  /// The answer to malformed requests and to those beyond a limit: 400, 408, 413, 417, 429, 431, 500, 503.
+  /// The answer to a malformed request or to a request beyond a limit: 400, 408, 413, 417, 429, 431, 500, 503.
   virtual HttpResponse Refusal(int status, const std::string& detail) const = 0;
 };
 

@@ -15,7 +15,7 @@ namespace pendulum {
 enum class LiveState {
   kWaiting,    ///< There is no run yet, or its header is incomplete.
   kRecording,  ///< PATH.part exists and was written to in the last minute.
-  kEnded,      ///< PATH exists, or PATH.part that is no longer written to.
+  kEnded,      ///< PATH exists, or PATH.part exists but is no longer written to.
 };
 
 /// State of the recording.
@@ -23,7 +23,7 @@ struct LiveStatus {
   LiveState state = LiveState::kWaiting;
   std::string name;            ///< File name without folders: of the recording, not of its part file.
   std::uint64_t samples = 0;   ///< Rows so far.
-  std::string unit;            ///< Of the values: "deg" with a calibration, else that of the column, such as "counts".
+  std::string unit;            ///< "deg" with a calibration, else the unit of the value column, such as "counts".
   std::optional<double> rate;  ///< Hz, from the file's header.
 };
 
@@ -44,9 +44,10 @@ class LiveRecording {
 
   /// Adds a listener. It polls by itself, twenty times a second for all listeners together, and may outlive this
   /// object. `event: state` has StatusJson; it comes first and after every change. `event: samples` has {"time_s":
-  /// [...], "values": [...]}. The first one is the run so far, in at most 4000 points with all its extremes; later ones
-  /// have at most 50 points per second of the recording. The state "waiting" empties the plot: it comes before the
-  /// samples of another run, and if a listener missed samples. The stream never ends by itself.
+  /// [...], "values": [...]}. The first `samples` has the run so far, in at most 4000 points with all its extremes;
+  /// later ones have at most 50 points per second of the recording. The state "waiting" means that the plot must be
+  /// emptied: it comes before the samples of another run, and if a listener missed samples. The stream never ends by
+  /// itself.
   NextEvents Listen();
 
   /// The file's current bytes up to its last complete line. kNotFound: there is no file. kDataLoss: unreadable, or

@@ -21,22 +21,23 @@ struct ServerOptions {
   int quick_threads = 2;
   std::size_t max_queue = 64;                   ///< Waiting requests per lane; one more gets 429.
   std::chrono::milliseconds wait_time{30'000};  ///< Longest time in a queue; then the request gets 408.
-  /// Open connections. A further one replaces the connection that has waited longest for a complete request head, if
-  /// that is more than yield_time; otherwise it gets 503 and is closed. Streams of events: half as many, then 429.
+  /// Limit for open connections. One more replaces the connection that has waited longest for a complete request head,
+  /// if that wait exceeds yield_time; otherwise the new one gets 503 and is closed. Streams of events: half as many,
+  /// then 429.
   std::size_t max_connections = 512;
   std::chrono::milliseconds yield_time{1000};
   std::size_t max_head = std::size_t{8} << 10;        ///< Bytes of request line and fields; more gets 431.
   std::size_t max_body = std::size_t{32} << 20;       ///< Bytes; more gets 413.
-  std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies in memory, with answers; above: 429.
+  std::size_t max_buffered = std::size_t{512} << 20;  ///< Bytes of all bodies and answers in memory; more gets 429.
   /// Time within which a request must be complete, otherwise the answer is 408. A client must also take each quarter of
   /// a megabyte of an answer within this time, otherwise the connection is closed.
   std::chrono::milliseconds request_time{30'000};
   std::chrono::milliseconds idle_time{60'000};    ///< Limit for a connection without a request.
-  std::chrono::milliseconds max_silence{15'000};  ///< Silence of a stream of events; then a comment keeps it open.
+  std::chrono::milliseconds max_silence{15'000};  ///< After it a comment keeps a silent stream of events open.
   std::chrono::milliseconds stop_time{20'000};    ///< Limit for running requests when the server stops.
 };
 
-/// Numbers of the server for the metrics.
+/// Counts of the server for the metrics.
 struct ServerCounts {
   std::size_t connections = 0;               ///< Open now, including streams.
   std::size_t waiting = 0, running = 0;      ///< Requests in the lanes.

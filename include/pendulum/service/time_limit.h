@@ -21,7 +21,7 @@ class TimeLimit {
   TimeLimit& operator=(TimeLimit&&) = delete;
   ~TimeLimit() = default;
 
-  /// One piece of work, from construction to destruction.
+  /// Limits one piece of work, from construction to destruction.
   class Watch {
    public:
     explicit Watch(TimeLimit& limit);
@@ -60,7 +60,7 @@ class TimeLimit {
   std::chrono::milliseconds limit_;
   std::mutex mutex_;  // for all members below
   std::condition_variable_any changed_;
-  std::map<std::uint64_t, Running> running_;  // By number, and so, with one limit for all, by end.
+  std::map<std::uint64_t, Running> running_;  // In the order of ends, because all have the same limit.
   std::uint64_t next_ = 0;
   bool all_stopped_ = false;
   std::jthread thread_;  // last member, so it is joined before the others are destroyed

@@ -20,9 +20,9 @@ struct CountChange {
 /// only on the seed, not on how the encoder is read. Requires a resolution and a noise that is small compared with it.
 std::vector<CountChange> CountChanges(const Trajectory& trajectory, const SyntheticOptions& options, double end);
 
-/// Fills the rows of an encoder according to options.rows. `instants` are those of equally spaced rows; event rows use
-/// only the first and the last of them. Time stamps of events have normal errors of options.time_noise but still
-/// increase. Only the times and readings of `recording` are set.
+/// Fills the rows of an encoder according to options.rows. `instants` are the times of equally spaced rows; event
+/// rows use only the first and the last of these times. Time stamps of events have normal errors of options.time_noise
+/// but still increase. Only the times and readings of `recording` are set.
 void ReadEncoder(const Trajectory& trajectory, const SyntheticOptions& options, const Eigen::VectorXd& instants,
                  Recording& recording);
 

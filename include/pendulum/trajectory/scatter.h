@@ -18,10 +18,10 @@ struct ScatteredParameter {
 };
 
 /// Independent draws of the parameters, in their order and units. All values are drawn again until each is within its
-/// bounds and `order` holds. `order` contains indices into `parameters`, as FindOrderedPair gives them; negative means
-/// no order. The draws depend only on the seed and differ from the noise that SimulateRecording makes with the same
-/// seed. kInvalidArgument: none of a thousand draws was admissible; the message gives the seed and the rule that the
-/// last draw violated.
+/// bounds and the larger parameter of `order` is not below the smaller one. `order` contains indices into `parameters`
+/// (FindOrderedPair); negative indices mean no order. The draws depend only on the seed and differ from the noise that
+/// SimulateRecording makes with the same seed. kInvalidArgument: none of a thousand draws was admissible; the message
+/// gives the seed and the rule that the last draw violated.
 Result<std::vector<double>> ScatterParameters(std::span<const ScatteredParameter> parameters, OrderedPair order,
                                               std::uint64_t seed);
 

@@ -35,7 +35,7 @@ struct State {
   std::array<T, K> friction{};
 };
 
-/// Laws without a state have none to copy.
+/// Without friction states, the state has no array, so none is copied.
 template <typename T>
 struct State<T, 0> {
   T time, angle, rate;  ///< s, rad, rad/s
@@ -177,9 +177,9 @@ inline double StepLength(const Series<double>& angle, int order, double toleranc
 
 /// First root of the rate in (0, step]; negative if the direction of motion does not change. The step is at most a
 /// quarter of the small-angle period, which is shorter than any half swing, so the sign of end_rate, the rate at the
-/// end of the step, decides. For a start from rest the root at 0 is divided out. Halley's method starts from the chord
-/// and stays inside a bisection bracket. It stops after a relative step of 1e-4, because the remaining error is the
-/// cube of that.
+/// end of the step, shows whether there is a root. For a start from rest the root at 0 is divided out. Halley's method
+/// starts from the chord and stays inside a bisection bracket. It stops after a relative step of 1e-4, because the
+/// remaining error is the cube of that.
 inline double FirstReversal(const Series<double>& rate, int order, double direction, double step, double end_rate) {
   if (direction * end_rate > 0) return -1;
   const double begin_rate = rate[0];
@@ -209,8 +209,8 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
 
 /// The state at a reversal, computed from the state at the same instant, whose rate is 0 except for rounding. The rate
 /// and its derivatives become 0, and the derivative of the instant is -ω_p / α (implicit function theorem, MODEL.md eq.
-/// (4.5)). Angle and friction states change at no rate there, so the shift of the instant does not change their
-/// derivatives.
+/// (4.5)). The time derivatives of angle and friction states are 0 there, so the shift of the instant does not
+/// change their partial derivatives.
 template <typename T, int K>
 State<T, K> StateAtReversal(const State<T, K>& state, double acceleration) {
   State<T, K> reversal = state;

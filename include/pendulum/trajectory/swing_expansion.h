@@ -42,7 +42,8 @@ class SwingExpansion {
     FindAllFor(GravityModels());
   }
 
-  /// The friction states `tau` s after the begin of the expanded swing. Their series ends one order below the angle's.
+  /// The friction states `tau` s after the begin of the expanded swing. The order of their series is one below the
+  /// angle's.
   std::array<T, kFrictionStates<F>> FrictionStatesAt(double tau) const requires FrictionWithState<F> {
     if constexpr (DualNumber<T>) {
       return dual_friction_.StatesAt(angle_.order - 1, tau);
@@ -52,7 +53,7 @@ class SwingExpansion {
   }
 
  private:
-  /// A closure in between, as Gravity::Visit has it, would change which products the compiler fuses with sums.
+  /// Does not use Gravity::Visit, because its closure would change which products the compiler fuses with sums.
   template <typename... Ls>
   void FindAllFor(GravityModelList<Ls...> /*laws*/) {
     (void)((pendulum_.gravity == Gravity::Of<Ls>() && (FindAll<Ls>(), true)) || ...);
@@ -78,7 +79,8 @@ class SwingExpansion {
     rate_.value[n + 1] = (gravity + friction) * per_torque_[n + 1];
   }
 
-  /// Linear equations for the derivatives along the swing: eq. (4.1) and (4.4), differentiated.
+  /// Partial derivatives of the next coefficients with respect to the parameters. They follow linear equations: eq.
+  /// (4.1) and (4.4), differentiated.
   template <GravityModel L, int n>
   void FindPartials() {
     angle_.partials[n + 1] = kInverse[n + 1] * rate_.dual[n].v;

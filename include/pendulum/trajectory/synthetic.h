@@ -27,7 +27,8 @@ enum class RowTiming {
   kEvenFromEncoder,  ///< Equally spaced readings of the encoder of kEvents, with the same edge errors.
 };
 
-/// Limits for event rows. An edge must not move as far as the next edge, and each count produces a row.
+/// Limits for event rows. Scattered edges must not pass each other. Each count produces a row, so the resolution is
+/// limited.
 inline constexpr double kMaxEventNoise = 0.2;  ///< Standard deviation of an edge, in counts.
 inline constexpr double kFinestEvents = 1e-5;  ///< Resolution, rad.
 
@@ -82,7 +83,7 @@ double SensorReading(double x, double resolution, const std::optional<SensorRang
 /// samples, or the motion cannot be traced.
 Result<Recording> SimulateRecording(const SyntheticOptions& options);
 
-/// Both coordinates of a point, N samples each, as a sensor of kind kArc sees it before angles are computed.
+/// Both coordinates of a point, N samples each, from which the angles of a sensor of kind kArc are computed.
 struct TrackedPoint {
   Eigen::VectorXd time, x, y;
 };

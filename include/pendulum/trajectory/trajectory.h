@@ -35,7 +35,7 @@ struct TraceOptions {
   double begin = 0, end = 0;  ///< s; segments start at `begin`, at rest until the release.
   double tolerance = 1e-10;   ///< rad, local: the truncation error of one step. See TraceTolerance.
   InstructionSet instruction_set = kInstructionSet;  ///< Must be supported by the processor.
-  int max_steps = 2'000'000;  ///< A motion that needs more is not traced: its time scale is absurd.
+  int max_steps = 2'000'000;  ///< A motion that needs more is not traced: its time scale is too short.
 };
 
 /// Summary of a traced motion.
@@ -74,7 +74,7 @@ concept TracedWith = std::same_as<T, double> || std::same_as<T, ReleaseDual<F>> 
 /// Traces a pendulum from its start to options.end and calls visit(segment) for each piece in time order: the hold, the
 /// swings in as many steps as the tolerance requires, and the rest. Reversals are located exactly, so each segment
 /// solves one smooth equation. Nothing is stored. MODEL.md section 4. Compiled only for the laws in FrictionModels
-/// (src/trajectory/tracer.h). That takes a minute, which users of this header do not need to spend.
+/// (src/trajectory/tracer.h). The compilation takes a minute, so the definition is not in this header.
 template <FrictionModel F, TracedWith<F> T>
 TraceSummary TraceTrajectory(const Pendulum<F, T>& pendulum, const Start<T>& start, const TraceOptions& options,
                              const std::type_identity_t<SegmentVisitor<T>>& visit);

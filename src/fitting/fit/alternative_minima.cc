@@ -10,8 +10,8 @@
 namespace pendulum {
 namespace {
 
-/// Whether a different value means a different pendulum or sensor. The axis is excluded: along the rod it has two sides
-/// that give the same readings.
+/// Whether a different value means a different pendulum or sensor. The axis ψ is excluded, because π - ψ with the
+/// motion to the other side gives the same readings.
 bool IsOfPendulumOrSensor(const FitProblem& problem, std::size_t i) {
   const std::string_view name = problem.infos[i].name;
   return i <= static_cast<std::size_t>(problem.solve.last_friction) || (IsSensorParameter(name) && name != kAxis.name);
@@ -38,9 +38,9 @@ std::string DescribeDifferences(const FitProblem& problem, const AlternativeMini
   for (const std::size_t i : different) {
     const ParameterEstimate& parameter = report.parameters[i];
     const std::string unit = parameter.unit == "1" ? "" : " " + parameter.unit;
-    const std::string there = NumberText(problem.Reported(i, alternative.parameters[i]), 4) + unit;
+    const std::string other_value = NumberText(problem.Reported(i, alternative.parameters[i]), 4) + unit;
     if (!text.empty()) text += ", ";
-    text.append(parameter.info.name).append(" ").append(there);
+    text.append(parameter.info.name).append(" ").append(other_value);
     text.append(" instead of ").append(NumberText(parameter.estimate, 4)).append(unit);
   }
   return text;
@@ -69,8 +69,8 @@ std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::v
   parameters[angle] = -parameters[angle];
   parameters[rate] = -parameters[rate];
   for (const std::size_t i : {radius, angle, rate}) {
-    const bool is_held = problem.solve.fixed[i] || BoundSide(problem.solve, i, parameters[i]) != 0;
-    if (is_held) return std::nullopt;
+    const bool is_excluded = problem.solve.fixed[i] || BoundSide(problem.solve, i, parameters[i]) != 0;
+    if (is_excluded) return std::nullopt;
   }
   return parameters;
 }

@@ -18,7 +18,7 @@ namespace pendulum {
 namespace {
 
 /// Removes whole turns that a search near the top may have added to the zero angle: the modelled readings stay the
-/// same. If the readings do not determine the number of turns, they are removed from the first angle.
+/// same. If the readings do not determine the number of turns, removes the turns from the first angle instead.
 void UnwrapOffset(const FitProblem& problem, Solution& solution) {
   const std::size_t zero = problem.zero();
   const std::size_t angle = problem.angle();
@@ -77,7 +77,7 @@ bool IsAtLocalMinimum(const Attempt& attempt) {
          RemainingShift(*optimum) < (HasDiscontinuities(*attempt.problem) ? kNearDiscontinuity : kNear);
 }
 
-/// Keeps the better of two attempts. The local minimum of the other one is remembered.
+/// Stores the better of two attempts in `best`, and the local minimum of the worse one in best.alternatives.
 void KeepBetter(Attempt other, Attempt& best) {
   if (IsBetter(other, best)) {
     other.alternatives = std::move(best.alternatives);

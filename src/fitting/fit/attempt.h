@@ -22,11 +22,12 @@ struct Attempt {
   std::vector<AlternativeMinimum> alternatives;  ///< Local minima at which the searches from other starts ended.
 };
 
-/// Solves from one start: that of options.search, else the one estimated from the data. Errors as MakeFitProblem.
+/// Solves from one start: the start in options.search if given, otherwise the start estimated from the data. Errors as
+/// MakeFitProblem.
 Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options);
 
-/// Solves from the start values, from each of the sensor's starts (SensorStarts) and from the mirror image of the
-/// solution, where the sensor has one, and keeps the best. Errors as MakeFitProblem.
+/// Solves from the start values, from each further start of the sensor (SensorStarts), and from the mirror image of the
+/// solution (MirrorImage) if there is one. Returns the best solution. Errors as MakeFitProblem.
 Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& options);
 
 /// Log-likelihood of the samples and the priors.

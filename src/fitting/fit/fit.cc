@@ -48,7 +48,8 @@ bool MayStartInMotion(const Attempt& attempt, const FitOptions& options) {
          (start.short_hold || !ExplainsReadings(*attempt.problem, attempt.solution));
 }
 
-/// Events show a hold by one row only. If edges scatter by more than 0.15 count, the start is not as assumed.
+/// An event-driven encoder records a hold as a single row, so a hold may be overlooked. If the edges scatter by more
+/// than 0.15 count, the assumed kind of start is wrong.
 bool MayStartHeld(const Attempt& attempt, const FitOptions& options) {
   constexpr double kScattered = 0.15;  // of a count
   const NoiseModel& noise = attempt.solution.noise;
@@ -56,7 +57,7 @@ bool MayStartHeld(const Attempt& attempt, const FitOptions& options) {
          noise.sigma > kScattered * noise.resolution;
 }
 
-/// The reference rate of a Stribeck law found in the data may lead to parameters that the law does not allow.
+/// The Stribeck reference rate estimated from the data may lead to friction parameters that violate the required order.
 bool ViolatesOrder(const Attempt& attempt, const FitOptions& /*options*/) {
   return !OrderViolation(*attempt.problem, attempt.solution.parameters).empty();
 }
@@ -94,7 +95,7 @@ constexpr std::array<Rescue, 3> kRescues = {{
     {"other_reference_rates", ViolatesOrder, FromOtherReferenceRates, SolveFromOneStart, KeepsOrder},
 }};
 
-/// Applies the rescues in turn. Returns what was tried.
+/// Applies the rescues in turn. Returns a record of each rescue that was tried.
 std::vector<AttemptRecord> ApplyRescues(const Recording& recording, const FitOptions& options, Attempt& attempt) {
   std::vector<AttemptRecord> records;
   for (const Rescue& rescue : kRescues) {
@@ -114,8 +115,8 @@ std::vector<AttemptRecord> ApplyRescues(const Recording& recording, const FitOpt
 
 // ---- The report ----------------------------------------------------------------------------------------------------
 
-/// A likelihood with jumps has many local minima, and a search may end at a high one. A profile that finds a lower one
-/// shows it.
+/// A likelihood with jumps has many local minima, and a search may end at a poor one. If a profile finds a better
+/// minimum, the fit is not converged.
 void CheckProfilesForBetterMinimum(const FitProblem& problem, FitReport& report) {
   const auto found_better = [](const ParameterEstimate& p) { return p.open_interval == OpenInterval::kBetterMinimum; };
   if (!HasDiscontinuities(problem) || report.termination != Termination::kConverged) return;
@@ -126,8 +127,8 @@ void CheckProfilesForBetterMinimum(const FitProblem& problem, FitReport& report)
       "point, which causes many local minima; give known values with --prior, such as radius=r:std_dev";
 }
 
-/// Why the estimates violate the order that the law demands of its parameters; empty if they do not. Estimates that are
-/// means of a posterior may do so where the likeliest values do not.
+/// A sentence if the reported estimates violate the order that the law requires (OrderViolation); otherwise empty.
+/// Means of a posterior may violate the order although the most likely values do not.
 std::string OrderViolationOf(const FitProblem& problem, const FitReport& report) {
   std::vector<double> estimates;
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {
@@ -136,7 +137,7 @@ std::string OrderViolationOf(const FitProblem& problem, const FitReport& report)
   return estimates.empty() ? "" : OrderViolation(problem, estimates);
 }
 
-/// The report. Once a stop is requested, it may be incomplete.
+/// Returns a report that may be incomplete if a stop is requested during the fit.
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
   Result<Attempt> attempt = MakeAttempt(recording, options);
   if (!attempt) return tl::unexpected(attempt.error());

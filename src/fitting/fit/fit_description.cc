@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Residuals of a billionth of the swing are rounding errors of the numbers, not of a model.
+/// Residuals below a billionth of the range of the readings are floating-point rounding errors, not a misfit.
 bool IsRounding(const Recording& recording, const FitReport& report) {
   constexpr double kRounding = 1e-9;
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
@@ -42,7 +42,7 @@ void SetReadingUnit(const Recording& recording, const SensorModel& sensor, Param
   if (sensor.kind == SensorKind::kScaledRate && name == kRateBias.name) parameter.unit = recording.unit;
   if (name == kRateScale.name) parameter.unit = recording.unit + " s/rad";
   if (sensor.kind != SensorKind::kDirect || recording.is_calibrated() || !parameter.unit.starts_with("rad")) return;
-  // The motion is then in the readings' unit as well; for a rate sensor this is the unit of its rate.
+  // Without a calibration, angles are in the unit of an angle's readings, and rates in the unit of a rate's readings.
   const bool is_rate = parameter.unit == "rad/s";
   if (recording.quantity != Quantity::kRate) {
     parameter.unit.replace(0, 3, recording.unit);

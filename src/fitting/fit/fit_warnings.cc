@@ -33,7 +33,7 @@ std::string MisfitSize(const Recording& recording, double misfit) {
 void WarnOfCorrelation(const Recording& recording, const FitReport& report, const Eigen::VectorXd& z,
                        std::vector<Warning>& warnings) {
   constexpr double kRatio = 1.3;
-  constexpr double kLargestSaid = 99;
+  constexpr double kLargestShown = 99;
   Recording residuals;
   residuals.time = recording.time;
   residuals.value = z;
@@ -41,15 +41,15 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
   const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
   const double ratio = rms / noise;
   if (!(ratio > kRatio)) {
-    const bool taken = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
-                       report.termination == Termination::kConverged;
+    const bool is_modelled = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
+                             report.termination == Termination::kConverged;
     warnings.push_back({"correlated_residuals",
-                        taken ? "the residuals are autocorrelated: the error bars assume autocorrelated noise (" +
-                                    report.noise.autocorrelation.Name() + ") and are valid if the model is right"
-                              : "the residuals are autocorrelated, and the error bars ignore that"});
+                        is_modelled ? "the residuals are autocorrelated: the error bars assume autocorrelated noise (" +
+                                          report.noise.autocorrelation.Name() + ") and are valid if the model is right"
+                                    : "the residuals are autocorrelated, and the error bars ignore that"});
     return;
   }
-  const std::string times = ratio > kLargestSaid ? "more than 99" : NumberText(ratio, 2);
+  const std::string times = ratio > kLargestShown ? "more than 99" : NumberText(ratio, 2);
   const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
   warnings.push_back(
       {"lack_of_fit", "the residuals are autocorrelated and " + times +
@@ -101,8 +101,9 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers
-  const bool of_levels = report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
-  if (of_levels || !(rms < kQuiet * recording.resolution)) return;
+  const bool is_quantized =
+      report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
+  if (is_quantized || !(rms < kQuiet * recording.resolution)) return;
   warnings.push_back(
       {"noise_below_resolution", "the residuals are " + NumberText(rms / recording.resolution, 2) +
                                      " resolutions: rounding errors do not average out with so little noise, so "
@@ -120,8 +121,9 @@ void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings
 }
 
 /// Compares the prior with the estimate from the recording alone, which follows from prior and posterior. If the
-/// estimate has variance s² and the prior p², the recording's own variance is 1 / (1/s² - 1/p²). If s is at least p,
-/// because the law does not fit, this is not a variance. Then the estimate is compared with the prior alone.
+/// estimate has variance s² and the prior p², the recording's own variance is 1 / (1/s² - 1/p²). If s >= p, which
+/// happens if the law does not fit, this expression is not positive. The estimate is then compared with the prior
+/// alone.
 void WarnOfPriors(const FitProblem& problem, const Solution& solution, const FitReport& report,
                   std::vector<Warning>& warnings) {
   constexpr double kFar = 3;  // standard deviations of their difference

@@ -170,7 +170,7 @@ void UsePosteriorMeans(const LinearizedFit& linear, const Posterior& posterior, 
   report.statistics.rms_residual = fitted.problem.RmsResidual(report.fitted);
 }
 
-/// The optimum with the parameters at bounds made free, as the posterior needs it.
+/// The optimum in which the parameters at bounds are free, as the posterior requires.
 Optimum WithoutBounds(const Optimum& optimum) {
   Optimum free = optimum;
   free.free.insert(free.free.end(), free.at_bound.begin(), free.at_bound.end());
@@ -231,9 +231,9 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
 
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
   constexpr std::size_t kMaxSamples = 200'000;  // beyond this, the matrices of the draws need too much memory
-  const bool asked = fitted.options.interval == IntervalMethod::kAuto;
+  const bool is_auto = fitted.options.interval == IntervalMethod::kAuto;
   const bool is_autocorrelated = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
-  if (!asked || is_autocorrelated || !HasLittleNoise(fitted) || fitted.problem.data.time.size() > kMaxSamples)
+  if (!is_auto || is_autocorrelated || !HasLittleNoise(fitted) || fitted.problem.data.time.size() > kMaxSamples)
     return std::nullopt;
   Optimum optimum = WithoutBounds(fitted.optimum);
   if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
@@ -270,26 +270,29 @@ namespace {
 
 Identifiability AssessIdentifiability(const FitProblem& problem, const Optimum& optimum, int parameter,
                                       const ParameterEstimate& estimate) {
-  // A correlation of 0.995 with the others: its error is ten times what it would be if they were known.
-  constexpr double kTraded = 100;
+  // The parameter's error is ten times the error it would have if the other parameters were known. This corresponds to
+  // a correlation of 0.995 with them.
+  constexpr double kMinVarianceInflation = 100;
   constexpr double kImprecise = 0.1;  // of the estimate
   const auto i = static_cast<std::size_t>(parameter);
   Identifiability known;
   known.parameter = estimate.info.name;
-  const std::vector<int>& unseen = optimum.inverse.direction;
+  const std::vector<int>& undetermined = optimum.inverse.direction;
   const Index row = std::ranges::find(optimum.free, parameter) - optimum.free.begin();
-  const bool traded = optimum.inverse.identifiable && row < static_cast<Index>(optimum.free.size()) &&
-                      optimum.inverse.matrix(row, row) * optimum.information(parameter, parameter) > kTraded &&
-                      estimate.std_error.value_or(0) > kImprecise * std::abs(estimate.estimate);
+  const bool is_correlated =
+      optimum.inverse.identifiable && row < static_cast<Index>(optimum.free.size()) &&
+      optimum.inverse.matrix(row, row) * optimum.information(parameter, parameter) > kMinVarianceInflation &&
+      estimate.std_error.value_or(0) > kImprecise * std::abs(estimate.estimate);
   const bool reaches_bound = estimate.at_bound ||
                              (estimate.lower95 && *estimate.lower95 <= problem.Reported(i, problem.solve.lower[i])) ||
                              (estimate.upper95 && *estimate.upper95 >= problem.Reported(i, problem.solve.upper[i]));
-  if (std::ranges::find(unseen, parameter) != unseen.end()) {
+  if (std::ranges::find(undetermined, parameter) != undetermined.end()) {
     known.verdict = Identifiability::Verdict::kNotIdentifiable;
-    for (const int other : unseen) known.direction.emplace_back(problem.infos[static_cast<std::size_t>(other)].name);
-  } else if (traded || reaches_bound) {
+    for (const int other : undetermined)
+      known.direction.emplace_back(problem.infos[static_cast<std::size_t>(other)].name);
+  } else if (is_correlated || reaches_bound) {
     known.verdict = Identifiability::Verdict::kWeakly;
-    if (traded) known.direction = MostCorrelatedParameters(problem, optimum, row);
+    if (is_correlated) known.direction = MostCorrelatedParameters(problem, optimum, row);
   } else {
     return known;
   }

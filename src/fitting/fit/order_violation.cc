@@ -38,8 +38,9 @@ StartValues StartOf(const MotionModel& simpler, const FitProblem& problem) {
   return start;
 }
 
-/// The parameters of the richer law: those of the simpler fit, the larger of the pair equal to the smaller, the others
-/// at their start values.
+/// The parameters of the richer law. Parameters of the simpler law have the values of its fit. The larger parameter of
+/// the ordered pair, if the simpler law does not have it, gets the value of the smaller one. All others get their start
+/// values.
 std::vector<ParameterEstimate> Embed(const FitReport& simpler, const FitProblem& problem, const OrderedPair& order) {
   std::vector<ParameterEstimate> parameters;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {
@@ -81,7 +82,7 @@ std::string OrderViolation(const FitProblem& problem, const std::vector<double>&
 Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                    const std::string& reason) {
   const std::optional<MotionModel> simpler = LargestNestedModel(problem.model);
-  if (!simpler) return Error(StatusCode::kInternal, "an ordered law has no simpler one within it");
+  if (!simpler) return Error(StatusCode::kInternal, "a law with ordered parameters contains no simpler law");
   FitOptions narrowed = options;
   narrowed.model = simpler->name;
   if (options.search.start_values) narrowed.search.start_values = StartOf(*simpler, problem);

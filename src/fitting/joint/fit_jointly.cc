@@ -74,7 +74,7 @@ std::string NamesOf(const JointProblem& joint, const std::vector<int>& parameter
   return NameList(names);
 }
 
-/// The recordings that the joint trajectories do not explain.
+/// Lists the recordings that the joint trajectories do not explain, with the unexplained share of each.
 std::string DescribeUnexplained(const JointState& state) {
   std::string left;
   for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
@@ -88,7 +88,7 @@ std::string DescribeUnexplained(const JointState& state) {
   return left;
 }
 
-/// The first recording that has a second solution by itself, which the other recordings do not exclude.
+/// Describes the first recording whose own fit has a second solution. The other recordings do not exclude it.
 std::string DescribeAmbiguity(const JointState& state) {
   for (std::size_t k = 0; k < state.joint.members.size(); ++k) {
     const FitReport& alone = *state.joint.members[k].alone;
@@ -135,7 +135,8 @@ Errors ErrorsAt(const JointState& state, const Optimum& optimum) {
   return ComputeErrors(runs, state.joint.cost->priors(), optimum);
 }
 
-/// Whether the joint residuals of a recording equal those of its own fit, apart from the cost of shared parameters.
+/// Whether the joint fit explains a recording as well as its own fit does, except for a small rise of the deviance that
+/// shared parameters cause.
 bool MatchesSeparateFit(const JointMember& member, bool correlated) {
   constexpr double kMaxRise = 10;  // of the deviance
   const FitReport& alone = *member.alone;
@@ -173,7 +174,8 @@ void SetSharedProfiles(JointState& state, std::vector<FitReport>& reports) {
     }
   }
   for (FitReport& report : reports) {
-    report.interval_method = "profile likelihood of the shared parameters; of the others " + report.interval_method;
+    report.interval_method =
+        "profile likelihood of the shared parameters; for the other parameters: " + report.interval_method;
   }
 }
 
@@ -218,7 +220,7 @@ void SetReportsWithoutErrors(JointState& state, JointFit& fit) {
   }
 }
 
-/// Number of free parameters, of those at a bound other than 0, and one σ for each recording.
+/// Number of free parameters and parameters at a bound other than 0, plus one σ for each recording.
 int CountParameters(const JointState& state) {
   auto count = static_cast<int>(state.optimum.free.size() + state.joint.members.size());
   for (const int i : state.optimum.at_bound)
@@ -259,8 +261,8 @@ void SetShared(JointFit& fit) {
                        [&](const ProfileCurve& curve) { return fit.IsShared(curve.name); });
   std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),
                        [&](const Identifiability& known) { return fit.IsShared(known.parameter); });
-  // Together the derived quantities need inertia and every friction parameter. They are common to all recordings only
-  // if all of these are shared.
+  // The derived quantities depend on inertia and every friction parameter. They are common to all recordings only if
+  // all these parameters are shared.
   if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
@@ -353,7 +355,7 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 
 namespace {
 
-/// The result is meaningless if a stop was requested meanwhile.
+/// The result is meaningless if a stop is requested during the fit.
 Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   Result<JointProblem> joint = MakeJointProblem(runs, shared);
   if (!joint) return tl::unexpected(joint.error());

@@ -23,9 +23,9 @@ struct CommonSource {
   std::size_t count = 0;
 };
 
-/// Adds a recording's powers to those of the common source. The friction of an angle recording and of a rate recording
-/// depend on the clock with different powers. Then no single power describes a shared parameter, and only the pulls are
-/// used.
+/// Adds a recording's powers to the powers of the common source. Dry friction from an angle recording and from a rate
+/// recording depends on the clock's scale with different powers. No single power then describes the shared parameter,
+/// so the powers are removed and only the pulls are used.
 void MergePowers(const JointProblem& joint, const JointMember& member, const SystematicSource& own,
                  CommonSource& common) {
   Eigen::VectorXd& powers = common.source.powers;

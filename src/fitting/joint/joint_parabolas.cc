@@ -16,12 +16,11 @@ namespace {
 
 using Eigen::Index;
 
-/// The log-likelihood of a recording near its own fit, without its priors: indices among all parameters (M),
-/// information A (M x M), and A p - gradient.
+/// The log-likelihood of a recording near its own fit, without its priors, as a parabola in M of its parameters.
 struct Parabola {
-  std::vector<int> at;
-  Eigen::MatrixXd information;
-  Eigen::VectorXd pull;
+  std::vector<int> at;          // M, indices among all parameters
+  Eigen::MatrixXd information;  // A, M x M
+  Eigen::VectorXd pull;         // A p - gradient at the estimates p of its own fit
 };
 
 /// The parabola from the sums at the estimates of the recording's own fit. The member's cost has no priors.
@@ -37,7 +36,8 @@ Parabola ParabolaOfSums(const JointMember& member) {
   return parabola;
 }
 
-/// The parabola from the covariance of the recording's own fit, which needs no trajectory; from the sums without one.
+/// The parabola from the covariance of the recording's own fit, which needs no trajectory. If the fit has no
+/// covariance, the parabola from the sums.
 Parabola ParabolaOf(const JointMember& member) {
   const FitReport& alone = *member.alone;
   const auto count = static_cast<Index>(alone.covariance_names.size());

@@ -23,7 +23,7 @@ Result<FitProblem> ProblemOf(const JointRun& run, FitOptions& options) {
   options = OptionsLike(run.alone, run.options);
   options.search.start_values = run.alone.start_values;
   options.initial.clear();
-  // The options must name it to make it a parameter.
+  // A drift is a parameter only if the options name it.
   for (const std::string_view drift : {kZeroDrift.name, kBiasDrift.name}) {
     if (run.alone.Find(drift) != nullptr && !options.fixed.contains(drift)) options.initial.emplace(drift, 0.0);
   }

@@ -36,8 +36,8 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   const NoiseModel& noise = member.solution.noise;
   const double smallest = problem.negligible_sigma();
   if (!noise.IsUncensoredGaussian()) {
-    const double of_levels = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
-    return MostLikelySigma(noise, problem.data.values(), member.solution.readings, std::max(of_levels, smallest));
+    const double quantized = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
+    return MostLikelySigma(noise, problem.data.values(), member.solution.readings, std::max(quantized, smallest));
   }
   const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
   return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
@@ -52,9 +52,9 @@ bool UpdateReadings(JointProblem& joint, const Solution& solution) {
   });
 }
 
-/// Sets σ of every recording from its residuals. Its cost gets the new σ only if the change is more than a fraction of
-/// σ's own error, because another σ of quantized noise costs a trajectory. Returns false if a trajectory cannot be
-/// computed.
+/// Sets σ of every recording from its residuals. For noise that is not Gaussian, the cost gets the new σ only if σ
+/// changes by more than 0.3 %, a fraction of its standard error, because a new σ of quantized noise costs a trajectory.
+/// Returns false if a trajectory cannot be computed.
 bool UpdateNoise(JointProblem& joint, const Solution& solution) {
   constexpr double kSame = 3e-3;
   const std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
@@ -84,8 +84,9 @@ void SolveAlternately(JointProblem& joint, Solution& solution) {
   solution.usable = solution.usable && UpdateReadings(joint, solution);
 }
 
-/// Whether all trajectories are accurate enough, or `last` is set. A recording whose own fit was accurate at the first
-/// tolerance is accurate in the joint fit too.
+/// Returns whether all trajectories are accurate enough, or true if `last` is set. Otherwise makes the tolerance of
+/// inaccurate trajectories finer. A recording whose own fit was accurate at the first tolerance is accurate in the
+/// joint fit too.
 bool AreAccurate(JointProblem& joint, Solution& solution, bool last) {
   bool accurate = true;
   for (JointMember& member : joint.members) {
@@ -107,7 +108,7 @@ Solution SolveJointly(JointProblem& joint) {
   Solution solution;
   solution.parameters = CombineParabolas(joint).parameters;
   solution = Refine(*joint.cost, solution, joint.solve);
-  if (!solution.usable) {  // with a likelihood that is not parabolic, that point may have no trajectory
+  if (!solution.usable) {  // if the likelihood is not parabolic, the combined point may have no trajectory
     solution.parameters = joint.SeparateParameters();
     solution = Refine(*joint.cost, solution, joint.solve);
   }

@@ -13,30 +13,30 @@
 namespace pendulum {
 
 /// Evaluates the segments of a trajectory at the samples of a recording, in blocks of kBlock consecutive samples that
-/// do not depend on the segments. For a long recording, segments are kept until there are enough blocks for several
+/// do not depend on the segments. For a long recording, segments are stored until there are enough blocks for several
 /// threads. The results of the blocks (Part) are added in order, so a sum does not depend on the number of threads. A
-/// block has R rows; EvaluateAt fills the first of them.
+/// block has R rows; EvaluateAt fills the first rows.
 template <typename T, bool kRelease, int R, typename Part>
 class BlockSamples {
  public:
   void Restart(std::span<const double> time, int threads) {
     time_ = time;
-    threads_ = time.size() < 2 * kShare * kBlock ? 1 : ThreadsOrCores(threads);
+    threads_ = time.size() < 2 * kBlocksPerThread * kBlock ? 1 : ThreadsOrCores(threads);
     samples_per_second_ = time.size() < 2 ? 0 : static_cast<double>(time.size() - 1) / (time.back() - time.front());
-    kept_ = 0;
+    stored_ = 0;
     next_ = done_ = 0;
   }
 
   /// Evaluates the segment at the samples before its end that no earlier segment covered. For each complete block it
   /// calls work(SampleBlock<R>&, first sample, count, Part&), then add(Part).
   template <typename Work, typename Add>
-  void Take(const Segment<T>& segment, const Work& work, const Add& add) {
+  void AddSegment(const Segment<T>& segment, const Work& work, const Add& add) {
     const std::size_t first = next_;
     next_ = FirstNotBefore(segment.end);
     if (next_ == first) return;
     if (threads_ > 1) {
-      Keep(segment, first);
-      Share(work, add);
+      StoreSegment(segment, first);
+      WorkOnFullBlocks(work, add);
       return;
     }
     for (std::size_t begin = first; begin < next_;) {
@@ -53,10 +53,10 @@ class BlockSamples {
   bool is_complete() const { return next_ == time_.size(); }
 
  private:
-  static constexpr std::size_t kShare = 128;  ///< Blocks that justify another thread: some hundred microseconds.
+  static constexpr std::size_t kBlocksPerThread = 128;  ///< Work of some hundred microseconds.
 
   /// A segment and the first sample it covers; it covers samples up to the first one of the next segment.
-  struct Kept {
+  struct StoredSegment {
     std::size_t first = 0;
     Segment<T> segment;
   };
@@ -79,45 +79,45 @@ class BlockSamples {
     EvaluateAt<kRelease>(segment, &time_[begin], static_cast<int>(end - begin), rows);
   }
 
-  void Keep(const Segment<T>& segment, std::size_t first) {
-    if (kept_ == segments_.size()) segments_.emplace_back();
-    segments_[kept_++] = {first, segment};
+  void StoreSegment(const Segment<T>& segment, std::size_t first) {
+    if (stored_ == segments_.size()) segments_.emplace_back();
+    segments_[stored_++] = {first, segment};
   }
 
   /// Works on all full blocks once there are enough of them, and on the remainder after the last sample.
   template <typename Work, typename Add>
-  void Share(const Work& work, const Add& add) {
-    constexpr std::size_t kMaxKept = 4096;
+  void WorkOnFullBlocks(const Work& work, const Add& add) {
+    constexpr std::size_t kMaxStored = 4096;
     const std::size_t ready = is_complete() ? (next_ - done_ + kBlock - 1) / kBlock : (next_ - done_) / kBlock;
-    const std::size_t wanted = kShare * static_cast<std::size_t>(threads_);
-    if (ready == 0 || (!is_complete() && ready < wanted && kept_ < kMaxKept)) return;
+    const std::size_t wanted = kBlocksPerThread * static_cast<std::size_t>(threads_);
+    if (ready == 0 || (!is_complete() && ready < wanted && stored_ < kMaxStored)) return;
     if (parts_.size() < ready) parts_.resize(ready);
     const auto one = [&](int b) {
       const std::size_t first = done_ + static_cast<std::size_t>(b) * kBlock;
       WorkOn(first, std::min<std::size_t>(kBlock, next_ - first), work, parts_[static_cast<std::size_t>(b)]);
     };
-    const int worth = static_cast<int>(std::max<std::size_t>(ready / kShare, 1));
-    ParallelFor(static_cast<int>(ready), std::min(worth, threads_), std::ref(one));
+    const int useful_threads = static_cast<int>(std::max<std::size_t>(ready / kBlocksPerThread, 1));
+    ParallelFor(static_cast<int>(ready), std::min(useful_threads, threads_), std::ref(one));
     for (std::size_t b = 0; b < ready; ++b) add(parts_[b]);
     done_ = std::min(done_ + ready * kBlock, next_);
-    const auto left = KeptFor(done_);
-    kept_ = static_cast<std::size_t>(std::move(left, End(), segments_.begin()) - segments_.begin());
+    const auto left = StoredSegmentFor(done_);
+    stored_ = static_cast<std::size_t>(std::move(left, End(), segments_.begin()) - segments_.begin());
   }
 
-  auto End() { return segments_.begin() + static_cast<std::ptrdiff_t>(kept_); }
+  auto End() { return segments_.begin() + static_cast<std::ptrdiff_t>(stored_); }
 
-  auto KeptFor(std::size_t sample) {
+  auto StoredSegmentFor(std::size_t sample) {
     if (sample == next_) return End();
-    return std::ranges::upper_bound(segments_.begin(), End(), sample, {}, &Kept::first) - 1;
+    return std::ranges::upper_bound(segments_.begin(), End(), sample, {}, &StoredSegment::first) - 1;
   }
 
   template <typename Work>
   void WorkOn(std::size_t first, std::size_t count, const Work& work, Part& part) {
     SampleBlock<R> block;
-    for (auto kept = KeptFor(first); kept != End() && kept->first < first + count; ++kept) {
-      const std::size_t begin = std::max(kept->first, first);
-      const std::size_t end = std::min(kept + 1 == End() ? next_ : (kept + 1)->first, first + count);
-      Evaluate(kept->segment, begin, end, block, first);
+    for (auto stored = StoredSegmentFor(first); stored != End() && stored->first < first + count; ++stored) {
+      const std::size_t begin = std::max(stored->first, first);
+      const std::size_t end = std::min(stored + 1 == End() ? next_ : (stored + 1)->first, first + count);
+      Evaluate(stored->segment, begin, end, block, first);
     }
     work(block, first, static_cast<int>(count), part);
   }
@@ -128,9 +128,9 @@ class BlockSamples {
   std::size_t next_ = 0;  ///< The first sample that no segment has covered yet.
   SampleBlock<R> block_;
   Part part_{};
-  std::size_t done_ = 0;        ///< The first sample not yet worked on, if segments are kept.
-  std::vector<Kept> segments_;  ///< Only the first kept_ are in use; the others are spare memory.
-  std::size_t kept_ = 0;
+  std::size_t done_ = 0;                 ///< The first sample not yet worked on, if segments are stored.
+  std::vector<StoredSegment> segments_;  ///< Only the first stored_ are in use; the remaining ones are spare memory.
+  std::size_t stored_ = 0;
   std::vector<Part> parts_;
 };
 

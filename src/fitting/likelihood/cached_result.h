@@ -16,7 +16,7 @@ struct EvaluationKey {
   std::size_t samples;
 };
 
-/// A cached result and its arguments. Solver, active set, search and judge ask for it at the same point in turn.
+/// A cached result and its arguments. Solver, active set, search and fit report request it at the same point in turn.
 template <typename What>
 struct CachedResult {
   std::vector<double> parameters;

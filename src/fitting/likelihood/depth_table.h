@@ -10,10 +10,10 @@
 
 namespace pendulum {
 
-/// Table of the log-probability of a level, or of a censored reading. Its argument is the depth: the distance of the
-/// modelled value inside the nearer edge, in units of the resolution. Quintic between nodes σ/4 apart, with exact
-/// value, slope and curvature at the nodes. The logarithm is accurate to 2e-8; the derivatives are those of the same
-/// curve.
+/// Table of the log-probability of a level, or of a censored reading. Its argument is the depth: how far the modelled
+/// value lies inside the nearer edge, in units of the resolution. Interpolates with quintics between nodes σ/4 apart,
+/// at which value, slope and curvature are exact. The logarithm is accurate to 2e-8. The derivatives are exactly the
+/// derivatives of the interpolated curve.
 class DepthTable {
  public:
   /// A log-probability and its first two derivatives with respect to the depth.

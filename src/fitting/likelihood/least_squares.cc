@@ -36,8 +36,8 @@ using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 }  // namespace
 
 /// Uses a pivoted Cholesky factor of J'J scaled to unit diagonal. A direction that the data do not determine gets a row
-/// of zeros, which Levenberg-Marquardt leaves unchanged. If J'J is the information of a likelihood, the rest of |r|²
-/// may be negative. R is then enlarged until the rest is zero, which shortens the step.
+/// of zeros, which Levenberg-Marquardt leaves unchanged. If J'J is the information of a likelihood, the remainder of
+/// |r|² may be negative. R is then enlarged until the remainder is zero, which shortens the step.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians) {
   constexpr double kRounding = 1e-15;  // relative to a unit diagonal
   const Eigen::Index size = sums.rows() - 1;

@@ -11,9 +11,10 @@
 namespace pendulum {
 
 /// Fast NoiseModel::LikelihoodAt for many quantized readings. The likelihood is a smooth function of the distance
-/// between modelled value and level; it is interpolated cubically between exact values σ/32 apart. Errors: the
-/// logarithm 1e-6, its derivatives with respect to λ = ln σ and to the value in units of σ 1e-5. Other noise and
-/// distant values are evaluated exactly. (DepthTable, for the solver's inner loop, has none with respect to λ.)
+/// between modelled value and level; it is interpolated cubically between exact values σ/32 apart. The error of the
+/// logarithm is 1e-6. The error of its derivatives, with respect to λ = ln σ and to the value in units of σ, is 1e-5.
+/// Other noise and distant values are evaluated exactly. (DepthTable, for the solver's inner loop, has no derivatives
+/// with respect to λ.)
 class LevelLikelihoods {
  public:
   /// `samples`: number of readings; a table is made only if it has far fewer entries.
@@ -25,7 +26,8 @@ class LevelLikelihoods {
     cells_ = std::floor(cells);
     per_length_ = kCellsPerSigma / noise.sigma;
     table_.reserve(static_cast<std::size_t>(cells_) + 3);
-    // For a level at 0 and a sensor without a limited range. Nodes from one cell below 0 to two above the last cell.
+    // The table is for a level at 0 and a sensor without a limited range. Interpolation in the first and last cell
+    // needs one more node beyond each end.
     NoiseModel endless = noise;
     endless.low = -kInfinity;
     endless.high = kInfinity;

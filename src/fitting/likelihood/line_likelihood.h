@@ -20,7 +20,7 @@ struct LevelSamples {
   Eigen::VectorXd position;  ///< n x 1, modelled minus measured; for censored readings, the depth within the interval.
   Eigen::MatrixXd slope;     ///< n x F
   Eigen::VectorXd count;     ///< n x 1
-  Eigen::Index levels = 0;   ///< The first `levels` samples are levels; the rest are censored readings.
+  Eigen::Index levels = 0;   ///< The first `levels` samples are levels; the remaining ones are censored readings.
 
   Eigen::Index size() const { return position.size(); }
 

@@ -51,8 +51,8 @@ IntervalProbability AroundZero(double a, double b) {
   return {outside < 0.5 ? std::log1p(-outside) : std::log(inside), Density(a) / inside, Density(b) / inside};
 }
 
-/// Limit for a short interval: on it log φ is tilted by at most this much, or its length is at most a tenth of this.
-/// The probability is then density times length, with an error of fourth order in either.
+/// Limit for a short interval: log φ changes by less than this over the interval, and the length of the interval is
+/// less than a tenth of this. The probability is then density times length, with an error of fourth order in both.
 constexpr double kShort = 4e-3;
 
 IntervalProbability ShortInterval(double a, double b) {
@@ -239,7 +239,7 @@ NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
   return GaussianLikelihood(y - m, sigma);
 }
 
-SampleLikelihood NoiseModel::At(double y, double m) const {
+SampleLikelihood NoiseModel::DevianceAt(double y, double m) const {
   if (!IsRobust() && !IsInterval(y)) {
     const double z = (y - m) / sigma;
     return {z * z, z / sigma, 1 / (sigma * sigma)};
@@ -297,7 +297,7 @@ struct SigmaSums {
 SigmaSums SumsOver(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                    const Eigen::Ref<const Eigen::VectorXd>& readings) {
   SigmaSums sums;
-  // Proposal 2: the mean of ψ² equals its mean under normal noise.
+  // Huber's Proposal 2: σ is chosen so that the mean of ψ² equals its mean under normal noise.
   constexpr double kWidth = NoiseModel::kHuberWidth;
   static const double normal =
       std::erf(kRootHalf * kWidth) - 2 * kWidth * Density(kWidth) + kWidth * kWidth * std::erfc(kRootHalf * kWidth);

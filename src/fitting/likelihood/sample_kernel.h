@@ -18,7 +18,7 @@ namespace pendulum {
 /// sums over a block do not depend on the thread that computes them.
 inline constexpr std::size_t kBlock = 256;
 inline constexpr std::size_t kParts = 8;  ///< Partial sums of a product over a block: the lanes of the widest vector.
-inline constexpr std::size_t kBlockStride = kBlock + kParts;  ///< Of a row: vectors reach beyond the last sample.
+inline constexpr std::size_t kBlockStride = kBlock + kParts;  ///< Of a row: the last vector reaches beyond the samples.
 
 /// R rows of numbers, one column for each sample of a block.
 template <int R>
@@ -30,8 +30,9 @@ struct SampleBlock {
 template <int R>
 using RowProducts = std::array<double, R*(R + 1) / 2>;
 
-/// Number of rows that a segment of T fills. With a dual T: the partial derivatives of the angle at a fixed time, for a
-/// release also -θ', the derivative with respect to its instant, and last the angle. Otherwise only the angle.
+/// Number of rows that a segment of T fills. With a dual T these are the partial derivatives of the angle at a fixed
+/// time, for a release also the derivative with respect to its instant, -θ', and last the angle. Otherwise it is only
+/// the angle.
 template <typename T, bool kRelease>
 inline constexpr int kSegmentRows = 1;
 template <int P, bool kRelease>

@@ -68,7 +68,9 @@ class SensedCost final : public TrajectoryCost {
     VectorXd readings;
     if (!Readings(p, &readings, nullptr)) return false;
     *sum = PriorSum(p);
-    for (Index i = 0; i < readings.size(); ++i) *sum += noise_.ForSample(i).At(data_.value[i], readings[i]).deviance;
+    for (Index i = 0; i < readings.size(); ++i) {
+      *sum += noise_.ForSample(i).DevianceAt(data_.value[i], readings[i]).deviance;
+    }
     return std::isfinite(*sum);
   }
 
@@ -131,7 +133,7 @@ class SensedCost final : public TrajectoryCost {
     VectorXd residual(readings.size());
     double deviance = 0;
     for (Index i = 0; i < readings.size(); ++i) {
-      const SampleLikelihood sample = noise_.ForSample(i).At(data_.value[i], readings[i]);
+      const SampleLikelihood sample = noise_.ForSample(i).DevianceAt(data_.value[i], readings[i]);
       deviance += sample.deviance;
       const double root_weight = std::sqrt(sample.weight);
       residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;

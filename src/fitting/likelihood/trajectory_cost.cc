@@ -17,7 +17,7 @@ TrajectoryCost::TrajectoryCost(int count) : count_(count) {
 }
 
 /// After a trial step is accepted, the solver asks for derivatives at the same point. They cost little more than the
-/// residuals alone.
+/// residuals alone, so the first trial after a step computes them at once.
 bool TrajectoryCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   std::array<double, kMaxCompressed> values{};
   for (int i = 0; i < count_; ++i) values[i] = *parameters[i];
@@ -47,7 +47,7 @@ std::unique_ptr<TrajectoryCost> MakeTrajectoryCost(const MotionModel& model, Sta
   std::unique_ptr<TrajectoryCost> cost;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
     constexpr int kMotion = 1 + kFrictionParameters<F> + 2;
-    static_assert(kMotion + SensorModel::kMaxParameters <= kMaxCompressed, "Evaluate has room for so many");
+    static_assert(kMotion + SensorModel::kMaxParameters <= kMaxCompressed, "Evaluate has room for kMaxCompressed");
     if (start == StartKind::kRelease) {
       cost = std::make_unique<TrajectoryCostFor<F, StartKind::kRelease>>(model.gravity, data);
     } else {

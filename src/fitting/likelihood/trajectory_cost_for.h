@@ -19,8 +19,8 @@
 
 namespace pendulum {
 
-/// Parameters whose motion needs more steps than this have a time scale far from that of the start values. A period
-/// takes some 12 steps.
+/// Maximum number of steps: kStepsPerRadian for each radian of phase, plus kMaxSteps. A motion that needs more has a
+/// time scale far from that of the start values. A period takes some 12 steps.
 inline constexpr double kStepsPerRadian = 20;
 inline constexpr double kMaxSteps = 10'000;
 
@@ -74,7 +74,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         return;
       }
       part = 0;
-      for (int i = 0; i < count; ++i) part += At(first + i, row[i]).deviance;
+      for (int i = 0; i < count; ++i) part += DevianceAt(first + i, row[i]).deviance;
     };
     if (!VisitSamples(values_, p, work, [&](double part) { deviance += part; })) return false;
     if (noise_.IsUncensoredGaussian()) deviance /= noise_.sigma * noise_.sigma;
@@ -127,7 +127,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return with_jacobian ? FollowMotion<Dual>(p, states) : FollowMotion<double>(p, states);
   }
 
-  /// The search asks whether the motion comes to rest, and the judge asks when. Both ask at a point already evaluated.
+  /// The search asks whether the motion comes to rest, and the fit report asks when. Both ask at a point that was
+  /// already evaluated.
   TraceSummary Trace(std::span<const double> p) const override {
     if (is_stopped()) return {};
     if (traced_.IsAt(EvaluationKeyAt(p))) return traced_.value;
@@ -140,8 +141,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   bool is_stopped() const override { return data_.stop.stop_requested(); }
 
-  /// A torque change alters an amplitude by twice as much in each half swing, at small angles. The factor four is a
-  /// safety margin.
+  /// At small angles a torque change alters the amplitude, in each half swing, by twice the change. The factor four is
+  /// a safety margin.
   bool ComesToRest(std::span<const double> p, double torque_change) const override {
     constexpr double kSafe = 4;
     const TraceSummary trace = Trace(p);
@@ -158,11 +159,11 @@ class TrajectoryCostFor final : public TrajectoryCost {
     for (int i = 0; i < count; ++i) readings[i] += p[kZero + 1] * data_.zero_motion_factors[first + i];
   }
 
-  /// Same result as noise_.At, without an exponential and an error function for every quantized sample.
-  SampleLikelihood At(std::size_t sample, double reading) const {
+  /// Same result as noise_.DevianceAt, without an exponential and an error function for every quantized sample.
+  SampleLikelihood DevianceAt(std::size_t sample, double reading) const {
     const double value = data_.value[sample];
-    if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).At(value, reading);
-    if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.At(value, reading);
+    if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).DevianceAt(value, reading);
+    if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.DevianceAt(value, reading);
     const double per_level = 1 / noise_.resolution;
     const double position = (value - reading) * per_level;
     const DepthTable::Curve level = levels_.At(0.5 - std::abs(position));
@@ -175,7 +176,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
     for (int i = 0; i < count; ++i) residuals[i] = value[i] - readings[i];
   }
 
-  /// The rows of a block whose products are needed: derivatives, zero, factor of its motion if it moves, residuals.
+  /// The rows of a block whose products are needed: derivatives, zero, the factor of the zero's motion if it moves, and
+  /// residuals.
   template <int kBaseline>
   using Rows = SampleBlock<kZero + kBaseline + 1>;
 
@@ -200,7 +202,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
     }
     double deviance = 0;
     for (int i = 0; i < count; ++i) {
-      const SampleLikelihood sample = At(first + i, readings[i]);
+      const SampleLikelihood sample = DevianceAt(first + i, readings[i]);
       deviance += sample.deviance;
       const double root_weight = std::sqrt(sample.weight);
       residual[i] = root_weight > 0 ? sample.score / root_weight : 0.0;
@@ -241,9 +243,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
     return sums->allFinite();
   }
 
-  /// Parameter i as a T; if T is dual, with its own derivative.
+  /// Parameter i as a T. If T is dual, its derivative with respect to parameter i is 1.
   template <typename T>
-  static T Carry(double value, int i) {
+  static T AsParameter(double value, int i) {
     if constexpr (DualNumber<T>) {
       return T(value, i);
     } else {
@@ -253,8 +255,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
 
   template <typename T>
   Pendulum<F, T> MakePendulum(std::span<const double> p) const {
-    Pendulum<F, T> pendulum{gravity_, Carry<T>(p[0], 0), {}};
-    for (int i = 0; i < kFriction; ++i) pendulum.friction[i] = Carry<T>(p[1 + i], 1 + i);
+    Pendulum<F, T> pendulum{gravity_, AsParameter<T>(p[0], 0), {}};
+    for (int i = 0; i < kFriction; ++i) pendulum.friction[i] = AsParameter<T>(p[1 + i], 1 + i);
     return pendulum;
   }
 
@@ -262,9 +264,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
   Start<T> MakeStart(std::span<const double> p) const {
     constexpr int kAngle = 1 + kFriction;
     if constexpr (kStart == StartKind::kRelease) {
-      return {kStart, p[kAngle + 1], Carry<T>(p[kAngle], kAngle), T(0.0)};
+      return {kStart, p[kAngle + 1], AsParameter<T>(p[kAngle], kAngle), T(0.0)};
     } else {
-      return {kStart, 0.0, Carry<T>(p[kAngle], kAngle), Carry<T>(p[kAngle + 1], kAngle + 1)};
+      return {kStart, 0.0, AsParameter<T>(p[kAngle], kAngle), AsParameter<T>(p[kAngle + 1], kAngle + 1)};
     }
   }
 
@@ -322,7 +324,7 @@ class TrajectoryCostFor final : public TrajectoryCost {
         std::copy_n(block.row[kRows - 1].data(), count, states->value[n].data() + first);
         for (int j = 0; j + 1 < kRows; ++j) std::copy_n(block.row[j].data(), count, &states->jacobian[n](first, j));
       };
-      samples[n].Take(segment, work, [](double /*part*/) {});
+      samples[n].AddSegment(segment, work, [](double /*part*/) {});
     };
     const bool traced = Follow<T>(p, [&](const Segment<T>& angle) {
       const Segment<T> rate = RateOf(angle);
@@ -341,9 +343,9 @@ class TrajectoryCostFor final : public TrajectoryCost {
     samples.Restart({data_.time.data(), used_samples_}, threads_);
     const auto take = [&](const Segment<T>& segment) {
       if (data_.quantity == Quantity::kRate) {
-        samples.Take(RateOf(segment), work, add);
+        samples.AddSegment(RateOf(segment), work, add);
       } else {
-        samples.Take(segment, work, add);
+        samples.AddSegment(segment, work, add);
       }
     };
     return Follow<T>(p, take) && samples.is_complete();

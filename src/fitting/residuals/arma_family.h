@@ -17,8 +17,8 @@
 namespace pendulum {
 
 /// The kind of process that a place describes. A place is a vector of unbounded parameters. The first is a scale: ln of
-/// the standard deviation of the innovations, or of z if the process is continuous. The others are artanh of the
-/// partial autocorrelations, artanh of φ and θ, or ln τ and, if there is a white share, its logit.
+/// the standard deviation of the innovations, or of z if the process is continuous. The remaining ones are artanh of
+/// the partial autocorrelations, artanh of φ and θ, or ln τ and, if there is a white share, its logit.
 struct ArmaFamily {
   Autocorrelation::Kind kind = Autocorrelation::Kind::kWhite;
   Eigen::Index parameters = 1;
@@ -98,8 +98,8 @@ inline ArmaProcess ProcessAt(const ArmaFamily& family, const Eigen::VectorXd& pl
   return process;
 }
 
-/// Correlations ρ_0..ρ_{p-1} of an autoregression, computed lag by lag from the partial ones (Levinson 1947, Durbin
-/// 1960).
+/// Correlations ρ_0..ρ_{p-1} of an autoregression, computed lag by lag from the partial autocorrelations (Levinson
+/// 1947, Durbin 1960).
 inline Eigen::VectorXd CorrelationsOf(const std::vector<double>& reflection) {
   const auto order = static_cast<Eigen::Index>(reflection.size());
   Eigen::VectorXd correlation = Eigen::VectorXd::Ones(order);

@@ -31,7 +31,7 @@ struct FilteredProcess {
 
 /// Exact Kalman filters of up to kLanes processes of one kind and order in parallel, each over its own readings at the
 /// same times. Costs O(m²) per sample until the prediction covariance has converged, then O(m). Call Advance between
-/// two samples, Take at each sample.
+/// two samples, and Update at each sample.
 class ArmaFilter {
  public:
   explicit ArmaFilter(const std::vector<FilteredProcess>& processes);
@@ -39,7 +39,8 @@ class ArmaFilter {
   /// Moves to the next sample, `step` seconds later: by one interval, or over a gap in the clock.
   void Advance(double step);
 
-  void Take(const Lanes& value);
+  /// Updates the states by the reading of each lane at the current sample.
+  void Update(const Lanes& value);
 
   /// Prediction error of the last reading, and its variance.
   const Lanes& innovation() const { return innovation_; }
@@ -85,7 +86,7 @@ inline ArmaFilter::ArmaFilter(const std::vector<FilteredProcess>& processes)
   }
 }
 
-inline void ArmaFilter::Take(const Lanes& value) {
+inline void ArmaFilter::Update(const Lanes& value) {
   if (!is_settled_) {
     for (int lane = 0; lane < kLanes; ++lane) variance_[lane] = covariance_[0][lane] + white_[lane];
     for (std::size_t i = 0; i < order_; ++i) {
@@ -127,10 +128,10 @@ inline void ArmaFilter::Predict() {
   is_observed_ = false;
 }
 
-/// Computes T (P - P_0 P_0' / F) T' + R R' in place, and whether P has stopped changing.
+/// Replaces P by T (P - P_0 P_0' / F) T' + R R', and checks whether P has stopped changing.
 inline void ArmaFilter::PredictCovariance() {
   constexpr double kSame = 1e-12;  // of the variance
-  Lanes kept, known, change{};     // factors: share of P_0 left after the reading; 1 / F
+  Lanes kept, known, change{};     // kept: share of P_0 left after a reading; known: 1 / F
   for (int lane = 0; lane < kLanes; ++lane) {
     kept[lane] = is_observed_ ? white_[lane] / variance_[lane] : 1;
     known[lane] = is_observed_ ? 1 / variance_[lane] : 0;
@@ -163,7 +164,7 @@ inline void ArmaFilter::Skip(double intervals) {
   for (double i = 0; i < intervals; ++i) Predict();
 }
 
-/// T to this power; it may be 0 to rounding.
+/// T to this power; 0 if it is negligible.
 inline Eigen::MatrixXd TransitionPower(const std::vector<double>& autoregression, double power) {
   constexpr double kLongest = 1e12;
   constexpr double kForgotten = 1e-18;

@@ -59,7 +59,7 @@ class FilterRow {
         if (t > 0) filters_[f].Advance(time[t] - time[t - 1]);
         Lanes value;
         value.fill(residual[t]);
-        filters_[f].Take(value);
+        filters_[f].Update(value);
         std::copy_n(filters_[f].innovation().data(), kLanes, &innovation(row, i));
         std::copy_n(filters_[f].variance().data(), kLanes, &variance(row, i));
         if (f == 0) SetLogVariance(i, filters_[f].variance()[0]);
@@ -79,7 +79,7 @@ class FilterRow {
 };
 
 /// Gradient Σ u v'/√F + (1 - u²) F'/2F and information Σ v'v'/F + F'F'/2F² of innovations v = u √F (Harvey, section
-/// 3.4.5), with derivatives by finite differences. If `step` is 0, only the likelihood.
+/// 3.4.5), with derivatives by finite differences. If `step` is 0, computes only the likelihood.
 LikelihoodDerivatives DerivativesAt(const ArmaFamily& family, const Eigen::VectorXd& place, const Eigen::VectorXd& time,
                                     const Eigen::VectorXd& residual, double step) {
   const Index size = step > 0 ? place.size() : 0;
@@ -148,7 +148,7 @@ class FisherScoring {
   }
 
  private:
-  static constexpr double kDifference = 1e-5;  // shifts the maximum by half of it
+  static constexpr double kDifference = 1e-5;  // step of forward differences; shifts the maximum by half a step
 
   static Eigen::VectorXd StepOf(const LikelihoodDerivatives& slope, double damping) {
     Eigen::MatrixXd damped = slope.information;
@@ -252,7 +252,7 @@ Eigen::MatrixXd Whitened(const FilteredProcess& process, const Eigen::VectorXd& 
     for (Index t = 0; t < columns.rows(); ++t) {
       if (t > 0) filter.Advance(time[t] - time[t - 1]);
       for (Index c = 0; c < count; ++c) value[c] = columns(t, first + c);
-      filter.Take(value);
+      filter.Update(value);
       const double scale = 1 / std::sqrt(filter.variance()[0]);
       for (Index c = 0; c < count; ++c) white(t, first + c) = scale * filter.innovation()[c];
     }

@@ -51,7 +51,7 @@ namespace {
 
 /// Computes Σ_k g_k g_k' of the responses g_k = w_k + θ w_{k+1} + Σ φ_j g_{k+j}, from the last sample backwards. g_k is
 /// the derivative of W'z with respect to the innovation e_k, so this is the transpose of the process's filter. R is
-/// never formed, and the sum is never indefinite. In gaps, rounded to whole intervals, the weights are 0.
+/// never formed, and the sum is positive semidefinite. In gaps, rounded to whole intervals, the weights are 0.
 class BackwardFilter {
  public:
   BackwardFilter(const Autocorrelation& correlation, Eigen::Index columns)
@@ -71,14 +71,14 @@ class BackwardFilter {
     later_ = weight;
   }
 
-  /// Processes `count` missing samples, or fewer if the filter's response decays to rounding error before.
+  /// Processes `count` missing samples, or fewer if the filter's response decays to rounding error earlier.
   void Skip(double count) {
     const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(later_.size());
     while (count > 0) {
       const double steps = std::min(count, static_cast<double>(kBlock));
       for (double i = 0; i < steps; ++i) Step(nothing);
       count -= steps;
-      if (Forgotten()) break;
+      if (HasDecayed()) break;
     }
     if (count > 0) response_.setZero();
   }
@@ -101,7 +101,7 @@ class BackwardFilter {
     head_ = kBlock;
   }
 
-  bool Forgotten() {
+  bool HasDecayed() {
     constexpr double kNegligible = 1e-24;
     Flush();
     const Eigen::VectorXd left = response_.rightCols(order_).rowwise().squaredNorm();

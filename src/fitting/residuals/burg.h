@@ -10,7 +10,7 @@
 
 namespace pendulum {
 
-/// Samples begin..begin + size - 1 of a recording without gaps, one per interval of its clock.
+/// Samples begin..begin + size - 1 of a recording, with no gap between them: one for each interval of its clock.
 struct GapFreeSpan {
   Eigen::Index begin = 0;
   Eigen::Index size = 0;
@@ -22,7 +22,7 @@ struct GapFreeSpan {
 /// value      N x 1, of mean 0.
 /// spans      within 0..N - 1; no sample predicts a sample of another span.
 /// Returns at most `longest` coefficients, each in (-1, 1), so the process is stationary. Returns fewer if the
-/// prediction is already exact with fewer. Costs O(N longest).
+/// prediction is exact with fewer coefficients. Costs O(N longest).
 std::vector<double> ReflectionCoefficients(const Eigen::VectorXd& value, const std::vector<GapFreeSpan>& spans,
                                            int longest);
 

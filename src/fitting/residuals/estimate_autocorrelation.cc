@@ -75,7 +75,7 @@ Autoregression BestAutoregression(const Clock& clock, const Eigen::VectorXd& res
   const auto samples = static_cast<double>(residual.size());
   const auto spans = static_cast<double>(clock.spans.size());
   const std::vector<double> reflection = ReflectionCoefficients(residual, clock.spans, LongestOrder(samples));
-  constexpr double kRounding = 1e-8;  // of the variance left to innovations: a smoother curve is not noise
+  constexpr double kRounding = 1e-8;  // smallest share of the variance in innovations: a smoother curve is not noise
   Autoregression best;
   double criterion = 0;
   double left = 1;
@@ -102,8 +102,8 @@ Autocorrelation FromBurg(const Clock& clock, const std::vector<double>& reflecti
 // ---- Likelihood of two parameters ----------------------------------------------------------------------------------
 
 /// Coefficients that convert N residuals to independent innovations e_i = z_i - m_i. The prediction is m_i = keep_i
-/// m_{i-1} + gain_i e_{i-1}. The variance of e_i is relative to that of an innovation predicted from the whole past (or
-/// to that of z).
+/// m_{i-1} + gain_i e_{i-1}. variance_i is the variance of e_i divided by the variance of an innovation predicted from
+/// the whole past (PredictMixed), or divided by the variance of z (PredictContinuous).
 struct Innovations {
   explicit Innovations(Eigen::Index samples) : keep(samples), gain(samples), variance(samples) {}
   Eigen::VectorXd keep, gain, variance;
@@ -195,15 +195,17 @@ double LargestScore(const Eigen::VectorXd& residual) {
   return (product.square() / energy).maxCoeff() * static_cast<double>(residual.size()) / residual.squaredNorm();
 }
 
-/// Whether no likelihood of two parameters can exceed that of white residuals by as much as Schwarz's criterion
-/// requires. Half of that value is used, as a margin for the error of the scores.
+/// Whether a model with two more parameters than white residuals cannot gain as much likelihood as Schwarz's criterion
+/// requires. Half of the required gain is used, as a margin for the error of the scores.
 bool LooksWhite(const Eigen::VectorXd& residual) {
   return LargestScore(residual) < std::log(static_cast<double>(residual.size()));
 }
 
-/// Deviance over two parameters. Once a search is stopped it is constant, so the search ends.
-constexpr double kStopped = 0;
+/// Deviance as a function of two parameters.
 using Surface = std::function<double(const Eigen::Vector2d&)>;
+
+/// Value of every Surface after a stop request: it is constant, so the search ends.
+constexpr double kStopped = 0;
 
 struct Vertex {
   Eigen::Vector2d place;
@@ -261,7 +263,7 @@ Eigen::MatrixXd RestrictedColumns(const Eigen::VectorXd& residual, const Eigen::
 
 // ---- ARMA(1,1) -----------------------------------------------------------------------------------------------------
 
-/// The plane's coordinates are artanh of φ and θ: every point is a stationary and invertible process.
+/// The two coordinates are artanh of φ and θ: every point is a stationary and invertible process.
 constexpr double kMaxCoefficient = 0.99999;
 
 double CoefficientFromUnbounded(double place) { return kMaxCoefficient * std::tanh(place); }
@@ -352,7 +354,7 @@ Vertex LowestWithoutWhite(const Surface& surface, double from, double to) {
   return lowest;
 }
 
-Vertex BestUnderWhite(const Surface& surface, double interval) {
+Vertex BestWithWhite(const Surface& surface, double interval) {
   Vertex best{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
   for (const double intervals : {3.0, 10.0, 50.0, 250.0}) {
     const Eigen::Vector2d place(std::log(intervals * interval), 0);
@@ -370,12 +372,12 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
   const Surface plain = ContinuousSurface(time, column, stop);
   const double interval = Continuous(time, {0, 0}).interval;
   const Vertex pure = LowestWithoutWhite(plain, std::log(interval / 10), std::log(time[time.size() - 1] - time[0]));
-  const Vertex under_white = BestUnderWhite(plain, interval);
-  const double least = std::min(pure.height + penalty, under_white.height + 2 * penalty);
+  const Vertex with_white = BestWithWhite(plain, interval);
+  const double least = std::min(pure.height + penalty, with_white.height + 2 * penalty);
   if (WhiteCriterion(residual) <= least || stop.stop_requested()) return {};
   const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
   const Surface restricted = ContinuousSurface(time, columns, stop);
-  if (least < pure.height + penalty) return Continuous(time, Lowest(restricted, under_white.place, 0.1).place);
+  if (least < pure.height + penalty) return Continuous(time, Lowest(restricted, with_white.place, 0.1).place);
   return Continuous(time, LowestWithoutWhite(restricted, pure.place[0] - 1, pure.place[0] + 1).place);
 }
 

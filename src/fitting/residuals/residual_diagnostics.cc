@@ -20,8 +20,9 @@ double Lag1Correlation(const Eigen::VectorXd& residual) {
   return sum > 0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / sum : 0.0;
 }
 
-/// Tests whether N Σ ρ_k², over lags k spaced as squares, exceeds its mean by six standard deviations. Autocorrelated
-/// noise shows at the first lags, a misfit that oscillates with the pendulum at some lag within one period.
+/// Tests whether N Σ ρ_k², over lags k that increase like squares, exceeds its mean by six standard deviations.
+/// Autocorrelated noise shows at the first lags. A misfit that oscillates with the pendulum shows at some lag within
+/// one period.
 bool AreAutocorrelated(const Eigen::VectorXd& residual, int longest_lag) {
   constexpr int kMaxLags = 50;
   constexpr double kDeviations = 6;

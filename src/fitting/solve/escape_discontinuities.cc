@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Estimates σ and the likelihood again, starting with the noise at the start of a search.
+/// Estimates σ and the likelihood again, beginning with the noise at the start of a search.
 void ReestimateSigma(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options, Solution& solution) {
   cost.set_noise(problem.noise);
   solution.usable = cost.SumOfSquares(solution.parameters, &solution.sum);
@@ -23,7 +23,7 @@ void ReestimateSigma(TrajectoryCost& cost, const FitProblem& problem, const FitO
   MaximizeLikelihood(cost, problem, options, solution);
 }
 
-/// The solution of a solve started beyond the jump. Returns std::nullopt if there is no jump or no better solution.
+/// The result of a solve that starts beyond the jump. Returns std::nullopt if there is no jump or no better solution.
 std::optional<Solution> SolveBeyondDiscontinuity(TrajectoryCost& cost, const FitProblem& problem,
                                                  const Solution& solution) {
   const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);

@@ -69,15 +69,15 @@ Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
     if (!i) return tl::unexpected(i.error());
     double& lower = problem.solve.lower[*i];
     double& upper = problem.solve.upper[*i];
-    const double most = std::max(problem.Internal(*i, range.lower), lower);
-    const double least = std::min(problem.Internal(*i, range.upper), upper);
-    const bool too_small = name == kInertia.name && !(least > kSmallestInertia);
-    if (!(most < least) || too_small) {
+    const double new_lower = std::max(problem.Internal(*i, range.lower), lower);
+    const double new_upper = std::min(problem.Internal(*i, range.upper), upper);
+    const bool too_small = name == kInertia.name && !(new_upper > kSmallestInertia);
+    if (!(new_lower < new_upper) || too_small) {
       return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " allow no value; it must be " +
                                                      Range(problem, *i) + ", and may be fixed with --fix");
     }
-    lower = most;
-    upper = least;
+    lower = new_lower;
+    upper = new_upper;
     problem.first_guess[*i] = std::clamp(problem.first_guess[*i], lower, upper);
   }
   return {};
@@ -97,9 +97,9 @@ Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
 Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sensor_priors, FitProblem& problem) {
   if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
   for (const auto& [name, value] : options.initial) {
-    const Result<std::size_t> i = FindParameter(problem, name, "begin");
+    const Result<std::size_t> i = FindParameter(problem, name, "give an initial value");
     if (!i) return tl::unexpected(i.error());
-    if (Result<void> done = SetStartValue(value, *i, "begun at", problem); !done) return done;
+    if (Result<void> done = SetStartValue(value, *i, "started at", problem); !done) return done;
   }
   for (const auto& [name, value] : options.fixed) {
     const Result<std::size_t> i = FindParameter(problem, name, "fix");
@@ -135,8 +135,8 @@ TrajectoryData MakeData(const Recording& recording, const SensorModel& sensor, c
   return data;
 }
 
-/// Marks readings at an end of the sensor's range as censored: those beyond the edge of the last level within it. The
-/// tolerance allows for rounded numbers in files, including those of the range.
+/// Marks readings at an end of the sensor's range as censored. If readings have levels, these are the readings in the
+/// outermost level within the range. The tolerance allows for rounded readings and rounded ends of the range in files.
 void SetCensoring(const Recording& recording, FitProblem& problem) {
   problem.noise.sigma = problem.data.scale;
   problem.resolution = recording.resolution;
@@ -156,8 +156,8 @@ void SetCensoring(const Recording& recording, FitProblem& problem) {
   if (problem.censored > 0) problem.noise = noise;
 }
 
-/// Replaces each value by the median of five around it, so that single outliers do not look like the start of the
-/// motion.
+/// Replaces each value by the median of the five values around it, so that single outliers do not look like the start
+/// of the motion.
 Recording WithoutOutliers(Recording recording) {
   const Eigen::VectorXd value = recording.value;
   for (Eigen::Index i = 2; i + 2 < value.size(); ++i) {

@@ -52,8 +52,8 @@ void SetGaussianSigma(TrajectoryCost& cost, const FitProblem& problem, Solution&
 /// Alternates between estimating σ and solving for the parameters.
 void AlternateSigmaAndParameters(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
   constexpr int kMaxRounds = 15;
-  constexpr int kSpreadRounds = 3;         // in which the time stamps' errors are estimated
-  constexpr double kMaxNegativeLag = 0.4;  // of a count: leaves room for the silences
+  constexpr int kSpreadRounds = 3;         // rounds that estimate the errors of the time stamps
+  constexpr double kMaxNegativeLag = 0.4;  // in counts: below 0.5, so that the interval of a silence is not empty
   constexpr double kSame = 3e-3;           // of σ: at most some tenths of its standard error
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
@@ -91,7 +91,8 @@ void CompareMinima(TrajectoryCost& cost, const FitProblem& problem, const std::v
 
 /// Local minima of least squares that may have the largest likelihood.
 std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
-  // In -2 log L by least squares; if noise is small, the likelihood of quantized readings differs from it.
+  // Largest difference in -2 log L by least squares. It is large because, for small noise, the likelihood of quantized
+  // readings differs from least squares.
   constexpr double kNear = 60;
   constexpr std::size_t kMaxMinima = 4;
   std::vector<Minimum> near;
@@ -106,7 +107,7 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
 /// Recomputes the deviances of all minima under the final noise, so that they are comparable.
 void RecomputeDeviances(TrajectoryCost& cost, Solution& solution) {
   cost.set_noise(solution.noise);
-  // Computes all sums, because the judge asks for them next.
+  // Computes all sums, because the fit report asks for them next.
   Eigen::MatrixXd sums;
   solution.usable = cost.Sums(solution.parameters, &sums);
   if (solution.usable) solution.sum = sums(sums.rows() - 1, sums.cols() - 1);
@@ -168,7 +169,7 @@ ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, 
 
 /// Estimates parameters (Solve) and σ in turn until σ is constant. Solves from the nearly equal local minima as well
 /// and keeps the likeliest. Gaussian noise needs no further solve unless there are priors. Below kSmallestSigma the
-/// likelihood has no maximum inside the range; SamplePosterior then decides.
+/// likelihood has no maximum inside the range; SamplePosterior then gives estimates and intervals.
 void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
                         Solution& solution) {
   solution.noise = problem.noise;

@@ -12,7 +12,7 @@
 namespace pendulum {
 namespace {
 
-/// A start explains the data if it leaves less than this share of their variance.
+/// A solution explains the data if it leaves less than this share of their variance unexplained.
 constexpr double kExplained = 0.1;
 
 double Variance(const TrajectoryData& data) {
@@ -40,7 +40,7 @@ Solution SolveOnGrowingPart(TrajectoryCost& cost, const TrajectoryData& data, So
   return solution;
 }
 
-/// Start of the motion: the shares of the motion do not include the hold.
+/// Start of the motion [s]. Shares of the motion are counted from there, without the hold.
 double MotionStart(const std::vector<double>& parameters, const SolveOptions& options) {
   return options.release_time >= 0 ? parameters[options.release_time] : 0.0;
 }
@@ -52,8 +52,8 @@ std::vector<double> GrowingPartEnds(double begin, double end, double cycle) {
   return times;
 }
 
-/// Change of all parameters if parameter k changes by 1 and the others follow to keep the cost low. It is a column of
-/// the inverse of J'J over the free parameters, scaled to 1 at k. Empty if the data do not determine it.
+/// Change of all parameters if parameter k changes by 1 and the other parameters minimize the cost again. It is a
+/// column of the inverse of J'J over the free parameters, scaled to 1 at k. Empty if the data do not determine it.
 Eigen::VectorXd ProfileDirection(const LeastSquares& cost, const std::vector<double>& at, int k,
                                  const SolveOptions& options) {
   Eigen::MatrixXd sums;
@@ -135,8 +135,8 @@ bool MayReachRest(const LeastSquares& cost, const std::vector<double>& parameter
          cost.ComesToRest(ShiftedAlong(direction, -kShift * parameters[k], parameters, options), 0);
 }
 
-/// Solves from `start`. If that does not explain the data, first solves over three cycles, then over twice as many, and
-/// so on. A recording that reaches rest has one local minimum for each number of half swings before the stop. It is
+/// Solves from `start`. If `start` does not explain the data, first solves over three cycles, then over twice as many,
+/// and so on. A recording that reaches rest has one local minimum for each number of half swings before the stop. It is
 /// fitted over 30, 60 and 85 percent of the motion first.
 Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std::vector<double>& start,
                     const SolveOptions& options) {
@@ -160,7 +160,7 @@ Solution SearchFrom(TrajectoryCost& cost, const TrajectoryData& data, const std:
   return Refine(cost, solution, options);
 }
 
-/// Limits the trajectories of one stage of the search, so that some remain for the others.
+/// Limits the number of trajectories in one stage of the search, so that the later stages can compute some too.
 SolveOptions WithBudget(const TrajectoryCost& cost, SolveOptions options) {
   constexpr int kMaxTraces = 500;
   options.max_traces = std::min(options.max_traces, cost.traces() + kMaxTraces);
@@ -189,8 +189,8 @@ Solution SolveWithout(TrajectoryCost& cost, const TrajectoryData& data, const St
   return Continue(cost, solution, options);
 }
 
-/// Whether the solution explains the data: its deviance is at most a tenth of that of the readings' variance.
-bool IsSmall(const TrajectoryData& data, const Solution& solution) {
+/// Whether the solution explains the data: its deviance is at most a tenth of the deviance of a constant.
+bool ExplainsData(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }
 
@@ -207,7 +207,7 @@ Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& op
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess,
                 const SolveOptions& options) {
   Solution best = SearchFrom(cost, data, guess(options.fixed), WithBudget(cost, options));
-  if (IsSmall(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
+  if (ExplainsData(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
   for (const int k : RemovableFriction(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
     const bool better = other.usable && (!best.usable || other.sum < best.sum);

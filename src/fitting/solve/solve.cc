@@ -51,8 +51,8 @@ NewtonStep StepFrom(const LeastSquares& cost, const std::vector<bool>& held, con
 }
 
 /// Ends a solve as soon as a step reaches a bound. Ceres shortens its steps there, and shortened steps move slowly
-/// along the bound. Also ends it as soon as the next step would be the last. That follows from the sums that Ceres just
-/// asked for; Ceres itself would need one more trajectory to find out.
+/// along the bound. Also ends a solve as soon as the next step would be negligible. That follows from the sums that
+/// Ceres just asked for; Ceres itself would need one more trajectory to find out.
 class EarlyStop final : public ceres::IterationCallback {
  public:
   EarlyStop(const LeastSquares& cost, const std::vector<double>& parameters, const SolveOptions& options,
@@ -123,20 +123,20 @@ void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool
   solution.message = summary.message;
 }
 
-/// Parameters that the next Gauss-Newton step would move to a bound, and which bound. Ceres does not make a step that
-/// is too small, and so leaves them short of it.
+/// Parameters that the next Gauss-Newton step would move to a bound, each with that bound. Ceres does not make very
+/// small steps, so it leaves such parameters just short of their bound.
 std::vector<std::pair<std::size_t, double>> ParametersReachingBound(const LeastSquares& cost,
                                                                     const SolveOptions& options,
                                                                     const std::vector<bool>& held,
                                                                     const Solution& solution) {
   const NewtonStep newton = StepFrom(cost, held, solution.parameters);
-  std::vector<std::pair<std::size_t, double>> carried;
+  std::vector<std::pair<std::size_t, double>> reaching;
   for (Eigen::Index k = 0; k < newton.step.size(); ++k) {
     const auto i = static_cast<std::size_t>(newton.free[static_cast<std::size_t>(k)]);
     const int side = BoundSide(options, i, solution.parameters[i] + newton.step[k]);
-    if (side != 0) carried.emplace_back(i, side < 0 ? options.lower[i] : options.upper[i]);
+    if (side != 0) reaching.emplace_back(i, side < 0 ? options.lower[i] : options.upper[i]);
   }
-  return carried;
+  return reaching;
 }
 
 /// Among the parameters held at their bound, the one that the cost pulls inwards most; -1 if there is none.
@@ -169,25 +169,25 @@ int BoundSide(const SolveOptions& options, std::size_t i, double value) {
 }
 
 /// An active-set method. A parameter whose step reaches its bound, or would reach it, is held there. It is freed if the
-/// cost pulls it inwards at the optimum of the others.
+/// cost pulls it inwards at the optimum of the other parameters.
 Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options) {
   Solution solution;
   solution.parameters = start;
   std::vector<bool> held = options.fixed;
-  // A parameter is held and freed once or twice; one that repeats this lies on its bound to rounding.
+  // A parameter is held and freed once or twice. If this repeats, it differs from its bound only by rounding.
   const std::size_t most_runs = 4 * start.size();
   for (std::size_t run = 0; run < most_runs && !cost.is_stopped(); ++run) {
     Run(cost, options, held, solution);
     if (!solution.usable || cost.traces() >= options.max_traces) break;
-    const std::vector<std::size_t> landed = AtBound(solution.parameters, options, held);
-    for (const std::size_t i : landed) held[i] = true;
-    if (!landed.empty()) continue;
-    const auto carried = ParametersReachingBound(cost, options, held, solution);
-    for (const auto& [i, bound] : carried) {
+    const std::vector<std::size_t> at_bound = AtBound(solution.parameters, options, held);
+    for (const std::size_t i : at_bound) held[i] = true;
+    if (!at_bound.empty()) continue;
+    const auto reaching = ParametersReachingBound(cost, options, held, solution);
+    for (const auto& [i, bound] : reaching) {
       solution.parameters[i] = bound;
       held[i] = true;
     }
-    if (!carried.empty()) continue;
+    if (!reaching.empty()) continue;
     if (held == options.fixed) break;
     const int pulled = ParameterLeavingBound(cost, options, held, solution);
     if (pulled < 0) break;

@@ -20,7 +20,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-/// Phase step [rad] at the end of the scanned part between neighbouring frequencies.
+/// Difference in phase [rad] between neighbouring frequencies at the end of the scanned part.
 constexpr double kPhaseStep = 0.6;
 
 /// The first samples determine the frequency well enough for the solver, which then uses the remaining ones.
@@ -29,12 +29,12 @@ constexpr Index kMaxScanSamples = 150;
 constexpr std::size_t kMaxStarts = 12;
 
 /// Decay of the amplitude over the scanned part: to a share `end` of its first value, exponentially (viscous friction)
-/// or linearly (dry friction). If a linear `end` is below 0, the motion stops before the end.
+/// or linearly (dry friction). If a linear `end` is below 0, the motion stops earlier.
 struct Envelope {
   bool exponential;
   double end;
 
-  /// Amplitude relative to the first amplitude at `part` of the scanned time.
+  /// Amplitude after the share `part` of the scanned time, divided by the first amplitude.
   double At(double part) const {
     constexpr double kMinAmplitude = 0.02;  // a pendulum at rest has no phase
     return std::max(exponential ? std::pow(end, part) : 1 - (1 - end) * part, kMinAmplitude);
@@ -77,7 +77,7 @@ class Scan {
       const ArrayXd decay = (time_ / duration()).unaryExpr([&](double part) { return envelope.At(part); });
       ArrayXd warped;
       for (std::size_t i = 0; i < frequencies.size() && !stop_.stop_requested(); ++i) {
-        // The amplitude that corresponds to a rate depends on the frequency; that of an angle does not.
+        // For a rate, the angle's amplitude depends on the frequency; for an angle it does not.
         if (i == 0 || quantity_ == Quantity::kRate) warped = WarpedTime(amplitude * decay, frequencies[i]);
         Candidate trial{frequencies[i], envelope};
         Solve(decay, frequencies[i] * warped, trial);
@@ -121,7 +121,8 @@ class Scan {
 };
 
 std::vector<double> Grid(const FrequencyRange& range, double duration) {
-  constexpr double kMaxFrequencies = 20'000;  // more need a coarser grid: such recordings do not determine a frequency
+  // A grid that would need more is made coarser: such recordings do not determine a frequency.
+  constexpr double kMaxFrequencies = 20'000;
   const double step = std::max(kPhaseStep / duration, (range.high - range.low) / kMaxFrequencies);
   const auto count = static_cast<std::size_t>(std::ceil(std::max(range.high - range.low, 0.0) / step));
   std::vector<double> grid;
@@ -132,8 +133,7 @@ std::vector<double> Grid(const FrequencyRange& range, double duration) {
   return grid;
 }
 
-/// Local minima over frequency, the best first. Minima that explain almost nothing are kept only if there are no
-/// others.
+/// Local minima over frequency, the best first; at most kMaxStarts.
 std::vector<Candidate> LocalMinima(const std::vector<Candidate>& candidates) {
   std::vector<Candidate> minima;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -188,11 +188,11 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
 
 }  // namespace
 
-/// Scans twice. The first scan estimates the amplitude from the range of the samples, the second takes it from the best
-/// fit.
+/// Scans twice. The first scan uses an amplitude from the range of the samples, the second uses the amplitude of the
+/// best fit.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop) {
-  constexpr double kMaxAmplitude = 3;  // half ranges: samples rarely miss a larger part of the swing
+  constexpr double kMaxAmplitude = 3;  // in half ranges of the samples; the true amplitude is rarely larger
   const Scan scan(recording, model.gravity, stop);
   const std::vector<double> frequencies = Grid(range, scan.duration());
   const std::vector<Candidate> rough = scan.At(frequencies, scan.half_range());

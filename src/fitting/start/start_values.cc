@@ -54,11 +54,11 @@ Index SampleAt(const Recording& recording, double time) {
   return std::lower_bound(recording.time.begin(), recording.time.end(), time) - recording.time.begin();
 }
 
-/// An instant at which the pendulum certainly falls, and its delay after the release. For an angle it is the first zero
-/// crossing (a quarter period), for a rate the first turn (half a period).
+/// An instant at which the pendulum certainly falls. For an angle it is the first zero crossing, a quarter period after
+/// the release; for a rate it is the first turn, half a period after the release.
 struct Fall {
   double time;
-  double periods;
+  double periods;    // from the release to this instant
   double amplitude;  // rad, signed release angle
 };
 
@@ -83,9 +83,9 @@ std::optional<Fall> FirstFall(const Centred& data) {
   return Fall{time, is_rate ? 0.5 : 0.25, is_rate ? -sign * amplitude : sign * amplitude};
 }
 
-/// The held part at the start, if there is one. The first fall dates the release. Until then, for at least a tenth of a
-/// period, the reading must stay within 5 % of the amplitude plus five standard deviations of the noise. If
-/// `is_requested` is true, any samples before the release are accepted.
+/// The held part at the start, if there is one. The release time is calculated from the first fall. Before the release,
+/// for at least a tenth of a period, the reading must stay within 5 % of the amplitude plus five standard deviations of
+/// the noise. If `is_requested` is true, any samples before the release are accepted.
 std::optional<Hold> FindHold(const Centred& data, bool is_requested) {
   const std::optional<Fall> fall = FirstFall(data);
   if (!fall) return std::nullopt;
@@ -166,8 +166,8 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
       choice == StartKind::kMoving ? std::nullopt : FindHold(data, choice == StartKind::kRelease);
   if (choice == StartKind::kRelease && !hold) {
     return Error(StatusCode::kFailedPrecondition,
-                 "the recording does not begin with a hold: by the first fall, the release was before the first "
-                 "sample; use --start moving");
+                 "the recording does not begin with a hold: the first swing shows that the release was before the "
+                 "first sample; use --start moving");
   }
   if (hold) {
     values.start = StartKind::kRelease;

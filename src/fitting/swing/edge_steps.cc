@@ -65,7 +65,7 @@ RunRegression Regress(const FitResiduals& data, const std::vector<Run>& runs) {
     residual.segment(first, length) = own.array() - own.mean();
     first += length;
   }
-  const Eigen::VectorXd scale = data.jacobian.colwise().norm().cwiseMax(1e-300);  // the zero's own column vanishes
+  const Eigen::VectorXd scale = data.jacobian.colwise().norm().cwiseMax(1e-300);  // the column of the zero is 0
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(within.rows(), within.cols());
   qr.setThreshold(1e-9);
   qr.compute(within * scale.cwiseInverse().asDiagonal());
@@ -80,17 +80,18 @@ void FindRunOffsets(const FitResiduals& data, std::vector<Run>& runs) {
   }
 }
 
-/// Difference between the zeros of two successive runs in counts, and the whole number of counts without the lag.
+/// The step between the zeros of two successive runs, in counts.
 struct Step {
-  double turn = 0;  // change of direction: 2, -2, or 0 within one
-  double difference = 0;
-  double lag = 0, whole = 0;
+  double turn = 0;        // change of direction: 2, -2, or 0 if both runs have the same direction
+  double difference = 0;  // between the zeros
+  double lag = 0;         // of the encoder
+  double whole = 0;       // the difference without the lag, rounded to whole counts
 
   double Remainder() const { return difference - turn * lag - whole; }
 };
 
 /// The lag near each step: half of the difference between the zeros of upward and downward runs, minus the lost counts.
-/// A law that does not quite fit makes the motion late relative to the readings, so the lag changes slowly.
+/// If the law does not fit exactly, the modelled motion lags the readings, so the estimated lag changes slowly.
 void EstimateLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
   std::vector<double> lags(steps.size(), 0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -105,8 +106,8 @@ void EstimateLags(std::size_t near, bool by_mean, std::vector<Step>& steps) {
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].lag = lags[k];
 }
 
-/// Most turning points lose no counts, so the first pass uses a median; later passes use the remainder after whole
-/// counts.
+/// Finds the whole counts of each step. The first pass estimates lags by medians, because most turning points lose no
+/// counts. Later passes use means after the whole counts of the previous pass are subtracted.
 std::vector<Step> CountSteps(const std::vector<Run>& runs, double resolution) {
   constexpr std::size_t kNear = 12, kNearer = 4;  // steps to either side
   constexpr int kPasses = 4;

@@ -26,7 +26,7 @@ constexpr Eigen::Index kMaxTrialSamples = 3000;
 constexpr double kPerHalfSwing = 12;
 constexpr int kMaxTrialTraces = 60;
 
-/// Fits the richest law to windows of one recording, and compares the residuals of these fits in a part of it.
+/// Fits the richest law to windows of one recording, and gives the residuals of these fits in parts of the recording.
 class WindowTrials {
  public:
   WindowTrials(Recording recording, const FitOptions& options)
@@ -70,7 +70,7 @@ class WindowTrials {
   std::vector<Trial> trials_;
 };
 
-/// Numbers of turning points that may be left out at an edge: 0, 1, 2, 4 and so on, and a quarter of all.
+/// Numbers of turning points that may be left out at one end of a window: 0, 1, 2, 4 and so on, and a quarter of all.
 std::vector<std::size_t> TrimCandidates(std::size_t turns) {
   const std::size_t most = std::max<std::size_t>(turns / 4, 1);
   std::vector<std::size_t> steps = {0};
@@ -79,14 +79,15 @@ std::vector<std::size_t> TrimCandidates(std::size_t turns) {
   return steps;
 }
 
-/// The smallest number in `steps` of turning points to leave out at an edge. It is enough if leaving out more hardly
-/// improves the fit of the rest; if none is enough, the largest number is returned. window(k) leaves out k of them.
+/// The number of turning points to leave out at one end of a window: the smallest number in `steps` for which leaving
+/// out more hardly improves the fit of the remaining window. If there is no such number, returns the largest one in
+/// `steps`. window(k) gives the window without k turning points.
 template <typename Window>
 std::size_t CountDisturbedTurningPoints(WindowTrials& trials, const std::vector<std::size_t>& steps,
                                         const Window& window) {
-  // No law is exact: the shorter a window is, the better it fits.
+  // No law is exact: the shorter a window is, the better a law fits it.
   constexpr double kAllowedRatio = 1.1;
-  constexpr double kAllowedPerTurningPoint = 0.02;  // per turning point
+  constexpr double kAllowedPerTurningPoint = 0.02;
   const auto fits = [&](std::size_t less, std::size_t more) {
     const auto [from, to] = window(less);
     const auto [inner_from, inner_to] = window(more);
@@ -102,7 +103,7 @@ std::size_t CountDisturbedTurningPoints(WindowTrials& trials, const std::vector<
   return steps.back();
 }
 
-/// Turning points that may begin or end a window: not the hold, nor the first sample.
+/// Turning points at which a window may begin or end. The hold and the first sample are excluded.
 std::vector<double> InnerTurningPoints(const FreeSwing& swing) {
   std::vector<double> turns;
   for (const double turn : swing.turns) {
@@ -138,8 +139,8 @@ void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end,
   }
 }
 
-/// Whether the user gave a value of the start. It belongs to the first sample or the release of the present window,
-/// whose beginning must then stay.
+/// Whether the user gave a value, bound or prior for the start of the motion. It refers to the first sample or to the
+/// release in the present window, so the window must keep its beginning.
 bool ConstrainsStart(const FitOptions& options) {
   const auto names = [](const auto& map) {
     return std::ranges::any_of(map, [](const auto& entry) {
@@ -224,7 +225,7 @@ void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
                                     "choose another window with --from and --to if needed"});
 }
 
-/// Also removes the errors, because they are valid only for a pendulum.
+/// Marks the fit as not of a pendulum, and removes its errors, which are valid only for a pendulum.
 void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = "this is not a free pendulum's swing: " + why;
@@ -273,8 +274,8 @@ std::optional<std::string> NotAPendulumReason(const SwingFit& result, const std:
 /// A fit of a swing, and what the rescues have found so far.
 struct SwingState {
   FreeSwing swing;                   ///< The window of the next fit.
-  SwingFit result;                   ///< Of the last fit.
-  std::optional<OffsetJumps> jumps;  ///< Of the readings' zero; std::nullopt: not searched.
+  SwingFit result;                   ///< Result of the last fit.
+  std::optional<OffsetJumps> jumps;  ///< Jumps of the readings' zero; std::nullopt: not searched or none.
   bool was_trimmed = false;          ///< Disturbed ends were left out.
   bool is_pendulum = true;
 
@@ -316,7 +317,7 @@ Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
   return why.has_value();
 }
 
-/// A part that a hand disturbed at the beginning or the end of a swing does not fit the rest.
+/// If a hand disturbed the beginning or the end of a swing, this part does not fit the remaining swing.
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   Trim(state.result.used, options, state.swing);
   if (!state.HasNewWindow()) return false;

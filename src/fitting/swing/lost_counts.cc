@@ -48,11 +48,11 @@ void RefineWithinRuns(const Recording& edges, const FitProblem& problem, const T
   constexpr double kSame = 1e-3;  // of the rms
   RunRegression now = RegressWithinRuns(residuals, edges);
   for (int step = 0, halves = 0; step < kMaxSteps && halves < kMaxStepHalvings; ++step) {
-    std::vector<double> there = parameters;
-    // Bounds are ignored: they would restrict the other parameters, and this result is not an estimate.
-    for (std::size_t i = 0; i < there.size(); ++i) there[i] += now.change[static_cast<Index>(i)];
+    std::vector<double> trial = parameters;
+    // Bounds are ignored. A parameter held at a bound would distort the others, and this result is not an estimate.
+    for (std::size_t i = 0; i < trial.size(); ++i) trial[i] += now.change[static_cast<Index>(i)];
     FitResiduals next_residuals;
-    const bool traced = ComputeResiduals(edges, problem, cost, there, next_residuals);
+    const bool traced = ComputeResiduals(edges, problem, cost, trial, next_residuals);
     RunRegression next = traced ? RegressWithinRuns(next_residuals, edges) : now;
     if (!traced || !(next.rms < now.rms)) {
       now.change *= 0.5;
@@ -60,7 +60,7 @@ void RefineWithinRuns(const Recording& edges, const FitProblem& problem, const T
       continue;
     }
     const bool is_same = next.rms > (1 - kSame) * now.rms;
-    parameters = std::move(there);
+    parameters = std::move(trial);
     residuals = std::move(next_residuals);
     now = std::move(next);
     halves = 0;
@@ -98,8 +98,9 @@ struct StepInCounts {
   }
 };
 
-/// Returns {}, which is not whole, if the recording has no resolution, or if it has a range: the range would have to
-/// shift with the readings.
+/// The size of a step in counts. Returns {}, which is not a whole number of counts, if the recording has no resolution
+/// or has a sensor range. Readings with a range cannot be corrected, because the ends of the range would not shift with
+/// them.
 StepInCounts InCounts(const OffsetStep& step, const Recording& recording) {
   if (!(recording.resolution > 0) || recording.range) return {};
   return {step.size / recording.resolution, step.std_error / recording.resolution};
@@ -171,7 +172,7 @@ std::string DescribeJumps(const Recording& recording, const std::vector<OffsetSt
 bool MayHaveOffsetJump(const FitReport& fit) {
   constexpr double kDeviations = 4;
   constexpr double kMinCount = 0.4;
-  constexpr double kRounding = 1e-9;  // of the swing: rounding errors of the numbers, not of a model
+  constexpr double kRounding = 1e-9;  // of the swing; smaller residuals are floating-point rounding errors
   const Index count = fit.residual.size();
   if (fit.quantity != Quantity::kAngle || count < 2) return false;
   const double mean = fit.residual.mean();
@@ -191,7 +192,7 @@ bool MayHaveOffsetJump(const FitReport& fit) {
 
 namespace {
 
-/// Steps on which fit and search agree, and the readings corrected by them.
+/// Steps on which fit and search agree, and the readings corrected by these steps.
 struct ConsistentSteps {
   std::vector<OffsetStep> steps;
   Recording corrected;

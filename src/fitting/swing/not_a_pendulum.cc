@@ -49,9 +49,10 @@ bool DescribesAll(const FitReport& report) {
   });
 }
 
-/// A mass on a spring has the same period at every amplitude. pendulum: a fit with sine gravity.
-std::optional<std::string> IsLinear(const Recording& recording, const FitReport& pendulum,
-                                    const std::stop_token& stop) {
+/// The reason why the motion is that of a linear oscillator, such as a mass on a spring, whose period is the same at
+/// every amplitude; otherwise std::nullopt. pendulum: a fit with sine gravity.
+std::optional<std::string> ReasonIfLinear(const Recording& recording, const FitReport& pendulum,
+                                          const std::stop_token& stop) {
   constexpr double kMinAmplitude = 0.2;  // rad; for smaller amplitudes the two models hardly differ
   constexpr double kMuchLess = 0.7;
   constexpr double kSurely = 30;
@@ -78,9 +79,9 @@ struct Line {
   double share = 0;      // of their variance
 };
 
-/// The strongest line at frequencies up to ten times the pendulum's own. Uses Scargle's periodogram without its phase
-/// (Astrophys. J. 263:835, 1982). The share includes all lines within a fifth of it, because a decaying mode is not a
-/// sharp line.
+/// The strongest line at frequencies up to ten times the pendulum's own. Uses Scargle's periodogram without its time
+/// offset τ (Astrophys. J. 263:835, 1982). The share includes all lines within 20 % of the strongest line's frequency,
+/// because a decaying mode is not a sharp line.
 Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual, double natural) {
   constexpr int kMaxFrequencies = 1000;
   constexpr double kWidth = 0.2;
@@ -90,7 +91,7 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
   const double independent = 2 * kPi / t[count - 1];
   const double spacing = std::max(independent, 10 * natural / kMaxFrequencies);
   std::vector<Line> lines;
-  // Above half the sampling rate there are only mirror images.
+  // Above half the sampling rate there are only aliases.
   const double highest = std::min(10 * natural, 0.5 * independent * static_cast<double>(count - 1));
   for (double frequency = spacing; frequency < highest; frequency += spacing) {
     const Eigen::ArrayXd phase = frequency * t;
@@ -106,7 +107,7 @@ Line StrongestLine(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
   return strongest;
 }
 
-std::optional<std::string> HasTwoModes(const Recording& recording, const FitReport& report) {
+std::optional<std::string> ReasonIfTwoModes(const Recording& recording, const FitReport& report) {
   constexpr double kMinShare = 0.4;
   constexpr double kMinMisfit = 0.03;  // of the swing's rms
   const double natural = NaturalFrequencyOf(report);
@@ -129,7 +130,7 @@ std::optional<std::string> LinearOscillatorReason(const Recording& recording, co
   if (report.termination == Termination::kFailed || report.model.gravity.is_linear()) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
-  return richest ? IsLinear(some, *richest, stop) : std::nullopt;
+  return richest ? ReasonIfLinear(some, *richest, stop) : std::nullopt;
 }
 
 std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,
@@ -138,7 +139,7 @@ std::optional<std::string> TwoModesReason(const Recording& recording, const FitR
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest =
       FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear, stop);
-  return richest ? HasTwoModes(some, *richest) : std::nullopt;
+  return richest ? ReasonIfTwoModes(some, *richest) : std::nullopt;
 }
 
 }  // namespace pendulum

@@ -43,8 +43,8 @@ std::vector<Eigen::MatrixXd> AlternativeExplanations(const Bins& bins, Index bin
   return alternatives;
 }
 
-/// The exact sample of a step that was found at a bin. Searches the two neighbouring bins for the change from the mean
-/// residual of the bin before them to that mean plus the step.
+/// The exact sample of a step that was found at a bin. Searches bins `bin` - 1 and `bin` for the sample at which the
+/// residuals change from the mean of bin `bin` - 2 to this mean plus the step.
 Index SampleOf(const FitResiduals& data, const Bins& bins, Index bin, double size) {
   const auto first = [&](Index k) {
     return bins.first[static_cast<std::size_t>(std::clamp<Index>(k, 0, bins.time.size()))];
@@ -179,7 +179,8 @@ class StepSearch {
     return most;
   }
 
-  /// One additional step at the best place, either for independent residuals or for the present autocorrelation.
+  /// The best additional step. Its place is searched twice: for independent residuals and for the present
+  /// autocorrelation.
   std::optional<Trial> BestTrial() const {
     const Eigen::MatrixXd columns = Columns(places_);
     std::optional<Trial> best;
@@ -192,7 +193,8 @@ class StepSearch {
     return best;
   }
 
-  /// Moves steps one by one to better places, with the other steps kept, until none moves or kMaxPasses are done.
+  /// Moves steps one by one to better places, with the other steps unchanged, until no step moves or kMaxPasses passes
+  /// are done.
   void RefinePlaces() {
     constexpr int kMaxPasses = 3;
     for (int pass = 0; pass < kMaxPasses; ++pass) {

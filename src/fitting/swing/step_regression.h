@@ -76,7 +76,7 @@ inline Eigen::MatrixXd WithColumns(const Eigen::MatrixXd& columns, const Eigen::
 struct Regression {
   std::vector<double> autoregression;  // φ_1..φ_p
   Eigen::MatrixXd basis;               // M x K, orthonormal: spans the whitened columns
-  Eigen::VectorXd rest;                // M, whitened remaining residuals; 0 where a span begins
+  Eigen::VectorXd rest;                // M, whitened remaining residuals; 0 in bins where kept_ is 0
   Eigen::VectorXd size, std_error;     // K
   double sigma = 0;                    // of `rest`
   double criterion = 0;                // -2 log L plus the penalty for the order
@@ -115,7 +115,7 @@ class StepRegression {
     return regression;
   }
 
-  /// The same for residuals without autocorrelation.
+  /// The regression for residuals that are assumed to have no autocorrelation.
   Regression FitAsWhite(const Eigen::MatrixXd& columns) const {
     Regression regression;
     Regress(columns, &regression);
@@ -123,7 +123,7 @@ class StepRegression {
     return regression;
   }
 
-  /// The bin where one additional step explains most, for the given autocorrelation; -1: none.
+  /// The bin where one additional step explains most of the residuals, for the given autocorrelation; -1: none.
   Eigen::Index BestPlace(const Eigen::MatrixXd& columns, std::vector<double> autoregression) const {
     constexpr Eigen::Index kEdge = 3;           // excluded bins at either end of the recording
     constexpr double kMinDistinctShare = 1e-6;  // share of a step that the columns do not explain
@@ -146,7 +146,8 @@ class StepRegression {
       most = product[i] * product[i] / norm[i];
       best = i;
     }
-    // Samples, and counts with them, are lost in gaps. Such a place is preferred unless another is clearly better.
+    // Counts are often lost in gaps, together with samples. The first bin after a gap is therefore preferred, unless
+    // another bin is clearly better.
     for (const GapFreeSpan& span : bins_.spans) {
       const Eigen::Index i = span.begin;
       const bool holds_best = i >= kEdge && i < best && best < i + span.size;
@@ -210,7 +211,7 @@ class StepRegression {
     return response;
   }
 
-  /// Σ_t response(t - i) value_t for each i; the rise stays at its last value.
+  /// Σ_t response(t - i) value_t for each i. After its end, the response stays at its last value.
   Eigen::VectorXd CorrelateWithResponse(const std::vector<double>& response, const Eigen::VectorXd& value) const {
     Eigen::VectorXd sum(size());
     double after = 0;
@@ -225,8 +226,8 @@ class StepRegression {
   }
 
   Bins bins_;
-  int longest_ = 0;
-  Eigen::VectorXd kept_;  // M: 1, or 0 where a span begins
+  int longest_ = 0;       // highest order of an autoregression
+  Eigen::VectorXd kept_;  // M: 0 in the first longest_ bins of each span, which have too few predecessors; otherwise 1
 };
 
 }  // namespace pendulum

@@ -25,18 +25,18 @@ constexpr double kFastestHz = 3;
 /// A difference of -2 log L that corresponds to three standard deviations.
 constexpr double kNearlyAsWell = 9;
 
-/// A difference that even the misfit of a slightly wrong law does not cause: ten standard deviations.
+/// A difference of -2 log L that even a slightly wrong law does not cause: ten standard deviations.
 constexpr double kMinDevianceGap = 100;
 
 constexpr double kTurn = 2 * kPi;
 
-/// For fits that are only compared: fits that explain the readings need tens.
+/// Limit of trajectories for fits that are only compared. Fits that explain the readings need a few tens.
 constexpr int kMaxAliasTraces = 300;
 
 /// The frequencies that a recording may have.
 struct AllowedFrequencies {
   FrequencyRange range;  ///< rad/s
-  bool bounded = false;  ///< By the rig or the user; otherwise by the range of real pendulums.
+  bool bounded = false;  ///< Whether rig or user limit it; otherwise `range` is that of real pendulums.
 };
 
 /// Frequency of small swings in rad/s for an inertia in the units of the options.
@@ -71,8 +71,8 @@ AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOption
   return allowed;
 }
 
-/// Removes constant readings at the start, because a release between two samples cannot be dated. The first reading may
-/// belong to the hold even if the second does not.
+/// Removes constant readings at the start, because the time of a release between two samples is unknown. The first
+/// reading is removed too, because it may belong to the hold even if the second reading does not.
 void RemoveHold(Recording& used, FreeSwing& swing) {
   const double range = used.value.maxCoeff() - used.value.minCoeff();
   const double band = 0.05 * range + 2 * used.resolution;
@@ -154,7 +154,8 @@ std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double
   return near;
 }
 
-/// With few samples per period, a misfit may look like noise, because successive residuals are independent.
+/// The reason to reject a poor fit, or std::nullopt. With few samples per period, a misfit may look like noise, because
+/// successive residuals are independent.
 std::optional<std::string> NotDescribedReason(const Recording& used, const FitReport& fit) {
   constexpr double kMaxUnexplained = 0.02;
   constexpr Index kMinPerParameter = 2;
@@ -171,16 +172,17 @@ std::optional<std::string> NotDescribedReason(const Recording& used, const FitRe
          " parameters and the choice of a frequency; record for longer";
 }
 
-/// If nothing bounds the frequency, only the slowest pendulum is accepted, and only if it is well sampled and no faster
-/// one is possible.
+/// The reason to reject a fit if neither rig nor bounds limit the frequency. Only the slowest pendulum is accepted, and
+/// only if it is well sampled and no faster pendulum explains the readings nearly as well.
 std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& aliases, double rate) {
-  constexpr double kWell = 8;         // samples a period
-  constexpr double kTurnsShow = 4.5;  // if no pendulum could alias to this frequency
+  constexpr double kMinPerPeriod = 8;                 // samples
+  constexpr double kMinPerPeriodIfUnambiguous = 4.5;  // if no pendulum could alias to this frequency
   const double frequency = aliases.front().frequency;
   const bool slowest = frequency < 0.5 * rate;
   const bool alone = NearlyAsGood(aliases, kMinDevianceGap).size() == 1;
   const bool is_unambiguous = rate - frequency > kFastestHz;
-  if (slowest && alone && rate > (is_unambiguous ? kTurnsShow : kWell) * frequency) return std::nullopt;
+  if (slowest && alone && rate > (is_unambiguous ? kMinPerPeriodIfUnambiguous : kMinPerPeriod) * frequency)
+    return std::nullopt;
   return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
          " or faster; the readings suggest " + Hz(frequency) +
          ". Give --rig with rod and bob or with \"inertia\", give --bounds of inertia, or sample at 6 Hz or faster";
@@ -220,8 +222,8 @@ std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequ
            " would look slower than it is; up to " + Hz(kFastestHz) + " only " + chosen +
            " fits the readings; give a rig file with masses and length to be certain";
   }
-  return "at " + Hz(rate) + " frequencies on both sides of a multiple of " + Hz(0.5 * rate) +
-         " differ only in how the period depends on the amplitude; only " + chosen + " agrees with it";
+  return "sampled at " + Hz(rate) + ", two frequencies at equal distances from a multiple of " + Hz(0.5 * rate) +
+         " differ only in how the period depends on the amplitude; only " + chosen + " fits the readings";
 }
 
 /// Whether the readings fit far better at a frequency that contradicts the rig.
@@ -280,14 +282,15 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
-/// The reason why a recording with well-sampled swings looks undersampled; empty if it may be undersampled.
+/// A message if well-sampled swings have an impossibly long period, because the unit of the times is wrong; otherwise
+/// empty.
 std::string ImplausiblePeriodText(const Recording& recording) {
-  constexpr double kLongest = 300;  // s: the period of a pendulum 22 km long
-  constexpr double kSeen = 20;      // samples per period; aliasing rarely looks this smooth
+  constexpr double kLongest = 300;      // s: the period of a pendulum 22 km long
+  constexpr double kMinPerPeriod = 20;  // samples; aliasing rarely looks this smooth
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
   if (!swings || swings->empty()) return "";
   const double period = 2 * swings->front().half_period * recording.clock_scale;
-  if (!(period > kLongest) || SampleRateOf(recording) * period < kSeen) return "";
+  if (!(period > kLongest) || SampleRateOf(recording) * period < kMinPerPeriod) return "";
   return "the period is " + NumberText(period, 3) +
          " s, which is impossible for a pendulum; if the times are milliseconds or microseconds, name their column "
          "time_ms or time_us";
@@ -301,8 +304,8 @@ std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
 }
 
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
-  // Measured from 0.1 to 1.2 rad: with 7.2 samples per period of the reference rig FindFreeSwings finds 600 of 600
-  // swings. With 6.6 it misses 31, with 5.9 most of them.
+  // Measured for amplitudes from 0.1 to 1.2 rad: with 7.2 samples per period of the reference rig, FindFreeSwings finds
+  // 600 of 600 swings. With 6.6 samples it misses 31, with 5.9 samples most of them.
   constexpr double kMinPerPeriod = 7;
   const auto expected = ExpectedFrequency(rig);
   const double rate = SampleRateOf(recording);

@@ -25,8 +25,8 @@ using Eigen::Index;
 /// Samples per block: a few times the variance inflation of a mean; 1 for white residuals.
 Index BlockLength(const Autocorrelation& correlation, Index samples) {
   if (correlation.kind == Autocorrelation::Kind::kWhite) return 1;
-  constexpr double kMemories = 5;
-  const auto length = static_cast<Index>(std::ceil(kMemories * correlation.VarianceInflation()));
+  constexpr double kInflationsPerBlock = 5;
+  const auto length = static_cast<Index>(std::ceil(kInflationsPerBlock * correlation.VarianceInflation()));
   return std::clamp<Index>(length, 2, std::max<Index>(samples / 8, 2));
 }
 

@@ -36,7 +36,7 @@ double StdError(const PowerProduct& product, const std::vector<double>& p, const
   return std::sqrt(gradient.dot(covariance * gradient));
 }
 
-/// Unit of (parameter / inertia), from the parameter's unit per G over s^2.
+/// Unit of parameter / inertia: the unit of parameter / G, divided by s^2, the unit of inertia / G.
 std::string UnitOverInertia(const ParameterInfo& info) {
   if (info.relative_unit == "s") return "1/s";
   if (info.relative_unit == "1") return "1/s^2";
@@ -103,7 +103,8 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
   return derived;
 }
 
-/// Propagates each end of a parameter with the others at their estimates, and adds the distances in quadrature.
+/// Propagates each end of a parameter with the other parameters at their estimates, and adds the distances in
+/// quadrature.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
   const std::vector<PowerProduct> products = PowerProducts(infos, parameters);

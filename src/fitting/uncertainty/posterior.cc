@@ -49,13 +49,13 @@ Result<void> CheckValues(const LinearizedFit& fit) {
   const NoiseModel& noise = fit.noise;
   if (noise.family != NoiseFamily::kQuantized || !(noise.resolution > 0) || !std::isfinite(noise.resolution)) {
     return Invalid("the noise is " + std::string(NoiseFamilyName(noise.family)) + " with resolution " +
-                   NumberText(noise.resolution) + "; a posterior is drawn of quantized noise with a resolution");
+                   NumberText(noise.resolution) + "; it must be quantized with a resolution greater than 0");
   }
   if (!(noise.sigma >= 0)) return Invalid("sigma is " + NumberText(noise.sigma) + "; it must be 0 or more");
   for (Eigen::Index j = 0; j < fit.lower.size(); ++j) {
     if (fit.lower[j] <= 0 && fit.upper[j] >= 0 && fit.lower[j] < fit.upper[j]) continue;
-    return Invalid("parameter " + std::to_string(j) + " is bound to " + NumberText(fit.lower[j]) + " .. " +
-                   NumberText(fit.upper[j]) + " of its fitted value; that must be an interval about 0");
+    return Invalid("the bounds of parameter " + std::to_string(j) + ", minus its fitted value, are " +
+                   NumberText(fit.lower[j]) + " and " + NumberText(fit.upper[j]) + "; 0 must lie between them");
   }
   return {};
 }
@@ -137,8 +137,8 @@ using Draws = Eigen::MatrixXd;
 constexpr double kMaxSigma = 2;  // prior: flat up to here, in units of the resolution
 
 /// The Markov chain. It uses slice sampling along orthogonal directions, which are rotated at random before every
-/// round, and then along log σ. The coordinates are those in which earlier draws are white, because without noise the
-/// posterior is uniform on a polytope. Readings are in units of the resolution.
+/// round, and then along log σ. The coordinates are those in which earlier draws are white: without noise the posterior
+/// is uniform on a polytope, whose shape the information does not describe. Readings are in units of the resolution.
 class Chain {
  public:
   Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const std::stop_token& stop);
@@ -357,8 +357,8 @@ Posterior Summarize(Draws draws, double resolution) {
   return posterior;
 }
 
-// Maximum number of evaluations of a sample. It allows few draws for 1e5 samples of which few are certain, but then the
-// posterior is nearly normal and needs no sampling.
+// Maximum number of evaluations of a sample. It allows only few draws for 1e5 samples that are mostly near the edge of
+// their level, but then the posterior is nearly normal and needs no sampling.
 constexpr double kMaxWork = 1e9;
 
 /// Runs of increasing length, each followed by whitening, until the coordinates fit. These draws are discarded.

@@ -48,14 +48,14 @@ class Profile {
     return Find(side, farthest);
   }
 
-  /// Whether the budget of trajectories is spent, so the ends are unknown.
+  /// Whether the budget of trajectories is used up, so the ends are unknown.
   bool is_exhausted() const { return cost_.traces() >= last_trace_; }
 
   /// Whether the profile fell below the optimum: it then belongs to another local minimum.
   bool found_lower() const { return found_lower_; }
 
-  /// The points of the profile, with points added until they are even between the ends, `down` and `up` from the
-  /// estimate. Points far beyond the ends, left by the search, are removed.
+  /// The points of the profile, with points added until they are evenly spread between the ends. The distances of the
+  /// ends from the estimate are `down` and `up`. Points of the search far beyond the ends are removed.
   std::vector<ProfilePoint> SpreadPoints(double down, double up) {
     constexpr double kFarBeyond = 4;  // in thresholds
     last_trace_ = cost_.traces() + Budget();
@@ -202,7 +202,7 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   if (profile.is_exhausted() || profile.found_lower()) return interval;
   interval.points =
       profile.SpreadPoints(down.value_or(profile.SearchedDistance(-1)), up.value_or(profile.SearchedDistance(1)));
-  // There is no curve, but the ends are valid.
+  // The curve is then incomplete, but the ends are valid.
   if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();
   interval.threshold = profile.threshold();
   return interval;

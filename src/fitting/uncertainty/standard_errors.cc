@@ -78,8 +78,8 @@ Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const
 }
 
 /// Jᵀ W J. For a robust family W is the mean information, because its meat uses the mean square score (P. J. Huber,
-/// Robust Statistics, Wiley 1981, section 7.6). With censored readings W is per sample, because these carry less
-/// information.
+/// Robust Statistics, Wiley 1981, section 7.6). With censored readings W is per sample, because censored readings carry
+/// less information.
 Eigen::MatrixXd InformationOf(const FitProblem& problem, const NoiseModel& noise, const SampleTerms& terms,
                               const Eigen::MatrixXd& jacobian) {
   const bool by_mean = noise.IsRobust() && problem.censored == 0;
@@ -207,8 +207,8 @@ Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& opt
   return t95;
 }
 
-/// Standard error of σ when it is estimated together with parameters of inverse information C, from the blocks of the
-/// inverse of the joint information.
+/// Standard error of σ, which is estimated together with the parameters, from the blocks of the inverse of the joint
+/// information. inverse: of the information of all free parameters.
 std::optional<double> SigmaError(const FittedRun& run, const Part& part, const Eigen::MatrixXd& inverse) {
   const NoiseModel& noise = run.solution.noise;
   if (noise.IsRobust()) return RobustSigmaError(noise, run.problem.data.values(), run.solution.readings);
@@ -275,7 +275,7 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     // Alternating autocorrelation can make the variance in a direction negative.
     if (!sound)
       own.method =
-          "inverse information, residuals assumed independent, because with their autocorrelation it has no inverse";
+          "inverse information, residuals assumed independent, because their autocorrelation gives no valid covariance";
   }
   errors.t95 = StudentT95(errors.covariance, optimum, samples, std::ranges::all_of(runs, IsWhite));
   return errors;

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Index;
 
 /// The power of the clock's scale in a parameter's estimate. A rate sensor's rate does not depend on the recording's
-/// clock. Estimates that follow from its readings alone do not scale; angles, which it measures as rate times time, do.
+/// clock, so estimates that follow from its readings alone do not scale. Angles scale, because such a sensor measures
+/// an angle as rate times time.
 int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
   const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
   const bool rate = quantity == Quantity::kRate;
@@ -40,7 +41,7 @@ Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitPro
   for (Index i = 0; i < readings.size(); ++i) {
     const double value = problem.data.value[static_cast<std::size_t>(i)];
     input = calibration.Reading(value, input);
-    double power = solution.noise.ForSample(i).At(value, readings[i]).weight * calibration.RadFromUnit();
+    double power = solution.noise.ForSample(i).DevianceAt(value, readings[i]).weight * calibration.RadFromUnit();
     for (Index k = 0; k < size; ++k, power *= input) pull.col(k) += power * jacobian.row(i).transpose();
   }
   return pull;
@@ -59,7 +60,7 @@ Eigen::VectorXd ScoresByScale(const Eigen::VectorXd& powers, const TrajectoryCos
 }
 
 /// Change of the estimates with a scale factor common to all recordings: n_i p_i if all parameters are free. A value
-/// that is fixed or has a prior in reported units does not scale, and changes the others as well.
+/// that is fixed or has a prior in reported units does not scale, and it changes the other estimates as well.
 Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SourceContext& context) {
   const auto size = static_cast<Index>(context.parameters.size());
   const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);

@@ -40,7 +40,7 @@ Eigen::MatrixXd Powers(const Eigen::VectorXd& reading, const Scale& scale, Index
   return powers;
 }
 
-/// K x K matrix that converts coefficients of powers of z to those of powers of the reading, by expanding
+/// K x K matrix that converts coefficients of powers of z to coefficients of powers of the reading, by expanding
 /// (x - center)ʲ / half_spanʲ.
 Eigen::MatrixXd RawFromScaled(const Scale& scale, Index count) {
   Eigen::MatrixXd raw = Eigen::MatrixXd::Zero(count, count);
@@ -82,15 +82,15 @@ LeastSquares Solve(const CalibrationTable& table, const Scale& scale, int order)
   return fit;
 }
 
-/// A smaller sum of squares comes from rounding in the computation: the curve passes through every point.
+/// A smaller sum of squared residuals comes from rounding in the computation: the curve passes through every point.
 double SmallestRss(const CalibrationTable& table) {
   constexpr double kRounding = 1e-13;
   const double rounding = kRounding * table.angle.cwiseAbs().maxCoeff();
   return static_cast<double>(table.size()) * rounding * rounding;
 }
 
-/// `order` is that of the longer curve. std::nullopt: too few points, or the shorter curve already passes through every
-/// point.
+/// `order` is the order of the longer curve. std::nullopt: there are too few points, or the shorter curve already
+/// passes through every point.
 std::optional<OrderTest> TestOrder(const CalibrationTable& table, const LeastSquares& shorter,
                                    const LeastSquares& longer, int order) {
   const int freedom = static_cast<int>(table.size()) - order - 1;
@@ -118,7 +118,8 @@ double Resolution(const CalibrationTable& table, const Calibration& calibration)
   return table.input == "counts" ? RmsSlope(table, calibration) : 0;
 }
 
-/// Sets the curve. The error is at least that of rounding to counts, even if the points lie on the line by chance.
+/// Sets the curve. The covariance assumes at least the error of rounding to counts, even if the points lie on the curve
+/// by chance.
 void SetCurve(const CalibrationTable& table, const LeastSquares& least_squares, const Scale& scale,
               Calibration& calibration) {
   calibration.input = table.input;

@@ -187,7 +187,7 @@ tl::unexpected<Status> FaultAt(const CalibrationTable& table, Index point, const
   return Fault(table.Place(point), sentence);
 }
 
-/// Of two points, the one later in the file, then the other.
+/// The two points, first the one that is later in the file.
 std::pair<Index, Index> LaterPointFirst(Index one, Index other) { return {std::max(one, other), std::min(one, other)}; }
 
 Check CheckReadingsDiffer(const CalibrationTable& table, const std::vector<Index>& order) {

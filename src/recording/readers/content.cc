@@ -15,8 +15,8 @@ using namespace std::string_view_literals;
 constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1A\n"sv;
 constexpr std::string_view kMat = "MATLAB "sv;
 
-/// MATLAB's own files begin with a text of 116 bytes, "MATLAB 5.0 MAT-file, ..."; from version 7.3 HDF5 follows it.
-/// Version 4 begins with a variable.
+/// MATLAB's own files begin with a text of 116 bytes, "MATLAB 5.0 MAT-file, ...". In version 7.3, HDF5 data follow.
+/// Files of version 4 begin with a variable.
 bool IsMat(std::string_view begin) {
   constexpr std::size_t kHeader = 128, kUserBlock = 512;
   if (SizeOfVersion4(begin)) return true;
@@ -44,12 +44,13 @@ constexpr std::array kForeign = {
     Foreign{"BZh"sv, "this is a bzip2 file; unpack it and name the file in it"},
     Foreign{"7z\xBC\xAF\x27\x1C"sv, "this is a 7z file; unpack it and name the file in it"},
     Foreign{"Rar!"sv, "this is a RAR file; unpack it and name the file in it"},
-    Foreign{"\xD0\xCF\x11\xE0"sv, "this is a workbook of an older Excel; save it as CSV and name that"},
-    Foreign{"#ROSBAG"sv, "this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that"},
-    Foreign{"\x89MCAP"sv, "this is an MCAP log; export the topic as CSV and name that"},
+    Foreign{"\xD0\xCF\x11\xE0"sv, "this is a workbook of an older Excel; save it as CSV and give the CSV file"},
+    Foreign{"#ROSBAG"sv, "this is a ROS bag; export the topic as CSV (rostopic echo -p) and give the CSV file"},
+    Foreign{"\x89MCAP"sv, "this is an MCAP log; export the topic as CSV and give the CSV file"},
     Foreign{"SQLite format 3"sv, "this is an SQLite file, not a recording; name a file of rows, a zip or a MAT-file"},
-    Foreign{"<?xml"sv,
-            "this is XML, such as the project of Logger Pro or Tracker; export its data as text and name that"},
+    Foreign{
+        "<?xml"sv,
+        "this is XML, such as the project of Logger Pro or Tracker; export its data as text and give the text file"},
     Foreign{"# Created by Octave"sv,
             "this is Octave's text format; save the variables with save -7 run.mat t angle_deg"},
     Foreign{"Octave-1-"sv, "this is Octave's binary format; save the variables with save -7 run.mat t angle_deg"},
@@ -74,7 +75,7 @@ Content ContentOf(std::string_view begin) {
 
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name) {
   const Foreign* foreign = FindForeign(begin);
-  return Fault(name, std::string(foreign == nullptr ? "this is no file that is read" : foreign->sentence));
+  return Fault(name, std::string(foreign == nullptr ? "the format of this file is not supported" : foreign->sentence));
 }
 
 }  // namespace pendulum

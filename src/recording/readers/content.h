@@ -17,7 +17,7 @@ inline constexpr std::size_t kContentBytes = 520;  ///< Number of bytes needed f
 /// Detects the format from a file's first kContentBytes, or from all its bytes if it is shorter.
 Content ContentOf(std::string_view begin);
 
-/// kDataLoss for a file of kForeign: its format and what to do. `name` replaces the path.
+/// The error kDataLoss for a file of kForeign, with its format and what to do. `name` is shown as the path.
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name);
 
 }  // namespace pendulum

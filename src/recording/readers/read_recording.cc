@@ -15,10 +15,10 @@
 namespace pendulum {
 namespace {
 
-/// Packed files are read completely; a larger file is not a recording.
+/// Zip and MAT-files are read into memory completely. A larger file is refused, because it is not a recording.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 29;
 
-/// Reads the rest of a file after its first bytes.
+/// Reads the remaining bytes of a file. `bytes` are its first bytes.
 Result<std::string> ReadRest(InputFile& file, std::string bytes) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   while (true) {
@@ -43,7 +43,7 @@ Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   begin.resize(*got);
   const Content content = ContentOf(begin);
   if (content == Content::kText) return ReadRows(LineReader(std::move(file), begin), options);
-  if (content == Content::kForeign) return ForeignContent(begin, file.name());  // it may be larger than the memory
+  if (content == Content::kForeign) return ForeignContent(begin, file.name());  // may be larger than the memory
   const Result<std::string> bytes = ReadRest(file, std::move(begin));
   if (!bytes) return tl::unexpected(bytes.error());
   return ParseRecording(*bytes, file.name(), options);

@@ -23,7 +23,7 @@ namespace {
 
 using Member = ZipMembers::Member;
 
-/// Information on a member from its first lines.
+/// What the first lines of a member show.
 struct MemberSummary {
   const Member* member = nullptr;
   std::vector<std::string> candidates;  // Names of columns; one empty name for a MAT-file, which is not examined.
@@ -71,9 +71,9 @@ MemberSummary SummarizeMember(const ZipMembers& zip, const Member& member, const
   return summary;
 }
 
-/// The member that --value_column names before a slash or completely; its name is removed from the option. Whole paths
-/// have priority over file names. nullptr: no such member. kInvalidArgument: two files have this name.
-Result<const Member*> TakeNamed(const ZipMembers& zip, const std::string& name, ReadOptions& options) {
+/// The member that --value_column names, alone or before a slash. Removes the name of the member from the option. Whole
+/// paths have priority over file names. nullptr: no such member. kInvalidArgument: two files have this name.
+Result<const Member*> FindNamed(const ZipMembers& zip, const std::string& name, ReadOptions& options) {
   const std::string& flag = options.value_column;
   const auto is_named = [&](std::string_view path) {
     return flag.starts_with(path) && (flag.size() == path.size() || flag[path.size()] == '/');
@@ -101,10 +101,10 @@ Result<const Member*> TakeNamed(const ZipMembers& zip, const std::string& name, 
 
 tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) {
   if (zip.Has("xl/workbook.xml"))
-    return pendulum::Fault(name, "this is an Excel workbook; save its sheet as CSV and name that");
+    return pendulum::Fault(name, "this is an Excel workbook; save its sheet as CSV and give the CSV file");
   std::vector<std::string> members;
   for (const Member& member : zip.members()) members.push_back(Quoted(member.path));
-  if (members.empty()) return pendulum::Fault(name, "this zip file contains no recording; name one that does");
+  if (members.empty()) return pendulum::Fault(name, "this zip file contains no recording; give another file");
   return pendulum::Fault(name, "none of its files " + ListOf(members) +
                                    " has a column of times and one of an angle or a rate; choose with --value_column "
                                    "\"FILE/COLUMN\", or name another recording");
@@ -114,7 +114,7 @@ tl::unexpected<Status> NoMember(const ZipMembers& zip, const std::string& name) 
 Result<const Member*> ChooseMember(const ZipMembers& zip, const std::string& name, ReadOptions& options,
                                    std::vector<Warning>& warnings) {
   constexpr std::size_t kMaxMembers = 1000, kMaxWarnings = 8;  // A malicious zip file may contain a million members.
-  Result<const Member*> named = TakeNamed(zip, name, options);
+  Result<const Member*> named = FindNamed(zip, name, options);
   if (!named || *named != nullptr) return named;
   if (zip.members().size() == 1) return &zip.members().front();
   std::vector<MemberSummary> summaries;
@@ -140,7 +140,8 @@ Result<Recording> ReadMember(std::string_view bytes, const std::string& name, co
   switch (ContentOf(bytes.substr(0, kContentBytes))) {
     case Content::kText: return ReadRows(LineReader(bytes, name), options);
     case Content::kMat: return ReadMat(bytes, name, options);
-    case Content::kZip: return pendulum::Fault(name, "this is a zip file in a zip file; unpack it and name it");
+    case Content::kZip:
+      return pendulum::Fault(name, "this is a zip file in a zip file; unpack it and give the unpacked file");
     case Content::kForeign: break;
   }
   return ForeignContent(bytes, name);
@@ -159,8 +160,9 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   const Result<std::string> text = zip->Unpack(**member, max_bytes + 1);
   if (!text) return tl::unexpected(text.error());
   if (text->size() > max_bytes) {
-    return pendulum::Fault(zip->NameOf(**member), "it unpacks to more than " + std::to_string(max_bytes) +
-                                                      " bytes, too many for a recording; name another, or split it");
+    return pendulum::Fault(zip->NameOf(**member),
+                           "it unpacks to more than " + std::to_string(max_bytes) +
+                               " bytes, too many for a recording; give a smaller file, or split it");
   }
   Result<Recording> recording = ReadMember(*text, zip->NameOf(**member), rest);
   if (!recording) return recording;

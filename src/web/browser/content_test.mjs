@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { makeFailed, makeMotions, makeResult, makeSeries } from './fixture.mjs';
 import { ink, open, template } from './page.mjs';
 
-test('each placeholder stands in the page once', () => {
+test('the page contains each placeholder once', () => {
   for (const token of ['@RESULT@', '@SERIES@', '@COMMAND@']) assert.equal(template.split(token).length, 2, token);
   assert.match(
     template,
@@ -15,7 +15,7 @@ test('each placeholder stands in the page once', () => {
   );
 });
 
-test('values on the page are those of the JSON', async (t) => {
+test('values on the page equal the values in the JSON', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   // 0.0790000 ± 0.0000028: two digits of the error, by hand from 2.7734679e-6.
   assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
@@ -32,7 +32,7 @@ test('values on the page are those of the JSON', async (t) => {
   assert.equal(await page.title(), 'run.csv – pendulum report');
 });
 
-test('every section is there, in order', async (t) => {
+test('the page has all sections in order', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   const ids = await page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
   assert.deepEqual(ids, [
@@ -67,7 +67,7 @@ test('every section is there, in order', async (t) => {
   }
 });
 
-test('a failed fit says so first and still renders', async (t) => {
+test('the page begins with the failure of a fit and has its other sections', async (t) => {
   const page = await open(t, makeFailed(), {
     ...makeSeries({ models: [] }),
     peaks: [],
@@ -85,7 +85,7 @@ for (const [status, words] of [
   ['not_converged', /Not converged/],
   ['not_identifiable', /Not identifiable/],
 ]) {
-  test(`${status} is said first`, async (t) => {
+  test(`the page begins with the status ${status}`, async (t) => {
     const result = makeResult({ models: ['coulomb'] });
     result.fits[0].status = status;
     for (const parameter of Object.values(result.fits[0].parameters))
@@ -119,7 +119,7 @@ test('a name that looks like HTML is shown as text', async (t) => {
   assert.equal(await page.locator('#report img, #report b').count(), 0);
 });
 
-test('an undersampled swing is drawn beside the slow one it seems to be', async (t) => {
+test('an undersampled swing is drawn together with its slow apparent swing', async (t) => {
   const options = { models: ['viscous'], samples: 30, rate: 1 };
   const result = makeResult(options);
   result.warnings = [{ code: 'aliased', message: 'less than twice a swing' }];

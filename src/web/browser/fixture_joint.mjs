@@ -5,7 +5,7 @@ import { makeResult, makeSeries } from './fixture.mjs';
 
 const kShared = ['inertia', 'viscous', 'coulomb', 'drag'];
 
-/** Estimates from each recording alone, near the joint estimate. `odd`: the last inertia is far from it. */
+/** Estimates from each recording alone, near the joint estimate. `odd`: the last inertia is far from that estimate. */
 function agreementOf(name, { estimate, std_error: error, unit }, count, odd) {
   const size = error ?? 1e-4;
   const shift = (k) => (odd && name === 'inertia' && k === count - 1 ? 40 : [-1, 0.5, 1.25][k % 3]);

@@ -60,7 +60,7 @@ test('every control is reached by the Tab key and shows its focus', async (t) =>
     assert.ok(reached.has(name), name);
 });
 
-test('another model is shown in detail, and over the first', async (t) => {
+test('another model can be shown in detail, or drawn over the first model', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   const drag = page.locator('#fit').getByRole('button', { name: 'drag' });
   assert.equal(await drag.getAttribute('aria-pressed'), 'false');

@@ -14,7 +14,7 @@ const kNothing = /NaN|undefined|\bnull\b|Infinity|not_/;
 const forestRow = async (page, name, row) =>
   (await page.locator(`[data-forest=${name}] tbody tr`).nth(row).locator('th, td').allTextContents()).join('|');
 
-test('every section is there, in order', async (t) => {
+test('the page has all sections in order', async (t) => {
   const page = await openJoint(t);
   const ids = await page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
   const one = ['fit', 'validation', 'envelope', 'phase', 'residuals', 'constancy', 'closed-forms'];
@@ -26,7 +26,7 @@ test('every section is there, in order', async (t) => {
     assert.ok((await ink(page, plot)) > 3000, plot);
 });
 
-test('agreement is told first, with the shared parameters', async (t) => {
+test('the page begins with the agreement and the shared parameters', async (t) => {
   const page = await openJoint(t);
   assert.match(await page.locator('.banner.good').textContent(), /The 3 recordings agree: coulomb describes them together/);
   assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
@@ -35,9 +35,9 @@ test('agreement is told first, with the shared parameters', async (t) => {
   assert.doesNotMatch(await page.locator('.figures').textContent(), /random effects/);
 });
 
-test('each recording alone, the joint fit and the random effects stand in plot and table', async (t) => {
+test('plot and table have the separate fits, the joint fit and the random effects', async (t) => {
   const page = await openJoint(t);
-  // By hand from 0.07899964917915511 ± 2.7734679e-6: alone at -1, 0.5 and 1.25 of it, with twice the error.
+  // By hand from the joint 0.07899964917915511 ± 2.7734679e-6: the separate estimates are -1, 0.5 and 1.25 errors away.
   assert.equal(await forestRow(page, 'inertia', 0), 'recording 1|0.078997 ± 0.000006|−0.5|0.078986 to 0.079008');
   assert.equal(await forestRow(page, 'inertia', 2), 'recording 3|0.079003 ± 0.000006|0.6|0.078992 to 0.079014');
   assert.equal(await forestRow(page, 'inertia', 3), 'joint fit|0.0789996 ± 0.0000028|–|0.0789942 to 0.0790051');
@@ -52,7 +52,7 @@ test('each recording alone, the joint fit and the random effects stand in plot a
     all.map((path) => path.getBoundingClientRect()).filter((box) => box.width > 9).map((box) => box.x + box.width / 2),
   );
   assert.equal(places.length, 5);
-  assert.ok(places[0] < places[3] && places[3] < places[1] && places[1] < places[2], String(places)); // as the estimates are
+  assert.ok(places[0] < places[3] && places[3] < places[1] && places[1] < places[2], String(places)); // in order of the estimates
 });
 
 test('a recording that disagrees is marked in words everywhere', async (t) => {
@@ -66,7 +66,7 @@ test('a recording that disagrees is marked in words everywhere', async (t) => {
   assert.equal(await page.locator('#recordings .no').count(), 2); // in the tables of the recordings and of their parameters
 });
 
-test('recordings that scatter have the mean of random effects beside the joint estimate', async (t) => {
+test('recordings that scatter have the random-effects mean next to the joint estimate', async (t) => {
   const result = makeJointResult();
   for (const fit of result.fits) Object.assign(fit.homogeneity, { agrees: false, verdict: 'they scatter' });
   const page = await open(t, result, makeJointSeries());
@@ -74,7 +74,7 @@ test('recordings that scatter have the mean of random effects beside the joint e
   assert.match(await page.locator('[data-parameter=inertia] small').textContent(), /random effects: 0\.079002 ± 0\.000006/);
 });
 
-test('the recordings with their noise and their own parameters', async (t) => {
+test('the table of recordings has their noise and their separate parameters', async (t) => {
   const page = await openJoint(t);
   const cells = page.locator('#recordings table').first().locator('tbody tr').nth(1).locator('th, td');
   assert.match((await cells.allTextContents()).join('|'), /^2\|run2\.csv\|2000 of 2000\|0 to 19\.99\|100\|held\|11\.5°\|0\.004.rad\|0\.003.rad\|−0\.03\|not identifiable: coulomb is not determined$/);
@@ -84,7 +84,7 @@ test('the recordings with their noise and their own parameters', async (t) => {
   assert.match(await own.locator('tbody tr').nth(2).textContent(), /2\.00000 ± 0\.00010.s.*held fixed: held by --fix/);
 });
 
-test('recordings over each other are shown and hidden, and zoomed together', async (t) => {
+test('overlaid recordings are shown and hidden one by one, and zoomed together', async (t) => {
   const page = await openJoint(t);
   const [main, below] = ['#overlay .plot >> nth=0', '#overlay .plot >> nth=1'];
   const label = (plot) => page.locator(plot).getAttribute('aria-label');
@@ -129,7 +129,7 @@ test('another recording and another model are shown in detail', async (t) => {
   assert.match(await page.locator('[data-parameter=drag]').textContent(), /at its bound/);
 });
 
-test('all files stand in the provenance, and calibrations that differ apart', async (t) => {
+test('the provenance lists all files, and different calibrations separately', async (t) => {
   const page = await openJoint(t);
   const words = await page.locator('#provenance').textContent();
   for (const k of [1, 2, 3]) assert.match(words, new RegExp(`folder/run${k}\\.csv.*(${k}a){32}`));
@@ -137,7 +137,7 @@ test('all files stand in the provenance, and calibrations that differ apart', as
   assert.equal(await page.title(), '3 recordings – pendulum report');
 });
 
-test('a joint fit that failed says so, and that nothing is known', async (t) => {
+test('the page reports that a joint fit failed and that the agreement is unknown', async (t) => {
   const failed = makeJointFailed();
   const series = makeJointSeries({ models: [] }).map((one) => ({ ...one, profiles: null, peaks: [], extrema: [] }));
   const page = await open(t, failed, series);

@@ -30,7 +30,7 @@ test('the theme changes by its button, with the plots', async (t) => {
   assert.equal(await background(), light);
 });
 
-test('paper is light, without controls, and no plot is wider than the page', async (t) => {
+test('the printed page is light and without controls, and no plot is wider than the page', async (t) => {
   const page = await open(t, makeResult(), makeSeries(), { context: { colorScheme: 'dark' } });
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
   await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');

@@ -18,8 +18,8 @@ const kBare = kPasted
 const refused = ['status of 400', 'status of 422'];
 const field = (page, label) => page.getByLabel(label, { exact: true });
 
-/** The problem whose sentence matches, once it is shown. */
-async function toldLike(page, words) {
+/** Waits until a problem is shown whose sentence matches, and returns it. */
+async function problemLike(page, words) {
   const detail = page.locator('.problem .detail', { hasText: words });
   await detail.waitFor();
   return detail;
@@ -53,11 +53,11 @@ async function unfitted(name, content) {
   }
 }
 
-test('a run that could not be fitted is fitted with what its problem asks for', async (t) => {
+test('a failed run is fitted after the options that its problem names are filled in', async (t) => {
   const run = await unfitted('bare.csv', kBare);
   assert.match(run.reason, /--time_column/);
   const page = await openView(t, service, `/fits/${run.id}`, { refused });
-  const detail = await toldLike(page, '“Column of times”');
+  const detail = await problemLike(page, '“Column of times”');
   assert.doesNotMatch(await detail.textContent(), /--/);
   assert.equal(await page.locator('#again .plot').count(), 0); // the columns to draw are unknown
   await field(page, 'Column of times').fill('1');
@@ -68,7 +68,7 @@ test('a run that could not be fitted is fitted with what its problem asks for', 
   assert.deepEqual(options, { model: 'coulomb', time_column: '1', value_column: '2', unit: 'deg' });
 });
 
-test('a run without a swing shows its recording to choose from', async (t) => {
+test('a run without a swing shows its recording, to choose a window from it', async (t) => {
   const held = ['time_s,angle_deg', ...Array.from({ length: 200 }, (_unused, i) => `${i / 100},${20 + (i % 2)}`), ''];
   const run = await unfitted('held.csv', held.join('\n'));
   const page = await openView(t, service, `/fits/${run.id}`, { refused });
@@ -82,14 +82,14 @@ test('a window that ends before it begins marks both of its fields, until one is
   await field(page, 'From [s]').fill('9');
   await field(page, 'To [s]').fill('3');
   await page.getByRole('button', { name: 'Fit this window' }).click();
-  await assertMarked(page, await toldLike(page, '“From” 9 s does not lie before “To” 3 s'), ['From [s]', 'To [s]']);
+  await assertMarked(page, await problemLike(page, '“From” 9 s does not lie before “To” 3 s'), ['From [s]', 'To [s]']);
   await field(page, 'To [s]').fill('12');
   assert.equal(await field(page, 'To [s]').getAttribute('aria-invalid'), null);
   assert.equal(await field(page, 'To [s]').getAttribute('aria-describedby'), null);
   assert.equal(await field(page, 'From [s]').getAttribute('aria-invalid'), null);
 });
 
-test('a mass that cannot be is told of its field, of a new fit and of one more', async (t) => {
+test('an impossible mass marks its field, for a new fit and for a repeated fit', async (t) => {
   const page = await openView(t, service, '/', { refused });
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   for (const [label, value] of [
@@ -101,14 +101,14 @@ test('a mass that cannot be is told of its field, of a new fit and of one more',
   await pasteNumbers(page, kPasted);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   const words = '“Length of the rod” is -0.43; it must be positive';
-  await assertMarked(page, await toldLike(page, words), ['Length of the rod [m]']);
+  await assertMarked(page, await problemLike(page, words), ['Length of the rod [m]']);
   await field(page, 'Length of the rod [m]').fill('0.43');
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   await shownFit(page);
   await page.getByText('Another description of the pendulum').click();
   await field(page, 'Length of the rod [m]').fill('-0.43');
   await page.getByRole('button', { name: 'Fit this window' }).click();
-  await assertMarked(page, await toldLike(page, words), ['Length of the rod [m]']);
+  await assertMarked(page, await problemLike(page, words), ['Length of the rod [m]']);
 });
 
 test('two columns without names are fitted once their unit is chosen', async (t) => {
@@ -117,14 +117,14 @@ test('two columns without names are fitted once their unit is chosen', async (t)
   assert.equal(await page.locator('.paste select').isVisible(), false);
   await field(page, 'Numbers').fill(kBare);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
-  await toldLike(page, 'Unit of the values: choose what the second column is in.');
+  await problemLike(page, 'Unit of the values: choose what the second column is in.');
   await page.locator('.paste select').selectOption({ label: 'degrees' });
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   const { options } = await service.json(`/v1/fits/${await shownFit(page)}/request`);
   assert.deepEqual([options.time_column, options.value_column, options.unit], ['1:s', '2', 'deg']);
 });
 
-test('pasted numbers are there after another view, and after the page was loaded again', async (t) => {
+test('pasted numbers are kept after another view and after a reload', async (t) => {
   const page = await openView(t, service, '/');
   await pasteNumbers(page, kBare);
   await field(page, 'Name of the recording').fill('mine');
@@ -137,7 +137,7 @@ test('pasted numbers are there after another view, and after the page was loaded
   assert.equal(await field(page, 'Name of the recording').inputValue(), 'mine');
 });
 
-test('the choice of light or dark is kept', async (t) => {
+test('the choice of the light or dark theme is kept', async (t) => {
   const page = await openView(t, service, '/', { context: { colorScheme: 'light' } });
   await page.getByRole('button', { name: 'Dark', exact: true }).click();
   await page.reload();
@@ -145,12 +145,12 @@ test('the choice of light or dark is kept', async (t) => {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
 });
 
-test('a cell that was wrong is looked at anew when a table is pasted', async (t) => {
+test('the error mark of a cell is removed when a table is pasted', async (t) => {
   const page = await openView(t, service, '/calibration');
   const cell = field(page, 'Reading, row 1');
   await cell.fill('x');
   await page.getByRole('button', { name: 'Calibrate' }).click();
-  await assertMarked(page, await toldLike(page, '“x” is not a number'), ['Reading, row 1']);
+  await assertMarked(page, await problemLike(page, '“x” is not a number'), ['Reading, row 1']);
   await cell.evaluate((input, table) => {
     const clipboardData = new DataTransfer();
     clipboardData.setData('text', table);

@@ -81,7 +81,7 @@ async function busy(page, times, seconds) {
   return keys;
 }
 
-test('a service that is busy is asked again after the time it says, as the same request', async (t) => {
+test('a request to a busy service is repeated unchanged after the time that the service gives', async (t) => {
   const service = await startService();
   const page = await openView(t, service, '/', { refused: ['status of 429'] });
   const keys = await busy(page, 1, 2);
@@ -109,7 +109,7 @@ test('waiting for a busy service can be ended', async (t) => {
   await service.stop();
 });
 
-test('a network that is down is said to be, and what was dropped is not lost', async (t) => {
+test('a network failure is reported, and the dropped file is not lost', async (t) => {
   const service = await startService();
   const page = await openView(t, service, '/', { refused: ['net::ERR'] });
   await page
@@ -126,7 +126,7 @@ test('a network that is down is said to be, and what was dropped is not lost', a
   await service.stop();
 });
 
-test('a stream that breaks off is taken up where it was', async (t) => {
+test('an interrupted stream continues where it stopped', async (t) => {
   const service = await startService();
   const form = new FormData();
   for (const k of [1, 2, 3]) form.append('data', new Blob([readDataset(`runs_${k}.csv`)]), `runs_${k}.csv`);
@@ -151,7 +151,7 @@ test('a stream that breaks off is taken up where it was', async (t) => {
   await service.stop();
 });
 
-test('a recording is seen while it is made, and fitted when it has ended', async (t) => {
+test('a recording is shown while it is made, and fitted when it has ended', async (t) => {
   const lines = readDataset('coulomb.csv').split('\n');
   const head = lines.findIndex((line) => /^\d/.test(line));
   const run = write('live/run.csv', '');

@@ -25,7 +25,7 @@ test('the document is valid OpenAPI 3.1, and the schema of results is in it', as
   assert.equal(schema.properties.rig.oneOf[1].properties.bob_mass.oneOf[0].type, 'number');
 });
 
-test('what is not OpenAPI is refused', async () => {
+test('an invalid OpenAPI document is refused', async () => {
   await assert.rejects(
     validated(({ info }) => delete info.title),
     /title/,

@@ -38,7 +38,7 @@ const windowFields = async (page) =>
     ['From [s]', 'To [s]'].map(async (label) => Number(await page.getByLabel(label, { exact: true }).inputValue())),
   );
 
-test('a file that is dropped is fitted at once, and the numbers are those of the API', async (t) => {
+test('a dropped file is fitted at once, and the numbers equal those of the API', async (t) => {
   const page = await openView(t, service, '/');
   await drop(page, [{ name: 'coulomb.csv', content: readDataset('coulomb.csv') }]);
   const id = await shownFit(page);
@@ -57,7 +57,7 @@ test('a file that is dropped is fitted at once, and the numbers are those of the
   );
 });
 
-test('masses and length turn ratios into kg m²; what was chosen is what was asked', async (t) => {
+test('with masses and length the inertia is in kg m², and only the chosen model is fitted', async (t) => {
   const page = await openView(t, service, '/');
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   const rig = JSON.parse(readDataset('textbook_rig.json'));
@@ -89,7 +89,7 @@ test('numbers can be pasted', async (t) => {
   assert.equal(await page.locator('h1').textContent(), 'from the notebook');
 });
 
-test('a file that cannot be used says why in the words of the service, and keeps the focus there', async (t) => {
+test('the reason for an unusable file is shown in the words of the service and gets the focus', async (t) => {
   const page = await openView(t, service, '/', { refused: ['status of 422'] });
   const content = `${readDataset('coulomb.csv')}20.1,not a number\n`;
   const form = new FormData();
@@ -105,7 +105,7 @@ test('a file that cannot be used says why in the words of the service, and keeps
   await page.getByRole('button', { name: 'Fit again' }).waitFor();
 });
 
-test('a field that is empty or no number is named and gets the focus', async (t) => {
+test('a field that is empty or not a number is named and gets the focus', async (t) => {
   const page = await openView(t, service, '/');
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   await drop(page, [{ name: 'coulomb.csv', content: readDataset('coulomb.csv') }]);
@@ -137,7 +137,7 @@ test('another window is chosen by dragging, and fitted', async (t) => {
   assert.deepEqual(await windowFields(page), result.data.window_s);
 });
 
-test('a finger chooses a window too', async (t) => {
+test('a window can be chosen by touch', async (t) => {
   const id = await service.fit('coulomb.csv', 'model=coulomb');
   const context = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
   const page = await openView(t, service, `/fits/${id}`, { context });
@@ -156,7 +156,7 @@ test('a finger chooses a window too', async (t) => {
   assert.ok(Math.abs(from - 6) < 0.4 && Math.abs(to - 12) < 0.4, `${from} to ${to}`);
 });
 
-test('another law, rig and window by the keyboard; the window can be found again', async (t) => {
+test('another law, rig and window are chosen by keyboard, and the window can be found again', async (t) => {
   const page = await openView(t, service, `/fits/${await service.fit('textbook_rig.csv', 'model=coulomb&from=3')}`);
   const first = await shownFit(page);
   await page.getByLabel('To [s]', { exact: true }).fill('12,5');
@@ -205,7 +205,7 @@ test('from the address bar to the fit of an example by the keyboard alone', asyn
   await assertParameters(page, id, comparison?.recommended ?? fits[0].model);
 });
 
-test('what can be downloaded is what the service keeps', async (t) => {
+test('downloads equal the files that the service keeps', async (t) => {
   const id = await service.fit('coulomb.csv', 'model=coulomb');
   const page = await openView(t, service, `/fits/${id}`);
   for (const [label, part, name] of [
@@ -238,7 +238,7 @@ test('the link is copied', async (t) => {
   assert.equal(await page.evaluate(() => navigator.clipboard.readText()), `${service.url}/fits/${id}`);
 });
 
-test('a fit is deleted after a question, and not without', async (t) => {
+test('a fit is deleted only after a confirmation', async (t) => {
   const id = await service.fit('runs_1.csv', 'model=coulomb&name=short-lived');
   const page = await openView(t, service, `/fits/${id}`, { refused: ['status of 404'] });
   await page.getByRole('button', { name: 'Delete' }).click();

@@ -188,7 +188,7 @@ test('a comparison has differences in combined standard errors, error bars and c
   await page.locator('#fits tbody tr', { hasText: 'coulomb.csv' }).filter({ hasText: 'viscous' }).waitFor();
 });
 
-test('a calibration is that of the textbook, is downloaded, and serves the next fit', async (t) => {
+test('a calibration equals the published one, can be downloaded, and is used for the next fit', async (t) => {
   const page = await openView(t, service, '/calibration');
   await calibrate(page);
   const { coefficients } = JSON.parse(readDataset('potentiometer_calibration.json')); // the textbook's line
@@ -235,7 +235,7 @@ test('rows of a calibration are added, removed and checked', async (t) => {
   assert.match(await page.locator('.problem .detail').textContent(), /Angle, row 1, is missing/);
 });
 
-test('several recordings are fitted while one looks on, and what cannot be fitted says why', async (t) => {
+test('several recordings are fitted with visible progress, and each failed one gives its reason', async (t) => {
   const page = await openView(t, service, '/', { refused: ['status of 422'] });
   const files = Array.from({ length: 12 }, (_unused, i) => ({
     name: `run_${i}.csv`,

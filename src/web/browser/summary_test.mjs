@@ -11,7 +11,7 @@ const kTrend = '#trend .plot';
 const ids = (page) => page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
 const heading = (page, id) => page.locator(`#${id}-title`).textContent();
 
-test('the placeholder stands in the page once', () => {
+test('the page contains the placeholder once', () => {
   assert.equal(summaryTemplate.split('@SUMMARY@').length, 2);
   assert.match(
     summaryTemplate,
@@ -19,7 +19,7 @@ test('the placeholder stands in the page once', () => {
   );
 });
 
-test('every section is there, in order, with its plots', async (t) => {
+test('the page has all sections in order, with their plots', async (t) => {
   const page = await openSummary(t, makeSummary());
   assert.deepEqual(await ids(page), [
     'verdict',
@@ -38,7 +38,7 @@ test('every section is there, in order, with its plots', async (t) => {
   assert.equal(await page.title(), 'results.sqlite – summary of runs');
 });
 
-test('values on the page are those of the JSON', async (t) => {
+test('values on the page equal the values in the JSON', async (t) => {
   const summary = makeSummary();
   const page = await openSummary(t, summary);
   assert.match(
@@ -75,7 +75,7 @@ test('another parameter and another model are shown, each by name', async (t) =>
   assert.match(await heading(page, 'distribution'), /moment of inertia/);
 });
 
-test('error bars that are too small are told first', async (t) => {
+test('the page begins with the verdict that the error bars are too small', async (t) => {
   const page = await openSummary(t, makeSummary({ scatter: 1.4 }));
   assert.match(
     await page.locator('.banner.caution').textContent(),
@@ -195,7 +195,7 @@ test('100 parameters of 2000 points are drawn, one after another', { timeout: 60
   assert.ok((await ink(page, kTrend)) > 3000);
 });
 
-test('names are shown as text, whatever they are', async (t) => {
+test('names are shown as text, whatever characters they have', async (t) => {
   const page = await openSummary(t, makeHostile(), { context: { viewport: { width: 390, height: 800 } } });
   const names = await page.locator('#outliers tbody th').allTextContents();
   assert.deepEqual(names, [kHostile[0], kHostile[1], 'two\\nlines\\tand a tab', kHostile[3], '\\u202etxt.exe']);
@@ -217,7 +217,7 @@ for (const [colorScheme, name, width] of kLooks) {
   });
 }
 
-test('paper is light, without controls, and no plot is wider than the page', async (t) => {
+test('the printed page is light and without controls, and no plot is wider than the page', async (t) => {
   const page = await openSummary(t, makeSummary(), { context: { colorScheme: 'dark' } });
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
   await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');

@@ -43,7 +43,7 @@ test('a comparison shows the numbers of its JSON', async (t) => {
   const { parameters } = result.fits[1];
   for (const name of ['inertia', 'viscous', 'coulomb', 'release_time']) {
     const shown =
-      name === 'release_time' // a circumstance, not a figure of the pendulum: in the table only
+      name === 'release_time' // not a property of the pendulum, so it is only in the table
         ? page.locator('#verdict tr', { hasText: name }).locator('td').first()
         : page.locator(`[data-parameter=${name}] .value`).first();
     const [value, error] = numbersOf((await shown.textContent()).replace(/\ss$/, ''));

@@ -22,7 +22,8 @@ export function headline(result: Result, fit: Fit | null): Headline {
   }
   if (lacksFit(result, fit)) {
     const what =
-      'The fit converged, but its residuals are more than noise; the error bars hold only if the model does.';
+      'The fit converged, but the residuals contain more than noise. ' +
+      'The error bars are valid only if the model is right.';
     return {
       level: 'caution',
       title: `Lack of fit: ${fit.model} does not describe the whole recording`,

@@ -148,10 +148,13 @@ function methods(fit: Fit): HTMLElement | null {
   return text(typeset(parts.join(' ')), 'quiet');
 }
 
-/** Tables of the parameters and of the derived quantities. */
-export function parameterPart(fit: Fit, untold = 'What the recording does not determine'): HTMLElement {
+/**
+ * Tables of the parameters and of the derived quantities. `adviceHeading` stands above the list of parameters that are
+ * not identifiable.
+ */
+export function parameterPart(fit: Fit, adviceHeading = 'What the recording does not determine'): HTMLElement {
   const part = el('div', {}, parameterTable(fit));
-  for (const more of [methods(fit), advice(fit, untold), derivedTable(fit)]) if (more) part.append(more);
+  for (const more of [methods(fit), advice(fit, adviceHeading), derivedTable(fit)]) if (more) part.append(more);
   return part;
 }
 

@@ -10,7 +10,7 @@ export interface FormFlag {
   name: string;
   label: string;
   help: string;
-  /** Of its number; may be empty. */
+  /** Unit of its number; may be empty. */
   unit: string;
   type: 'string' | 'number' | 'integer' | 'file';
   default: string;
@@ -18,7 +18,7 @@ export interface FormFlag {
   words: Options;
 }
 
-/** Labels of what is not a flag of a fit: flags of a calibration, and a section of the report. */
+/** Labels of names that are not flags of a fit: flags of a calibration, and a section of the report. */
 const kOthers: Record<string, string> = {
   order: 'Order of the curve',
   bits: 'Bits of the converter',

@@ -29,7 +29,7 @@ export interface ModelSamples {
   nonlinear: Float64Array | null;
 }
 
-/** Null if there are no values, or not `size` of them. */
+/** The values as an array; null unless there are `size` of them. */
 export function toArray(values: readonly Num[] | null | undefined, size: number): Float64Array | null {
   if (!values || values.length !== size) return null;
   const array = new Float64Array(size);

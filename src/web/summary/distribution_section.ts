@@ -11,7 +11,7 @@ import type { Counts, ParameterSummary } from './types';
 import { counted, countText, spreadText, valueTo } from './words';
 
 const kLeastTop = 4; // runs, so that the ticks are integers
-const kReach = 1.5; // widths of the histogram by which the axis is extended at most to show the error
+const kReach = 1.5; // the axis is extended by at most this many widths of the histogram, to show the error
 
 const kMedian: Mark = { colour: 'curve-2', dash: [7, 4], width: 1.75 };
 const kQuartiles: Mark = { colour: 'curve-1', dash: [], width: 6 };

@@ -11,7 +11,7 @@ import { spacedUnit, unitText } from '../shared/units';
 import { columnLabel, TrendPlot } from './trend_plot';
 import type { ParameterSummary, Trend } from './types';
 
-/** The unit that a slope is per: "day" for days since a date, "run" for a position. */
+/** The unit in the denominator of a slope: "day" for days since a date, "run" for a position. */
 export function perText({ column, unit }: Trend): string {
   if (column === 'position') return 'run';
   const since = /^(\w+?)s? since /.exec(unit ?? '');

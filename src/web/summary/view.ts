@@ -11,7 +11,7 @@ export interface View {
   parameter: string | null;
 }
 
-/** The model that was recommended most often. Without a comparison the first of those with the most parameters. */
+/** The model that was recommended most often. Without a comparison, the first model that has parameters. */
 export function mainModel({ models, recommendations, parameters }: Summary): number {
   const runs = (name: string): number => recommendations.find(({ model }) => model === name)?.runs ?? 0;
   const rank = ({ model, converged }: ModelCounts): number[] => [

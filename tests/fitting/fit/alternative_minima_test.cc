@@ -26,7 +26,7 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit) {
 
 /// MODEL.md eq. (14.6): 2 g / ω0² - 0.3 m = 0.5915 m gives the same readings except for friction, which is small here.
 SyntheticOptions WithLittleFriction(std::uint64_t seed) {
-  SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
+  SyntheticOptions options = MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05);
   options.model = FindMotionModel("viscous").value();
   options.parameters = {1 / 22.0, 0.0003};
   options.duration = 20;
@@ -34,16 +34,16 @@ SyntheticOptions WithLittleFriction(std::uint64_t seed) {
   return options;
 }
 
-TEST(RivalSolutions, ReportBothRadiiOfAnAccelerationAcrossTheRod) {
+TEST(AlternativeSolutions, ReportBothRadiiOfAnAccelerationAcrossTheRod) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     FitOptions viscous;
     viscous.model = "viscous";
     const FitReport fit = Fit(WithLittleFriction(seed), viscous);
     EXPECT_EQ(fit.termination, Termination::kNotIdentifiable) << seed;
     EXPECT_TRUE(fit.HasWarning("ambiguous_sensor"));
-    std::smatch said;
-    ASSERT_TRUE(std::regex_search(fit.reason, said, std::regex("with radius (\\S+) m instead of (\\S+) m")));
-    const auto [nearer, farther] = std::minmax({std::stod(said[1]), std::stod(said[2])});
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(fit.reason, match, std::regex("with radius (\\S+) m instead of (\\S+) m")));
+    const auto [nearer, farther] = std::minmax({std::stod(match[1]), std::stod(match[2])});
     EXPECT_NEAR(nearer, 0.3, 0.02);
     EXPECT_NEAR(nearer + farther, 2 * kStandardGravity / 22, 0.01);
     EXPECT_THAT(fit.reason, HasSubstr("give --prior radius=r:std_dev"));
@@ -55,7 +55,7 @@ TEST(RivalSolutions, ReportBothRadiiOfAnAccelerationAcrossTheRod) {
   }
 }
 
-TEST(RivalSolutions, AreResolvedByAPriorOnTheRadius) {
+TEST(AlternativeSolutions, AreResolvedByAPriorOnTheRadius) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     FitOptions known;
     known.model = "viscous";
@@ -71,7 +71,7 @@ TEST(RivalSolutions, AreResolvedByAPriorOnTheRadius) {
 }
 
 // The other radius has the same small-angle frequency, so a second recording with the same ambiguity does not decide.
-TEST(RivalSolutions, AreNotResolvedByASimilarSecondRecording) {
+TEST(AlternativeSolutions, AreNotResolvedByASimilarSecondRecording) {
   FitOptions viscous;
   viscous.model = "viscous";
   const Recording first = Must(SimulateRecording(WithLittleFriction(1)));

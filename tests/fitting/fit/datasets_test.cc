@@ -41,7 +41,8 @@ TEST_P(Datasets, TruthIsRecoveredWithinFourStandardErrors) {
   EXPECT_THAT(report.noise.sigma / truth.at("sigma_rad").get<double>(), testing::DoubleNear(1.04, 0.06));
 }
 
-/// From the logger, with calibration, clock and rig of limited accuracy: statistical and systematic errors both count.
+/// This recording comes from the logger. Calibration, clock and rig have limited accuracy, so the test combines
+/// statistical and systematic errors.
 TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
   const Recording recording = Must(ReadRecording("datasets/recorded.csv"));
   FitOptions options = ModelOptions("coulomb");
@@ -59,7 +60,7 @@ TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
   }
 }
 
-/// Recorded until the pendulum had rested for five seconds. Its last turning points are a few counts high.
+/// The recording ends five seconds after the pendulum comes to rest. The last turning points are a few counts high.
 TEST(RecordedRun, EndsAtRest) {
   const ChosenSwings swings = Must(ChooseSwings(Must(ReadRecording("datasets/recorded.csv")), {}));
   ASSERT_THAT(swings.found, testing::SizeIs(1));

@@ -22,7 +22,7 @@ Description DescriptionOf(const Fitted& fitted) {
                   static_cast<int>(fitted.optimum.free.size()));
 }
 
-Fitted FitShortSwing() { return FitOpenly(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb")); }
+Fitted FitShortSwing() { return FitWithInternals(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb")); }
 
 // ---- Describe ------------------------------------------------------------------------------------------------------
 
@@ -32,7 +32,7 @@ TEST(Describe, HasResidualsAndTheirStatistics) {
   ASSERT_EQ(report.fitted.size(), 400);  // 8 s at 50 Hz
   EXPECT_EQ(report.residual, fitted.recording.value - report.fitted);
   const FitStatistics& statistics = report.statistics;
-  // Summed in another order.
+  // The sums are taken in a different order.
   EXPECT_NEAR(statistics.rms_residual, std::sqrt(report.residual.squaredNorm() / 400), 1e-16);
   EXPECT_EQ(statistics.log_likelihood, fitted.solution.log_likelihood);
   EXPECT_NEAR(statistics.aic, 2 * 7 - 2 * statistics.log_likelihood, 1e-9);  // six parameters and σ
@@ -54,8 +54,8 @@ TEST(Describe, DetectsAutocorrelatedResiduals) {
   EXPECT_FALSE(DescriptionOf(FitShortSwing()).correlated);
   SyntheticOptions silent = ShortSwing();
   silent.noise = 0;
-  const Recording remembering = WithNoise(Must(SimulateRecording(silent)), 1, AutocorrelatedNoise(0.8, 0.002));
-  EXPECT_TRUE(DescriptionOf(FitOpenly(remembering, ModelOptions("coulomb"))).correlated);
+  const Recording autocorrelated = WithNoise(Must(SimulateRecording(silent)), 1, AutocorrelatedNoise(0.8, 0.002));
+  EXPECT_TRUE(DescriptionOf(FitWithInternals(autocorrelated, ModelOptions("coulomb"))).correlated);
 }
 
 // ---- SetParameters -------------------------------------------------------------------------------------------------
@@ -109,7 +109,7 @@ TEST(SetParameters, HasTheUnitsOfRigAndReadings) {
 
 // ---- Covariances ---------------------------------------------------------------------------------------------------
 
-/// Three parameters in units of 2, 1 and 10.
+/// Three parameters whose internal units are 2, 1 and 10 times the SI unit.
 struct ByHand {
   FitProblem problem;
   FitReport report;

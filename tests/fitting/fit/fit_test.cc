@@ -48,8 +48,9 @@ void ExpectConverged(const FitReport& report) {
   EXPECT_FALSE(report.reason.empty());
 }
 
-/// Accuracy of a noise-free fit: a Stribeck rate is hardly distinguishable from other friction.
-double Nearness(const MotionModel& model) { return FindOrderedPair(model).larger < 0 ? 1e-7 : 1e-4; }
+/// Relative tolerance for a noise-free fit. It is larger for a law with a Stribeck rate, which is hardly
+/// distinguishable from other friction.
+double RelativeTolerance(const MotionModel& model) { return FindOrderedPair(model).larger < 0 ? 1e-7 : 1e-4; }
 
 void ExpectTruth(const FitReport& report, const std::vector<double>& truth, double relative) {
   ASSERT_EQ(report.parameters.size(), truth.size());
@@ -67,7 +68,7 @@ TEST(FitRecording, RecoversTheTruthOfEveryModelFromNoiseFreeData) {
     const FitReport report = FitOwnModel(run);
     ExpectConverged(report);
     EXPECT_EQ(report.start, run.start);
-    ExpectTruth(report, Truth(run), Nearness(run.model));
+    ExpectTruth(report, Truth(run), RelativeTolerance(run.model));
   }
 }
 
@@ -105,7 +106,7 @@ TEST(FitRecording, IsWithinFourStandardErrorsForNoisyData) {
 }
 
 TEST(FitRecording, ConvergesForAReleaseAtTheInstantOfASample) {
-  // A rate's first moving sample causes a kink of the cost when the release passes it; the minimum may lie there.
+  // With rate readings, the cost has a kink where the release time passes a sample. The minimum may lie at this kink.
   SyntheticOptions run = TextbookRun("coulomb");
   run.quantity = Quantity::kRate;
   run.parameters[2] *= 3;
@@ -243,7 +244,8 @@ TEST(FitRecording, ReportsClosedFormStartValues) {
 }
 
 TEST(FitRecording, DoesNotTreatATurningPointAsARelease) {
-  // In motion just before a turning point and sampled slowly: for a sixth of a period the reading hardly changes.
+  // The recording begins just before a turning point and is sampled slowly, so the reading hardly changes for a sixth
+  // of a period.
   SyntheticOptions run;
   run.parameters = {0.48493, 0.069953, 0.003533};
   run.start = StartKind::kMoving;
@@ -261,7 +263,7 @@ TEST(FitRecording, DoesNotTreatATurningPointAsARelease) {
 }
 
 TEST(FitRecording, GivesTheZeroWithoutWholeTurns) {
-  SyntheticOptions run;  // released near the top, where a search may go over it
+  SyntheticOptions run;  // released near the top, where a search may go over the top
   run.parameters = {0.39112, 0.0056959, 0.01155};
   run.release_angle = -3.017;
   run.duration = 29.04;

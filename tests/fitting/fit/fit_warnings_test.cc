@@ -62,7 +62,7 @@ TEST(FitWarnings, ReportAModelThatDoesNotDescribeTheData) {
   EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit"));
   const std::string& message = poor.warnings[0].message;
   EXPECT_THAT(message, HasSubstr("The error bars may be wrong"));
-  // Part beyond the noise, and its share of the residuals: two digits.
+  // The message gives the residuals relative to the noise, and the misfit without the noise, with two digits.
   const double rms = poor.statistics.rms_residual;
   EXPECT_THAT(NumberAfter("the residuals are autocorrelated and ", message) / (rms / 0.002),
               testing::DoubleNear(1, 0.05));
@@ -189,7 +189,7 @@ TEST(FitWarnings, ReportSizeAndDirectionOfADriftingZero) {
       const bool angle = quantity == Quantity::kAngle;
       const std::string before = "the zero of the readings drifts by about ";
       ASSERT_THAT(warning->message, testing::StartsWith(before));
-      // The middle of the last whole period is 28 s after that of the first; the hold covers a part of it.
+      // The middle of the last whole period is 28 s after the middle of the first; the hold covers a part of the first.
       EXPECT_THAT(std::stod(warning->message.substr(before.size())) / drift, testing::DoubleNear(28, 4.2));
       EXPECT_THAT(warning->message,
                   testing::EndsWith(

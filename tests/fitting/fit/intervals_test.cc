@@ -36,18 +36,19 @@ TEST(SetIntervals, UsesTheCovarianceFarFromBounds) {
   }
 }
 
-/// Fits data without dry friction, with the first seed for which its estimate is, or is not, at the bound.
-FitReport OfNoDryFriction(bool at_bound, const FitOptions& options) {
+/// Fits a simulation without dry friction. Uses the first seed for which the estimate of dry friction is at its bound
+/// (`at_bound`) or is not.
+FitReport FitWithoutDryFriction(bool at_bound, const FitOptions& options) {
   for (std::uint64_t seed = 1; seed < 50; ++seed) {
     FitReport report = Fit(Must(SimulateRecording(NoisyRun("viscous", seed))), options);
     if (report.Find("coulomb")->at_bound == at_bound) return report;
   }
-  throw std::runtime_error("no seed does it");
+  throw std::runtime_error("there is no such seed");
 }
 
 TEST(SetIntervals, UsesProfilesForAllNearABound) {
   for (const bool at_bound : {false, true}) {
-    const FitReport report = OfNoDryFriction(at_bound, ModelOptions("coulomb"));
+    const FitReport report = FitWithoutDryFriction(at_bound, ModelOptions("coulomb"));
     EXPECT_EQ(report.interval_method, "profile likelihood");
     for (const ParameterEstimate& parameter : report.parameters) {
       EXPECT_TRUE(parameter.lower95 && parameter.upper95) << parameter.info.name;
@@ -81,10 +82,10 @@ TEST(SetIntervals, ReportsProfilesInTheParametersUnitsAndOrder) {
   EXPECT_THAT(FitOwnModel(ShortSwing()).profiles, IsEmpty());
 }
 
-TEST(SetIntervals, LeavesTheOtherEndOpenAtABoundAndSuggestsAMethod) {
+TEST(SetIntervals, LeavesTheOtherEndOpenAtABound) {
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kCovariance;
-  const FitReport report = OfNoDryFriction(true, options);
+  const FitReport report = FitWithoutDryFriction(true, options);
   const ParameterEstimate& coulomb = *report.Find("coulomb");
   EXPECT_EQ(*coulomb.lower95, 0);
   EXPECT_FALSE(coulomb.upper95);
@@ -92,7 +93,7 @@ TEST(SetIntervals, LeavesTheOtherEndOpenAtABoundAndSuggestsAMethod) {
   EXPECT_THAT(report.interval_method, StartsWith("estimate ± "));
 }
 
-/// The short swing in counts, released slightly differently in each take. The counts are the main noise.
+/// The short swing in counts, released slightly differently in each take. The main error is the rounding to counts.
 SyntheticOptions Counted(int take, double noise) {
   SyntheticOptions run = ShortSwing();
   run.resolution = kCount;
@@ -136,7 +137,7 @@ TEST(SetIdentifiability, IsGivenForAllParametersOfTheTextbookRig) {
 
 TEST(SetIdentifiability, IsWeakForAnIntervalAtABound) {
   for (const bool at_bound : {false, true}) {
-    const FitReport report = OfNoDryFriction(at_bound, ModelOptions("coulomb"));
+    const FitReport report = FitWithoutDryFriction(at_bound, ModelOptions("coulomb"));
     for (const Identifiability& known : report.identifiability) {
       const bool is_weak = known.parameter == "coulomb";
       if (known.parameter == "viscous") continue;  // partly interchangeable with dry friction
@@ -156,10 +157,10 @@ TEST(SetIdentifiability, IsWeakForAnIntervalAtTheUsersUpperBound) {
   EXPECT_EQ(report.identifiability.back().verdict, Verdict::kWeakly);
 }
 
-/// Verdicts on viscous and coulomb if their information has that correlation and standard errors are a fifth of the
-/// estimates.
+/// Verdicts on the six parameters if the information of viscous and coulomb has this correlation and the standard
+/// errors are a fifth of the estimates.
 std::vector<Identifiability> VerdictsAt(double correlation) {
-  const Fitted fitted = FitOpenly(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
+  const Fitted fitted = FitWithInternals(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
   Optimum optimum;
   optimum.information = Eigen::MatrixXd::Identity(6, 6);
   optimum.information(1, 2) = optimum.information(2, 1) = correlation;
@@ -182,7 +183,7 @@ TEST(SetIdentifiability, NamesAnUndeterminedCombination) {
 }
 
 /// Correlation multiplies the variance by 1 / (1 - ρ²): 100 at ρ = .995.
-TEST(SetIdentifiability, IsWeakForTradedParameters) {
+TEST(SetIdentifiability, IsWeakForStronglyCorrelatedParameters) {
   for (const double correlation : {0.996, -0.999}) {
     const std::vector<Identifiability> verdicts = VerdictsAt(correlation);
     EXPECT_EQ(verdicts[1].verdict, Verdict::kWeakly) << correlation;

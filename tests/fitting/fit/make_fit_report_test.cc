@@ -25,8 +25,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Judges parameters that no solver has changed.
-FitReport Judged(const SyntheticOptions& run, const std::vector<double>& parameters, bool usable = true) {
+/// Reports on given parameters as if a solver had found them.
+FitReport ReportAt(const SyntheticOptions& run, const std::vector<double>& parameters, bool usable = true) {
   const Recording recording = Must(SimulateRecording(run));
   const FitOptions options = ModelOptions(run.model.name);
   const FitProblem problem = Must(MakeFitProblem(recording, options));
@@ -60,9 +60,9 @@ TEST(MakeFitReport, APointOneStandardErrorAwayIsNotConverged) {
   const FitReport fit = FitOwnModel(NoisyRun());
   std::vector<double> parameters;
   for (const ParameterEstimate& parameter : fit.parameters) parameters.push_back(parameter.estimate);
-  EXPECT_EQ(Judged(NoisyRun(), parameters).termination, Termination::kConverged);
+  EXPECT_EQ(ReportAt(NoisyRun(), parameters).termination, Termination::kConverged);
   parameters[1] += *fit.parameters[1].std_error;
-  const FitReport report = Judged(NoisyRun(), parameters);
+  const FitReport report = ReportAt(NoisyRun(), parameters);
   EXPECT_EQ(report.termination, Termination::kNotConverged);
   EXPECT_THAT(report.reason, HasSubstr("the estimates are still "));
   EXPECT_THAT(report.reason, HasSubstr("standard errors from the minimum"));
@@ -72,7 +72,7 @@ TEST(MakeFitReport, APointOneStandardErrorAwayIsNotConverged) {
 }
 
 TEST(MakeFitReport, AnUnusableSolutionIsFailed) {
-  const FitReport report = Judged(NoisyRun(), Truth(NoisyRun()), false);
+  const FitReport report = ReportAt(NoisyRun(), Truth(NoisyRun()), false);
   EXPECT_EQ(report.termination, Termination::kFailed);
   EXPECT_THAT(report.reason, HasSubstr("no motion can be computed"));
   EXPECT_EQ(report.parameters.size(), 6);
@@ -169,7 +169,7 @@ class BlindCost final : public TrajectoryCost {
   Eigen::MatrixXd seen_;
 };
 
-FitReport ReportWithoutReadings(const Eigen::MatrixXd& seen) {
+FitReport ReportOfBlindCost(const Eigen::MatrixXd& seen) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitOptions options = ModelOptions("coulomb");
   const FitProblem problem = Must(MakeFitProblem(recording, options));
@@ -184,7 +184,7 @@ TEST(MakeFitReport, NamesAnUndeterminedCombination) {
   Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(6, 6);
   seen(2, 2) = 0;
   seen(1, 2) = 0.7;  // dry friction acts like more viscous friction
-  const FitReport report = ReportWithoutReadings(seen);
+  const FitReport report = ReportOfBlindCost(seen);
   EXPECT_EQ(report.termination, Termination::kNotIdentifiable);
   EXPECT_EQ(ExitCode(report.termination), 1);
   EXPECT_EQ(report.reason, "the recording determines only a combination of viscous and coulomb; fix one of them");
@@ -196,16 +196,16 @@ TEST(MakeFitReport, NamesAnUndeterminedCombination) {
 TEST(MakeFitReport, NamesUndeterminedParameters) {
   Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(6, 6);
   seen(5, 5) = 0;
-  const FitReport report = ReportWithoutReadings(seen);
+  const FitReport report = ReportOfBlindCost(seen);
   EXPECT_EQ(report.termination, Termination::kNotIdentifiable);
   EXPECT_EQ(report.reason, "the recording does not depend on zero_angle; fix it");
-  EXPECT_EQ(ReportWithoutReadings(Eigen::MatrixXd::Identity(6, 6)).termination, Termination::kConverged);
+  EXPECT_EQ(ReportOfBlindCost(Eigen::MatrixXd::Identity(6, 6)).termination, Termination::kConverged);
 }
 
 // ---- Noise ---------------------------------------------------------------------------------------------------------
 
 TEST(MakeFitReport, ExplainsTheNoiseFamily) {
-  // 0.58 counts of noise, and a hold that appears to be 30 counts off.
+  // The noise is 0.58 counts. The sensor's range cuts off the hold, which is about 30 counts beyond it.
   SyntheticOptions run = NoisyRun();
   run.resolution = kCount;
   run.range = SensorRange{-0.32, 0.32};
@@ -250,7 +250,7 @@ TEST(MakeFitReport, AFixedParameterKeepsItsValueAndHasNoError) {
       if (other.fixed) continue;
       EXPECT_LE(*other.std_error, 1.01 * *free.Find(other.info.name)->std_error) << other.info.name;
     }
-    // A shift of a parameter by one standard error costs 1 in χ², if the others are free to follow.
+    // A shift of a parameter by one standard error raises χ² by 1, if the other parameters are free.
     const double rise = report.residual.squaredNorm() - free.residual.squaredNorm();
     EXPECT_THAT(rise / (free.noise.sigma * free.noise.sigma), DoubleNear(1, 0.05));
   }

@@ -110,55 +110,55 @@ struct HandmadeFit {
     MaximizeLikelihood(cost, problem, options, solution);
     report = MakeFitReport(recording, options, problem, cost, std::move(solution));
     is_stopped = stop.stop_requested();
-    asked = cost.evaluations();
+    evaluations_requested = cost.evaluations();
   }
 
   FitReport report;
   bool is_stopped = false;
-  int asked = 0;
+  int evaluations_requested = 0;
 };
 
-/// Stops a fit at each of its evaluations, or at 300 of them. It must end, and never request many more evaluations than
-/// the whole fit.
+/// Stops a fit at each of its evaluations, or at 300 of them. The stopped fit must end, and must not request many more
+/// evaluations than the whole fit.
 void StopEverywhere(const Recording& recording, const FitOptions& options) {
   const HandmadeFit whole(recording, options, std::numeric_limits<int>::max());
   ASSERT_FALSE(whole.is_stopped);
   ASSERT_EQ(whole.report.termination, Termination::kConverged) << whole.report.reason;
   constexpr int kMax = 300;
-  const int step = whole.asked / kMax + 1;
-  for (int k = 0; k < whole.asked; k += step) {
+  const int step = whole.evaluations_requested / kMax + 1;
+  for (int k = 0; k < whole.evaluations_requested; k += step) {
     const HandmadeFit fit(recording, options, k);
     EXPECT_TRUE(fit.is_stopped) << k;
     // Loops over restarts, neighbouring minima and points of profiles still run, but without work.
-    EXPECT_LE(fit.asked, 4 * whole.asked + 1000) << k;
+    EXPECT_LE(fit.evaluations_requested, 4 * whole.evaluations_requested + 1000) << k;
   }
 }
 
-TEST(StoppedFit, EndsAnywhere) {
+TEST(StoppedFit, EndsAfterAStopAtAnyEvaluation) {
   StopEverywhere(Must(SimulateRecording(NoisyRun("coulomb"))), ModelOptions("coulomb"));
 }
 
-TEST(StoppedFit, EndsAnywhereOnTheWayToRest) {
+TEST(StoppedFit, EndsAfterAStopIfThePendulumComesToRest) {
   SyntheticOptions run = NoisyRun("coulomb");
-  run.duration = 40;  // 0.004 N m of dry friction stop it after some 25 s
+  run.duration = 40;  // dry friction of 0.012 N m stops the pendulum after about 20 s
   run.parameters[2] *= 3;
   StopEverywhere(Must(SimulateRecording(run)), ModelOptions("coulomb"));
 }
 
-TEST(StoppedFit, EndsAnywhereOnCoarseLevelsWithoutNoise) {
+TEST(StoppedFit, EndsAfterAStopForCoarseLevelsWithoutNoise) {
   SyntheticOptions run = NoisyRun("viscous");
   run.noise = 0;
   run.resolution = kCount;
   StopEverywhere(Must(SimulateRecording(run)), ModelOptions("viscous"));
 }
 
-TEST(StoppedFit, EndsAnywhereInAProfile) {
+TEST(StoppedFit, EndsAfterAStopInAProfile) {
   FitOptions options = ModelOptions("viscous");
   options.interval = IntervalMethod::kProfile;
   StopEverywhere(Must(SimulateRecording(NoisyRun("viscous"))), options);
 }
 
-TEST(StoppedFit, EndsAnywhereForARobustFit) {
+TEST(StoppedFit, EndsAfterAStopInARobustFit) {
   FitOptions options = ModelOptions("viscous");
   options.noise = NoiseFamily::kStudent;
   StopEverywhere(Must(SimulateRecording(NoisyRun("viscous"))), options);
@@ -223,7 +223,7 @@ TEST(StoppedCost, HasNoAnswerEvenIfCached) {
   EXPECT_EQ(cost->traces(), traces);
 }
 
-TEST(StoppedPieces, ReturnNoResult) {
+TEST(StoppedFunctions, ReturnNoResult) {
   SyntheticOptions slow = NoisyRun("viscous");
   slow.sample_rate = 2;
   const Recording recording = Must(SimulateRecording(slow));
@@ -245,7 +245,7 @@ TEST(StoppedPieces, ReturnNoResult) {
   EXPECT_EQ(posterior.error().code, StatusCode::kTryAgain);
 }
 
-TEST(StoppedPieces, ReturnNoAutocorrelation) {
+TEST(StoppedFunctions, ReturnNoAutocorrelation) {
   Autocorrelation like;
   like.kind = Autocorrelation::Kind::kAutoregressive;
   like.interval = 1;

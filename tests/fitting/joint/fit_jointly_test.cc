@@ -25,8 +25,8 @@ using testing::StartsWith;
 
 // ---- Recovery ------------------------------------------------------------------------------------------------------
 
-/// Without noise: an angle after a release, a gyro's rate of a start in motion, and an angle whose file's seconds last
-/// 1.02 true seconds.
+/// Noise-free recordings: an angle after a release, a gyro's rate from a start in motion, and an angle whose file's
+/// seconds last 1.02 true seconds.
 Recordings NoiseFreeRecordings() {
   SyntheticOptions gyro = MovingRun("coulomb");
   gyro.quantity = Quantity::kRate;
@@ -91,7 +91,7 @@ TEST(FitJointly, RecoversADriftingZeroInEachRecording) {
   EXPECT_NEAR(fit.runs[1].Find("zero_drift")->estimate, drifts[2], 1e-9);
 }
 
-// Dry friction stops it after some 40 s of the 60 s.
+// Dry friction stops the first pendulum after about 40 s of 60 s.
 TEST(FitJointly, RecoversTheTruthFromRecordingsThatComeToRest) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.duration = 60;
@@ -129,8 +129,8 @@ TEST(FitJointly, IsTheWeightedMeanOfSeparateFits) {
   }
 }
 
-// A recording used twice has the information of twice as many samples: errors of shared parameters shrink by √2, those
-// of the others do not.
+// A recording used twice has the information of twice as many samples: errors of shared parameters shrink by √2, but
+// errors of unshared parameters do not.
 TEST(FitJointly, ReducesErrorsBySqrtTwoForARepeatedRecording) {
   const Recording recording = Must(SimulateRecording(Released(0.5, 3)));
   const FitReport alone = Fit(recording, RigOptions());
@@ -177,7 +177,7 @@ TEST(FitJointly, AddsUpLikelihoodsAndCountsParameters) {
     sum += fit.runs[k].statistics.log_likelihood;
     samples += static_cast<double>(recordings[k].size());
   }
-  EXPECT_EQ(fit.parameters, 15);  // inertia and two frictions; start, zero and σ of each: 3 + 1
+  EXPECT_EQ(fit.parameters, 15);  // 3 shared parameters; two start values, zero and σ of each of 3 recordings
   EXPECT_NEAR(fit.whole.statistics.log_likelihood, sum, 1e-9 * std::abs(sum));
   EXPECT_NEAR(fit.whole.statistics.aic, 30 - 2 * sum, 1e-6);
   EXPECT_NEAR(fit.whole.statistics.bic, 15 * std::log(samples) - 2 * sum, 1e-6);
@@ -212,8 +212,8 @@ TEST(SumStatistics, AreFiniteWithoutFits) {
   EXPECT_EQ(none.bic, 0);
 }
 
-// If only inertia is shared, each recording's friction follows it according to its own covariance: f + C_fI / C_II (I -
-// I_k). Inertia is the mean with weights 1 / C_II.
+// If only inertia is shared, the joint inertia I is the mean of the separate estimates I_k with weights 1 / C_II. The
+// friction f of each recording changes to f + C_fI / C_II (I - I_k), where C is the covariance of its separate fit.
 TEST(FitJointly, KeepsUnsharedParametersSeparate) {
   const Recordings recordings = MixedRecordings(5);
   const std::vector<FitReport> alone = FitAlone(recordings, RigOptions());
@@ -240,7 +240,8 @@ TEST(FitJointly, KeepsUnsharedParametersSeparate) {
 
 // ---- Priors, fixed values, bounds ----------------------------------------------------------------------------------
 
-/// A prior that is five joint standard errors from the estimate and one wide.
+/// A prior with its mean five joint standard errors above the joint estimate and a standard deviation of one such
+/// error.
 ParameterPrior InertiaPrior(const Estimates& combined) {
   const double error = std::sqrt(combined.covariance(0, 0));
   return {combined.value[0] + 5 * error, error};
@@ -277,7 +278,7 @@ TEST(FitJointly, CountsAPriorOnAnOwnParameterOncePerRecording) {
   ExpectSame(FitAllJointly(recordings, options).whole, kPhysical, Combine(parts));
 }
 
-// Released at 1.9 s (fit_support.h), which the second prior contradicts.
+// Both releases are at 1.9 s (fit_support.h). The prior for the second recording contradicts this.
 TEST(FitJointly, WarnsOfPriorsThatContradictARecording) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions near = RigOptions(), far = near;
@@ -314,7 +315,8 @@ Recordings WithoutViscous(std::uint64_t seed) {
   return recordings;
 }
 
-// Without viscous friction, half of all recordings would give a negative estimate; these two do.
+// Without viscous friction, an estimate without a bound would be negative for half of all seeds. Such fits end at the
+// bound 0.
 TEST(FitJointly, HasAProfileIntervalAtABound) {
   FitOptions options = RigOptions();
   options.interval = IntervalMethod::kAuto;
@@ -336,7 +338,7 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
     ++at_bound;
     EXPECT_EQ(viscous.estimate, 0);
     EXPECT_FALSE(viscous.std_error);
-    EXPECT_EQ(fit.parameters, 2 + 3 * 2 + 2);  // inertia and dry friction; starts and zeros; σ
+    EXPECT_EQ(fit.parameters, 2 + 3 * 2 + 2);  // inertia and dry friction; two starts and two zeros; two σ
   }
   EXPECT_GE(at_bound, 1);
   EXPECT_LE(at_bound, 5);

@@ -152,7 +152,7 @@ TEST(JointCost, FailsIfAMotionCannotBeTraced) {
   EXPECT_FALSE(joint.cost.SumOfSquares(joint.trial, &sum));
   EXPECT_FALSE(joint.cost.Sums(joint.trial, &sums));
   joint.trial = joint.Trial();
-  joint.trial[6] = -1e3;  // negative friction drives the other pendulum
+  joint.trial[6] = -1e3;  // negative friction drives the second pendulum
   EXPECT_FALSE(joint.cost.SumOfSquares(joint.trial, &sum));
   EXPECT_FALSE(joint.cost.Sums(joint.trial, &sums));
 }
@@ -180,7 +180,8 @@ TEST(JointCost, CountsReversalsTracesAndRecordingsOfAll) {
   EXPECT_EQ(joint.cost.traces(), before + 2);
 }
 
-// Dry friction τ reduces the amplitude by 4 τ / G per swing: 0.01 rad is soon lost, a radian is not.
+// Dry friction τ reduces the amplitude by 4 τ / G per swing, so a swing of 0.01 rad soon stops, a swing of 1 rad does
+// not.
 TEST(JointCost, ReachesRestIfAnyRecordingDoes) {
   const Case joint;
   EXPECT_FALSE(joint.cost.ComesToRest(joint.trial, 0));

@@ -77,7 +77,8 @@ double RelativeSystematic(const JointFit& fit, const std::string& name) {
   return parameter.systematic_std_error.value_or(0) / parameter.estimate;
 }
 
-// Torques and inertia are in units of the restoring torque G: 1 % in G is 1 % of each, for any number of recordings.
+// Torques and inertia are in units of the restoring torque G: an error of 1 % in G is an error of 1 % in each of
+// them, for any number of recordings.
 TEST(JointSystematic, IsACommonFactorForARig) {
   FitOptions options = RigOptions();
   options.rig = RigOfTorque(0.01 * kTextbookTorque);
@@ -89,7 +90,8 @@ TEST(JointSystematic, IsACommonFactorForARig) {
   }
 }
 
-/// Recordings with clock errors of 1e-3; if `apart`, each has another scale and so its own clock.
+/// The recordings with clock errors of 1e-3. If `apart`, each recording has a different clock scale, that is, its own
+/// clock.
 Recordings WithClocks(Recordings recordings, bool apart) {
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     recordings[k].clock_scale_std_dev = 1e-3;
@@ -120,9 +122,8 @@ TEST(JointSystematic, IsSmallerForTwoClocks) {
   EXPECT_GT(RelativeSystematic(uneven, "inertia"), 1.35e-3);
 }
 
-/// An angle and a gyro's rate with little noise and a common clock of that scale, in either order. The gyro's swings
-/// are small, a tenth of a radian, so its estimates follow powers of the scale: the sine in a rate's equation does not
-/// scale.
+/// An angle and a rate recording with little noise, both with clock scale `scale`, in either order. The rate recording
+/// swings by only about 0.1 rad, because its estimates follow powers of the clock scale only where sin θ ≈ θ.
 Recordings AngleAndRate(double scale, bool rate_first) {
   SyntheticOptions angle = Released(0.8, 1), gyro = MovingRun("coulomb");
   gyro.quantity = Quantity::kRate;
@@ -139,8 +140,9 @@ Recordings AngleAndRate(double scale, bool rate_first) {
   return recordings;
 }
 
-// A gyro's rate does not depend on the clock, an angle does. Their estimates therefore follow a wrong clock
-// differently, as fits with a faster and a slower clock do. The order of the recordings does not matter.
+// A wrong clock scale changes the estimates from an angle and those from a gyro's rate by different powers. The
+// systematic error must match the change of the estimates between fits with a faster and a slower clock, in either
+// order of the recordings.
 TEST(JointSystematic, MatchesFitsWithOtherClocksForAngleAndRate) {
   for (const bool rate_first : {false, true}) {
     SCOPED_TRACE(rate_first ? "rate first" : "angle first");
@@ -213,7 +215,8 @@ TEST(JointPosterior, IsTheWeightedMeanOfPosteriors) {
   ExpectCombined(fit.whole, Combine(PartsOf(alone)), 1e-4);
 }
 
-// A prior as narrow as the joint error of inertia, at the joint estimate, reduces the error by √2, not by √(1 + K).
+// A prior as narrow as the joint error of inertia, at the joint estimate, reduces the error by √2. The factor
+// would be √(1 + K) if the prior counted once for each of the K recordings.
 TEST(JointPosterior, CountsAPriorOnASharedParameterOnce) {
   const Recordings recordings = QuietRecordings(3, 1);
   const Estimates combined = Combine(PartsOf(FitAlone(recordings, QuietOptions())));

@@ -25,7 +25,7 @@ struct Collected {
 };
 
 /// Passes segments of the line 3 t + 1 that begin at multiples of `length`, up to `end`.
-Collected LayLine(Samples& samples, const std::vector<double>& time, int threads, double length, double end) {
+Collected PassLine(Samples& samples, const std::vector<double>& time, int threads, double length, double end) {
   Collected collected;
   collected.readings.resize(time.size());
   samples.Restart(time, threads);
@@ -41,7 +41,7 @@ Collected LayLine(Samples& samples, const std::vector<double>& time, int threads
     segment.order = 1;
     segment.angle[0] = 3 * start + 1;
     segment.angle[1] = 3;
-    samples.Take(segment, work, add);
+    samples.AddSegment(segment, work, add);
   }
   collected.is_complete = samples.is_complete();
   return collected;
@@ -64,22 +64,22 @@ TEST(BlockSamples, EvaluatesEachSampleWithItsOwnSegment) {
     const std::vector<double> time = Times(count);
     for (const double length : {0.003, 0.01, 0.37, 2.56, 100.0}) {
       Samples samples;
-      const Collected collected = LayLine(samples, time, 1, length, time.back() + 1e-9);
+      const Collected collected = PassLine(samples, time, 1, length, time.back() + 1e-9);
       EXPECT_TRUE(collected.is_complete);
       EXPECT_THAT(collected.readings, Pointwise(DoubleNear(1e-12), Line(time))) << count << ", " << length;
     }
   }
 }
 
-// More segments than are kept before evaluation, and more blocks than one thread takes.
+// There are more segments than are stored before evaluation, and more blocks than one thread takes.
 TEST(BlockSamples, SumsInTheSameOrderOnAnyNumberOfThreads) {
   const std::vector<double> time = Times(150'000);
   for (const double length : {0.013, 7.7}) {
     Samples alone;
-    const Collected one = LayLine(alone, time, 1, length, 1e4);
+    const Collected one = PassLine(alone, time, 1, length, 1e4);
     EXPECT_THAT(one.readings, Pointwise(DoubleNear(1e-9), Line(time)));
     Samples shared;
-    const Collected three = LayLine(shared, time, 3, length, 1e4);
+    const Collected three = PassLine(shared, time, 3, length, 1e4);
     EXPECT_THAT(three.readings, ElementsAreArray(one.readings));
     EXPECT_THAT(three.sums, ElementsAreArray(one.sums));
   }
@@ -89,8 +89,8 @@ TEST(BlockSamples, RestartsAfterAnAbandonedTrace) {
   for (const std::size_t count : {1'000UL, 150'000UL}) {  // the second is shared among threads
     const std::vector<double> time = Times(count);
     Samples samples;
-    EXPECT_FALSE(LayLine(samples, time, 3, 0.37, 0.4 * time.back()).is_complete);
-    const Collected again = LayLine(samples, time, 3, 0.37, 2 * time.back());
+    EXPECT_FALSE(PassLine(samples, time, 3, 0.37, 0.4 * time.back()).is_complete);
+    const Collected again = PassLine(samples, time, 3, 0.37, 2 * time.back());
     EXPECT_TRUE(again.is_complete);
     EXPECT_THAT(again.readings, Pointwise(DoubleNear(1e-9), Line(time))) << count;
   }

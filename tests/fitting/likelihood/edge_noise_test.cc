@@ -39,9 +39,9 @@ TEST(EdgeNoise, IsNormalAtAnEdgeAndAnIntervalInASilence) {
     EXPECT_FALSE(edges.IsSilence(edge));
     EXPECT_TRUE(edges.IsSilence(silence));
     EXPECT_EQ(edges.LikelihoodAt(edge, edge + off).log, normal.LikelihoodAt(edge, edge + off).log);
-    EXPECT_EQ(edges.At(edge, edge + off).deviance, normal.At(edge, edge + off).deviance);
+    EXPECT_EQ(edges.DevianceAt(edge, edge + off).deviance, normal.DevianceAt(edge, edge + off).deviance);
     EXPECT_EQ(edges.LikelihoodAt(silence, silence + off).log, levels.LikelihoodAt(silence, silence + off).log);
-    EXPECT_EQ(edges.At(silence, silence + off).score, levels.At(silence, silence + off).score);
+    EXPECT_EQ(edges.DevianceAt(silence, silence + off).score, levels.DevianceAt(silence, silence + off).score);
     EXPECT_EQ(edges.DistributionAt(silence, silence + off).at, levels.DistributionAt(silence, silence + off).at);
   }
 }
@@ -75,8 +75,8 @@ TEST(EdgeNoise, SeparatesStampErrorsFromEdgeErrors) {
   noise.edge.reset();  // every value is an edge
   for (const double stamp : {5e-5, 1e-4, 4e-4}) {
     const Wave wave(1e-4, stamp);
-    // The error of each variance is some 4 % (2 / sqrt(N) and their correlation), and so is that of the ratio's root;
-    // four times that is allowed.
+    // The error of each variance is some 4 % (2 / sqrt(N) and their correlation). The square root of their ratio has
+    // the same error; four times that is allowed.
     EXPECT_THAT(
         MostLikelyStampRatio(noise, wave.value, wave.readings, RatesOf(wave.time, wave.readings)) / stamp * 1e-4,
         DoubleNear(1, 0.16))
@@ -90,10 +90,8 @@ TEST(EdgeNoise, DoesNotAttributeASlowMisfitToTheStamps) {
   NoiseModel noise = Edges(1);
   noise.edge.reset();
   const Wave wave(1e-4, 0);
-  const Eigen::VectorXd small_swing_parameters =
-      wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // late by 2 ms
-  EXPECT_LT(MostLikelyStampRatio(noise, wave.value, small_swing_parameters, RatesOf(wave.time, small_swing_parameters)),
-            0.5);
+  const Eigen::VectorXd late = wave.readings.array() + 2e-3 * 2 * (5 * wave.time.array()).cos();  // by 2 ms
+  EXPECT_LT(MostLikelyStampRatio(noise, wave.value, late, RatesOf(wave.time, late)), 0.5);
 }
 
 SyntheticOptions Encoder(std::uint64_t seed) {
@@ -175,8 +173,8 @@ TEST(EdgeNoise, SeparatesTheLagOfEdgesFromFriction) {
   }
   FitOptions blind;
   blind.fixed["hysteresis"] = 0;
-  const FitReport taken_for_none = Must(FitRecording(edges, blind));
-  EXPECT_GT(std::abs(taken_for_none.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
+  const FitReport without_lag = Must(FitRecording(edges, blind));
+  EXPECT_GT(std::abs(without_lag.Find("coulomb")->estimate - truth[2]), 5 * *fit.Find("coulomb")->std_error);
 }
 
 TEST(RatesOf, AreFiniteForNearlyEqualStamps) {

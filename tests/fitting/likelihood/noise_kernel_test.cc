@@ -22,7 +22,7 @@
 namespace pendulum::noise_kernel_test {
 namespace {
 
-// ---- The kernel ----------------------------------------------------------------------------------------------------
+// ---- Identities of scores -------------------------------------------------------------------------------------------
 
 /// Probability that a normal variable lies in [from, to], computed from the tail that contains the interval.
 double Probability(const boost::math::normal& normal, double from, double to) {
@@ -36,14 +36,14 @@ double Probability(const boost::math::normal& normal, double from, double to) {
 }
 
 /// Means over the readings k of a sensor with levels 1 apart, between lowest and highest.
-struct KernelSums {
+struct ScoreMeans {
   double probability = 0;
   double score = 0, score_size = 0, score_square = 0, information = 0;
   double sigma_score = 0, sigma_score_size = 0, sigma_score_square = 0, sigma_information = 0;
   double product = 0, mixed = 0;
 };
 
-KernelSums SumOver(double sigma, double truth, int lowest, int highest) {
+ScoreMeans SumOver(double sigma, double truth, int lowest, int highest) {
   const boost::math::normal normal(truth, sigma);
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
@@ -51,7 +51,7 @@ KernelSums SumOver(double sigma, double truth, int lowest, int highest) {
   noise.resolution = 1;
   noise.low = lowest + 0.5;
   noise.high = highest - 0.5;
-  KernelSums sums;
+  ScoreMeans sums;
   for (int k = lowest; k <= highest; ++k) {
     const double from = k == lowest ? -INFINITY : k - 0.5;
     const double to = k == highest ? INFINITY : k + 0.5;
@@ -72,7 +72,7 @@ KernelSums SumOver(double sigma, double truth, int lowest, int highest) {
   return sums;
 }
 
-void ExpectKernel(const KernelSums& sums) {
+void ExpectScoreIdentities(const ScoreMeans& sums) {
   EXPECT_NEAR(sums.probability, 1, 1e-12);
   EXPECT_LE(std::abs(sums.score), 1e-9 * sums.score_size);
   EXPECT_LE(std::abs(sums.sigma_score), 1e-9 * sums.sigma_score_size);
@@ -94,20 +94,20 @@ void ForEachNoiseAndPhase(const std::function<void(double sigma, double phase)>&
 TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformation) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
     const int reach = static_cast<int>(std::ceil(12 * sigma)) + 2;  // 12 σ: the probability beyond is 1e-33
-    ExpectKernel(SumOver(sigma, phase, -reach, reach));
+    ExpectScoreIdentities(SumOver(sigma, phase, -reach, reach));
   });
 }
 
-TEST(QuantizedLikelihood, HasTheKernelOfASensorWithANearbyEnd) {
+TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformationNearAnEndOfTheRange) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
-    ExpectKernel(SumOver(sigma, phase, -1, 1));
-    ExpectKernel(SumOver(sigma, phase, 0, 4));   // often at its lower end
-    ExpectKernel(SumOver(sigma, phase, -7, 1));  // often at its upper end
+    ExpectScoreIdentities(SumOver(sigma, phase, -1, 1));
+    ExpectScoreIdentities(SumOver(sigma, phase, 0, 4));   // often at its lower end
+    ExpectScoreIdentities(SumOver(sigma, phase, -7, 1));  // often at its upper end
   });
 }
 
-/// With a wrong σ the sums must not hold.
-TEST(QuantizedLikelihood, DiffersFromTheKernelOfOtherNoise) {
+/// With a wrong σ the mean of the scores is not 0.
+TEST(QuantizedLikelihood, ViolatesTheIdentitiesWithAWrongSigma) {
   const boost::math::normal normal(0.3, 0.5);
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;

@@ -156,7 +156,8 @@ double LogAt(Case at, double u, double v) {
   return at.noise.LikelihoodAt(at.y, at.m).log;
 }
 
-// A step of 2e-3 has a truncation error of 1e-11; the rounding error is that of l, some 1e-15, over the squared step.
+// A step of 2e-3 has a truncation error of 1e-11. The rounding error is the error of l, some 1e-15, divided by the
+// squared step.
 constexpr double kStep = 2e-3;
 constexpr double kRounding = 1e-8;
 
@@ -195,7 +196,7 @@ TEST(NoiseModel, HasTwiceTheLogLikelihoodDeficitAsDeviance) {
   for (const Case& at : Cases()) {
     SCOPED_TRACE(at.what + ", sigma " + std::to_string(at.noise.sigma) + ", m " + std::to_string(at.m));
     const NoiseLikelihood l = at.noise.LikelihoodAt(at.y, at.m);
-    const SampleLikelihood sample = at.noise.At(at.y, at.m);
+    const SampleLikelihood sample = at.noise.DevianceAt(at.y, at.m);
     const double expected = 2 * (BestLog(at) - l.log);
     EXPECT_NEAR(sample.deviance, expected, 1e-13 * (1 + expected));
     EXPECT_NEAR(sample.score, l.score, 1e-13 * std::abs(l.score) + 1e-15);
@@ -207,7 +208,7 @@ TEST(NoiseModel, HasTwiceTheLogLikelihoodDeficitAsDeviance) {
 TEST(NoiseModel, HasNoDevianceIfTheModelMatchesTheReading) {
   for (const auto family :
        {NoiseFamily::kGaussian, NoiseFamily::kQuantized, NoiseFamily::kHuber, NoiseFamily::kStudent}) {
-    const SampleLikelihood sample = Noise(family, 0.3, 1).At(2, 2);
+    const SampleLikelihood sample = Noise(family, 0.3, 1).DevianceAt(2, 2);
     EXPECT_NEAR(sample.deviance, 0, 1e-15) << NoiseFamilyName(family);
     EXPECT_NEAR(sample.score, 0, 1e-15) << NoiseFamilyName(family);
     EXPECT_GT(sample.weight, 0) << NoiseFamilyName(family);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The derivatives of a motion, and of each sensor's readings of it.
+// Tests of the derivatives of a motion, and of the derivatives of each sensor's readings.
 #include "fitting/likelihood/sensed_cost.h"
 
 #include <array>

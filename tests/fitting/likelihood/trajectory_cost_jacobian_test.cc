@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The derivatives of the readings for every model, start and quantity.
+// Tests of the derivatives of the readings for every model, start and quantity.
 
 #include <algorithm>
 #include <array>

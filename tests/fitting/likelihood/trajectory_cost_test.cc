@@ -135,8 +135,8 @@ TEST(Evaluate, GivesTheNormOfResidualsWithoutJacobians) {
   EXPECT_THAT(whole.residuals.norm() / std::sqrt(sum), DoubleNear(1, 1e-12));
 }
 
-/// Coulomb data held for 50 samples of 0.01 s; unless `moving` is 0, one more sample `moving` seconds after the
-/// release.
+/// Expects that many nonzero rows of the Jacobian for data of the coulomb model: 50 samples during the hold and, unless
+/// `moving` is 0, one sample `moving` seconds after the release.
 void ExpectRank(double moving, Eigen::Index rank) {
   const MotionModel model = FindMotionModel("coulomb").value();
   const std::vector<double> p = TypicalParameters(model, StartKind::kRelease);
@@ -157,7 +157,7 @@ void ExpectRank(double moving, Eigen::Index rank) {
 }
 
 // During the hold only the sum of release angle and zero is determined. One later sample determines one combination of
-// all others.
+// all other parameters.
 TEST(Evaluate, GivesAZeroRowForAnUndeterminedDirection) {
   ExpectRank(0, 1);
   for (int i = 1; i <= 30; ++i) ExpectRank(0.003 * i, 2);
@@ -245,7 +245,7 @@ TEST(TrajectoryCost, UsesOnlyTheFirstSamplesOnRequest) {
   EXPECT_EQ(whole, again);
 }
 
-// A sample may coincide with the release, and several with one step boundary of the trace.
+// A sample may coincide with the release, and several samples may lie at one step boundary of the trace.
 TEST(TrajectoryCost, AcceptsSamplesAtAnyTime) {
   TrajectoryData data = Samples(Quantity::kAngle, 0);
   data.time = {0, 0.2, 0.5, std::nextafter(0.5, 1.0), 0.50001, 0.7, 3, 3.5, 3.50001, 20};
@@ -275,7 +275,7 @@ std::vector<double> ToRest(double coulomb) { return {kReferenceInertia, 0.003 / 
 
 constexpr int kCoulombIndex = 2;
 
-/// Two neighbouring numbers near 0.006 between which the number of reversals changes.
+/// Two adjacent floating-point values of τ_c near 0.006 between which the number of reversals changes.
 std::pair<double, double> ChangeOfHalfSwings(const TrajectoryCost& cost) {
   double low = 0.006, high = 0.0064;
   const int reversals = cost.Trace(ToRest(low)).reversals;
@@ -327,7 +327,8 @@ double FittedCoulomb(TrajectoryCost& cost, double from) {
   return p[kCoulombIndex];
 }
 
-/// τ_c fitted to a noise-free recording of `samples` samples. Truth and start are relative to the change, minus 1.
+/// τ_c fitted to a noise-free recording of `samples` samples. `truth`, the start `from` and the result are relative
+/// distances from the τ_c at which the number of half swings changes.
 double FitAcrossTheChange(std::size_t samples, double truth, double from) {
   const MotionModel model = FindMotionModel("coulomb").value();
   TrajectoryData data = Samples(Quantity::kAngle, 2500);
@@ -346,8 +347,8 @@ TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChange) {
   }
 }
 
-// The reason for Search in search.h: during 5 s of rest at the wrong angle the true number of half swings is not the
-// lower minimum at once.
+// This is the reason for Search in search.h. The recording ends with 5 s at rest. With a wrong number of half swings
+// the model rests at a wrong angle, so a solve from the wrong side ends at another local minimum.
 TEST(TrajectoryCost, HasAMinimumForEachNumberOfHalfSwings) {
   for (const double side : {-1.0, 1.0}) {
     EXPECT_THAT(side * FitAcrossTheChange(2500, side * 3e-4, side * 2e-3), DoubleNear(3e-4, 1e-8));

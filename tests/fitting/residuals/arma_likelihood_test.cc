@@ -193,7 +193,7 @@ std::vector<Autocorrelation> AllKinds() {
   return kinds;
 }
 
-TEST(MaximizeCorrelatedLikelihood, IsMissingOrFromRoundingForZeroResiduals) {
+TEST(MaximizeCorrelatedLikelihood, IsMissingForZeroResidualsWithoutRounding) {
   for (const Autocorrelation& autocorrelation : AllKinds()) {
     CorrelatedResiduals data = Residuals(EvenTimes(100), Eigen::VectorXd::Zero(100), 0);
     EXPECT_FALSE(MaximizeCorrelatedLikelihood(data, autocorrelation)) << autocorrelation.Name();
@@ -230,8 +230,7 @@ TEST(MaximizeCorrelatedLikelihood, IsMissingOrFiniteForFewSamples) {
   }
 }
 
-/// With noise, a filter with long autocorrelation converges slowly. A curve without noise leaves almost nothing to
-/// innovations.
+/// With noise, a filter with long autocorrelation converges slowly. A curve without noise has almost no innovations.
 TEST(MaximizeCorrelatedLikelihood, IsAccurateForVeryLongCorrelations) {
   const Eigen::VectorXd time = EvenTimes(1200);
   for (const Autocorrelation& autocorrelation :

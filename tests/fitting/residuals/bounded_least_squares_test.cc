@@ -42,7 +42,7 @@ TEST(BoundedLeastSquares, SatisfiesTheOptimalityConditionsWithinBounds) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Eigen::Index size = 1 + static_cast<Eigen::Index>(seed % 9);
     Eigen::MatrixXd matrix = NormalMatrix(12, size, seed);
-    if (size > 2) matrix.col(1) = matrix.col(0) + 0.1 * matrix.col(2);  // nearly dependent, or fully for three
+    if (size > 2) matrix.col(1) = matrix.col(0) + 0.1 * matrix.col(2);  // linearly dependent
     const Eigen::VectorXd value = NormalMatrix(12, 1, seed + 1000);
     const Eigen::VectorXd lowest = -0.2 * NormalMatrix(size, 1, seed + 2000).cwiseAbs();
     const Eigen::VectorXd highest = 0.2 * NormalMatrix(size, 1, seed + 3000).cwiseAbs();

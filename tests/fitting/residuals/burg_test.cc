@@ -49,7 +49,7 @@ TEST(ReflectionCoefficients, AcceptPartsShorterThanTheOrder) {
 TEST(ReflectionCoefficients, AreTheCorrelationOfAFirstOrderProcess) {
   const Eigen::VectorXd value = FirstOrderNoise(100'000, 0.8, 0, 1);
   // Each has a standard error of at most 1 / sqrt(N) = 0.003 (Kay & Makhoul, IEEE ASSP 31:56, 1983); the tolerance is
-  // four of those.
+  // four standard errors.
   EXPECT_THAT(ReflectionCoefficients(value, Whole(value), 3),
               ElementsAre(DoubleNear(0.8, 0.013), DoubleNear(0, 0.013), DoubleNear(0, 0.013)));
 }

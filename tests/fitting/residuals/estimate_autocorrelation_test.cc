@@ -67,7 +67,7 @@ TEST(EstimateAutocorrelation, CallsWhiteResidualsWhite) {
     const Summary summary =
         Summarize(300, [&](std::uint64_t seed) { return Estimate(time, FirstOrderNoise(count, 0, 0, seed)); });
     EXPECT_GE(summary.names.at("white"), 285) << count;            // 95 %
-    EXPECT_THAT(summary.inflation, DoubleNear(1, 0.03)) << count;  // loss in the error bars of white data
+    EXPECT_THAT(summary.inflation, DoubleNear(1, 0.03)) << count;  // standard errors hardly increase
   }
 }
 
@@ -115,8 +115,8 @@ TEST(EstimateAutocorrelation, FindsTheOrderOfAThirdOrderProcess) {
     return Estimate(EvenTimes(2800), value.tail(2800));
   });
   EXPECT_GE(summary.names.at("AR(3)"), 85);
-  // By the Yule-Walker equations ρ = 0.90164, 0.76230, 0.66393, so σ_e² = 1 - Σφρ = 0.16639. At frequency 0 it is
-  // divided by (1 - Σφ)² = 0.01. It scatters by 15 %.
+  // By the Yule-Walker equations ρ = 0.90164, 0.76230, 0.66393, so σ_e² = 1 - Σφρ = 0.16639. The inflation is
+  // σ_e² / (1 - Σφ)² = 0.16639 / 0.01; its estimate scatters by 15 %.
   EXPECT_THAT(summary.inflation, DoubleNear(16.64, 0.06 * 16.64));
 }
 
@@ -177,7 +177,7 @@ TEST(EstimateAutocorrelation, HandlesGapsJitterAndUnevenStamps) {
         const Eigen::VectorXd time = stamps(seed);
         return Estimate(time, CorrelatedNoise(time, 0.1, white_share, seed));
       });
-      // They scatter by 0.013 and 0.035; four standard errors of the mean of 40.
+      // Single estimates scatter by 0.013 and 0.035; the tolerances are four standard errors of the mean of 40.
       EXPECT_THAT(summary.coefficient, DoubleNear(std::exp(-0.1), 0.009)) << name << ", " << white_share;
       EXPECT_THAT(summary.next, DoubleNear((1 - white_share) * std::exp(-0.1), 0.025)) << name << ", " << white_share;
     }

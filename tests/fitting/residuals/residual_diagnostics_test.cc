@@ -177,7 +177,7 @@ struct NoisyReadings {
   }
 };
 
-/// Largest distance between their distribution and the standard normal distribution.
+/// Largest distance between the distribution of z and the standard normal distribution.
 double KolmogorovDistance(Eigen::VectorXd z) {
   const boost::math::normal normal;
   std::sort(z.begin(), z.end());
@@ -191,8 +191,8 @@ double KolmogorovDistance(Eigen::VectorXd z) {
   return distance;
 }
 
-/// Expects each statistic within the range that 6e-5 (two-sided, four standard deviations) or 1e-3 (Kolmogorov-Smirnov)
-/// of all samples exceed.
+/// Expects mean, variance and correlation within four standard deviations (exceeded with p = 6e-5), and the
+/// Kolmogorov-Smirnov distance below the value that is exceeded with p = 1e-3.
 void ExpectStandardNormalAndIndependent(const Eigen::VectorXd& z) {
   const auto n = static_cast<double>(z.size());
   EXPECT_THAT(z.mean(), DoubleNear(0, 4 / std::sqrt(n)));
@@ -276,10 +276,10 @@ TEST(QuantileResiduals, StayFiniteFarFromTheModel) {
 // ---- Autocorrelated residuals ---------------------------------------------------------------------------------------
 
 TEST(AreAutocorrelated, IsFalseForWhiteNoise) {
-  int said = 0;
-  for (std::uint64_t seed = 1; seed <= 500; ++seed) said += AreAutocorrelated(WhiteNoise(1000, seed), 130) ? 1 : 0;
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) alarms += AreAutocorrelated(WhiteNoise(1000, seed), 130) ? 1 : 0;
   // χ² with 50 degrees of freedom is six standard deviations above its mean in 2e-6 of all cases.
-  EXPECT_EQ(said, 0);
+  EXPECT_EQ(alarms, 0);
 }
 
 TEST(AreAutocorrelated, IsTrueForAutocorrelatedNoise) {
@@ -317,12 +317,13 @@ struct SwingExample {
 
 TEST(HavePhaseOrAmplitudeErrors, HasTheStatedFalseAlarmRate) {
   const SwingExample swing;
-  int said = 0;
+  int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
-    said += HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, WhiteNoise(2000, seed), SwingExample::kPeriod) ? 1 : 0;
+    const Eigen::VectorXd noise = WhiteNoise(2000, seed);
+    alarms += HavePhaseOrAmplitudeErrors(swing.time, swing.fitted, noise, SwingExample::kPeriod) ? 1 : 0;
   }
   // Two sums at 1e-4 each: 0.4 are expected, and more than three have p < 0.001.
-  EXPECT_LE(said, 3);
+  EXPECT_LE(alarms, 3);
 }
 
 TEST(HavePhaseOrAmplitudeErrors, DetectsAGrowingPhaseError) {

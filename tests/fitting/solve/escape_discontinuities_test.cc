@@ -48,7 +48,7 @@ class JumpingCost final : public LeastSquares {
   mutable double largest_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Starts at 0 with an error for which the step to 1 is `shift` standard errors.
+/// Starts at 0. The standard error is such that the step to 1 is `shift` standard errors long.
 std::optional<std::vector<double>> LowerFrom0(const JumpingCost& cost, double shift, double upper) {
   Optimum optimum;
   const double information = shift * shift;
@@ -88,7 +88,8 @@ TEST(FindLowerAlongNewtonStep, RespectsBounds) {
 
 /// An accelerometer across the rod, with enough dry friction for jumps above the noise.
 Recording Swing(std::uint64_t seed) {
-  SyntheticOptions run = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.02);
+  SyntheticOptions run =
+      MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.02);
   run.parameters = {1 / 22.0, 0.0005, 0.01};
   run.duration = 15;
   run.seed = seed;
@@ -129,7 +130,7 @@ class FailingCost final : public TrajectoryCost {
   mutable int left_ = std::numeric_limits<int>::max();
 };
 
-/// A solution with the start's `angle` some standard errors off, as if a solver had stopped there.
+/// A solution whose viscous friction is 5 % too large, as if a solver had stopped there.
 struct Stopped {
   explicit Stopped(std::uint64_t seed) : recording(Swing(seed)), problem(Must(MakeFitProblem(recording, Near()))) {
     cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
@@ -171,7 +172,7 @@ TEST(EscapeDiscontinuities, FindsABetterSolutionAndItsNoise) {
     double sum = 0;
     ASSERT_TRUE(stopped.cost->SumOfSquares(solution.parameters, &sum));
     EXPECT_NEAR(sum, solution.sum, 1e-9 * sum);
-    // Weighted by σ² = RSS / (N - free), the sum of squares equals the degrees of freedom.
+    // Divided by σ² = RSS / (N - free), the sum of squares equals the degrees of freedom.
     const double freedom = 1500 - static_cast<double>(solution.parameters.size());
     EXPECT_NEAR(sum - stopped.cost->PriorSum(solution.parameters), freedom, 3);
   }

@@ -107,7 +107,7 @@ TEST(MakeFitProblem, HoldsAFixedParameterAtItsValue) {
   const FitProblem problem = ProblemOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", 0.0031}}));
   EXPECT_THAT(problem.solve.fixed, ElementsAre(false, false, true, false, false, false));
   EXPECT_EQ(problem.first_guess[2], 0.0031);
-  EXPECT_NE(problem.start.parameters[2], 0.0031);  // the estimate from the data is kept too
+  EXPECT_NE(problem.start.parameters[2], 0.0031);  // the estimate from the data is also stored
 }
 
 TEST(MakeFitProblem, AcceptsFixedValuesInReportUnits) {
@@ -122,7 +122,7 @@ TEST(MakeFitProblem, AcceptsFixedValuesInReportUnits) {
   EXPECT_EQ(problem.first_guess[5], 0.02);
 }
 
-TEST(MakeFitProblem, RefusesAndListsForAParameterTheModelLacks) {
+TEST(MakeFitProblem, ListsTheParametersIfTheModelLacksTheFixedOne) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"coulomb", 0.001}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message, AllOf(HasSubstr("viscous has no parameter 'coulomb'"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording that reaches rest has one local minimum per number of half swings before the stop. The fit must find the
-// lowest from start values in the data. Expected: the truth of the simulation, and normal deviations.
+// A recording that reaches rest has one local minimum per number of half swings before the stop. From start values
+// estimated from the data, the fit must find the lowest local minimum. The tests expect the true values of the
+// simulation, with normally distributed deviations.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -48,7 +49,7 @@ TEST(RunToRest, FindsTheRightMinimumForTwoHundredSeeds) {
   EXPECT_THAT(squares, testing::Each(testing::DoubleNear(1, 0.35)));
 }
 
-/// -2 log L of the local minimum next to the truth, minus that of the fit.
+/// -2 log L of the local minimum next to the truth, minus -2 log L of the fit.
 double FitIsLowerBy(const SyntheticOptions& run, const FitReport& report) {
   const FitProblem problem = Must(MakeFitProblem(Must(SimulateRecording(run)), ModelOptions("coulomb")));
   const std::unique_ptr<TrajectoryCost> cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);

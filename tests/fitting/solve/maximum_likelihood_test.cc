@@ -207,7 +207,7 @@ TEST(MaximizeLikelihood, FindsParametersAndSigmaOfRoundedReadings) {
       const FitReport report = Fit(Must(SimulateRecording(run)), options);
       ASSERT_EQ(report.termination, Termination::kConverged) << report.reason;
       EXPECT_EQ(report.noise.family, NoiseFamily::kQuantized);
-      // 14 numbers of 12 recordings: one deviation beyond four standard errors has p = 0.005.
+      // 7 numbers for each of 12 recordings: one deviation beyond four standard errors has p = 0.005.
       for (const double deviation : Deviations(report, Truth(run))) EXPECT_THAT(deviation, DoubleNear(0, 4));
       EXPECT_THAT((report.noise.sigma - run.noise) / report.noise.sigma_std_error.value(), DoubleNear(0, 4));
       // N normal readings determine sigma to 1 / sqrt(2 N); quantized readings less accurately, but by less than a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified nonlinear regressions of NIST's Statistical Reference Datasets, https://www.itl.nist.gov/div898/strd/:
-// estimates of a Levenberg-Marquardt solution, and their standard deviations by InvertInformation.
+// Tests with the certified nonlinear regressions of NIST's Statistical Reference Datasets,
+// https://www.itl.nist.gov/div898/strd/: the estimates of a Levenberg-Marquardt solution and their standard deviations
+// by InvertInformation must match the certified values.
 
 #include <cmath>
 #include <fstream>
@@ -202,8 +203,8 @@ Eigen::VectorXd Minimize(const DataSet& set, const Model& model, Eigen::VectorXd
 Solution Solve(const DataSet& set, const Model& model, int start) {
   EXPECT_EQ(set.parameter.rows(), model.parameters);
   ExtendedVector estimate = Minimize(set, model, set.parameter.col(start)).cast<Extended>();
-  // A sum of squares determines its minimum only to the square root of rounding, about eight digits; the gradient is
-  // more exact.
+  // A sum of squares determines its minimum only to the square root of the rounding error, about eight digits; the
+  // gradient is more accurate.
   for (int step = 0; step < 5; ++step) {
     const Linearized near = Linearize(set, model, estimate);
     estimate += near.jacobian.colPivHouseholderQr().solve(near.residual.cast<double>()).cast<Extended>();
@@ -239,7 +240,7 @@ Case Of(const std::string& name, int parameters, Formula formula) {
   return {name, {parameters, formula, formula}};
 }
 
-/// From the far start, the rise becomes a step and remains one, because its time has no effect any more.
+/// From the far start, the rise becomes a step and remains a step, because its time constant then has no effect.
 Case BoxBod() {
   Case box_bod = Of("BoxBOD", 2, kRise);
   box_bod.first_start = 1;

@@ -11,7 +11,7 @@ namespace pendulum::optimum_test {
 namespace {
 
 TEST(RemainingShift, IsTheDistanceFromTheSolutionInStandardErrors) {
-  Fitted fitted = FitOpenly(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
+  Fitted fitted = FitWithInternals(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb"));
   EXPECT_LT(RemainingShift(fitted.optimum), 1e-3);
   // A step of half a standard error along the covariance's first column: the maximum is then half a standard error
   // away.

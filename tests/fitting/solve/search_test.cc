@@ -24,7 +24,7 @@ SyntheticOptions RunToRest() {
   return run;
 }
 
-/// A start that suits no law, with fixed parameters at 0.
+/// The same start for every law, with fixed parameters at 0.
 StartGuess Always(const std::vector<double>& start) {
   return [start](const std::vector<bool>& fixed) {
     std::vector<double> guess = start;
@@ -79,7 +79,7 @@ TEST(Search, FindsOneMinimumWithoutRest) {
 }
 
 TEST(Search, IsNeverWorseThanASimplerLaw) {
-  // A start with ten times the friction stops the pendulum early, where it fits only the rest at the end.
+  // Dry friction of 0.2 G stops the start's motion after one half swing, but the pendulum swings for 60 s.
   SyntheticOptions run = NoisyRun("viscous");
   run.duration = 60;
   SolveCase simple(run, "viscous");

@@ -185,12 +185,13 @@ TEST(Init, IsRefusedOutsideTheBounds) {
   FitOptions options = ModelOptions("viscous");
   options.initial = {{"viscous", -1.0}};
   EXPECT_EQ(RefusalOf(options).code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be begun at -1; it must be at least 0");
+  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be started at -1; it must be at least 0");
   options.initial = {{"viscous", 0.5}};
   options.bounds = {{"viscous", {0.001, 0.25}}};
-  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be begun at 0.5; it must be at least 0.001 and at most 0.25");
+  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be started at 0.5; it must be at least 0.001 and at most 0.25");
   options.initial = {{"drag", 0.5}};
-  EXPECT_THAT(RefusalOf(options).message, HasSubstr("has no parameter 'drag' to begin with this start"));
+  EXPECT_THAT(RefusalOf(options).message,
+              HasSubstr("has no parameter 'drag' to give an initial value with this start"));
 }
 
 // ---- A zero that drifts --------------------------------------------------------------------------------------------
@@ -237,7 +238,7 @@ TEST(Drift, IsAParameterOnlyIfNamed) {
   options.bounds.clear();
   options.priors = {{"zero_drift", {0, 1e-7}}};
   EXPECT_THAT(Fit(recording, options).Find("zero_drift")->estimate, DoubleNear(0, 4e-7));
-  options.priors = {{"bias_drift", {0, 1e-7}}};  // drift parameter of a rate
+  options.priors = {{"bias_drift", {0, 1e-7}}};  // the drift parameter of a rate sensor
   EXPECT_EQ(FitRecording(recording, options).error().code, StatusCode::kInvalidArgument);
 }
 

@@ -59,7 +59,7 @@ SyntheticOptions Swing(double amplitude, Quantity quantity = Quantity::kAngle) {
   return options;
 }
 
-/// Root mean square of the readings about the start's trajectory, relative to that about their mean.
+/// Root mean square distance of the readings from the start's trajectory, divided by the distance from their mean.
 double Unexplained(const Recording& recording, const StartValues& start, MotionModel model) {
   SyntheticOptions options;
   options.model = model;
@@ -109,7 +109,7 @@ TEST(ScanFrequencies, ReturnsAtMostTwelve) {
 }
 
 TEST(ScanFrequencies, HasTheTrueFrequencyFirstAtUnevenStamps) {
-  // Even samples have aliases that explain them equally well; these have none.
+  // Even samples have aliases that explain them equally well; uneven samples have none.
   const Eigen::VectorXd even = EvenTimes();
   const Recording uneven = Cosine(even.array() + 0.3 * (1.7 * even.array()).sin());
   const auto starts = ScanFrequencies(uneven, Linear(), kWide);

@@ -35,7 +35,7 @@ FitReport Fit(const SyntheticOptions& options, const FitOptions& fit = {}) {
 }
 
 TEST(FitRecording, FindsTheScaleOfAGyroInVolts) {
-  const SyntheticOptions options = Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
+  const SyntheticOptions options = MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
   const FitReport fit = Fit(options);
   ExpectTruth(options, fit);
   EXPECT_EQ(fit.Find("rate_bias")->unit, "volts");
@@ -44,14 +44,14 @@ TEST(FitRecording, FindsTheScaleOfAGyroInVolts) {
 
 TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAcrossTheRod) {
   const SyntheticOptions options =
-      Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.05);
+      MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.05);
   ExpectTruth(options, Fit(options));
 }
 
 TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
   for (const double upright : {1.0, -1.0}) {
-    const SyntheticOptions options =
-        Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
+    const SyntheticOptions options = MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration,
+                                                   {0.1, 1.005, upright * (kPi / 2 + 0.02), 0.3}, 0.05);
     ExpectTruth(options, Fit(options));
   }
 }
@@ -62,7 +62,7 @@ TEST(FitSwing, StartsAnAccelerationAfterItsHold) {
     for (const double release : {0.5, 2.0}) {
       SCOPED_TRACE(std::to_string(axis) + " rad, held for " + std::to_string(release) + " s");
       SyntheticOptions options =
-          Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, axis, 0.3}, 0.03);
+          MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, axis, 0.3}, 0.03);
       options.start = StartKind::kRelease;
       options.release_angle = 0.8;
       options.release_time = release;
@@ -85,11 +85,12 @@ TEST(FitSwing, StartsAnAccelerationAfterItsHold) {
   }
 }
 
-/// With jumps of 0.13 m/s², six times the noise, a third of the searches end next to one.
+/// With jumps of 0.13 m/s², six times the noise, a third of the searches end next to a jump.
 TEST(FitRecording, ReportsADiscontinuityThatStoppedTheSearch) {
   int stopped = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U, 6U, 8U, 9U, 10U}) {
-    SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0.02, 0.3}, 0.02);
+    SyntheticOptions options =
+        MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0.02, 0.3}, 0.02);
     options.parameters = {1 / 22.0, 0.0005, 0.01};
     options.duration = 15;
     options.seed = seed;
@@ -108,7 +109,8 @@ TEST(FitRecording, FindsTheRadiusWithoutGravityInTheReadings) {
   for (const auto& [axis, duration] :
        {std::pair(0.02, 150.0), std::pair(kPi / 2 + 0.02, 30.0), std::pair(-kPi / 2 - 0.02, 150.0)}) {
     SCOPED_TRACE(std::to_string(axis) + " rad, " + std::to_string(duration) + " s");
-    SyntheticOptions options = Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0.05, 1.005, axis, 0.3}, 0.02);
+    SyntheticOptions options =
+        MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.05, 1.005, axis, 0.3}, 0.02);
     options.sensor.gravity = 0;
     options.duration = duration;
     options.sample_rate = 50;
@@ -129,30 +131,30 @@ TEST(FitRecording, RefusesSensorsThatWouldShowNothing) {
     EXPECT_EQ(fixed.error().message, begun.error().message);
     return begun.error().message;
   };
-  EXPECT_EQ(message(Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
+  EXPECT_EQ(message(MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
             "rate_scale cannot be 0, because the sensor would then show no motion; it must be other than 0");
-  EXPECT_EQ(message(Seen(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5), "radius"),
+  EXPECT_EQ(message(MeasuredSwing(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5), "radius"),
             "radius cannot be 0, because the sensor would then show no motion; it must be greater than 0");
-  EXPECT_EQ(
-      message(Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05), "acceleration_scale"),
-      "acceleration_scale cannot be 0, because the sensor would then show no motion; it must be greater than 0");
+  EXPECT_EQ(message(MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.05),
+                    "acceleration_scale"),
+            "acceleration_scale cannot be 0, because the sensor would then show no motion; it must be greater than 0");
 }
 
 TEST(FitRecording, FindsThePivotOfAHorizontalCoordinate) {
-  const SyntheticOptions options = Seen(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5);
+  const SyntheticOptions options = MeasuredSwing(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 640, 400}, 0.5);
   const FitReport fit = Fit(options);
   ExpectTruth(options, fit);
   EXPECT_EQ(fit.Find("radius")->unit, "m");
 }
 
 TEST(FitRecording, FindsThePivotOfBothCoordinates) {
-  const SyntheticOptions options = Seen(Quantity::kAngle, SensorKind::kArc, {0.01, 640, 120, 400}, 0.5);
+  const SyntheticOptions options = MeasuredSwing(Quantity::kAngle, SensorKind::kArc, {0.01, 640, 120, 400}, 0.5);
   ExpectTruth(options, Fit(options));
 }
 
-/// Small swings are those of a linear pendulum: the scale cannot be determined, and the fit reports none.
+/// Small swings are those of a linear pendulum: the scale cannot be determined, and the fit reports no scale.
 TEST(FitRecording, ReportsParametersSmallSwingsCannotDetermine) {
-  SyntheticOptions options = Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
+  SyntheticOptions options = MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002);
   options.initial_angle = 0.05;
   options.parameters[2] = 0;
   const FitReport fit = Fit(options);
@@ -172,9 +174,9 @@ TEST(FitRecording, FitsUncalibratedReadingsWithTheLinearModel) {
   FitOptions linear;
   linear.model = "linear";
   for (const SyntheticOptions& options :
-       {Seen(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
-        Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.02),
-        Seen(Quantity::kPosition, SensorKind::kCoordinate, {0, 640, 400}, 0.5)}) {
+       {MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
+        MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.3}, 0.02),
+        MeasuredSwing(Quantity::kPosition, SensorKind::kCoordinate, {0, 640, 400}, 0.5)}) {
     SyntheticOptions small = options;
     small.initial_angle = 0.05;
     small.parameters[2] = 0;
@@ -186,7 +188,8 @@ TEST(FitRecording, FitsUncalibratedReadingsWithTheLinearModel) {
 
 TEST(FitRecording, RefusesParametersAnAccelerationCannotDetermine) {
   const Recording along =
-      SimulateRecording(Seen(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, kPi / 2, 0.3}, 0.05)).value();
+      SimulateRecording(MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, kPi / 2, 0.3}, 0.05))
+          .value();
   FitOptions options;
   options.model = "linear";
   const auto linear = FitRecording(along, options);

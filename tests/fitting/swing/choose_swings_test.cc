@@ -33,7 +33,7 @@ Recording OneAfterTheOther(const Recording& first, const Recording& second) {
   return both;
 }
 
-/// Released at 1.9 s for 9 s; held again from 13 s on, released at 14.9 s, recorded to 28 s.
+/// Released at 1.9 s and in free swing until 9 s; held again from 13 s on, released at 14.9 s, recorded until 28 s.
 Recording TwoReleases() {
   SyntheticOptions second = NoisyRun("coulomb", 2);
   second.release_angle = 0.6;
@@ -99,7 +99,7 @@ TEST(ChooseSwings, CountsReleasesWithinTheWindow) {
 }
 
 TEST(ChooseSwings, SkipsTheSearchIfBothBoundsAreGiven) {
-  // A hand and a second hold lie between; if both ends are given, the search ignores them.
+  // The window includes the motion by hand and the second hold, which a search would exclude.
   const ChosenSwings swings = Choose(Between(3, 20));
   ASSERT_THAT(swings.found, SizeIs(1));
   EXPECT_THAT(swings.chosen, ElementsAre(1));

@@ -121,8 +121,8 @@ TEST(FitSwing, LocatesCountsLostWithinAGap) {
   }
 }
 
-/// Events of an encoder whose counter loses one count at some turning points, and four during the motion, where a busy
-/// logger missed rows.
+/// Events of an encoder whose counter loses one count at some turning points, and once four counts during the motion,
+/// when a busy logger missed rows.
 TEST(FitSwing, CorrectsCountsLostByAnEventEncoder) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.start = StartKind::kMoving;
@@ -152,7 +152,7 @@ TEST(FitSwing, KeepsAJumpNearTheEndInTheWindow) {
   EXPECT_THAT(result.swing.to, DoubleNear(19.99, 1e-9));
 }
 
-TEST(FitSwing, RefusesASlippingZero) {
+TEST(FitSwing, DoesNotConvergeForASlippingZero) {
   SyntheticOptions run = CountingRun(0.5);
   for (const double resolution : {0.0, kCount}) {
     run.resolution = resolution;
@@ -175,7 +175,7 @@ TEST(MayHaveOffsetJump, DetectsAChangeOfTheMean) {
   EXPECT_FALSE(MayHaveOffsetJump(fit));
   fit.residual.tail(400).array() += 0.005;
   EXPECT_TRUE(MayHaveOffsetJump(fit));
-  fit.residual *= 1e-8;  // rounding error of the numbers
+  fit.residual *= 1e-8;  // floating-point rounding error
   EXPECT_FALSE(MayHaveOffsetJump(fit));
 }
 

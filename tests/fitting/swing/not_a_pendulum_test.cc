@@ -78,7 +78,7 @@ TEST(FitSwing, ReportsALinearOscillatorWithNumbers) {
     SCOPED_TRACE(std::to_string(degrees) + " deg, " + std::string(friction));
     const FitReport fit = FitLongest(LinearOscillator(degrees, friction, 1), ModelOptions("coulomb")).fit;
     ExpectWithdrawn(fit);
-    // A pendulum's period is longer by 2 / π K(sin(A / 2)).
+    // A pendulum's period is longer by the share 2 / π K(sin(A / 2)) - 1.
     const double longer = 2 / kPi * std::comp_ellint_1(std::sin(0.5 * degrees * kRadFromDeg)) - 1;
     EXPECT_THAT(NumberAfter(fit.reason, "whose period is "), DoubleNear(100 * longer, 0.15 * 100 * longer));
     EXPECT_THAT(NumberAfter(fit.reason, "longer at "), DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
@@ -146,8 +146,8 @@ TEST(FitSwing, ReportsBeatingModesOfNearlyOneFrequency) {
 
 // ---- A pendulum ---------------------------------------------------------------------------------------------------
 
-/// 20 s of a pendulum of 5 rad/s released at 1 rad. No model has its friction, torque(rate) in units of the restoring
-/// torque G. Classical Runge-Kutta steps of 1 ms; noise as in NoisyRun.
+/// 20 s of a pendulum of 5 rad/s released at 1 rad. Its friction, torque(rate) in units of the restoring torque G, is
+/// in no model. Classical Runge-Kutta steps of 1 ms; noise as in NoisyRun.
 template <typename Friction>
 Recording PendulumWith(const Friction& torque) {
   Recording recording = Must(SimulateRecording([] {

@@ -17,7 +17,7 @@ namespace {
 
 using Noise = std::function<double()>;
 
-/// 10 s at 100 Hz of y(t, a draw of the standard normal distribution).
+/// 10 s at 100 Hz of the readings y(t, noise). Each call of noise() draws from the standard normal distribution.
 Recording Made(const std::function<double(double, const Noise&)>& y, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> draw;

@@ -22,8 +22,8 @@ using testing::SizeIs;
 constexpr double kPeriod = 1.0;  // s
 constexpr double kRate = 100;    // Hz
 
-/// 20 s of AR(1) noise with standard deviation 1 and that correlation, as residuals of a fit with the parameters phase,
-/// amplitude and zero of a sine.
+/// 20 s of AR(1) noise with standard deviation 1 and the given lag-1 correlation, as residuals of a fit with the
+/// parameters phase, amplitude and zero of a sine.
 FitResiduals Noise(unsigned seed, double correlation = 0) {
   constexpr Index kCount = 2000;
   std::mt19937_64 generator(seed);
@@ -85,7 +85,7 @@ TEST(FindOffsetSteps, FindsStepsOfBothSignsInTimeOrder) {
 
 // A law that does not describe the friction leaves residuals that oscillate with the swing, smooth from sample to
 // sample.
-TEST(FindOffsetSteps, FindsAStepDespiteAMisfitAndNoneWithoutIt) {
+TEST(FindOffsetSteps, FindsOnlyTheTrueStepInAMisfit) {
   FitResiduals residuals = Noise(4);
   residuals.residual *= 0.1;
   const Eigen::ArrayXd t = residuals.time.array();

@@ -71,7 +71,7 @@ auto HasWarning(const std::string& code) { return Contains(Field(&Warning::code,
 
 /// Deviations from the truth in standard errors.
 struct Scatter {
-  int far = 0;  ///< Beyond 4.
+  int far = 0;  ///< Number of deviations beyond 4 standard errors.
   double std_dev = 0;
 };
 
@@ -116,7 +116,7 @@ TEST(FitUndersampled, ExcludesTheHold) {
   run.release_angle = 0.423;
   run.release_time = 1.9;
   const SwingFit result = FitSimulated(run, TextbookRig(), "viscous");
-  EXPECT_THAT(result.used.time[0], AllOf(Ge(2), Le(3)));  // at 2 s it has moved by less than a tenth of its angle
+  EXPECT_THAT(result.used.time[0], AllOf(Ge(2), Le(3)));  // at 2 s the angle has changed by less than a tenth
   EXPECT_EQ(result.fit.start, StartKind::kMoving);
   EXPECT_THAT(Sentence(result.swing.begins), HasSubstr("without the constant readings"));
   EXPECT_NEAR(InertiaOf(result), kInertiaTruth, 4 * *result.fit.Find("inertia")->std_error);
@@ -161,7 +161,7 @@ TEST(FitUndersampled, IsNotIdentifiableAtOneOrTwoSamplesPerCycle) {
   }
 }
 
-TEST(FitUndersampled, RejectsAnotherMotionInNoise) {
+TEST(FitUndersampled, RejectsReadingsWithNoiseOnly) {
   Recording noise = Must(SimulateRecording(Swing(1, 0.423, 1)));
   std::mt19937_64 generator(5);
   for (double& value : noise.value) value = static_cast<double>(generator() >> 11) * 0x1p-53;

@@ -74,7 +74,7 @@ TEST(Bootstrap, MatchesSandwichIntervalsForAutocorrelatedNoise) {
 Fitted SmallFit() {
   SyntheticOptions run = ShortSwing("viscous");
   run.sample_rate = 15;
-  return FitOpenly(Must(SimulateRecording(run)), ModelOptions("viscous"));
+  return FitWithInternals(Must(SimulateRecording(run)), ModelOptions("viscous"));
 }
 
 Bootstrap Bootstrapped(const Fitted& fitted, std::uint64_t seed, int threads) {

@@ -161,8 +161,8 @@ TEST(SamplePosterior, MatchesQuadratureForCensoredReadings) {
 
 TEST(SamplePosterior, CountsEqualSamples) {
   LinearizedFit fit = Ramp();
-  const Eigen::VectorXi twice_and_more = Eigen::VectorXi::LinSpaced(60, 0, 59) / 3;
-  const std::vector<int> rows(twice_and_more.begin(), twice_and_more.end());
+  const Eigen::VectorXi each_three_times = Eigen::VectorXi::LinSpaced(60, 0, 59) / 3;
+  const std::vector<int> rows(each_three_times.begin(), each_three_times.end());
   fit = FitOf(fit.value(rows), fit.readings(rows), fit.jacobian(rows, Eigen::all));
   fit.value[31] += kResolution;  // so σ is not small, and two of three remain equal
   ExpectAsByQuadrature(fit);
@@ -346,7 +346,7 @@ TEST(SamplePosterior, RefusesInvalidValues) {
   ExpectError(fit, StatusCode::kInvalidArgument, "sigma is -1");
   fit = Ramp();
   fit.lower[0] = 0.5;
-  ExpectError(fit, StatusCode::kInvalidArgument, "parameter 0 is bound to 0.5");
+  ExpectError(fit, StatusCode::kInvalidArgument, "the bounds of parameter 0, minus its fitted value, are 0.5");
 }
 
 TEST(SamplePosterior, NamesUndeterminedParameters) {

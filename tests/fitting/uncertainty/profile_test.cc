@@ -23,22 +23,22 @@ double TwoSided95(double freedom) { return boost::math::quantile(boost::math::st
 
 // ---- A reparametrized straight line --------------------------------------------------------------------------------
 
-/// A reparametrization of a line's slope: the slope as a function of the parameter, its derivative, and its inverse.
-struct Disguise {
+/// A reparametrization of a line's slope: the slope as a function of the parameter, with its derivative and inverse.
+struct SlopeMap {
   std::function<double(double)> slope, derivative, parameter;
 };
 
 /// Readings offset + slope(p) x: parameters p and offset, N residuals, no trajectory.
 class LineCost final : public TrajectoryCost {
  public:
-  LineCost(Disguise disguise, Eigen::VectorXd x, Eigen::VectorXd value)
-      : TrajectoryCost(2), disguise_(std::move(disguise)), x_(std::move(x)), value_(std::move(value)) {}
+  LineCost(SlopeMap map, Eigen::VectorXd x, Eigen::VectorXd value)
+      : TrajectoryCost(2), map_(std::move(map)), x_(std::move(x)), value_(std::move(value)) {}
 
   bool Readings(std::span<const double> p, Eigen::VectorXd* readings, Eigen::MatrixXd* jacobian) const override {
-    *readings = p[1] + disguise_.slope(p[0]) * x_.array();
+    *readings = p[1] + map_.slope(p[0]) * x_.array();
     if (jacobian == nullptr) return true;
     jacobian->resize(x_.size(), 2);
-    jacobian->col(0) = disguise_.derivative(p[0]) * x_;
+    jacobian->col(0) = map_.derivative(p[0]) * x_;
     jacobian->col(1).setOnes();
     return true;
   }
@@ -66,7 +66,7 @@ class LineCost final : public TrajectoryCost {
   void set_noise(const NoiseModel& noise) override { sigma_ = noise.sigma; }
 
  private:
-  Disguise disguise_;
+  SlopeMap map_;
   Eigen::VectorXd x_;
   Eigen::VectorXd value_;
   double sigma_ = 1;
@@ -89,8 +89,8 @@ struct Line {
 };
 
 /// The profile of the reparametrized slope. Its parameter may have bounds; the search begins at `start`.
-ProfileInterval ProfileOfLine(const Line& line, const Disguise& disguise, double start, double lower, double upper) {
-  LineCost cost(disguise, line.x, line.value);
+ProfileInterval ProfileOfLine(const Line& line, const SlopeMap& map, double start, double lower, double upper) {
+  LineCost cost(map, line.x, line.value);
   FitProblem problem;
   problem.infos = {kInertia, kZeroAngle};
   problem.data.time.assign(line.x.begin(), line.x.end());
@@ -108,23 +108,22 @@ ProfileInterval ProfileOfLine(const Line& line, const Disguise& disguise, double
   return ProfileParameter(cost, problem, solution, optimum, {}, 0);
 }
 
-const Disguise kNone = {[](double p) { return p; }, [](double) { return 1.0; }, [](double s) { return s; }};
-const Disguise kExponential = {[](double p) { return std::exp(p); }, [](double p) { return std::exp(p); },
+const SlopeMap kNone = {[](double p) { return p; }, [](double) { return 1.0; }, [](double s) { return s; }};
+const SlopeMap kExponential = {[](double p) { return std::exp(p); }, [](double p) { return std::exp(p); },
                                [](double s) { return std::log(s); }};
 /// A slope that stays below 1 for any parameter value.
-const Disguise kSaturating = {[](double p) { return p / (1 + p); }, [](double p) { return 1 / ((1 + p) * (1 + p)); },
+const SlopeMap kSaturating = {[](double p) { return p / (1 + p); }, [](double p) { return 1 / ((1 + p) * (1 + p)); },
                               [](double s) { return s / (1 - s); }};
 
 /// A profile does not depend on the parametrization: the result is the line's interval, transformed to the parameter.
 TEST(ProfileParameter, MatchesTheTransformedIntervalOfALine) {
-  for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
+  for (const SlopeMap* map : {&kNone, &kExponential, &kSaturating}) {
     const Line line(0.3);
-    const ProfileInterval profile =
-        ProfileOfLine(line, *disguise, disguise->parameter(0.25), disguise->parameter(0.05), 20);
+    const ProfileInterval profile = ProfileOfLine(line, *map, map->parameter(0.25), map->parameter(0.05), 20);
     ASSERT_TRUE(profile.lower && profile.upper);
     // The ends are found to a hundredth of the root of the likelihood's decrease: a hundredth of the half length.
-    EXPECT_NEAR(disguise->slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
-    EXPECT_NEAR(disguise->slope(*profile.upper), line.Slope() + line.HalfLength(), 0.011 * line.HalfLength());
+    EXPECT_NEAR(map->slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
+    EXPECT_NEAR(map->slope(*profile.upper), line.Slope() + line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_EQ(profile.open, OpenInterval::kClosed);
   }
 }
@@ -150,7 +149,7 @@ TEST(ProfileParameter, EndsAtABoundWithinTheInterval) {
 
 /// If the bound excludes the line's own slope, the likelihood decreases from its value at the bound, not from its
 /// maximum.
-TEST(ProfileParameter, FallsFromTheBoundForAParameterAtIt) {
+TEST(ProfileParameter, StartsFromTheLikelihoodAtTheBoundForAParameterThere) {
   const Line line(0.3);
   const double beyond = 0.5 * line.HalfLength();
   const ProfileInterval profile = ProfileOfLine(line, kNone, 1, line.Slope() + beyond, 5);
@@ -160,7 +159,7 @@ TEST(ProfileParameter, FallsFromTheBoundForAParameterAtIt) {
 }
 
 TEST(ProfileParameter, HasNoEndsForAnUndeterminedParameter) {
-  const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
+  const SlopeMap nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
   const ProfileInterval profile = ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded);
   EXPECT_FALSE(profile.lower || profile.upper);
   EXPECT_EQ(profile.open, OpenInterval::kNotDetermined);
@@ -172,13 +171,12 @@ TEST(ProfileParameter, HasNoEndsForAnUndeterminedParameter) {
 TEST(ProfileParameter, IsAParabolaForALine) {
   const Line line(0.3);
   const double threshold = TwoSided95(18) * TwoSided95(18);
-  for (const Disguise* disguise : {&kNone, &kExponential, &kSaturating}) {
-    const ProfileInterval profile =
-        ProfileOfLine(line, *disguise, disguise->parameter(0.25), disguise->parameter(0.05), 20);
+  for (const SlopeMap* map : {&kNone, &kExponential, &kSaturating}) {
+    const ProfileInterval profile = ProfileOfLine(line, *map, map->parameter(0.25), map->parameter(0.05), 20);
     EXPECT_NEAR(profile.threshold, threshold, 1e-9 * threshold);
     ASSERT_GE(profile.points.size(), 9);
     for (const ProfilePoint& point : profile.points) {
-      const double distance = (disguise->slope(point.value) - line.Slope()) / line.HalfLength();
+      const double distance = (map->slope(point.value) - line.Slope()) / line.HalfLength();
       // The solver is accurate to 1e-10 of the sum of squares, 18 here.
       EXPECT_NEAR(point.statistic, threshold * distance * distance, 1e-6) << point.value;
     }
@@ -215,7 +213,7 @@ TEST(ProfileParameter, HasPointsOnOneSideOfABoundOnly) {
 }
 
 TEST(ProfileParameter, HasNoPointsForAnUndeterminedParameter) {
-  const Disguise nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
+  const SlopeMap nothing = {[](double) { return 0.3; }, [](double) { return 0.0; }, {}};
   EXPECT_THAT(ProfileOfLine(Line(0.3), nothing, 1, -kUnbounded, kUnbounded).points, testing::IsEmpty());
 }
 
@@ -275,7 +273,7 @@ TEST(ProfileParameter, CoversATruthAtItsBound) {
   }
 }
 
-/// The value at which fits with b fixed have lost t² of deviance, by bisection over whole fits.
+/// The value of b at which the deviance of fits with b fixed has risen by t², by bisection over whole fits.
 double ScannedUpper(const Recording& recording, const FitReport& report) {
   const double t = TwoSided95(static_cast<double>(recording.size()) - static_cast<double>(report.covariance.rows()));
   const double variance = report.noise.sigma * report.noise.sigma;

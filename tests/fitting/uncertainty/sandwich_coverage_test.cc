@@ -15,8 +15,8 @@ namespace pendulum::sandwich_coverage_test {
 namespace {
 
 /// Which of a swing's three 95 % intervals contain 0 if only noise was measured. The noise variance is RSS divided by
-/// the number of samples minus tr(A^-1 W'RW), the part absorbed by the fit. t uses the effective number of samples
-/// minus K.
+/// the number of samples minus tr(A^-1 W'RW), the part absorbed by the fit. Student's t uses the effective number
+/// of samples minus K.
 Eigen::Array3i Covered(const Eigen::VectorXd& time, const Eigen::VectorXd& noise) {
   const Eigen::MatrixXd columns = SwingColumns(time);
   const Eigen::Matrix3d inverse = (columns.transpose() * columns).llt().solve(Eigen::Matrix3d::Identity());

@@ -94,7 +94,7 @@ TEST(ComputeErrors, MatchTheNumericInformationOnLevels) {
     SCOPED_TRACE(noise);
     FitOptions options = ModelOptions("coulomb");
     options.noise = NoiseFamily::kQuantized;
-    const Fitted fitted = FitOpenly(ShortSwingInCounts(noise, 3), options);
+    const Fitted fitted = FitWithInternals(ShortSwingInCounts(noise, 3), options);
     fitted.cost->set_tolerance(1e-15);
     const Errors errors = fitted.StandardErrors();
     ExpectInverse(errors, fitted, Linearized(fitted), 1e-3);
@@ -122,7 +122,7 @@ struct Scatter {
   }
 };
 
-/// The scatter of the parameters, then σ, in units of their first standard error.
+/// The scatter of each parameter, measured from its first estimate, and at last the scatter of σ.
 std::vector<Scatter> ScatterOver(int seeds, const std::function<FitReport(std::uint64_t seed)>& fit) {
   std::vector<Scatter> scatter;
   std::vector<double> origin;
@@ -142,7 +142,7 @@ std::vector<Scatter> ScatterOver(int seeds, const std::function<FitReport(std::u
   return scatter;
 }
 
-/// Expects ratios of deviation to standard error within four standard deviations of the deviation's own error.
+/// Expects that the standard deviation over seeds equals the mean standard error, within four times its own error.
 void ExpectTrueErrors(const std::vector<Scatter>& scatter) {
   const double allowed = 4 / std::sqrt(2 * scatter[0].count);
   for (std::size_t i = 0; i < scatter.size(); ++i) {

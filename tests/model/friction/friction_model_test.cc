@@ -71,10 +71,10 @@ class FrictionLaw : public testing::Test {
 
 TYPED_TEST_SUITE(FrictionLaw, TypesOf<FrictionModels>::Type, LawName);
 
-/// Rest, 1e-9, typical and fast [rad/s].
+/// Rates at rest, near rest, typical and fast [rad/s].
 constexpr std::array kRates = {0.0, 1e-9, 1e-3, 0.4, 2.7, 30.0};
 
-TYPED_TEST(FrictionLaw, IsOddButForParametersThatHaveASign) {
+TYPED_TEST(FrictionLaw, IsOddIfSignedParametersChangeSign) {
   for (int trial = 0; trial < 20; ++trial) {
     const auto p = this->RandomParameters();
     const auto mirrored = this->Mirrored(p);
@@ -100,7 +100,7 @@ TYPED_TEST(FrictionLaw, OpposesMotion) {
   EXPECT_GT(TypeParam::Torque(1.0, 1.0, p.data()), 0);
 }
 
-TYPED_TEST(FrictionLaw, IsNoFrictionWhenItsParametersAreZero) {
+TYPED_TEST(FrictionLaw, IsNoFrictionWhenItsParametersAreAtTheirLowerBounds) {
   auto p = this->RandomParameters();
   for (int i = 0; i < static_cast<int>(p.size()); ++i) p[i] = TypeParam::kParameters[i].lower;
   for (const double rate : kRates) {
@@ -199,7 +199,7 @@ TYPED_TEST(FrictionLaw, ScalesWithGravityExactlyTheParametersThatAreTorques) {
   }
 }
 
-TYPED_TEST(FrictionLaw, HasAFormulaThatNamesEachParameterOnceAndTheRate) {
+TYPED_TEST(FrictionLaw, HasAFormulaWithTheRateAndEveryParameter) {
   const std::string_view formula = TypeParam::kFormula;
   EXPECT_THAT(formula, HasSubstr("th'"));
   std::vector<std::string_view> braced;

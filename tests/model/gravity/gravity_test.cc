@@ -102,8 +102,8 @@ TYPED_TEST(GravityLaw, FindsTheAngleOfATorqueAndAPotential) {
   }
 }
 
-// Energy is kept, so with the chord c = C sin φ the period is 4 √I ∫ c/g(θ) dφ over a quarter turn of φ. The integrand
-// is smooth and periodic: the trapezoidal rule converges exponentially.
+// Energy is conserved, so with the chord c = C sin φ the period is 4 √I ∫ c/g(θ) dφ over a quarter turn of φ. The
+// integrand is smooth and periodic: the trapezoidal rule converges exponentially.
 TYPED_TEST(GravityLaw, HasThePeriodOfEnergyConservation) {
   constexpr int kIntervals = 4000;
   for (const double amplitude : this->Angles()) {

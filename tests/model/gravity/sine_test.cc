@@ -49,7 +49,7 @@ Series<double> SineInOrder(const Series<double>& angle) {
   return coefficients;
 }
 
-/// Compares relative to the largest coefficient from n on, because terms of higher coefficients can cancel.
+/// The tolerance is relative to the largest of the coefficients n and above, because their terms can cancel.
 void ExpectSine(const Series<double>& angle) {
   const Series<double> expected = SineByAutodiff(angle);
   const Series<double> actual = SineInOrder(angle);
@@ -79,8 +79,8 @@ TEST(SineSeries, IsTheTaylorSeriesFromRestAtNinetyDegrees) {
   ExpectSine(angle);
 }
 
-// sin τ = τ - τ³/3! + τ⁵/5! - ...
-TEST(SineSeries, IsTheTextbookSeriesForTimeItself) {
+// θ = τ: sin τ = τ - τ³/3! + τ⁵/5! - ...
+TEST(SineSeries, IsTheTextbookSeriesOfTheSine) {
   Series<double> angle{};
   angle[1] = 1;
   const Series<double> sine = SineInOrder(angle);

@@ -43,8 +43,8 @@ void ExpectRelative(double value, double expected, double tolerance) {
   EXPECT_NEAR(value, expected, tolerance * std::abs(expected));
 }
 
-/// NIST StRD, linear least squares, Norris: readings of an ozone monitor against a standard. Readings occur twice,
-/// which a table in a file must not contain but least squares permit.
+/// NIST StRD, linear least squares, Norris: readings of an ozone monitor against a standard. Some readings occur
+/// twice. A table in a file must not contain them, but least squares permits them.
 TEST(CalibrateSensor, MeetsTheCertifiedValuesOfNorris) {
   const std::vector<double> y = {0.1, 338.8, 118.1, 888.0, 9.2,   228.1, 668.5, 998.5, 449.1, 778.9, 559.2, 0.3,
                                  0.1, 778.1, 668.8, 339.3, 448.9, 10.8,  557.7, 228.3, 998.0, 888.8, 119.6, 0.3,
@@ -71,7 +71,7 @@ TEST(CalibrateSensor, MeetsTheCertifiedValuesOfPontius) {
   std::vector<double> x;
   for (int i = 0; i < 40; ++i) x.push_back(150000.0 * (i % 20 + 1));
   const CalibrationFit fit = FitOf(TableOf("volts", "deg", x, y), 2);
-  constexpr double kNineDigits = 1e-9;  // the constant is 3e-4 of the readings
+  constexpr double kNineDigits = 1e-9;  // the constant is 3e-4 of the largest y
   ExpectRelative(fit.calibration.coefficients[0], 0.673565789473684e-03, kNineDigits);
   ExpectRelative(fit.calibration.coefficients[1], 0.732059160401003e-06, kNineDigits);
   ExpectRelative(fit.calibration.coefficients[2], -0.316081871345029e-14, kNineDigits);
@@ -98,8 +98,8 @@ TEST(CalibrateSensor, ReproducesThePublishedLineOfTheReferenceRig) {
   ExpectRelative(*fit.calibration.residual_std_dev, 1.1946581111131394, kDigits);
 }
 
-/// Expected values from numpy.linalg.lstsq: the residuals, and for points left out seven straight lines through six
-/// points.
+/// Expected values from numpy.linalg.lstsq: the residuals, and for left_out seven straight lines, each through the six
+/// other points.
 TEST(CalibrateSensor, GivesResidualsAndLeaveOneOutResiduals) {
   const CalibrationTable table = TableOf(kReferenceTable);
   const CalibrationFit fit = FitOf(table, 1);
@@ -116,8 +116,8 @@ TEST(CalibrateSensor, LeaveOneOutMatchesARefitWithoutThePoint) {
   const CalibrationTable table = TableOf(kReferenceTable);
   for (const int order : {1, 2, 3}) {
     const CalibrationFit whole = FitOf(table, order);
-    CalibrationTable rest = TableOf("counts,angle_deg\n19,-45\n97,-30\n177,-15\n261,0\n396,30\n475,45\n");
-    const CalibrationFit without = FitOf(rest, order);
+    const CalibrationTable reduced = TableOf("counts,angle_deg\n19,-45\n97,-30\n177,-15\n261,0\n396,30\n475,45\n");
+    const CalibrationFit without = FitOf(reduced, order);
     EXPECT_NEAR(whole.left_out[4], 15 - without.calibration.Angle(324) / without.calibration.RadFromUnit(), 1e-10);
   }
 }
@@ -141,7 +141,7 @@ TEST(CalibrateSensor, TestsTheLineAgainstAParabolaAndAgainstRounding) {
   EXPECT_EQ(parabola.lower_order->f, fit.higher_order->f);
 }
 
-/// Angles of a straight line with counts rounded as by a converter: their standard deviation is q / √12.
+/// A straight line with counts rounded as by a converter. The residuals have a standard deviation of q / √12.
 TEST(CalibrateSensor, FindsNoLackOfFitInRoundedCounts) {
   constexpr double kSlope = 0.25;
   std::vector<double> counts, angles;

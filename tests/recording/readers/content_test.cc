@@ -73,7 +73,7 @@ TEST(Content, DetectsALargeForeignFileFromItsFirstBytes) {
   std::filesystem::remove(path);
   ASSERT_FALSE(recording.has_value());
   EXPECT_EQ(recording.error().message,
-            path + ": this is a ROS bag; export the topic as CSV (rostopic echo -p) and name that");
+            path + ": this is a ROS bag; export the topic as CSV (rostopic echo -p) and give the CSV file");
 }
 
 TEST(Content, FindsAMatFileInAZipFile) {

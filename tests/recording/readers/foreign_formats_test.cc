@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as people and spreadsheets write them, and options with which the user adds information.
+// Tests of files as people and spreadsheets write them, and of options that add the missing information.
 #include <cmath>
 #include <string>
 
@@ -144,7 +144,7 @@ TEST(ForeignFormats, NameTheFlagsAFileWithoutHeaderNeeds) {
   ExpectTheRows(RecordingOf(three, TimeAndValue("1:ms", "2", "deg")), kDegree);
 }
 
-TEST(ForeignFormats, TheOtherOfTwoColumnsIsTheValue) {
+TEST(ForeignFormats, TheColumnThatIsNotTheTimeIsTheValue) {
   ExpectTheRows(RecordingOf(Rows("{t},{v}"), TimeAndValue("1:ms", "", "deg")), kDegree);
   ExpectTheRows(RecordingOf(Rows("{t} {v}"), TimeAndValue("1:ms", "", "deg")), kDegree);
   ExpectTheRows(RecordingOf(Rows("{t},0;{v},0"), TimeAndValue("1:ms", "", "deg")), kDegree);
@@ -169,7 +169,7 @@ TEST(ForeignFormats, ASampleRateReplacesUnwantedTimes) {
   ExpectTheRows(RecordingOf("time_s,angle_deg\n" + Rows("0,{v}"), options), kDegree);
 }
 
-TEST(ForeignFormats, WarnOfLostSamplesIfTimesAreCounted) {
+TEST(ForeignFormats, WarnOfLostSamplesIfTimesComeFromTheSampleRate) {
   const Recording counted = RecordingOf("# sample_rate_hz: 100\n# lost_samples: 3\nangle_deg\n" + Rows("{v}"));
   ASSERT_EQ(counted.warnings.size(), 1);
   EXPECT_EQ(counted.warnings[0].code, "lost_samples");
@@ -234,7 +234,7 @@ TEST(ForeignFormats, AFallingCalibrationHasARangeThatIncreases) {
   EXPECT_DOUBLE_EQ(recording.resolution, 0.5 * kDegree);
 }
 
-TEST(ForeignFormats, TheSpacingOfACurveIsTakenMidData) {
+TEST(ForeignFormats, TheResolutionOfACurveIsComputedInTheMiddleOfTheReadings) {
   ReadOptions options = Calibrated();
   options.calibration->coefficients = {0, 1, 0.01};
   const Recording recording = RecordingOf("time_ms,adc_counts\n" + Rows("{t},{v}"), options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files with quantities other than an angle or a rate in known units.
+// Tests of files with quantities other than an angle or a rate in known units.
 #include <cmath>
 #include <string>
 
@@ -87,7 +87,7 @@ TEST(ParseRecording, RemovesATruncatedLastValue) {
             std::to_string(120 + 400 * std::cos(angle)) + "\n";
   }
   EXPECT_EQ(Of(text.substr(0, text.size() - 1)).size(), 40);
-  const Recording cut = Of(text.substr(0, text.rfind(',') + 2));  // keeps one digit of it
+  const Recording cut = Of(text.substr(0, text.rfind(',') + 2));  // keeps one digit of the last value
   EXPECT_EQ(cut.size(), 39);
   ASSERT_EQ(cut.warnings.size(), 1);
   EXPECT_EQ(cut.warnings[0].code, "incomplete_row");

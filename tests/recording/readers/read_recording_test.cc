@@ -39,7 +39,7 @@ Recording RecordingOf(const std::string& text) {
   return recording.value_or(Recording());
 }
 
-/// Expects the rows of Rows() from text that differs only around the numbers.
+/// Expects that the text gives the times and values of Rows().
 void ExpectTheRows(const std::string& text) {
   const Recording recording = RecordingOf(text);
   ASSERT_EQ(recording.size(), 8) << text;
@@ -297,12 +297,13 @@ TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
 
 // ---- Random bytes ------------------------------------------------------------------------------------------------
 
-/// The standard specifies the numbers of std::mt19937, but not those of its distributions.
+/// Changes the text in one to four random places. Uses no distributions of <random>, because the standard does not
+/// specify their numbers.
 std::string Mutated(std::string text, std::mt19937& random) {
   for (auto edits = random() % 4 + 1; edits > 0 && !text.empty(); --edits) {
-    constexpr std::string_view kTelling = ",;\t\n\r\"#:.-+e0123456789_()[] naif\0\xC2\xFF";
+    constexpr std::string_view kSyntaxBytes = ",;\t\n\r\"#:.-+e0123456789_()[] naif\0\xC2\xFF";
     const std::size_t at = random() % text.size();
-    const char byte = random() % 2 == 0 ? kTelling[random() % kTelling.size()] : static_cast<char>(random());
+    const char byte = random() % 2 == 0 ? kSyntaxBytes[random() % kSyntaxBytes.size()] : static_cast<char>(random());
     switch (random() % 6) {
       case 0: text[at] = byte; break;
       case 1: text.insert(at, 1, byte); break;

@@ -20,7 +20,7 @@ const std::string kMeta = "\"property\",\"value\"\n\"deviceModel\",\"a phone\"\n
 const std::string kTime =
     "\"event\",\"experiment time\",\"system time\",\"system time text\"\n\"START\",0.0,1.6E9,\"2020-09-13\"\n";
 
-/// One sensor in phyphox's names and format; `row` is the form of its rows.
+/// The file of one sensor with phyphox's names and format; `row` is the pattern of the rows.
 std::string Gyroscope(const std::string& row = "0.0{t},1,{v}E0,2,3") {
   return "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\",\"Absolute (rad/s)\"\n" +
          Rows(row);
@@ -119,7 +119,7 @@ TEST(ReadZip, ReportsThatNoMemberIsARecording) {
   EXPECT_THAT(FaultOf(ZipOf({{"xl/workbook.xml", "<x/>"}, {"[Content_Types].xml", "<x/>"}})),
               StartsWith("run.csv: this is an Excel workbook; save its sheet as CSV"));
   EXPECT_EQ(FaultOf(ZipOf({{"inner.zip", ZipOf({{"a.csv", kLight}})}})),
-            "run.csv:inner.zip: this is a zip file in a zip file; unpack it and name it");
+            "run.csv:inner.zip: this is a zip file in a zip file; unpack it and give the unpacked file");
 }
 
 TEST(ReadZip, ReportsThePlaceOfAFaultInAMember) {
@@ -172,12 +172,12 @@ TEST(ReadZip, RefusesAZipBomb) {
   const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
   const std::string most = angle + std::string(1'000'000 - angle.size(), '\n');
   ExpectTheRows(RecordingOf(ZipOf({{"a.csv", most}}), options), kDegree);
-  EXPECT_EQ(
-      FaultOf(ZipOf({{"a.csv", most + '\n'}}), options),
-      "run.csv:a.csv: it unpacks to more than 1000000 bytes, too many for a recording; name another, or split it");
+  EXPECT_EQ(FaultOf(ZipOf({{"a.csv", most + '\n'}}), options),
+            "run.csv:a.csv: it unpacks to more than 1000000 bytes, too many for a recording; give a smaller file, or "
+            "split it");
 }
 
-TEST(ReadZip, ShowsButNeverFollowsClimbingPaths) {
+TEST(ReadZip, ShowsButNeverFollowsPathsToParentFolders) {
   EXPECT_THAT(FaultOf(ZipOf({{"../../etc/passwd", "a,b\n1,2\n"}})), StartsWith("run.csv:../../etc/passwd:1:1: "));
 }
 

@@ -16,15 +16,15 @@ struct AlternativeMinimum {
   double log_posterior = 0;        ///< Log-likelihood of samples and priors.
 };
 
-/// For an accelerometer across the rod, the mirrored solution: another radius, with the motion to the other side.
-/// Except for friction it gives the same readings (MODEL.md eq. (14.6)). Returns std::nullopt if there is none, or if
-/// fixed values or bounds exclude it.
+/// For an accelerometer that measures across the rod: the solution with another radius and the motion to the other
+/// side. Without friction it gives the same readings (MODEL.md eq. (14.6)). Returns std::nullopt if there is no such
+/// solution, or if fixed values or bounds exclude it.
 std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters);
 
-/// Ends a converged fit kNotIdentifiable if an alternative solution explains the data nearly as well, within 9 of -2
-/// log L. It must differ by more than three standard errors in a parameter of the pendulum, or in a scale or position
-/// of the sensor (warning `ambiguous_sensor`). The sign of the motion does not count as a difference. log_posterior: of
-/// the fit.
+/// Changes a converged fit to kNotIdentifiable, with the warning `ambiguous_sensor`, if an alternative solution
+/// explains the data nearly as well: its -2 log L is within 9 of the fit's. The alternative must differ by more than
+/// three standard errors in a parameter of the pendulum, or in a scale or position of the sensor. The sign of the
+/// motion does not count as a difference. `log_posterior` is that of the fit.
 void CheckAlternativeMinima(const FitProblem& problem, std::span<const AlternativeMinimum> alternatives,
                             double log_posterior, FitReport& report);
 

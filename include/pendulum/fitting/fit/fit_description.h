@@ -31,7 +31,8 @@ struct Description {
 Description Describe(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
                      const Solution& solution, int free_parameters);
 
-/// The autocorrelation of the residuals, estimated if independence is in doubt; z are the quantile residuals, N.
+/// The autocorrelation of the residuals. It is estimated only if the residuals may be autocorrelated. `z` contains the
+/// N quantile residuals.
 Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
                                   const Optimum& optimum, const Eigen::VectorXd& z, bool correlated);
 
@@ -39,7 +40,7 @@ Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCos
 void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                    const Optimum& optimum, const Solution& solution, FitReport& report);
 
-/// Sets covariance and errors of the free parameters, F as in `optimum`, in the units of the report.
+/// Sets covariance and errors of the free parameters of `optimum`, in the units of the report.
 void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report);
 
 /// Sets the systematic errors from their covariance, P x P in the problem's units.

@@ -44,9 +44,9 @@ struct ParameterEstimate {
   double estimate = 0;
   std::optional<double> std_error;         ///< Absent if fixed, at a bound, or not identifiable; see `reason`.
   std::optional<double> lower95, upper95;  ///< 95 % confidence interval; if at_bound, one end is the bound.
-  std::optional<double> t95;               ///< Student's t of its samples: half the interval over std_error.
+  std::optional<double> t95;               ///< Student's t for 95 %: half the interval divided by std_error.
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
-  std::optional<double> systematic_std_error;  ///< From rig, clock, calibration, inconstancy; absent if there are none.
+  std::optional<double> systematic_std_error;  ///< From errors of rig, clock, calibration, inconstancy; absent if none.
   std::optional<double> closed_form;           ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;
@@ -82,7 +82,7 @@ struct ProfileCurve {
 /// A second attempt at a poor fit, or a change of its window or readings (fit.cc, fit_swing.cc).
 struct AttemptRecord {
   std::string name;
-  bool kept = false;  ///< Whether the fit is its result.
+  bool kept = false;  ///< Whether the fit is the result of this attempt.
 };
 
 /// The work of the solver over all its runs.
@@ -90,7 +90,7 @@ struct SolverSummary {
   int iterations = 0;
   int evaluations = 0;  ///< Trajectories computed for the accepted start, with and without sensitivities.
   std::string termination;
-  std::vector<AttemptRecord> attempts;  ///< Those that were tried, in their order; empty if none was needed.
+  std::vector<AttemptRecord> attempts;  ///< All attempts in order; empty if none was needed.
 };
 
 /// One model fitted to one recording.
@@ -110,7 +110,7 @@ struct FitReport {
   std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
   std::vector<std::string> systematic_names;
   Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
-  std::vector<Identifiability> identifiability;  ///< For parameters that are not fixed; empty if not converged.
+  std::vector<Identifiability> identifiability;  ///< Of unfixed parameters; may be empty if not converged.
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
@@ -125,8 +125,8 @@ struct FitReport {
   bool HasWarning(std::string_view code) const;
 };
 
-/// Removes errors, intervals and covariance that are not valid from a report. Each free parameter gets the reason
-/// `why`.
+/// Removes the errors, intervals and covariance from a report in which they are not valid. Each parameter that is not
+/// fixed gets the reason `why`.
 void WithdrawErrors(std::string_view why, FitReport& fit);
 
 /// Correlation of two free parameters, given by their rows in the fit's covariance; NaN if a variance is 0.

@@ -8,10 +8,11 @@
 
 namespace pendulum {
 
-/// Warnings about an accepted fit, each with the recommended action:
+/// Warnings about a fit, most with a recommended action. The last four are only for a converged fit:
 ///
 /// saturated: readings at an end of the sensor's range
-/// lack_of_fit, correlated_residuals: autocorrelated residuals that exceed the noise between neighbours
+/// lack_of_fit: autocorrelated residuals that are larger than the noise between neighbouring samples
+/// correlated_residuals: other autocorrelated residuals
 /// zero_drift: the zero of the sensor drifts
 /// noise_below_resolution: noise below half the resolution is treated as Gaussian
 /// trajectory_accuracy: the trajectory's error is not small compared with the noise
@@ -20,8 +21,8 @@ namespace pendulum {
 /// another_minimum: another number of half swings explains the data nearly as well
 /// uncertain_stop: the data hardly determine the time of the stop
 ///
-/// report: complete except for its warnings. trace: at the solution. quantile_residuals: N. correlated: whether they
-/// are autocorrelated.
+/// report: complete except for its warnings. trace: at the solution. quantile_residuals: N. correlated: whether the
+/// residuals are autocorrelated.
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
                                  const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
                                  const FitReport& report);

@@ -20,10 +20,10 @@ struct FittedModel {
   const Eigen::VectorXd& quantile_residuals;  // N
 };
 
-/// Takes estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior). This is necessary for
+/// Computes estimates, covariance, σ and intervals from draws of the posterior (SamplePosterior). This is necessary for
 /// quantized noise below kSmallSigma resolutions with few samples near the edges of levels, because the likelihood is
-/// then not parabolic. Returns the optimum with the free parameters that `errors` then has, which include those at a
-/// bound. Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
+/// then not parabolic. Returns an optimum whose free parameters match `errors`; parameters at a bound are free in it.
+/// Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
 /// kAuto.
 std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report);
 
@@ -44,7 +44,7 @@ void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileI
 /// Sets how well the recording determines every parameter, from intervals, information and covariance.
 void SetIdentifiability(const FitProblem& problem, const Optimum& optimum, FitReport& report);
 
-inline constexpr double kSmallSigma = 0.12;
+inline constexpr double kSmallSigma = 0.12;                                            ///< resolutions
 inline constexpr std::string_view kPosteriorIntervals = "quantiles of the posterior";  ///< FitReport::interval_method
 
 }  // namespace pendulum

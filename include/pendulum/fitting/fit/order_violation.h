@@ -12,8 +12,8 @@ namespace pendulum {
 /// returns a sentence that explains why the solution is invalid; otherwise an empty string.
 std::string OrderViolation(const FitProblem& problem, const std::vector<double>& parameters);
 
-/// Fits the simpler law in which the two parameters are equal, where the rest of the richer law has no effect. Reports
-/// it as a fit of `model`, kNotIdentifiable with the given reason. Errors as FitRecording.
+/// Fits the simpler law to which the richer law reduces if the two parameters are equal. Returns the result as a fit of
+/// the richer law, kNotIdentifiable with the given reason. Errors as FitRecording.
 Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions& options, const FitProblem& problem,
                                    const std::string& reason);
 

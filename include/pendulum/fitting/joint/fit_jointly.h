@@ -16,26 +16,26 @@ namespace pendulum {
 struct JointRun {
   const Recording& used;
   const FitReport& alone;
-  FitOptions options;  ///< Those of `alone`. Priors on shared parameters are taken from the first run.
+  FitOptions options;  ///< The options of `alone`. Priors on shared parameters are taken from the first run.
 };
 
 /// The fit of one model to several recordings: some parameters are shared, each recording has its own values of the
 /// others.
 struct JointFit {
   std::vector<std::string> shared;  ///< Names of the shared parameters, in the model's order.
-  /// The results common to all recordings: the shared parameters with their errors, termination, and sums of statistics
-  /// (rms, log L, criteria, effective samples; N and k are those of all). Its noise is that of the first recording with
-  /// autocorrelated residuals, otherwise of the first. It has no start and no samples of its own.
+  /// The results common to all recordings: the shared parameters with their errors, the termination, and the combined
+  /// statistics of all recordings (SumStatistics). The noise is that of the first recording with autocorrelated
+  /// residuals, or of the first recording if there is none. Start and samples are empty.
   FitReport whole;
-  /// One report for each recording. All its parameters, errors and covariance are those of the joint fit; noise,
-  /// residuals and diagnostics are its own.
+  /// One report for each recording. Its parameters, errors and covariance come from the joint fit. Its noise, residuals
+  /// and diagnostics are those of this recording.
   std::vector<FitReport> runs;
-  int parameters = 0;  ///< Free parameters of all recordings that are not at a bound 0, and one σ each.
+  int parameters = 0;  ///< Number of unfixed parameters that are not at a bound 0, plus one σ for each recording.
 
   bool IsShared(std::string_view name) const;
 };
 
-/// The number of samples in rms_residual: those that are not censored.
+/// The number of samples that are not censored. Only these count in rms_residual.
 double CountedSamples(const FitReport& fit);
 
 /// Combines the rms of residuals, log L, effective samples, AIC, AICc and BIC of independent recordings. `parameters`
@@ -45,13 +45,15 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 /// Fits one model to K >= 2 recordings of one rig. Each recording has its own start, zero and σ. The named physical
 /// parameters that the model has are shared (MODEL.md eq. (10.1)).
 ///
-/// The fit starts from the combined results of the separate fits. Sensors, rates, resolutions and kinds of start may
-/// differ; the rig may not. Converged means that Judge accepts the fit and that every recording is explained as well as
-/// a separate fit must explain it. Otherwise the recordings are not of one rig. If the errors of the separate fits come
-/// from posteriors, the joint estimates combine these as parabolas.
+/// The fit starts from the combined results of the separate fits. Sensors, sample rates, resolutions and kinds of start
+/// may differ between recordings; the rig must be the same. The fit is converged only if the remaining Newton step is
+/// small and the trajectories leave at most as much of each recording's variance unexplained as is allowed for a
+/// separate fit (MaxUnexplainedShare). Too much unexplained variance suggests recordings of different rigs. If a
+/// separate fit has its errors from a posterior, the joint estimates come from a combination of the separate results,
+/// in which each log-likelihood is approximated by a parabola (UsePosteriors).
 ///
-/// kInvalidArgument: fewer than two recordings, no shared parameter, another model or rig than the first, or invalid
-/// options as in FitRecording.
+/// kInvalidArgument: fewer than two recordings, no shared parameter, a recording with another model or rig than the
+/// first, or invalid options as in FitRecording.
 /// kFailedPrecondition: a recording that cannot be fitted alone.
 /// kTryAgain: a stop was requested in the options of any run.
 /// Cost: about half of the separate fits.

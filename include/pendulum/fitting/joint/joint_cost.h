@@ -17,7 +17,7 @@ namespace pendulum {
 /// One recording of a JointCost.
 struct JointTerm {
   TrajectoryCost* cost = nullptr;  ///< Not owned; without priors.
-  std::vector<int> at;             ///< P_k: indices of its parameters among all P.
+  std::vector<int> at;             ///< Indices of its P_k parameters among all P parameters.
 };
 
 /// The cost of several recordings of one rig: the sum of their costs and of the priors. Some parameters are shared. For

@@ -12,7 +12,7 @@ namespace pendulum {
 /// torque G. A source shared by several recordings affects all of them together. 0 if the optimum is not identifiable.
 Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum);
 
-/// Whether the fit of some recording uses a posterior, and all fits have errors.
+/// Whether at least one of the separate fits uses a posterior, and all of them have errors.
 bool HasPosteriors(const JointProblem& joint);
 
 /// Combines the posteriors of the separate fits as parabolas and stores the result in the solution, the members and

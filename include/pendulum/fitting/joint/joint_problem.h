@@ -23,9 +23,9 @@ struct JointMember {
   std::unique_ptr<TrajectoryCost> cost;  // without priors
   double tolerance = 0;                  // of its trajectory, rad
   double cost_sigma = 0;                 // the cost's present σ, rad or rad/s
-  std::vector<double> alone_parameters;  // P_k, at the end of its own fit
+  std::vector<double> alone_parameters;  // P_k, estimates of its separate fit
   Solution solution;                     // its own P_k parameters, and its noise
-  std::vector<int> at;                   // P_k: their indices among all P
+  std::vector<int> at;                   // P_k, indices of its parameters among all P
 
   double samples() const { return static_cast<double>(problem->data.time.size()); }
 
@@ -36,8 +36,8 @@ struct JointMember {
   std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
-/// Several recordings over P parameters: the shared ones, then those of each recording. Inertia and torques are divided
-/// by G.
+/// Several recordings with P parameters in total: first the shared parameters, then the own parameters of each
+/// recording. Inertia and torques are divided by G.
 struct JointProblem {
   std::vector<JointMember> members;
   std::vector<std::string> shared;  // names; shared[i] is parameter i
@@ -49,7 +49,7 @@ struct JointProblem {
   /// Copies the parameters into the members' solutions.
   void Distribute(const std::vector<double>& parameters);
 
-  /// The results of the separate fits, P; shared parameters are those of the last recording.
+  /// The P estimates of the separate fits. A shared parameter has the estimate from the last recording.
   std::vector<double> SeparateParameters() const;
 
   bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
@@ -58,8 +58,8 @@ struct JointProblem {
   std::string NameOf(int parameter) const;
 };
 
-/// Builds a problem ready for the solver. Each member starts at the estimates of its own fit. Errors: those of
-/// FitJointly.
+/// Builds a problem ready for the solver. Each member starts at the estimates of its own fit. Returns the same errors
+/// as FitJointly.
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -21,19 +21,19 @@ Recording WithEdges(Recording recording, std::optional<NoiseFamily> noise);
 std::vector<double> ZeroMotionFactors(const Recording& recording, const Eigen::Ref<const Eigen::VectorXd>& times,
                                       ZeroMotion zero);
 
-/// Rate dm/dt [rad/s] of the modelled readings m [rad] at N >= 3 increasing times [s], by central differences. The
-/// interval is widened until it is at least a thousandth of the mean interval.
+/// Rate dm/dt [rad/s] of the modelled readings m [rad] at N >= 3 increasing times [s], by central differences. Each
+/// difference spans at least a thousandth of the mean sample interval.
 Eigen::VectorXd RatesOf(const Eigen::Ref<const Eigen::VectorXd>& time,
                         const Eigen::Ref<const Eigen::VectorXd>& readings);
 
-/// Ratio of the standard deviation of a time stamp to that of an edge [s/rad]. Both add to the variance of a residual:
-/// σ² (1 + (ratio · rate)²). The estimate maximizes the likelihood of the differences of successive residuals of
-/// edges, which a slow misfit does not affect (MODEL.md eq. (7.6)). 0 if the variance of the time stamps is below two
-/// of its standard errors.
+/// Standard deviation of a time stamp divided by the standard deviation of an edge [s/rad]. Both errors add to the
+/// variance of a residual: σ² (1 + (ratio · rate)²). The estimate maximizes the likelihood of the differences between
+/// successive residuals of edges, which a slow misfit does not affect (MODEL.md eq. (7.6)). Returns 0 if the estimated
+/// variance of the time stamps is less than twice its standard error.
 double MostLikelyStampRatio(const NoiseModel& noise, const Eigen::Ref<const Eigen::VectorXd>& value,
                             const Eigen::Ref<const Eigen::VectorXd>& readings, const Eigen::VectorXd& rates);
 
-/// Sets stamp_ratio and spread of the noise of edges, for the modelled readings. All arrays N x 1, times in s.
+/// Sets stamp_ratio and spread of the noise of edges, from the modelled readings. All arrays N x 1, times in s.
 void SetSpread(const Eigen::Ref<const Eigen::VectorXd>& time, const Eigen::Ref<const Eigen::VectorXd>& value,
                const Eigen::Ref<const Eigen::VectorXd>& readings, NoiseModel& noise);
 

@@ -16,11 +16,12 @@ namespace pendulum {
 enum class ZeroMotion {
   kNone,
   kDrifts,  ///< Linearly with time: zero_drift or bias_drift.
-  kLags,    ///< For event recordings: the zero lags behind the direction of motion by the hysteresis.
+  kLags,    ///< For event recordings: the zero is shifted against the direction of motion by the hysteresis.
 };
 
 /// The parameters of a fit in order: inertia, friction, the start (release_angle and release_time, or initial_angle and
-/// initial_rate), then the sensor. A direct sensor has zero_angle or rate_bias, and the motion of its zero.
+/// initial_rate), then the sensor. The parameters of a direct sensor are zero_angle or rate_bias and, if its zero
+/// moves, zero_drift, bias_drift or hysteresis.
 std::vector<ParameterInfo> FitParameters(const MotionModel& model, StartKind start, Quantity quantity,
                                          ZeroMotion zero = ZeroMotion::kNone, const SensorModel& sensor = {});
 

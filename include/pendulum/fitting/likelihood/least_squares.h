@@ -24,9 +24,9 @@ void AddPriors(std::span<const PriorTerm> priors, std::span<const double> parame
 /// Maximum number of parameters of one recording's cost.
 inline constexpr int kMaxCompressed = 16;
 
-/// Replaces the N residuals by P + 1 equations with the same cost and gradient, P <= kMaxCompressed. They are R, R^-T
-/// J'r and the rest of |r| (MODEL.md eq. (5.2)), computed from the sums and laid out as ceres::CostFunction::Evaluate
-/// returns them. Allocates no memory.
+/// Replaces the N residuals by P + 1 equations with the same cost and gradient, P <= kMaxCompressed. The new Jacobian
+/// is R, a square root of J'J. The new residuals are R^-T J'r and the remainder of |r| (MODEL.md eq. (5.2)). They are
+/// computed from the sums and laid out as ceres::CostFunction::Evaluate returns them. Allocates no memory.
 void CompressResiduals(const Eigen::MatrixXd& sums, double* residuals, double** jacobians);
 
 /// The cost that a solver minimizes over P parameters: |r|², the deviance of samples and priors. Every function returns
@@ -60,7 +60,7 @@ class LeastSquares {
   /// Number of trajectories computed so far, with and without derivatives.
   virtual int traces() const = 0;
 
-  /// Number of recordings; it scales the cost of a search.
+  /// Number of recordings. Several recordings permit more trajectories and use the sparse solver.
   virtual int runs() const { return 1; }
 
   /// Whether a stop was requested. Then every function returns false.

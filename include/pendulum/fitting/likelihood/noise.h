@@ -33,7 +33,7 @@ enum class NoiseFamily {
   kQuantized,  ///< Normal, then rounded to levels: a reading stands for an interval of one resolution around it.
   kHuber,      ///< Normal within 1.345 σ, two-sided exponential beyond (P. J. Huber, Ann. Math. Stat. 35:73, 1964).
   kStudent,    ///< Student's t with 4 degrees of freedom (Lange, Little & Taylor, JASA 84:881, 1989).
-  kEdges,  ///< For events: normal about the edge between two levels; silences are intervals like kQuantized readings.
+  kEdges,      ///< For events: normal about the edge between two levels; a silence is an interval, as for kQuantized.
 };
 
 /// Whether outliers have bounded influence: kHuber and kStudent.
@@ -48,7 +48,7 @@ std::string_view NoiseFamilyName(NoiseFamily family);
 struct SampleLikelihood {
   double deviance = 0;  ///< 2 (max l - l) >= 0 at the given σ: the square of the deviance residual.
   double score = 0;     ///< ∂l/∂m
-  double weight = 0;    ///< -∂²l/∂m² >= 0; for robust families score / (y - m), whose parabola lies below l.
+  double weight = 0;    ///< -∂²l/∂m² >= 0; for robust families score / (y - m): that parabola lies below l.
 };
 
 /// The same log-likelihood as a function of m and of λ = ln σ.
@@ -68,10 +68,10 @@ struct NoiseModel {
   NoiseFamily family = NoiseFamily::kGaussian;
   double sigma = 1;       ///< rad or rad/s: standard deviation, or the scale of the robust families.
   double resolution = 0;  ///< q, same unit; used for kQuantized and kEdges.
-  double low = -kInfinity, high = kInfinity;  ///< Same unit; readings at them or beyond are censored.
+  double low = -kInfinity, high = kInfinity;  ///< Same unit; readings at or beyond these limits are censored.
   std::optional<double> edge = std::nullopt;  ///< Same unit; for events, one of the edges, as in Recording::edge.
-  double stamp_ratio = 0;                     ///< Standard deviation of a time stamp over σ [s/rad]; for kEdges.
-  double lag = 0;                             ///< Same unit, for kEdges: a silence extends this far beyond its count.
+  double stamp_ratio = 0;                     ///< Standard deviation of a time stamp divided by σ [s/rad]; for kEdges.
+  double lag = 0;                             ///< Same unit, for kEdges: extends a silence's interval at both ends.
   /// N, for kEdges: the standard deviation of sample i is σ · spread[i], including the error of its time stamp. If
   /// null, every sample has σ.
   std::shared_ptr<const std::vector<double>> spread = nullptr;
@@ -94,7 +94,7 @@ struct NoiseModel {
            (family == NoiseFamily::kEdges && IsSilence(reading));
   }
 
-  /// The noise of sample i, without a spread.
+  /// The noise of sample i: σ includes its spread, and `spread` is null.
   NoiseModel ForSample(Eigen::Index i) const {
     if (!spread) return *this;
     const double own = sigma * (*spread)[static_cast<std::size_t>(i)];
@@ -102,9 +102,9 @@ struct NoiseModel {
   }
   /// The noise of the samples from index `first` on.
   NoiseModel From(Eigen::Index first) const {
-    NoiseModel rest = *this;
-    if (spread) rest.spread = std::make_shared<const std::vector<double>>(spread->begin() + first, spread->end());
-    return rest;
+    NoiseModel remaining = *this;
+    if (spread) remaining.spread = std::make_shared<const std::vector<double>>(spread->begin() + first, spread->end());
+    return remaining;
   }
   /// Standard deviation of each of the N samples.
   Eigen::VectorXd Deviations(Eigen::Index samples) const {
@@ -114,11 +114,13 @@ struct NoiseModel {
 
   bool IsRobust() const { return pendulum::IsRobust(family); }
 
-  /// Likelihood of a reading y for the modelled reading m. If the noise has a spread, call this on ForSample(i).
-  SampleLikelihood At(double y, double m) const;
+  /// Deviance of a reading y for the modelled reading m, as the solver needs it. If the noise has a spread, call this
+  /// and the next two functions on ForSample(i).
+  SampleLikelihood DevianceAt(double y, double m) const;
+  /// Log-likelihood of a reading y for the modelled reading m, with the derivatives with respect to m and ln σ.
   NoiseLikelihood LikelihoodAt(double y, double m) const;
 
-  /// Distribution function just below the reading y and at y; both are equal for a density.
+  /// Distribution function just below the reading y and at y. The two are equal if the noise has a density at y.
   struct Distribution {
     double below;
     double at;

@@ -28,8 +28,8 @@ struct TrajectoryData {
   SensorModel sensor;               ///< How readings depend on the motion.
   double natural_frequency = 0;     ///< rad/s, approximate; parameters with a very different time scale are rejected.
   double latest_release = 0;        ///< s; a release outside [0, latest_release] is rejected.
-  /// N, or empty: the factor of one additional parameter. These are the times if the zero drifts, or minus the
-  /// direction of each edge if edges lag.
+  /// N, or empty: the factors of one additional parameter in the readings. They are the times if the zero drifts, or
+  /// minus the direction of each edge if edges lag.
   std::vector<double> zero_motion_factors;
   double scale = 1;      ///< rad or rad/s; roughly the noise, so Ceres' numbers are near 1.
   std::stop_token stop;  ///< After a stop request nothing more is evaluated.
@@ -56,13 +56,13 @@ struct MotionStates {
 /// data.scale) that is ((value - model(p)) / σ)².
 ///
 /// As a ceres::CostFunction it has P blocks of one parameter and P + 1 residuals instead of N: the square root R of J'J
-/// (the observed information of the samples, MODEL.md eq. (5.2) and (7.3)), R^-T J' r, and the rest of |r|. Cost and
-/// gradient are exactly those of the N residuals. Without Jacobians it returns (0, ..., 0, |r|).
+/// (the observed information of the samples, MODEL.md eq. (5.2) and (7.3)), R^-T J' r, and the remainder of |r|. Cost
+/// and gradient are exactly those of the N residuals. Without Jacobians it returns (0, ..., 0, |r|).
 ///
 /// Every function returns false for parameters whose motion never begins, cannot be computed, or is released outside
-/// the data. After a stop request every function returns false as well, even at a point that was evaluated before.
-/// Output arguments are then unchanged or undefined, and the result of Trace is meaningless. The object caches its last
-/// results: use it from one thread at a time.
+/// [0, data.latest_release]. After a stop request every function returns false as well, even at a point that was
+/// evaluated before. Output arguments are then unchanged or undefined, and the result of Trace is meaningless. The
+/// object caches its last results: use it from one thread at a time.
 class TrajectoryCost : public ceres::CostFunction, public LeastSquares {
  public:
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;

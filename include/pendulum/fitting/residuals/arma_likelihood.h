@@ -22,14 +22,15 @@ struct CorrelatedResiduals {
   double rounding_variance = 0;  ///< of e: resolution² / 12
 };
 
-/// Maximum likelihood of such residuals over δ, the scale of z and its autocorrelation, for a given kind and order.
+/// Maximum likelihood of CorrelatedResiduals over δ, the scale of z and its autocorrelation, for a given kind and
+/// order.
 struct CorrelatedLikelihood {
   double log_likelihood = 0;        ///< of densities, 1/rad or 1/(rad/s)
   Autocorrelation autocorrelation;  ///< of z
   double sigma = 0;                 ///< standard deviation of z, same unit as the residuals
   Eigen::VectorXd shift;            ///< F, δ
   int parameters = 0;               ///< number of parameters of autocorrelation and scale
-  Eigen::MatrixXd information;      ///< F x F, of δ with that autocorrelation held
+  Eigen::MatrixXd information;      ///< F x F, of δ, for this autocorrelation and scale
 };
 
 /// Exact Gaussian likelihood by a Kalman filter (A. C. Harvey, Forecasting, structural time series models and the

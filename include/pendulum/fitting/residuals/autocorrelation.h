@@ -27,9 +27,9 @@ struct Autocorrelation {
   /// "white", "AR(3)", "ARMA(1,1)", "continuous AR(1)", "continuous AR(1) + white".
   std::string Name() const;
 
-  /// 1 + 2 Σ ρ_k and 1 + 2 Σ ρ_k²: factors by which autocorrelation increases the variance of the mean, and of the
-  /// variance, of many samples.
+  /// 1 + 2 Σ ρ_k: the factor by which autocorrelation increases the variance of the mean of many samples.
   double VarianceInflation() const;
+  /// 1 + 2 Σ ρ_k²: the same factor for the variance of a variance estimated from many samples.
   double SquaredInflation() const;
 };
 
@@ -39,7 +39,7 @@ inline constexpr double kGapIntervals = 1.5;
 /// The middle factor of a sandwich covariance, W' R W, where R is the N x N correlation matrix of z at these times. It
 /// is the covariance of W'z. A gap in an even clock counts as missing samples. Costs O(N K (K + p)) time and O(K²)
 /// memory.
-/// time N x 1, s, increasing.  weights N x K.  Returns K x K, in the unit of weights squared, never indefinite.
+/// time N x 1, s, increasing.  weights N x K.  Returns K x K, in the unit of weights squared, positive semidefinite.
 Eigen::MatrixXd CorrelatedSum(const Autocorrelation& correlation, const Eigen::VectorXd& time,
                               const Eigen::MatrixXd& weights);
 

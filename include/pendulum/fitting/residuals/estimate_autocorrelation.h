@@ -19,7 +19,7 @@ namespace pendulum {
 ///
 /// time      N x 1, s, increasing.
 /// residual  N x 1, of about unit variance (any scale gives the same correlations).
-/// weights   N x K, derivatives of the residuals with respect to the parameters; K = 0 if no fit made them.
+/// weights   N x K, derivatives of the residuals with respect to the parameters; K = 0 if they are not from a fit.
 /// Fewer than 30 residuals, or only zeros, are reported as white. After a stop request it returns soon; the result is
 /// then meaningless.
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,

@@ -40,8 +40,8 @@ double Lag1Correlation(const Eigen::VectorXd& residual);
 /// 1970). False alarm rate for independent residuals: 2e-6.
 bool AreAutocorrelated(const Eigen::VectorXd& residual, int longest_lag);
 
-/// Whether the errors of phase and amplitude per period [s] are autocorrelated: the residuals oscillate with the
-/// pendulum (MODEL.md eq. (5.5)). False alarm rate for independent residuals: 2e-4. N samples.
+/// Whether the residuals oscillate with the pendulum: the errors of phase and amplitude in each period [s], or their
+/// slow changes, exceed the noise (MODEL.md eq. (5.5)). False alarm rate for independent residuals: 2e-4. N samples.
 bool HavePhaseOrAmplitudeErrors(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted,
                                 const Eigen::VectorXd& residual, double period);
 

@@ -9,8 +9,9 @@
 
 namespace pendulum {
 
-/// Whether the sum of squares has jumps. The acceleration jumps when dry friction changes direction, and the sum jumps
-/// each time such an instant passes a sample. The minimum then lies next to a jump, where the slope is not 0.
+/// Whether the sum of squares has jumps. The acceleration jumps when dry friction changes direction. The sum jumps
+/// where a change of the parameters moves such an instant past a sample. The minimum may lie at a jump, where the slope
+/// is not 0.
 bool HasDiscontinuities(const FitProblem& problem);
 
 /// Searches along the remaining Newton step, within the bounds, for a point with a smaller sum of squares. Tries the
@@ -19,7 +20,8 @@ bool HasDiscontinuities(const FitProblem& problem);
 std::optional<std::vector<double>> FindLowerAlongNewtonStep(const Optimum& optimum, const SolveOptions& options,
                                                             const LeastSquares& cost, const Solution& solution);
 
-/// Continues a solution that jumps have stopped, and estimates σ again. The solution changes only for a better one.
+/// Continues from a solution at which a jump has stopped the search, and estimates σ again. The solution is replaced
+/// only by a better one.
 void EscapeDiscontinuities(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
                            Solution& solution);
 

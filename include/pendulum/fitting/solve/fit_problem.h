@@ -27,9 +27,9 @@ struct FitProblem {
   std::size_t sensor_starts = 1;  ///< Number of possible sensor starts; `start` is one of them.
   bool restricted = false;        ///< The user fixed or bounded parameters, or gave priors.
   std::vector<PriorTerm> priors;
-  NoiseModel noise;  ///< Noise at the start of a search (σ is data.scale); `censored`: number of censored readings.
-  Eigen::Index censored = 0;
-  double resolution = 0;  ///< Of the readings; 0: none.
+  NoiseModel noise;           ///< Noise at the start of a search (σ is data.scale).
+  Eigen::Index censored = 0;  ///< Number of censored readings.
+  double resolution = 0;      ///< Of the readings; 0: none.
 
   /// Converts parameter i from internal to reported units, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }
@@ -59,7 +59,7 @@ struct FitProblem {
 /// the other friction parameters balance the energy without them.
 std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
 
-/// Takes start values from the data, bounds and fixed values from the options. Errors as FitRecording.
+/// Takes start values from the data, and bounds and fixed values from the options. Returns the errors of FitRecording.
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
 
 }  // namespace pendulum

@@ -18,7 +18,7 @@ struct Optimum {
   Eigen::MatrixXd information;  ///< P x P, observed, priors included.
   Eigen::VectorXd gradient;     ///< P, of minus the log-likelihood.
   std::vector<int> free;        ///< F parameters that are neither fixed nor at a bound.
-  std::vector<int> at_bound;    ///< Parameters at a bound that the likelihood pushes outwards.
+  std::vector<int> at_bound;    ///< Parameters at a bound beyond which the likelihood would be higher.
   InformationInverse inverse;   ///< Inverse of the information over `free`.
 };
 

@@ -18,7 +18,7 @@ struct SolveOptions {
   int holding_parameter = -1;               ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
   int last_friction = 1;                    ///< The last parameter of friction; the first is 1, after inertia.
   int release_time = -1;                    ///< -1: the recording begins in motion.
-  std::vector<int> small_swing_parameters;  ///< Determined only by small swings: held while the last part is left out.
+  std::vector<int> small_swing_parameters;  ///< Held while the last part is left out: only small swings determine them.
   int max_iterations = 100;                 ///< Limit of Ceres iterations for each run.
   int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run starts.
 };
@@ -38,7 +38,7 @@ struct Solution {
   std::string message;
   NoiseModel noise;  ///< MaximizeLikelihood sets this and the next two members.
   std::string noise_reason;
-  double log_likelihood = 0;  ///< Probability per sample; a density is multiplied by the resolution (or 1).
+  double log_likelihood = 0;  ///< Of probabilities; the density of a sample is multiplied by the resolution (or 1).
   Eigen::VectorXd readings;   ///< N x 1, of the model, rad or rad/s; set by FitRecording.
   double trace_error = 0;     ///< Largest change of the readings at a hundredth of the tolerance; set by FitRecording.
   std::vector<Minimum> other_minima;  ///< Other local minima found by Search, none lower; may include this one.
@@ -57,7 +57,7 @@ double NegligibleSlope(const Eigen::MatrixXd& sums);
 /// sqrt(1e-10 N) standard errors.
 Solution Solve(LeastSquares& cost, const std::vector<double>& start, const SolveOptions& options);
 
-/// Solves from the solution `from`. Adds up the work of both solves and keeps the other minima of `from`.
+/// Solves from the solution `from`. Adds the iterations of `from`; copies its noise, log-likelihood and other minima.
 Solution Continue(LeastSquares& cost, const Solution& from, const SolveOptions& options);
 
 }  // namespace pendulum

@@ -8,7 +8,7 @@ namespace pendulum {
 /// The maximum permitted error of a fit's trajectory, rad or rad/s.
 double MaxTraceError(const FitProblem& problem, const FitOptions& options);
 
-/// Computes the readings at a solution and their largest difference from those at a hundredth of the tolerance.
+/// Computes the readings at a solution, and their largest difference from readings with a hundredth of the tolerance.
 /// `tolerance` is the tolerance of `cost`. Returns false if either trajectory cannot be computed.
 bool MeasureTraceError(TrajectoryCost& cost, double tolerance, Solution& solution);
 

@@ -21,11 +21,11 @@ namespace pendulum {
 
 /// How confidence intervals are computed.
 enum class IntervalMethod {
-  kAuto,        ///< From the covariance, unless one of the next two is needed.
+  kAuto,        ///< From the covariance; near a bound kProfile; from the posterior if quantized noise is very small.
   kCovariance,  ///< Estimate plus or minus Student's t times the standard error.
-  kProfile,     ///< From the profile likelihood; kAuto uses it within three standard errors of a bound.
+  kProfile,     ///< From the profile likelihood. kAuto uses it within three standard errors of a bound.
   kBootstrap,   ///< From refits of recordings with simulated or resampled noise.
-  kNone,        ///< For trial fits: no errors, intervals, identifiability, alternative sensors or autocorrelation.
+  kNone,        ///< For trial fits: no errors, intervals or autocorrelation.
 };
 
 /// How the search for the solution runs. Trial fits and refits change it; users do not.
@@ -34,7 +34,7 @@ struct SearchOptions {
   std::size_t sensor_start = 0;             ///< Index into SensorStarts.
   /// Target error of the trajectory [rad]; sigma / 1000 if that is smaller. Warning above sigma / 100.
   double max_trace_error = 1e-8;
-  int max_iterations = 100;  ///< Of Ceres, for each solve.
+  int max_iterations = 100;  ///< Limit for the iterations of Ceres in each run.
   int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends failing fits.
 };
 
@@ -47,7 +47,7 @@ struct FitOptions {
   std::optional<Rig> rig;
   ParameterValues fixed;
   ParameterValues initial;  ///< Initial values that replace those estimated from the readings.
-  ParameterRanges bounds;   ///< Bounds within a parameter's own.
+  ParameterRanges bounds;   ///< In addition to a parameter's own bounds.
   ParameterPriors priors;   ///< Each adds the residual (p - mean) / std_dev. A prior is not counted as a sample.
   /// std::nullopt: kEdges if the recording has edges (Recording::edge), kQuantized if the noise is smaller than the
   /// resolution, otherwise kGaussian.
@@ -69,8 +69,8 @@ inline tl::unexpected<Status> FitStopped() {
       "intervals by covariance");
 }
 
-/// Options of a quick trial fit whose residuals are to be inspected: the richest law (drag), without errors. Start,
-/// robust noise family, threads and stop are those of `options`.
+/// Options of a quick trial fit whose residuals are to be inspected: the richest law (drag), without errors. Start, a
+/// robust noise family, threads and stop are copied from `options`.
 FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces);
 
 }  // namespace pendulum

@@ -18,7 +18,7 @@ inline constexpr double kAccelerometerAxisStdDev = 0.05;   ///< rad
 inline constexpr double kCameraLevelStdDev = 0.02;         ///< rad
 
 /// The sensor that made a recording. If gravity is linear, every measured quantity follows the same equation. A
-/// coordinate, an acceleration across the rod and a gyro's volts are then angles in an unknown unit.
+/// coordinate, an acceleration across the rod and a gyro's volts are then fitted directly, in their own unit.
 SensorModel SensorOf(const Recording& recording, Gravity gravity);
 
 /// Prior knowledge of a sensor before the fit: bias, scale and axis of an accelerometer as built and mounted, the
@@ -33,7 +33,7 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
 /// One interpretation of the readings as an angle or a rate.
 struct SensorStart {
   std::vector<double> parameters;  ///< S
-  Recording view;                  ///< The readings converted with them: rad or rad/s.
+  Recording view;                  ///< The readings converted with these parameters: rad or rad/s.
 };
 
 /// Start points of the search for a sensor that is not direct. If the scale is unknown, there is one for each amplitude

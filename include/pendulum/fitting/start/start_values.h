@@ -20,13 +20,13 @@ struct StartValues {
   double amplitude = 0;          ///< rad, the largest amplitude.
   double natural_frequency = 0;  ///< rad/s
   EnergyBalance energy_balance;  ///< Also gives the friction of the simpler laws.
-  std::vector<EnergyBalance>
-      other_balances;  ///< The same at other reference rates, if the law has one: alternative starts.
+  /// Energy balances at other reference rates, if the law has a reference rate. They give alternative starts.
+  std::vector<EnergyBalance> other_balances;
 };
 
-/// Estimates the inertia from the crossings, friction from the energy balance, the zero from the turning points, and
-/// the start: a release, or the first angle and rate. If `choice` is empty, a release is assumed when the reading stays
-/// constant at first for at least a tenth of a period. kFailedPrecondition: the data contain no swing (see
+/// Estimates the inertia from the zero crossings, friction from the energy balance, the zero from the turning points,
+/// and the start: a release, or the first angle and rate. If `choice` is empty, a release is assumed when the reading
+/// stays constant at first for at least a tenth of a period. kFailedPrecondition: the data contain no swing (see
 /// FindTurningPoints), or kRelease was requested and no held part exists. A friction law that is not linear in its
 /// parameters needs its own start values here.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,

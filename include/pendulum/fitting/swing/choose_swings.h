@@ -23,7 +23,7 @@ struct SwingChoice {
   int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
 };
 
-/// The free swings of a recording, and the chosen ones.
+/// The free swings of a recording, and the numbers of the chosen swings.
 struct ChosenSwings {
   std::vector<FreeSwing> found;
   std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
@@ -31,7 +31,7 @@ struct ChosenSwings {
 
 /// Finds the free swings and chooses among them. A bound given by the user is used as it is; if both are given and no
 /// release is chosen, there is no search. A recording sampled too slowly for a pendulum such as the rig's
-/// (IsUndersampled) is one swing from end to end. kInvalidArgument: no swing of that number, or an empty window.
+/// (IsUndersampled) is one swing from end to end. kInvalidArgument: no swing with that number, or an empty window.
 /// kFailedPrecondition: as FindFreeSwings.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
                                   const std::optional<Rig>& rig = std::nullopt);

@@ -11,8 +11,8 @@
 namespace pendulum {
 
 /// Regression within runs of successive edges in one direction, where no count is lost, with a free zero for each run.
-/// `change` is the step of the parameters (P) that explains most of the residuals; `rms` is their root mean square
-/// before it [unit of the residuals].
+/// `change` is the step of the P parameters that explains most of the residuals; `rms` is the root mean square of the
+/// residuals before this step, in their unit.
 struct RunRegression {
   Eigen::VectorXd change;
   double rms = 0;

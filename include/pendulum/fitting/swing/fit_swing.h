@@ -15,14 +15,14 @@ struct SwingFit {
   FitReport fit;
 };
 
-/// Fits a free swing. If the fit leaves more than noise, turning points at the ends are left out as long as the richest
-/// law then fits the rest clearly better (warning `ends_trimmed`), or until the fit converges. Ends chosen by the user
-/// stay. FitUndersampled fits an undersampled swing. Larger motion outside the window gives the warning
-/// `larger_motion_outside`. A
-/// motion that is not a pendulum's ends kNotConverged, with `not_a_pendulum`. If an angle's zero jumps by whole counts,
-/// the later readings are shifted back, also in `used` (`lost_counts`). If it jumps by another amount, the fit ends
-/// kNotConverged, with `offset_jumps`; a possible jump gives `offset_unsteady`. Errors as FitRecording. Cost: as
-/// FitRecording, and some tens of small fits if something is wrong.
+/// Fits a free swing; an undersampled swing is fitted by FitUndersampled. If the residuals are more than noise,
+/// disturbed ends are left out as long as the richest law then fits the remaining window clearly better (warning
+/// `ends_trimmed`). If the fit does not converge, the window ends earlier. Ends chosen by the user stay. Larger motion
+/// outside the window gives the warning `larger_motion_outside`. A motion that is not a pendulum's ends kNotConverged,
+/// with `not_a_pendulum`. If an angle's zero jumps by whole counts, the later readings are shifted back, also in `used`
+/// (`lost_counts`). If the zero jumps by another amount, the fit ends kNotConverged, with `offset_jumps`. A possible
+/// jump gives `offset_unsteady`. Errors as FitRecording. Cost: as FitRecording, and some tens of small fits if
+/// something is wrong.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

@@ -16,7 +16,7 @@ struct OffsetJumps {
   std::vector<LostCounts> lost;  ///< Whole counts, s on the file's clock, in time order; empty if some are not whole.
   Recording corrected;           ///< The readings after each jump are shifted back.
   std::optional<double> uncertain_from;  ///< s on the file's clock: the first jump that is not whole or not certain.
-  /// One sentence: if `lost` is not empty, what was corrected, otherwise what to do.
+  /// One sentence. It says what was corrected, or what to do if `lost` is empty.
   std::string message;
 
   bool AreCorrected() const { return !lost.empty(); }
@@ -32,8 +32,8 @@ bool MayHaveOffsetJump(const FitReport& fit);
 std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const FitOptions& options);
 
 /// Adds warnings about jumps: `lost_counts` if they were corrected, otherwise `offset_jumps`, which invalidates the
-/// fit. Adds `offset_unsteady` for a possible jump that is too small to identify, unless the fit `has_misfit` so much
-/// that the misfit may explain it.
+/// fit. Adds `offset_unsteady` for a possible jump that is too small to identify, unless `has_misfit`, because a misfit
+/// may look like a jump.
 void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit, FitReport& fit);
 
 }  // namespace pendulum

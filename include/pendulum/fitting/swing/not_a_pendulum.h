@@ -16,7 +16,7 @@ std::optional<std::string> LinearOscillatorReason(const Recording& recording, co
                                                   const std::stop_token& stop = {});
 
 /// Checks for two modes: much of the richest law's residual oscillates at one frequency different from the swing's.
-/// Returns as LinearOscillatorReason.
+/// Return value and stop as for LinearOscillatorReason.
 std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,
                                           const std::stop_token& stop = {});
 

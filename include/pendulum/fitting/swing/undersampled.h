@@ -11,22 +11,26 @@ namespace pendulum {
 /// inertia.
 std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig);
 
-/// Whether turning points are unreliable: fewer than 7 samples in a period 15 % shorter than the rig predicts. Without
-/// a prediction, below 6 Hz: fewer than 7 samples in the observed period, or aliasing of a frequency up to 3 Hz (a
-/// pendulum 3 cm long) would look the same.
+/// Whether a recording is sampled too slowly to find turning points reliably. With a prediction from the rig: fewer
+/// than 7 samples per period at a frequency 15 % above the prediction. Without a prediction: the sample rate is below 6
+/// Hz, and either no free swing is found, or the observed period has fewer than 7 samples, or the samples could also be
+/// an alias of a frequency up to 3 Hz (a pendulum 3 cm long).
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig);
 
-/// All of an undersampled recording, or its window, as one swing; `begins` and `ends` give this reason.
+/// All of an undersampled recording, or of its window, as one swing; `begins` says that it is undersampled.
 FreeSwing WholeRecording(const Recording& recording);
 
 /// Fits a swing from each local minimum of a scan over frequency (ScanFrequencies) and keeps the likeliest.
 ///
 /// The scan covers 15 % around the frequency that the rig's geometry predicts, or the bounds of the inertia; otherwise
-/// up to 3 Hz. The swing is in motion from the first reading that certainly follows a hold. The trajectory needs no
-/// Nyquist rate, but other frequencies may explain the samples too: those within 9 of -2 log L are listed (warning
-/// `ambiguous_frequency`). Then the fit ends kNotIdentifiable without errors. It ends so as well if nothing bounds the
-/// frequency, unless the slowest solution is well sampled and no other nearly explains the readings. The third case is
-/// a far better fit at a frequency outside the rig's 15 %.
+/// up to 3 Hz. The fit begins in motion, at the first reading that certainly follows a hold. The trajectory needs no
+/// Nyquist rate, but other frequencies may explain the samples too. The fit ends kNotIdentifiable without errors, with
+/// the warning `ambiguous_frequency`, in these cases:
+/// - -2 log L of another frequency is within 9 of the best one. The message lists these frequencies.
+/// - The samples show only two phases of the swing.
+/// - Neither rig nor bounds limit the frequency. Exception: the slowest solution is well sampled, and no other
+///   frequency explains the readings nearly as well.
+/// - A frequency outside the rig's 15 % fits far better.
 ///
 /// kFailedPrecondition: a release is requested, or the reading is constant. Other errors as FitRecording.
 /// Cost: two dozen fits.

@@ -17,7 +17,7 @@ struct Bootstrap {
   double Quantile(int k, double probability) const;
 };
 
-/// Refits kBootstrapFits replicas: the fitted readings plus new noise, rounded and clipped like the sensor's.
+/// Refits kBootstrapFits replicas: the fitted readings plus new noise, rounded and clipped like the sensor's readings.
 /// Independent Gaussian or quantized noise is drawn from its model. Autocorrelated residuals, and those of a robust
 /// family, are resampled in circular blocks (Politis & Romano 1992). quantile_residuals: N. Runs on options.threads
 /// threads; the result depends only on the seed. After a stop request the remaining replicas count as failed.

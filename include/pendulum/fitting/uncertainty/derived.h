@@ -37,8 +37,8 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
                                                const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
                                                const std::vector<int>& at_bound);
 
-/// Sets the intervals of derived quantities from those of their parameters (P, in units of the restoring torque G;
-/// other arguments as above). An end stays missing if no end of a parameter leads to it.
+/// Sets the intervals of derived quantities from the intervals of their parameters (P, in units of the restoring torque
+/// G; other arguments as above). An end is missing if an end of a parameter that it depends on is missing.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
 

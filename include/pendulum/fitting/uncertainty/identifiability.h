@@ -12,7 +12,7 @@ struct Identifiability {
   enum class Verdict {
     kIdentifiable,
     kWeakly,           ///< Its interval reaches a bound, or other parameters can compensate for it.
-    kNotIdentifiable,  ///< It has no effect, or only a combination with others has one.
+    kNotIdentifiable,  ///< It has no effect, or only its combination with other parameters has an effect.
   };
   std::string parameter;
   Verdict verdict = Verdict::kIdentifiable;
@@ -23,7 +23,7 @@ struct Identifiability {
 /// "identifiable", "weakly identifiable", "not identifiable".
 std::string_view VerdictName(Identifiability::Verdict verdict);
 
-/// The measurement that distinguishes a parameter from those that can compensate for it.
+/// The measurement that distinguishes a parameter from other parameters that can compensate for it.
 std::string MeasurementFor(std::string_view parameter);
 
 }  // namespace pendulum

@@ -21,7 +21,7 @@ struct LinearizedFit {
   Eigen::VectorXd prior_mean, prior_weight;  ///< F x 1, of normal priors on δ; 1 / standard deviation, 0 = none.
 };
 
-/// Posterior of F parameters and σ. Units: those of δ, and of the readings.
+/// Posterior of F parameters and σ. Parameters have the units of δ; σ has the unit of the readings.
 struct Posterior {
   Eigen::VectorXd mean, lower95, upper95;  ///< F x 1, of δ: mean, quantiles .025 and .975.
   Eigen::MatrixXd covariance;              ///< F x F

@@ -13,11 +13,11 @@
 
 namespace pendulum {
 
-/// The likelihood with one parameter held at a value (the problem's units) and the others at their optimum.
+/// The likelihood with one parameter held at a value (the problem's units) and the other parameters at their optimum.
 struct ProfilePoint {
   double value = 0;
-  /// 2 (log L of the estimate - log L), at least 0, times a variance ratio: that of the likelihood at fixed σ over that
-  /// of ComputeErrors. For a parabola it is ((value - estimate) / standard error)².
+  /// 2 (log L of the estimate - log L), at least 0, times a ratio of variances: the variance of the likelihood at fixed
+  /// σ divided by the variance of ComputeErrors. For a parabola it is ((value - estimate) / standard error)².
   double statistic = 0;
 };
 
@@ -36,7 +36,7 @@ using ErrorsOf = std::function<Errors(const Optimum&)>;
 /// The 95 % profile-likelihood interval of parameter k, which is free or at its bound (D. J. Venzon and S. H.
 /// Moolgavkar, Applied Statistics 37:87, 1988). It accounts for autocorrelated residuals (R. E. Chandler and S. Bate,
 /// Biometrika 94:167, 2007). An end beyond a bound is set to the bound. The points are spread evenly over the interval,
-/// at least four on each side of nonzero length. samples: number in all recordings. Cost: about ten solves.
+/// at least four on each side of nonzero length. samples: their number in all recordings. Cost: about ten solves.
 ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
                                  const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k);
 

@@ -20,7 +20,7 @@ struct FittedRun {
   const TrajectoryCost& cost;
   const Solution& solution;            ///< Its P parameters and its noise.
   const Autocorrelation& correlation;  ///< Of its residuals.
-  std::vector<int> at;                 ///< P: indices of its parameters among those of the fit.
+  std::vector<int> at;                 ///< P: indices of its parameters among all parameters of the fit.
 };
 
 /// Error estimates of one recording's noise.

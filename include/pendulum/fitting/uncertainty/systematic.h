@@ -17,8 +17,8 @@ namespace pendulum {
 struct SystematicSource {
   std::string identity;        ///< Recordings with the same identity share the source and its error.
   Eigen::VectorXd powers;      ///< P, for a common factor (C = 1): its power in each parameter; otherwise empty.
-  Eigen::MatrixXd pull;        ///< P x C, derivatives of the problem's P scores with respect to its C numbers.
-  Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a factor, relative.
+  Eigen::MatrixXd pull;        ///< P x C, derivatives of the problem's P scores with respect to the source's C numbers.
+  Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a common factor, relative.
 };
 
 /// The sources rig, clock and calibration that have errors, at the solution (MODEL.md eq. (5.3) and (5.4)).

@@ -22,13 +22,14 @@ namespace pendulum {
 /// Torque(0, 1, p) is the static torque. The pendulum stays at rest while |g(θ)| is at most the static torque for the
 /// direction in which it would move.
 ///
-/// Invariants: the law is odd, T(-ω, -s) = -T(ω, s), except that parameters of either sign change sign too. It never
+/// Invariants: the law is odd, T(-ω, -s) = -T(ω, s), if parameters that may be negative change their sign too. It never
 /// adds energy: T(ω) ω >= 0 for parameters within their bounds. If all torques are 0, there is no friction.
 ///
 /// Some members are optional. kOrdered names a parameter that is never below another. kRateScales is for a law whose
-/// last parameter is a rate in which the torque is not linear: it holds the multiples of the largest rate at which a
-/// search starts. kHasConstantTorque: a part of the torque does not change with the motion; under linear gravity this
-/// only shifts the zero. kStates is for a law whose torque depends on the motion so far, see FrictionWithState.
+/// last parameter is a reference rate, on which the torque depends nonlinearly. A search starts from these multiples of
+/// the largest rate of the motion. kHasConstantTorque: a part of the torque does not change with the motion; under
+/// linear gravity this only shifts the zero. kStates is for a law whose torque depends on the motion so far, see
+/// FrictionWithState.
 template <typename F>
 concept FrictionModel = requires(double x, const double* p, const Series<double>& rate,
                                  typename F::template Recurrence<double> recurrence) {

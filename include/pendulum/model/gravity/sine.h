@@ -67,7 +67,7 @@ class SineSeries {
   }
 
  private:
-  /// Terms k <= kOuter and their mirror images are added one by one, because they become known late.
+  /// Terms k <= kOuter and the opposite terms n - 1 - k are added one by one, because they become known late.
   static constexpr int kOuter = 1;
   template <int n>
   static constexpr bool kInPairs = n > 2 * kOuter + 1;

@@ -24,7 +24,7 @@ struct AdcSensor {
   /// The largest count, 2ᵇⁱᵗˢ - 1.
   double FullScale() const;
 
-  /// V at the converter. Beyond the travel the voltage is that at its end.
+  /// V at the converter. Beyond the travel, the voltage is the same as at the end of the travel.
   double Volts(double angle_deg) const;
 
   /// The reading of the converter, a whole number; full scale at the reference voltage and above.

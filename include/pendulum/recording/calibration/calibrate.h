@@ -14,9 +14,9 @@ namespace pendulum {
 
 inline constexpr int kHighestCalibrationOrder = 5;
 
-/// F test of the highest power of a curve: the curve against the one without it, MODEL.md eq. (8.3).
+/// F test of the highest power of a curve. It compares the curve with the curve without this power, MODEL.md eq. (8.3).
 struct OrderTest {
-  int order;    ///< Of the curve with the power.
+  int order;    ///< Order of the curve with the power.
   double f;     ///< F, with 1 and `freedom` degrees of freedom; infinite if the curve passes through every point.
   int freedom;  ///< N - order - 1.
   double p;     ///< Probability of so large an F if the power were absent.
@@ -32,21 +32,22 @@ struct RoundingTest {
 struct CalibrationFit {
   Calibration calibration;  ///< With all its keys in `source`; covariance 0 x 0 if N = order + 1.
   int order = 1;
-  Eigen::VectorXd residual, left_out;     ///< N x 1: angle - curve; left_out: by a curve without the point, or 0 x 1.
+  Eigen::VectorXd residual;               ///< N x 1, angle - curve.
+  Eigen::VectorXd left_out;               ///< N x 1, angle - curve fitted without this point; 0 x 1 if N = order + 1.
   Eigen::Index largest = 0;               ///< Point of the largest residual.
   double resolution = 0;                  ///< Angle of one count, rms over the points, angle_unit; 0 for volts.
   std::optional<RoundingTest> rounding;   ///< For counts, unless N = order + 1.
-  std::optional<OrderTest> lower_order;   ///< This curve against the next lower order; std::nullopt for a line.
-  std::optional<OrderTest> higher_order;  ///< The next order against this one; std::nullopt if there is none.
+  std::optional<OrderTest> lower_order;   ///< Compares this curve with the next lower order; std::nullopt for a line.
+  std::optional<OrderTest> higher_order;  ///< Compares the next higher order with this curve; std::nullopt if untested.
 
   /// Root mean square of left_out, angle_unit; std::nullopt if N = order + 1.
   std::optional<double> LeaveOneOutRms() const;
 };
 
 /// Least squares of angle on reading, MODEL.md eqs. (8.1) and (8.2): a polynomial of the given order. The covariance of
-/// its coefficients is σ̂² (XᵀX)⁻¹ with σ̂² = RSS / (N - order - 1). Residuals count as independent and equally large.
-/// Readings are centred and scaled, so no digits are lost at orders up to 5; the coefficients are those of powers of
-/// the reading. `input_range` is the range that the sensor can show. kInvalidArgument: an order not in 1 to
+/// its coefficients is σ̂² (XᵀX)⁻¹ with σ̂² = RSS / (N - order - 1). Residuals are assumed to be independent and equally
+/// large. Readings are centred and scaled, so no digits are lost at orders up to 5; the coefficients are those of
+/// powers of the reading. `input_range` is the range that the sensor can show. kInvalidArgument: an order not in 1 to
 /// kHighestCalibrationOrder, or a reading outside input_range. kDataLoss: fewer points than coefficients, a curve that
 /// turns between the points, or readings too far apart or too similar for the order.
 Result<CalibrationFit> CalibrateSensor(const CalibrationTable& table, int order,

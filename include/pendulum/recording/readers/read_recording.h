@@ -18,12 +18,12 @@ namespace pendulum {
 /// In CSV the first line names the columns: time `time_s`, `time_ms` or `time_us`, the quantity by its suffix `_rad`,
 /// `_deg`, `_rad_s`, `_deg_s`, `_counts` or `_volts`; `Time (ms)` is equivalent. ReadOptions must resolve what the
 /// header does not specify or specifies twice. With several runs, the chosen column uses the time of its run.
-/// Separators: comma, semicolon, tab, blanks, or that of `sep=;`; decimal commas if the separator is not a comma. A
-/// byte order mark, CRLF, quotes and the time stamps of a serial monitor are accepted. `# key: value` is metadata, each
-/// key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows without time), `clock_scale`,
-/// `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines with # are comments. If no
-/// resolution is given, it is estimated from the values (FindResolution). Counts that end at 0 or at the full scale of
-/// 10, 12, 14 or 16 bits have that range.
+/// Separators: comma, semicolon, tab, blanks, or the one in a line `sep=;`; decimal commas if the separator is not a
+/// comma. A byte order mark, CRLF, quotes and the time stamps of a serial monitor are accepted. `# key: value` is
+/// metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows without time),
+/// `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines with # are
+/// comments. If no resolution is given, it is estimated from the values (FindResolution). Counts that repeatedly reach
+/// 0 or the full scale of 10, 12, 14 or 16 bits have this range.
 ///
 /// Warnings: those of RepairClock; incomplete_row, empty_cells, host_time, time_unit_assumed, lost_samples;
 /// unreadable_member (in a zip file); metadata_not_applied (a calibration in a file of angles). kNotFound: no such

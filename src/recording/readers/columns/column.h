@@ -13,7 +13,7 @@
 /// The information in a header: the file's separator, and the unit in each column's name.
 namespace pendulum::csv {
 
-/// An acceleration or a length is used as the quantity only if there is no other.
+/// An acceleration or a length is used as the quantity only if the file has no other quantity.
 enum class Kind { kTime, kAngle, kRate, kRaw, kAcceleration, kLength };
 
 /// The unit of a column whose name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 /
@@ -33,7 +33,7 @@ constexpr bool IsFallbackQuantity(const Unit& unit) {
   return unit.kind == Kind::kAcceleration || unit.kind == Kind::kLength;
 }
 
-/// A suffix comes before any suffix that it ends in.
+/// A suffix that ends in another suffix comes before it: rad_s before s.
 inline constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},
     Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},

@@ -103,7 +103,8 @@ inline std::optional<char> SeparatorOfNumbers(std::string_view row) {
 /// Chooses the columns of one file. Errors as ReadRecording.
 class ColumnChooser {
  public:
-  /// `names` is empty without a header. `has_rate`, `has_host`: there are times without a column of times.
+  /// `names` is empty without a header. The times need no column if the metadata give a sample rate (`has_rate`) or
+  /// lines begin with the stamp of a serial monitor (`has_host`).
   ColumnChooser(const Line& line, const std::vector<Name>& names, const ReadOptions& options, bool has_rate,
                 bool has_host)
       : line_(line), names_(names), options_(options), has_rate_(has_rate), has_host_(has_host) {}
@@ -191,8 +192,8 @@ inline std::vector<std::size_t> ColumnChooser::Columns(Kind first, Kind last) co
   return columns;
 }
 
-/// A file without a header is read if options replace the header completely; otherwise the message lists the missing
-/// ones.
+/// A file without a header is read if the user's options replace the header completely. Otherwise the message lists the
+/// missing options.
 inline Result<void> ColumnChooser::CheckHeaderOrFlags(const Layout& layout) const {
   if (layout.has_header) return {};
   const bool needs_time =
@@ -293,12 +294,13 @@ inline Result<std::size_t> ColumnChooser::OnlyColumnWithoutUnit(const Layout& la
 inline bool ColumnChooser::WantsColumnWithoutUnit(const std::vector<std::size_t>& columns, const Layout& layout) const {
   const Unit* asked = UnitOfSuffix(options_.unit);
   if (!layout.has_header || asked == nullptr || IsFallbackQuantity(*asked)) return false;
-  bool is_open = false;
+  bool has_column_without_unit = false;
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const bool is_time = layout.time && layout.time->index == i;
-    is_open |= !is_time && !names_[i].text.empty() && FindUnit(names_[i].text) == nullptr;
+    has_column_without_unit |= !is_time && !names_[i].text.empty() && FindUnit(names_[i].text) == nullptr;
   }
-  return is_open && std::ranges::all_of(columns, [&](auto i) { return IsFallbackQuantity(*FindUnit(names_[i].text)); });
+  return has_column_without_unit &&
+         std::ranges::all_of(columns, [&](auto i) { return IsFallbackQuantity(*FindUnit(names_[i].text)); });
 }
 
 /// The column that the user chose; otherwise one whose name has the requested unit; otherwise one with any unit.
@@ -338,7 +340,7 @@ inline std::optional<std::size_t> ColumnChooser::FindVertical(std::size_t horizo
   return static_cast<std::size_t>(found - names_.begin());
 }
 
-/// Refuses a vertical coordinate: it is equal on both sides, so fitted alone it would swing twice as fast.
+/// Refuses a vertical coordinate. It is the same on both sides, so it oscillates twice as fast as the angle.
 inline Result<void> ColumnChooser::CheckCoordinate(std::size_t index) const {
   if (index >= names_.size()) return {};
   const std::string name = CanonicalName(names_[index].text);

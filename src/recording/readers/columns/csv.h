@@ -143,7 +143,7 @@ inline std::string Numbers::NumberFault(std::string_view text) const {
 /// Parses a number with a decimal point, for metadata and flags.
 inline bool ParseNumber(std::string_view text, double& number) { return Numbers().Parse(text, number); }
 
-/// std::find as fast as memchr.
+/// std::find for bytes; faster, because it uses memchr.
 inline const char* Find(const char* from, const char* end, char wanted) {
   const void* found = from == end ? nullptr : std::memchr(from, wanted, end - from);
   return found == nullptr ? end : static_cast<const char*>(found);

@@ -30,12 +30,12 @@ class JointTable {
  public:
   static constexpr std::size_t kMaxJoints = 1000;
 
-  /// Adds a row. Returns false beyond kMaxJoints.
+  /// Adds a row. Returns false if the row would begin joint number kMaxJoints + 1.
   bool Add(std::string_view joint, double time, double value, std::size_t line);
 
-  /// The requested joint, or the only one, or the only one that moves; nullptr without rows. `line` is that of the
-  /// names, `column` the name of the value column. kDataLoss: several are possible. kInvalidArgument: there is no such
-  /// joint.
+  /// The requested joint, or the only joint, or the only joint that moves; nullptr if there are no rows. `line` is the
+  /// header, `column` the name of the value column. kDataLoss: several joints are possible. kInvalidArgument: there is
+  /// no such joint.
   Result<JointRows*> Choose(const Line& line, const std::string& joint, const std::string& column);
 
  private:

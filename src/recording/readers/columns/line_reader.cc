@@ -33,7 +33,7 @@ LineReader::~LineReader() = default;
 Result<void> LineReader::Begin() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   has_begun_ = true;
-  if (Result<void> taken = Take({at_, end_}); !taken) return taken;
+  if (Result<void> checked = HashAndCheck({at_, end_}); !checked) return checked;
   if (file_ != nullptr) {
     if (Result<void> filled = Refill(); !filled) return filled;
   }
@@ -42,7 +42,7 @@ Result<void> LineReader::Begin() {
   return {};
 }
 
-/// Moves the rest of the block to its front and reads more data after it.
+/// Moves the remaining bytes of the block to its front and reads more data after them.
 Result<void> LineReader::Refill() {
   const std::size_t left = end_ - at_;
   std::memmove(block_->data(), at_, left);
@@ -51,12 +51,12 @@ Result<void> LineReader::Refill() {
   at_ = block_->data();
   end_ = at_ + left + *got;
   if (left + *got < block_->size()) file_.reset();
-  return Take({at_ + left, *got});
+  return HashAndCheck({at_ + left, *got});
 }
 
-/// Hashes new bytes and checks for NUL bytes. A logger that lost its power leaves them, and so do encodings with two
+/// Hashes new bytes and checks for NUL bytes, which come from a logger that lost its power or from an encoding with two
 /// bytes per character.
-Result<void> LineReader::Take(std::string_view bytes) {
+Result<void> LineReader::HashAndCheck(std::string_view bytes) {
   if (auto added = digest_.Add(bytes); !added) return added;
   const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
   if (nul == nullptr) return {};

@@ -13,7 +13,7 @@
 /// (rad)" or "Data Set 1:Time(s)", Capstone "Time (s) Run #1".
 namespace pendulum::csv {
 
-/// Converts a name to our form of header: these programs write `V` for volts and superscripts.
+/// Converts a name to our form of header. The programs above write `V` for volts and superscript digits.
 inline std::string PlainUnits(std::string_view name) {
   std::string plain(name);
   for (const auto& [theirs, ours] : {std::pair{"\u00B2", "2"}, {"(V)", "(volts)"}}) {
@@ -24,7 +24,7 @@ inline std::string PlainUnits(std::string_view name) {
   return plain;
 }
 
-/// A name split into the run, if it contains one, and the rest.
+/// A name split into the run, if it contains one, and the remaining name.
 struct RunName {
   std::string_view run, rest;
 };

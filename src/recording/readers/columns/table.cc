@@ -13,7 +13,7 @@
 namespace pendulum::csv {
 namespace {
 
-/// The length of a vector has no sign, so it would swing twice as often.
+/// The length of a vector has no sign, so it oscillates twice as fast as the angle.
 bool IsLengthOfVector(const TableColumn& column) {
   constexpr std::string_view kWord = "absolute";
   const std::string canonical = CanonicalName(column.meaning);

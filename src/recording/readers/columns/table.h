@@ -14,7 +14,7 @@ namespace pendulum::csv {
 struct TableColumn {
   std::string written;       // As messages and flags use it.
   std::string meaning;       // The equivalent name in a header: `time_s` for Tracker's `t`; empty: not to be read.
-  std::string run;           // The run it belongs to if there are several; empty: all of them.
+  std::string run;           // The run to which the column belongs; empty: all runs.
   const char* at = nullptr;  // Its position in the line of names.
 };
 
@@ -30,12 +30,12 @@ struct TimeFlag {
 /// Interprets --time_column for these columns; a colon may be part of a name.
 TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& time_column);
 
-/// The columns that could be the quantity; those of the requested unit if there are any.
+/// The columns that could be the quantity. If any column has the requested unit, only columns with this unit.
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit);
 
-/// The names from which a ColumnChooser chooses; they refer to `columns`. With several runs these are the columns of
-/// one run: that of the chosen column or of the only candidate. Lengths of vectors are excluded. kDataLoss: several
-/// runs have a candidate. kInvalidArgument: the user requests the length of a vector.
+/// The names from which a ColumnChooser chooses; they refer to `columns`. If there are several runs, only one run can
+/// be chosen: the run of the requested column or of the only candidate. Lengths of vectors are excluded. kDataLoss:
+/// several runs have a candidate. kInvalidArgument: the user requests the length of a vector.
 Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColumn>& columns,
                                   const ReadOptions& options);
 

@@ -23,7 +23,8 @@ inline const std::optional<Calibration>& ChosenCalibration(const ReadOptions& op
   return options.calibration ? options.calibration : metadata.calibration;
 }
 
-/// Checks that a calibration has the column's unit. The file's own may belong to another column than that of angles.
+/// Checks that a calibration has the column's unit. The file's own calibration may belong to another column, so it only
+/// causes a warning if the column is not in counts or volts.
 inline Result<void> CheckCalibration(const Line& header, const Column& column, const ReadOptions& options,
                                      const Metadata& metadata, std::vector<Warning>& warnings) {
   const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
@@ -59,8 +60,8 @@ inline void WarnOfResolution(double found, Recording& recording) {
            " apart (in the file's unit); correct the resolution, because a wrong one makes the error bars wrong"});
 }
 
-/// Sets the spacing of the values and its origin: the user, the file, or the values themselves. Whole counts are
-/// levels.
+/// Sets the resolution and its source: the user, the file, or the values themselves. Whole counts have a resolution of
+/// at least 1.
 inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
                           Recording& recording) {
   if (options.resolution || metadata.resolution) {
@@ -112,7 +113,7 @@ inline void ScaleValues(const Unit& unit, Recording& recording) {
   if (recording.range) recording.range = SensorRange{unit.ToSi(recording.range->low), unit.ToSi(recording.range->high)};
 }
 
-/// Converts counts or volts with their calibration. The spacing of readings is that in the middle of the data.
+/// Converts counts or volts with their calibration. The resolution uses the slope in the middle of the readings.
 inline void Calibrate(const Calibration& calibration, Recording& recording) {
   const auto [low, high] = std::minmax_element(recording.value.begin(), recording.value.end());
   const double slope = calibration.Slope(*low / 2 + *high / 2);

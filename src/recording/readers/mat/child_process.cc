@@ -52,10 +52,10 @@ rlim_t DataInUse() {
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// ---- The child. It has none of the process's other threads and must not wait for a lock of theirs -----------------
+// ---- The child. It has only one thread and must not wait for a lock that another thread of the parent held ---------
 
 /// The handlers of this process would write to descriptors that the child has closed. The parent answers signals that a
-/// terminal or a service manager sends to all processes, and the child ends with it.
+/// terminal or a service manager sends to all processes, and the child ends with the parent.
 void ResetSignals() {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
@@ -117,7 +117,7 @@ class Child {
 
   int from() const { return from_; }
 
-  /// The status with which it ended; std::nullopt if it still runs at the deadline.
+  /// The exit status of the process; std::nullopt if it still runs at the deadline.
   std::optional<int> WaitUntil(Clock::time_point deadline) {
     int ended = 0;
     while (::waitpid(process_, &ended, WNOHANG) == 0) {
@@ -157,7 +157,7 @@ tl::expected<std::string, ChildFailure> ReadAll(int descriptor, Clock::time_poin
 
 ChildFailure FailureOfStatus(std::optional<int> ended) {
   if (!ended || (WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGXCPU)) return ChildFailure::kOutOfTime;
-  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // out of memory
+  const bool is_killed = WIFSIGNALED(*ended) && WTERMSIG(*ended) == SIGKILL;  // memory ran out
   const bool has_no_memory = WIFEXITED(*ended) && WEXITSTATUS(*ended) == kNoMemory;
   return is_killed || has_no_memory ? ChildFailure::kOutOfMemory : ChildFailure::kCrashed;
 }

@@ -29,9 +29,10 @@ enum class ChildFailure {
   kAnswerTooLarge,
 };
 
-/// Returns the result of `work`, executed in a separate process that may crash, hang or run out of memory. Libraries
-/// that read untrusted binary files do that (see MatTable). Its output is discarded, it has none of this process's
-/// descriptors, and it ends with the thread that waits for it. Any number of threads may call this at the same time.
+/// Returns the result of `work`, executed in a separate process that may crash, hang or run out of memory, as libraries
+/// do that read untrusted binary files (see ReadMatTable). The output of the separate process is discarded, it has none
+/// of this process's descriptors, and it ends with the thread that waits for it. Any number of threads may call this at
+/// the same time.
 tl::expected<std::string, ChildFailure> RunInChildProcess(const std::function<std::string()>& work,
                                                           const ChildLimits& limits);
 

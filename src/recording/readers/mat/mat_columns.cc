@@ -37,8 +37,9 @@ constexpr const char* kObject = "an object";
 
 std::string* complaint = nullptr;  // Where matio's messages are stored. Its callback has no argument for this.
 
-/// Keeps serious messages of matio. A file that ends too early causes only a warning, although the following numbers
-/// are wrong. Warnings of unknown kinds of objects or text are ignored, because other variables are not affected.
+/// Stores the first serious message of matio. A file that ends too early causes only a warning, although the following
+/// numbers are wrong, so warnings are serious. Warnings of unknown kinds of objects or text are ignored, because other
+/// variables are not affected.
 void RecordMatioMessage(int level, char* message) {
   constexpr int kSerious = MATIO_LOG_LEVEL_ERROR | MATIO_LOG_LEVEL_CRITICAL | MATIO_LOG_LEVEL_WARNING;
   const auto says = [&](std::string_view words) {
@@ -46,7 +47,8 @@ void RecordMatioMessage(int level, char* message) {
   };
   if (complaint == nullptr || (level & kSerious) == 0) return;
   if (level == MATIO_LOG_LEVEL_WARNING && (says("not a supported class") || says("for character data"))) return;
-  // HDF5 reports causes one by one, from the outermost to the first.
+  // matio sends one message for each level of HDF5's error stack, from the outermost call to the root cause. The first
+  // message is kept, unless a later one says that another file cannot be opened.
   const bool is_other_file = says("minor: Unable to open file");
   if (is_other_file || complaint->empty()) *complaint = is_other_file ? kOtherFile : message;
 }
@@ -177,8 +179,8 @@ class Collector {
     }
   }
 
-  /// Whether the unit of a time is certain. Simulink's times are in seconds: `tout`, and those of a structure with
-  /// signals (AddStructure).
+  /// Whether the unit of a time is certain. Simulink's times are in seconds: `tout`, and the times of a structure
+  /// with signals (AddStructure).
   static bool IsTimeUnitKnown(const std::string& name, const std::string& sense) {
     const std::string canonical = csv::CanonicalName(name);
     return sense != "time_s" || (canonical != "t" && canonical != "time");
@@ -188,8 +190,8 @@ class Collector {
     return *std::max_element(variable.dims, variable.dims + variable.rank);
   }
 
-  /// Adds the fields of a structure and of nested ones. In Simulink's `signals` the quantity is in `values` and its
-  /// name in `label`.
+  /// Adds the fields of a structure and of nested structures. In Simulink's `signals` the quantity is in `values` and
+  /// its name in `label`.
   void AddStructure(const matvar_t& structure, const std::string& written, const std::string& meaning) {
     constexpr std::size_t kMaxElements = 100, kDeepest = 6;
     const std::size_t elements = CountOf(structure);

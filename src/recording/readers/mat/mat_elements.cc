@@ -35,7 +35,7 @@ std::vector<double> Doubles(std::string_view bytes, bool is_swapped) {
   return numbers;
 }
 
-/// The numbers of a matrix may be stored in a smaller type than its class.
+/// The numbers of an element. A matrix may store them in a smaller type than its class.
 std::vector<double> NumbersIn(const MatElement& element, bool is_swapped) {
   switch (element.type) {
     case kInt8: return Doubles<std::int8_t>(element.bytes, is_swapped);
@@ -58,8 +58,8 @@ struct EndUnpacking {
   void operator()(z_stream* stream) const { inflateEnd(stream); }
 };
 
-/// Letters of a name; their type depends on the version.
-std::optional<std::string_view> TakeLetters(MatElements& elements) {
+/// Reads the letters of a name. Their type depends on the version of MATLAB.
+std::optional<std::string_view> ReadLetters(MatElements& elements) {
   const std::optional<MatElement> element = elements.Next();
   if (!element || (element->type != kInt8 && element->type != kUint8 && element->type != kUtf8)) return std::nullopt;
   return element->bytes;
@@ -68,7 +68,7 @@ std::optional<std::string_view> TakeLetters(MatElements& elements) {
 MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth);
 
 /// Reads the `count` matrices inside another one. Returns false if there are fewer or if data remain.
-bool TakeParts(MatElements& contents, std::size_t count, bool with_numbers, int depth, MatValue& value) {
+bool ReadParts(MatElements& contents, std::size_t count, bool with_numbers, int depth, MatValue& value) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::optional<std::string_view> part = contents.Next(kMatrixElement);
     std::optional<MatMatrix> matrix = part ? OpenMatrix(*part, contents.is_swapped()) : std::nullopt;
@@ -78,21 +78,21 @@ bool TakeParts(MatElements& contents, std::size_t count, bool with_numbers, int 
   return contents.IsAtEnd();
 }
 
-bool TakeCells(MatMatrix& matrix, bool with_numbers, int depth, MatValue& value) {
+bool ReadCells(MatMatrix& matrix, bool with_numbers, int depth, MatValue& value) {
   const std::optional<std::size_t> count = CountIn(matrix.sizes);
-  return count && TakeParts(matrix.contents, *count, with_numbers, depth, value);
+  return count && ReadParts(matrix.contents, *count, with_numbers, depth, value);
 }
 
-bool TakeStructure(MatMatrix& matrix, bool with_numbers, int depth, MatValue& value) {
-  std::optional<std::vector<std::string>> names = TakeFieldNames(matrix.contents);
+bool ReadStructure(MatMatrix& matrix, bool with_numbers, int depth, MatValue& value) {
+  std::optional<std::vector<std::string>> names = ReadFieldNames(matrix.contents);
   const std::optional<std::size_t> count = CountIn(matrix.sizes);
   if (!names || !count || (*count > 0 && names->empty())) return names && count;
   const std::optional<std::size_t> parts = CountIn({*count, names->size()});
   value.names = *std::move(names);
-  return parts && TakeParts(matrix.contents, *parts, with_numbers, depth, value);
+  return parts && ReadParts(matrix.contents, *parts, with_numbers, depth, value);
 }
 
-bool TakeNumbers(MatMatrix& matrix, MatValue& value) {
+bool ReadNumbers(MatMatrix& matrix, MatValue& value) {
   const std::optional<std::size_t> count = CountIn(matrix.sizes);
   const std::optional<MatElement> element = matrix.contents.Next();
   if (!count || !element || matrix.is_complex) return false;
@@ -101,7 +101,7 @@ bool TakeNumbers(MatMatrix& matrix, MatValue& value) {
 }
 
 /// MATLAB writes letters in one or two bytes.
-bool TakeText(MatMatrix& matrix, MatValue& value) {
+bool ReadText(MatMatrix& matrix, MatValue& value) {
   const std::optional<MatElement> element = matrix.contents.Next();
   if (!element) return false;
   for (const double letter : NumbersIn(*element, matrix.contents.is_swapped())) value.text += AsciiLetter(letter);
@@ -109,11 +109,11 @@ bool TakeText(MatMatrix& matrix, MatValue& value) {
 }
 
 /// A separate matrix contains the references of an opaque matrix to its objects.
-bool TakeObject(MatMatrix& matrix, MatValue& value) {
+bool ReadObject(MatMatrix& matrix, MatValue& value) {
   value.text = matrix.class_name;
   const std::optional<std::string_view> part = matrix.contents.Next(kMatrixElement);
   std::optional<MatMatrix> numbers = part ? OpenMatrix(*part, matrix.contents.is_swapped()) : std::nullopt;
-  if (numbers && numbers->kind >= kFirstNumberClass && numbers->kind <= kLastNumberClass) TakeNumbers(*numbers, value);
+  if (numbers && numbers->kind >= kFirstNumberClass && numbers->kind <= kLastNumberClass) ReadNumbers(*numbers, value);
   return true;
 }
 
@@ -123,22 +123,22 @@ MatValue ValueAt(MatMatrix matrix, bool with_numbers, int depth) {
   bool is_whole = true;
   if (matrix.kind == kCellClass && depth < kDeepestValue) {
     value.kind = MatValue::Kind::kCells;
-    is_whole = TakeCells(matrix, with_numbers, depth, value);
+    is_whole = ReadCells(matrix, with_numbers, depth, value);
   } else if (matrix.kind == kStructureClass && depth < kDeepestValue) {
     value.kind = MatValue::Kind::kStructure;
-    is_whole = TakeStructure(matrix, with_numbers, depth, value);
+    is_whole = ReadStructure(matrix, with_numbers, depth, value);
   } else if (matrix.kind == kOpaqueClass) {
     value.kind = MatValue::Kind::kObject;
-    is_whole = TakeObject(matrix, value);
+    is_whole = ReadObject(matrix, value);
   } else if (matrix.kind == 0) {
     value.kind = MatValue::Kind::kNumbers;
     value.sizes = {0, 0};
   } else if (matrix.kind == kTextClass && with_numbers) {
     value.kind = MatValue::Kind::kText;
-    is_whole = TakeText(matrix, value);
+    is_whole = ReadText(matrix, value);
   } else if (matrix.kind >= kFirstNumberClass && matrix.kind <= kLastNumberClass && with_numbers) {
     value.kind = MatValue::Kind::kNumbers;
-    is_whole = TakeNumbers(matrix, value);
+    is_whole = ReadNumbers(matrix, value);
   }
   if (!is_whole) return {};
   return value;
@@ -196,21 +196,21 @@ std::optional<MatMatrix> OpenMatrix(std::string_view bytes, bool is_swapped) {
     if (!numbers || numbers->size() < 2) return std::nullopt;
     matrix.sizes.assign(numbers->begin(), numbers->end());
   }
-  const auto name = TakeLetters(matrix.contents);
+  const auto name = ReadLetters(matrix.contents);
   if (!name) return std::nullopt;
   matrix.name = *name;
   if (matrix.kind != kOpaqueClass) return matrix;
-  const auto system = TakeLetters(matrix.contents);
-  const auto class_name = TakeLetters(matrix.contents);
+  const auto system = ReadLetters(matrix.contents);
+  const auto class_name = ReadLetters(matrix.contents);
   if (!system || !class_name) return std::nullopt;
   matrix.class_name = *class_name;
   return matrix;
 }
 
-std::optional<std::vector<std::string>> TakeFieldNames(MatElements& contents) {
+std::optional<std::vector<std::string>> ReadFieldNames(MatElements& contents) {
   const auto length = contents.Next(kInt32);
   const auto words = length ? WordsOf(*length, contents.is_swapped()) : std::nullopt;
-  const auto letters = TakeLetters(contents);
+  const auto letters = ReadLetters(contents);
   if (!words || words->size() != 1 || words->front() == 0 || !letters) return std::nullopt;
   const std::size_t step = words->front();
   if (letters->size() % step != 0) return std::nullopt;

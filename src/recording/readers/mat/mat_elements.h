@@ -34,7 +34,7 @@ class MatElements {
   /// The bytes of the next element, which must have this type; std::nullopt otherwise.
   std::optional<std::string_view> Next(std::uint32_t type);
 
-  std::size_t at() const { return at_; }  // Position of the next one.
+  std::size_t at() const { return at_; }  // Position of the next element.
   bool IsAtEnd() const { return at_ >= bytes_.size(); }
   bool is_swapped() const { return is_swapped_; }
 
@@ -46,7 +46,7 @@ class MatElements {
 
 /// A matrix without its contents.
 struct MatMatrix {
-  std::uint32_t kind = 0;  // Its class; 0: an empty element, which represents an empty matrix.
+  std::uint32_t kind = 0;  // Class of the matrix; 0: an empty element, which represents an empty matrix.
   bool is_complex = false;
   std::vector<std::size_t> sizes;
   std::string name;        // For a variable.
@@ -57,11 +57,11 @@ struct MatMatrix {
 /// Interprets the bytes as a matrix; std::nullopt if they are not one.
 std::optional<MatMatrix> OpenMatrix(std::string_view bytes, bool is_swapped);
 
-/// The whole numbers of an element; std::nullopt if it contains others.
+/// The 32-bit whole numbers in these bytes; std::nullopt if the number of bytes is not a multiple of 4.
 std::optional<std::vector<std::uint32_t>> WordsOf(std::string_view bytes, bool is_swapped);
 
-/// Reads field names from the contents of a structure, up to its fields; std::nullopt if they are invalid.
-std::optional<std::vector<std::string>> TakeFieldNames(MatElements& contents);
+/// Reads the field names of a structure and leaves `contents` at the first field; std::nullopt if they are invalid.
+std::optional<std::vector<std::string>> ReadFieldNames(MatElements& contents);
 
 /// The contents of a matrix; kOther if it is damaged. Without `with_numbers` only parts that lead to objects are read.
 MatValue ValueOf(MatMatrix matrix, bool with_numbers);

@@ -37,7 +37,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Turns off HDF5's error messages. matio listens to them, and errors here do not affect the file's other variables.
+/// Turns off HDF5's error messages. matio would record them, but errors here do not affect the file's other variables.
 class MutedErrors {
  public:
   MutedErrors() {
@@ -100,7 +100,7 @@ hsize_t ChunksOf(hid_t dataset) {
   return chunks;
 }
 
-/// HDF5 would read data that were never written as zeros.
+/// Whether all data were written. HDF5 would return zeros for missing data.
 bool IsWritten(hid_t dataset) {
   hsize_t written = 0;
   if (const hsize_t chunks = ChunksOf(dataset); chunks > 0) {
@@ -138,7 +138,7 @@ struct Dataset {
 
   bool HasNumbers() const { return kind == H5T_INTEGER || kind == H5T_FLOAT; }
 
-  /// Whether the numbers in the file have exactly this type. HDF5 does not check the type it is given.
+  /// Whether the numbers in the file have exactly this type. HDF5 would convert numbers of another type silently.
   bool HasType(hid_t type) const {
     const Handle own(H5Dget_type(id), H5Tclose);
     return own && H5Tequal(own.id(), type) > 0;
@@ -150,15 +150,15 @@ struct Dataset {
   std::size_t count = 0;
 };
 
-herr_t TakeName(hid_t, const char* name, const H5L_info_t* info, void* names) {
+herr_t AppendName(hid_t, const char* name, const H5L_info_t* info, void* names) {
   if (info->type == H5L_TYPE_HARD) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   return 0;
 }
 
-/// The members of a group, without links to other places.
+/// The names of the members of a group, without symbolic and external links.
 std::vector<std::string> NamesIn(hid_t group) {
   std::vector<std::string> names;
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, TakeName, &names);
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, AppendName, &names);
   return names;
 }
 
@@ -223,20 +223,21 @@ class Reader {
     value.sizes = dataset.sizes;
     value.kind = NumberIn(id, "MATLAB_object_decode") == kOfClass ? Kind::kObject : KindOf(name);
     if (value.kind == Kind::kObject) value.text = name;
-    const bool is_whole = NumberIn(id, "MATLAB_empty") != 0 ? TakeEmpty(dataset, value) : Take(dataset, name, value);
+    const bool is_whole =
+        NumberIn(id, "MATLAB_empty") != 0 ? ReadEmpty(dataset, value) : ReadArray(dataset, name, value);
     if (!is_whole) return {};
     return value;
   }
 
   /// An empty array stores its sizes as numbers.
-  static bool TakeEmpty(const Dataset& dataset, MatValue& value) {
+  static bool ReadEmpty(const Dataset& dataset, MatValue& value) {
     if (!dataset.HasNumbers()) return false;
     const std::vector<std::uint64_t> sizes = dataset.Read<std::uint64_t>(H5T_NATIVE_UINT64);
     value.sizes.assign(sizes.begin(), sizes.end());
     return CountIn(value.sizes) == std::size_t{0};
   }
 
-  bool Take(const Dataset& dataset, const std::string& name, MatValue& value) {
+  bool ReadArray(const Dataset& dataset, const std::string& name, MatValue& value) {
     if (value.kind == Kind::kObject) {
       if (dataset.HasType(H5T_STD_U32LE)) value.numbers = dataset.Read<double>(H5T_NATIVE_DOUBLE);
       return true;
@@ -270,7 +271,7 @@ class Reader {
   int depth_ = 0, values_ = 0;
 };
 
-void TakeReferences(hid_t file, MatSubsystem& subsystem) {
+void ReadReferences(hid_t file, MatSubsystem& subsystem) {
   Reader reader(file, false);
   for (const std::string& name : NamesIn(file)) {
     if (!name.starts_with('#')) AddReferences(reader.ValueIn(file, name), name, subsystem.references);
@@ -286,7 +287,7 @@ std::optional<Mcos> TableAt(hid_t file, hobj_ref_t reference, std::size_t cells)
   return Mcos::Read({bytes.data(), bytes.size()}, cells);
 }
 
-void TakeCells(const std::shared_ptr<const Handle>& file, MatSubsystem& subsystem) {
+void OpenCells(const std::shared_ptr<const Handle>& file, MatSubsystem& subsystem) {
   const Handle wrapper(H5Oopen(file->id(), "#subsystem#/MCOS", H5P_DEFAULT), H5Oclose);
   if (!wrapper || H5Iget_type(wrapper.id()) != H5I_DATASET) return;
   const Dataset dataset(wrapper.id());
@@ -310,8 +311,8 @@ std::function<MatSubsystem()> OpenHdf5(const std::string& path) {
     MatSubsystem subsystem;
     if (!*file) return subsystem;
     const MutedErrors quiet;
-    TakeReferences(file->id(), subsystem);
-    TakeCells(file, subsystem);
+    ReadReferences(file->id(), subsystem);
+    OpenCells(file, subsystem);
     return subsystem;
   };
 }

@@ -8,8 +8,8 @@
 
 namespace pendulum {
 
-/// Opens the file at this path immediately if it is of version 7.3. The returned function finds its objects in HDF5's
-/// groups and datasets. It never fails but returns the undamaged part; HDF5 itself may crash.
+/// Opens the file at this path, which has version 7.3, immediately. The returned function finds the objects of the file
+/// in HDF5's groups and datasets. It never fails but returns the undamaged part; HDF5 itself may crash.
 std::function<MatSubsystem()> OpenHdf5(const std::string& path);
 
 }  // namespace pendulum

@@ -160,7 +160,8 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   return Fault(name, "this MAT-file is damaged (" + Quoted(table.complaint) + "); save it again");
 }
 
-/// True for numbers that are not a vector, or for an object, which may contain some.
+/// True for a variable that may contain the quantity in an unsupported form: a cell array, complex or sparse numbers,
+/// or an object.
 bool MayContainQuantity(const SkippedVariable& variable) {
   const std::array kinds = {"a cell array", "complex", "sparse"};
   return variable.is_object || std::ranges::find(kinds, variable.kind) != kinds.end();
@@ -194,22 +195,23 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
   const SkippedVariable* const skipped = FindUnusableVariable(table, columns, options);
   if (skipped != nullptr) {
     const std::string which = skipped->name.empty() ? "a variable" : "variable " + Quoted(skipped->name);
-    return Fault(name, which + " is " + skipped->kind +
-                           (skipped->is_object
-                                ? "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
-                                  "save('run.mat', 't', 'angle_deg')"
-                                : "; a column is a vector of real numbers, or a matrix's or a structure's"));
+    return Fault(name,
+                 which + " is " + skipped->kind +
+                     (skipped->is_object
+                          ? "; save its numbers in MATLAB, for a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+                            "save('run.mat', 't', 'angle_deg')"
+                          : "; a column must be a vector of real numbers, or part of a matrix or a structure"));
   }
   const bool has_more = std::ranges::any_of(columns, [](const auto& column) { return !csv::IsTime(column.meaning); });
   if (has_more || (!columns.empty() && !options.value_column.empty())) return {};
-  std::string rest;
+  std::string kinds;
   for (const SkippedVariable& variable :
        std::span(table.skipped).first(std::min<std::size_t>(table.skipped.size(), 8))) {
-    rest +=
-        (rest.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " + variable.kind;
+    kinds += (kinds.empty() ? " (" : ", ") + (variable.name.empty() ? "one" : Quoted(variable.name)) + " is " +
+             variable.kind;
   }
   return Fault(name, std::string("no variable of this MAT-file ") + (columns.empty() ? "" : "but the time ") +
-                         "is a vector or a matrix of real numbers" + (rest.empty() ? rest : rest + ")") +
+                         "is a vector or a matrix of real numbers" + (kinds.empty() ? kinds : kinds + ")") +
                          "; save the times as t and the angles as angle_deg");
 }
 

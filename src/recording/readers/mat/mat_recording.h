@@ -10,17 +10,18 @@
 
 namespace pendulum {
 
-/// Reads a recording from the bytes of a MAT-file of version 4 to 7.3. Columns are vectors and columns of matrices,
-/// named after their variables, fields of structures, and times and data of objects of class timeseries (R2010b and
-/// later), `ts.Time` and `ts.Data`. `t`, `time`, `tout` and a first column that increases are times in seconds. This
-/// unit is certain only for Simulink (`tout`, a structure with `signals`) and a timeseries. Other times cause a
-/// warning, or an error if they are whole numbers. Messages begin "name:". kDataLoss: damaged, without such columns,
-/// with data in another file, or larger than options.most_unpacked_bytes; another object, a cell array, complex or
-/// sparse numbers, with advice. kInvalidArgument: a time without a unit, or flags that contradict the file. kTryAgain:
-/// no room for a copy, or no process.
+/// Reads a recording from the bytes of a MAT-file of version 4 to 7.3. A column is a vector, a column of a matrix, or
+/// the times or data of an object of class timeseries (R2010b and later), `ts.Time` and `ts.Data`. Columns have the
+/// names of their variables or fields of structures. `t`, `time`, `tout` and a first column that increases are times in
+/// seconds. This unit is certain only for Simulink (`tout`, a structure with `signals`) and a timeseries. Other times
+/// cause a warning, or an error if they are whole numbers. Messages begin "name:". kDataLoss: the file is damaged, has
+/// no such columns, has data in another file, or is larger than options.most_unpacked_bytes. If it contains another
+/// object, a cell array, or complex or sparse numbers instead, the message says what to do. kInvalidArgument: a time
+/// without a unit, or flags that contradict the file. kTryAgain: there is no room for a copy, or no process can be
+/// started.
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options);
 
-/// The same from the table that a separate process has read from these bytes.
+/// The same as ReadMat, from the table that a separate process has read from these bytes.
 Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, const std::string& name,
                                const ReadOptions& options);
 

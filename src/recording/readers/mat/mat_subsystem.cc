@@ -24,7 +24,7 @@ std::optional<bool> IsSwapped(std::string_view order) {
   return std::nullopt;
 }
 
-/// The position of the subsystem; 0 if there is none. Blanks also mean none.
+/// The position of the subsystem. 0, or the number that blanks form, means that there is none.
 std::size_t PlaceOfSubsystem(std::string_view bytes, bool is_swapped) {
   constexpr std::size_t kPlaceAt = 116, kPlaceBytes = 8;
   const auto words = WordsOf(bytes.substr(kPlaceAt, kPlaceBytes), is_swapped);
@@ -35,7 +35,7 @@ std::size_t PlaceOfSubsystem(std::string_view bytes, bool is_swapped) {
 }
 
 /// The bytes of the matrix in an element at top level, unpacked into `room` if it is compressed. Without `all`,
-/// matrices of numbers, which cannot contain anything, are not unpacked.
+/// matrices of numbers, which cannot contain objects, are not unpacked.
 std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bool all, std::string& room) {
   constexpr std::size_t kHead = 1024, kTag = 8, kMaxUnpacked = std::size_t{1} << 33;
   if (element.type == kMatrixElement) return OpenMatrix(element.bytes, is_swapped);
@@ -52,7 +52,7 @@ std::optional<MatMatrix> MatrixIn(const MatElement& element, bool is_swapped, bo
   return matrix ? OpenMatrix(*matrix, is_swapped) : std::nullopt;
 }
 
-/// The subsystem's own bytes, stored in a matrix of bytes, and the positions of the cells in them.
+/// The bytes of the subsystem, which the file stores in a matrix of bytes, and the cells in them.
 struct Cells {
   std::string bytes;
   std::vector<std::string_view> cells;
@@ -69,7 +69,7 @@ bool FindCells(Cells& found) {
   const auto first = MatElements(bytes.substr(kHead), *is_swapped).Next(kMatrixElement);
   auto structure = first ? OpenMatrix(*first, *is_swapped) : std::nullopt;
   if (!structure || structure->kind != kStructureClass || CountIn(structure->sizes) != std::size_t{1}) return false;
-  const auto names = TakeFieldNames(structure->contents);
+  const auto names = ReadFieldNames(structure->contents);
   std::optional<std::string_view> field;
   for (std::size_t i = 0; names && i < names->size(); ++i) {
     const auto each = structure->contents.Next(kMatrixElement);
@@ -93,12 +93,12 @@ std::optional<Mcos> TableIn(const Cells& found) {
   return Mcos::Read(bytes->bytes, found.cells.size());
 }
 
-void TakeSubsystem(const MatElement& element, bool is_swapped, MatSubsystem& subsystem) {
+void ReadSubsystem(const MatElement& element, bool is_swapped, MatSubsystem& subsystem) {
   std::string room;
   auto matrix = MatrixIn(element, is_swapped, true, room);
   const auto bytes = matrix && matrix->kind == kUint8Class ? matrix->contents.Next() : std::nullopt;
   if (!bytes) return;
-  const auto found = std::make_shared<Cells>();  // Shared by copies of the function.
+  const auto found = std::make_shared<Cells>();  // Shared by copies of subsystem.cell.
   found->bytes = bytes->bytes;
   if (!FindCells(*found)) return;
   subsystem.objects = TableIn(*found);
@@ -123,7 +123,7 @@ MatSubsystem SubsystemOf(std::string_view bytes) {
     const auto element = elements.Next();
     if (!element) break;
     if (is_subsystem) {
-      TakeSubsystem(*element, *is_swapped, subsystem);
+      ReadSubsystem(*element, *is_swapped, subsystem);
       if (elements.IsAtEnd()) subsystem.variables = variables;
       continue;
     }

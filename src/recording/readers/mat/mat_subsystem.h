@@ -13,16 +13,16 @@
 
 namespace pendulum {
 
-/// The objects of a MAT-file. Its variables only refer to them; the objects are in a separate part of the file.
+/// The objects of a MAT-file. Variables only refer to objects; the objects are in a separate part of the file.
 struct MatSubsystem {
-  std::size_t variables = SIZE_MAX;           // Before the objects, which matio cannot always unpack.
-  std::vector<MatReference> references;       // From its variables.
-  std::optional<Mcos> objects;                // std::nullopt: no objects, or damage.
-  std::size_t cells = 0;                      // Number of cells with values of properties and others.
-  std::function<MatValue(std::size_t)> cell;  // Returns one of them; kOther if it is damaged.
+  std::size_t variables = SIZE_MAX;      // Number of variables before the objects. matio cannot always unpack these.
+  std::vector<MatReference> references;  // References to objects in the variables.
+  std::optional<Mcos> objects;           // std::nullopt: no objects, or damage.
+  std::size_t cells = 0;                 // Number of cells; most contain the value of a property.
+  std::function<MatValue(std::size_t)> cell;  // Returns the value of a cell; kOther if it is damaged.
 };
 
-/// From the bytes of a file of version 5, which MATLAB calls 6 and 7. Never fails: returns the undamaged part.
+/// Reads the bytes of a file of version 5, which MATLAB calls 6 and 7. Never fails: returns the undamaged part.
 MatSubsystem SubsystemOf(std::string_view bytes);
 
 }  // namespace pendulum

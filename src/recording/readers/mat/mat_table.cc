@@ -82,22 +82,22 @@ std::string Pack(const MatTable& table) {
 
 MatTable UnpackMatTable(std::string_view bytes) {
   MatTable table;
-  ByteReader taker(bytes);
-  table.complaint = taker.Text();
-  for (std::size_t count = taker.Size(); count > 0 && !taker.IsEmpty(); --count) {
+  ByteReader reader(bytes);
+  table.complaint = reader.Text();
+  for (std::size_t count = reader.Size(); count > 0 && !reader.IsEmpty(); --count) {
     SkippedVariable variable;
-    variable.name = taker.Text();
-    variable.kind = taker.Text();
-    variable.is_object = taker.Size() != 0;
+    variable.name = reader.Text();
+    variable.kind = reader.Text();
+    variable.is_object = reader.Size() != 0;
     table.skipped.push_back(std::move(variable));
   }
-  while (!taker.IsEmpty()) {
+  while (!reader.IsEmpty()) {
     MatColumn column;
-    column.name.written = taker.Text();
-    column.name.meaning = taker.Text();
-    column.name.run = taker.Text();
-    column.is_unit_known = taker.Size() != 0;
-    column.values = taker.Numbers();
+    column.name.written = reader.Text();
+    column.name.meaning = reader.Text();
+    column.name.run = reader.Text();
+    column.is_unit_known = reader.Size() != 0;
+    column.values = reader.Numbers();
     table.columns.push_back(std::move(column));
   }
   return table;

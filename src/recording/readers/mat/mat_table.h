@@ -13,7 +13,7 @@ namespace pendulum {
 /// Limit for one matrix; with more columns it is not a matrix of readings.
 inline constexpr std::size_t kMaxMatColumns = 100;
 
-/// A column of numbers in a MAT-file and its name there.
+/// A column of numbers in a MAT-file, and its name in the file.
 struct MatColumn {
   csv::TableColumn name;
   std::vector<double> values;
@@ -30,7 +30,7 @@ struct SkippedVariable {
 struct MatTable {
   std::vector<MatColumn> columns;
   std::vector<SkippedVariable> skipped;
-  std::string complaint;  // From matio; the data it complains about cannot be trusted.
+  std::string complaint;  // A message of matio; empty: none. After a complaint, the data cannot be trusted.
 };
 
 /// Converts the table to bytes, to send it between processes, and back.

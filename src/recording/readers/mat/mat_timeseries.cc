@@ -24,11 +24,11 @@ constexpr std::string_view kTimeseries = "timeseries", kTimeClass = "tsdata.time
                            kDataClass = "tsdata.datametadata";
 
 /// Why a timeseries cannot be read; follows "is" in a message.
-using Refusal = tl::unexpected<std::string>;
+using NotReadable = tl::unexpected<std::string>;
 template <typename T>
 using Readable = tl::expected<T, std::string>;
 
-Refusal Unknown() { return Refusal("a timeseries that is damaged, or from an unknown version of MATLAB"); }
+NotReadable Unknown() { return NotReadable("a timeseries that is damaged, or from an unknown version of MATLAB"); }
 
 /// Values of the properties of a file's objects.
 class Properties {
@@ -36,7 +36,7 @@ class Properties {
   explicit Properties(const MatSubsystem& subsystem)
       : subsystem_(subsystem), objects_(*subsystem.objects), defaults_(subsystem.cell(subsystem.cells - 1)) {}
 
-  /// The object's own value, otherwise its class's default; std::nullopt if neither is stored.
+  /// The object's own value of a property, otherwise the default of its class; std::nullopt if neither is stored.
   std::optional<MatValue> Of(std::size_t object, std::string_view name) const {
     if (const McosProperty* const own = objects_.Find(object, name); own != nullptr) return ValueOf(*own);
     const std::size_t class_id = objects_.ClassOf(object);
@@ -100,7 +100,7 @@ Readable<TimeUnit> TimeUnitOf(const Properties& properties, std::size_t info) {
   if (units->kind != Kind::kText) return Unknown();
   const auto* const found = std::ranges::find(kTimeUnits, units->text, &TimeUnit::name);
   if (found != kTimeUnits.end()) return *found;
-  return Refusal("a timeseries whose unit of time (" + units->text.substr(0, 32) + ") is not known");
+  return NotReadable("a timeseries whose unit of time (" + units->text.substr(0, 32) + ") is not known");
 }
 
 /// A property that is a single number; std::nullopt otherwise.
@@ -157,11 +157,11 @@ std::string LastPart(std::string name) {
   return name.substr(name.rfind('.') + 1);
 }
 
-/// How columns are laid out in the array. With three or more dimensions time is the last one. Otherwise it is the
-/// dimension of the same length, the first if both match.
+/// How columns are laid out in the array. In an array of three or more dimensions, time is the last dimension. In a
+/// matrix, time is the dimension as long as the list of times, or the first dimension if both match.
 struct Spread {
   std::size_t columns = 1, step = 1, next = 1;  // step: from row to row, next: from column to column.
-  bool is_first = true;
+  bool is_time_first = true;
 };
 
 std::optional<Spread> SpreadOf(const std::vector<std::size_t>& sizes, std::size_t rows) {
@@ -173,10 +173,10 @@ std::optional<Spread> SpreadOf(const std::vector<std::size_t>& sizes, std::size_
   return Spread{columns, columns, 1, false};
 }
 
-/// In MATLAB's notation: Data, Data(:,2), or Data(2,1,:) if time is the last dimension.
+/// The place of a column in MATLAB's notation: Data, Data(:,2), or Data(2,1,:) if time is the last dimension.
 std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes, std::size_t column) {
   if (spread.columns == 1) return "Data";
-  if (spread.is_first) return "Data(:," + std::to_string(column + 1) + ")";
+  if (spread.is_time_first) return "Data(:," + std::to_string(column + 1) + ")";
   std::string places;
   for (const std::size_t size : std::span(sizes).first(sizes.size() - 1)) {
     places += std::to_string(column % size + 1) + ",";
@@ -189,9 +189,9 @@ std::string PlaceIn(const Spread& spread, const std::vector<std::size_t>& sizes,
 Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::size_t object, const std::string& name,
                                            const std::string& meaning) {
   const std::optional<MatValue> storage = properties.Of(object, "Storage_");
-  if (storage && !storage->IsEmpty()) return Refusal("a timeseries whose numbers are in another file");
+  if (storage && !storage->IsEmpty()) return NotReadable("a timeseries whose numbers are in another file");
   const std::optional<MatValue> data = properties.Of(object, "Data_");
-  if (data && data->IsEmpty()) return Refusal("a timeseries without numbers");
+  if (data && data->IsEmpty()) return NotReadable("a timeseries without numbers");
   const auto info = properties.ObjectIn(object, "TimeInfo", kTimeClass);
   if (!data || data->kind != Kind::kNumbers || ObjectsOf(*data) || !info) return Unknown();
   const Readable<TimeUnit> unit = TimeUnitOf(properties, *info);
@@ -201,7 +201,7 @@ Readable<std::vector<MatColumn>> ColumnsOf(const Properties& properties, std::si
   const std::size_t rows = times->size();
   const std::optional<Spread> spread = SpreadOf(data->sizes, rows);
   if (!spread) return Unknown();
-  if (spread->columns > kMaxMatColumns) return Refusal("a timeseries of more than a hundred columns");
+  if (spread->columns > kMaxMatColumns) return NotReadable("a timeseries of more than a hundred columns");
   for (double& time : *times) time = time * unit->factor / unit->divisor;
   std::vector<MatColumn> columns;
   columns.push_back({{name + ".Time", std::string(unit->meaning), name}, *std::move(times), !unit->name.empty()});
@@ -223,8 +223,8 @@ class TimeseriesAdder {
     for (const MatColumn& column : table.columns) names_.insert({column.name.run, column.name.written});
   }
 
-  /// Returns true if there is at least one.
-  bool Run() {
+  /// Adds all of them. Returns true if there is at least one.
+  bool AddAll() {
     constexpr std::size_t kMaxTimeseries = 1000;
     const Mcos& objects = properties_.objects();
     std::size_t object = 1;
@@ -257,7 +257,7 @@ class TimeseriesAdder {
     std::ranges::move(*columns, std::back_inserter(table_.columns));
   }
 
-  /// A name different from all others, and from runs and columns of other variables.
+  /// A name different from the names of all other timeseries and of runs and columns of other variables.
   std::string Unique(const std::string& name) {
     if (!name.empty() && names_.insert(name).second) return name;
     for (std::size_t number = count_;; ++number) {
@@ -277,12 +277,13 @@ class TimeseriesAdder {
 
 void AddTimeseries(const MatSubsystem& subsystem, MatTable& table) {
   const bool is_readable = subsystem.objects && subsystem.cells > 0 && subsystem.cell;
-  const bool has_some = is_readable && TimeseriesAdder(subsystem, table).Run();
+  const bool has_some = is_readable && TimeseriesAdder(subsystem, table).AddAll();
   for (const auto& [place, class_name, object] : subsystem.references) {
     const bool is_timeseries = class_name == kTimeseries;
     const bool is_known =
         is_readable && subsystem.objects->ClassName(subsystem.objects->ClassOf(object)) == kTimeseries;
-    if (is_timeseries ? is_known : has_some) continue;  // other objects contain these
+    // A timeseries has been added above. Other objects may contain one, so they are reported only if there is none.
+    if (is_timeseries ? is_known : has_some) continue;
     table.skipped.push_back({place, is_timeseries ? Unknown().value() : "an object of class " + class_name, true});
   }
 }

@@ -25,12 +25,12 @@ struct MatValue {
   std::vector<std::size_t> sizes;  // In MATLAB's order.
   std::vector<double> numbers;     // In MATLAB's order.
   std::string text;
-  std::vector<std::string> names;  // Of fields.
+  std::vector<std::string> names;  // Names of fields.
   std::vector<MatValue> parts;
 
   /// Whether it is known to be empty.
   bool IsEmpty() const;
-  /// The field of a structure of one element, otherwise nullptr.
+  /// The field of this name in a structure of one element; otherwise nullptr.
   const MatValue* Field(std::string_view name) const;
 };
 
@@ -59,7 +59,7 @@ struct MatReference {
   std::size_t object = 0;  // 0: unknown.
 };
 
-/// Adds the objects in a variable with this name, at most a hundred thousand.
+/// Adds the references to objects in the variable `name`, at most about a hundred thousand in all.
 void AddReferences(const MatValue& value, const std::string& name, std::vector<MatReference>& references);
 
 }  // namespace pendulum

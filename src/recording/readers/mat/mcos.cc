@@ -38,13 +38,13 @@ std::optional<Mcos> Mcos::Read(std::string_view bytes, std::size_t cells) {
   const std::string_view names = bytes.substr(kMcosHeaderWords * kMcosWord, offsets[0] - kMcosHeaderWords * kMcosWord);
   const std::size_t end_of_cells = cells - after_properties;
   Mcos mcos;
-  const bool is_whole = mcos.TakeNames(names, (*header)[1]) && mcos.TakeClasses(*classes) &&
-                        mcos.TakeProperties(*saved, end_of_cells, mcos.saved_) &&
-                        mcos.TakeProperties(*normal, end_of_cells, mcos.normal_) && mcos.TakeObjects(*objects);
+  const bool is_whole = mcos.ReadNames(names, (*header)[1]) && mcos.ReadClasses(*classes) &&
+                        mcos.ReadProperties(*saved, end_of_cells, mcos.saved_) &&
+                        mcos.ReadProperties(*normal, end_of_cells, mcos.normal_) && mcos.ReadObjects(*objects);
   return is_whole ? std::optional(std::move(mcos)) : std::nullopt;
 }
 
-bool Mcos::TakeNames(std::string_view bytes, std::size_t count) {
+bool Mcos::ReadNames(std::string_view bytes, std::size_t count) {
   if (count > bytes.size()) return false;
   names_.emplace_back();
   for (std::size_t i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ bool Mcos::TakeNames(std::string_view bytes, std::size_t count) {
   return bytes.find_first_not_of('\0') == std::string_view::npos;
 }
 
-bool Mcos::TakeClasses(const Words& words) {
+bool Mcos::ReadClasses(const Words& words) {
   constexpr std::size_t kBlock = 4;
   if (words.size() % kBlock != 0) return false;
   for (std::size_t at = 0; at < words.size(); at += kBlock) {
@@ -69,7 +69,7 @@ bool Mcos::TakeClasses(const Words& words) {
   return !classes_.empty();
 }
 
-bool Mcos::TakeObjects(const Words& words) {
+bool Mcos::ReadObjects(const Words& words) {
   constexpr std::size_t kBlock = 6, kOne = 1;
   if (words.size() % kBlock != 0) return false;
   for (std::size_t at = 0; at < words.size(); at += kBlock) {
@@ -82,7 +82,7 @@ bool Mcos::TakeObjects(const Words& words) {
   return !objects_.empty();
 }
 
-bool Mcos::TakeProperties(const Words& words, std::size_t end_of_cells, std::vector<Properties>& blocks) const {
+bool Mcos::ReadProperties(const Words& words, std::size_t end_of_cells, std::vector<Properties>& blocks) const {
   constexpr std::size_t kEntry = 3;
   if (words.size() % 2 != 0) return false;
   for (std::size_t at = 0; at < words.size();) {

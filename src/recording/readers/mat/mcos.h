@@ -23,11 +23,11 @@ struct McosProperty {
 /// The table of objects, which is in cell 0. Names, classes and objects are numbered from 1; 0 means none.
 class Mcos {
  public:
-  /// `cells` is the number of cells including the table. std::nullopt if it is inconsistent.
+  /// `cells` is the number of cells including the table. std::nullopt if the table is inconsistent.
   static std::optional<Mcos> Read(std::string_view bytes, std::size_t cells);
 
-  std::size_t classes() const { return classes_.size(); }  // One more than their number.
-  std::size_t objects() const { return objects_.size(); }  // One more than their number.
+  std::size_t classes() const { return classes_.size(); }  // Number of them, plus one.
+  std::size_t objects() const { return objects_.size(); }  // Number of them, plus one.
   std::string ClassName(std::size_t class_id) const;       // Including packages: tsdata.timemetadata.
   /// 0 if `object` is not an object.
   std::size_t ClassOf(std::size_t object) const;
@@ -45,15 +45,15 @@ class Mcos {
     std::size_t class_id = 0, saved = 0, normal = 0;
   };
 
-  bool TakeNames(std::string_view bytes, std::size_t count);
-  bool TakeClasses(const Words& words);
-  bool TakeObjects(const Words& words);
-  bool TakeProperties(const Words& words, std::size_t end_of_cells, std::vector<Properties>& blocks) const;
+  bool ReadNames(std::string_view bytes, std::size_t count);
+  bool ReadClasses(const Words& words);
+  bool ReadObjects(const Words& words);
+  bool ReadProperties(const Words& words, std::size_t end_of_cells, std::vector<Properties>& blocks) const;
 
   std::vector<std::string> names_;
   std::vector<Class> classes_;
   std::vector<Object> objects_;
-  std::vector<Properties> saved_, normal_;  // Of objects whose classes have a function saveobj, and of the others.
+  std::vector<Properties> saved_, normal_;  // Of objects whose classes have a function saveobj; of others.
 };
 
 }  // namespace pendulum

@@ -52,11 +52,11 @@ struct Head {
   std::vector<TableColumn> columns;  // Empty without a header.
   std::size_t names_line = 0;        // Index of the line with the names.
   std::size_t first_row = 0;         // Index of the first line that is a row.
-  bool may_have_gaps = false;        // Cells may be empty: these programs pad columns of different lengths.
+  bool may_have_gaps = false;        // Cells may be empty: some programs pad columns of different lengths.
 };
 
-/// The number of lines needed to determine their meaning: a header and a row, or two rows of which the first may be cut
-/// off. A third is needed if a line of labels may precede the header.
+/// The number of first lines needed to determine their meaning: a header and a row, or two rows of which the first may
+/// be cut off. A third line is needed if a line of labels may precede the header.
 inline std::size_t HeadLines(const HeadLine& first) {
   if (IsVernier(first.text)) return kVernierUnits + 2;
   const std::vector<Name> names = SplitHeader(first.text, Separator(first.text));
@@ -83,9 +83,9 @@ inline Head ParseVernierHead(const std::vector<HeadLine>& head, Layout& layout) 
   return found;
 }
 
-/// The columns of an ordinary header, or of a program with its own way of writing it.
+/// The columns of an ordinary header, or of a header in the style of one of the known programs.
 inline Head HeadOfNames(const std::vector<Name>& names) {
-  // Phyphox quotes names and pads with NaN. Nobody quotes the time by hand.
+  // Phyphox quotes names and pads columns with NaN. People do not quote names, so a quoted time indicates phyphox.
   Head found;
   for (const Name& name : names) found.columns.push_back({std::string(name.text), std::string(name.text), "", name.at});
   found.first_row = 1;

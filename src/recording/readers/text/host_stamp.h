@@ -17,7 +17,7 @@ struct HostStamp {
   std::string_view rest;                // The text from the device.
 };
 
-/// The stamp of a line, or its end, if there is one.
+/// The stamp at the beginning of a line, or what remains of a cut-off stamp; std::nullopt if there is neither.
 inline std::optional<HostStamp> FindHostStamp(std::string_view line) {
   constexpr std::string_view kArrow = "->";
   const std::size_t arrow = line.find(kArrow);
@@ -35,7 +35,7 @@ inline std::optional<HostStamp> FindHostStamp(std::string_view line) {
     if (!ParseNumber(texts.at(i), parts.at(i))) return found;
   }
   if (parts[0] < 24 && parts[1] < 60 && parts[2] < 61) {
-    // Rounded to microseconds, so that 22.1 s after the minute is exactly the decimal number.
+    // Rounded to microseconds, so that the result is the double nearest to the time as written.
     constexpr double kFine = 1e6;
     found.second_of_day = std::round(((parts[0] * 60 + parts[1]) * 60 + parts[2]) * kFine) / kFine;
   }

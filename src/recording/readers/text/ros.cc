@@ -19,7 +19,7 @@ constexpr std::size_t kLongestSeconds = 15;      // Digits: longer numbers are n
 /// The parts of a name between slashes and dots, in lower case.
 struct Path {
   std::string before;  // All except the last part.
-  std::string last;    // Without an index: `position` of `position[0]`, `position_0` and `position0`.
+  std::string last;    // Without the index: `position` for `position[0]`, `position_0` and `position0`.
   std::string index;
 };
 
@@ -39,7 +39,8 @@ bool IsOneOf(std::string_view word, std::initializer_list<std::string_view> word
   return std::ranges::find(words, word) != words.end();
 }
 
-std::size_t FindLast(const std::vector<TableColumn>& columns, std::initializer_list<std::string_view> words) {
+/// The first column whose last part is one of the words; kNoColumn if there is none.
+std::size_t FindByLastPart(const std::vector<TableColumn>& columns, std::initializer_list<std::string_view> words) {
   const auto found = std::ranges::find_if(
       columns, [&](const TableColumn& column) { return IsOneOf(PathOf(column.written).last, words); });
   return found == columns.end() ? kNoColumn : found - columns.begin();
@@ -61,7 +62,7 @@ bool HasKnownUnit(std::string_view stamp) {
   return stamp.find('.') != std::string_view::npos || stamp.size() > kLongestSeconds;
 }
 
-/// Finds the columns of stamps. The stamp in the message's header is preferred to that of its arrival.
+/// Finds the columns of stamps. The stamp in a message's header is preferred to the time of its arrival.
 void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, char separator, RosTable& table) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Path path = PathOf(columns[i].written);
@@ -75,7 +76,7 @@ void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, c
     }
   }
   for (const std::string_view word : {"stamp", "%time", "__time"}) {
-    const std::size_t found = FindLast(columns, {word});
+    const std::size_t found = FindByLastPart(columns, {word});
     const std::string_view first = found == kNoColumn ? "" : FieldOf(row, separator, found);
     if (found == kNoColumn || (word == "stamp" && !first.empty() && !HasKnownUnit(first))) continue;
     table.seconds = found;
@@ -84,7 +85,7 @@ void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, c
   }
 }
 
-/// The meaning of names of messages without a unit.
+/// The name of a message field with its unit added; the name itself if the unit is not known.
 std::string MeaningOf(const std::string& written) {
   const Path path = PathOf(written);
   const std::string parent = PathOf(path.before).last;
@@ -96,15 +97,17 @@ std::string MeaningOf(const std::string& written) {
   return written;
 }
 
-/// The column of names in a table of joints.
+/// The column of joint names in a table with one joint per row; kNoColumn for other tables.
 std::size_t FindJoint(const std::vector<TableColumn>& columns, std::string_view row, char separator) {
-  const bool has_state = FindLast(columns, {"position", "velocity"}) != kNoColumn || !CandidatesOf(columns, "").empty();
-  const std::size_t joint = FindLast(columns, {"joint", "joint_name", "name", "topic"});
+  const bool has_state =
+      FindByLastPart(columns, {"position", "velocity"}) != kNoColumn || !CandidatesOf(columns, "").empty();
+  const std::size_t joint = FindByLastPart(columns, {"joint", "joint_name", "name", "topic"});
   if (!has_state || joint == kNoColumn) return kNoColumn;
   return IsName(FieldOf(row, separator, joint)) ? joint : kNoColumn;
 }
 
-/// Hides a rate beside the angle of the same joint: it is more often the derivative than the reading of another sensor.
+/// Hides a rate beside the angle of the same joint. Such a rate is usually the derivative of the angle, not the reading
+/// of another sensor.
 void HideRates(std::vector<TableColumn>& columns) {
   for (TableColumn& column : columns) {
     const Path rate = PathOf(column.written);
@@ -117,7 +120,8 @@ void HideRates(std::vector<TableColumn>& columns) {
   }
 }
 
-/// Converts a decimal number of seconds to nanoseconds; std::nullopt if it is not such a number.
+/// Converts a stamp to nanoseconds. The stamp is a decimal number of seconds or a long whole number of nanoseconds;
+/// std::nullopt for other text.
 std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nanoseconds) {
   constexpr std::size_t kDigits = 9;
   const std::size_t point = text.find('.');
@@ -138,10 +142,10 @@ std::optional<std::int64_t> Nanoseconds(std::string_view text, bool is_whole_nan
   return seconds * kSecond + (text.starts_with('-') ? -fraction : fraction);
 }
 
-/// The column that the user names as the time contains stamps, unless the user gives its unit or its unit is not
-/// certain.
-void TakeNamedTime(const std::vector<TableColumn>& columns, std::string_view row, char separator,
-                   const ReadOptions& options, RosTable& table) {
+/// Uses the column that the user names as the time. It contains stamps, unless the user gives its unit or its unit is
+/// not certain.
+void UseNamedTime(const std::vector<TableColumn>& columns, std::string_view row, char separator,
+                  const ReadOptions& options, RosTable& table) {
   const TimeFlag flag = TimeFlagOf(columns, options.time_column);
   const std::size_t named = flag.column.empty() ? columns.size() : IndexOf(columns, flag.column);
   if (named == columns.size() || (named == table.seconds && flag.unit == nullptr)) return;
@@ -173,11 +177,11 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
     if (FindUnit(column.meaning) == nullptr) column.meaning = MeaningOf(column.written);
   }
   if (table.seconds == kNoColumn && !has_time) {
-    const std::size_t plain = FindLast(columns, {"time", "timestamp", "t"});
+    const std::size_t plain = FindByLastPart(columns, {"time", "timestamp", "t"});
     const std::string_view first = plain == kNoColumn ? "" : FieldOf(row, separator, plain);
     if (HasKnownUnit(first)) table.seconds = plain;
   }
-  TakeNamedTime(columns, row, separator, options, table);
+  UseNamedTime(columns, row, separator, options, table);
   if (table.seconds != kNoColumn) columns[table.seconds].meaning = "time_s";
   const bool is_joint = table.joint != kNoColumn;  // The user may then name a joint but no column.
   const std::string asked = is_joint ? ChoiceOf(columns, options.value_column).column : options.value_column;
@@ -202,7 +206,7 @@ bool StampClock::Read(std::string_view seconds, std::string_view nanoseconds, do
   std::int64_t now = 0;
   if (__builtin_add_overflow(*stamp, beyond, &now)) return false;
   if (!first_) first_ = now;
-  // Stamps of one recording are near each other; otherwise they are not stamps.
+  // Stamps of one recording are near each other. If the difference overflows, the numbers are not stamps.
   std::int64_t since = 0;
   if (__builtin_sub_overflow(now, *first_, &since)) return false;
   time = static_cast<double>(since) / kSecond;

@@ -19,12 +19,12 @@ inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 struct RosTable {
   std::size_t seconds = kNoColumn;      // Column of stamps: seconds, or nanoseconds since 1970.
   std::size_t nanoseconds = kNoColumn;  // Column of the part of a stamp below one second.
-  bool is_nanoseconds = false;          // The first of these columns holds whole nanoseconds, as `%time` of rostopic.
+  bool is_nanoseconds = false;          // `seconds` contains whole nanoseconds, as `%time` of rostopic.
   std::size_t joint = kNoColumn;        // Column of joint names, if each row belongs to one joint.
 };
 
-/// Detects such a table and gives its columns a meaning. With an angle and a rate of a joint, the angle is the quantity
-/// unless the user requests another. `row` is the first row.
+/// Detects a table from ROS and gives its columns a meaning. If there are an angle and a rate of one joint, the angle
+/// is the quantity unless the user requests another. `row` is the first row.
 std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_view row, char separator,
                                 const ReadOptions& options);
 

@@ -8,7 +8,7 @@
 
 namespace pendulum::csv {
 
-ReadOptions RosRows::TakeJoint(const ReadOptions& options) {
+ReadOptions RosRows::SplitOffJoint(const ReadOptions& options) {
   ReadOptions rest = options;
   if (!has_joints()) return rest;
   JointChoice choice = ChoiceOf(columns_, options.value_column);

@@ -15,16 +15,16 @@ namespace pendulum::csv {
 /// Reads the rows of a ROS table.
 class RosRows {
  public:
-  /// `columns` and `layout` must outlive this object; columns may be chosen later.
+  /// `columns` and `layout` must outlive this object; `layout` may be completed later.
   RosRows(const RosTable& table, const std::vector<TableColumn>& columns, const Layout& layout)
       : table_(table), columns_(columns), layout_(layout), stamps_(table.is_nanoseconds) {}
 
   bool has_joints() const { return table_.joint != kNoColumn; }
 
-  /// The user's options without the joint.
-  ReadOptions TakeJoint(const ReadOptions& options);
+  /// Stores the joint that the user requests. Returns the options without it.
+  ReadOptions SplitOffJoint(const ReadOptions& options);
 
-  /// kDataLoss: both coordinates of a point in a table with one joint per row.
+  /// kDataLoss: a table with one joint per row has both coordinates of a point.
   Result<void> CheckSecond(const Line& line) const;
 
   struct Sample {
@@ -34,7 +34,7 @@ class RosRows {
   /// The sample of a row; std::nullopt if it has a gap or was stored with its joint.
   Result<std::optional<Sample>> Read(const Line& line, Cells& cells);
 
-  /// The rows of the chosen joint. `line` is that of the names.
+  /// The rows of the chosen joint. `line` is the header.
   Result<JointRows*> ChooseJoint(const Line& line);
   std::string NameOf(const JointRows& rows) const;
 

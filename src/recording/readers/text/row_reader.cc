@@ -45,11 +45,11 @@ class Reader {
   Check ParseHead();
   Check BeginRows();
   Check ChooseColumns();
-  Check TakeRow();
+  Check ReadOrSetAsideRow();
   Check ReadRow();
   Check ReadRosRow();
-  Check TakeJoint();
-  Check TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
+  Check SelectJoint();
+  Check ReadHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
   Check MakeRoom();
   const csv::Column& LastColumn() const;
   Check Append(double time, double value, double second = 0);
@@ -76,7 +76,7 @@ class Reader {
   Line line_;  // The current row; before the first row, the header.
   csv::Cells cells_;
   std::optional<csv::RosRows> ros_;
-  std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // After the last row without a gap, and before it.
+  std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
   std::optional<Status> is_truncated_;             // The error of a possibly cut-off row; used if another row follows.
   Line truncated_line_;
   std::string truncated_text_;
@@ -119,7 +119,7 @@ Check Reader::ReadLine() {
   if (csv::IsEmptyRow(line_.text)) return {};
   const std::string_view text = Trim(line_.text);
   if (text.front() == '#') return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
-  if (has_layout_) return TakeRow();
+  if (has_layout_) return ReadOrSetAsideRow();
   if (const auto separator = csv::SeparatorLine(line_.text); separator && lines_of_head_.empty()) {
     separator_ = *separator;
     return {};
@@ -149,13 +149,13 @@ Check Reader::BeginRows() {
   if (Check chosen = ChooseColumns(); !chosen) return chosen;
   for (std::size_t i = head_.first_row; i < lines_of_head_.size(); ++i) {
     line_ = {lines_.name(), lines_of_head_[i].text, lines_of_head_[i].number};
-    if (Check taken = TakeRow(); !taken) return taken;
+    if (Check taken = ReadOrSetAsideRow(); !taken) return taken;
   }
   return {};
 }
 
 Check Reader::ChooseColumns() {
-  const ReadOptions options = ros_ ? ros_->TakeJoint(options_) : options_;
+  const ReadOptions options = ros_ ? ros_->SplitOffJoint(options_) : options_;
   const auto names = csv::NamesOf(line_, head_.columns, options);
   if (!names) return tl::unexpected(names.error());
   csv::ColumnChooser chooser(line_, *names, options, metadata_.sample_rate_hz > 0, has_host_);
@@ -175,8 +175,9 @@ Check Reader::ChooseColumns() {
 
 // ---- Rows --------------------------------------------------------------------------------------------------------
 
-/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off.
-Check Reader::TakeRow() {
+/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off. The error of such
+/// a row is set aside.
+Check Reader::ReadOrSetAsideRow() {
   if (is_truncated_) return tl::unexpected(*is_truncated_);
   is_short_ = false;
   Check read = ros_ ? ReadRosRow() : ReadRow();
@@ -207,7 +208,7 @@ Check Reader::ReadRow() {
   if (has_host_) {
     const auto stamp = csv::FindHostStamp(row);
     if (stamp) row = stamp->rest;
-    if (Check taken = TakeHostTime(stamp, time); !taken) return taken;
+    if (Check taken = ReadHostTime(stamp, time); !taken) return taken;
   }
   for (FieldCutter fields(row, layout_.separator); !fields.done(); ++index) {
     const bool is_time = index == time_index_;
@@ -244,8 +245,8 @@ const csv::Column& Reader::LastColumn() const {
   return *last;
 }
 
-/// If the host's stamp is the time: its value in seconds since the midnight before the first row.
-Check Reader::TakeHostTime(const std::optional<csv::HostStamp>& stamp, double& time) {
+/// If the host's stamp is the time, sets `time` to the seconds since the midnight before the first row.
+Check Reader::ReadHostTime(const std::optional<csv::HostStamp>& stamp, double& time) {
   constexpr double kDay = 86400;
   if (!is_host_time()) return {};
   if (!stamp || !stamp->second_of_day) {
@@ -299,8 +300,8 @@ Check Reader::ReadRosRow() {
   return {};
 }
 
-/// Takes the rows of one joint if each row belongs to one joint.
-Check Reader::TakeJoint() {
+/// If each row belongs to one joint, selects the rows of one joint.
+Check Reader::SelectJoint() {
   if (!ros_ || !ros_->has_joints()) return {};
   const csv::HeadLine& header = lines_of_head_[head_.names_line];
   auto chosen = ros_->ChooseJoint({lines_.name(), header.text, header.number});
@@ -355,14 +356,14 @@ void Reader::RemoveTruncatedValue() {
   --rows_;
 }
 
-/// Empty cells before the first row and after the last are not counted: other columns are longer.
+/// Does not count empty cells before the first complete row and after the last: there, only other columns have values.
 void Reader::WarnOfEmptyCells() {
   if (inner_gap_rows_ == 0) return;
   samples_.warnings.push_back(csv::EmptyCells(lines_.name(), inner_gap_rows_, layout_.value.name));
 }
 
 Result<Recording> Reader::Finish() {
-  if (Check taken = TakeJoint(); !taken) return tl::unexpected(std::move(taken).error());
+  if (Check selected = SelectJoint(); !selected) return tl::unexpected(std::move(selected).error());
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
   RemoveTruncatedValue();
   RemoveTruncatedStamp();

@@ -10,10 +10,10 @@
 
 namespace pendulum {
 
-/// Implements ReadRecording for text. One pass, one block in memory.
+/// Implements ReadRecording for text. Reads the text once and keeps one block of it in memory.
 Result<Recording> ReadRows(LineReader lines, const ReadOptions& options);
 
-/// The columns named in the first lines of a text; empty without a header. kDataLoss: as ReadRows, for these lines.
+/// The columns named in the first lines of a text; empty without a header. Errors as ReadRows.
 Result<std::vector<csv::TableColumn>> ReadColumnNames(LineReader lines);
 
 }  // namespace pendulum

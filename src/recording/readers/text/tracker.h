@@ -9,8 +9,8 @@
 
 #include "recording/readers/columns/runs.h"
 
-/// A line of labels above the names. Tracker writes the name of the track there; with several tracks ("#multi:") each
-/// name is above the track's first column. Capstone and SPARKvue write runs.
+/// A line of labels above the line of column names. In files of Tracker the labels are names of tracks; with several
+/// tracks ("#multi:") each label is above the track's first column. In Capstone and SPARKvue, labels name runs.
 namespace pendulum::csv {
 
 /// Tracker's `t` is in seconds. Its lengths are in metres unless the film was scaled otherwise. `r` is the length of
@@ -45,7 +45,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
   std::vector<Name> labels = SplitHeader(first, separator == ' ' ? '\t' : separator);
   if (labels.size() > names.size()) labels.resize(names.size());
   const auto is_label = [](const Name& label) { return !label.text.empty(); };
-  const bool is_one = std::ranges::count_if(labels, is_label) == 1;
+  const bool has_one_label = std::ranges::count_if(labels, is_label) == 1;
   const bool is_tracker = std::ranges::none_of(names, [](const Name& name) { return IsTime(name.text); }) ||
                           std::ranges::any_of(names, [](const Name& name) { return name.text == "t"; });
   std::vector<TableColumn> columns;
@@ -53,7 +53,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i < labels.size() && is_label(labels[i])) run = labels[i].text;
     const std::string name(names[i].text);
-    const bool is_shared = is_one || run.empty() || name.empty();
+    const bool is_shared = has_one_label || run.empty() || name.empty();
     std::string written = is_shared ? "" : run;
     written += is_shared ? "" : ": ";
     written += name;

@@ -8,15 +8,15 @@
 
 #include "recording/readers/columns/runs.h"
 
-/// The text that Logger Pro exports: "Vernier Format 2", source and date, name of the data set, one line each of long
-/// names, short names and units separated by tabs, a blank line, rows.
+/// The text that Logger Pro exports. Its lines are "Vernier Format 2", source and date, name of the data set, long
+/// names, short names, units, a blank line, and the rows. Columns are separated by tabs.
 namespace pendulum::csv {
 
-inline constexpr std::size_t kVernierNames = 3, kVernierUnits = 5;  // Line numbers after the first.
+inline constexpr std::size_t kVernierNames = 3, kVernierUnits = 5;  // Distances from the first line.
 
 inline bool IsVernier(std::string_view line) { return Trim(line).starts_with("Vernier Format"); }
 
-/// `names` and `units` are these two lines.
+/// `names` is the line of long names, `units` the line of units.
 inline std::vector<TableColumn> VernierColumns(std::string_view names, std::string_view units) {
   std::vector<TableColumn> columns;
   FieldCutter unit(units, '\t');

@@ -29,7 +29,7 @@ const together = (first: string, second: string): string =>
   (first.includes(second) ? [first] : [first, second]).map(sentence).join(' ').trim();
 
 const kMoreThanNoise =
-  'The fit converged, but its residuals are more than noise; the error bars hold only if the model does.';
+  'The fit converged, but the residuals contain more than noise. The error bars are valid only if the model is right.';
 
 function converged(result: JointResult, { model, homogeneity }: JointFit): Headline {
   const { agrees, verdict } = homogeneity;

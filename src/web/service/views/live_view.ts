@@ -69,7 +69,7 @@ class LiveView {
       this.samples.add(time_s, values);
     } else if (event === 'state') {
       this.now = JSON.parse(data) as LiveState;
-      if (this.now.state === 'waiting') this.samples.clear(); // a new run begins, or the service sends this one again
+      if (this.now.state === 'waiting') this.samples.clear(); // a new run begins, or the service sends this run again
       this.tell();
     } else {
       return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exports of Logger Pro, Graphical Analysis, Capstone and SPARKvue: several runs side by side, and Vernier's text
-// format.
+// Tests of exports of Logger Pro, Graphical Analysis, Capstone and SPARKvue: several runs side by side, and Vernier's
+// text format.
 #include "recording/readers/columns/runs.h"
 
 #include <string>
@@ -30,7 +30,7 @@ TEST(SplitRun, SeparatesTheRunFromTheName) {
   EXPECT_THAT(Split("angle_deg"), ElementsAre("", "angle_deg"));
 }
 
-TEST(Runs, OneRunIsReadAsItsColumns) {
+TEST(Runs, OneRunIsReadLikeAnOrdinaryTable) {
   ExpectTheRows(RecordingOf("Latest: Time (s),Latest: Angle (rad)\n" + Rows("0.0{t},{v}")));
   ExpectTheRows(RecordingOf("Data Set 1:Time(s),Data Set 1:Angle(\u00B0)\n" + Rows("0.0{t},{v}")), kDegree);
   ExpectTheRows(RecordingOf("\"Time (s) Run #1\"\t\"Angle (rad) Run #1\"\n" + Rows("0.0{t}\t{v}")));
@@ -42,7 +42,7 @@ TEST(Runs, OneRunIsReadAsItsColumns) {
 
 const std::string kTwoRuns = "Time (s) Run #1,Angle (rad) Run #1,Time (s) Run #2,Angle (rad) Run #2\n";
 
-TEST(Runs, SeveralAreRefusedAndNamed) {
+TEST(Runs, SeveralRunsAreRefusedAndNamed) {
   EXPECT_EQ(
       FaultOf(kTwoRuns + Rows("0.0{t},1,0.0{t},{v}")),
       "run.csv:1:52: columns \"Angle (rad) Run #1\" and \"Angle (rad) Run #2\" could both be the quantity; choose "
@@ -60,7 +60,7 @@ TEST(Runs, TheChosenRunHasItsOwnTime) {
   EXPECT_EQ(RecordingOf(text, TimeAndValue("", "Angle (rad) Run #1")).time[0], 90);
 }
 
-TEST(Runs, TheShorterOneEndsInEmptyCells) {
+TEST(Runs, TheShorterRunEndsInEmptyCells) {
   const std::string text = kTwoRuns + Rows("0.0{t},{v},{t}.5,1") + "1,200,,\n1.1,201,,\n";
   const Recording longer = RecordingOf(text, TimeAndValue("", "2"));
   EXPECT_EQ(longer.size(), 10);

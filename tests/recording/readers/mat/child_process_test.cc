@@ -21,8 +21,8 @@ namespace {
 
 using std::chrono::milliseconds, std::chrono::steady_clock;
 
-/// The failure of work that must fail.
-ChildFailure WhyNone(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
+/// The failure of work; expects that it fails.
+ChildFailure FailureOf(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
   const auto answer = RunInChildProcess(work, limits);
   EXPECT_FALSE(answer.has_value());
   return answer ? ChildFailure::kNotStarted : answer.error();
@@ -57,10 +57,10 @@ TEST(RunInChildProcess, ReturnsTheResultOfTheWork) {
 }
 
 TEST(RunInChildProcess, DistinguishesACrashFromTimeAndMemory) {
-  EXPECT_EQ(WhyNone([]() -> std::string { std::abort(); }), ChildFailure::kCrashed);
-  EXPECT_EQ(WhyNone([]() -> std::string { ::_exit(0); }), ChildFailure::kCrashed);
-  EXPECT_EQ(WhyNone([]() -> std::string { throw std::runtime_error("no"); }), ChildFailure::kCrashed);
-  EXPECT_EQ(WhyNone([]() -> std::string { throw std::bad_alloc(); }), ChildFailure::kOutOfMemory);
+  EXPECT_EQ(FailureOf([]() -> std::string { std::abort(); }), ChildFailure::kCrashed);
+  EXPECT_EQ(FailureOf([]() -> std::string { ::_exit(0); }), ChildFailure::kCrashed);
+  EXPECT_EQ(FailureOf([]() -> std::string { throw std::runtime_error("no"); }), ChildFailure::kCrashed);
+  EXPECT_EQ(FailureOf([]() -> std::string { throw std::bad_alloc(); }), ChildFailure::kOutOfMemory);
   EXPECT_TRUE(HasNoChild());
 }
 
@@ -71,7 +71,7 @@ TEST(RunInChildProcess, EndsWorkThatUsesTooMuchOfAProcessor) {
     while (steady_clock::now() > steady_clock::time_point()) continue;
     return "";
   };
-  EXPECT_EQ(WhyNone(spin, limits), ChildFailure::kOutOfTime);
+  EXPECT_EQ(FailureOf(spin, limits), ChildFailure::kOutOfTime);
   EXPECT_TRUE(HasNoChild());
 }
 
@@ -83,12 +83,12 @@ TEST(RunInChildProcess, EndsWorkThatWaitsTooLong) {
     ::sleep(60);
     return "late";
   };
-  EXPECT_EQ(WhyNone(sleep, limits), ChildFailure::kOutOfTime);
+  EXPECT_EQ(FailureOf(sleep, limits), ChildFailure::kOutOfTime);
   EXPECT_LT(steady_clock::now() - begin, milliseconds(20'000));
   EXPECT_TRUE(HasNoChild());
 }
 
-TEST(RunInChildProcess, DoesNotWaitForWorkThatHidesItsEnd) {
+TEST(RunInChildProcess, EndsWorkThatClosesItsPipeAndSleeps) {
   ChildLimits limits;
   limits.time = milliseconds(100);
   const auto hide = []() -> std::string {
@@ -96,7 +96,7 @@ TEST(RunInChildProcess, DoesNotWaitForWorkThatHidesItsEnd) {
     ::sleep(60);
     return "";
   };
-  EXPECT_EQ(WhyNone(hide, limits), ChildFailure::kOutOfTime);
+  EXPECT_EQ(FailureOf(hide, limits), ChildFailure::kOutOfTime);
   EXPECT_TRUE(HasNoChild());
 }
 
@@ -105,17 +105,17 @@ TEST(RunInChildProcess, RefusesAnAnswerThatIsTooLarge) {
   limits.answer_bytes = 100'000;
   const auto answer_of = [](std::size_t size) { return [size] { return std::string(size, 'x'); }; };
   EXPECT_TRUE(RunInChildProcess(answer_of(100'000), limits).has_value());
-  EXPECT_EQ(WhyNone(answer_of(100'001), limits), ChildFailure::kAnswerTooLarge);
-  EXPECT_EQ(WhyNone(answer_of(50'000'000), limits), ChildFailure::kAnswerTooLarge);
+  EXPECT_EQ(FailureOf(answer_of(100'001), limits), ChildFailure::kAnswerTooLarge);
+  EXPECT_EQ(FailureOf(answer_of(50'000'000), limits), ChildFailure::kAnswerTooLarge);
   EXPECT_TRUE(HasNoChild());
 }
 
 TEST(RunInChildProcess, EndsWorkThatTakesTooMuchMemory) {
-  if (!kMemoryIsLimited) GTEST_SKIP() << "an address sanitizer takes all that there is for itself";
+  if (!kMemoryIsLimited) GTEST_SKIP() << "memory cannot be limited under an address sanitizer";
   ChildLimits limits;
   limits.memory_bytes = 10'000'000;
   const auto take = [] { return std::string(std::string(500'000'000, 'x').size() > 0 ? "taken" : ""); };
-  EXPECT_EQ(WhyNone(take, limits), ChildFailure::kOutOfMemory);
+  EXPECT_EQ(FailureOf(take, limits), ChildFailure::kOutOfMemory);
 }
 
 TEST(RunInChildProcess, HasNoDescriptorOfTheParent) {
@@ -131,18 +131,18 @@ TEST(RunInChildProcess, LeavesNoDescriptorBehind) {
   const std::size_t before = CountOfDescriptors();
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(RunInChildProcess([] { return std::string("x"); }, {}).has_value());
-    EXPECT_EQ(WhyNone([]() -> std::string { ::_exit(1); }), ChildFailure::kCrashed);
+    EXPECT_EQ(FailureOf([]() -> std::string { ::_exit(1); }), ChildFailure::kCrashed);
   }
   EXPECT_EQ(CountOfDescriptors(), before);
 }
 
-/// Otherwise the pipe of a short task would stay open while the process of a long task has its other end too.
+/// If the process of a long task inherited the pipe of a short task, the pipe would stay open until the long task ends.
 TEST(RunInChildProcess, ThreadsDoNotWaitForEachOther) {
   const auto begin = steady_clock::now();
   std::thread other([] {
     ChildLimits limits;
     limits.time = milliseconds(1500);
-    EXPECT_EQ(WhyNone(
+    EXPECT_EQ(FailureOf(
                   []() -> std::string {
                     ::sleep(60);
                     return "";

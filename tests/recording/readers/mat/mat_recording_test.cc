@@ -42,7 +42,7 @@ std::vector<double> Both() {
   return both;
 }
 
-constexpr std::size_t kClassAt = 144;  // Of the first variable, after header and two tags.
+constexpr std::size_t kClassAt = 144;  // Position of the class of the first variable, after header and two tags.
 
 ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
 
@@ -92,7 +92,8 @@ TEST_P(OfEveryVersion, NamesTheKindOfAVariableThatIsNotAColumn) {
       "times as t and the angles as angle_deg");
   const std::string more = MatOf({Text("note", "hello"), Matrix("t", 8, Times())}, GetParam());
   EXPECT_EQ(FaultOf(more, Value("note", "deg")),
-            "run.csv: variable \"note\" is text; a column is a vector of real numbers, or a matrix's or a structure's");
+            "run.csv: variable \"note\" is text; a column must be a vector of real numbers, or part of a matrix or a "
+            "structure");
   EXPECT_THAT(FaultOf(more), StartsWith("run.csv: no variable of this MAT-file but the time is a vector"));
   EXPECT_THAT(FaultOf(MatOf({}, GetParam())), StartsWith("run.csv: "));
   EXPECT_THAT(FaultOf(MatOf({Matrix("x", 0, {})}, GetParam())), HasSubstr("no variable of this MAT-file"));
@@ -208,7 +209,7 @@ matvar_t* Sparse(const char* name) {
 TEST_P(OfEveryVersion, CellsComplexAndSparseNumbersAreNoColumns) {
   const auto sentence = [](const std::string& name, const std::string& kind) {
     return "run.csv: variable \"" + name + "\" is " + kind +
-           "; a column is a vector of real numbers, or a matrix's or a structure's";
+           "; a column must be a vector of real numbers, or part of a matrix or a structure";
   };
   for (const ReadOptions& options : {ReadOptions(), Unit("rad"), Value("z_rad")}) {
     EXPECT_EQ(FaultOf(MatOf({Matrix("t", 8, Times()), Complex("z_rad")}, GetParam()), options),
@@ -254,7 +255,7 @@ std::string Timeseries(const std::string& name) {
 
 TEST(ReadMat, ExplainsHowToSaveATimeseries) {
   const std::string advice =
-      "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+      "; save its numbers in MATLAB, for a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
       "save('run.mat', 't', 'angle_deg')";
   for (const std::string name : {"ts", "pendulum"}) {
     const std::string fault = "run.csv: variable \"" + name +
@@ -325,7 +326,7 @@ TEST(ReadMat, AcceptsChangedBytesWithoutACrash) {
   }
 }
 
-TEST(ReadMat, ExplainsAMissingCopyForMatio) {
+TEST(ReadMat, ExplainsThatTheFileCannotBeCopied) {
   const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
   const char* const before = std::getenv("TMPDIR");
   const std::string folder = before == nullptr ? "" : before;
@@ -338,8 +339,8 @@ TEST(ReadMat, ExplainsAMissingCopyForMatio) {
 
 // ---- Files that refer to other files ----------------------------------------------------------------------------
 
-/// A file of version 7.3, made by HDF5, whose counts are the bytes of another file, by external storage or by a link to
-/// a variable there. Its path is preceded by many slashes, which leave room for another path.
+/// A file of version 7.3, made by HDF5, whose counts are in another file, by external storage or by a link to a
+/// variable of that file. In the corpus file, many slashes before the other file's path leave room for another path.
 std::string WithOtherFile(const std::string& corpus_file, const std::string& other) {
   const std::string exe = "/proc/self/exe";  // Its first bytes are 0x7F 'E' 'L' 'F' (elf(5)).
   std::ifstream stream("tests/fuzz/corpus/mat/" + corpus_file, std::ios::binary);

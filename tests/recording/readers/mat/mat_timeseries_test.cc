@@ -35,23 +35,25 @@ Series Angle() {
 
 ReadOptions Value(const std::string& column, const std::string& unit = "") { return TimeAndValue("", column, unit); }
 
-enum class Way { kLittle, kBig, kPacked, kPackedBig, kHdf5, kPackedHdf5 };
+/// Version, byte order and compression of a file.
+enum class FileForm { kLittle, kBig, kPacked, kPackedBig, kHdf5, kPackedHdf5 };
 
-class OfEveryWay : public testing::TestWithParam<Way> {
+class InEveryFileForm : public testing::TestWithParam<FileForm> {
  protected:
   static std::string BytesOf(const File& file) {
-    const Way way = GetParam();
-    if (way == Way::kHdf5 || way == Way::kPackedHdf5) return objects::Version73(file, way == Way::kPackedHdf5);
-    return objects::Version5(
-        file, {way == Way::kBig || way == Way::kPackedBig, way == Way::kPacked || way == Way::kPackedBig});
+    const FileForm form = GetParam();
+    if (form == FileForm::kHdf5 || form == FileForm::kPackedHdf5)
+      return objects::Version73(file, form == FileForm::kPackedHdf5);
+    return objects::Version5(file, {form == FileForm::kBig || form == FileForm::kPackedBig,
+                                    form == FileForm::kPacked || form == FileForm::kPackedBig});
   }
 };
 
-TEST_P(OfEveryWay, ReadsATimeseriesForAnyTableVersion) {
+TEST_P(InEveryFileForm, ReadsATimeseriesForAnyTableVersion) {
   for (const int version : {2, 3, 4}) ExpectTheRows(RecordingOf(BytesOf(FileOf(Angle(), "ts", version))));
 }
 
-TEST_P(OfEveryWay, TakesTheUnitFromTheDataOrAName) {
+TEST_P(InEveryFileForm, TakesTheUnitFromTheDataOrAName) {
   Series series;
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "angle_deg"))), kDegree);
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series, "ts")), Unit("deg")), kDegree);
@@ -69,7 +71,7 @@ TEST_P(OfEveryWay, TakesTheUnitFromTheDataOrAName) {
   EXPECT_THAT(FaultOf(BytesOf(FileOf(series, "angle_rad"))), HasSubstr("is an angle, a rate or another"));
 }
 
-TEST_P(OfEveryWay, ReadsListedAndUniformTimes) {
+TEST_P(InEveryFileForm, ReadsListedAndUniformTimes) {
   const auto expect = [](double second, const std::string& unit) {
     Series series = Angle();
     series.time_unit = unit;
@@ -95,7 +97,7 @@ TEST_P(OfEveryWay, ReadsListedAndUniformTimes) {
   expect(1.0 / 604'800, "weeks");
 }
 
-TEST_P(OfEveryWay, AnEmptyTimeUnitIsUnknown) {
+TEST_P(InEveryFileForm, AnEmptyTimeUnitIsUnknown) {
   Series series = Angle();
   series.is_unit_emptied = true;
   const Recording recording = RecordingOf(BytesOf(FileOf(series)));
@@ -106,7 +108,7 @@ TEST_P(OfEveryWay, AnEmptyTimeUnitIsUnknown) {
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series)), TimeAndValue("ts.Time:ms", "ts.Data")));
 }
 
-TEST_P(OfEveryWay, ReadsWholeNumbersOfATimeWithAUnit) {
+TEST_P(InEveryFileForm, ReadsWholeNumbersOfATimeWithAUnit) {
   Series series = Angle();
   series.start = 5;
   series.increment = 2;
@@ -114,7 +116,7 @@ TEST_P(OfEveryWay, ReadsWholeNumbersOfATimeWithAUnit) {
   EXPECT_DOUBLE_EQ(recording.time[7] - recording.time[0], 14);
 }
 
-TEST_P(OfEveryWay, TimeIsTheThirdOrMatchingDimension) {
+TEST_P(InEveryFileForm, TimeIsTheThirdOrMatchingDimension) {
   Series series = Angle();
   series.sizes = {1, 1, 8};
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series))));
@@ -136,7 +138,7 @@ TEST_P(OfEveryWay, TimeIsTheThirdOrMatchingDimension) {
   ExpectTheRows(RecordingOf(BytesOf(FileOf(series)), Value("ts.Data(2,:)")));
 }
 
-TEST_P(OfEveryWay, ReadsTheChosenOfTwo) {
+TEST_P(InEveryFileForm, ReadsTheChosenOneOfTwoTimeseries) {
   File file;
   const Classes classes(file);
   const std::size_t first = AddSeries(file, classes, Angle());
@@ -151,7 +153,7 @@ TEST_P(OfEveryWay, ReadsTheChosenOfTwo) {
   EXPECT_DOUBLE_EQ(RecordingOf(bytes, Value("slow.Data")).time[7], 7);
 }
 
-TEST_P(OfEveryWay, ReadsATimeseriesInAStructureArrayOrObject) {
+TEST_P(InEveryFileForm, ReadsATimeseriesInAStructureArrayOrObject) {
   File file;
   const Classes classes(file);
   const std::size_t one = AddSeries(file, classes, Angle()), two = AddSeries(file, classes, Angle());
@@ -171,9 +173,9 @@ TEST_P(OfEveryWay, ReadsATimeseriesInAStructureArrayOrObject) {
   EXPECT_EQ(four, 12);
 }
 
-TEST_P(OfEveryWay, ExplainsAnUnreadableTimeseries) {
+TEST_P(InEveryFileForm, ExplainsAnUnreadableTimeseries) {
   const std::string advice =
-      "; save its numbers in MATLAB, of a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
+      "; save its numbers in MATLAB, for a timeseries ts: t = ts.Time; angle_deg = ts.Data; "
       "save('run.mat', 't', 'angle_deg')";
   const auto fault = [](const Series& series) { return FaultOf(BytesOf(FileOf(series))); };
   Series series = Angle();
@@ -207,7 +209,7 @@ TEST_P(OfEveryWay, ExplainsAnUnreadableTimeseries) {
   EXPECT_EQ(fault(series), unknown);
 }
 
-TEST_P(OfEveryWay, NamesOtherObjectsByClass) {
+TEST_P(InEveryFileForm, NamesOtherObjectsByClass) {
   File file;
   const std::size_t table = file.AddClass("", "timetable");
   file.AddVariable("angles", file.Reference({file.AddObject(table, {{"any", objects::Nothing()}})}, true));
@@ -218,14 +220,14 @@ TEST_P(OfEveryWay, NamesOtherObjectsByClass) {
   EXPECT_THAT(FaultOf(BytesOf(file), Value("angles", "deg")), HasSubstr(sentence));
 }
 
-TEST_P(OfEveryWay, ReadsVectorsBesideATimeseries) {
+TEST_P(InEveryFileForm, ReadsVectorsBesideATimeseries) {
   File file = FileOf({}, "other");
   file.AddVariable("t_s", objects::Numbers({8, 1}, {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07}));
   file.AddVariable("angle_deg", objects::Numbers({8, 1}, {100, 101, 102, 103, 104, 105, 106, 107}));
   ExpectTheRows(RecordingOf(BytesOf(file), TimeAndValue("t_s", "angle_deg")), kDegree);
 }
 
-TEST_P(OfEveryWay, DoesNotReuseAName) {
+TEST_P(InEveryFileForm, GivesDifferentNamesToATimeseriesAndAVariable) {
   Series series = Angle();
   series.name = "run";
   File file;
@@ -257,9 +259,9 @@ TEST(AddTimeseries, KeepsNumbersBesideOtherObjects) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AddTimeseries, OfEveryWay,
-                         testing::Values(Way::kLittle, Way::kBig, Way::kPacked, Way::kPackedBig, Way::kHdf5,
-                                         Way::kPackedHdf5));
+INSTANTIATE_TEST_SUITE_P(AddTimeseries, InEveryFileForm,
+                         testing::Values(FileForm::kLittle, FileForm::kBig, FileForm::kPacked, FileForm::kPackedBig,
+                                         FileForm::kHdf5, FileForm::kPackedHdf5));
 
 // ---- Damage ------------------------------------------------------------------------------------------------------
 

@@ -26,8 +26,8 @@ std::string Bytes(std::uint64_t number, std::size_t size, bool is_big) {
 }
 
 /// A column built as "MAT-File Format" (The MathWorks) describes it: type, rows, columns, imaginary part, length of the
-/// name with its zero, the name, the numbers. Type P0 means doubles for P = 0 and 16-bit integers for P = 3; adding
-/// 1000 means the other byte order.
+/// name with its zero, the name, the numbers. Type 10 P means doubles for P = 0 and 16-bit integers for P = 3; adding
+/// 1000 means big-endian.
 std::string Column(const std::string& name, const std::vector<double>& values, bool is_big, bool is_short = false) {
   std::string bytes;
   for (const std::uint64_t word : {std::uint64_t{is_big ? 1000U : 0U} + (is_short ? 30 : 0), values.size(),

@@ -79,7 +79,8 @@ std::string TableOf(const objects::File& file, bool is_big) {
   return bytes;
 }
 
-constexpr std::size_t kCells = 7;  // In Several: table, empty, two values, two of version 4, defaults.
+// Cells of Several: table, empty cell, two values, two additional cells of version 4, defaults.
+constexpr std::size_t kCells = 7;
 
 TEST(Mcos, IsReadInBothByteOrders) {
   for (const bool is_big : {false, true}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text pasted from a serial monitor, and rows that are cut off.
+// Tests of text pasted from a serial monitor, and of rows that are cut off.
 #include <string>
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST(PastedRows, RemoveATruncatedFirstRowWithoutAHeader) {
 }
 
 TEST(PastedRows, RemoveAFirstRowWithATruncatedTime) {
-  std::string text = "90,99\n";  // Of 11990.
+  std::string text = "90,99\n";  // What remains of 11990.
   for (int i = 0; i < 10; ++i) text += std::to_string(12000 + 10 * i) + ",5\n";
   const Recording recording = RecordingOf(text, TimeAndValue("1:ms", "", "deg"));
   EXPECT_EQ(recording.size(), 10);

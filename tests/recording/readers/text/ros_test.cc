@@ -16,8 +16,8 @@ using testing::HasSubstr;
 
 ReadOptions Value(const std::string& column) { return TimeAndValue("", column); }
 
-/// Seconds since the first stamp, by one clock.
-double Since(const std::string& first, const std::string& second) {
+/// Seconds from the first stamp to the second, as one StampClock gives them.
+double SecondsBetween(const std::string& first, const std::string& second) {
   csv::StampClock clock;
   double time = -1;
   EXPECT_TRUE(clock.Read(first, "", time));
@@ -27,11 +27,11 @@ double Since(const std::string& first, const std::string& second) {
 }
 
 TEST(StampClock, KeepsNanosecondsLostInADouble) {
-  EXPECT_DOUBLE_EQ(Since("1700000000000000000", "1700000000000000001"), 1e-9);
-  EXPECT_DOUBLE_EQ(Since("1700000000.000000001", "1700000000.000000004"), 3e-9);
-  EXPECT_DOUBLE_EQ(Since("1700000000.5", "1700000001"), 0.5);
-  EXPECT_DOUBLE_EQ(Since("1.7000000005e+09", "1.700000001e+09"), 0.5);
-  EXPECT_DOUBLE_EQ(Since("5", "3.25"), -1.75);
+  EXPECT_DOUBLE_EQ(SecondsBetween("1700000000000000000", "1700000000000000001"), 1e-9);
+  EXPECT_DOUBLE_EQ(SecondsBetween("1700000000.000000001", "1700000000.000000004"), 3e-9);
+  EXPECT_DOUBLE_EQ(SecondsBetween("1700000000.5", "1700000001"), 0.5);
+  EXPECT_DOUBLE_EQ(SecondsBetween("1.7000000005e+09", "1.700000001e+09"), 0.5);
+  EXPECT_DOUBLE_EQ(SecondsBetween("5", "3.25"), -1.75);
 }
 
 TEST(StampClock, RefusesInvalidStamps) {
@@ -40,7 +40,7 @@ TEST(StampClock, RefusesInvalidStamps) {
   for (const char* const text : {"", "x", "1.2.3", "1e300", "99999999999999999999", "1.5x"}) {
     EXPECT_FALSE(clock.Read(text, "", time)) << text;
   }
-  // Outside 64 bits: they begin at -2^63, and adding five to 2^63 - 1 ns overflows.
+  // Beyond 64 bits: -2^63 s in nanoseconds, and the sum of 2^63 - 1 ns and 5 ns.
   EXPECT_FALSE(clock.Read("-9223372036854775808.0", "", time));
   EXPECT_FALSE(clock.Read("9223372036854775807", "5", time));
   for (const char* const text : {"x", "-1", "1000000000"}) EXPECT_FALSE(clock.Read("1700000000", text, time)) << text;

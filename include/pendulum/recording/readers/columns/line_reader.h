@@ -40,7 +40,7 @@ class LineReader {
   }
 
   std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), valid until Next.
-  std::size_t number() const { return number_; }         ///< Of the line, 1-based; 0 before the first.
+  std::size_t number() const { return number_; }         ///< 1-based number of the line; 0 before the first line.
   bool is_terminated() const { return is_terminated_; }  ///< False for a last line without a line end.
   bool is_empty() const { return is_empty_; }
   const std::string& name() const { return name_; }
@@ -58,7 +58,7 @@ class LineReader {
   void TakeLine(const char* line_end);
   Result<void> Begin();
   Result<void> Refill();
-  Result<void> Take(std::string_view bytes);
+  Result<void> HashAndCheck(std::string_view bytes);
   tl::unexpected<Status> TooLongError() const;
 
   std::string name_;

@@ -11,10 +11,10 @@ namespace pendulum {
 
 /// Information from the user that the file itself does not give.
 struct ReadOptions {
-  /// Name or 1-based number, optionally with :s, :ms or :us; "none": use the sample rate; empty: the header's.
+  /// Name or 1-based number, optionally with :s, :ms or :us; "none": use the sample rate; empty: use the header.
   std::string time_column;
-  std::string value_column;   ///< Name or 1-based number; empty: the header's.
-  std::string unit;           ///< Of the values, as a suffix in the header: rad, m_s2 ...; empty: the header's.
+  std::string value_column;   ///< Name or 1-based number; empty: use the header.
+  std::string unit;           ///< Of the values, as a suffix in the header: rad, m_s2 ...; empty: use the header.
   double sample_rate_hz = 0;  ///< For a file without times, Hz; 0: use its times, or its `# sample_rate_hz`.
   std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
   std::optional<double> resolution;        ///< In the file's unit; 0: continuous; std::nullopt: the file's.
