@@ -71,8 +71,8 @@ bool RestDetector::IsAtRest() const {
     samples += block.count;
   }
   const auto count = static_cast<double>(blocks_.size());
-  // In counts. Rounding can spread the means of blocks by kRounding and single readings by twice that. Noise adds
-  // several standard deviations of a mean or of a reading.
+  // Rounding can spread the means of blocks by kRounding counts and single readings by twice that. Noise adds several
+  // standard deviations of a mean or of a reading.
   constexpr double kRounding = 1.5, kDeviationsOfMeans = 5, kDeviations = 8;
   const double noise = std::sqrt(variance / count);
   if (high - low > kRounding + kDeviationsOfMeans * noise / std::sqrt(samples / count)) return false;

@@ -53,7 +53,8 @@ VectorXd LinearValues(const LogDecrement& linear) {
                          linear.corrected_inertia.value);
 }
 
-/// The textbook's formulas; they use the same turning points for every recording.
+/// The textbook's formulas. For a simulated recording they start at the turning point at the same time as in `used` and
+/// use as many periods, or one period fewer if the last turning point is missing.
 FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
   const LogDecrement& linear = *forms.linear;
   FormulaGroup group;

@@ -202,7 +202,8 @@ std::vector<NestedTest> TestNested(const ComparedRuns& compared, const std::vect
       const MotionModel& richer = compared.runs.front().fits[r]->model;
       const std::optional<Nesting> nesting = FindNesting(simpler, richer);
       if (!nesting) continue;
-      // If a second term is added too, the statistic has no known distribution, and a simulation would take long.
+      // If the richer law adds another term besides the term with the unidentified parameter, the statistic has no
+      // known distribution, and a simulation would take long.
       if (!nesting->unidentified.empty() && LargestNestedModel(richer)->name != simpler.name) continue;
       NestedTest test;
       test.simpler = rows[s].model;

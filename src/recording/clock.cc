@@ -279,7 +279,7 @@ Check ClockRepair::RemoveRowsWithSharedStamps() {
   }
   Warn("time_repeated", first + 1,
        many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
-           "; one of each group of equal rows was kept");
+           "; of rows with equal times and values, one was kept");
   KeepRows(keep);
   return {};
 }

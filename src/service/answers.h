@@ -46,7 +46,7 @@ struct ListPage {
   std::optional<std::int64_t> before;
 };
 
-/// The page that a query requests with limit (at most 500) and before. Errors as QueryNumber.
+/// The page that the query parameters `limit` (at most 500) and `before` request. Returns the errors of QueryNumber.
 Result<ListPage> PageOf(const RequestTarget& target);
 
 /// A run in the form of lists and batches.

@@ -207,7 +207,7 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
     FinishRun(run, [&](BatchProgress& progress) { progress.MarkRemoved(run.id); });
     return {};
   }
-  FittedRun fitted;
+  FinishedRun fitted;
   const auto begin = std::chrono::steady_clock::now();
   if (const auto options = OptionsOf(kept->order); options) {
     fitted = fitter_.Fit(*options, std::move(kept->order.files));

@@ -69,7 +69,7 @@ HttpResponse FitAndStore(ServiceState& state, FitRequest request, const std::opt
                  UtcTimeText(),
                  JsonText(JsonOf(request.flags)),
                  {std::move(request.data.front()), std::move(request.rig), std::move(request.calibration)}};
-  FittedRun fitted = state.fitter.Fit(request.options, order.files);
+  FinishedRun fitted = state.fitter.Fit(request.options, order.files);
   state.metrics.CountFit("request", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
   if (fitted.is_stopped) return StoppedAnswer(state, *fitted.error);
   if (fitted.error) return ProblemAnswer(*fitted.error);

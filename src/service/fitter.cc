@@ -33,8 +33,8 @@ Status TookTooLong(std::chrono::milliseconds limit) {
 }  // namespace
 
 /// An exception is a bug or lack of memory and fails only this run.
-FittedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
-  FittedRun fitted;
+FinishedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
+  FinishedRun fitted;
   try {
     fitted.outcome.provenance = ProvenanceOf(asked, files);
     fitted.outcome.models = asked.models;
@@ -50,7 +50,7 @@ FittedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
   return fitted;
 }
 
-void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FittedRun& fitted) {
+void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FinishedRun& fitted) {
   const TimeLimit::Watch watch(limit_);
   IdentifyOptions options = asked;
   options.fit.stop = watch.token();
@@ -69,7 +69,7 @@ void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FittedRun& fi
 Result<std::shared_ptr<const Identification>> Fitter::FitOf(const std::string& id, const IdentifyOptions& options,
                                                             RunFiles files) {
   if (auto run = Find(id)) return run;
-  FittedRun fitted = Fit(options, std::move(files));
+  FinishedRun fitted = Fit(options, std::move(files));
   if (fitted.error) return tl::unexpected(*fitted.error);
   Remember(id, fitted.run);
   return fitted.run;

@@ -17,7 +17,7 @@
 namespace pendulum {
 
 /// A finished run: its outcome for the store, and the fit with its samples if it succeeded.
-struct FittedRun {
+struct FinishedRun {
   RunOutcome outcome;
   std::shared_ptr<const Identification> run;
   std::optional<Status> error;  ///< Why it could not be fitted.
@@ -30,7 +30,7 @@ class Fitter {
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
 
   /// Fits one run. The result is the same as from fit_pendulum, but has no path.
-  FittedRun Fit(const IdentifyOptions& asked, RunFiles files);
+  FinishedRun Fit(const IdentifyOptions& asked, RunFiles files);
 
   /// The fit of run `id`, made from these options and files: the remembered one, or a new one.
   Result<std::shared_ptr<const Identification>> FitOf(const std::string& id, const IdentifyOptions& options,
@@ -54,7 +54,7 @@ class Fitter {
     Eigen::Index samples;
   };
 
-  void FitInto(const IdentifyOptions& asked, RunFiles files, FittedRun& fitted);
+  void FitInto(const IdentifyOptions& asked, RunFiles files, FinishedRun& fitted);
   std::shared_ptr<const Identification> Find(const std::string& id);
 
   TimeLimit limit_;

@@ -113,8 +113,8 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
       Row("in " + after + " only", comparison.only_after) +
       Row("ended with another status", comparison.changed_status) + Row("runs with other data", comparison.other_data);
   text += Heading("Parameters") + Row("identical", comparison.identical) +
-          Row("within 1e-9 of their errors", comparison.rounding) +
-          Row("within their errors", comparison.within_errors) + Row("moved by more", comparison.moved) +
+          Row("moved by less than 1e-9 errors", comparison.rounding) +
+          Row("moved by less than an error", comparison.within_errors) + Row("moved by more", comparison.moved) +
           Row("changed, without a standard error", comparison.without_error);
   if (comparison.cpus_before != comparison.cpus_after) {
     text += Heading("Types of CPU") + Prose(before + ": " + NameList(comparison.cpus_before)) +

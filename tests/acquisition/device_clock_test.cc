@@ -89,8 +89,8 @@ TEST(FitDeviceClock, HasTheRightError) {
   }
 }
 
-/// USB polls on a grid of the host's clock. A run too short for the frames to drift across the grid has a systematic
-/// error of the clock.
+/// USB polls on a grid of the host's clock. If the run is too short for the frames to drift across the grid, the fitted
+/// clock has a systematic error.
 TEST(FitDeviceClock, HasTheRightErrorOnAGrid) {
   constexpr int kRuns = 200;
   for (const double seconds : {10.0, 30.0, 60.0}) {
@@ -174,7 +174,7 @@ TEST(FitDeviceClock, AcceptsArrivalsAtOneInstant) {
   EXPECT_FALSE(FitDeviceClock(arrivals, 0, 0).is_measured);
 }
 
-TEST(HostClockStdDev, IsAtMostTheValueOfAQuartz) {
+TEST(HostClockStdDev, IsAtMostTheStandardDeviationOfAQuartzClock) {
   EXPECT_GT(HostClockStdDev(), 0);
   EXPECT_LE(HostClockStdDev(), 30e-6);
 }

@@ -265,11 +265,11 @@ TEST(MessageDecoder, FindsTheFrameAfterGarbage) {
   EXPECT_EQ(RejectedOf(Hex("01 01 01 00")), 1);  // two zero bytes are not the CRC of an empty payload
 }
 
-TEST(MessageDecoder, FindsTheFrameAfterOneThatIsTooLong) {
+TEST(MessageDecoder, FindsTheFrameAfterATooLongFrame) {
   for (const std::size_t length : {51, 52, 53, 255, 256, 257, 308, 10000}) {
     EXPECT_EQ(RejectedOf(Bytes(length, 0x55) + Hex("00")), 1) << length;
   }
-  // The longest payload has 48 bytes. The payload of 49 bytes is otherwise valid.
+  // A payload has at most 48 bytes. 48 bytes of 'Z' are a valid frame of an unknown message; 49 bytes are too long.
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(48, 'Z'))), 1);
   EXPECT_EQ(RejectedOf(FrameOfPayload(Bytes(49, 'Z'))), 1);
 }
@@ -364,7 +364,7 @@ wire::Info Of(std::uint8_t board, std::uint8_t reference) {
   return info;
 }
 
-TEST(BoardName, IsTheNameOnTheBox) {
+TEST(BoardName, GivesTheProductNameOrTheNumberOfAnUnknownBoard) {
   EXPECT_EQ(BoardName(Of(1, 1)), "Arduino Uno");
   EXPECT_EQ(BoardName(Of(2, 1)), "Arduino Mega 2560");
   EXPECT_EQ(BoardName(Of(9, 1)), "board 9");

@@ -40,7 +40,7 @@ using Numbers = std::vector<double>;
 
 // ---- NearestRate -------------------------------------------------------------------------------------------------
 
-TEST(NearestRate, IsExactIfTicksDivide) {
+TEST(NearestRate, IsExactIfThePeriodIsAWholeNumberOfTicks) {
   const auto rate = NearestRate(200, 1);
   ASSERT_TRUE(rate);
   EXPECT_EQ(rate->period, 10000);
@@ -131,7 +131,7 @@ TEST(ReceivedRun, ContinuesAcrossTheTickOverflow) {
 }
 
 // Three wraps of the counter with frames 1000 s apart. The samples in between are missing and the time continues.
-TEST(ReceivedRun, CountsHoursOfTicks) {
+TEST(ReceivedRun, ContinuesAcrossSeveralTickOverflows) {
   ReceivedRun run(kRate);
   std::uint32_t tick = 77;
   for (int i = 0; i <= 7; ++i, tick += 2000000000U) ASSERT_TRUE(run.AddFrame(Frame(i, tick, {i}), 1000 * i));
@@ -244,7 +244,7 @@ TEST(ReceivedRun, ReportsNoLossesOfACompleteRun) {
 }
 
 // The counters in a frame stop at 65 535; the counters in End do not.
-TEST(ReceivedRun, UsesTheEndIfFrameCountersSaturate) {
+TEST(ReceivedRun, UsesTheCountersOfEndIfFrameCountersSaturate) {
   ReceivedRun run(kRate);
   wire::Data full = Frame(0, 0, {1});
   full.dropped = full.late = 65535;
@@ -340,7 +340,7 @@ void ExpectContradicts(ReceivedRun& run, const wire::Data& frame) {
   EXPECT_EQ(run.Losses().contradicting_frames, before + 1);
 }
 
-TEST(ReceivedRun, IgnoresAFrameThatIsNotLater) {
+TEST(ReceivedRun, IgnoresAFrameThatIsNotAfterThePreviousOne) {
   ReceivedRun run(kRate);
   run.AddFrame(Frame(0, 100000, {1, 2, 3}), 0);
   ExpectContradicts(run, Frame(1, 100000, {1, 2, 3}));  // the same frame twice
@@ -360,7 +360,7 @@ TEST(ReceivedRun, IgnoresAFrameOffTheGrid) {
   EXPECT_TRUE(run.AddFrame(Frame(1, 10000, {2}), 1));
 }
 
-TEST(ReceivedRun, IgnoresASampleThatOverlapsThePreviousOne) {
+TEST(ReceivedRun, IgnoresASampleThatOverlapsThePreviousSample) {
   ReceivedRun run({2500, 4});
   run.AddFrame(Frame(0, 0, {1}), 0);
   ExpectContradicts(run, Frame(1, 7500, {2}));

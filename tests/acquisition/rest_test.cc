@@ -110,7 +110,7 @@ TEST(RestDetector, DetectsRestAfterAGapInTheSamples) {
   EXPECT_TRUE(detector.IsAtRest());
 }
 
-TEST(RestDetector, ReportsThatItHasSwung) {
+TEST(RestDetector, ReportsThatThePendulumHasSwung) {
   RestDetector detector;
   const Motion swing = Decaying(300, 60);
   EXPECT_FALSE(detector.HasSwung());
@@ -119,7 +119,7 @@ TEST(RestDetector, ReportsThatItHasSwung) {
   EXPECT_FALSE(detector.IsAtRest());
 }
 
-TEST(RestDetector, IsFalseAgainAfterAnotherPush) {
+TEST(RestDetector, ReportsNoRestAfterAnotherPush) {
   RestDetector detector;
   const Motion swing = Decaying(300, 3);
   for (int i = 0; i < 200 * 40; ++i) detector.AddSample(i / 200.0, std::round(swing(i / 200.0)));
@@ -130,7 +130,7 @@ TEST(RestDetector, IsFalseAgainAfterAnotherPush) {
 
 // ---- Rest is not detected too early ------------------------------------------------------------------------------
 
-TEST(RestDetector, IsFalseBeforeAnAmplitudeOfTwoCounts) {
+TEST(RestDetector, ReportsNoRestAboveAnAmplitudeOfTwoCounts) {
   for (const double noise : {0.0, 0.3, 0.5, 1.0, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
       const auto rest = RestOf(Decaying(100, 40), WhenAmplitudeIs(2, 100, 40), {200, noise, seed});
@@ -140,7 +140,7 @@ TEST(RestDetector, IsFalseBeforeAnAmplitudeOfTwoCounts) {
 }
 
 // Almost no friction: a minute with an amplitude of 2 counts after a larger swing.
-TEST(RestDetector, IsFalseDuringASmallSwing) {
+TEST(RestDetector, ReportsNoRestDuringASmallSwing) {
   const Motion swing = [](double time) { return kMiddle + (time < 20 ? 100 : 2) * std::cos(kRadPerSecond * time); };
   for (const double noise : {0.0, 0.5, 2.0}) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -150,7 +150,7 @@ TEST(RestDetector, IsFalseDuringASmallSwing) {
   }
 }
 
-TEST(RestDetector, IsFalseDuringTheHoldBeforeTheRelease) {
+TEST(RestDetector, ReportsNoRestDuringTheHoldBeforeTheRelease) {
   for (const double rate : {50.0, 200.0, 1000.0}) {
     for (const double noise : {0.0, 0.5, 2.0}) {
       const auto rest = RestOf(HeldUntil(20, Decaying(300, 60)), 40, {rate, noise, 3});
@@ -169,13 +169,13 @@ TEST(RestDetector, DoesNotTreatNoiseAsASwing) {
   }
 }
 
-TEST(RestDetector, IsFalseIfNothingEverMoves) {
+TEST(RestDetector, ReportsNoRestIfThePendulumNeverMoves) {
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 0, 1}));
   EXPECT_FALSE(RestOf([](double) { return kMiddle; }, 120, {200, 2, 1}));
 }
 
 // A hand moves the pendulum to and fro, looking for the release angle, and holds it at that angle.
-TEST(RestDetector, IsFalseWhileAHandMovesThePendulum) {
+TEST(RestDetector, ReportsNoRestWhileAHandMovesThePendulum) {
   const Motion hand = [](double time) {
     const double there = std::clamp((time - 10) / 2, 0.0, 1.0), back = std::clamp((time - 20) / 3, 0.0, 1.0);
     return kMiddle + 280 * there - 60 * back;
@@ -184,12 +184,12 @@ TEST(RestDetector, IsFalseWhileAHandMovesThePendulum) {
 }
 
 // A hand stops the pendulum beyond its last turning point. The pendulum did not come to rest by itself.
-TEST(RestDetector, IsFalseIfASwingIsCaughtAndHeld) {
+TEST(RestDetector, ReportsNoRestIfASwingIsCaughtAndHeld) {
   const Motion caught = [](double time) { return time < 15.2 ? Decaying(100, 60)(time) : kMiddle + 200; };
   EXPECT_FALSE(RestOf(caught, 60));
 }
 
-TEST(RestDetector, WaitsForFiveSeconds) {
+TEST(RestDetector, ReportsRestAfterFiveSecondsWithoutMotion) {
   const auto rest = RestOf([](double time) { return time < 15 ? Decaying(300, 60)(time) : kMiddle; }, 60);
   ASSERT_TRUE(rest);
   EXPECT_GT(*rest, 15 + RestDetector::kRestSeconds - 0.3);

@@ -32,7 +32,7 @@ struct LoggerScript {
 
   std::vector<std::uint8_t> greeting;           ///< Sent when the board is switched on.
   std::vector<std::uint8_t> chatter;            ///< Sent repeatedly.
-  double deaf_seconds = 0;                      ///< Input is ignored so long after power-on, as by a boot loader.
+  double deaf_seconds = 0;                      ///< For this time after power-on input is ignored, as by a boot loader.
   bool is_mute = false;                         ///< It never answers.
   bool begins_running = false;                  ///< An earlier program left it running.
   bool forgets_calibration = false;             ///< Its EEPROM stores nothing.

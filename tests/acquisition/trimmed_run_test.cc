@@ -71,7 +71,7 @@ TEST(KeepUntil, KeepsAShorterRunUnchanged) {
 }
 
 /// Three conversions were late, so their samples are missing. Then a whole frame is lost after the last one received.
-TEST(Losses, AreSummedOverSeveralKinds) {
+TEST(Losses, AreSummedOverLateSamplesAndLostFrames) {
   ReceivedRun run(kRate);
   run.AddFrame(Frame(0), 0);
   pendulum_logger::Data late = Frame(1);

@@ -191,7 +191,7 @@ TEST(AmplitudeDependence, IsAStraightLineInAmplitudeSquared) {
   EXPECT_THAT(line->rest_p, DoubleNear(0.22067, 1e-5));
 }
 
-TEST(AmplitudeDependence, IsNotTestedOnTwoNumbersOrOneAmplitude) {
+TEST(AmplitudeDependence, IsNotTestedWithTwoRecordingsOrOneAmplitude) {
   EXPECT_FALSE(TestNumbers({1, 2}, {1, 1}, {1, 2}));
   EXPECT_FALSE(TestNumbers({1, 2, 3}, {1, 1, 1}, {2, 2, 2}));
 }

@@ -53,7 +53,7 @@ struct Trends {
   Constancy found;
 };
 
-Trends TrendsOf(const FittedRun& run, const FitOptions& options, std::size_t half_swings = 24) {
+Trends TrendsOf(const FitOfRun& run, const FitOptions& options, std::size_t half_swings = 24) {
   Trends trends;
   const Parts parts(run.recording, run.fit, options);
   const std::vector<double> ends = FirstEnds(run.recording, half_swings);
@@ -158,7 +158,7 @@ TEST(CompareWindows, IgnoresTheBoundOfFriction) {
 }
 
 TEST(CompareWindows, UsesThreePeriodsPerWindow) {
-  const FittedRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
+  const FitOfRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
   EXPECT_THAT(TrendsOf(run, ModelOptions("viscous"), 18).found.windows, SizeIs(3));
   EXPECT_THAT(TrendsOf(run, ModelOptions("viscous"), 25).found.windows, SizeIs(4));
   const Trends none = TrendsOf(run, ModelOptions("viscous"), 17);
@@ -170,7 +170,7 @@ TEST(CompareWindows, UsesAtMostEightWindows) {
   SyntheticOptions run = RunOf("viscous", 0.002);
   run.duration = 50;
   run.sample_rate = 50;
-  const FittedRun fitted = FitTo(run, "viscous", {});
+  const FitOfRun fitted = FitTo(run, "viscous", {});
   const Trends trends = TrendsOf(fitted, ModelOptions("viscous"), 70);
   ASSERT_THAT(trends.found.windows, SizeIs(8)) << trends.reason;
   for (std::size_t w = 1; w < 8; ++w)
@@ -205,7 +205,7 @@ TEST(CompareWindows, IncludesADriftingZero) {
 
 // The reading stays constant for four half swings of the second window.
 TEST(CompareWindows, NamesTheWindowWithoutAFit) {
-  FittedRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
+  FitOfRun run = FitTo(RunOf("viscous", 0.002), "viscous", {});
   const std::vector<double> ends = FirstEnds(run.recording, 24);
   Recording spoiled = run.recording;
   for (Eigen::Index i = 0; i < spoiled.size(); ++i)

@@ -14,7 +14,7 @@
 namespace pendulum {
 
 struct CheckedRun {
-  FittedRun run;
+  FitOfRun run;
   ClosedForms forms;
   ClosedFormCheck check;
 
@@ -29,7 +29,7 @@ struct CheckedRun {
   }
 };
 
-inline CheckedRun CheckFit(FittedRun run) {
+inline CheckedRun CheckFit(FitOfRun run) {
   ClosedForms forms = Must(EstimateClosedForms(run.recording, run.fit.model));
   ClosedFormCheck check = CheckClosedForms(run.recording, forms, run.fit, run.rig);
   return {std::move(run), std::move(forms), std::move(check)};

@@ -108,7 +108,7 @@ TEST(ClosedFormRow, HasTheSameZFromReadingInfluences) {
   for (const char* model : {"viscous", "drag"}) {
     for (const std::optional<Rig>& rig : {std::optional<Rig>(), std::optional(TextbookRig())}) {
       const CheckedRun checked = CheckRun(ShortStrongRun(model), model, rig);
-      FittedRun autocorrelated = checked.run;
+      FitOfRun autocorrelated = checked.run;
       autocorrelated.fit.noise.autocorrelation.kind = Autocorrelation::Kind::kAutoregressive;
       autocorrelated.fit.noise.autocorrelation.autoregressive = {1e-9};
       autocorrelated.fit.noise.autocorrelation.interval = 0.02;

@@ -50,7 +50,7 @@ int HalfSwingsBefore(const CheckedRun& checked) {
 
 // The formula attributes the longer period of large swings to inertia: I0 times the squared mean of T(A) / T(0). A is
 // computed from the release angle.
-TEST(CheckClosedForms, AttributesTheInertiaOfLargeSwingsToFiniteAmplitude) {
+TEST(CheckClosedForms, AttributesTheInertiaDifferenceOfLargeSwingsToFiniteAmplitude) {
   const CheckedRun checked = CheckRun(NoisyTextbookRun("viscous"), "viscous", TextbookRig());
   const double decay = std::exp(-kPi * 0.003 / (2 * std::sqrt(0.079 * kTextbookTorque)));
   const int half_swings = 2 * checked.forms.linear->periods;
@@ -120,7 +120,7 @@ TEST(CheckClosedForms, NamesAWrongFrictionLaw) {
 
 // Levels of 2 deg, noise of 1/70 of a level. Turning points stay on one level for many periods and scatter by more than
 // the noise; the errors must include that.
-TEST(CheckClosedForms, CoarseLevelsWidenTheErrors) {
+TEST(CheckClosedForms, HasLargerErrorsForCoarseLevels) {
   SyntheticOptions run = TextbookRun("viscous");
   run.noise = 0.0005;
   run.resolution = 2 * kPi / 180;
@@ -132,7 +132,7 @@ TEST(CheckClosedForms, CoarseLevelsWidenTheErrors) {
 }
 
 // 12 samples per small-angle period: a polynomial over a third of a period cannot follow a swing of 1.5 rad.
-TEST(CheckClosedForms, AttributesTheInertiaFromSparseSamplesToSampling) {
+TEST(CheckClosedForms, AttributesTheInertiaDifferenceOfSparseSamplesToSampling) {
   SyntheticOptions run = TextbookRun("viscous");
   run.release_angle = 1.5;
   run.noise = 0.0001;
@@ -154,7 +154,7 @@ TEST(CheckClosedForms, AttributesTheEffectOfAFixedParameterToTheRecording) {
 }
 
 // Noise autocorrelated over 0.2 s, 8 s at 50 Hz: the law is right, but its turning points are not independent.
-TEST(CheckClosedForms, KeepsTheRightLawForAutocorrelatedNoise) {
+TEST(CheckClosedForms, RarelyExcludesTheRightLawForAutocorrelatedNoise) {
   constexpr int kCount = 40;
   int excluded = 0, far = 0;
   SyntheticOptions run = TextbookRun("viscous");
@@ -188,7 +188,7 @@ TEST(CheckClosedForms, DoesNotAttributeADriftingZeroToFriction) {
 
 // For a release from 2.6 rad the corrected formula has an error of 0.05 %. Small angles are not the cause: the formula
 // uses the amplitude in the middle of a half swing for all of it.
-TEST(CheckClosedForms, DoesNotClaimSmallAnglesForTheEllipticIntegral) {
+TEST(CheckClosedForms, DoesNotNameSmallAnglesAsTheCauseForTheEllipticPeriod) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.release_angle = 2.6;
   const CheckedRun checked = CheckRun(run, "viscous");
@@ -207,7 +207,7 @@ TEST(CheckClosedForms, HasARowForEachFormula) {
                                       "inertia_geometry", "inertia_point_mass"));
 }
 
-TEST(CheckClosedForms, IsInUnitsOfTheTorqueWithoutARigAndInSiWithOne) {
+TEST(CheckClosedForms, HasUnitsOfTheTorqueWithoutARigAndSiUnitsWithARig) {
   const CheckedRun relative = CheckRun(NoisyTextbookRun("coulomb"), "coulomb");
   const CheckedRun si = CheckRun(NoisyTextbookRun("coulomb"), "coulomb", TextbookRig());
   const std::vector<std::pair<std::string, std::string>> units = {
@@ -273,7 +273,7 @@ TEST(CheckClosedForms, NeedsNoCalibrationForTheLinearModel) {
 
 // A slow clock: k true seconds per second of the file. Inertia changes with k², viscous friction with k, and z stays
 // the same.
-TEST(CheckClosedForms, CountsInTrueSeconds) {
+TEST(CheckClosedForms, UsesTrueSeconds) {
   const Recording recording = Must(SimulateRecording(NoisyTextbookRun("viscous")));
   Recording slow = recording;
   slow.clock_scale = 1.5;

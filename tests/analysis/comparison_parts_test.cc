@@ -112,7 +112,7 @@ TEST(ChooseLikelihood, IsCorrelatedForNormalNoiseAboveHalfACount) {
   EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, fit), HasSubstr("noise below half a count"));
 }
 
-TEST(ChooseLikelihood, IsNoneIfNoLikelihoodIsKnown) {
+TEST(ChooseLikelihood, ReturnsNoneIfNoLikelihoodIsKnown) {
   FitReport censored = Autocorrelated();
   censored.noise.censored = 1;
   EXPECT_EQ(ChooseLikelihood(censored, 0), Likelihood::kNone);

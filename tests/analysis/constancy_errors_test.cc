@@ -27,7 +27,7 @@ Alarms CountAlarms(SyntheticOptions run) {
   for (int i = 0; i < kSeeds; ++i) {
     ++run.seed;
     run.zero += 1e-4;  // another position relative to the levels
-    const FittedRun fitted = FitTo(Must(SimulateRecording(run)), options);
+    const FitOfRun fitted = FitTo(Must(SimulateRecording(run)), options);
     const Constancy constancy = TestConstancy(fitted.recording, fitted.fit, options);
     if (!constancy.halves_p || constancy.trends.size() != 2) continue;
     ++alarms.tested;

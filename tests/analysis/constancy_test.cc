@@ -29,7 +29,7 @@ SyntheticOptions NoisyTextbookRun(std::string_view model) {
   return run;
 }
 
-Constancy TestFit(const FittedRun& run, FitOptions options) {
+Constancy TestFit(const FitOfRun& run, FitOptions options) {
   options.rig = run.rig;
   return TestConstancy(run.recording, run.fit, options);
 }
@@ -175,14 +175,14 @@ TEST(Constancy, ReportsTooShortParts) {
 }
 
 TEST(Constancy, IsNotTestedWithoutConvergence) {
-  FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
+  FitOfRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
   run.fit.termination = Termination::kNotConverged;
   EXPECT_THAT(TestFit(run, ModelOptions("viscous")).reason, HasSubstr("did not converge"));
 }
 
 TEST(Constancy, IsNotTestedWithoutTurningPoints) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
-  FittedRun fitted = FitTo(run, "viscous", {});
+  FitOfRun fitted = FitTo(run, "viscous", {});
   run.sample_rate = 3;  // 4 samples per period
   fitted.recording = Must(SimulateRecording(run));
   EXPECT_THAT(TestFit(fitted, ModelOptions("viscous")).reason, HasSubstr("sampled too slowly"));
@@ -201,7 +201,7 @@ TEST(Constancy, IsTestedBeforeThePendulumComesToRest) {
 
 // One second of the file is 1.02 true seconds; the results must not change.
 TEST(Constancy, DoesNotDependOnTheClock) {
-  FittedRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
+  FitOfRun run = FitTo(NoisyTextbookRun("viscous"), "viscous", {});
   const Constancy plain = TestFit(run, ModelOptions("viscous"));
   run.recording.time /= 1.02;
   run.recording.clock_scale = 1.02;

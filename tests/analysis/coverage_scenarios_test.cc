@@ -62,7 +62,7 @@ TEST(CoverageScenarios, UseTheRigOfTheDatasets) {
   }
 }
 
-TEST(CoverageScenarios, ReachRestOnlyIfTheySaySo) {
+TEST(CoverageScenarios, ReachStandstillOnlyInTheScenarioToRest) {
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     const Eigen::VectorXd motion = Motion(scenario.run);
     const bool rests = motion.tail(50).maxCoeff() - motion.tail(50).minCoeff() < 1e-9;  // half a second
@@ -70,12 +70,12 @@ TEST(CoverageScenarios, ReachRestOnlyIfTheySaySo) {
   }
 }
 
-TEST(CoverageScenarios, ToRestMovesForMostOfTheRecording) {
+TEST(CoverageScenarios, MoveForMostOfTheRecordingInTheScenarioToRest) {
   const Eigen::VectorXd motion = Motion(Scenario("to_rest").run);
   EXPECT_GT(motion.segment(3500, 200).maxCoeff() - motion.segment(3500, 200).minCoeff(), kDegree);
 }
 
-TEST(CoverageScenarios, SaturatedCutsPeaksButNotHoldOrLastSwings) {
+TEST(CoverageScenarios, CutPeaksButNotTheHoldOrLastSwingsInTheScenarioSaturated) {
   const CoverageScenario scenario = Scenario("saturated");
   const Result<Recording> recording = SimulateRecording(ScenarioRun(scenario, 1));
   ASSERT_TRUE(recording) << recording.error().message;
@@ -91,7 +91,7 @@ TEST(CoverageScenarios, SaturatedCutsPeaksButNotHoldOrLastSwings) {
   EXPECT_THAT(at_the_end(200, 800), AllOf(Ge(60), Le(250)));
 }
 
-TEST(CoverageScenarios, HaveLaxerRulesOnlyAsIntended) {
+TEST(CoverageScenarios, HaveLaxerRulesOnlyWhereIntended) {
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     const bool strong = scenario.name.starts_with("ar_0.9");
     const bool compared = scenario.name.ends_with("_1khz");

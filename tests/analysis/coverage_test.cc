@@ -42,7 +42,7 @@ CoverageRow Row(const CoverageStudy& study, const std::string& parameter) {
 // ---- The binomial interval -----------------------------------------------------------------------------------------
 
 // No success in n trials: the upper end u satisfies (1 - u)^n = 0.025. n successes give the mirror image.
-TEST(BinomialInterval95, HasClosedFormsForNoneAndAll) {
+TEST(BinomialInterval95, HasClosedFormsForNoSuccessAndForNoFailure) {
   const double end = 1 - std::pow(0.025, 1.0 / 20);
   const BinomialInterval none = BinomialInterval95(0, 20);
   const BinomialInterval all = BinomialInterval95(20, 20);

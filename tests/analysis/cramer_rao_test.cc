@@ -117,7 +117,7 @@ TEST(CramerRaoBounds, MatchTheFullCovarianceForCorrelatedNoise) {
 }
 
 // With noise of 1.5 counts or more, counts act as white noise of variance q²/12.
-TEST(CramerRaoBounds, GrowByATwelfthOfASquaredCount) {
+TEST(CramerRaoBounds, IncludeAVarianceOfATwelfthOfASquaredCount) {
   SyntheticOptions run = ShortRun();
   run.noise = 1.5 * kCount;
   const std::vector<double> fine = Bounds(run);
@@ -125,7 +125,7 @@ TEST(CramerRaoBounds, GrowByATwelfthOfASquaredCount) {
   EXPECT_THAT(Ratios(Bounds(run), fine), Each(DoubleNear(std::sqrt(1 + 1 / (12 * 1.5 * 1.5)), 1e-3)));
 }
 
-// Each sample has the ReadingInformation about (mean, log σ); the mean is the trajectory's reading.
+// Each sample contributes its ReadingInformation about (x, log σ), where x is the trajectory's reading.
 TEST(CramerRaoBounds, TreatTheNoiseSizeAsUnknown) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.15 * kCount;
@@ -150,7 +150,7 @@ TEST(CramerRaoBounds, TreatTheNoiseSizeAsUnknown) {
 }
 
 // A hold in the middle of a count shows only that count: the held angle is known only from the swing.
-TEST(CramerRaoBounds, GetNothingFromAHoldInTheMiddleOfACount) {
+TEST(CramerRaoBounds, AreNotImprovedByAHoldInTheMiddleOfACount) {
   SyntheticOptions run = ShortRun();
   run.noise = 0.1 * kCount;
   run.zero = 0.01;

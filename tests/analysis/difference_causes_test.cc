@@ -141,7 +141,7 @@ struct StagedRun {
     return seen;
   }
 
-  FittedRun run;
+  FitOfRun run;
 };
 
 SyntheticOptions WideSwing() {
@@ -160,7 +160,7 @@ TEST(ApplyInStages, UsesLinearGravityOnlyForSmallAngles) {
 }
 
 // 1.3152 s at small angles: 200 samples of 6.6 ms; the recording's own samples are 10 ms apart.
-TEST(ApplyInStages, UsesFineInstantsBeforeTheRecordings) {
+TEST(ApplyInStages, UsesFineInstantsInTheFirstTwoStages) {
   const StagedRun run(WideSwing());
   const std::vector<Applied> seen = run.Seen();
   ASSERT_EQ(seen.size(), 4);
@@ -265,7 +265,7 @@ TEST(ApplyInStages, IsEmptyIfAFormulaCannotBeApplied) {
 }
 
 TEST(ApplyInStages, IsEmptyIfTheMotionCannotBeTraced) {
-  FittedRun run = FitTo(NoisyRun("coulomb"), "coulomb", {});
+  FitOfRun run = FitTo(NoisyRun("coulomb"), "coulomb", {});
   run.fit.parameters[2].estimate = 1;  // friction holds the pendulum
   EXPECT_FALSE(ApplyInStages(FittedMotion(run.recording, run.fit, {}), run.recording, Gravity::kSine, Lowest));
 }

@@ -35,7 +35,7 @@ TEST(FitModels, KeepsTheRequestedOrder) {
   EXPECT_EQ(fitted.fits[2].model.name, "coulomb");
 }
 
-TEST(FitModels, EqualsFitRecordingForOneModel) {
+TEST(FitModels, GivesTheResultOfFitRecordingForOneModel) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitReport alone = Fit(recording, ModelOptions("coulomb"));
   const FittedModels fitted = FitAll(recording, {"coulomb"});

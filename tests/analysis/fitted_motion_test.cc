@@ -48,7 +48,7 @@ FitReport TrueReport(const SyntheticOptions& run) {
 double MaxDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
 /// d readings / d estimate by central differences of reports.
-Eigen::VectorXd Difference(const FittedRun& run, std::size_t parameter, double step) {
+Eigen::VectorXd Difference(const FitOfRun& run, std::size_t parameter, double step) {
   const auto readings = [&](double change) {
     FitReport moved = run.fit;
     moved.parameters[parameter].estimate += change;
@@ -58,7 +58,7 @@ Eigen::VectorXd Difference(const FittedRun& run, std::size_t parameter, double s
   return (readings(step) - readings(-step)) / (2 * step);
 }
 
-void ExpectJacobianOfDifferences(const FittedRun& run) {
+void ExpectJacobianOfDifferences(const FitOfRun& run) {
   const FittedMotion motion(run.recording, run.fit, run.rig);
   Eigen::MatrixXd jacobian;
   ASSERT_TRUE(motion.Readings(motion.instants(), &jacobian));
@@ -75,7 +75,7 @@ void ExpectJacobianOfDifferences(const FittedRun& run) {
 TEST(FittedMotion, ReproducesTheFitsReadings) {
   for (const char* model : {"linear", "viscous", "coulomb", "drag"}) {
     for (const SyntheticOptions& options : {NoisyRun(model), MovingRun(model)}) {
-      const FittedRun run = FitTo(options, model, TextbookRig());
+      const FitOfRun run = FitTo(options, model, TextbookRig());
       const FittedMotion motion(run.recording, run.fit, run.rig);
       EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError) << model;
     }
@@ -86,7 +86,7 @@ TEST(FittedMotion, FollowsARateWithItsBias) {
   SyntheticOptions options = NoisyRun();
   options.quantity = Quantity::kRate;
   options.zero = 0.07;
-  const FittedRun run = FitTo(options, "coulomb", {});
+  const FitOfRun run = FitTo(options, "coulomb", {});
   const FittedMotion motion(run.recording, run.fit, {});
   EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), 10 * kTraceError);
 }
@@ -98,7 +98,7 @@ TEST(FittedMotion, MeasuresInstantsInTrueSecondsFromTheFirstSample) {
   options.release_time += 1000;
   Recording recording = Must(SimulateRecording(options));
   recording.clock_scale = 1.02;
-  const FittedRun run = FitTo(recording, ModelOptions("coulomb"));
+  const FitOfRun run = FitTo(recording, ModelOptions("coulomb"));
   const FittedMotion motion(run.recording, run.fit, {});
   EXPECT_EQ(motion.instants()[0], 0);
   EXPECT_THAT(motion.instants()[100], DoubleNear(1.02, 1e-9));  // 1 s on the file's clock
@@ -122,7 +122,7 @@ TEST(FittedMotion, KeepsADriftingZero) {
   recording.value.array() += 0.001 * recording.time.array();
   FitOptions fit = ModelOptions("coulomb");
   fit.initial["zero_drift"] = 0;
-  const FittedRun run = FitTo(recording, fit);
+  const FitOfRun run = FitTo(recording, fit);
   ASSERT_NE(run.fit.Find("zero_drift"), nullptr);
   const FittedMotion motion(run.recording, run.fit, {});
   EXPECT_LT(MaxDifference(motion.Readings(motion.instants()).value(), run.fit.fitted), kTraceError);

@@ -17,19 +17,19 @@ inline Rig TextbookRig() {
                        "rig"));
 }
 
-struct FittedRun {
+struct FitOfRun {
   Recording recording;
   FitReport fit;
   std::optional<Rig> rig;
 };
 
-inline FittedRun FitTo(Recording recording, const FitOptions& options) {
+inline FitOfRun FitTo(Recording recording, const FitOptions& options) {
   FitReport fit = Fit(recording, options);
   return {std::move(recording), std::move(fit), options.rig};
 }
 
 /// Simulates the recording and fits a model to it.
-inline FittedRun FitTo(const SyntheticOptions& run, std::string_view model, const std::optional<Rig>& rig) {
+inline FitOfRun FitTo(const SyntheticOptions& run, std::string_view model, const std::optional<Rig>& rig) {
   FitOptions options = ModelOptions(model);
   options.rig = rig;
   return FitTo(Must(SimulateRecording(run)), options);

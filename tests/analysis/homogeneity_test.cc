@@ -109,7 +109,7 @@ double DistanceFromOthers(const std::vector<double>& value, const std::vector<do
   return (value[k] - sum / weights) / std::sqrt(error[k] * error[k] + 1 / weights);
 }
 
-TEST(Homogeneity, HasEachRunsDistanceFromTheOthers) {
+TEST(Homogeneity, HasTheDistanceOfEachRunFromTheOtherRuns) {
   const FittedAlone fits(SeveralRuns(5, 11), RigOptions());
   const Homogeneity result = TestHomogeneity(fits.Runs(), kShared);
   ASSERT_THAT(result.parameters, SizeIs(3));
@@ -168,7 +168,7 @@ TEST(Homogeneity, NamesTwoOutliersOfFive) {
   EXPECT_THAT(result.verdict, HasSubstr("fit the others without them"));
 }
 
-TEST(Homogeneity, NamesNeitherOfTwoThatDiffer) {
+TEST(Homogeneity, NamesNeitherOfTwoDisagreeingRecordings) {
   const Homogeneity result = TestRuns(WithOther(2, 51, 1, 1.03));
   EXPECT_FALSE(result.agrees());
   EXPECT_THAT(result.disagreeing, IsEmpty());
@@ -177,7 +177,7 @@ TEST(Homogeneity, NamesNeitherOfTwoThatDiffer) {
 }
 
 // Each run has a different inertia, with a scatter of 3 % far above the errors. There is no majority.
-TEST(Homogeneity, NamesNoOutlierIfAllScatter) {
+TEST(Homogeneity, NamesNoOutlierIfAllRecordingsScatter) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 61);
   const double factors[] = {1.00, 0.96, 1.03, 0.985, 1.05};
   for (std::size_t k = 0; k < 5; ++k) runs[k].parameters[0] *= factors[k];
@@ -191,7 +191,7 @@ TEST(Homogeneity, NamesNoOutlierIfAllScatter) {
 }
 
 // Four runs scatter by a thousandth, many times their errors; the fifth run is thirty times as far away.
-TEST(Homogeneity, NamesARecordingFarFromTheOthersScatter) {
+TEST(Homogeneity, NamesARecordingFarOutsideTheScatterOfTheOthers) {
   std::vector<SyntheticOptions> runs = SeveralRuns(5, 65);
   const double factors[] = {1.001, 0.9995, 1.03, 0.9985, 1.0005};
   for (std::size_t k = 0; k < 5; ++k) runs[k].parameters[0] *= factors[k];

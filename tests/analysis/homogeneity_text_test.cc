@@ -53,7 +53,7 @@ TEST(DescribeHomogeneity, ReportsAgreement) {
             "the recordings agree on inertia, viscous (chi-square 12.5, 4 degrees of freedom, p 0.5)");
 }
 
-TEST(DescribeHomogeneity, NamesParametersThatDisagreeAlone) {
+TEST(DescribeHomogeneity, NamesAParameterThatDisagreesOnItsOwn) {
   Homogeneity result = Example(0.02);
   result.parameters[0].p = 0.004;
   EXPECT_THAT(WordsOf(result), EndsWith(", p 0.02); on its own, inertia does not agree (p 0.004)"));

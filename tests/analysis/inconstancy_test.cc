@@ -33,8 +33,8 @@ FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
 }
 
 /// The fit with the inconstancy error added.
-FittedRun FitWithInconstancy(const SyntheticOptions& simulated, const FitOptions& options) {
-  FittedRun run = FitTo(Must(SimulateRecording(simulated)), options);
+FitOfRun FitWithInconstancy(const SyntheticOptions& simulated, const FitOptions& options) {
+  FitOfRun run = FitTo(Must(SimulateRecording(simulated)), options);
   AddInconstancyError(TestConstancy(run.recording, run.fit, options), run.fit);
   return run;
 }
@@ -44,16 +44,16 @@ double SystematicError(const FitReport& fit, std::string_view name) {
 }
 
 TEST(Inconstancy, IsZeroForTheRightLaw) {
-  const FittedRun run = FitWithInconstancy(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
+  const FitOfRun run = FitWithInconstancy(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
   EXPECT_FALSE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.systematic_names, IsEmpty());
   EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
 }
 
 // Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A.
-TEST(Inconstancy, IsTheScatterOfWindowsAboutTheWhole) {
+TEST(Inconstancy, IsTheScatterOfWindowsAboutTheWholeFit) {
   const FitOptions options = WithLinearGravity({});
-  FittedRun run = FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options);
+  FitOfRun run = FitTo(Must(SimulateRecording(NoisyTextbookRun("viscous"))), options);
   const ParameterEstimate whole = *run.fit.Find("inertia");
   const Constancy constancy = TestConstancy(run.recording, run.fit, options);
   double sum_of_squares = 0;
@@ -86,7 +86,7 @@ TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
 }
 
 TEST(Inconstancy, IsReportedWithItsSize) {
-  const FittedRun run = FitWithInconstancy(NoisyTextbookRun("viscous"), WithLinearGravity({}));
+  const FitOfRun run = FitWithInconstancy(NoisyTextbookRun("viscous"), WithLinearGravity({}));
   ASSERT_TRUE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("by more than their errors: inertia by 0.000"));
 }
@@ -113,7 +113,7 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
 }
 
-TEST(Inconstancy, UsesTheHalvesWithoutWindows) {
+TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   Constancy constancy;
   // Friction differs by two standard errors, which may be chance.

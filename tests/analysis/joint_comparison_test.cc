@@ -152,7 +152,7 @@ TEST(CompareJointModels, AddsTheInformationOfRecordingsOnATerm) {
   EXPECT_LT(comparison.tests.at(0).p.value_or(1), 1e-6);
 }
 
-TEST(CompareJointModels, GivesNoPForTermsThatAreNotShared) {
+TEST(CompareJointModels, GivesNoPValueForTermsThatAreNotShared) {
   const std::vector<std::string> models = {"viscous", "coulomb"};
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
   const JointModels joint =
@@ -210,7 +210,7 @@ TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedCorrelatedRecording) 
 
 // ---- Predictions and units -----------------------------------------------------------------------------------------
 
-TEST(CompareJointModels, PredictsEachRecordingFromItself) {
+TEST(CompareJointModels, PredictsEachRecordingFromItsOwnFit) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 51);
   for (SyntheticOptions& run : runs) run.duration = 20;
   const auto [joint, comparison] = Compare(Simulate(runs), {"viscous", "coulomb"}, CompareOptions{});

@@ -30,7 +30,7 @@ TEST(ChiBarTail, HasTheTabulatedFivePercentPoints) {
   EXPECT_THAT(ChiBarTail(WeightsAtBound(2, 0, 0.0), 4.2306), DoubleNear(0.05, 1e-4));
 }
 
-TEST(ChiBarTail, IsOneWithoutAGain) {
+TEST(ChiBarTail, IsOneIfTheStatisticIsNotPositive) {
   EXPECT_EQ(ChiBarTail(WeightsAtBound(1, 0), 0), 1);
   EXPECT_EQ(ChiBarTail(WeightsAtBound(2, 0, 0.3), -1), 1);
 }

@@ -137,7 +137,7 @@ TEST(Inflation, CorrectsTheVarianceAboutAMean) {
 }
 
 // A likelihood's σ² is RSS / N; for independent residuals it is too small by the factor (N - k) / N.
-TEST(Inflation, CountsParametersOnce) {
+TEST(Inflation, CorrectsForParametersOnlyIfSigmaDoesNot) {
   EXPECT_DOUBLE_EQ(Inflation({}, 100, 5, 5), 1);
   NoiseModel quantized;
   quantized.family = NoiseFamily::kQuantized;
@@ -161,7 +161,7 @@ TEST(AutocorrelationOf, FindsTheAutocorrelationOfTheNoise) {
 
 // ---- Linearize -----------------------------------------------------------------------------------------------------
 
-LinearFit LinearOf(const FittedRun& run, bool with_bounds, const ParameterPriors& priors = {}) {
+LinearFit LinearOf(const FitOfRun& run, bool with_bounds, const ParameterPriors& priors = {}) {
   const NoiseModel noise{run.fit.noise.family, run.fit.noise.sigma, 0};
   return LinearizeFit(run.recording, run.fit, {}, TermsOf(noise, run.recording.value, run.fit.fitted), priors,
                       with_bounds)
@@ -169,12 +169,12 @@ LinearFit LinearOf(const FittedRun& run, bool with_bounds, const ParameterPriors
 }
 
 TEST(LinearizeFit, PredictsTheRefitAfterASmallChange) {
-  const FittedRun before = FitTo(NoisyRun(), "coulomb", {});
+  const FitOfRun before = FitTo(NoisyRun(), "coulomb", {});
   const LinearFit linear = LinearOf(before, true);
   const VectorXd change = 1e-3 * Normal(before.recording.size(), 1, 5);  // half the noise
   Recording changed = before.recording;
   changed.value += change;
-  const FittedRun after = FitTo(changed, ModelOptions("coulomb"));
+  const FitOfRun after = FitTo(changed, ModelOptions("coulomb"));
   const double variance = before.fit.noise.sigma * before.fit.noise.sigma;
   const VectorXd predicted = linear.influence.transpose() * change / variance;
   for (std::size_t i = 0; i < linear.free.size(); ++i) {
@@ -187,7 +187,7 @@ TEST(LinearizeFit, PredictsTheRefitAfterASmallChange) {
 
 // The fit's reported errors come from another implementation.
 TEST(LinearizeFit, HasTheErrorsOfTheFitOnItsDiagonal) {
-  const FittedRun run = FitTo(NoisyRun(), "coulomb", {});
+  const FitOfRun run = FitTo(NoisyRun(), "coulomb", {});
   const LinearFit linear = LinearOf(run, true);
   ASSERT_EQ(linear.free.size(), run.fit.parameters.size());
   for (std::size_t i = 0; i < linear.free.size(); ++i) {
@@ -197,8 +197,8 @@ TEST(LinearizeFit, HasTheErrorsOfTheFitOnItsDiagonal) {
 }
 
 // A prior as accurate as the data: two independent values with errors s have a mean with error s / √2.
-TEST(LinearizeFit, CountsPriors) {
-  const FittedRun run = FitTo(NoisyRun(), "coulomb", {});
+TEST(LinearizeFit, IncludesPriors) {
+  const FitOfRun run = FitTo(NoisyRun(), "coulomb", {});
   const double alone = std::sqrt(LinearOf(run, true).inverse(0, 0));
   const ParameterPriors priors = {{"inertia", {run.fit.parameters[0].estimate, alone}}};
   EXPECT_THAT(std::sqrt(LinearOf(run, true, priors).inverse(0, 0)), RelativelyNear(alone / std::sqrt(2.0), 1e-6));
@@ -207,7 +207,7 @@ TEST(LinearizeFit, CountsPriors) {
 // Dry friction fitted to a recording without it is at 0 in about half of the recordings.
 TEST(LinearizeFit, FreesParametersAtABoundIfRequested) {
   SyntheticOptions run = NoisyRun("viscous");
-  FittedRun fitted;
+  FitOfRun fitted;
   do {
     fitted = FitTo(run, "coulomb", {});
   } while (!fitted.fit.parameters[2].at_bound && ++run.seed < 20);
@@ -217,7 +217,7 @@ TEST(LinearizeFit, FreesParametersAtABoundIfRequested) {
 }
 
 TEST(LinearizeFit, IsEmptyIfTheMotionCannotBeComputed) {
-  FittedRun run = FitTo(NoisyRun(), "coulomb", {});
+  FitOfRun run = FitTo(NoisyRun(), "coulomb", {});
   const ReadingTerms terms = TermsOf({}, run.recording.value, run.fit.fitted);
   run.fit.parameters[0].estimate = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(LinearizeFit(run.recording, run.fit, {}, terms, {}, true));

@@ -67,7 +67,7 @@ TEST(TestNested, HasUniformProbabilitiesUnderTheSimplerLaw) {
 
 // Under the simpler law p is uniform if the stiction estimate is above coulomb; otherwise the test is not made. Of 30
 // recordings none is expected below 0.001 (3 in 100 runs have one), and about 1.5 below 0.05 (5 or more: 2 in 100).
-TEST(TestNested, SimulatesForAnUnidentifiedParameter) {
+TEST(TestNested, SimulatesTheDistributionForAnUnidentifiedParameter) {
   int below = 0, far_below = 0, made = 0;
   for (int seed = 1; seed <= 30; ++seed) {
     SyntheticOptions run = LawRun(kTrueLaws[1], 15, 1);

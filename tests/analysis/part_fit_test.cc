@@ -45,7 +45,7 @@ Trajectory MotionOf(const SyntheticOptions& run) {
 
 TEST(Parts, RecoverTheTruthFromANoiseFreePart) {
   const SyntheticOptions run = QuietRun("coulomb");
-  const FittedRun whole = FitTo(run, "coulomb", {});
+  const FitOfRun whole = FitTo(run, "coulomb", {});
   const PartFit part = Parts(whole.recording, whole.fit, ModelOptions("coulomb")).Fit(7.125, 14, {});
   ASSERT_TRUE(part.converged()) << part.reason;
   const std::vector<double> truth = TextbookParameters(run.model);
@@ -58,10 +58,10 @@ TEST(Parts, RecoverTheTruthFromANoiseFreePart) {
   EXPECT_THAT(EstimateOf(part, "initial_rate"), DoubleNear(MotionOf(run).Rate(7.13), 1e-5));
 }
 
-TEST(Parts, FixTheHeldParametersAndTheFitsFixedOnes) {
+TEST(Parts, FixTheHeldParametersAndTheFixedParametersOfTheWholeFit) {
   FitOptions options = ModelOptions("coulomb");
   options.fixed = {{"viscous", 0.0016}};
-  const FittedRun whole = FitTo(Must(SimulateRecording(NoisyRun())), options);
+  const FitOfRun whole = FitTo(Must(SimulateRecording(NoisyRun())), options);
   const PartFit part = Parts(whole.recording, whole.fit, options).Fit(3, 9, {"coulomb", "zero_angle"});
   for (const char* name : {"viscous", "coulomb", "zero_angle"}) {
     EXPECT_TRUE(part.fit.Find(name)->fixed) << name;
@@ -76,7 +76,7 @@ TEST(Parts, StartADriftingZeroAtItsValueInThePart) {
   recording.value += 0.001 * recording.time;
   FitOptions options = ModelOptions("viscous");
   options.initial = {{"zero_drift", 0.0}};
-  const FittedRun whole = FitTo(recording, options);
+  const FitOfRun whole = FitTo(recording, options);
   const Parts parts(whole.recording, whole.fit, options);
   EXPECT_THAT(EstimateOf(parts.Fit(8, 16, {}), "zero_angle"), DoubleNear(0.020, 1e-6));
   EXPECT_THAT(EstimateOf(parts.Fit(8, 16, {"zero_angle", "zero_drift"}), "zero_angle"), DoubleNear(0.020, 1e-6));
@@ -85,7 +85,7 @@ TEST(Parts, StartADriftingZeroAtItsValueInThePart) {
 TEST(Parts, ExplainAFailedFit) {
   SyntheticOptions run = NoisyRun();
   run.duration = 60;  // at rest after 41 s
-  const FittedRun whole = FitTo(run, "coulomb", {});
+  const FitOfRun whole = FitTo(run, "coulomb", {});
   const Parts parts(whole.recording, whole.fit, ModelOptions("coulomb"));
   EXPECT_FALSE(parts.Fit(3, 3.02, {}).converged());
   EXPECT_THAT(parts.Fit(3, 3.02, {}).reason, HasSubstr("samples"));
@@ -100,24 +100,24 @@ TEST(Parts, GiveTheAmplitudeOfAnUndampedSwing) {
     run.release_angle = 1.2;
     FitOptions options = ModelOptions(model);
     options.fixed = {{"viscous", 0.0}};
-    const FittedRun whole = FitTo(Must(SimulateRecording(run)), options);
+    const FitOfRun whole = FitTo(Must(SimulateRecording(run)), options);
     const Parts parts(whole.recording, whole.fit, options);
     for (const double time : {1.0, 2.0, 2.2, 7.77, 19.5}) EXPECT_THAT(parts.Amplitude(time), DoubleNear(1.2, 1e-5));
   }
 }
 
-TEST(Parts, HaveNoAmplitudeWithoutAMotion) {
-  FittedRun whole = FitTo(NoisyRun(), "coulomb", {});
+TEST(Parts, HaveZeroAmplitudeIfTheMotionCannotBeTraced) {
+  FitOfRun whole = FitTo(NoisyRun(), "coulomb", {});
   whole.fit.parameters[0].estimate = -1;
   EXPECT_EQ(Parts(whole.recording, whole.fit, ModelOptions("coulomb")).Amplitude(3), 0);
 }
 
 TEST(Parts, UseTheSensorsRangeIfReadingsAreCut) {
   SyntheticOptions run = NoisyRun();
-  const FittedRun free = FitTo(run, "coulomb", {});
+  const FitOfRun free = FitTo(run, "coulomb", {});
   EXPECT_EQ(Parts(free.recording, free.fit, ModelOptions("coulomb")).NoiseOf(free.fit).high, kInfinity);
   run.range = SensorRange{-0.3, 0.3};
-  const FittedRun cut = FitTo(run, "coulomb", {});
+  const FitOfRun cut = FitTo(run, "coulomb", {});
   const NoiseModel noise = Parts(cut.recording, cut.fit, ModelOptions("coulomb")).NoiseOf(cut.fit);
   // Inside the range by a millionth of it, so that rounding does not hide a clipped reading.
   EXPECT_THAT(noise.low, DoubleNear(-0.3, 2e-6));
@@ -138,7 +138,7 @@ struct ExponentialDecay {
     for (double end = 0.5; end < 19.9; end += half_swing) ends.push_back(end);
   }
 
-  FittedRun whole;
+  FitOfRun whole;
   double half_swing;
   std::vector<double> ends;
 };

@@ -108,7 +108,7 @@ TEST(MakePlan, VariesOneFactorAtATime) {
 }
 
 // A range that cuts off one side gives different results for releases on the two sides.
-TEST(MakePlan, HasRowsThatMatchTheirOwnPlans) {
+TEST(MakePlan, HasRowsEqualToThePlansOfTheChangedRuns) {
   SyntheticOptions run = LightRun("viscous", 0.001);
   run.release_angle = -0.4;
   run.duration = 3;
@@ -135,7 +135,7 @@ TEST(MakePlan, LimitsTheAmplitudesOfItsRows) {
   EXPECT_THAT(Values(Must(MakePlan(run)), "release_angle"), ElementsAre(0.675, 1.35, 2.7));
 }
 
-TEST(MakePlan, OmitsTheResolutionFactorWithoutOne) {
+TEST(MakePlan, OmitsTheResolutionFactorWithoutAResolution) {
   EXPECT_THAT(Values(Must(MakePlan(LightRun("viscous"))), "resolution"), ElementsAre());
 }
 
@@ -167,7 +167,7 @@ TEST(MakePlan, PredictsErrorsThatGrowWithTheResolution) {
               ElementsAre(DoubleNear(noise(0.5) / noise(0.125), 1e-3), DoubleNear(noise(2) / noise(0.5), 0.02)));
 }
 
-TEST(MakePlan, TreatsLevelsWithoutNoiseAsWhiteNoise) {
+TEST(MakePlan, TreatsQuantizationWithoutNoiseAsWhiteNoise) {
   SyntheticOptions levels = LightRun("viscous", 0.001);
   levels.noise = 0;
   levels.resolution = kCount;
@@ -212,7 +212,7 @@ TEST(MakePlan, FindsTheAmplitudeWhereBiasEqualsTheError) {
 
 // Below some amplitude dry friction leaves less than a whole period. Just above it the bias is already larger than the
 // error, so the plan gives this amplitude.
-TEST(MakePlan, FindsTheAmplitudeWhereOneWholePeriodEnds) {
+TEST(MakePlan, FindsTheSmallestAmplitudeThatLeavesAWholePeriod) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 1e-5;
   const double amplitude = Must(MakePlan(run)).amplitude_of_equal_bias.value();
@@ -229,7 +229,7 @@ TEST(MakePlan, FindsTheAmplitudeForAnUndampedPendulum) {
   EXPECT_THAT(Must(MakePlan(run)).amplitude_of_equal_bias.value() / expected, DoubleNear(1, 0.01));
 }
 
-TEST(MakePlan, FindsNoAmplitudeOfEqualBiasForALinearPendulum) {
+TEST(MakePlan, FindsNoAmplitudeWhereBiasEqualsTheErrorForALinearPendulum) {
   EXPECT_EQ(Must(MakePlan(LightRun("linear", 0.001))).amplitude_of_equal_bias, std::nullopt);
 }
 
@@ -285,7 +285,7 @@ TEST(MakePlan, ExplainsARowWithoutARecording) {
   EXPECT_THAT(half.reason, HasSubstr("the release at 25 s comes after the last sample"));
 }
 
-TEST(MakePlan, HasNoErrorsWithoutABound) {
+TEST(MakePlan, HasNoErrorsWithoutACramerRaoBound) {
   SyntheticOptions run = LightRun("viscous");
   run.noise_freedom = 3;
   run.resolution = 0.001;

@@ -40,12 +40,12 @@ SyntheticOptions Noisy(SyntheticOptions run, double noise = kSigma) {
 }
 
 struct Predictions {
-  FittedRun run;
+  FitOfRun run;
   Prediction across, forward;
 };
 
 Predictions PredictFrom(const Recording& recording, const FitOptions& options) {
-  FittedRun run = FitTo(recording, options);
+  FitOfRun run = FitTo(recording, options);
   Prediction across = CrossValidate(run.recording, run.fit, options);
   Prediction forward = PredictForward(run.recording, run.fit, options);
   return {std::move(run), std::move(across), std::move(forward)};
@@ -134,7 +134,7 @@ TEST(Prediction, InterpretsSigmaByTheRequestedFamily) {
   }
 }
 
-// With residuals of about a count some parts alone would get another noise family than the whole fit.
+// If residuals are about one count, fits of some parts alone would choose another noise family than the whole fit.
 TEST(Prediction, KeepsTheNoiseFamilyOfTheFit) {
   SyntheticOptions run = Noisy(TextbookRun("coulomb"), 0.957 * kCount);
   run.resolution = kCount;
@@ -185,7 +185,7 @@ TEST(PredictForward, IncludesTheErrorsOfParameters) {
 
 // Cross-validation covers the time from one period after the release to the end. Forward prediction covers the last 40
 // % of the time after the release.
-TEST(Prediction, CoversTheTimeAfterTheFirstPeriodOrThreeFifths) {
+TEST(Prediction, CoversTheTimeAfterTheFirstPeriodOrAfterThreeFifths) {
   const Predictions released = Predict(Noisy(TextbookRun("coulomb")), "coulomb");
   const double period = 2 * kPi * std::sqrt(0.079 / kTextbookTorque);
   EXPECT_THAT(static_cast<double>(released.across.samples), DoubleNear(100 * (20 - 1.9 - period), 2));
@@ -199,7 +199,7 @@ TEST(PredictForward, IsTheTrajectoryOfAFitToTheFirstPart) {
   const Predictions predictions = Predict(Noisy(TextbookRun("coulomb")), "coulomb");
   const Recording& used = predictions.run.recording;
   const double from = 1.9 + 0.6 * (used.time[used.size() - 1] - 1.9);
-  const FittedRun part = FitTo(Must(SelectWindow(used, 0, from)), ModelOptions("coulomb"));
+  const FitOfRun part = FitTo(Must(SelectWindow(used, 0, from)), ModelOptions("coulomb"));
   const FittedMotion motion(part.recording, part.fit, {});
   const Eigen::VectorXd residual = used.value - motion.Readings(used.time).value();
   const Eigen::Index rest = used.size() - part.recording.size();
@@ -243,7 +243,7 @@ TEST(Prediction, SkipsGaps) {
   recording.value.resize(before + after);
   recording.time << whole.time.head(before), whole.time.tail(after);
   recording.value << whole.value.head(before), whole.value.tail(after);
-  const FittedRun fitted = FitTo(whole, ModelOptions("coulomb"));
+  const FitOfRun fitted = FitTo(whole, ModelOptions("coulomb"));
   const Prediction across = CrossValidate(recording, fitted.fit, ModelOptions("coulomb"));
   EXPECT_THAT(across.standardized, kAboutOne);
   EXPECT_THAT(static_cast<double>(across.samples), DoubleNear(1678 - 600, 2));
@@ -367,7 +367,7 @@ TEST(Prediction, HasNoStandardDeviationsWithoutErrors) {
 
 // Start values without a possible trajectory, as after a failed fit.
 TEST(Prediction, ReportsAFailedFit) {
-  FittedRun run = FitTo(Noisy(TextbookRun("coulomb")), "coulomb", {});
+  FitOfRun run = FitTo(Noisy(TextbookRun("coulomb")), "coulomb", {});
   FitOptions options = ModelOptions("coulomb");
   options.fixed["coulomb"] = run.fit.parameters[2].estimate = 1;  // holds the pendulum forever
   ExpectNothing(CrossValidate(run.recording, run.fit, options), "cannot be made");

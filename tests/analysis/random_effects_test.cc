@@ -105,7 +105,7 @@ TEST(SummarizeScatter, HasAnErrorForEqualValues) {
 }
 
 // Two runs with errors s at a distance d: Q = (d² / 2) / (s² + between²) = 1, so between² = d²/2 - s².
-TEST(SummarizeScatter, IsTheDistanceForTwoRuns) {
+TEST(SummarizeScatter, FollowsFromTheDistanceOfTwoRuns) {
   const RandomEffects effects = SummarizeScatter(Eigen::Vector2d(1, 1.3), Eigen::Vector2d(0.1, 0.1));
   EXPECT_THAT(effects.between * effects.between, DoubleNear(0.09 / 2 - 0.01, 1e-10));
   EXPECT_THAT(effects.mean, DoubleNear(1.15, 1e-14));
@@ -113,7 +113,7 @@ TEST(SummarizeScatter, IsTheDistanceForTwoRuns) {
 }
 
 // With scatter far above the errors all runs have equal weight: the mean, and the standard deviation over √K.
-TEST(SummarizeScatter, IsThePlainMeanForLargeScatter) {
+TEST(SummarizeScatter, GivesThePlainMeanForLargeScatter) {
   Effects runs = Scattered();
   runs.std_error *= 1e-4;
   const RandomEffects effects = Summarize(runs);
@@ -284,7 +284,7 @@ TEST(ScatterAbout, HasAClosedFormForEqualErrors) {
   EXPECT_THAT(ScatterAbout(0.95, value, std_error), DoubleNear(std::sqrt(squares / 4 - 1e-4), 1e-9));
 }
 
-TEST(ScatterAbout, IsZeroIfErrorsExplainAll) {
+TEST(ScatterAbout, IsZeroIfErrorsExplainAllScatter) {
   const Effects agreeing = Agreeing();
   EXPECT_EQ(ScatterAbout(1, agreeing.value, agreeing.std_error), 0);
   EXPECT_THAT(ScatterAbout(1.1, agreeing.value, agreeing.std_error), Gt(0.09));  // All values are 0.1 below the centre.

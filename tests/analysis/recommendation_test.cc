@@ -56,13 +56,13 @@ Comparison Recommended(const std::vector<Case>& cases) {
 
 // Simplest within 2 of the smallest BIC: Kass & Raftery, JASA 90:773 (1995), call a smaller difference "not worth a
 // bare mention".
-TEST(Recommend, ChoosesTheSimplestWithinTwoOfTheSmallestBic) {
+TEST(Recommend, ChoosesTheSimplestLawWithinTwoOfTheSmallestBic) {
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "coulomb");
   EXPECT_EQ(Recommended({{"viscous", 100, 1}, {"coulomb", 52.1, 1}, {"drag", 50, 1}}).recommended, "drag");
   EXPECT_EQ(Recommended({{"viscous", 51, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "viscous");
 }
 
-TEST(Recommend, ChoosesTheSmallerBicOfTwoEquallySimple) {
+TEST(Recommend, ChoosesTheSmallerBicOfTwoEquallySimpleLaws) {
   EXPECT_EQ(Recommended({{"asymmetric", 51, 1}, {"drag", 50, 1}}).recommended, "drag");
   EXPECT_EQ(Recommended({{"asymmetric", 50, 1}, {"drag", 51, 1}}).recommended, "asymmetric");
 }

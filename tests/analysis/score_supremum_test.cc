@@ -26,7 +26,7 @@ MatrixXd Seeded(Eigen::Index rows, Eigen::Index columns) {
 /// Three standard deviations of a share p of 19999 draws.
 double Scatter(double p) { return 3 * std::sqrt(p * (1 - p) / 19'999); }
 
-// One shape: half χ²(1), with the 5 % point 2.7055.
+// One shape: the tail is half the tail of χ²(1); its 5 % point is 2.7055.
 TEST(SupremumTail, IsHalfAChiSquareForOneShape) {
   const MatrixXd shapes = Seeded(50, 1);
   EXPECT_THAT(SupremumTail(MatrixXd(50, 0), shapes, 2.705543, 1), DoubleNear(0.05, Scatter(0.05)));
@@ -39,7 +39,7 @@ TEST(SupremumTail, IsTheTailOfTheMaximumForIndependentShapes) {
 }
 
 // Without the direction of the nuisance (1, 0, ...) both shapes are (0, 1, ...): one shape.
-TEST(SupremumTail, UsesOnlyWhatTheNuisanceDoesNotExplain) {
+TEST(SupremumTail, UsesOnlyThePartsOfShapesThatTheNuisanceDoesNotExplain) {
   MatrixXd nuisance = MatrixXd::Zero(4, 1);
   nuisance(0, 0) = 7;
   MatrixXd shapes = MatrixXd::Zero(4, 2);
@@ -48,7 +48,7 @@ TEST(SupremumTail, UsesOnlyWhatTheNuisanceDoesNotExplain) {
   EXPECT_THAT(SupremumTail(nuisance, shapes, 2.705543, 3), DoubleNear(0.05, Scatter(0.05)));
 }
 
-TEST(SupremumTail, IsOneIfNothingIsLeft) {
+TEST(SupremumTail, IsOneIfTheNuisanceExplainsAllShapesOrTheStatisticIsZero) {
   const MatrixXd nuisance = Seeded(20, 3);
   EXPECT_EQ(SupremumTail(nuisance, nuisance.leftCols(2), 5, 1), 1);
   EXPECT_EQ(SupremumTail(nuisance, Seeded(20, 5).rightCols(2), 0, 1), 1);

@@ -49,7 +49,7 @@ TEST(ParseJsonObject, RefusesMoreThan64KiB) {
             "a.json: this is longer than 64 KiB, so it is not a rig; name a rig file");
 }
 
-TEST(JsonForMessage, ShowsNumbersAndStringsButOnlyTheKindOfOthers) {
+TEST(JsonForMessage, ShowsNumbersAndStringsButOnlyTheKindOfOtherValues) {
   EXPECT_EQ(JsonForMessage(1.5), "1.5");
   EXPECT_EQ(JsonForMessage("a\nb"), R"("a\x0ab")");
   EXPECT_EQ(JsonForMessage(nullptr), "null");

@@ -12,7 +12,7 @@
 namespace pendulum::parallel_test {
 namespace {
 
-TEST(ParallelFor, CallsEachNumberOnce) {
+TEST(ParallelFor, CallsTheFunctionOnceForEachNumber) {
   for (const int threads : {0, 1, 3, 1000}) {
     for (const int count : {0, 1, 2, 500}) {
       std::vector<int> calls(static_cast<std::size_t>(count));

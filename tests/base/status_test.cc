@@ -23,7 +23,7 @@ TEST(ExitCode, MatchesTheDocumentedTable) {
 
 TEST(ExitCode, IsTheExitCodeOfABugForAnUnknownStatus) { EXPECT_EQ(ExitCode(static_cast<StatusCode>(99)), 70); }
 
-TEST(Error, ConvertsToTheErrorOfAnyResult) {
+TEST(Error, ConvertsToAResultOfAnyType) {
   const Result<int> number = Error(StatusCode::kDataLoss, "swing.csv:3: no number");
   const Result<std::vector<std::string>> words = Error(StatusCode::kNotFound, "swing.csv: no such file");
   ASSERT_FALSE(number);

@@ -72,7 +72,7 @@ TEST_F(FitStoreFileTest, StoresEachChangeOnTheDiskBeforeReturning) {
   EXPECT_THAT(IdsInACopy(), ElementsAre("c", "a"));
 }
 
-TEST_F(FitStoreFileTest, LeavesOnlyOneFile) {
+TEST_F(FitStoreFileTest, LeavesOnlyOneFileWhenClosed) {
   Add("a");
   EXPECT_THAT(folder_.Names(), testing::Contains("fits.sqlite-wal"));
   Close();
@@ -103,7 +103,7 @@ TEST_F(FitStoreFileTest, KeepsConcurrentAdditions) {
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM fits"), kThreads * kRuns);
 }
 
-TEST_F(FitStoreFileTest, RefusesOnlyTheFaultyOnesOfConcurrentWrites) {
+TEST_F(FitStoreFileTest, RefusesOnlyTheInvalidWritesAmongConcurrentWrites) {
   constexpr int kThreads = 8, kRuns = 20;
   FitStore& store = Store();
   Add("taken");

@@ -207,7 +207,7 @@ TEST_F(RefitTest, DoesNothingOnceStopped) {
   EXPECT_EQ(counts.runs, 2);
 }
 
-TEST_F(RefitTest, CountsEachRunWhenDone) {
+TEST_F(RefitTest, ReportsTheCountsAfterEachRun) {
   WriteBatch(folder_, 3);
   RefitAll(coulomb_);
   folder_.Write("runs.csv", folder_.Read("runs.csv") + "nowhere.csv,z\n");
@@ -269,7 +269,7 @@ TEST_F(RefitTest, ReturnsTheErrorOfTheStore) {
   EXPECT_EQ(read, 2);
 }
 
-TEST_F(RefitTest, ReturnsTheErrorOfItsManifest) {
+TEST_F(RefitTest, ReturnsTheErrorOfTheManifest) {
   folder_.Write("runs.csv", "path,id\n0.csv,a\n1.csv,a\n");
   const auto source = OpenSource(folder_ / "runs.csv");
   auto store = Store::Open(store_, Store::Mode::kWrite);

@@ -100,7 +100,7 @@ TEST(Describe, CountsEveryValueOnce) {
 
 // False alarm rate of this rule in an independent simulation (NumPy, 4000 batches per size): 3.3 to 4.4 % for 5 to 200
 // runs. 1 % is four standard deviations of the rate.
-TEST(FindOutliers, HaveAFalseAlarmOnceInTwentyBatches) {
+TEST(FindOutliers, HasAFalseAlarmOnceInTwentyBatches) {
   constexpr int kBatches = 3000;
   for (const std::size_t runs : {5U, 20U, 100U}) {
     int alarms = 0;
@@ -112,7 +112,7 @@ TEST(FindOutliers, HaveAFalseAlarmOnceInTwentyBatches) {
   }
 }
 
-TEST(FindOutliers, FindTheFarthestFirstWithItsDistance) {
+TEST(FindOutliers, ListsTheFarthestRunFirstWithItsDistance) {
   RunValues values = OneGroup({10, 11, 9, 10.5, 30, 9.5, -30, 10});
   std::ranges::fill(values.std_error, 2);
   const auto outliers = FindOutliers(values);
@@ -124,7 +124,7 @@ TEST(FindOutliers, FindTheFarthestFirstWithItsDistance) {
 }
 
 // Distances 0, 0, 0.5, 0.5, 1, 1, 20 from the median 10: their median is 0.5, and the scale is 1.4826 · 0.5.
-TEST(FindOutliers, UseTheScatterIfThereAreNoErrors) {
+TEST(FindOutliers, UsesTheScatterIfThereAreNoErrors) {
   const auto outliers = FindOutliers(OneGroup({10, 11, 9, 10.5, 30, 9.5, 10}));
   ASSERT_THAT(outliers, SizeIs(1));
   EXPECT_EQ(outliers[0].run, 4);
@@ -132,13 +132,13 @@ TEST(FindOutliers, UseTheScatterIfThereAreNoErrors) {
 }
 
 // st.norm.isf((1 - 0.95 ** (1 / 6)) / 2) = 2.63104 for six runs.
-TEST(FindOutliers, ExceedTheLimitOfSidak) {
+TEST(FindOutliers, UsesTheLimitOfSidak) {
   for (const auto& [value, count] : {std::pair{2.631, 0}, std::pair{2.632, 1}}) {
     EXPECT_THAT(FindOutliers(OneGroup({-0.2, 0.1, 0, -0.1, value, 0}, 1)), SizeIs(count)) << value;
   }
 }
 
-TEST(FindOutliers, CompareWithinTheirOwnGroup) {
+TEST(FindOutliers, ComparesRunsWithinTheirGroup) {
   RunValues values = NormalRuns(2, 10, 1, 7);  // groups at about 100 and 150
   EXPECT_THAT(FindOutliers(values), IsEmpty());
   values.estimate[4] = 150;  // in the first group
@@ -147,13 +147,13 @@ TEST(FindOutliers, CompareWithinTheirOwnGroup) {
   EXPECT_EQ(outliers[0].run, 4);
 }
 
-TEST(FindOutliers, NeedFiveRuns) {
+TEST(FindOutliers, NeedsFiveRuns) {
   EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1000}, 0.1)), IsEmpty());
   EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000}, 0.1)), SizeIs(1));
   EXPECT_THAT(FindOutliers(OneGroup({})), IsEmpty());
 }
 
-TEST(FindOutliers, AreMissingWithoutScatterAndErrors) {
+TEST(FindOutliers, FindsNoOutlierIfRobustScaleAndErrorsAreZero) {
   EXPECT_THAT(FindOutliers(OneGroup({1, 1, 1, 1, 1000})), IsEmpty());
 }
 

@@ -85,7 +85,7 @@ TEST(FitTrend, HasACorrectProbability) {
   EXPECT_NEAR(below, 100, 4 * 9.7);
 }
 
-TEST(FitTrend, NeedsADegreeOfFreedomAndTwoOrders) {
+TEST(FitTrend, NeedsADegreeOfFreedomAndTwoOrderValues) {
   EXPECT_FALSE(FitTrend(OneGroup({}), {}));
   EXPECT_FALSE(FitTrend(OneGroup({1, 2}), {}));
   EXPECT_FALSE(FitTrend(OneGroup({1, 2, 3}), {{0, 9}}));

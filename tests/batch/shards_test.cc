@@ -70,7 +70,7 @@ TEST_F(ShardsTest, GiveTheSameStoreAsOneRefit) {
   }
 }
 
-TEST_F(ShardsTest, AreCurrentForTheWholeBatchAfterMerging) {
+TEST_F(ShardsTest, NeedNoRefitOfTheBatchAfterMerging) {
   AllShards(3);
   ASSERT_TRUE(Merge(3));
   const RefitCounts counts = RefitInto(store_, folder_ / "runs.csv", options_);
@@ -104,7 +104,7 @@ TEST_F(ShardsTest, ReplaceOnlyTheirOwnRuns) {
   EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
 }
 
-TEST_F(ShardsTest, AreNotMergedIntoOneOfThemselves) {
+TEST_F(ShardsTest, AreNotMergedIntoTheStoreOfAShard) {
   AllShards(2);
   const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));
   ASSERT_FALSE(merged);

@@ -85,7 +85,7 @@ TEST_F(SourceTest, ReadsFilesFromTheFolderOfTheManifest) {
   EXPECT_EQ(source.read((folder_ / "rig.json").string()).value(), "{}");  // an absolute path
 }
 
-TEST_F(SourceTest, NamesFilesLikeTheManifest) {
+TEST_F(SourceTest, GivesPathsInErrorsAsTheManifestDoes) {
   const Source source = Manifest();
   EXPECT_EQ(source.read("runs/none.csv").error().code, StatusCode::kNotFound);
   EXPECT_EQ(source.read("runs/none.csv").error().message, "runs/none.csv: there is no such file; check the path");
@@ -188,7 +188,7 @@ TEST_F(SourceTest, ReportsTheErrorOfAFileFromAPack) {
   EXPECT_EQ(packed.read("other.csv").error().message, "other.csv: there is no such file in " + pack_.string());
 }
 
-TEST_F(SourceTest, CanPackAPackAndAFolder) {
+TEST_F(SourceTest, CanPackFoundFilesAndAPack) {
   ASSERT_TRUE(Pack(FindSource({"datasets/runs_1.csv"}).value(), pack_));
   ASSERT_TRUE(Pack(OpenSource(pack_).value(), pack_));  // onto its own source
   const Source packed = OpenSource(pack_).value();

@@ -141,7 +141,7 @@ TEST_F(StoreTest, UsesOnlyTheRunsOfItsShard) {
   EXPECT_EQ(store.Meta()->shard->count, 2);
 }
 
-TEST_F(StoreTest, ReplacesEntriesByTheirIdsAndKeepsOthers) {
+TEST_F(StoreTest, ReplacesEntriesWithTheSameIdAndKeepsOthers) {
   {
     Store store = Make({"a", "b"});
     ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", RefittedOutcome()) && store.Commit());
@@ -312,7 +312,7 @@ TEST_F(StoreTest, UpdatesAFailureIfThePathChanged) {
 }
 
 // The stored result names the recording's file. If the file is not a recording, the stored reason names it.
-TEST_F(StoreTest, NamesAFileInItsResultLikeTheManifest) {
+TEST_F(StoreTest, GivesPathsInResultsAsTheManifestDoes) {
   RefitOptions options;
   options.run.models = {"coulomb"};
   Store store = Store::Open(path_, Store::Mode::kWrite).value();

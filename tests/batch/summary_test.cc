@@ -149,7 +149,7 @@ TEST_F(SummaryTest, DescribesEachFittedParameter) {
   EXPECT_THAT(inertia["outliers"], IsEmpty());
 }
 
-TEST_F(SummaryTest, ExcludesTheStartFromRepeatability) {
+TEST_F(SummaryTest, ExcludesStartParametersFromRepeatability) {
   Store store =
       StoreOf(PlainManifest(6), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 5 ? 1e6 : 10)}); });
   const Json angle = ParameterOf(SummaryOf(store), "viscous", "release_angle");
@@ -242,7 +242,7 @@ TEST_F(SummaryTest, FindsTrendsOverNumbers) {
   EXPECT_THAT(trend["text"], HasSubstr(" per unit of temperature (p "));
 }
 
-TEST_F(SummaryTest, RecognizesDatesIfTheLastRunHasNone) {
+TEST_F(SummaryTest, RecognizesDatesIfTheLastRunHasNoDate) {
   const std::string manifest =
       ManifestOf(10, ",date", [](std::size_t i) { return i == 9 ? "," : ",2026-03-0" + std::to_string(i + 1); });
   Store store =

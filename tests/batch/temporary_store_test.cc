@@ -33,7 +33,7 @@ class TemporaryStoreTest : public testing::Test {
   const fs::path folder_ = fs::path(testing::TempDir()) / ("temporary_store_test_" + std::to_string(getpid()));
 };
 
-TEST_F(TemporaryStoreTest, RemovesFileAndJournalBeforeAndAfter) {
+TEST_F(TemporaryStoreTest, RemovesFileAndJournalWhenCreatedAndWhenDestroyed) {
   const fs::path path = Write("a.sqlite", "left by a killed process");
   const fs::path journal = Write("a.sqlite-journal", "its journal");
   {

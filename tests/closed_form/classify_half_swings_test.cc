@@ -40,7 +40,7 @@ TEST(ClassifyHalfSwings, AcceptsADecayingCosineAsFree) {
   EXPECT_THAT(ClassifyHalfSwings(recording, FindAllTurningPoints(recording)), Each(Verdict::kFree));
 }
 
-TEST(ClassifyHalfSwings, DetectsALastingGain) {
+TEST(ClassifyHalfSwings, DetectsALastingGainOfAmplitude) {
   const Recording recording = Sampled([](double t) { return t < 3 ? Decaying(t) : 0.1 + 1.5 * (Decaying(t) - 0.1); });
   const TurningPointTable table = FindAllTurningPoints(recording);
   const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);

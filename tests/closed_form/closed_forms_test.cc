@@ -85,7 +85,7 @@ TEST(ClosedForms, UseTrueSecondsOnAWrongClock) {
   EXPECT_NEAR(forms.table.points[3].time, 100 + right.table.points[3].time / 1.25, 1e-6);
 }
 
-TEST(ClosedForms, WorkWithoutADecrementForFewTurningPoints) {
+TEST(ClosedForms, OmitTheDecrementForFewTurningPoints) {
   Decay decay = Published();
   decay.duration = 2.3;  // three turning points, the last one near the end
   const MotionModel drag = {"drag", "drag", Gravity::kSine};

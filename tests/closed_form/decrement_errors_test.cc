@@ -82,7 +82,7 @@ TEST(DecrementErrors, AreRightForDryFrictionAlone) {
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay);
 }
 
-TEST(DecrementErrors, AreRightForBothTermsOnCounts) {
+TEST(DecrementErrors, AreRightForViscousAndDryFrictionOnCounts) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay, 0.003464);  // 0.1985 deg per count

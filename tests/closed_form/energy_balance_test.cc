@@ -59,7 +59,7 @@ TEST(FrictionFrom, IsTheLogDecrementForSmallViscousSwings) {
   EXPECT_NEAR(FrictionFrom(BalanceEnergy(Must(FindMotionModel("viscous")), table, 5).front())[0] / viscous, 1, 1e-4);
 }
 
-TEST(FrictionFrom, RecoversEachLawAloneFromItsDecay) {
+TEST(FrictionFrom, RecoversEachFrictionTermFromADecayWithThisTermOnly) {
   for (const double degrees : {20.0, 60.0, 100.0, 150.0}) {
     SCOPED_TRACE(degrees);
     Decay viscous, coulomb, drag;
@@ -115,7 +115,7 @@ TEST(FrictionFrom, GivesAllParametersOfEveryModel) {
   }
 }
 
-TEST(FrictionFrom, MatchesTheSimplerLawWithoutAParameter) {
+TEST(FrictionFrom, MatchesTheSimplerLawIfAParameterIsExcluded) {
   Decay decay{5, 0.003, 0.003, 0.0006, 60 * kRadFromDeg, 60, Quantity::kAngle};
   const TurningPointTable table = Must(FindTurningPoints(SimulateDecay(decay)));
   const EnergyBalance drag = BalanceEnergy(Must(FindMotionModel("drag")), table, 5).front();

@@ -168,7 +168,7 @@ TEST(FindFreeSwings, DropsAHoldThatTrembles) {
   EXPECT_THAT(swing.from, AllOf(Ge(1.99), Le(2.15)));
 }
 
-TEST(FindFreeSwings, BeginsAtTheNextTurningPointNearTheUpright) {
+TEST(FindFreeSwings, BeginsAtTheNextTurningPointAfterAReleaseNearTheUpright) {
   const double upright = 170 * kRadFromDeg;
   const FreeSwing swing = OnlySwing(Joined({Still(upright, 2), Swing(upright, 20)}));
   EXPECT_EQ(Sentence(swing.begins),
@@ -205,7 +205,7 @@ TEST(FindFreeSwings, EndsOnePeriodAfterTheMotion) {
   EXPECT_THAT(swing.ends.time, DoubleNear(swing.to - 2 * kHalfPeriod, 0.05));
 }
 
-TEST(FindFreeSwings, KeepsAShortRest) {
+TEST(FindFreeSwings, IncludesAShortStandstill) {
   const Recording recording = SwingToRest(2);
   ExpectWhole(recording, OnlySwing(recording));
 }
@@ -234,7 +234,7 @@ TEST(FindFreeSwings, KeepsASwingWithNoise) {
   }
 }
 
-TEST(FindFreeSwings, EndsIfAHandBrakes) {
+TEST(FindFreeSwings, EndsASwingIfAHandBrakesThePendulum) {
   // At its thirteenth passage through the bottom it is slowed to the speed of a swing of 0.2 rad.
   const Recording swing = Swing(0.5, 20);
   const double brake = Crossing(swing, 12);
@@ -246,7 +246,7 @@ TEST(FindFreeSwings, EndsIfAHandBrakes) {
   EXPECT_THAT(swings[1].from, AllOf(Gt(brake), Lt(brake + kHalfPeriod)));
 }
 
-TEST(FindFreeSwings, EndsIfAHandStopsIt) {
+TEST(FindFreeSwings, EndsASwingIfAHandStopsThePendulum) {
   const Recording swing = Swing(0.5, 20);
   const double stop = Crossing(swing, 12);
   const FreeSwing found = OnlySwing(Joined({Part(swing, 0, stop), Still(0, 6)}));
@@ -349,7 +349,7 @@ TEST(FindFreeSwings, RefusesADrivenSwing) {
             "see; give --from and --to to fit this window anyway");
 }
 
-TEST(FindFreeSwings, DoesNotCountAStartInMotionAsAClimb) {
+TEST(FindFreeSwings, DoesNotTreatAStartInMotionAsARiseOfTheAmplitude) {
   // It loses about 0.4 % of its amplitude per half swing, and starts where it passes its rest position.
   const Recording swing = SimulateDecay({kOmega, 0, 0.001, 0, 0.5, 9});
   const Recording recording = Joined({Part(swing, Crossing(swing, 0))}, 0.01);

@@ -34,7 +34,7 @@ TEST(PeriodRatio, MatchesTheStandardLibrarysEllipticIntegral) {
   }
 }
 
-TEST(PeriodRatio, IsOneAtRestAndTheSameOnBothSides) {
+TEST(PeriodRatio, IsOneAtRestAndIndependentOfTheSign) {
   EXPECT_EQ(SineGravity::PeriodRatio(0), 1);
   EXPECT_EQ(SineGravity::PeriodRatio(-1.2), SineGravity::PeriodRatio(1.2));
 }

@@ -155,7 +155,7 @@ TEST(SamplingWarnings, ReportARateJustAboveTwiceTheFrequency) {
               ElementsAre("nearly_aliased", "samples_near_period"));
 }
 
-TEST(DescribeSampling, UsesTheRigsFrequencyOnlyIfItAliases) {
+TEST(DescribeSampling, UsesTheRigsFrequencyOnlyIfTheSamplesAlias) {
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 100, 300), 0.5 / 0.76, 0.78).frequency_hz, 0.76, 1e-12);
   EXPECT_NEAR(DescribeSampling(Cosine(0.76, 1, 30), 0.5 / 0.24, 0.78).frequency_hz, 0.78, 1e-12);
 }

@@ -76,7 +76,7 @@ TEST(FindTurningPoints, NeedsNoUniformSampling) {
   EXPECT_LT(LargestError(found, expected).time, 0.1 / 50);
 }
 
-TEST(FindTurningPoints, NoiseAddsNoTurningPointAndMovesNoneFar) {
+TEST(FindTurningPoints, NoiseAddsNoTurningPointAndMovesEachOnlySlightly) {
   const std::vector<TurningPoint> expected = TurningPointsOfDampedSine(19.9);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -125,7 +125,7 @@ TEST(FindTurningPoints, AStartInTheMiddleOfASwingIsNotATurningPoint) {
   EXPECT_THAT(found.front().value, DoubleNear(-1, 0.01));
 }
 
-TEST(FindTurningPoints, ATurningPointSoonAfterTheStartCounts) {
+TEST(FindTurningPoints, IncludesATurningPointSoonAfterTheStart) {
   const std::vector<TurningPoint> found =
       Must(FindTurningPoints(Sample([](double t) { return std::cos(kOmega * t - 0.8); }, 10, 100))).points;
   EXPECT_THAT(found.front().time, DoubleNear(0.8 / kOmega, 1e-3));
@@ -185,7 +185,7 @@ TEST(FindTurningPoints, HasATinyZeroShiftForExponentialDecay) {
   EXPECT_THAT(Must(FindTurningPoints(Sample(decay, 20, 200))).zero.value, DoubleNear(0.1, 1e-3));
 }
 
-TEST(FindTurningPoints, KeepsTheQuantity) {
+TEST(FindTurningPoints, GivesTheQuantityOfTheRecording) {
   Recording recording = Sample(Cosine, 8, 100);
   EXPECT_EQ(Must(FindTurningPoints(recording)).quantity, Quantity::kAngle);
   recording.quantity = Quantity::kRate;
@@ -221,7 +221,7 @@ TEST(TurningPointTable, HasNoRunOfASinglePoint) {
   EXPECT_EQ(table.LargestAmplitude(), 1);
 }
 
-TEST(TurningPointTable, MatchesTheEllipticIntegral) {
+TEST(TurningPointTable, HasTheStretchOfTheEllipticIntegral) {
   TurningPointTable table;
   table.points = {{.value = kPi / 2}};
   EXPECT_NEAR(table.Stretch(0), 1.180340599016, 1e-9);  // (2/π) K(sin 45 deg)
@@ -247,7 +247,7 @@ TEST(FindAllTurningPoints, FindsTimesZeroAndAmplitudeOfADecayingCosine) {
   EXPECT_NEAR(table.half_period * SineGravity::PeriodRatio(0.17), kHalfPeriod, 2e-3);
 }
 
-TEST(FindAllTurningPoints, HasNoZeroForFewerThanThree) {
+TEST(FindAllTurningPoints, HasNoZeroForFewerThanThreePoints) {
   const TurningPointTable table = FindAllTurningPoints(Sample(DecayingCosine, 0.9, 100));
   EXPECT_LT(table.points.size(), 3U);
   EXPECT_TRUE(table.local_zero.empty());

@@ -76,7 +76,7 @@ class Bench {
   }
 
   /// The conversions of the run as made by the hardware.
-  std::vector<Conversion> Conversions() const {
+  std::vector<AdcConversion> Conversions() const {
     return {board_.conversions().begin() + static_cast<std::ptrdiff_t>(first_), board_.conversions().end()};
   }
 

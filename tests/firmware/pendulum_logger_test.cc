@@ -50,13 +50,13 @@ void ExpectNoFaults(const SimulatedBoard& board) {
 }
 
 /// Number of samples of a run that are not the mean of the hardware's conversions at their times.
-int WrongSamples(const ReceivedRun& run, const std::vector<Conversion>& conversions) {
+int WrongSamples(const ReceivedRun& run, const std::vector<AdcConversion>& conversions) {
   constexpr std::uint64_t kLeeway = 16;  // cycles
   const double cycles_per_second = kCyclesPerTick * wire::kTickHz;
   int wrong = 0;
   for (std::size_t i = 0; i < run.size(); ++i) {
     const auto cycle = conversions[0].cycle + static_cast<std::uint64_t>(std::lround(run.Time(i) * cycles_per_second));
-    auto at = std::ranges::lower_bound(conversions, cycle - kLeeway, {}, &Conversion::cycle);
+    auto at = std::ranges::lower_bound(conversions, cycle - kLeeway, {}, &AdcConversion::cycle);
     double sum = 0;
     bool is_there = true;
     for (std::uint64_t k = 0; k < run.rate().oversample; ++k, ++at) {
@@ -70,7 +70,7 @@ int WrongSamples(const ReceivedRun& run, const std::vector<Conversion>& conversi
 }
 
 /// The largest distance in cycles between a conversion and the schedule given by the first conversion and the period.
-double LargestOffset(const std::vector<Conversion>& conversions, int period) {
+double LargestOffset(const std::vector<AdcConversion>& conversions, int period) {
   double largest = 0;
   for (std::size_t k = 0; k < conversions.size(); ++k) {
     const double due = static_cast<double>(k) * period * kCyclesPerTick;
@@ -85,7 +85,7 @@ TEST_P(AtRate, EveryCodeOfAMinuteArrivesAtItsTime) {
   const auto& [board, hz, oversample] = GetParam();
   Bench bench(Board(board));
   const ReceivedRun& run = bench.Record(Rate(hz, oversample), 60);
-  const std::vector<Conversion> conversions = bench.Conversions();
+  const std::vector<AdcConversion> conversions = bench.Conversions();
   EXPECT_GE(run.size(), static_cast<std::size_t>(60 * hz));
   EXPECT_EQ(run.size(), conversions.size() / oversample);
   EXPECT_EQ(WrongSamples(run, conversions), 0);
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Oversampling, AtRate,
 TEST(PendulumLogger, CountsOverloadAndKeepsOtherSamplesRight) {
   Bench bench(Board("uno"));
   const ReceivedRun& run = bench.Record(Rate(4000), 10);
-  const std::vector<Conversion> conversions = bench.Conversions();
+  const std::vector<AdcConversion> conversions = bench.Conversions();
   const RunLosses losses = run.Losses();
   EXPECT_GT(losses.dropped, 1000U);
   EXPECT_EQ(losses.on_line, 0);

@@ -25,7 +25,7 @@ struct BoardOptions {
 };
 
 /// A conversion of the hardware.
-struct Conversion {
+struct AdcConversion {
   std::uint64_t cycle;  ///< CPU cycle at which it was triggered.
   int counts;
 };
@@ -71,7 +71,7 @@ class SimulatedBoard {
   const std::optional<double>& start() const { return start_; }  ///< Time of the present run's first sample [s].
   double ClockHz() const { return 16e6 * (1 + options_.clock_error); }
   /// Conversions triggered by the timer.
-  const std::vector<Conversion>& conversions() const { return conversions_; }
+  const std::vector<AdcConversion>& conversions() const { return conversions_; }
   const BoardFaults& faults() const { return faults_; }
 
   /// CPU load since the last call: the share of cycles that were not idle turns of the loop.
@@ -109,7 +109,7 @@ class SimulatedBoard {
   std::uint64_t line_free_ = 0, next_input_ = 0;
   std::deque<std::uint8_t> to_board_;
   std::vector<LineByte> to_host_;
-  std::vector<Conversion> conversions_;
+  std::vector<AdcConversion> conversions_;
   BoardFaults faults_;
   std::uint64_t idle_cycles_ = 0, load_start_ = 0;
 };

@@ -95,9 +95,9 @@ void ExpectNoAllocations(const NoiseModel& noise) {
   });
 }
 
-TEST(Allocations, AreNoneInLeastSquares) { ExpectNoAllocations({}); }
+TEST(Allocations, DoNotOccurInLeastSquares) { ExpectNoAllocations({}); }
 
-TEST(Allocations, AreNoneInTheLikelihoodOfLevels) {
+TEST(Allocations, DoNotOccurInTheLikelihoodOfLevels) {
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
   noise.sigma = 0.002;

@@ -53,8 +53,9 @@ inline BesideParameters Beside(const MotionModel& model, const std::vector<doubl
   return beside;
 }
 
-/// All samples except those that are before a start, reversal or stop with one of these parameter sets and after the
-/// same event with another set. Each set holds the model's parameters, the start and the zero.
+/// All samples except those near an event (start, reversal or stop) whose time depends on the parameters: the samples
+/// between the event's earliest and latest time for these sets of parameters. Each set holds the model's parameters,
+/// the start and the zero.
 inline std::vector<Eigen::Index> SamplesAwayFromEvents(const MotionModel& model, StartKind start,
                                                        const TrajectoryData& data,
                                                        const std::array<std::vector<double>, 3>& parameters) {

@@ -83,19 +83,19 @@ void ForEachCase(Visitor&& visit) {
 }
 
 /// Data simulated with the typical parameters, and trial parameters near them.
-struct Example {
+struct CostExample {
   std::vector<double> trial;
   TrajectoryData data;
   std::unique_ptr<TrajectoryCost> cost;
 
-  Example(const MotionModel& model, StartKind start, Quantity quantity, std::size_t count = 2003)
+  CostExample(const MotionModel& model, StartKind start, Quantity quantity, std::size_t count = 2003)
       : trial(TypicalParameters(model, start)), data(Simulated(model, start, quantity, count, trial, 0.003)) {
     data.scale = 0.002;
     cost = MakeTrajectoryCost(model, start, data);
     for (double& p : trial) p *= 1.001;
   }
-  Example(const Example&) = delete;  // the cost refers to the data here
-  Example& operator=(const Example&) = delete;
+  CostExample(const CostExample&) = delete;  // the cost refers to the data here
+  CostExample& operator=(const CostExample&) = delete;
 };
 
 }  // namespace pendulum

@@ -44,7 +44,7 @@ TEST(SummarizeUsed, DescribesTheWindow) {
   EXPECT_EQ(data.resolution_source, "");
 }
 
-TEST(AllWarnings, ListEachWarningOnceDataFirst) {
+TEST(AllWarnings, ListEachWarningOnceAndStartWithTheData) {
   Identification report = ExampleIdentification();
   report.fits.push_back(report.fits.front());
   report.fits.back().warnings.push_back({"gap", "another gap"});
@@ -53,7 +53,7 @@ TEST(AllWarnings, ListEachWarningOnceDataFirst) {
                           Field(&Warning::message, std::string(report.fits[1].model.name) + ": another gap")));
 }
 
-TEST(Identification, GivesTheCheckOfAFitOrNone) {
+TEST(Identification, GivesTheCheckOfAFitIfThereIsOne) {
   Identification report = ExampleIdentification();
   EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
   EXPECT_EQ(report.CheckOf(1), nullptr);
@@ -61,7 +61,7 @@ TEST(Identification, GivesTheCheckOfAFitOrNone) {
   EXPECT_EQ(report.CheckOf(0), nullptr);
 }
 
-TEST(AllWarnings, AreTheRecordingsWarningsWithoutAFit) {
+TEST(AllWarnings, AreTheWarningsOfTheRecordingIfThereIsNoFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
   EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
@@ -153,7 +153,7 @@ TEST(ExitCode, FollowsTheRecommendedFit) {
   EXPECT_EQ(ExitCode(run), 0);
 }
 
-TEST(Parts, AreTheJointRecordingsOrTheSingleOne) {
+TEST(Parts, AreTheRecordingsOfAJointFitOrTheSingleRecording) {
   const Identification joint = ExampleJointIdentification(), single = ExampleIdentification();
   EXPECT_THAT(joint.Parts(), ElementsAre(&joint.runs[0], &joint.runs[1]));
   EXPECT_THAT(single.Parts(), ElementsAre(&single));

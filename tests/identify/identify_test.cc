@@ -102,7 +102,7 @@ TEST(IdentifyEach, ComparesSeveralModelsInTheOrderAskedFor) {
   EXPECT_EQ(report.closed_forms_model, report.fits[report.MainFit()].model.name);
 }
 
-TEST(IdentifyEach, ChecksTheMainFitAllFitsOrNone) {
+TEST(IdentifyEach, ChecksTheMainFitOrAllFitsOrNoFit) {
   for (const auto& [checks, tested, compared] :
        {std::tuple(Checks::kNone, 0, 0), std::tuple(Checks::kStandard, 1, 1), std::tuple(Checks::kFull, 2, 2)}) {
     IdentifyOptions options = OptionsFor({"coulomb", "viscous"});
@@ -174,7 +174,7 @@ TEST(IdentifyEach, NamesTheFailedSwingAmongSeveral) {
   }
 }
 
-TEST(IdentifyEach, GivesAPlainErrorForOneFailedSwing) {
+TEST(IdentifyEach, GivesTheErrorOfASingleFailedSwingWithoutAPrefix) {
   const auto runs = FitTextbook(OptionsFor({"magic"}));
   ASSERT_FALSE(runs.at(0));
   EXPECT_EQ(runs[0].error().code, StatusCode::kInvalidArgument);

@@ -75,7 +75,7 @@ TEST(Dual, HasTheArithmeticOfCeresJets) {
   ExpectTheArithmeticOfJets<9>();
 }
 
-TEST(Dual, HasNoDerivativesForANumber) {
+TEST(Dual, HasZeroDerivativesForANumber) {
   const Dual<5> number(0.25);
   const Dual<5> parameter(0.25, 3);
   for (int i = 0; i < 5; ++i) {

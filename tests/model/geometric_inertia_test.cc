@@ -98,7 +98,7 @@ TEST(GeometricInertias, HaveNoErrorOfDifferenceForACommonError) {
   }
 }
 
-TEST(GeometricInertias, HaveNoErrorsIfTheRigGivesNone) {
+TEST(GeometricInertias, HaveNoErrorsIfTheRigGivesNoErrors) {
   const std::vector<GeometricInertia> inertias =
       Inertias(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
   ASSERT_THAT(inertias, SizeIs(2));

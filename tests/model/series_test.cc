@@ -37,7 +37,7 @@ TEST(SquareCoefficient, IsTheProductWithItselfAtEveryOrder) {
   }
 }
 
-TEST(CauchyProduct, UsesNoCoefficientBeyondTheRequestedOne) {
+TEST(CauchyProduct, UsesNoCoefficientBeyondTheRequestedCoefficient) {
   const Series<double> x = Coefficients({1, 2});
   EXPECT_EQ(CauchyProduct(x, x, 1), 4);
   EXPECT_EQ(SquareCoefficient(x, 1), 4);

@@ -289,7 +289,7 @@ TEST(RepairClock, RemovesRowsThatShareAStamp) {
   EXPECT_EQ(repaired.lines.LineOf(49), 53);
   EXPECT_EQ(WarningOf(repaired),
             "time_repeated: run.csv:52: 2 of 100 rows were left out because they share their time with another row, "
-            "first 0.49 s; one of each group of equal rows was kept");
+            "first 0.49 s; of rows with equal times and values, one was kept");
 }
 
 TEST(RepairClock, KeepsOneOfSeveralEqualRows) {

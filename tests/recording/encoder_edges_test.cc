@@ -63,7 +63,7 @@ TEST(IsEventDriven, NeedsAnAngleOnLevels) {
   EXPECT_FALSE(IsEventDriven(Of({0, 1, 2.5, 3, 4, 5.5, 6, 7, 8}, {0, 1, 2, 1, 0, 1, 2, 3, 2})));
 }
 
-TEST(ConvertToEdges, PlacesARowOnTheEdgeItCrossed) {
+TEST(ConvertToEdges, PlacesARowOnTheEdgeThatTheCountCrossed) {
   // Up to count 3 and back down past 0. By hand: edges at half counts, silences in count 3 and for the first row in
   // count 0.
   const Recording edges = ConvertToEdges(Of({0, 1, 2, 3, 5, 6, 7, 8}, {0, 1, 2, 3, 2, 1, 0, -1}));

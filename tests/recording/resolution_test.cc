@@ -185,7 +185,7 @@ TEST(FindResolution, IsZeroForRepeatedReadings) {
             0);
 }
 
-TEST(FindResolution, IsZeroForARampOrOneValue) {
+TEST(FindResolution, IsZeroForARampOrAConstant) {
   EXPECT_EQ(FindResolution(Eigen::VectorXd::LinSpaced(1000, 0, 7)), 0);
   EXPECT_EQ(FindResolution(Eigen::VectorXd::Constant(1000, 0.3)), 0);
   EXPECT_EQ(FindResolution(Eigen::VectorXd()), 0);

@@ -90,7 +90,7 @@ TEST(Calibration, FindsTheReadingOfAnAngle) {
   }
 }
 
-TEST(Calibration, FindsTheReadingNearestToTheGivenOne) {
+TEST(Calibration, FindsTheReadingNearestToTheGivenReading) {
   // x² - 1 is 3 at 2 and at -2.
   const Calibration parabola = CalibrationOf(With("coefficients", "[-1, 0, 1]"));
   EXPECT_NEAR(parabola.Reading(3 * kDegree, 1.5), 2, 1e-12);
@@ -162,7 +162,7 @@ TEST(ParseCalibration, RefusesARangeThatDoesNotIncrease) {
   }
 }
 
-TEST(ReadCalibration, ReadsAFileAndReportsAMissingOne) {
+TEST(ReadCalibration, ReadsAFileAndReportsAMissingFile) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sensor_test.json";
   std::ofstream(path) << With("input_range", "[0, 1023]");
   const Result<Calibration> calibration = ReadCalibration(path);

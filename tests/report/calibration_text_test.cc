@@ -70,7 +70,7 @@ TEST(CalibrationText, ShowsTheReferenceTableAsPublished) {
 )");
 }
 
-TEST(CalibrationText, NamesUnitsOfHigherOrdersAndComparesThem) {
+TEST(CalibrationText, NamesTheUnitsOfHigherOrdersAndComparesTheOrders) {
   EXPECT_THAT(Unwrapped(TextOf(TableOf(kReferenceTable), 2)),
               AllOf(HasSubstr("angle = -48.4448 + 0.183327 x + 3.09639e-05 x^2 deg"), HasSubstr("deg/count^2"),
                     HasSubstr("c2 (3.1 ± 2.0)e-05"), HasSubstr("c0 c1 -0.832, c0 c2 0.696, c1 c2 -0.965."),

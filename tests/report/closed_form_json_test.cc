@@ -27,7 +27,7 @@ TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
             R"({"estimate":0.005,"std_error":0.0005,"unit":"1"})");
 }
 
-TEST(ClosedFormsJson, NamesTheModelWithoutAFitToo) {
+TEST(ClosedFormsJson, AlsoNamesTheModelIfThereIsNoFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
   report.closed_forms->decrement.reset();
@@ -51,7 +51,7 @@ TEST(ClosedFormsJson, ExplainsAMissingPart) {
 
 TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(ClosedFormsJson(ExampleRateIdentification()).is_null()); }
 
-TEST(ClosedFormsJson, NameTheUnitOfTheNoise) {
+TEST(ClosedFormsJson, NamesTheUnitOfTheNoise) {
   Identification report = ExampleIdentification();
   report.data.unit = "rad/s";
   EXPECT_EQ(ClosedFormsJson(report)["noise_rad_s"], 0.0035);

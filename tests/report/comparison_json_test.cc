@@ -56,7 +56,7 @@ TEST(ComparisonJson, IsNullWithoutARecommendation) {
   EXPECT_TRUE(ComparisonJson(ExampleIdentification()).is_null());
 }
 
-TEST(ComparisonJson, ExplainsAMissingP) {
+TEST(ComparisonJson, ExplainsAMissingPValue) {
   const Json tests = ComparisonJson(ExampleComparedIdentification())["tests"];
   EXPECT_FALSE(tests[0].contains("reason"));
   EXPECT_TRUE(tests[1]["p"].is_null());
@@ -82,7 +82,7 @@ TEST(ComparisonJson, WritesNonFiniteNumbersAsNull) {
   EXPECT_EQ(json["cross_validation"]["reason"], "standardized is not a finite number");
 }
 
-TEST(ConstancyJson, HasBothTests) {
+TEST(ConstancyJson, HasTheTestsOfHalvesAndAmplitude) {
   const Constancy constancy = ExampleConstancy();
   const Json json = ConstancyJson(&constancy);
   EXPECT_EQ(json["constant"], false);

@@ -29,7 +29,7 @@ TEST(ParameterSection, HasOnlyTheTableOfEstimates) {
 )");
 }
 
-TEST(ParameterSection, StartsWithAMissingResult) {
+TEST(ParameterSection, StartsWithTheReasonForAMissingResult) {
   FitReport fit = ExampleFit();
   fit.termination = Termination::kNotConverged;
   fit.reason = "100 iterations were not enough";
@@ -38,7 +38,7 @@ TEST(ParameterSection, StartsWithAMissingResult) {
       HasSubstr("[[Parameters]]\x1B[0m\n    \x1B[1;31mnot_converged: 100 iterations were not enough.\x1B[0m\n"));
 }
 
-// The rounding is that of the estimate's error 0.00025. Degrees: 0.423 rad × 57.2958 × 1.01 = 24.4785.
+// Numbers are rounded to the decimal of the estimate's error 0.00025. Degrees: 0.423 rad × 57.2958 × 1.01 = 24.4785.
 TEST(FitSections, ListSystematicErrorsAndClosedFormsSeparately) {
   FitReport fit = ExampleFit();
   fit.parameters[0].closed_form = 0.0795;

@@ -165,7 +165,7 @@ TEST(JointFitJson, HasAnRmsOnlyIfTheReadingsHaveOneUnit) {
               ElementsAre("log_likelihood", "aic", "aicc", "bic", "effective_samples"));
 }
 
-TEST(ToJson, ComparesInSigmasForDifferentUnits) {
+TEST(ToJson, ComparesResidualsInSigmasIfUnitsDiffer) {
   Identification report = ExampleComparedJointIdentification();
   EXPECT_EQ(ToJson(report)["comparison"]["rows"][0]["rms_residual_rad"], 0.00349);
   report.data.unit = "sigma";

@@ -172,7 +172,7 @@ TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
   EXPECT_THAT(text, HasSubstr("\n    random effects"));
 }
 
-// The unit of a dimensionless number is 1; coulomb without a rig is an example.
+// The unit "1" of a dimensionless parameter, such as dry friction without a rig, is not printed.
 TEST(AgreementSection, HasNoUnitForADimensionlessNumber) {
   Identification report = ExampleJointIdentification();
   report.joint[0].homogeneity.parameters[1].unit = "1";

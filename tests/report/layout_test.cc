@@ -24,7 +24,7 @@ TEST(TableWithin, IsAnAlignedTableIfItFits) {
 
 // Value and error stay together: they continue below, next to the name. A row without value and error is left out
 // there.
-TEST(TableWithin, ContinuesBelowWithTheFirstColumn) {
+TEST(TableWithin, ContinuesBelowAndRepeatsTheFirstColumn) {
   const std::vector<Column> columns = {{"name"}, {"unit"}, {"value", true}, {"± error", false, 1}};
   EXPECT_EQ(TableWithin(columns, {{"b", "s", "12", "± 3"}, {"c", "m", "", ""}}, 0, 20),
             "name  unit\n"

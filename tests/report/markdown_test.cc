@@ -89,7 +89,7 @@ TEST(ToMarkdown, StartsWithVerdictAndParameters) {
 )"));
 }
 
-TEST(ToMarkdown, StartsWithAMissingConvergence) {
+TEST(ToMarkdown, StartsWithTheReasonForMissingConvergence) {
   EXPECT_THAT(ToMarkdown(ExampleRateIdentification()),
               StartsWith("# Pendulum: swing.csv\n\n## Verdict\n\n**The fit did not converge, so its numbers are not a "
                          "result.**\n\n- Model coulomb, not_converged: 100 iterations were not enough\n"));

@@ -28,7 +28,7 @@ TEST(PdgText, ChangesTheNumberOfDigitsAtTheLimitsOfTheRule) {
   EXPECT_EQ(Pdg(82.7, 9.5), "83 ± 10");
 }
 
-TEST(PdgText, RoundsHalvesOfTheErrorUpwardsInDecimalDigits) {
+TEST(PdgText, RoundsDecimalHalvesOfTheErrorUpwards) {
   EXPECT_EQ(Pdg(4.778, 0.0075), "4.778 ± 0.008");
   EXPECT_EQ(Pdg(4.778, 0.00145), "4.7780 ± 0.0015");
 }
@@ -41,7 +41,7 @@ TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndLargeErrors) {
   EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
 }
 
-TEST(PdgText, UsesTheErrorsDecimalForALargeError) {
+TEST(PdgText, RoundsTheValueToTheDecimalOfALargeError) {
   EXPECT_EQ(Pdg(0.02, 12), "0 ± 12");
   EXPECT_EQ(Pdg(0, 0.0012), "0.0000 ± 0.0012");
   EXPECT_EQ(Pdg(-0.0001, 0.02), "0.000 ± 0.020");

@@ -251,7 +251,7 @@ TEST(SeriesJson, IsNullIfThereIsNoMotion) {
   EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
 }
 
-TEST(ToSeriesJsonText, IsTheSameOnOneLine) {
+TEST(ToSeriesJsonText, IsTheSeriesJsonOnOneLine) {
   const Identification report = ReportOfThreeSamples();
   const std::string text = ToSeriesJsonText(report);
   EXPECT_EQ(text.find('\n'), text.size() - 1);

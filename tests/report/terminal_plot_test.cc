@@ -68,7 +68,7 @@ long CountAbove(const std::vector<std::string>& lines, char mark) {
   return count;
 }
 
-TEST(TerminalPlot, IsAsciiForATerminal) {
+TEST(TerminalPlot, IsAsciiAndFitsATerminal) {
   const std::vector<std::string> lines = Draw(Swing(0.76, 2000));
   EXPECT_THAT(lines, SizeIs(testing::Le(24)));
   EXPECT_THAT(lines, Each(SizeIs(testing::Le(79))));

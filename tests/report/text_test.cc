@@ -192,7 +192,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 }
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
-TEST(ToText, ComparesTheInertiaWithTheRigsWithoutACheck) {
+TEST(ToText, ComparesTheInertiaWithTheRigFileIfThereIsNoCheck) {
   Identification report = ExampleIdentification();
   EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
   report.checks.clear();

@@ -41,7 +41,7 @@ TEST(FlagNames, MatchTheFlagsOfTheTools) {
   EXPECT_THAT(CalibrationFlagNames(), UnorderedElementsAre("order", "input_range", "bits"));
 }
 
-TEST(CheckFlagName, SuggestsTheNearest) {
+TEST(CheckFlagName, SuggestsTheNearestName) {
   const std::vector<std::string_view> names = {"model", "noise"};
   EXPECT_TRUE(CheckFlagName("noise", names));
   const auto near = CheckFlagName("modle", names);
@@ -98,7 +98,7 @@ TEST(RunFlagsOf, StoresEachFlagInItsMember) {
   }
 }
 
-TEST(RunFlagsOf, AcceptsTwoStatesOfASwitch) {
+TEST(RunFlagsOf, AcceptsOnlyTrueAndFalseForASwitch) {
   EXPECT_TRUE(RunFlagsOf({{"closed_form_only", "true"}})->closed_form_only);
   EXPECT_FALSE(RunFlagsOf({{"closed_form_only", "false"}})->closed_form_only);
   for (const char* text : {"1", "yes", "True", "true "}) {

@@ -140,7 +140,7 @@ TEST(MakeSimulation, TreatsLinearViscousAsTheLinearModel) {
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
 }
 
-TEST(MakeSimulation, ListsTheModelsNamesForAnUnknownName) {
+TEST(MakeSimulation, ListsTheParametersOfTheModelForAnUnknownName) {
   SimulationFlags flags = Flags("inertia=0.04,coulomb=0.1," + std::string(kRelease));
   flags.model = "viscous";
   const Result<Simulation> simulation = MakeSimulation(flags, {});

@@ -194,7 +194,7 @@ TEST(RefuseAccess, RefusesARequestWithoutAToken) {
 }
 
 // RFC 6750, section 3.1.
-TEST(RefuseAccess, ChallengesWithAnErrorOnlyForAWrongToken) {
+TEST(RefuseAccess, NamesAnErrorInTheChallengeOnlyForAWrongToken) {
   const auto challenge = [](Fields fields) {
     fields.push_back({"Host", "localhost"});
     const auto problem = RefuseAccess(Request("GET", std::move(fields)), {kToken, {}}, Audience::kTokenHolders);
@@ -237,7 +237,7 @@ TEST(IsCrossSite, RefusesOtherSites) {
   EXPECT_TRUE(IsForeign("GET", {{"Sec-Fetch-Site", "same-origin"}, {"sec-fetch-site", "cross-site"}}));
 }
 
-TEST(IsCrossSite, AllowsALinkFromElsewhere) {
+TEST(IsCrossSite, AllowsALinkOnAnotherSite) {
   const HttpField site = {"Sec-Fetch-Site", "cross-site"}, mode = {"Sec-Fetch-Mode", "navigate"};
   EXPECT_FALSE(IsForeign("GET", {site, mode, {"Sec-Fetch-Dest", "document"}}));
   EXPECT_FALSE(IsForeign("GET", {site, mode}));

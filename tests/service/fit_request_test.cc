@@ -337,7 +337,7 @@ TEST(ParseRefitRequest, IgnoresNothingSilently) {
 
 // ---- Flags as JSON -------------------------------------------------------------------------------------------------
 
-TEST(JsonOf, ReadsBackAsTheFlags) {
+TEST(JsonOf, IsReadBackAsTheSameFlags) {
   const FlagTexts flags = {{"model", "drag"}, {"init", "a=\"1\",\\ü"}, {"from", "0.1"}};
   const auto back = FlagTextsOf(JsonOf(flags));
   ASSERT_TRUE(back) << back.error().message;

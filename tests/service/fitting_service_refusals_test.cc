@@ -128,7 +128,7 @@ TEST_F(FittingServiceRefusalsTest, RefusesAnInvalidTime) {
 
 // ---- Lanes and refusals of the server ------------------------------------------------------------------------------
 
-TEST_F(FittingServiceRefusalsTest, QueuesCalculationsSeparately) {
+TEST_F(FittingServiceRefusalsTest, QueuesCalculationsInTheirOwnLane) {
   const auto lane = [&](const std::string& method, const std::string& target) {
     return Service().LaneOf({method, target, {}, ""});
   };
@@ -143,7 +143,7 @@ TEST_F(FittingServiceRefusalsTest, QueuesCalculationsSeparately) {
   }
 }
 
-TEST_F(FittingServiceRefusalsTest, MakesTheRefusalsOfTheServer) {
+TEST_F(FittingServiceRefusalsTest, FormatsRefusalsForTheServer) {
   for (const int status : {400, 408, 413, 417, 429, 431, 500, 503}) {
     const HttpResponse response = Service().Refusal(status, "because");
     EXPECT_EQ(response.status, status);

@@ -54,7 +54,7 @@ std::string ResultOf(const Identification& run) {
 
 // ---- Fitting -------------------------------------------------------------------------------------------------------
 
-TEST_F(FittingServiceTest, AnswersTheResultOfFitPendulum) {
+TEST_F(FittingServiceTest, AnswersWithTheResultOfFitPendulum) {
   const HttpResponse response = Post("/v1/fits?model=viscous", "text/csv", Recording());
   ASSERT_EQ(response.status, 200) << response.body;
   EXPECT_EQ(FieldOf(response, "Content-Type"), "application/json");

@@ -19,7 +19,7 @@ std::string KeyOf(const std::string& value) {
   return key ? *key : "refused: " + key.error().message;
 }
 
-TEST(IdempotencyKey, IsUnchanged) {
+TEST(IdempotencyKey, IsTheHeaderValueWithoutSurroundingBlanks) {
   // The example of draft-ietf-httpapi-idempotency-key-header, section 2.1, with its quotes, and without quotes.
   EXPECT_EQ(KeyOf("\"8e03978e-40d5-43e8-bc93-6894a57f9324\""), "\"8e03978e-40d5-43e8-bc93-6894a57f9324\"");
   EXPECT_EQ(KeyOf("8e03978e-40d5-43e8-bc93-6894a57f9324"), "8e03978e-40d5-43e8-bc93-6894a57f9324");

@@ -147,7 +147,7 @@ TEST_F(LiveRecordingTest, ReadsARunThatHasAlreadyEnded) {
   EXPECT_EQ(Look(), "ended 7 counts 200.0");
 }
 
-TEST_F(LiveRecordingTest, PrefersThePartToAnEarlierRun) {
+TEST_F(LiveRecordingTest, PrefersThePartFileToAnEarlierRun) {
   End(kCounts + Rows(0, 7));
   Begin(kCounts + Rows(0, 3));
   EXPECT_EQ(Look(), "recording 3 counts 200.0");
@@ -209,7 +209,7 @@ TEST_F(LiveRecordingTest, RestartsWithAnotherRun) {
   EXPECT_EQ(Look(), "ended 5 counts 200.0");
 }
 
-TEST_F(LiveRecordingTest, EndsIfNobodyWritesToThePart) {
+TEST_F(LiveRecordingTest, EndsIfNobodyWritesToThePartFile) {
   Begin(kCounts + Rows(0, 3));
   fs::last_write_time(part_, fs::file_time_type::clock::now() - std::chrono::minutes(5));
   EXPECT_EQ(Look(), "ended 3 counts 200.0");
@@ -363,7 +363,7 @@ TEST_F(LiveRecordingTest, ThinsALongRunButKeepsEndsAndExtremes) {
   }
 }
 
-TEST_F(LiveRecordingTest, LimitsTheSizeOfItsBytes) {
+TEST_F(LiveRecordingTest, LimitsTheSizeOfTheFile) {
   Begin(kCounts);
   fs::resize_file(part_, (std::uintmax_t{1} << 29) + 1);  // a sparse file: it uses no disk space
   const auto bytes = live_.Bytes();

@@ -141,7 +141,7 @@ TEST_F(MalformedRequestsTest, AreRefusedForInvalidChunks) {
   });
 }
 
-TEST_F(MalformedRequestsTest, AreRefusedForOtherExpectations) {
+TEST_F(MalformedRequestsTest, AreRefusedForAnUnknownExpectation) {
   Start();
   const RawAnswer answer = Ask("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\nExpect: 200-ok\r\n\r\nbody");
   EXPECT_EQ(answer.status, 417);

@@ -95,7 +95,7 @@ TEST_F(RunTailTest, OpensRegularFilesOnly) {
   EXPECT_LT(OpenRegularFile(folder_ / "absent"), 0);
 }
 
-TEST_F(RunTailTest, SkipsALineWithoutAnEnd) {
+TEST_F(RunTailTest, SkipsALineThatIsTooLong) {
   Write("a\n");
   EXPECT_EQ(Look(), "a\n");
   for (int i = 0; i < 20; ++i) {

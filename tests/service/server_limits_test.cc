@@ -110,7 +110,7 @@ TEST_F(ServerLimitsTest, LimitsAllBodiesTogether) {
   EXPECT_EQ(Connect().Ask(Post("/", "abcd")).status, 200);
 }
 
-TEST_F(ServerLimitsTest, RefusesRequestsForAFullLaneOnly) {
+TEST_F(ServerLimitsTest, RefusesOnlyRequestsForAFullLane) {
   Start();
   std::vector<RawClient> fits = FillFits();
   EXPECT_EQ(server_->Count().waiting, 3);
@@ -236,7 +236,7 @@ TEST_F(ServerLimitsTest, DoesNotAnswerEmptyLines) {
   EXPECT_TRUE(answered().empty());
 }
 
-TEST_F(ServerLimitsTest, DoesNotExtendTheTimeWithEachByte) {
+TEST_F(ServerLimitsTest, DoesNotExtendTheTimeLimitWithEachByte) {
   options_.request_time = milliseconds(200);
   Start();
   RawClient client = Connect();
@@ -303,7 +303,7 @@ TEST_F(ServerLimitsTest, WaitsForFileDescriptors) {
   EXPECT_EQ(late.Read().body, "GET /late\n");
 }
 
-TEST_F(ServerLimitsTest, ServesOthersDespiteTwoHundredSlowClients) {
+TEST_F(ServerLimitsTest, ServesOtherClientsDespiteTwoHundredSlowClients) {
   options_.request_time = milliseconds(60'000);
   Start();
   std::vector<RawClient> slow;

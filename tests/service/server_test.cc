@@ -36,7 +36,7 @@ TEST_F(ServerTest, AnswersManyRequestsOnOneConnection) {
   EXPECT_EQ(server_->Count().refused, 0);
 }
 
-TEST_F(ServerTest, SendsItsOwnFields) {
+TEST_F(ServerTest, ReplacesTheContentLengthOfTheHandlerAndAddsTheDate) {
   handler_.answer = [](const HttpRequest&) {
     return HttpResponse{201, {{"Location", "/v1/fits/1"}, {"Content-Length", "7"}}, "made", nullptr};
   };

@@ -62,7 +62,7 @@ TEST(Thin, IgnoresNaNAsAnExtreme) {
   EXPECT_THAT(Thin(Seconds(9), Numbers(9, kNan), 6), ElementsAre(0, 8));
 }
 
-// A decaying swing: all limits and properties of the declaration must hold for any size.
+// The limits and properties that the declaration documents must hold for any number of samples.
 TEST(Thin, KeepsItsGuaranteesForASwing) {
   for (const std::size_t size : {5U, 4001U, 4002U, 8001U, 100'003U}) {
     Numbers time(size), value(size);

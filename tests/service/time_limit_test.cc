@@ -39,7 +39,7 @@ TEST(TimeLimit, StopsOnlyWorkThatTakesTooLong) {
   EXPECT_GE(Clock::now() - begin, kShort);
 }
 
-TEST(TimeLimit, StopsEachAfterItsOwnTime) {
+TEST(TimeLimit, StopsEachPieceOfWorkAfterItsOwnTime) {
   TimeLimit limit(kShort);
   const TimeLimit::Watch first(limit);
   std::this_thread::sleep_for(kShort / 2);
@@ -77,7 +77,7 @@ TEST(TimeLimit, StopsAllCurrentAndFutureWork) {
   EXPECT_TRUE(TimeLimit::Watch(limit).token().stop_requested());
 }
 
-TEST(TimeLimit, EndsWhileIdle) {
+TEST(TimeLimit, CanBeDestroyedWhileIdle) {
   { const TimeLimit limit(kNever); }
   { const TimeLimit limit(kShort); }
 }

@@ -117,7 +117,7 @@ TEST(MakeFitPendulumOptions, RefusesFitFlagsForClosedFormsOnly) {
   }
 }
 
-TEST(MakeFitPendulumOptions, NeedsARecordingInAFile) {
+TEST(MakeFitPendulumOptions, RequiresTheFlagOfTheData) {
   FitPendulumFlags flags;
   EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
   flags.positional = {"run.csv"};
@@ -185,7 +185,7 @@ TEST(MakeFitPendulumOptions, RefusesFixingAParameterTheModelLacks) {
   EXPECT_EQ(RefusalOfFix("drag=0.1"), "--fix: model coulomb has no parameter 'drag'; its parameters are " + names);
 }
 
-TEST(MakeFitPendulumOptions, PassesFactsAboutTheFile) {
+TEST(MakeFitPendulumOptions, PassesTheDescriptionOfTheFile) {
   FitPendulumFlags flags = WithData();
   flags.data = "-";
   flags.calibration = "cal.json";
@@ -385,7 +385,7 @@ TEST(MakeFitPendulumOptions, RejectsABootstrapOfAJointFit) {
   EXPECT_EQ(Refusal(flags), refusal);
 }
 
-TEST(JointOutputs, AreNumberedIfEachRecordingHasItsOwn) {
+TEST(JointOutputs, AreNumberedIfEachRecordingHasItsOwnOutput) {
   FitPendulumFlags flags = WithTwoRecordings();
   flags.json = "fit.json";
   flags.residuals = "r.csv";

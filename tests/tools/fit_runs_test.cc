@@ -63,7 +63,7 @@ TEST(FitAll, SkipsFitsForClosedFormsOnly) {
 
 // The rig's masses and lengths predict sqrt(1.8033 / 0.0761) / 2π = 0.775 Hz. The recorded swing, at up to 24 deg, is
 // slower.
-TEST(FitAll, ComparesTheFrequencyWithTheRigs) {
+TEST(FitAll, ComparesTheFrequencyWithThePredictionOfTheRig) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   const auto run = OnlyRun(options);
@@ -183,7 +183,7 @@ TEST(FitAll, MakesNoJointFitIfOneRecordingFails) {
   EXPECT_EQ(run.error().message, "datasets/nowhere.csv: there is no such file; check the path");
 }
 
-TEST(FitAll, SharesNothingForOneSwing) {
+TEST(FitAll, RefusesToShareParametersOfOneSwing) {
   FitPendulumFlags flags;
   flags.data = "datasets/runs_1.csv";
   flags.shared = "all";

@@ -28,7 +28,7 @@ class FlagsTest : public testing::Test {
   gflags::FlagSaver saver_;  // restores all flags after each test
 };
 
-TEST(IsOwnFlag, ComparesFoldersInAnySpelling) {
+TEST(IsOwnFlag, ComparesFoldersOfRelativeAndAbsolutePaths) {
   EXPECT_TRUE(IsOwnFlag("src/tools/b.h", "src/tools/a_main.cc"));
   EXPECT_TRUE(IsOwnFlag("../../src/tools/b.h", "/home/me/pendulum/src/tools/a_main.cc"));
   EXPECT_FALSE(IsOwnFlag("./src/logging.cc", "src/tools/a_main.cc"));

@@ -115,7 +115,7 @@ TEST_F(OutputTest, CheckRefusesTwoNamesOfOneFile) {
             "--out0 " + Path("hard") + " would overwrite the input of --in");
 }
 
-TEST_F(OutputTest, CheckComparesEachOutputWithAllOthersAndAllInputs) {
+TEST_F(OutputTest, CheckComparesEachOutputWithAllOtherOutputsAndAllInputs) {
   std::vector<std::string> outputs;
   std::vector<std::string> inputs;
   for (int i = 0; i < 150; ++i) {

@@ -69,7 +69,7 @@ TEST(MakeRecordPendulumOptions, AcceptsEveryFlagOfARecording) {
   EXPECT_EQ(options.calibration, "cal.json");
 }
 
-TEST(MakeRecordPendulumOptions, NamesItsFiles) {
+TEST(MakeRecordPendulumOptions, ListsItsInputAndOutputFiles) {
   Flags flags = Recording();
   flags.calibration = "cal.json";
   flags.fit = true;
@@ -86,7 +86,7 @@ TEST(MakeRecordPendulumOptions, NamesItsFiles) {
   EXPECT_THAT(Made(Recording()).Inputs(), IsEmpty());
 }
 
-TEST(MakeRecordPendulumOptions, AcceptsTheExtremesOfTheRates) {
+TEST(MakeRecordPendulumOptions, AcceptsTheLowestAndHighestRates) {
   Flags flags = Recording();
   for (const double rate : {32.0, 8000.0}) {
     flags.rate_hz = rate;
@@ -151,7 +151,7 @@ TEST(MakeRecordPendulumOptions, NamesTheFlagForTheStoredCalibration) {
   EXPECT_EQ(options.Inputs()[0].flag, "--store_calibration");
 }
 
-TEST(MakeRecordPendulumOptions, AcceptsShowingAndListing) {
+TEST(MakeRecordPendulumOptions, AcceptsTheTasksInfoCountsAndList) {
   Flags flags;
   flags.info = true;
   EXPECT_EQ(Made(flags).task, RecordTask::kInfo);
@@ -184,7 +184,7 @@ void ExpectRefusals(const Flags& good, const std::vector<Refusal>& refusals) {
   }
 }
 
-TEST(MakeRecordPendulumOptions, RefusesNoTaskAndTwoTasks) {
+TEST(MakeRecordPendulumOptions, RequiresExactlyOneTask) {
   ExpectRefusals(Recording(), {{"--out is missing", [](Flags& f) { f.out.clear(); }},
                                {"give only one of", [](Flags& f) { f.list = true; }},
                                {"give only one of", [](Flags& f) { f.info = true; }},

@@ -326,7 +326,7 @@ TEST(RecordRun, ContinuesIfThePartFileCannotBeWritten) {
 }
 
 // Samples lost after the requested end do not belong to the recording.
-TEST(RecordRun, CountsNoLossAfterItsEnd) {
+TEST(RecordRun, CountsNoLossAfterTheRequestedEnd) {
   LoggerScript script = WithSawtooth();
   script.lost_frames = {13, 14, 15, 16};  // 0.5 s are frames 0 to 12
   Laboratory laboratory(script);

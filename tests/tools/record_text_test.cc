@@ -95,13 +95,13 @@ TEST(RecordText, DescribesTheRecording) {
 }
 
 // -135 + 0.25 * 460 = -20 and -135 + 0.25 * 540 = 0.
-TEST(RecordText, ShowsAnglesIfKnown) {
+TEST(RecordText, ShowsAnglesIfCalibrated) {
   RecordedRun recorded = Recorded();
   recorded.description.calibration = QuarterDegree();
   EXPECT_THAT(FlatText(recorded), HasSubstr("460 to 540 of 0 to 1023 counts, -20 to 0 deg"));
 }
 
-TEST(RecordText, UsesOnlyTheRecordingsOwnNumbers) {
+TEST(RecordText, DescribesOnlyTheSamplesThatAreKept) {
   RecordedRun recorded = Recorded({500, 510, 520, 1023, 0});
   recorded.run.KeepFirst(3);
   EXPECT_THAT(FlatText(recorded), AllOf(HasSubstr("3 at 200 Hz, 0.015 s"), HasSubstr("500 to 520 of")));
@@ -129,7 +129,7 @@ TEST(RecordText, ShowsTheMeasuredClock) {
   EXPECT_THAT(FlatText(recorded), HasSubstr("3009 ± 12 ppm fast"));
 }
 
-TEST(RecordText, ShowsWhyItEnded) {
+TEST(RecordText, ShowsWhyTheRecordingEnded) {
   RecordedRun recorded = Recorded();
   recorded.end = RunEnd::kRest;
   EXPECT_THAT(FlatText(recorded), HasSubstr("ended at rest"));

@@ -65,7 +65,7 @@ class RefitCommandsTest : public testing::Test {
   std::string stdout_text_, stderr_text_;
 };
 
-TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunHasItsRows) {
+TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunIsStored) {
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   EXPECT_THAT(stderr_text_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
   EXPECT_THAT(stdout_text_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
@@ -187,7 +187,7 @@ TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
   EXPECT_EQ(Run(options), 2);  // the output is the store itself
 }
 
-TEST_F(RefitCommandsTest, RefitsItsOwnPack) {
+TEST_F(RefitCommandsTest, RefitsNothingFromAPackOfTheSameRuns) {
   RefitPendulumsOptions pack = Options(RefitCommand::kPack);
   pack.out = folder_ / "runs.pack";
   ASSERT_EQ(Run(pack), 0) << stderr_text_;

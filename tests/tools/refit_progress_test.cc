@@ -74,7 +74,7 @@ TEST(RefitProgress, DrawsABarOnATerminalAndClearsIt) {
   ::close(follower);
 }
 
-TEST(RefitProgress, WritesOccasionalPlainLinesElsewhere) {
+TEST(RefitProgress, WritesOccasionalPlainLinesWithoutATerminal) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   RefitProgress progress("refit_pendulums", ends[1], std::chrono::milliseconds(100));

@@ -83,7 +83,7 @@ TEST_F(TerminalTest, HasNoColourIfUnsupported) {
   }
 }
 
-TEST_F(TerminalTest, HasNoColourElsewhere) {
+TEST_F(TerminalTest, HasNoColourWithoutATerminal) {
   const Descriptor null(::open("/dev/null", O_WRONLY));
   EXPECT_FALSE(WantsColour(null.value()));
   EXPECT_FALSE(WantsColour(-1));

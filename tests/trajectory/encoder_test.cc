@@ -36,7 +36,8 @@ Recording Simulated(const SyntheticOptions& options) {
 
 TEST(SimulateRecording, HasEventsWhereTheCosineCrossesEdges) {
   const Recording recording = Simulated(Undamped());
-  // Count 30 to -30 or back in each of six half periods of π/5 s, then down to 0.3 cos 19.95 rad = 13.6 counts.
+  // The count goes from 30 to -30 or back in each of six half periods of π/5 s, then from 30 down to 13.6, which is
+  // 0.3 cos 19.95 rad.
   EXPECT_EQ(recording.size(), 1 + 6 * 60 + 16);
   for (Eigen::Index i = 1; i < recording.size(); ++i) {
     const double step = recording.value[i] - recording.value[i - 1];

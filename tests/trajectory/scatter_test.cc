@@ -108,7 +108,7 @@ TEST(ScatterParameters, RespectsTheOrderOfTwoParameters) {
   EXPECT_THAT(Mean(difference), DoubleNear(2 * 0.5 / std::sqrt(std::numbers::pi), kTolerance * 0.5 / kRootOfSeeds));
 }
 
-TEST(ScatterParameters, IsTheMeanWithoutScatterAndReproducible) {
+TEST(ScatterParameters, GivesTheMeanWithoutScatterAndIsReproducible) {
   const std::vector<ScatteredParameter> parameters = {{kInertia, 0.079, 0}, {kReleaseAngle, 0.4, 0.1}};
   const auto once = ScatterParameters(parameters, {}, 7);
   const auto again = ScatterParameters(parameters, {}, 7);

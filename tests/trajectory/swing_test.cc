@@ -72,14 +72,14 @@ TEST(DirectionOfMotion, FollowsGravityFromRestBeyondDryFriction) {
   }
 }
 
-TEST(DirectionOfMotion, IsNoneAtEquality) {
+TEST(DirectionOfMotion, IsZeroIfGravityEqualsDryFriction) {
   const Pendulum<CoulombFriction, double> linear{Gravity::kLinear, 0.04, {0, 0.25}};
   for (const double angle : {0.25, std::nextafter(0.25, 1.0), -0.25, std::nextafter(-0.25, -1.0)}) {
     EXPECT_EQ(DirectionOfMotion(linear, angle, 0), 0) << angle - 0.25;
   }
 }
 
-TEST(DirectionOfMotion, IsNoneOnlyAtTheBottomWithoutDryFriction) {
+TEST(DirectionOfMotion, IsZeroOnlyAtTheBottomWithoutDryFriction) {
   const Pendulum<ViscousFriction, double> pendulum{Gravity::kSine, 0.04, {0.1}};
   EXPECT_EQ(DirectionOfMotion(pendulum, 0, 0), 0);
   EXPECT_EQ(DirectionOfMotion(pendulum, 1e-12, 0), -1);
@@ -137,7 +137,7 @@ TEST(SwingExpansion, HasOneCoefficientInFourFromRestAtNinetyDegrees) {
 
 // ---- Step length -------------------------------------------------------------------------------------------------
 
-TEST(StepLength, IsTheLeastOverTheLastFourCoefficients) {
+TEST(StepLength, IsTheSmallestStepOfTheLastFourCoefficients) {
   // (1e-12 / c)^(1/k) is 1/4 for c = 1e-12 · 4^k.
   for (int k = 7; k <= 10; ++k) {
     Series<double> angle{};

@@ -225,7 +225,7 @@ TEST(SimulateRecording, KeepsStampsIncreasingUnderLargeJitter) {
   EXPECT_TRUE(std::is_sorted(recording->time.begin(), recording->time.end(), std::less_equal<>()));
 }
 
-TEST(SimulateRecording, IsReproducibleForASeedOnly) {
+TEST(SimulateRecording, IsReproducibleForTheSameSeedOnly) {
   SyntheticOptions options = TextbookRig();
   options.noise = 0.01;
   options.jitter = 0.001;

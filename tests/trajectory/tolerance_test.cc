@@ -69,7 +69,7 @@ TEST(TraceTolerance, ShrinksWithAmplitudeAndRequestedError) {
 
 TEST(TraceTolerance, IsAFourHundredthOfTheErrorForSmallSwings) { EXPECT_DOUBLE_EQ(TraceTolerance(4e-6, 0), 1e-8); }
 
-TEST(TraceTolerance, IsTheSameOnBothSides) { EXPECT_EQ(TraceTolerance(1e-8, -1.2), TraceTolerance(1e-8, 1.2)); }
+TEST(TraceTolerance, IsIndependentOfTheSign) { EXPECT_EQ(TraceTolerance(1e-8, -1.2), TraceTolerance(1e-8, 1.2)); }
 
 TEST(TraceTolerance, IsNeverBelowRounding) {
   EXPECT_EQ(TraceTolerance(0, 0.4), 1e-17);

@@ -52,7 +52,7 @@ DifferenceCauses SplitDifference(const FormulaStages& stages, Eigen::Index k, do
 struct CauseNames {
   std::string formula;
   std::string amplitude;
-  std::string misfit;  ///< Used if the recording's part exceeds 3 standard deviations of noise.
+  std::string misfit;  ///< For the part of the recording if it exceeds 3 standard deviations of noise; else "noise".
 };
 
 /// Lists the parts that are at least a fifth of the difference, the largest first. std_dev: standard deviation of the

@@ -71,7 +71,7 @@ struct Homogeneity {
 
   bool agrees() const { return p.value_or(1) >= kDisagree; }
 
-  /// Whether every parameter that differs does so only through its dependence on amplitude.
+  /// Whether some parameters differ, and all of these only through their dependence on amplitude.
   bool is_amplitude() const;
 
   static constexpr double kDisagree = 0.01;  ///< Probability that recordings of one rig are reported as disagreeing.

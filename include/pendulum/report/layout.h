@@ -22,14 +22,14 @@ int DisplayWidth(std::string_view text);
 std::string AlignedTable(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
                          int indent);
 
-/// AlignedTable in at most `width` columns, if each column fits next to the first. Columns that do not fit continue
-/// below a blank line, again with the first column. A column with a gap of 1 stays next to the previous one. Rows
-/// without text in the continued columns are left out there.
+/// AlignedTable with lines of at most `width` characters, provided that each column fits next to the first. Columns
+/// that do not fit are printed below a blank line, again next to the first column; rows that are empty in these columns
+/// are left out there. A column with a gap of 1 stays next to the previous column.
 std::string TableWithin(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows,
                         int indent, int width);
 
-/// A text wrapped to lines of at most `width` columns (a longer word gets a separate line). The first line begins with
-/// `first`, the others with equally many blanks. Ends with a line break.
+/// A text wrapped to lines of at most `width` characters (a longer word gets a separate line). The first line begins
+/// with `first`, the others with equally many blanks. Ends with a line break.
 std::string Paragraph(std::string_view text, std::string_view first, int width);
 
 inline constexpr std::string_view kNoBreak = "\xC2\xA0";  ///< U+00A0, a blank where Paragraph does not break a line.

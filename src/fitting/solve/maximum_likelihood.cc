@@ -107,7 +107,7 @@ std::vector<Minimum> NearMinima(const Solution& solution, double samples) {
 /// Recomputes the deviances of all minima under the final noise, so that they are comparable.
 void RecomputeDeviances(TrajectoryCost& cost, Solution& solution) {
   cost.set_noise(solution.noise);
-  // Computes all sums, because the fit report asks for them next.
+  // Sums, not SumOfSquares: the cost caches the sums, and the fit report needs them next.
   Eigen::MatrixXd sums;
   solution.usable = cost.Sums(solution.parameters, &sums);
   if (solution.usable) solution.sum = sums(sums.rows() - 1, sums.cols() - 1);

@@ -112,8 +112,8 @@ std::vector<double> InnerTurningPoints(const FreeSwing& swing) {
   return turns;
 }
 
-/// Leaves out a disturbed part at one end of the swing.
-void TrimEnd(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
+/// Leaves out a disturbed part at the end of the swing, or at its beginning.
+void TrimDisturbedPart(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
   const Recording excerpt = Excerpt(recording, kMaxTrialSamples, kPerHalfSwing / swing.half_period, at_end);
   const double from = excerpt.time[0];
   const double to = excerpt.time[excerpt.size() - 1];
@@ -154,8 +154,8 @@ bool ConstrainsStart(const FitOptions& options) {
 /// Leaves out disturbed parts at both ends of the swing, unless the user chose the end.
 void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
   if (!(swing.half_period > 0)) return;
-  if (!swing.from_given && !ConstrainsStart(options)) TrimEnd(recording, options, false, swing);
-  if (!swing.to_given) TrimEnd(recording, options, true, swing);
+  if (!swing.from_given && !ConstrainsStart(options)) TrimDisturbedPart(recording, options, false, swing);
+  if (!swing.to_given) TrimDisturbedPart(recording, options, true, swing);
 }
 
 /// Removes whole turns over the top from the readings, so that the zero angle is near the sensor's zero. Returns a

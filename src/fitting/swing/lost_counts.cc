@@ -192,11 +192,11 @@ bool MayHaveOffsetJump(const FitReport& fit) {
 
 namespace {
 
-/// Steps on which fit and search agree, and the readings corrected by these steps.
+/// Result of alternating search and fit: the steps, and the readings corrected by these steps.
 struct ConsistentSteps {
   std::vector<OffsetStep> steps;
   Recording corrected;
-  std::optional<Index> uncertain;  // sample
+  std::optional<Index> uncertain;  // first sample that the last two searches place differently; absent if they agree
   bool explains_misfit = false;    // the steps explain at least a good part of the misfit
 };
 
@@ -256,7 +256,7 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
 
 namespace {
 
-/// If readings have several zeros, the errors of the fit are not valid.
+/// If the zero of the sensor jumps and the readings are not corrected, the standard errors of the fit are not valid.
 void RejectForOffsetJumps(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
   fit.reason = why;

@@ -89,7 +89,7 @@ class Profile {
   }
 
   /// Square root of the rise relative to the threshold. It is 1 at the end of the interval and grows with the distance.
-  double RootAt(double distance, double side) {
+  double SquareRootOfRiseAt(double distance, double side) {
     SolveOptions options = options_;
     options.fixed[static_cast<std::size_t>(k_)] = true;
     options.max_traces = last_trace_;
@@ -117,12 +117,12 @@ class Profile {
     for (int i = 1; i <= kParts; ++i) {
       const double value = At() + i * part;
       const auto is_near = [&](const ProfilePoint& p) { return std::abs(p.value - value) < kNear * std::abs(part); };
-      if (std::ranges::none_of(points_, is_near)) RootAt(std::abs(i * part), farthest < 0 ? -1 : 1);
+      if (std::ranges::none_of(points_, is_near)) SquareRootOfRiseAt(std::abs(i * part), farthest < 0 ? -1 : 1);
     }
   }
 
-  /// Finds the distance where RootAt is 1, by regula falsi between points on both sides. Returns std::nullopt if it
-  /// stays below 1.
+  /// Finds the distance where SquareRootOfRiseAt is 1, by regula falsi between points on both sides. Returns
+  /// std::nullopt if it stays below 1.
   std::optional<double> Find(double side, double farthest) {
     constexpr int kMaxSolves = 25;
     constexpr double kAccuracy = 0.01;
@@ -133,7 +133,7 @@ class Profile {
     double root_outside = kUnbounded;
     double distance = std::min(length_, farthest);
     for (int solve = 0; solve < kMaxSolves && !is_exhausted(); ++solve) {
-      const double root = RootAt(distance, side);
+      const double root = SquareRootOfRiseAt(distance, side);
       if (std::abs(root - 1) < kAccuracy) return distance;
       if (root < 1) {
         if (distance == farthest) return std::nullopt;

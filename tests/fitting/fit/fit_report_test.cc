@@ -63,7 +63,7 @@ TEST(WithdrawErrors, KeepsEstimatesAndGivesAReasonForMissingErrors) {
 }
 
 // Standard errors 2 and 4, covariance 4: 4 / (2 · 4).
-TEST(Correlation, IsCovarianceOverBothStandardErrors) {
+TEST(Correlation, IsTheCovarianceOverTheProductOfTheStandardErrors) {
   FitReport fit;
   fit.covariance.resize(3, 3);
   fit.covariance << 4, 4, 0, 4, 16, 0, 0, 0, 1;

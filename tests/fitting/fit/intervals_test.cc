@@ -46,7 +46,7 @@ FitReport FitWithoutDryFriction(bool at_bound, const FitOptions& options) {
   throw std::runtime_error("there is no such seed");
 }
 
-TEST(SetIntervals, UsesProfilesForAllNearABound) {
+TEST(SetIntervals, UsesProfilesForAllParametersIfOneIsNearABound) {
   for (const bool at_bound : {false, true}) {
     const FitReport report = FitWithoutDryFriction(at_bound, ModelOptions("coulomb"));
     EXPECT_EQ(report.interval_method, "profile likelihood");
@@ -82,7 +82,7 @@ TEST(SetIntervals, ReportsProfilesInTheParametersUnitsAndOrder) {
   EXPECT_THAT(FitOwnModel(ShortSwing()).profiles, IsEmpty());
 }
 
-TEST(SetIntervals, LeavesTheOtherEndOpenAtABound) {
+TEST(SetIntervals, LeavesTheUpperEndOpenForAParameterAtItsLowerBound) {
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kCovariance;
   const FitReport report = FitWithoutDryFriction(true, options);
@@ -104,7 +104,7 @@ SyntheticOptions Counted(int take, double noise) {
   return run;
 }
 
-TEST(UsePosterior, IsUsedForCountsWithLittleScatter) {
+TEST(UsePosterior, AppliesToCountsWithLittleScatter) {
   for (int take = 1; take <= 10; ++take) {
     SCOPED_TRACE(take);
     const SyntheticOptions run = Counted(take, 0);
@@ -116,7 +116,7 @@ TEST(UsePosterior, IsUsedForCountsWithLittleScatter) {
   }
 }
 
-TEST(UsePosterior, IsNotUsedForScatteredCountsOrAnotherMethod) {
+TEST(UsePosterior, DoesNotApplyToScatteredCountsOrAnotherMethod) {
   EXPECT_THAT(FitOwnModel(Counted(1, 0.4)).interval_method, StartsWith("estimate ± "));
   FitOptions options = ModelOptions("coulomb");
   options.interval = IntervalMethod::kProfile;
@@ -126,7 +126,7 @@ TEST(UsePosterior, IsNotUsedForScatteredCountsOrAnotherMethod) {
 
 // ---- Identifiability -----------------------------------------------------------------------------------------------
 
-TEST(SetIdentifiability, IsGivenForAllParametersOfTheTextbookRig) {
+TEST(SetIdentifiability, CallsAllParametersOfTheTextbookRigIdentifiable) {
   SyntheticOptions run = TextbookRun("coulomb");
   run.noise = 0.002;
   const FitReport report = FitOwnModel(run);
@@ -135,7 +135,7 @@ TEST(SetIdentifiability, IsGivenForAllParametersOfTheTextbookRig) {
   EXPECT_THAT(report.identifiability, Each(Field(&Identifiability::advice, IsEmpty())));
 }
 
-TEST(SetIdentifiability, IsWeakForAnIntervalAtABound) {
+TEST(SetIdentifiability, CallsAParameterWithAnIntervalAtABoundWeaklyIdentifiable) {
   for (const bool at_bound : {false, true}) {
     const FitReport report = FitWithoutDryFriction(at_bound, ModelOptions("coulomb"));
     for (const Identifiability& known : report.identifiability) {
@@ -147,7 +147,7 @@ TEST(SetIdentifiability, IsWeakForAnIntervalAtABound) {
   }
 }
 
-TEST(SetIdentifiability, IsWeakForAnIntervalAtTheUsersUpperBound) {
+TEST(SetIdentifiability, CallsAParameterWithAnIntervalAtTheUsersUpperBoundWeaklyIdentifiable) {
   const FitReport free = FitOwnModel(ShortSwing());
   FitOptions options = ModelOptions("coulomb");
   options.bounds["zero_angle"] = {-1, free.Find("zero_angle")->estimate + *free.Find("zero_angle")->std_error};
@@ -183,7 +183,7 @@ TEST(SetIdentifiability, NamesAnUndeterminedCombination) {
 }
 
 /// Correlation multiplies the variance by 1 / (1 - ρ²): 100 at ρ = .995.
-TEST(SetIdentifiability, IsWeakForStronglyCorrelatedParameters) {
+TEST(SetIdentifiability, CallsStronglyCorrelatedParametersWeaklyIdentifiable) {
   for (const double correlation : {0.996, -0.999}) {
     const std::vector<Identifiability> verdicts = VerdictsAt(correlation);
     EXPECT_EQ(verdicts[1].verdict, Verdict::kWeakly) << correlation;

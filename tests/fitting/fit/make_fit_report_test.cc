@@ -91,7 +91,7 @@ TEST(MakeFitReport, AFitStoppedEarlyIsNotConverged) {
 
 // ---- At a bound ----------------------------------------------------------------------------------------------------
 
-TEST(MakeFitReport, AParameterAtItsBoundIsMarkedAndLeavesTheCovariance) {
+TEST(MakeFitReport, AParameterAtItsBoundIsMarkedAndExcludedFromTheCovariance) {
   constexpr int kSeeds = 200;
   int at_bound = 0;
   constexpr std::uint64_t kProfiles = 40;  // each costs as much as 36 fits

@@ -201,7 +201,7 @@ TEST(StoppedFit, IsAnErrorForSeveralRecordings) {
   EXPECT_EQ(fit.error().code, StatusCode::kTryAgain);
 }
 
-TEST(StoppedCost, HasNoAnswerEvenIfCached) {
+TEST(StoppedCost, ReturnsNoResultEvenIfCached) {
   FitOptions options = ModelOptions("coulomb");
   std::stop_source stop;
   options.stop = stop.get_token();

@@ -269,7 +269,7 @@ TEST(FitJointly, CountsAPriorOnASharedParameterOnce) {
 
 // Each separate fit includes its own prior on a parameter that is not shared; their weighted mean needs no further
 // prior.
-TEST(FitJointly, CountsAPriorOnAnOwnParameterOncePerRecording) {
+TEST(FitJointly, CountsAPriorOnAnUnsharedParameterOncePerRecording) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.9, 2)))};
   FitOptions options = RigOptions();
   options.priors = {{"release_time", {1.9005, 2e-4}}};

@@ -25,8 +25,8 @@ constexpr int kOwnRelease = 5;  // release_time of the first recording
 /// A release measured as an angle and a moving start measured as a rate. They share inertia (0) and dry friction (1) of
 /// ten parameters.
 struct Case {
-  Example released{Must(FindMotionModel("coulomb")), StartKind::kRelease, Quantity::kAngle, 900};
-  Example moving{Must(FindMotionModel("coulomb")), StartKind::kMoving, Quantity::kRate, 700};
+  CostExample released{Must(FindMotionModel("coulomb")), StartKind::kRelease, Quantity::kAngle, 900};
+  CostExample moving{Must(FindMotionModel("coulomb")), StartKind::kMoving, Quantity::kRate, 700};
   std::vector<JointTerm> terms = {{released.cost.get(), {0, 2, 1, 4, kOwnRelease, 3}},
                                   {moving.cost.get(), {0, 6, 1, 7, 8, 9}}};
   std::vector<PriorTerm> priors = {{0, 0.04, 900}, {6, 0.001, 2e4}};
@@ -46,7 +46,7 @@ struct Case {
 };
 
 /// Weighted residuals of a recording and their derivatives with respect to all P parameters, N x (P + 1).
-Eigen::MatrixXd RowsOf(const Example& example, const std::vector<int>& at, const std::vector<double>& all) {
+Eigen::MatrixXd RowsOf(const CostExample& example, const std::vector<int>& at, const std::vector<double>& all) {
   std::vector<double> own;
   for (const int i : at) own.push_back(all[static_cast<std::size_t>(i)]);
   Eigen::VectorXd readings;
@@ -92,8 +92,8 @@ TEST(JointCost, SumsAllResidualsAndEachPriorOnce) {
   EXPECT_THAT(sum / expected(kParameters, kParameters), DoubleNear(1, 1e-12));
 }
 
-// No residual depends on own parameters of two different recordings.
-TEST(JointCost, HasNoTermsBetweenOwnParameters) {
+// No residual depends on unshared parameters of two different recordings.
+TEST(JointCost, HasNoTermsBetweenParametersOfDifferentRecordings) {
   const Case joint;
   Eigen::MatrixXd sums;
   ASSERT_TRUE(joint.cost.Sums(joint.trial, &sums));
@@ -165,7 +165,7 @@ TEST(JointCost, GivesEachRecordingItsOwnParameters) {
   EXPECT_THAT(joint.cost.OwnParameters(1, numbers), ElementsAre(0, 6, 1, 7, 8, 9));
 }
 
-TEST(JointCost, CountsReversalsTracesAndRecordingsOfAll) {
+TEST(JointCost, CountsRecordingsAndAllTheirReversalsAndTraces) {
   const Case joint;
   const int first = joint.released.cost->Reversals(joint.cost.OwnParameters(0, joint.trial));
   const int second = joint.moving.cost->Reversals(joint.cost.OwnParameters(1, joint.trial));

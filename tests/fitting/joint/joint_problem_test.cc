@@ -44,7 +44,7 @@ TEST(MakeJointProblem, CountsAPriorOnASharedParameterOnce) {
   EXPECT_THAT(places, UnorderedElementsAre(0, 5, 8));
 }
 
-TEST(MakeJointProblem, RefusesOneRecordingAndNothingShared) {
+TEST(MakeJointProblem, RefusesASingleRecordingAndAFitWithoutSharedParameters) {
   const TwoRuns runs;
   const std::vector<JointRun> one = {{runs.recordings[0], runs.alone[0], runs.options}};
   const auto single = MakeJointProblem(one, kPhysical);
@@ -57,7 +57,7 @@ TEST(MakeJointProblem, RefusesOneRecordingAndNothingShared) {
   EXPECT_EQ(nothing.error().message, "model coulomb has none of the shared parameters");
 }
 
-TEST(JointProblem, NamesTheRecordingOfAnOwnParameter) {
+TEST(JointProblem, NamesTheRecordingOfAnUnsharedParameter) {
   const TwoRuns runs;
   const JointProblem joint = runs.Problem();
   EXPECT_EQ(joint.NameOf(0), "inertia");

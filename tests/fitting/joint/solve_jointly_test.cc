@@ -24,7 +24,7 @@ TEST(SolveJointly, EndsWithANegligibleStep) {
   EXPECT_EQ(optimum->free.size(), 9);
 }
 
-TEST(SolveJointly, GivesMembersSharedParametersAndTheirOwnNoise) {
+TEST(SolveJointly, GivesEachRecordingTheSharedParametersAndItsOwnNoise) {
   const TwoRuns runs;
   JointProblem joint = runs.Problem();
   const Solution solution = SolveJointly(joint);

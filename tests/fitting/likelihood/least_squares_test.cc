@@ -51,7 +51,7 @@ TEST(AddPriors, AddsRepeatedPriorsOfOneParameter) {
 }
 
 // A sum of squares is a parabola, so central differences are exact: ∂/∂p Σ r² = 2 J'r.
-TEST(AddPriors, HasHalfTheGradientOfThePriorSum) {
+TEST(AddPriors, AddsHalfTheGradientOfThePriorSum) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(4, 4);
   AddPriors(kPriors, kParameters, &sums);
   for (std::size_t i = 0; i < 3; ++i) {

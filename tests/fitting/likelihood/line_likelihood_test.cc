@@ -63,7 +63,7 @@ LevelSamples Samples() {
   return MergeSamples(noise, value, readings, jacobian);
 }
 
-TEST(MergeSamples, CountsEqualSamplesAndPutsCensoredOnesLast) {
+TEST(MergeSamples, CountsEqualSamplesAndPutsCensoredSamplesLast) {
   const LevelSamples samples = Samples();
   ASSERT_EQ(samples.size(), 5);
   EXPECT_EQ(samples.levels, 3);
@@ -74,7 +74,7 @@ TEST(MergeSamples, CountsEqualSamplesAndPutsCensoredOnesLast) {
   EXPECT_LT((samples.slope - slope).norm(), 1e-12);
 }
 
-TEST(LevelSamples, NearListsSamplesNearAnEdgeNearestFirst) {
+TEST(LevelSamples, ListsSamplesNearAnEdgeNearestFirst) {
   // Depths .2, .2, -.2; for the censored samples .2, -.3.
   const LevelSamples none_moves = Samples().Near(0.1, 0);
   EXPECT_EQ(none_moves.levels, 1);

@@ -91,14 +91,14 @@ void ForEachNoiseAndPhase(const std::function<void(double sigma, double phase)>&
   }
 }
 
-TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformation) {
+TEST(QuantizedLikelihood, HasScoreVarianceEqualToTheInformation) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
     const int reach = static_cast<int>(std::ceil(12 * sigma)) + 2;  // 12 σ: the probability beyond is 1e-33
     ExpectScoreIdentities(SumOver(sigma, phase, -reach, reach));
   });
 }
 
-TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformationNearAnEndOfTheRange) {
+TEST(QuantizedLikelihood, HasScoreVarianceEqualToTheInformationNearAnEndOfTheRange) {
   ForEachNoiseAndPhase([](double sigma, double phase) {
     ExpectScoreIdentities(SumOver(sigma, phase, -1, 1));
     ExpectScoreIdentities(SumOver(sigma, phase, 0, 4));   // often at its lower end
@@ -107,7 +107,7 @@ TEST(QuantizedLikelihood, HasScoresWithTheVarianceOfTheInformationNearAnEndOfThe
 }
 
 /// With a wrong σ the mean of the scores is not 0.
-TEST(QuantizedLikelihood, ViolatesTheIdentitiesWithAWrongSigma) {
+TEST(QuantizedLikelihood, HasANonzeroMeanScoreForAWrongSigma) {
   const boost::math::normal normal(0.3, 0.5);
   NoiseModel noise;
   noise.family = NoiseFamily::kQuantized;
@@ -189,7 +189,7 @@ TEST(MostLikelySigma, MatchesBrentForStudentsNoise) {
   EXPECT_NEAR(expected / 0.2, 1, 4 / std::sqrt(600));
 }
 
-TEST(MostLikelySigma, IsProposalTwoForHubersNoise) {
+TEST(MostLikelySigma, FollowsHubersProposalTwoForHubersNoise) {
   const double width = NoiseModel::kHuberWidth;
   const boost::math::normal normal;
   const auto square = [&](double z) { return std::min(z * z, width * width) * boost::math::pdf(normal, z); };
@@ -206,7 +206,7 @@ TEST(MostLikelySigma, IsProposalTwoForHubersNoise) {
   }
 }
 
-TEST(MostLikelySigma, IsTheSmallestIfLevelsExplainEverySample) {
+TEST(MostLikelySigma, IsTheSmallestAllowedIfLevelsExplainEverySample) {
   Sample sample = Drawn(NoiseFamily::kQuantized, 0, 1, Normal());
   for (const double smallest : {0.05, 0.01}) {
     EXPECT_NEAR(MostLikelySigma(sample.noise, sample.value, sample.readings, smallest) / smallest, 1, 0.01);

@@ -192,7 +192,7 @@ double BestLog(const Case& at) {
   return std::log(std::erf(0.5 * noise.resolution / noise.sigma / std::sqrt(2.0)));
 }
 
-TEST(NoiseModel, HasTwiceTheLogLikelihoodDeficitAsDeviance) {
+TEST(NoiseModel, HasADevianceOfTwiceTheLogLikelihoodDifference) {
   for (const Case& at : Cases()) {
     SCOPED_TRACE(at.what + ", sigma " + std::to_string(at.noise.sigma) + ", m " + std::to_string(at.m));
     const NoiseLikelihood l = at.noise.LikelihoodAt(at.y, at.m);
@@ -223,7 +223,7 @@ double Integral(const Function& f, const std::vector<double>& corners) {
   return sum;
 }
 
-TEST(NoiseModel, HasUnitIntegralAndScoreVarianceOfItsInformation) {
+TEST(NoiseModel, HasUnitIntegralAndScoreVarianceEqualToTheInformation) {
   const double corner = NoiseModel::kHuberWidth;
   for (const auto family : {NoiseFamily::kGaussian, NoiseFamily::kHuber, NoiseFamily::kStudent}) {
     SCOPED_TRACE(std::string(NoiseFamilyName(family)));

@@ -57,7 +57,7 @@ void ExpectSums(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected, 
 
 TEST(Sums, MatchReadingsAndJacobian) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
-    const Example example(model, start, quantity);
+    const CostExample example(model, start, quantity);
     const Eigen::MatrixXd expected = ExpectedSums(*example.cost, example.data, example.trial);
     Eigen::MatrixXd sums;
     ASSERT_TRUE(example.cost->Sums(example.trial, &sums));
@@ -92,7 +92,7 @@ Evaluation Evaluate(const TrajectoryCost& cost, const std::vector<double>& p, co
 
 TEST(Evaluate, GivesTheCostGradientAndGaussNewtonMatrixOfAllSamples) {
   ForEachCase([](const MotionModel& model, StartKind start, Quantity quantity) {
-    const Example example(model, start, quantity);
+    const CostExample example(model, start, quantity);
     const Evaluation result = Evaluate(*example.cost, example.trial, std::vector<bool>(example.trial.size(), true));
     ASSERT_TRUE(result.valid);
     EXPECT_EQ(example.cost->num_residuals(), static_cast<int>(example.trial.size()) + 1);
@@ -104,7 +104,7 @@ TEST(Evaluate, GivesTheCostGradientAndGaussNewtonMatrixOfAllSamples) {
 }
 
 TEST(Evaluate, SkipsJacobiansThatAreNotRequested) {
-  const Example example(FindMotionModel("drag").value(), StartKind::kRelease, Quantity::kAngle);
+  const CostExample example(FindMotionModel("drag").value(), StartKind::kRelease, Quantity::kAngle);
   const std::size_t size = example.trial.size();
   const Evaluation whole = Evaluate(*example.cost, example.trial, std::vector<bool>(size, true));
   for (unsigned mask = 0; mask < (1U << size); mask += 5) {
@@ -122,7 +122,7 @@ TEST(Evaluate, SkipsJacobiansThatAreNotRequested) {
 }
 
 TEST(Evaluate, GivesTheNormOfResidualsWithoutJacobians) {
-  const Example example(FindMotionModel("coulomb").value(), StartKind::kMoving, Quantity::kRate);
+  const CostExample example(FindMotionModel("coulomb").value(), StartKind::kMoving, Quantity::kRate);
   std::vector<const double*> blocks;
   for (const double& p : example.trial) blocks.push_back(&p);
   Eigen::VectorXd residuals = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(blocks.size()) + 1, kNan);
@@ -224,7 +224,7 @@ TEST(TrajectoryCost, RefusesNonFiniteNumbers) {
 // ---- Samples in use ----------------------------------------------------------------------------------------------
 
 TEST(TrajectoryCost, UsesOnlyTheFirstSamplesOnRequest) {
-  Example example(FindMotionModel("coulomb").value(), StartKind::kRelease, Quantity::kAngle);
+  CostExample example(FindMotionModel("coulomb").value(), StartKind::kRelease, Quantity::kAngle);
   Eigen::MatrixXd whole, part, again;
   ASSERT_TRUE(example.cost->Sums(example.trial, &whole));
   for (const std::size_t count : {8, 161, 1000, 1001}) {
@@ -339,7 +339,7 @@ double FitAcrossTheChange(std::size_t samples, double truth, double from) {
   return FittedCoulomb(*cost, change * (1 + from)) / change - 1;
 }
 
-TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChange) {
+TEST(TrajectoryCost, LeadsToTheTruthFromBothSidesOfAChangeOfTheNumberOfHalfSwings) {
   for (const double truth : {-3e-4, 3e-4}) {
     for (const double from : {-2e-3, 2e-3}) {
       EXPECT_THAT(FitAcrossTheChange(1980, truth, from), DoubleNear(truth, 1e-8)) << from;  // stop after 1962 samples

@@ -154,7 +154,7 @@ TEST(CorrelatedSum, IsPositiveDefiniteForAVeryLongCorrelation) {
   EXPECT_GT(sum.determinant(), 0);
 }
 
-TEST(CorrelatedSum, AcceptsZeroColumns) {
+TEST(CorrelatedSum, AcceptsAMatrixWithoutColumns) {
   for (const Process& process : {FirstOrder(0.5), MixedOrder(0.5, 0.2), Continuous(0.1, 0)}) {
     EXPECT_EQ(CorrelatedSum(process.model, EvenTimes(50), Eigen::MatrixXd(50, 0)).size(), 0);
   }

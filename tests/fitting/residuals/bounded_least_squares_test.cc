@@ -81,7 +81,7 @@ TEST(BoundedLeastSquares, SplitsEquallyBetweenEqualColumns) {
   EXPECT_THAT((place - Eigen::Vector2d(0.25, 0.75)).norm(), DoubleNear(0, 1e-12));
 }
 
-TEST(BoundedLeastSquares, IgnoresZeroColumnsAndAcceptsNone) {
+TEST(BoundedLeastSquares, IgnoresColumnsOfZerosAndAcceptsAMatrixWithoutColumns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Ones(5, 2);
   matrix.col(1).setZero();
   const Eigen::Vector2d far(kInfinity, kInfinity);

@@ -36,7 +36,7 @@ TEST(ReflectionCoefficients, UseTheSumsOfTwoParts) {
               ElementsAre(DoubleNear(23.0 / 26, 1e-15), DoubleNear(-3354.0 / 5434, 1e-15)));
 }
 
-TEST(ReflectionCoefficients, EndIfNothingIsLeftToPredict) {
+TEST(ReflectionCoefficients, EndAtPerfectPredictionAndAreZeroForZeros) {
   EXPECT_THAT(ReflectionCoefficients(Eigen::VectorXd::Ones(100), {{0, 100}}, 5), IsEmpty());
   EXPECT_THAT(ReflectionCoefficients(Eigen::VectorXd::Zero(100), {{0, 100}}, 5), ElementsAre(0, 0, 0, 0, 0));
 }

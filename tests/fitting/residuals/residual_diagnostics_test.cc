@@ -47,7 +47,7 @@ TEST(ComputeStatistics, MatchesFourResidualsComputedByHand) {
   EXPECT_EQ(statistics.effective_samples, 4);
 }
 
-TEST(ComputeStatistics, UsesResidualSizesAndQuantileResidualOrder) {
+TEST(ComputeStatistics, TakesSizesFromResidualsAndOrderFromQuantileResiduals) {
   const Eigen::Vector4d still(0.5, 0.5, 0.5, 0.5);
   const FitStatistics statistics = ComputeStatistics(still, kFour, 0, 1);
   EXPECT_EQ(statistics.rms_residual, 0.5);
@@ -119,7 +119,7 @@ TEST(LjungBoxP, MatchesTenResidualsComputedByHand) {
   EXPECT_THAT(LjungBoxP(-7 * Pairs()), DoubleNear(std::exp(-portmanteau / 2), 1e-14));
 }
 
-TEST(LjungBoxP, RejectsWhiteNoiseAtItsLevel) {
+TEST(LjungBoxP, RejectsWhiteNoiseInFivePercentOfSeries) {
   // Four standard deviations about .0524, the value for NumPy's normal noise in 20000 series with 20 lags.
   EXPECT_THAT(RejectedShare(LjungBoxP), DoubleNear(0.0524, 0.014));
 }
@@ -153,12 +153,12 @@ TEST(RunsP, MatchesSequencesComputedByHand) {
   EXPECT_THAT(RunsP(alternating), DoubleNear(3.546e-5, 1e-8));  // 20 runs, equally far above the mean
 }
 
-TEST(RunsP, IsOneIfAllHaveOneSign) {
+TEST(RunsP, IsOneIfAllResidualsHaveOneSign) {
   EXPECT_EQ(RunsP(Eigen::VectorXd::Ones(100)), 1);
   EXPECT_EQ(RunsP(-Eigen::VectorXd::Ones(100)), 1);
 }
 
-TEST(RunsP, RejectsWhiteNoiseAtItsLevel) {
+TEST(RunsP, RejectsWhiteNoiseInFivePercentOfSeries) {
   // The number of runs is an integer, so the level is met only to 0.009, the probability of one number at its edge.
   EXPECT_THAT(RejectedShare(RunsP), DoubleNear(0.05, 0.015));
 }

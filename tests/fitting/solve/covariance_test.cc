@@ -88,7 +88,7 @@ TEST(InvertInformation, NamesUndeterminedParameters) {
   EXPECT_THAT(InvertAll(jacobian).direction, ElementsAre(0, 2));
 }
 
-TEST(InvertInformation, AcceptsACorrelationOfTenNines) {
+TEST(InvertInformation, AcceptsACorrelationThatDiffersFromOneByMoreThanRounding) {
   Eigen::MatrixXd jacobian = Jacobian(4);
   jacobian.col(3) = jacobian.col(1) + 1e-5 * jacobian.col(1).norm() / jacobian.col(2).norm() * jacobian.col(2);
   const std::vector<int> without_quadratic = {0, 1, 3};

@@ -70,7 +70,7 @@ TEST(FindLowerAlongNewtonStep, TakesTheWholeStepIfPossible) {
   EXPECT_THAT(LowerFrom0(cost, 4, kUnbounded).value(), ElementsAre(1));
 }
 
-TEST(FindLowerAlongNewtonStep, StopsBeforeADiscontinuityToATenthOfAStandardError) {
+TEST(FindLowerAlongNewtonStep, HalvesTheStepBeforeADiscontinuityDownToATenthOfAStandardError) {
   // The sum is smaller only before the jump: a step of 4 standard errors is halved six times until it is below 0.1.
   EXPECT_THAT(LowerFrom0(JumpingCost(0.02, 5), 4, kUnbounded).value(), ElementsAre(1.0 / 64));
   EXPECT_FALSE(LowerFrom0(JumpingCost(1.0 / 64, 5), 4, kUnbounded));
@@ -189,7 +189,7 @@ TEST(EscapeDiscontinuities, RespectsBounds) {
   EXPECT_THAT(solution.parameters[2], Le(stopped.problem.solve.upper[2]));
 }
 
-TEST(EscapeDiscontinuities, ReplacesASolutionOnlyByABetterOne) {
+TEST(EscapeDiscontinuities, ReplacesASolutionOnlyByABetterSolution) {
   Stopped stopped(1);
   const auto squares = [&](const Solution& solution) {
     Eigen::VectorXd readings;

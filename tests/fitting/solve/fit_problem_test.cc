@@ -59,7 +59,7 @@ TEST(MakeFitProblem, BoundsFrictionAtZeroAndTheReleaseByTheHold) {
   EXPECT_THAT(problem.solve.fixed, Each(false));
 }
 
-TEST(MakeFitProblem, FindsTheParameterThatHoldsAtRest) {
+TEST(MakeFitProblem, FindsTheFrictionParameterThatHoldsThePendulumAtRest) {
   const std::map<std::string_view, int> expected = {{"linear", -1}, {"viscous", -1}, {"coulomb", 2}, {"drag", 2}};
   for (const auto& [model, holding] : expected) {
     EXPECT_EQ(ProblemOf(TextbookRun(model), ModelOptions(model)).solve.holding_parameter, holding) << model;
@@ -122,14 +122,14 @@ TEST(MakeFitProblem, AcceptsFixedValuesInReportUnits) {
   EXPECT_EQ(problem.first_guess[5], 0.02);
 }
 
-TEST(MakeFitProblem, ListsTheParametersIfTheModelLacksTheFixedOne) {
+TEST(MakeFitProblem, ListsTheParametersIfTheModelLacksTheFixedParameter) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"coulomb", 0.001}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message, AllOf(HasSubstr("viscous has no parameter 'coulomb'"),
                                     HasSubstr("inertia, viscous, release_angle, release_time, zero_angle")));
 }
 
-TEST(MakeFitProblem, RefusesToFixAParameterOfTheOtherStart) {
+TEST(MakeFitProblem, RefusesToFixAParameterOfTheOtherKindOfStart) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"initial_angle", 0.4}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message, HasSubstr("'initial_angle'"));

@@ -45,7 +45,7 @@ TEST(ChooseNoise, UsesTheRequestedFamily) {
   ExpectChoice(options, 0, 0.001, NoiseFamily::kStudent, "asked for by --loss");
 }
 
-TEST(ChooseNoise, IsQuantizedBelowOneResolution) {
+TEST(ChooseNoise, ChoosesQuantizedNoiseForResidualsBelowOneResolution) {
   const FitOptions options;
   ExpectChoice(options, 0.01, 0.0029, NoiseFamily::kQuantized,
                "the residuals are 0.29 resolutions: rounding is not small, so each reading is treated as an interval "
@@ -173,7 +173,7 @@ double Slope(const F& f, double x, double step) {
   return (f(x + step) - f(x - step)) / (2 * step);
 }
 
-TEST(MaximizeLikelihood, IsStationaryForRoundedReadings) {
+TEST(MaximizeLikelihood, FindsAStationaryPointForRoundedReadings) {
   for (const double counts : {0.25, 0.5}) {
     SCOPED_TRACE(counts);
     const LikelihoodCase fit(Must(SimulateRecording(CountsRun(counts, 1))));
@@ -267,7 +267,7 @@ TEST(MaximizeLikelihood, UsesSaturatedReadingsAsBounds) {
 
 // ---- Several minima ------------------------------------------------------------------------------------------------
 
-TEST(MaximizeLikelihood, KeepsOtherMinimaUnderTheSameNoise) {
+TEST(MaximizeLikelihood, EvaluatesOtherMinimaUnderTheFinalNoise) {
   // At 0.5 and 0.9 counts the neighbouring minimum is higher by 43 and 3.6 in -2 log L.
   for (const double counts : {0.5, 0.9}) {
     SCOPED_TRACE(counts);

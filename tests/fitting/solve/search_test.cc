@@ -35,7 +35,7 @@ StartGuess Always(const std::vector<double>& start) {
   };
 }
 
-TEST(Search, RecoversAStartThatIsCyclesOff) {
+TEST(Search, ConvergesFromAStartThatIsSeveralCyclesOff) {
   // Five percent of frequency over 40 cycles is two cycles.
   for (const double factor : {0.6, 0.9}) {
     SyntheticOptions run = NoisyRun("coulomb");
@@ -73,7 +73,7 @@ TEST(Search, TriesNeighbouringNumbersOfHalfSwings) {
   EXPECT_LE(solution.sum, Solve(*c.cost, c.truth, c.problem.solve).sum * (1 + 1e-8));
 }
 
-TEST(Search, FindsOneMinimumWithoutRest) {
+TEST(Search, FindsOneMinimumIfThePendulumDoesNotComeToRest) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   EXPECT_TRUE(Search(*c.cost, c.problem.data, c.Guess(), c.problem.solve).other_minima.empty());
 }

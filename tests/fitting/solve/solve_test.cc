@@ -34,7 +34,8 @@ TEST(Solve, ReportsTheReachedSumOfSquares) {
   SolveCase c(NoisyRun("coulomb"), "coulomb");
   const Solution solution = Solve(*c.cost, c.problem.first_guess, c.problem.solve);
   EXPECT_THAT(solution.sum, DoubleNear(c.SumAt(solution.parameters), 1e-6));
-  // Noise makes the minimum lower than the truth by χ² of six parameters: between its quantiles of 0.1 % and 99.9 %.
+  // The sum at the minimum is below the sum at the true parameters by a χ² variable with six degrees of freedom, whose
+  // quantiles of 0.1 % and 99.9 % these are.
   EXPECT_THAT(c.SumAt(c.truth) - solution.sum, AllOf(Gt(0.38), Lt(22.5)));
 }
 
@@ -59,7 +60,7 @@ TEST(Solve, KeepsFixedParameters) {
   EXPECT_EQ(Solve(*c.cost, start, options).parameters[1], 0.0021);
 }
 
-TEST(Solve, StaysWithinTheBoundsAndBestThere) {
+TEST(Solve, StaysWithinTheBoundsAndFindsTheMinimumThere) {
   SolveCase c(NoisyRun("viscous"), "drag");  // the data contain neither dry friction nor drag
   for (const double start : {0.0, 1e-3}) {
     std::vector<double> guess = c.problem.first_guess;
@@ -139,7 +140,7 @@ TEST(Solve, StopsWithinAFractionOfAStandardError) {
   }
 }
 
-TEST(Solve, StartsNoRunBeyondItsBudget) {
+TEST(Solve, StartsNoRunBeyondTheBudgetOfTraces) {
   SolveCase c(NoisyRun("viscous"), "drag");
   SolveOptions options = c.problem.solve;
   options.max_traces = 1;

@@ -68,7 +68,7 @@ TEST(MeasureTraceError, IsSmallerAtTheFinerTolerance) {
   EXPECT_LT(traced.solution.trace_error, 0.1 * coarse);
 }
 
-TEST(MeasureTraceError, KeepsTheToleranceAndItsReadings) {
+TEST(MeasureTraceError, ChangesNeitherTheToleranceNorTheReadings) {
   Traced traced;
   ASSERT_TRUE(traced.Measure(1e-6));
   Eigen::VectorXd readings;

@@ -67,7 +67,7 @@ TEST(Prior, IsInSiWithARig) {
   ExpectCombined(Must(SimulateRecording(NoisyRun("viscous"))), options, {1, 1}, 0.03);
 }
 
-TEST(Prior, DecidesOnlyIfItIsPrecise) {
+TEST(Prior, DominatesIfPreciseAndHasNoEffectIfImprecise) {
   const Recording recording = Must(SimulateRecording(NoisyRun("viscous")));
   ExpectCombined(recording, ModelOptions("viscous"), {1, 0.01}, 0.03);
   ExpectCombined(recording, ModelOptions("viscous"), {10, 1000}, 0.03);
@@ -293,7 +293,7 @@ TEST(ClockScale, ScalesEachParameterByItsPowerOfTime) {
   EXPECT_THAT(with.Find("release_time")->estimate, DoubleNear(without.Find("release_time")->estimate, 1e-6));
 }
 
-TEST(ClockScale, ItsErrorIsSystematic) {
+TEST(ClockScale, HasASystematicError) {
   Recording recording = Must(SimulateRecording(DragRun()));
   recording.clock_scale_std_dev = 3e-4;
   FitOptions options = ModelOptions("drag");
@@ -314,7 +314,7 @@ TEST(ClockScale, ItsErrorIsSystematic) {
   EXPECT_FALSE(clock.Find("release_angle")->systematic_std_error || clock.Find("zero_angle")->systematic_std_error);
 }
 
-TEST(ClockScale, ItsErrorCountsForRatesOfAnAngle) {
+TEST(ClockScale, ContributesItsErrorToRatesOfAnAngle) {
   Recording recording = Drifting(MovingRun("coulomb"), 0.01);
   recording.clock_scale_std_dev = 3e-4;
   FitOptions options = ModelOptions("coulomb");

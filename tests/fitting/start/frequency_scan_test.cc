@@ -103,7 +103,7 @@ TEST(ScanFrequencies, ExplainsReadingsAtAGridFrequency) {
   EXPECT_THAT(Unexplained(recording, starts[0], Linear()), Lt(0.1));
 }
 
-TEST(ScanFrequencies, ReturnsAtMostTwelve) {
+TEST(ScanFrequencies, ReturnsAtMostTwelveFrequencies) {
   // Sampled once per second, ω, 2π - ω and both plus multiples of 2π look the same: 63 of them lie below 200 rad/s.
   EXPECT_THAT(ScanFrequencies(Cosine(EvenTimes()), Linear(), {0.5, 200}), SizeIs(12));
 }

@@ -57,7 +57,7 @@ TEST(FitRecording, FindsRadiusAndAxisOfAnAccelerometerAlongTheRod) {
 }
 
 /// An acceleration sample cannot show the release: the window begins after the hold, regardless of its length.
-TEST(FitSwing, StartsAnAccelerationAfterItsHold) {
+TEST(FitSwing, StartsTheWindowOfAnAccelerationAfterTheHold) {
   for (const double axis : {0.02, kPi / 2 + 0.02}) {
     for (const double release : {0.5, 2.0}) {
       SCOPED_TRACE(std::to_string(axis) + " rad, held for " + std::to_string(release) + " s");
@@ -118,7 +118,7 @@ TEST(FitRecording, FindsTheRadiusWithoutGravityInTheReadings) {
   }
 }
 
-TEST(FitRecording, RefusesSensorsThatWouldShowNothing) {
+TEST(FitRecording, RefusesAZeroScaleOrRadiusOfASensor) {
   const auto message = [](const SyntheticOptions& options, const std::string& name) {
     FitOptions fit;
     fit.initial[name] = 0;

@@ -61,13 +61,13 @@ TEST(ChooseSwings, ChoosesTheLongestSwingByDefault) {
   EXPECT_THAT(swings.chosen, ElementsAre(2));
 }
 
-TEST(ChooseSwings, ChoosesTheRequestedNumberOrAll) {
+TEST(ChooseSwings, ChoosesTheRequestedSwingOrAll) {
   EXPECT_THAT(Choose({.release = 1}).chosen, ElementsAre(1));
   EXPECT_THAT(Choose({.release = 2}).chosen, ElementsAre(2));
   EXPECT_THAT(Choose({.release = SwingChoice::kAll}).chosen, ElementsAre(1, 2));
 }
 
-TEST(ChooseSwings, RefusesAnUnavailableNumber) {
+TEST(ChooseSwings, RefusesTheNumberOfAMissingSwing) {
   const auto swings = ChooseSwings(TwoReleases(), {.release = 3});
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
@@ -78,7 +78,7 @@ TEST(ChooseSwings, RefusesAnUnavailableNumber) {
             "two.csv: there is no free swing 3 in the recording; it has 2");
 }
 
-TEST(ChooseSwings, AGivenBoundEndsTheSwingNextToIt) {
+TEST(ChooseSwings, BeginsOrEndsASwingAtAGivenBound) {
   const FreeSwing from = ChosenOne(Between(2.5, kOpen));
   EXPECT_THAT(from.from, AllOf(Ge(2.5), Lt(2.511)));
   EXPECT_THAT(from.to, Le(9.0));

@@ -89,7 +89,7 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
-TEST(FitSwing, ReportsWhatItRemoved) {
+TEST(FitSwing, ReportsTheRemovedEnds) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));

@@ -48,7 +48,7 @@ void AddStep(Index sample, double size, FitResiduals& residuals) {
   residuals.residual.tail(residuals.residual.size() - sample).array() += size;
 }
 
-TEST(FindOffsetSteps, FindsNoneInNoise) {
+TEST(FindOffsetSteps, FindsNoStepInNoise) {
   for (const double correlation : {0.0, 0.5, 0.95}) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
       EXPECT_THAT(FindOffsetSteps(Noise(seed, correlation), 5), IsEmpty()) << seed << " at " << correlation;
@@ -120,7 +120,7 @@ TEST(FindOffsetSteps, LocatesAStepWithinItsBin) {
   EXPECT_THAT(static_cast<double>(steps[0].sample), DoubleNear(1007, 1));
 }
 
-TEST(FindOffsetSteps, StopsAtTheGivenNumber) {
+TEST(FindOffsetSteps, StopsAtTheGivenNumberOfSteps) {
   FitResiduals residuals = Noise(8);
   for (Index sample = 200; sample < 2000; sample += 200) AddStep(sample, 10, residuals);
   EXPECT_THAT(FindOffsetSteps(residuals, 4), SizeIs(4));

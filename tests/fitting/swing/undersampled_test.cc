@@ -106,7 +106,7 @@ TEST(FitUndersampled, FindsSwingsOfAnyAmplitudeAndWithDryFriction) {
   EXPECT_EQ(ScatterOf(1, 0.423, "coulomb", 12).far, 0);
 }
 
-TEST(FitUndersampled, FindsTheSwingAtFiveThirdsOfTheFrequency) {
+TEST(FitUndersampled, FindsASwingSampledAtFiveThirdsOfItsFrequency) {
   EXPECT_EQ(ScatterOf(kFrequency * 5 / 3, 0.423, "viscous", 12).far, 0);
 }
 
@@ -180,7 +180,7 @@ TEST(FitUndersampled, RefusesARelease) {
   EXPECT_THAT(refused.error().message, HasSubstr("--start moving"));
 }
 
-TEST(FitUndersampled, RefusesAConstant) {
+TEST(FitUndersampled, RefusesAConstantReading) {
   Recording recording = Must(SimulateRecording(Swing(1, 0.423, 1)));
   recording.value.setConstant(0.1);
   const auto refused = FitUndersampled(recording, WholeRecording(recording), {});
@@ -220,7 +220,7 @@ TEST(FitUndersampled, RefusesAnImplausiblePeriod) {
   }
 }
 
-TEST(FitUndersampled, RefusesAFrequencyFarFromTheRigs) {
+TEST(FitUndersampled, RefusesAFrequencyFarFromThePredictionOfTheRig) {
   const SwingFit result = FitSimulated(Swing(1.3, 0.423, 1, 0.13), TextbookRig(), "viscous");
   EXPECT_EQ(result.fit.termination, Termination::kNotIdentifiable) << result.fit.reason;
   EXPECT_THAT(result.fit.reason, HasSubstr("check the rig"));
@@ -236,7 +236,7 @@ TEST(FitUndersampled, AcceptsBoundsInsteadOfARig) {
 
 // ---- IsUndersampled ------------------------------------------------------------------------------------------------
 
-TEST(IsUndersampled, IsTrueBelowSevenSamplesPerShortenedPeriod) {
+TEST(IsUndersampled, IsTrueBelowSevenSamplesPerPeriodWithAMarginOfFifteenPercent) {
   const double limit = 7 * 1.15 * std::sqrt(kTextbookTorque / kGeometric) / (2 * kPi);
   const auto at = [](double rate) { return Must(SimulateRecording(Swing(rate, 0.423, 1))); };
   EXPECT_TRUE(IsUndersampled(at(0.99 * limit), TextbookRig()));

@@ -102,7 +102,7 @@ TEST(Bootstrap, DiffersFromSeedToSeed) {
   }
 }
 
-TEST(Bootstrap, EstimatesScatterAroundTheFitAsExpected) {
+TEST(Bootstrap, HasEstimatesThatScatterAboutTheFitByTheStandardErrors) {
   const Fitted fitted = SmallFit();
   const Bootstrap bootstrap = Bootstrapped(fitted, 1, 2);
   const Errors errors = fitted.StandardErrors();

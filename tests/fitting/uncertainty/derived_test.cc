@@ -181,7 +181,7 @@ TEST(SetDerivedIntervals, HasNoUpperQualityFactorIfFrictionMayBeZero) {
   EXPECT_THAT(*quality.lower95, DoubleNear(100 - std::hypot(50, 5), 1e-9));
 }
 
-TEST(SetDerivedIntervals, LeavesEndsOpenForMissingEnds) {
+TEST(SetDerivedIntervals, LeavesAnEndOpenIfAParameterLacksIt) {
   const Quantities quantities = WithIntervals({0.001, {}}, {0.003, 0.003});
   EXPECT_TRUE(quantities.at("damping_ratio").lower95);
   EXPECT_FALSE(quantities.at("damping_ratio").upper95);

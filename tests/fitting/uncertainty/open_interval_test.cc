@@ -9,7 +9,7 @@
 namespace pendulum::open_interval_test {
 namespace {
 
-TEST(Sentence, OfAnOpenIntervalExistsOnceForEachReason) {
+TEST(Sentence, ExistsOnceForEachReasonOfAnOpenInterval) {
   std::set<std::string_view> sentences;
   for (int k = 0; k <= static_cast<int>(OpenInterval::kFailedResamples); ++k) {
     const auto open = static_cast<OpenInterval>(k);

@@ -127,7 +127,7 @@ void ExpectAsByQuadrature(const LinearizedFit& fit) {
 
 TEST(SamplePosterior, MatchesQuadratureForARampWithoutNoise) { ExpectAsByQuadrature(Ramp()); }
 
-TEST(SamplePosterior, StartsAnywhereWithinTwoCounts) {
+TEST(SamplePosterior, AcceptsAStartWithinTwoCounts) {
   LinearizedFit fit = Ramp();
   fit.readings.array() += 1.5 * kResolution;  // no level allows this
   fit.noise.sigma = 0;
@@ -290,7 +290,7 @@ struct Swing {
   }
 };
 
-TEST(SamplePosterior, CoversTheTruthMoreCloselyThanLeastSquares) {
+TEST(SamplePosterior, CoversTheTruthAndHasSmallerErrorsThanLeastSquares) {
   constexpr int kSwings = 16;
   std::mt19937_64 generator(13);
   boost::random::uniform_01<double> uniform;

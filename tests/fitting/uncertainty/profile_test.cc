@@ -121,7 +121,8 @@ TEST(ProfileParameter, MatchesTheTransformedIntervalOfALine) {
     const Line line(0.3);
     const ProfileInterval profile = ProfileOfLine(line, *map, map->parameter(0.25), map->parameter(0.05), 20);
     ASSERT_TRUE(profile.lower && profile.upper);
-    // The ends are found to a hundredth of the root of the likelihood's decrease: a hundredth of the half length.
+    // The search for an end stops when sqrt(rise of the deviance / threshold) is within 0.01 of 1. For a line this
+    // ratio is the distance from the estimate divided by the half length.
     EXPECT_NEAR(map->slope(*profile.lower), line.Slope() - line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_NEAR(map->slope(*profile.upper), line.Slope() + line.HalfLength(), 0.011 * line.HalfLength());
     EXPECT_EQ(profile.open, OpenInterval::kClosed);
@@ -149,7 +150,7 @@ TEST(ProfileParameter, EndsAtABoundWithinTheInterval) {
 
 /// If the bound excludes the line's own slope, the likelihood decreases from its value at the bound, not from its
 /// maximum.
-TEST(ProfileParameter, StartsFromTheLikelihoodAtTheBoundForAParameterThere) {
+TEST(ProfileParameter, MeasuresTheDevianceFromTheBoundForAParameterAtItsBound) {
   const Line line(0.3);
   const double beyond = 0.5 * line.HalfLength();
   const ProfileInterval profile = ProfileOfLine(line, kNone, 1, line.Slope() + beyond, 5);

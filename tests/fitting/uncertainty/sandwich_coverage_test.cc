@@ -69,7 +69,7 @@ TEST(SandwichIntervals, NearlyCoverForCorrelationOverFiftySamples) {
   ExpectWithin(Coverage(2000, 0.98, 0), 0.91, 0.97);
 }
 
-TEST(SandwichIntervals, NearlyCoverInFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }
+TEST(SandwichIntervals, NearlyCoverForARecordingOfFiveSeconds) { ExpectWithin(Coverage(500, 0.9, 0), 0.90, 0.97); }
 
 }  // namespace
 }  // namespace pendulum::sandwich_coverage_test

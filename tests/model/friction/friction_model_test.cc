@@ -261,7 +261,7 @@ TEST(AsymmetricFriction, IsLargerTowardsPositiveAngles) {
 
 // ---- The list ----------------------------------------------------------------------------------------------------
 
-TEST(FrictionModels, HaveUniqueNamesUnlikeTheLinearModel) {
+TEST(FrictionModels, HaveUniqueNamesOtherThanLinear) {
   std::set<std::string_view> names = {"linear"};
   for (const std::string_view name : FrictionModels::kNames) EXPECT_TRUE(names.insert(name).second) << name;
 }

@@ -168,7 +168,7 @@ TYPED_TEST(GravityLaw, HasTheSeriesOfItsTorqueAndOfItsDerivative) {
 
 TEST(Gravity, IsSineUnlessChosenOtherwise) { EXPECT_EQ(Gravity(), Gravity::kSine); }
 
-TEST(Gravity, HasUniqueNamesThatFindIt) {
+TEST(Gravity, IsFoundByUniqueNames) {
   std::set<std::string_view> names;
   for (const std::string_view name : GravityModels::kNames) {
     EXPECT_TRUE(names.insert(name).second) << name;

@@ -66,7 +66,7 @@ TEST(ForeignFormats, TheUserChoosesAmongColumns) {
   EXPECT_EQ(RecordingOf(text, TimeAndValue("1", "4")).unit, "volts");
 }
 
-TEST(ForeignFormats, NamesWithoutAUnitNeedOne) {
+TEST(ForeignFormats, ColumnsWithoutAUnitNeedAUnitFlag) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
   EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
             "run.csv:1:3: column \"x\" does not give its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "

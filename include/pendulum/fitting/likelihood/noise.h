@@ -48,7 +48,9 @@ std::string_view NoiseFamilyName(NoiseFamily family);
 struct SampleLikelihood {
   double deviance = 0;  ///< 2 (max l - l) >= 0 at the given σ: the square of the deviance residual.
   double score = 0;     ///< ∂l/∂m
-  double weight = 0;    ///< -∂²l/∂m² >= 0; for robust families score / (y - m): that parabola lies below l.
+  /// -∂²l/∂m² >= 0. For robust families score / (y - m): the parabola in m that touches l at the current m and has this
+  /// curvature is nowhere above l.
+  double weight = 0;
 };
 
 /// The same log-likelihood as a function of m and of λ = ln σ.

@@ -17,7 +17,7 @@ struct SolveOptions {
   std::vector<bool> fixed;                  ///< P
   int holding_parameter = -1;               ///< The parameter that keeps the pendulum at rest (dry friction); -1: none.
   int last_friction = 1;                    ///< The last parameter of friction; the first is 1, after inertia.
-  int release_time = -1;                    ///< -1: the recording begins in motion.
+  int release_time = -1;                    ///< Index of the release time; -1: the recording begins in motion.
   std::vector<int> small_swing_parameters;  ///< Held while the last part is left out: only small swings determine them.
   int max_iterations = 100;                 ///< Limit of Ceres iterations for each run.
   int max_traces = std::numeric_limits<int>::max();  ///< LeastSquares::traces() at which no further run starts.

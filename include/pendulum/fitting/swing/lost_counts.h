@@ -22,8 +22,8 @@ struct OffsetJumps {
   bool AreCorrected() const { return !lost.empty(); }
 };
 
-/// Whether the zero of an angle may have jumped: the mean of a fit's residuals changes at some sample by four standard
-/// errors of independent residuals, and by a good part of a resolution.
+/// Whether the zero of an angle may have jumped: at some sample the mean of a fit's residuals changes by at least 0.4
+/// of the resolution and by four standard errors (of independent residuals).
 bool MayHaveOffsetJump(const FitReport& fit);
 
 /// Finds jumps of an angle's zero (MODEL.md eq. (13.1)) in the residuals of the richest law; smaller residuals give a

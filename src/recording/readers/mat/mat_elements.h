@@ -44,7 +44,7 @@ class MatElements {
   std::size_t at_ = 0;
 };
 
-/// A matrix without its contents.
+/// The header of a matrix; `contents` are its further elements, not yet read.
 struct MatMatrix {
   std::uint32_t kind = 0;  // Class of the matrix; 0: an empty element, which represents an empty matrix.
   bool is_complex = false;

@@ -86,7 +86,7 @@ void FindStamps(const std::vector<TableColumn>& columns, std::string_view row, c
 }
 
 /// The name of a message field with its unit added; the name itself if the unit is not known.
-std::string MeaningOf(const std::string& written) {
+std::string NameWithUnit(const std::string& written) {
   const Path path = PathOf(written);
   const std::string parent = PathOf(path.before).last;
   const bool is_axis = IsOneOf(path.last, {"x", "y", "z"});
@@ -170,11 +170,11 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
   if (!has_time) FindStamps(columns, row, separator, table);
   table.joint = FindJoint(columns, row, separator);
   const bool has_paths = std::ranges::any_of(columns, [](const TableColumn& column) {
-    return column.written.starts_with('/') && MeaningOf(column.written) != column.written;
+    return column.written.starts_with('/') && NameWithUnit(column.written) != column.written;
   });
   if (table.seconds == kNoColumn && table.joint == kNoColumn && !has_paths) return std::nullopt;
   for (TableColumn& column : columns) {
-    if (FindUnit(column.meaning) == nullptr) column.meaning = MeaningOf(column.written);
+    if (FindUnit(column.meaning) == nullptr) column.meaning = NameWithUnit(column.written);
   }
   if (table.seconds == kNoColumn && !has_time) {
     const std::size_t plain = FindByLastPart(columns, {"time", "timestamp", "t"});

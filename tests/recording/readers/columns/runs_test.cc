@@ -82,7 +82,7 @@ TEST(Runs, RowsWithAnEmptyCellAreRemovedWithAWarning) {
   EXPECT_THAT(FaultOf("time_s,angle_rad\n" + Rows("0.0{t},{v}") + "0.08,\n0.09,109\n"), HasSubstr("is empty where"));
 }
 
-TEST(Runs, ALineOfRunsMayPrecedeTheNames) {
+TEST(Runs, ALineOfRunNamesMayPrecedeTheColumnNames) {
   const std::string text = "Run 1,,Run 2,\nTime (s),Angle (rad),Time (s),Angle (rad)\n" + Rows("7,1,0.0{t},{v}");
   EXPECT_THAT(FaultOf(text), HasSubstr("columns \"Run 1: Angle (rad)\" and \"Run 2: Angle (rad)\" could both"));
   ExpectTheRows(RecordingOf(text, TimeAndValue("", "Run 2: Angle (rad)")));

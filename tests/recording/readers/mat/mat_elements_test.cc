@@ -51,7 +51,7 @@ TEST(MatElements, AreReadInTheOtherByteOrder) {
   EXPECT_EQ(elements.Next(1), "xy");
 }
 
-TEST(MatElements, EndAtAnElementThatDoesNotFit) {
+TEST(MatElements, EndAtAnElementThatExceedsTheBytes) {
   EXPECT_FALSE(MatElements("\1\0\0\0\3\0\0"sv, false).Next());
   EXPECT_FALSE(MatElements("\1\0\0\0\3\0\0\0ab"sv, false).Next());
   EXPECT_FALSE(MatElements("\1\0\0\0\xFF\xFF\xFF\xFF"

@@ -57,7 +57,7 @@ TEST(OpenHdf5, FindsTheObjectsOfAFileAndTheirPlaces) {
   EXPECT_EQ(subsystem.cell(99).kind, MatValue::Kind::kOther);
 }
 
-TEST(OpenHdf5, IsEmptyForAnotherFile) {
+TEST(OpenHdf5, IsEmptyIfTheFileIsMissingOrNotHdf5) {
   const Written written("no HDF5");
   EXPECT_FALSE(OpenHdf5(written.path())().objects);
   EXPECT_FALSE(OpenHdf5("/nowhere/at/all")().objects);

@@ -63,7 +63,7 @@ TEST_P(OfEveryVersion, ReadsTwoVectorsByName) {
       RecordingOf(MatOf({Matrix("t_ms", 1, Times(1000)), Matrix("y", 1, Values())}, GetParam()), Unit("rad")));
 }
 
-TEST_P(OfEveryVersion, AMatrixWithAnIncreasingFirstColumnHasTime) {
+TEST_P(OfEveryVersion, TheIncreasingFirstColumnOfAMatrixIsTheTime) {
   ExpectTheRows(RecordingOf(MatOf({Matrix("angle_rad", 8, Both())}, GetParam())));
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Unit("deg")), kDegree);
   ExpectTheRows(RecordingOf(MatOf({Matrix("run", 8, Both())}, GetParam()), Value("run(:,2)", "deg")), kDegree);
@@ -206,7 +206,7 @@ matvar_t* Sparse(const char* name) {
   return Mat_VarCreate(name, MAT_C_SPARSE, MAT_T_DOUBLE, 2, sizes, &sparse, 0);
 }
 
-TEST_P(OfEveryVersion, CellsComplexAndSparseNumbersAreNoColumns) {
+TEST_P(OfEveryVersion, CellsAndComplexOrSparseNumbersAreNotColumns) {
   const auto sentence = [](const std::string& name, const std::string& kind) {
     return "run.csv: variable \"" + name + "\" is " + kind +
            "; a column must be a vector of real numbers, or part of a matrix or a structure";
@@ -354,7 +354,7 @@ std::string WithOtherFile(const std::string& corpus_file, const std::string& oth
 constexpr const char* kOneFile =
     "run.csv: this MAT-file refers to numbers in another file, which is not opened; save all in one file";
 
-TEST(ReadMat, ReadsNoOtherFile) {
+TEST(ReadMat, ReadsNoOtherFileThatTheFileRefersTo) {
   for (const char* const file : {"other_file.mat", "other_file_link.mat"}) {
     EXPECT_EQ(FaultOf(WithOtherFile(file, "/proc/self/exe"), Unit("", 100)), kOneFile);
     EXPECT_EQ(FaultOf(WithOtherFile(file, "/nowhere/at/all"), Unit("", 100)), kOneFile);

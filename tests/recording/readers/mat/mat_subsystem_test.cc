@@ -49,7 +49,7 @@ TEST(SubsystemOf, IsEmptyForAFileWithoutObjects) {
   EXPECT_FALSE(SubsystemOf(std::string(200, ' ')).objects);
 }
 
-TEST(SubsystemOf, IsEmptyIfTheHeaderPointsElsewhere) {
+TEST(SubsystemOf, IsEmptyIfThePositionInTheHeaderIsWrong) {
   const std::string whole = objects::Version5(Example());
   for (const std::string& place : {std::string(8, ' '), std::string(8, '\0'), objects::Bytes(128, 8, false),
                                    objects::Bytes(129, 8, false), std::string(8, '\xFF')}) {

@@ -59,7 +59,7 @@ TEST(ObjectsOf, IsEmptyIfTheContentDoesNotFit) {
   EXPECT_FALSE(ObjectsOf(text));
 }
 
-TEST(AddReferences, UsesMatlabNotationForPlaces) {
+TEST(AddReferences, UsesMatlabNotationForTheLocationsOfObjects) {
   const auto object = [](double number) {
     return MatValue{Kind::kObject, {}, {kMark, 2, 1, 1, number, 1}, "A", {}, {}};
   };

@@ -25,7 +25,7 @@ TEST(PastedRows, ReadAPasteOfASerialMonitor) {
   EXPECT_EQ(recording.warnings[0].message, "run.csv:10: the row \"14:03:22.203 -> 80\" is incomplete; it was left out");
 }
 
-TEST(PastedRows, UseTheHostsTimeIfThereIsNoOther) {
+TEST(PastedRows, UseTheHostsTimeIfThereIsNoOtherTime) {
   std::string text = "99.990 -> 7\n";
   for (int i = 0; i < 8; ++i)
     text += (i < 4 ? "23:59:59.9" + std::to_string(6 + i) : "00:00:00.0" + std::to_string(i - 4)) + "0 -> " +
@@ -106,10 +106,9 @@ TEST(PastedRows, NameTheLineOfClockRepairs) {
   const std::string text = "# a\ntime_ms,angle_deg\n" + Rows("{t},{v}");
   const Recording recording = RecordingOf(text + "\n\n70,5\n80,5\n90,5\n100,5\n110,5\n");
   ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(
-      recording.warnings[0].message,
-      "run.csv:13: 2 of 13 rows were left out because they share their time with another row, first 70 ms; one of "
-      "each group of equal rows was kept");
+  EXPECT_EQ(recording.warnings[0].message,
+            "run.csv:13: 2 of 13 rows were left out because they share their time with another row, first 70 ms; of "
+            "rows with equal times and values, one was kept");
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ TEST(Ros, ImuAccelerationsIncludeGravity) {
   EXPECT_FALSE(RecordingOf("time_s,Linear Acceleration x (m/s^2)\n" + Rows("0.0{t},{v}")).shows_gravity);
 }
 
-TEST(Ros, BothCoordinatesOfAPointAreAnAngle) {
+TEST(Ros, BothCoordinatesOfAPointGiveTheAngle) {
   std::string text = "header.stamp.sec,header.stamp.nanosec,y_px,x_px\n";
   for (int i = 0; i < 40; ++i) {
     const double angle = 0.5 * std::sin(0.3 * i);
