@@ -36,8 +36,9 @@ double SigmaOf(const JointMember& member, const Optimum& optimum) {
   const NoiseModel& noise = member.solution.noise;
   const double smallest = problem.negligible_sigma();
   if (!noise.IsUncensoredGaussian()) {
-    const double quantized = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
-    return MostLikelySigma(noise, problem.data.values(), member.solution.readings, std::max(quantized, smallest));
+    const double smallest_quantized = noise.family == NoiseFamily::kEdges ? 0 : kSmallestSigma * problem.resolution;
+    return MostLikelySigma(noise, problem.data.values(), member.solution.readings,
+                           std::max(smallest_quantized, smallest));
   }
   const double rss = (problem.data.values() - member.solution.readings).squaredNorm();
   return std::max(std::sqrt(rss / std::max(member.samples() - ShareOf(member, optimum), 1.0)), smallest);
