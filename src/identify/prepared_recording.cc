@@ -45,8 +45,8 @@ tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path,
   if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
   const std::string where = name + ": ";
   const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
-  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
-                                status.message.substr(skip));
+  return WithMessage(status, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
+                                 status.message.substr(skip));
 }
 
 }  // namespace pendulum

@@ -298,8 +298,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
                                         ? Result<StartValues>(*options.search.start_values)
                                         : FindStart(timed, *model, sensor, options, problem.sensor_starts);
   if (!start)
-    return Error(start.error().code,
-                 recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
+    return WithMessage(start.error(),
+                       recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
 
   problem.model = *model;
   problem.start = *start;
