@@ -155,8 +155,9 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
 }
 
 /// Sets value, unit, quantity, resolution, range and calibration from the numbers in `value`.
-inline void SetValues(const Column& column, const ReadOptions& options, const Metadata& metadata,
+inline void SetValues(const Layout& layout, const ReadOptions& options, const Metadata& metadata,
                       Recording& recording) {
+  const Column& column = layout.value;
   const Unit& unit = *column.unit;
   recording.quantity = QuantityOf(column);
   recording.shows_gravity = !column.is_without_gravity;
