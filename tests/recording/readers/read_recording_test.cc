@@ -279,7 +279,6 @@ TEST(ParseRecording, ShortensAndEscapesShownText) {
 
 TEST(ParseRecording, RefusesNulBytesAtTheirPosition) {
   EXPECT_THAT(FaultOf(kHeader + Rows() + std::string("8,\0\0", 4)), StartsWith("run.csv:10:3: there is a NUL byte"));
-  EXPECT_THAT(FaultOf(std::string("\xFF\xFEt\0i\0", 6)), AllOf(StartsWith("run.csv:1:4: "), HasSubstr("UTF-16")));
 }
 
 TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
