@@ -35,11 +35,18 @@ std::string_view WithoutBeginning(std::string_view text) {
   return text;
 }
 
+bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+/// XML begins with a declaration, a comment or the name of an element. Rows such as <12,34> do not.
 bool IsXml(std::string_view begin) {
   const std::string_view text = WithoutBeginning(begin);
-  if (text.size() < 2 || text.front() != '<') return false;
-  const char c = text[1];
-  return c == '?' || c == '!' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  if (text.starts_with("<?xml") || text.starts_with("<!--") || text.starts_with("<!DOCTYPE")) return true;
+  if (text.size() < 2 || text.front() != '<' || !IsLetter(text[1])) return false;
+  const auto is_of_name = [](char c) {
+    return IsLetter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == ':' || c == '.';
+  };
+  const auto end = std::find_if_not(text.begin() + 1, text.end(), is_of_name);
+  return end == text.end() || " \t\r\n/>"sv.find(*end) != std::string_view::npos;
 }
 
 /// A table may also begin with a bracket, as in "[Header]" or "[s],[deg]".

@@ -47,21 +47,19 @@ std::size_t SkipText(std::string_view format, std::size_t at) {
   }
 }
 
+/// True for [h], [mm] and [ss], but not for [Red] or [$-409].
+bool IsDuration(std::string_view bracket) {
+  const std::size_t end = bracket.find(']');
+  return end != std::string_view::npos && end > 1 && bracket.find_first_not_of("hmsHMS", 1) == end;
+}
+
 }  // namespace
 
 bool IsTimeFormat(std::string_view format) {
   const auto is_unit = [](char c) { return std::string_view("ydhsmYDHSM").find(c) != std::string_view::npos; };
   if (format == "General" || format == "GENERAL") return false;
   for (std::size_t i = 0; i < format.size(); ++i) {
-    if (format[i] == '[' && i + 1 < format.size()) {  // [h], [mm] and [ss] are durations, [Red] and [$-409] are not.
-      const std::size_t end = std::min(format.find(']', i), format.size());
-      const std::string_view inside = format.substr(i + 1, end - i - 1);
-      if (!inside.empty() && std::ranges::all_of(inside, [](char c) {
-            return std::string_view("hmsHMS").find(c) != std::string_view::npos;
-          })) {
-        return true;
-      }
-    }
+    if (format[i] == '[' && IsDuration(format.substr(i))) return true;
     const std::size_t end = SkipText(format, i);
     if (end != i) {
       i = end;

@@ -102,10 +102,11 @@ class OdsReader {
     if (cell.value.empty() || cell.is_error) cells_.pop_back();
   }
 
-  /// Empty rows at the end of a sheet are repeated a million times.
+  /// Empty rows at the end of a sheet are repeated a million times. A malicious file repeats rows that are not empty.
   void EndRow() {
     const std::size_t repeats = cells_.empty() ? 0 : row_repeats_;
-    for (std::size_t i = 0; i < repeats && !csv_.is_full(); ++i) AddRow(row_ + i);
+    workbook_.is_too_large |= repeats * next_column_ > max_bytes_;  // A cell has at least a separator.
+    for (std::size_t i = 0; i < repeats && !is_done() && !csv_.is_full(); ++i) AddRow(row_ + i);
     row_ += row_repeats_;
     workbook_.is_too_large |= csv_.is_full();
   }

@@ -38,7 +38,7 @@ std::string TakeString(std::string_view& bytes) {
 
 bool FinishSheet(CsvText& csv, Sheet& sheet, Workbook& workbook) {
   sheet.text = csv.Finish();
-  workbook.is_too_large = csv.is_full();
+  workbook.is_too_large |= csv.is_full();
   if (csv.is_disordered() && !workbook.is_too_large) {
     workbook.complaint = "the cells of sheet " + Quoted(sheet.name) + " are not in order; save the workbook again";
   }
