@@ -117,7 +117,7 @@ for _header, _names in STANDARD.items():
         HEADERS_OF.setdefault(_name, set()).add(_header)
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)', re.MULTILINE)
-_EVERYWHERE = {"ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library provide them
+_EVERYWHERE = {"nullptr_t", "ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library provide them
 _STD_NAME = re.compile(r"(?<![\w:])std::(?:ranges::)?(\w+)")
 # Types, aliases, constants and functions that a header declares outside of classes: at the left edge of a line.
 _DECLARED = re.compile(

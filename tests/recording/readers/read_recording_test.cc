@@ -283,7 +283,6 @@ TEST(ParseRecording, ShortensAndEscapesShownText) {
 
 TEST(ParseRecording, RefusesNulBytesAtTheirPosition) {
   EXPECT_THAT(FaultOf(kHeader + Rows() + std::string("8,\0\0", 4)), StartsWith("run.csv:10:3: there is a NUL byte"));
-  EXPECT_THAT(FaultOf(std::string("\xFF\xFEt\0i\0", 6)), AllOf(StartsWith("run.csv:1:4: "), HasSubstr("UTF-16")));
 }
 
 TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
@@ -325,7 +324,7 @@ void ExpectAValidRecordingOrAMessage(const std::string& text) {
   if (recording) {
     EXPECT_TRUE(MakeRecording(*recording).has_value());
   } else {
-    EXPECT_THAT(recording.error().message, testing::MatchesRegex("fuzz\\.csv:[0-9]+:.+"));
+    EXPECT_THAT(recording.error().message, testing::MatchesRegex("fuzz\\.csv:( |[0-9]+:).+"));
     EXPECT_LT(recording.error().message.size(), 1000);
   }
 }

@@ -25,9 +25,9 @@
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
-#include "recording/readers/mat/child_process.h"
 #include "recording/readers/mat/mat_elements.h"
 #include "recording/readers/mat/mat_version_4.h"
+#include "recording/readers/process/child_process.h"
 
 namespace pendulum {
 namespace {
