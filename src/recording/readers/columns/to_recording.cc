@@ -53,7 +53,7 @@ Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions&
                           "with :s, :ms or :us after the column",
                       StatusCode::kInvalidArgument);
   }
-  Result<RawSamples> repaired = RepairClock(std::move(samples));
+  Result<RawSamples> repaired = RepairClock(std::move(samples), options.window);
   if (!repaired) return tl::unexpected(std::move(repaired).error());
   samples = *std::move(repaired);
   const Unit& unit = layout.time ? *layout.time->unit : *UnitOfSuffix("s");
