@@ -35,7 +35,7 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 }
 
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, options.read);
+  auto read = ReadRecording(path, ReadOptionsOf(options));
   if (!read) return tl::unexpected(read.error());
   return PrepareRecording(*std::move(read), options, std::move(rig));
 }

@@ -48,7 +48,7 @@ Result<void> SetTimes(ReadColumns& columns, const ReadOptions& options) {
     samples.time_unit = "s";
   }
   if (layout.is_from_first) samples.time.array() -= double{samples.time[0]};
-  Result<RawSamples> repaired = RepairClock(std::move(samples));
+  Result<RawSamples> repaired = RepairClock(std::move(samples), options.window);
   if (!repaired) return tl::unexpected(std::move(repaired).error());
   samples = *std::move(repaired);
   if (is_usual && unit.divisor != 1) {
