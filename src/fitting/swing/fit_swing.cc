@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "fitting/swing/plausible_period.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/swing/lost_counts.h"
@@ -374,17 +375,31 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
                              " s; choose another one with --from and --to"});
   }
   WarnOfLargerMotion(state.swing, fit);
+  if (const auto assumed = AssumedFrequencyText(state.result.used, state.swing.half_period, options)) {
+    fit.warnings.push_back({"ambiguous_frequency", *assumed});
+  }
   WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);
   const auto why = state.IsLacking() ? TwoModesReason(state.result.used, fit, options.stop) : std::nullopt;
   if (why) RejectAsNotAPendulum(*why, fit);
 }
 
+/// With few samples, a fast swing may look like a slow one, whose law it does not follow.
+bool MayBeFaster(const FitOptions& options, const SwingState& state) {
+  return state.IsLacking() && AssumedFrequencyText(state.result.used, state.swing.half_period, options);
+}
+
 /// After a stop request the result is meaningless.
 Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
+    return Error(StatusCode::kFailedPrecondition, *why);
+  }
   if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
   Result<SwingFit> first = FitBetween(std::move(recording), swing, options);
   if (!first) return first;
   SwingState state{std::move(swing), *std::move(first), std::nullopt};
+  if (MayBeFaster(options, state)) {
+    if (std::optional<SwingFit> faster = FitFasterAlias(state.result, options)) return *std::move(faster);
+  }
   const auto records = ApplyRescues(options, state);
   if (!records) return tl::unexpected(records.error());
   if (state.is_pendulum) AddWarnings(options, state);
