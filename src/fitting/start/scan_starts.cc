@@ -46,8 +46,7 @@ Result<std::vector<StartValues>> ScanStarts(const Recording& recording, const Mo
   std::vector<StartValues> starts;
   for (const Oscillation& oscillation : ScanOscillations(view, range, options.stop)) {
     for (const SensorStart& start : SensorStarts(recording, sensor, options, oscillation)) {
-      std::vector<StartValues> best =
-          BestOfScan(sensor, start, model, RangeAbout(oscillation.frequency), options.stop);
+      std::vector<StartValues> best = BestOfScan(sensor, start, model, RangeAbout(oscillation.frequency), options.stop);
       std::move(best.begin(), best.end(), std::back_inserter(starts));
     }
   }

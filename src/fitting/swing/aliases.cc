@@ -31,9 +31,8 @@ std::vector<Alias> WithoutDuplicates(std::vector<Alias> aliases, double duration
   constexpr double kSame = 0.1;  // cycles over the recording
   std::vector<Alias> distinct;
   for (Alias& alias : aliases) {
-    const bool known = std::ranges::any_of(distinct, [&](const Alias& other) {
-      return std::abs(other.frequency - alias.frequency) * duration < kSame;
-    });
+    const bool known = std::ranges::any_of(
+        distinct, [&](const Alias& other) { return std::abs(other.frequency - alias.frequency) * duration < kSame; });
     if (!known) distinct.push_back(std::move(alias));
   }
   return distinct;

@@ -27,8 +27,10 @@ std::string WrongUnitText(double period) {
 /// A sampling rate that is too low makes a swing look slower than it is.
 std::string SlowSamplingText(const Recording& recording, double period) {
   const double rate = SampleRateOf(recording);
-  if (period < kLongestPeriod || rate >= 2 * kFastestHz || rate - 1 / period > kFastestHz) return "";
-  return "If the pendulum swings at about " + Hz(rate - 1 / period) + ", sample faster than " + Hz(rate) + ". ";
+  constexpr double kSlowestHz = 0.2;  // of the pendulums that a person may take for slow ones
+  const double faster = rate - 1 / period;
+  if (period < kLongestPeriod || faster < kSlowestHz || faster > kFastestHz) return "";
+  return "If the pendulum swings at about " + Hz(faster) + ", sample faster than " + Hz(rate) + ". ";
 }
 
 }  // namespace
@@ -39,8 +41,8 @@ std::optional<std::string> ImplausiblePeriodReason(const Recording& recording, c
   const double period = 2 * HalfPeriodOf(recording, swing) * recording.clock_scale;
   if (!(period > 0) || (period >= kShortestPeriod && period <= kLongestPeriod)) return std::nullopt;
   return "the period is " + NumberText(period, 3) + " s, but the periods of pendulums are " +
-         NumberText(kShortestPeriod) + " s to " + NumberText(kLongestPeriod) + " s. " + WrongUnitText(period) +
-         ". " + SlowSamplingText(recording, period) +
+         NumberText(kShortestPeriod) + " s to " + NumberText(kLongestPeriod) + " s. " + WrongUnitText(period) + ". " +
+         SlowSamplingText(recording, period) +
          "If the times are right, this is another oscillator, such as a torsion balance: add --model linear, or give "
          "the inertia in --rig or with --bounds";
 }

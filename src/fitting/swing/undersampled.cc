@@ -190,7 +190,9 @@ void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, co
   const bool mirrors = CanAliasWithinRange(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
   const bool ambiguous = rejection && rejection->termination == Termination::kNotIdentifiable;
   if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", rejection->why});
-  if (!rejection && mirrors) fit.warnings.push_back({"ambiguous_frequency", AssumptionText(aliases, allowed, rate, fit.model.gravity.is_linear())});
+  if (!rejection && mirrors)
+    fit.warnings.push_back(
+        {"ambiguous_frequency", AssumptionText(aliases, allowed, rate, fit.model.gravity.is_linear())});
   // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!rejection) return;
@@ -211,8 +213,8 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
-/// The number of samples in each half swing's double that is seen in the readings, whether they are a free swing or not;
-/// 0 if fewer than three turning points are seen.
+/// The number of samples in each half swing's double that is seen in the readings, whether they are a free swing or
+/// not; 0 if fewer than three turning points are seen.
 double SeenPerPeriod(const Recording& recording) {
   const TurningPointTable table = FindAllTurningPoints(TurningPointView(recording));
   return 2 * table.half_period * recording.clock_scale * SampleRateOf(recording);

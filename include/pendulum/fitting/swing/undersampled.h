@@ -31,9 +31,9 @@ FreeSwing WholeRecording(const Recording& recording);
 /// Fits a swing from each local minimum of a scan over frequency (ScanFrequencies) and keeps the likeliest.
 ///
 /// The scan covers 15 % around the frequency that the rig's geometry predicts, or the bounds of the inertia; otherwise
-/// up to 3 Hz, or to half the sampling rate for a linear oscillator. The fit begins in motion, at the first reading that certainly follows a hold. The trajectory needs no
-/// Nyquist rate, but other frequencies may explain the samples too. The fit ends kNotIdentifiable without errors, with
-/// the warning `ambiguous_frequency`, in these cases:
+/// up to 3 Hz, or to half the sampling rate for a linear oscillator. The fit begins in motion, at the first reading
+/// that certainly follows a hold. The trajectory needs no Nyquist rate, but other frequencies may explain the samples
+/// too. The fit ends kNotIdentifiable without errors, with the warning `ambiguous_frequency`, in these cases:
 /// - -2 log L of another frequency is within 9 of the best one, and the samples do not show either of them, with at
 ///   least 8 samples per period. The message lists these frequencies.
 /// - The samples show only two phases of the swing.
@@ -41,8 +41,8 @@ FreeSwing WholeRecording(const Recording& recording);
 ///   as dense and no other frequency explains the readings nearly as well.
 /// - A frequency outside the rig's 15 % fits far better.
 ///
-/// kFailedPrecondition: a release is requested, the reading is constant, or it is an acceleration along the rod. Other errors as FitRecording.
-/// Cost: two dozen fits.
+/// kFailedPrecondition: a release is requested, the reading is constant, or it is an acceleration along the rod. Other
+/// errors as FitRecording. Cost: two dozen fits.
 Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum
