@@ -271,11 +271,7 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
   sensor_starts = starts->size();
   const SensorStart& start = (*starts)[std::min(options.search.sensor_start, starts->size() - 1)];
   Result<StartValues> values = estimate(start.view);
-  if (!values) return values;
-  const double zero = values->parameters.back();
-  values->parameters.pop_back();
-  values->parameters.insert(values->parameters.end(), start.parameters.begin(), start.parameters.end());
-  if (sensor.kind == SensorKind::kArc) values->parameters[values->parameters.size() - start.parameters.size()] = zero;
+  if (values) AppendSensorParameters(sensor, start, *values);
   return values;
 }
 
