@@ -25,6 +25,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace std::string_view_literals;
 
+constexpr std::array kRigKeys = {
+    RigKey{"bob_mass", "bob_mass", RigQuantity::kMass, "kg", "Mass of the bob at the end of the rod."},
+    RigKey{"rod_mass", "rod_mass", RigQuantity::kMass, "kg", "Mass of the rod; 0 if it weighs nothing."},
+    RigKey{"rod_length", "rod_length", RigQuantity::kLength, "m", "Distance from the pivot to the bob's centre."},
+    RigKey{"gravity", "g", RigQuantity::kAcceleration, "m/s^2", "Gravitational acceleration, such as 9.81."},
+    RigKey{"gravity_torque", "gravity_torque", RigQuantity::kTorque, "N m",
+           "Gravity torque G with the pendulum held at 90 deg."},
+    RigKey{"mass", "mass", RigQuantity::kMass, "kg", "Mass of the whole pendulum."},
+    RigKey{"center_of_mass", "center_of_mass", RigQuantity::kLength, "m",
+           "Distance from the pivot to the centre of mass of the whole pendulum."},
+    RigKey{"length", "length", RigQuantity::kLength, "m",
+           "Length of a string or bifilar pendulum, from the support to the bob's centre."},
+    RigKey{"stiffness", "stiffness", RigQuantity::kStiffness, "N m/rad",
+           "Stiffness k of a torsion spring or wire; N/m for a mass on a spring."},
+    RigKey{"inertia", "inertia", RigQuantity::kInertia, "kg m^2",
+           "Moment of inertia about the pivot, from geometry or CAD; kg for a mass on a spring."},
+};
+
 // ---- The descriptions of a rig -----------------------------------------------------------------------------------
 
 /// The derivative with respect to one value, and the standard deviation of that value.
@@ -159,6 +177,8 @@ bool IsUsable(const RigValue& value) {
 }
 
 }  // namespace
+
+std::span<const RigKey> RigKeys() { return kRigKeys; }
 
 Result<Rig> ParseRig(std::string_view text, const std::string& name) {
   Result<Json> source = ParseJsonObject(text, name, "rig", kFormsText);

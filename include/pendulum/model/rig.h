@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,21 @@
 #include "pendulum/base/status.h"
 
 namespace pendulum {
+
+/// What kind of quantity a key of the rig is; it decides which units a value may have on the command line.
+enum class RigQuantity { kMass, kLength, kAcceleration, kTorque, kStiffness, kInertia };
+
+/// A key of the rig file.
+struct RigKey {
+  std::string_view name;
+  std::string_view flag;  ///< Of the command line; the name, except for "gravity", because --gravity is the law.
+  RigQuantity quantity;
+  std::string_view unit;  ///< SI.
+  std::string_view help;  ///< A sentence.
+};
+
+/// All keys of the rig file. The parser, its messages and the flags of the tools are made from this table.
+std::span<const RigKey> RigKeys();
 
 /// A measured constant of the rig: value and standard deviation in the same SI unit. A standard deviation of 0 means
 /// that none was given.
