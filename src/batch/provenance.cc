@@ -40,7 +40,8 @@ Json ReadJson(const ReadOptions& read) {
 }
 
 /// Enumerations without names are stored by number. New values must be appended, otherwise the hash of unchanged
-/// options changes.
+/// options changes. may_be_spring is not among them: a batch fits the models that it
+/// was asked for.
 Json FitJson(const FitOptions& fit) {
   return {{"gravity", fit.gravity ? Json(fit.gravity->name()) : Json(nullptr)},
           {"start", fit.start ? Json(*fit.start == StartKind::kRelease ? "release" : "moving") : Json(nullptr)},

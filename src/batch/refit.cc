@@ -46,9 +46,13 @@ IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& bat
   if (entry.from) options.swing.from = *entry.from;
   if (entry.to) options.swing.to = *entry.to;
   if (entry.models.empty()) return options;
-  options.models.clear();
-  const auto models = FindMotionModels(entry.models);
+  auto models = FindMotionModels(entry.models, batch.fit.gravity);
+  if (!models) {  // the manifest's own law of gravity has precedence
+    models = FindMotionModels(entry.models);
+    options.fit.gravity = std::nullopt;
+  }
   if (!models) return options;  // the manifest was already checked
+  options.models.clear();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   options.fit.model = options.models.front();
   return options;

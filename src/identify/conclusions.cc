@@ -35,7 +35,8 @@ void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std
     const bool same = fit.model.name == identification.closed_forms_model;
     const auto own = same ? Result<ClosedForms>(*identification.closed_forms)
                           : EstimateClosedForms(identification.used, fit.model, stop);
-    if (own) identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.rig, stop);
+    if (own)
+      identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.si_rig(), stop);
   }
 }
 
@@ -56,9 +57,9 @@ void AddSampling(const FreeSwing& swing, Identification& identification) {
   double half_period = swing.half_period;
   if (!(half_period > 0) && identification.closed_forms)
     half_period = identification.closed_forms->table.half_period / clock_scale;
-  const bool is_seen = half_period > 0 && !(swing.undersampled && identification.rig);
+  const bool is_seen = half_period > 0 && !(swing.undersampled && identification.si_rig());
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
-  std::optional<double> expected = ExpectedFrequency(identification.rig);
+  std::optional<double> expected = ExpectedFrequency(identification.si_rig());
   if (expected) *expected *= clock_scale;
   const bool is_fitted = swing.undersampled && !identification.fits.empty() &&
                          ExitCode(identification.fits[identification.MainFit()].termination) == 0;

@@ -2,6 +2,7 @@
 #include "pendulum/identify/identification.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace pendulum {
 namespace {
@@ -52,6 +53,11 @@ void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& d
   data.clock_scale_std_dev = used.clock_scale_std_dev;
   data.begins = Sentence(swing.begins);
   data.ends = Sentence(swing.ends);
+}
+
+const std::optional<Rig>& Identification::si_rig() const {
+  static const std::optional<Rig> none;
+  return rig && rig->gives_torque ? rig : none;
 }
 
 std::vector<const Identification*> Identification::Parts() const {

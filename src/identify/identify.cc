@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,7 +18,9 @@
 #include "pendulum/analysis/model_comparison.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/closed_form/free_swing.h"
+#include "pendulum/fitting/fit/rig_quantities.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/model/rig_check.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/recording/window.h"
@@ -122,12 +125,77 @@ void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::
   AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, identification);
 }
 
-Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) {
+// ---- The rig --------------------------------------------------------------------------------------------------------
+
+/// The rig, if it converts to SI. Fits do without any other rig.
+std::optional<Rig> ConvertingRig(const std::optional<Rig>& rig) {
+  return rig && rig->gives_torque ? rig : std::nullopt;
+}
+
+/// Whether the rig leaves open what pulls the pendulum back.
+bool MayBelongToSpring(const std::optional<Rig>& rig) {
+  return !rig || (rig->known_inertia && !rig->gravity && !rig->length);
+}
+
+/// Gives the models a linear restoring torque if the rig has a stiffness. kInvalidArgument: the user chose gravity.
+Result<IdentifyOptions> OptionsForRig(IdentifyOptions options, const std::optional<Rig>& rig) {
+  options.fit.may_be_spring = options.fit.may_be_spring && MayBelongToSpring(rig);
+  if (!rig || !rig->is_spring) return options;
+  for (std::string& name : options.models) {
+    const auto model = FindMotionModel(name);
+    if (!model) return tl::unexpected(model.error());
+    if (model->gravity.is_linear()) continue;
+    const auto spring = WithGravity(*model, Gravity::kLinear);
+    if (!options.rig_chooses_gravity || !spring) {
+      return Error(StatusCode::kInvalidArgument, rig->name + ": the rig gives the stiffness of a spring, but model " +
+                                                     name + " has the restoring torque of gravity; give " +
+                                                     (spring ? "--gravity linear" : "--model coulomb") +
+                                                     ", or a rig with a gravity torque");
+    }
+    name = spring->name;
+  }
+  options.fit.model = options.models.front();
+  options.fit.gravity = Gravity::kLinear;
+  return options;
+}
+
+/// Says that the rig changed the models.
+void WarnOfSpring(const IdentifyOptions& asked, const IdentifyOptions& options, Identification& identification) {
+  if (asked.models == options.models) return;
+  identification.warnings.push_back(
+      {"linear_restoring_torque", identification.rig->name +
+                                      ": the rig gives a stiffness, so a restoring torque proportional to the angle is "
+                                      "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
+                                      "masses and lengths, or gravity_torque"});
+}
+
+/// Adds what the rig makes known to the fits, and compares the rig with the first converged fit. kDataLoss: the rig
+/// contradicts it.
+Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
+  if (!identification.rig) return {};
+  const Rig& rig = *identification.rig;
+  for (FitReport& fit : identification.fits) AddRigQuantities(rig, fit);
+  const auto converged = std::ranges::find(identification.fits, Termination::kConverged, &FitReport::termination);
+  // An undersampled swing has the period that the rig selected among the possible ones.
+  if (converged == identification.fits.end() || is_undersampled) return {};
+  const auto ratio = std::ranges::find(converged->derived, "gravity_over_inertia", &DerivedQuantity::name);
+  if (ratio == converged->derived.end()) return {};
+  auto warnings = CompareRigWithSwing(rig, ratio->estimate);
+  if (!warnings) return tl::unexpected(warnings.error());
+  std::ranges::move(*warnings, std::back_inserter(identification.warnings));
+  return {};
+}
+
+Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
+  const auto for_rig = OptionsForRig(asked, swing.known.rig);
+  if (!for_rig) return tl::unexpected(for_rig.error());
+  const IdentifyOptions& options = *for_rig;
   FitOptions fit_options = options.fit;
-  fit_options.rig = swing.known.rig;
+  fit_options.rig = ConvertingRig(swing.known.rig);
   auto run = FitAlone(options, fit_options, swing);
   if (!run) return tl::unexpected(run.error());
   Identification identification = std::move(swing.known);
+  WarnOfSpring(asked, options, identification);
   if (run->alone.fits.size() > 1) identification.comparison = CompareModels(run->alone, fit_options);
   identification.fits = std::move(run->alone.fits);
   const std::size_t main = identification.MainFit();
@@ -136,6 +204,8 @@ Result<Identification> IdentifyOne(const IdentifyOptions& options, Swing swing) 
     run->constancy.push_back(TestFit(options, fit_options, run->alone.used, identification.fits[m], is_checked));
     AddInconstancyError(run->constancy.back(), identification.fits[m]);
   }
+  if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
+    return tl::unexpected(applied.error());
   CompleteIdentification(options, *std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !identification.closed_forms) {
@@ -192,9 +262,12 @@ Result<std::optional<Rig>> CommonRig(const std::vector<Swing>& swings) {
   for (const Swing& swing : swings) {
     if (!swing.known.rig) continue;
     if (known == nullptr) known = &swing;
-    const auto& torque = swing.known.rig->gravity_torque;
-    const auto& first = known->known.rig->gravity_torque;
-    if (torque.value == first.value && torque.std_dev == first.std_dev) continue;
+    const Rig& rig = *swing.known.rig;
+    const Rig& first = *known->known.rig;
+    const bool is_same = rig.gives_torque ? rig.gravity_torque.value == first.gravity_torque.value &&
+                                                rig.gravity_torque.std_dev == first.gravity_torque.std_dev
+                                          : rig.source == first.source;
+    if (is_same && rig.gives_torque == first.gives_torque && rig.is_spring == first.is_spring) continue;
     return Error(StatusCode::kDataLoss,
                  known->path + " and " + swing.path +
                      " describe different rigs (# rig), but recordings that are fitted together must have one rig; "
@@ -270,9 +343,9 @@ JointPart PartOf(const JointModels& joint, std::size_t m) {
 }
 
 /// The results common to all recordings.
-Identification CombineRecordings(const JointModels& joint, const FitOptions& options) {
+Identification CombineRecordings(const JointModels& joint, const std::optional<Rig>& rig, const FitOptions& options) {
   Identification whole;
-  whole.rig = options.rig;
+  whole.rig = rig;
   whole.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     whole.fits.push_back(joint.joint[m].whole);
@@ -298,23 +371,31 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
   return all;
 }
 
-Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings) {
-  if (options.closed_form_only) {
+Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector<PreparedRecording> recordings) {
+  if (asked.closed_form_only) {
     return Error(StatusCode::kInvalidArgument,
                  "several recordings are identified together by fits; closed forms exist only for a single recording");
   }
   auto swings = TakeAllSwings(std::move(recordings));
   if (!swings) return tl::unexpected(swings.error());
   if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckResolution(options, *swings); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckResolution(asked, *swings); !checked) return tl::unexpected(checked.error());
   const auto rig = CommonRig(*swings);
   if (!rig) return tl::unexpected(rig.error());
+  auto for_rig = OptionsForRig(asked, *rig);
+  if (!for_rig) return tl::unexpected(for_rig.error());
+  for_rig->fit.may_be_spring = false;  // all recordings have the same models
+  const IdentifyOptions& options = *for_rig;
   FitOptions fit_options = options.fit;
-  fit_options.rig = *rig;
+  fit_options.rig = ConvertingRig(*rig);
   auto alone = FitEachAlone(options, fit_options, *swings);
   if (!alone) return tl::unexpected(alone.error());
   JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
-  Identification whole = CombineRecordings(joint, fit_options);
+  Identification whole = CombineRecordings(joint, *rig, fit_options);
+  WarnOfSpring(asked, options, whole);
+  const bool is_undersampled =
+      std::ranges::any_of(joint.runs, [](const RunModels& run) { return run.alone.swing.undersampled; });
+  if (const auto applied = ApplyRig(is_undersampled, whole); !applied) return tl::unexpected(applied.error());
   const std::size_t main = whole.MainFit();
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
     Identification identification = std::move((*swings)[k].known);

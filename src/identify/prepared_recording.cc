@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/swing/undersampled.h"
+#include "pendulum/model/rig_check.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 
@@ -30,6 +32,8 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   prepared.swings = *std::move(swings);
   prepared.known.rig = std::move(rig);
   prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
+  if (prepared.known.rig)
+    std::ranges::move(QuestionRig(*prepared.known.rig), std::back_inserter(prepared.known.warnings));
   if (prepared.recording.calibration) prepared.known.calibration = prepared.recording.calibration->source;
   return prepared;
 }

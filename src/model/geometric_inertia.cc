@@ -5,15 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/rig_entry.h"
+
 namespace pendulum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A rig file's value, a number or {"value", "std_dev"}.
-double ValueOf(const Json& entry) { return entry.is_object() ? entry.at("value").get<double>() : entry.get<double>(); }
-
-double StdDevOf(const Json& entry) { return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0; }
 
 /// The quantities that follow from a rig's description.
 struct Inertias {
@@ -27,8 +24,8 @@ std::optional<Inertias> InertiasOf(const Json& description) {
   if (!rig || !rig->inertia) return std::nullopt;
   Inertias inertias{rig->gravity_torque.value, rig->inertia->value, std::nullopt};
   if (description.contains("rod_length")) {
-    const double length = ValueOf(description.at("rod_length"));
-    const double mass = ValueOf(description.at("bob_mass")) + ValueOf(description.at("rod_mass"));
+    const double length = ValueOfEntry(description.at("rod_length"));
+    const double mass = ValueOfEntry(description.at("bob_mass")) + ValueOfEntry(description.at("rod_mass"));
     inertias.point_mass = mass * length * length;
   }
   return inertias;
@@ -36,7 +33,7 @@ std::optional<Inertias> InertiasOf(const Json& description) {
 
 /// The description with one value increased by its standard deviation.
 Json Varied(Json description, const std::string& key) {
-  const double value = ValueOf(description.at(key)) + StdDevOf(description.at(key));
+  const double value = ValueOfEntry(description.at(key)) + StdDevOfEntry(description.at(key));
   description[key] = value;
   return description;
 }
@@ -57,7 +54,7 @@ std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted) {
     double variance = 0;
     double difference_variance = 0;
     for (const auto& item : rig.source.items()) {
-      if (StdDevOf(item.value()) == 0) continue;
+      if (StdDevOfEntry(item.value()) == 0) continue;
       const std::optional<Inertias> varied = InertiasOf(Varied(rig.source, item.key()));
       if (!varied) continue;
       const double change = (inertia.is_point_mass ? *varied->point_mass : varied->own) - inertia.value;

@@ -45,6 +45,21 @@ const std::vector<NamedModel>& NamedModels() {
   return models;
 }
 
+/// The model with `gravity`, if it has the default gravity or already this one.
+Result<MotionModel> ChangeGravity(const MotionModel& model, Gravity gravity) {
+  const std::string name(model.name);
+  if (model.gravity != Gravity() && model.gravity != gravity) {
+    return Error(StatusCode::kInvalidArgument,
+                 "model " + name + " has the restoring torque " + std::string(model.gravity.name()) +
+                     ", but --gravity says " + std::string(gravity.name()) + "; leave --gravity out, or give --model " +
+                     std::string(model.friction));
+  }
+  if (const auto changed = WithGravity(model, gravity)) return *changed;
+  return Error(StatusCode::kInvalidArgument,
+               "model " + name + " cannot be combined with --gravity " + std::string(gravity.name()) +
+                   ", where its constant torque would only shift the zero; give --model coulomb");
+}
+
 }  // namespace
 
 std::vector<MotionModel> MotionModels() {
@@ -63,21 +78,30 @@ Result<MotionModel> FindMotionModel(std::string_view name) {
                "there is no model '" + std::string(name) + "'; the models are " + MotionModelNames());
 }
 
-Result<std::vector<MotionModel>> FindMotionModels(std::string_view names) {
+std::optional<MotionModel> WithGravity(const MotionModel& model, Gravity gravity) {
+  for (const MotionModel& other : MotionModels()) {
+    if (other.gravity == gravity && other.friction == model.friction) return other;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<MotionModel>> FindMotionModels(std::string_view names, std::optional<Gravity> gravity) {
   std::vector<MotionModel> models;
   if (names == "all") {
     models = MotionModels();
-    std::erase_if(models, [](const MotionModel& model) { return model.gravity != Gravity(); });
+    std::erase_if(models, [&](const MotionModel& model) { return model.gravity != gravity.value_or(Gravity()); });
     return models;
   }
   for (std::size_t begin = 0; begin <= names.size();) {
     const std::size_t end = std::min(names.find(',', begin), names.size());
     const std::string name(names.substr(begin, end - begin));
     begin = end + 1;
-    const auto found = FindMotionModel(name);
+    auto found = FindMotionModel(name);
     if (!found)
       return Error(StatusCode::kInvalidArgument,
                    found.error().message + "; or give 'all' by itself for every friction law");
+    if (gravity) found = ChangeGravity(*found, *gravity);
+    if (!found) return tl::unexpected(found.error());
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
       return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + name + " twice");
     }

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
@@ -58,82 +57,138 @@ RigValue Propagate(double value, std::initializer_list<ErrorTerm> terms) {
   return {value, std_dev};
 }
 
-/// Values in the order of the keys of their description.
-using RigValues = std::span<const RigValue>;
+RigValue Product(const RigValue& x, const RigValue& y) {
+  return Propagate(x.value * y.value, {{y.value, x.std_dev}, {x.value, y.std_dev}});
+}
+
+/// Values by key; each key of the rig that is present.
+using RigValues = std::map<std::string_view, RigValue>;
+
+std::optional<RigValue> Find(const RigValues& values, std::string_view key) {
+  const auto found = values.find(key);
+  return found == values.end() ? std::nullopt : std::optional(found->second);
+}
 
 /// MODEL.md eqs. (1.2) and (1.3).
-void SetFromRodAndBob(RigValues values, Rig& rig) {
-  const RigValue bob = values[0], rod = values[1], length = values[2], gravity = values[3];
+void SetFromRodAndBob(const RigValues& values, Rig& rig) {
+  const RigValue bob = values.at("bob_mass"), rod = values.at("rod_mass");
+  const RigValue length = values.at("rod_length"), gravity = values.at("gravity");
   const double reduced_mass = bob.value + rod.value / 2;
   const double lever = gravity.value * length.value;
   rig.gravity_torque = Propagate(reduced_mass * lever, {{lever, bob.std_dev},
                                                         {lever / 2, rod.std_dev},
                                                         {reduced_mass * gravity.value, length.std_dev},
                                                         {reduced_mass * length.value, gravity.std_dev}});
+  if (rig.inertia) return;
   const double square = length.value * length.value;
   const double first_moment = (rod.value / 3 + bob.value) * length.value;
   rig.inertia = Propagate(first_moment * length.value,
                           {{square, bob.std_dev}, {square / 3, rod.std_dev}, {2 * first_moment, length.std_dev}});
 }
 
-void SetFromTorque(RigValues values, Rig& rig) { rig.gravity_torque = values[0]; }
+void SetFromTorque(const RigValues& values, Rig& rig) { rig.gravity_torque = values.at("gravity_torque"); }
 
 /// MODEL.md eq. (1.2) in its first form: G = mass · center_of_mass · gravity.
-void SetFromBody(RigValues values, Rig& rig) {
-  const RigValue mass = values[0], distance = values[1], gravity = values[2];
-  rig.gravity_torque =
-      Propagate(mass.value * distance.value * gravity.value, {{distance.value * gravity.value, mass.std_dev},
-                                                              {mass.value * gravity.value, distance.std_dev},
-                                                              {mass.value * distance.value, gravity.std_dev}});
+void SetFromBody(const RigValues& values, Rig& rig) {
+  rig.gravity_torque = Product(Product(values.at("mass"), values.at("center_of_mass")), values.at("gravity"));
 }
 
-/// One way to describe a rig: the required keys, and a function that computes the rig from their values.
+void SetFromStiffness(const RigValues& values, Rig& rig) {
+  rig.gravity_torque = values.at("stiffness");
+  rig.is_spring = true;
+}
+
+/// A point mass on a string: G = m g l, I = m l². Without the mass, or without both the length and g, G is unknown.
+void SetFromString(const RigValues& values, Rig& rig) {
+  if (rig.mass && rig.gravity) {
+    rig.gravity_torque = Product(Product(*rig.mass, *rig.length), *rig.gravity);
+  } else {
+    rig.gives_torque = false;
+  }
+  std::optional<RigValue> inertia = Find(values, "inertia");
+  if (!inertia && rig.mass) {
+    const double l = rig.length->value;
+    inertia = Propagate(rig.mass->value * l * l,
+                        {{l * l, rig.mass->std_dev}, {2 * rig.mass->value * l, rig.length->std_dev}});
+  }
+  if (!rig.gives_torque) rig.known_inertia = std::exchange(inertia, std::nullopt);
+  rig.inertia = inertia;
+}
+
+void SetFromInertia(const RigValues& /*values*/, Rig& rig) {
+  rig.known_inertia = std::exchange(rig.inertia, std::nullopt);
+  rig.gives_torque = false;
+}
+
+/// One way to describe a rig: its keys, and a function that computes the rig from their values. A rig may also have
+/// `inertia`.
 struct Form {
-  std::span<const std::string_view> keys;
-  void (*set)(RigValues values, Rig& rig);
+  std::string_view identifying;  ///< The keys that only this form has, or that identify it if no other key does.
+  std::string_view required;     ///< Keys that must exist.
+  std::string_view optional;     ///< Keys that may exist.
+  void (*set)(const RigValues& values, Rig& rig);
 };
 
-constexpr std::array kRodAndBobKeys = {"bob_mass"sv, "rod_mass"sv, "rod_length"sv, "gravity"sv};
-constexpr std::array kTorqueKeys = {"gravity_torque"sv};
-constexpr std::array kBodyKeys = {"mass"sv, "center_of_mass"sv, "gravity"sv};
-constexpr std::array kForms = {Form{kRodAndBobKeys, SetFromRodAndBob}, Form{kTorqueKeys, SetFromTorque},
-                               Form{kBodyKeys, SetFromBody}};
+// Keys stand between spaces.
+constexpr std::array kForms = {
+    Form{" bob_mass rod_mass rod_length ", " bob_mass rod_mass rod_length gravity ", " ", SetFromRodAndBob},
+    Form{" gravity_torque ", " gravity_torque ", " ", SetFromTorque},
+    Form{" center_of_mass ", " mass center_of_mass gravity ", " ", SetFromBody},
+    Form{" stiffness ", " stiffness ", " ", SetFromStiffness},
+    Form{" length ", " length ", " gravity mass ", SetFromString},
+    // Keys of several forms: each identifies a form only if no key above exists.
+    Form{" inertia ", " inertia ", " mass gravity ", SetFromInertia},
+    Form{" mass ", " mass center_of_mass gravity ", " ", SetFromBody},
+    Form{" gravity ", " gravity ", " ", SetFromString}};
 
 constexpr std::string_view kFormsText =
-    R"({"bob_mass", "rod_mass", "rod_length", "gravity"} or {"gravity_torque"} or {"mass", "center_of_mass", "gravity"})";
+    R"({"bob_mass", "rod_mass", "rod_length", "gravity"} or {"gravity_torque"} or {"mass", "center_of_mass", )"
+    R"("gravity"} or {"stiffness"} or {"length"}, {"gravity"} or both, with optional "mass", or {"inertia"})";
 
-bool Has(const Form& form, std::string_view key) { return std::ranges::find(form.keys, key) != form.keys.end(); }
+bool HasKey(std::string_view keys, std::string_view key) {
+  return keys.find(" " + std::string(key) + " ") != std::string_view::npos;
+}
+
+bool IsKeyOf(const Form& form, std::string_view key) {
+  return HasKey(form.required, key) || HasKey(form.optional, key) || key == kInertia.name;
+}
 
 // ---- From the object to numbers ----------------------------------------------------------------------------------
 
-/// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.
-Result<Form> FindForm(const Json& rig, const std::string& name) {
-  std::optional<Form> form;
-  std::string identifying_key;
+/// Whether all keys of the rig belong to the form and none is missing.
+Result<void> CheckKeys(const Json& rig, const Form& form, const std::string& identifying_key, const std::string& name) {
+  bool is_after = false;  // whether the identifying key stands before the present one
   for (const auto& item : rig.items()) {
-    const std::string& key = item.key();
-    const auto* const found = std::ranges::find_if(kForms, [&](const Form& each) { return Has(each, key); });
-    if (found == kForms.end() && key != kInertia.name) {
-      return Fault(name, Quoted(key) + " is not a key of a rig; a rig is " + std::string(kFormsText) +
-                             ", each with optional \"inertia\"");
-    }
-    // Two kinds of description have "gravity", so this key does not identify the kind.
-    if (form || found == kForms.end() || key == "gravity") continue;
-    form = *found;
-    identifying_key = key;
-  }
-  if (!form) return Fault(name, "the rig has no complete description; it must be " + std::string(kFormsText));
-  for (const auto& item : rig.items()) {
-    if (item.key() == kInertia.name || Has(*form, item.key())) continue;
-    return Fault(name, Quoted(identifying_key) + " and " + Quoted(item.key()) +
+    is_after = is_after || item.key() == identifying_key;
+    if (IsKeyOf(form, item.key())) continue;
+    const std::string other = Quoted(item.key());
+    const std::string own = Quoted(identifying_key);
+    return Fault(name, (is_after ? own + " and " + other : other + " and " + own) +
                            " belong to different descriptions of a rig, which cannot be mixed; a rig is " +
                            std::string(kFormsText));
   }
-  for (const std::string_view key : form->keys) {
-    if (!rig.contains(key))
-      return Fault(name, Quoted(key) + " is missing beside " + Quoted(identifying_key) + "; add it");
+  for (const RigKey& key : kRigKeys) {
+    if (HasKey(form.required, key.name) && !rig.contains(key.name))
+      return Fault(name, Quoted(key.name) + " is missing beside " + Quoted(identifying_key) + "; add it");
   }
-  return *form;
+  return {};
+}
+
+/// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.
+Result<Form> FindForm(const Json& rig, const std::string& name) {
+  for (const auto& item : rig.items()) {
+    if (std::ranges::find(kRigKeys, item.key(), &RigKey::name) != kRigKeys.end()) continue;
+    return Fault(name, Quoted(item.key()) + " is not a key of a rig; a rig is " + std::string(kFormsText) +
+                           ", each with optional \"inertia\"");
+  }
+  for (const Form& form : kForms) {
+    for (const auto& item : rig.items()) {
+      if (!HasKey(form.identifying, item.key())) continue;
+      if (auto checked = CheckKeys(rig, form, item.key(), name); !checked) return tl::unexpected(checked.error());
+      return form;
+    }
+  }
+  return Fault(name, "the rig has no complete description; it must be " + std::string(kFormsText));
 }
 
 Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_zero, const std::string& name) {
@@ -185,20 +240,24 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
   if (!source) return tl::unexpected(std::move(source).error());
   const Result<Form> form = FindForm(*source, name);
   if (!form) return tl::unexpected(form.error());
-  std::vector<RigValue> values;
-  for (const std::string_view key : form->keys) {
-    const Result<RigValue> value = ReadValue(*source, key, name);
+  RigValues values;
+  for (const RigKey& key : kRigKeys) {
+    if (!source->contains(key.name)) continue;
+    const Result<RigValue> value = ReadValue(*source, key.name, name);
     if (!value) return tl::unexpected(value.error());
-    values.push_back(*value);
+    values[key.name] = *value;
   }
   Rig rig;
+  rig.name = name;
+  rig.inertia = Find(values, "inertia");
+  rig.gravity = Find(values, "gravity");
+  rig.length = Find(values, "length");
+  rig.mass = Find(values, "mass");
   form->set(values, rig);
-  if (source->contains(kInertia.name)) {
-    const Result<RigValue> inertia = ReadValue(*source, kInertia.name, name);
-    if (!inertia) return tl::unexpected(inertia.error());
-    rig.inertia = *inertia;
-  }
-  if (!IsUsable(rig.gravity_torque) || (rig.inertia && !IsUsable(*rig.inertia))) {
+  const bool are_usable = std::ranges::all_of(
+      std::array{std::optional(rig.gravity_torque), rig.inertia, rig.known_inertia, rig.gravity, rig.length, rig.mass},
+      [](const std::optional<RigValue>& value) { return !value || IsUsable(*value); });
+  if (!are_usable) {
     return Fault(name,
                  "these values give a torque or inertia outside 1e-30 to 1e30 (SI), which is impossible for a "
                  "pendulum; correct them");

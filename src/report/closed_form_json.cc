@@ -33,7 +33,8 @@ Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional
 
 Json DecrementJson(const Decrement& decrement, const Identification& identification) {
   return NumberObject()
-      .Set("parameters", EstimatesJson(DecrementEstimates(decrement, identification.data.unit, identification.rig)))
+      .Set("parameters",
+           EstimatesJson(DecrementEstimates(decrement, identification.data.unit, identification.si_rig())))
       .Set("chi_square", decrement.chi_square)
       .Set("dof", Json(decrement.freedom))
       .Set("p", decrement.Probability())
@@ -108,7 +109,7 @@ nlohmann::ordered_json ClosedFormsJson(const Identification& identification) {
   const ClosedForms& forms = *identification.closed_forms;
   NumberObject json;
   json.Set("model", Json(identification.closed_forms_model));
-  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, identification.rig) : Json(nullptr));
+  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, identification.si_rig()) : Json(nullptr));
   if (!forms.linear) json.AddReason("linear: no two successive turning points are a whole period apart");
   json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, identification) : Json(nullptr));
   if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);

@@ -101,7 +101,8 @@ void AddDecrement(const Identification& identification, Section& section) {
     return;
   }
   const Decrement& decrement = *forms.decrement;
-  std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, identification.data.unit, identification.rig);
+  std::vector<ReportedEstimate> estimates =
+      DecrementEstimates(decrement, identification.data.unit, identification.si_rig());
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
   section.AddText("Fitted to all " + std::to_string(forms.table.points.size()) + " turning points, " +
                   (forms.gravity.is_linear() ? "small angles" : "exact at any amplitude") +
@@ -228,7 +229,7 @@ Sections ClosedFormSections(const Identification& identification) {
     if (identification.no_closed_forms.empty()) return {};
     return {forms.AddText("There are none: " + identification.no_closed_forms + ".")};
   }
-  AddLinear(*identification.closed_forms, identification.rig, forms);
+  AddLinear(*identification.closed_forms, identification.si_rig(), forms);
   AddDecrement(identification, forms);
   if (!identification.closed_forms->envelope.empty())
     forms.Add(Facts{{"envelope", identification.closed_forms->envelope}});

@@ -60,13 +60,13 @@ Json ParametersJson(const FitReport& fit) {
 Json DerivedJson(const FitReport& fit) {
   Json derived = Json::object();
   for (const DerivedQuantity& quantity : fit.derived) {
-    derived[quantity.name] =
-        NumberObject()
-            .Set("estimate", quantity.estimate)
-            .Set("std_error", quantity.std_error, "a parameter on which it depends has no standard error")
-            .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
-            .Set("unit", Json(quantity.unit))
-            .Done();
+    NumberObject json;
+    json.Set("estimate", quantity.estimate)
+        .Set("std_error", quantity.std_error, "a parameter on which it depends has no standard error")
+        .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
+        .Set("unit", Json(quantity.unit));
+    if (quantity.systematic_std_error) json.Set("systematic_std_error", *quantity.systematic_std_error);
+    derived[quantity.name] = json.Done();
   }
   return derived;
 }

@@ -201,13 +201,15 @@ Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, con
 }
 
 Section DerivedSection(const FitReport& fit) {
-  Table table{{{""}, {"", true}, {"", false, 1}, {""}, {""}}};
+  Table table{{{""}, {"", true}, {"", false, 1}, {""}, {""}, {""}}};
   for (const DerivedQuantity& quantity : fit.derived) {
     const bool nothing = IsUninformative(quantity);
     ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
     if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
+    const std::optional<double>& systematic = quantity.systematic_std_error;
     table.rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
-                          DerivedInterval(quantity)});
+                          DerivedInterval(quantity),
+                          systematic ? "± " + NumberText(*systematic, 2) + " systematic" : ""});
   }
   return {"Derived quantities", "", {std::move(table)}};
 }
@@ -243,8 +245,18 @@ std::string NoiseText(const FitReport& fit) {
   return text + ", " + NumberText(1e6 * noise.stamp_ratio * noise.sigma, 2) + " us of its stamp";
 }
 
+constexpr std::string_view kSpringInSi =
+    "th in rad from rest, torques in N m. The factor of th is the stiffness k of a spring or wire; for a pendulum at "
+    "small angles it is the gravity torque G.";
+constexpr std::string_view kSpringRelative =
+    "th in rad from rest; torques are in units of the stiffness k of the spring or wire (for a pendulum at small "
+    "angles, "
+    "of the gravity torque G), because a free swing determines only ratios. To get SI units, measure the stiffness or "
+    "know the moment of inertia, and give --rig with \"stiffness\" or \"inertia\".";
+
 Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
   Section section{"Equation of motion", "", {Formula{WithUnbrokenTerms(FittedEquation(fit, rig))}}};
+  if (fit.model.gravity.is_linear()) return section.AddText(std::string(rig ? kSpringInSi : kSpringRelative));
   if (rig) return section.AddText("th in rad from hanging straight down, torques in N m.");
   return section.AddText(
       "th in rad from hanging straight down; torques are in units of the gravity torque G, because a free swing "

@@ -123,7 +123,7 @@ Json WholeStatisticsJson(const Identification& identification, const FitReport& 
 Json EquationJson(const Identification& identification, std::size_t index) {
   const FitReport& fit = identification.fits[index];
   const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  return whole && fit.termination != Termination::kFailed ? Json(FittedEquation(fit, identification.rig))
+  return whole && fit.termination != Termination::kFailed ? Json(FittedEquation(fit, identification.si_rig()))
                                                           : Json(nullptr);
 }
 

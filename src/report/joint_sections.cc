@@ -197,7 +197,7 @@ Section NoiseSection(const Identification& identification, std::size_t index) {
 void AddMainFit(const Identification& identification, std::size_t index, Sections& sections) {
   const FitReport& fit = identification.fits[index];
   sections.push_back(FitSection(identification, index));
-  sections.push_back(AllOfParameters(fit, identification.rig, nullptr));
+  sections.push_back(AllOfParameters(fit, identification.si_rig(), nullptr));
   if (fit.termination == Termination::kConverged && !identification.joint[index].homogeneity.agrees()) {
     sections.back().AddText("The recordings do not agree, but these errors assume that they do: see below.",
                             Emphasis::kCaution);
@@ -211,7 +211,7 @@ void AddMainFit(const Identification& identification, std::size_t index, Section
   if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
   sections.push_back(NoiseSection(identification, index));
   const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  if (is_a_motion && whole) sections.push_back(EquationSection(fit, identification.rig));
+  if (is_a_motion && whole) sections.push_back(EquationSection(fit, identification.si_rig()));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ Json FitJson(const Identification& identification, std::size_t index) {
   json["model"] = fit.model.name;
   json["status"] = TerminationName(fit.termination);
   json["reason"] = fit.reason;
-  json["equation"] = failed ? Json(nullptr) : Json(FittedEquation(fit, identification.rig));
+  json["equation"] = failed ? Json(nullptr) : Json(FittedEquation(fit, identification.si_rig()));
   json["parameters"] = ParametersJson(fit);
   json["derived"] = DerivedJson(fit);
   json["covariance"] = CovarianceJson(fit);

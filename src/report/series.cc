@@ -139,7 +139,7 @@ Json MotionsJson(const Recording& used, const Identification& identification, Se
   Json json;
   if (!HidesMotion(used, identification.sampling)) return json;
   for (const FitReport& fit : identification.fits) {
-    json[std::string(fit.model.name)] = MotionJson(used, fit, identification.rig, detail);
+    json[std::string(fit.model.name)] = MotionJson(used, fit, identification.si_rig(), detail);
   }
   return json;
 }

@@ -77,7 +77,7 @@ Sections ReportSections(const Identification& identification) {
   Append(ComparisonSections(identification), sections);
   for (std::size_t i = 0; i < identification.fits.size(); ++i) {
     if (!identification.IsShownInFull(i)) continue;
-    Append(FitSections(identification.fits[i], identification.rig, identification.CheckOf(i)), sections);
+    Append(FitSections(identification.fits[i], identification.si_rig(), identification.CheckOf(i)), sections);
     Append(ConstancySections(identification, i), sections);
   }
   for (std::size_t i = 0; i < identification.fits.size(); ++i) {

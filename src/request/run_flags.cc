@@ -48,6 +48,11 @@ using StartWord = Word<std::optional<StartKind>>;
 constexpr std::array<StartWord, 3> kStarts = {{{"auto", std::nullopt, "found in the recording"},
                                                {"release", StartKind::kRelease, "held at rest, then released"},
                                                {"moving", StartKind::kMoving, "already swinging"}}};
+using GravityWord = Word<std::optional<Gravity>>;
+constexpr std::array<GravityWord, 3> kGravities = {
+    {{"auto", std::nullopt, "gravity, unless the recording shows a spring"},
+     {"sin", Gravity::kSine, "gravity: a pendulum"},
+     {"linear", Gravity::kLinear, "a spring or wire: torsion pendulum, Pohl wheel, mass on a spring"}}};
 using NoiseWord = Word<std::optional<NoiseFamily>>;
 constexpr std::array<NoiseWord, 4> kNoises = {
     {{"auto", std::nullopt, "found in the recording"},
@@ -164,17 +169,21 @@ Result<void> CheckContradictions(const FitOptions& options) {
   return {};
 }
 
+/// The value of --model.
+std::string ModelOf(const RunFlags& flags) { return flags.model.empty() ? std::string(kDefaultModel) : flags.model; }
+
 Result<void> ParseFitOptions(const RunFlags& flags, const std::vector<MotionModel>& models, FitOptions& options) {
   const auto start = ParseWord("--start", flags.start, kStarts);
   if (!start) return tl::unexpected(start.error());
   const std::vector<ParameterInfo> parameters = NameableParameters(models);
-  auto fixed = ParseSettings("--fix", flags.fix, flags.model, parameters);
+  const std::string model = ModelOf(flags);
+  auto fixed = ParseSettings("--fix", flags.fix, model, parameters);
   if (!fixed) return tl::unexpected(fixed.error());
-  auto initial = ParseSettings("--init", flags.init, flags.model, parameters);
+  auto initial = ParseSettings("--init", flags.init, model, parameters);
   if (!initial) return tl::unexpected(initial.error());
-  auto bounds = ParseRanges("--bounds", flags.bounds, flags.model, parameters);
+  auto bounds = ParseRanges("--bounds", flags.bounds, model, parameters);
   if (!bounds) return tl::unexpected(bounds.error());
-  auto priors = ParsePriors("--prior", flags.prior, flags.model, parameters);
+  auto priors = ParsePriors("--prior", flags.prior, model, parameters);
   if (!priors) return tl::unexpected(priors.error());
   options.model = models.front().name;
   options.start = *start;
@@ -277,11 +286,13 @@ Json WordSchema(const RunFlag& flag) {
 
 std::vector<RunFlag> MakeTable() {
   Json model = TextSchema();
-  model["default"] = RunFlags().model;
+  model["default"] = kDefaultModel;
   const Json seed = {{"type", "integer"}, {"minimum", 0}, {"maximum", 1'000'000'000'000'000}, {"default", 1}};
   const Json number = {{"type", "number"}};
-  const std::string models = "Model of the motion: one of " + MotionModelNames() +
-                             "; several separated by commas, to compare them; or all; default coulomb.";
+  const std::string models =
+      "Model of the friction: one of " + MotionModelNames() +
+      "; several separated by commas, to compare them; or all; default coulomb. --gravity linear "
+      "gives each friction law the restoring torque of a spring.";
   return {
       {.name = "rig",
        .value = &RunFlags::rig,
@@ -301,6 +312,13 @@ std::vector<RunFlag> MakeTable() {
        .label = "Kind of friction",
        .schema = model,
        .example = "viscous,coulomb"},
+      {.name = "gravity",
+       .value = &RunFlags::gravity,
+       .help = "Restoring torque: sin (gravity: a pendulum), linear (a spring: Pohl wheel, torsion wire, mass on a "
+               "spring; G is then the stiffness k) or auto (sin; linear if the rig gives a stiffness or, with the "
+               "default model, if the recording clearly shows a spring, which is said); default auto.",
+       .label = "What pulls it back",
+       .words = WordsOf(kGravities)},
       {.name = "start",
        .value = &RunFlags::start,
        .help = "How the recording begins: auto (decided from the data), release or moving; default auto.",
@@ -457,8 +475,13 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   const auto checks = ParseWord("--checks", flags.checks, kChecks);
   if (!checks) return tl::unexpected(checks.error());
   options.checks = *checks;
-  const auto models = FindMotionModels(flags.model);
+  const auto gravity = ParseWord("--gravity", flags.gravity, kGravities);
+  if (!gravity) return tl::unexpected(gravity.error());
+  const auto models = FindMotionModels(ModelOf(flags), *gravity);
   if (!models) return BadFlag("--model: " + models.error().message);
+  options.fit.gravity = *gravity;
+  options.rig_chooses_gravity = !*gravity;
+  options.fit.may_be_spring = !*gravity && flags.model.empty();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   if (const auto parsed = ParseFitOptions(flags, *models, options.fit); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());

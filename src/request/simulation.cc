@@ -43,10 +43,7 @@ Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
     return BadFlag("--gravity " + flags.gravity + " contradicts --model " + flags.model +
                    "; its friction law is --model " + std::string(model->friction));
   }
-  const std::vector<MotionModel> models = MotionModels();
-  const auto named = std::ranges::find_if(
-      models, [&](const MotionModel& other) { return other.gravity == *gravity && other.friction == model->friction; });
-  if (named != models.end()) return *named;
+  if (const auto named = WithGravity(*model, *gravity)) return *named;
   model->gravity = *gravity;  // a fit cannot determine the law of gravity, but it can be simulated
   return model;
 }
@@ -140,9 +137,22 @@ Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> 
   return {};
 }
 
+/// A simulation needs the torque that pulls the pendulum back, with the law of the rig.
+Result<void> CheckRig(const std::optional<Rig>& rig, const MotionModel& model) {
+  if (rig && !rig->gives_torque) {
+    return BadFlag(
+        "the rig gives no restoring torque, which a simulation needs; add the masses, or leave --rig out and "
+        "give --set in units of the gravity torque");
+  }
+  if (rig && rig->is_spring && !model.gravity.is_linear())
+    return BadFlag("the rig gives the stiffness of a spring; add --gravity linear");
+  return {};
+}
+
 /// Applies --set to the chosen model: start and parameters, in `simulation` and in its true values.
 Result<void> ChooseMotion(const SimulationFlags& flags, const std::optional<Rig>& rig, Simulation& simulation) {
   SyntheticOptions& synthetic = simulation.synthetic;
+  if (auto checked = CheckRig(rig, synthetic.model); !checked) return checked;
   const std::vector<ParameterInfo> infos = SettableParameters(synthetic);
   Result<ParameterValues> values = ParseSettings("--set", flags.set, synthetic.model.name, infos);
   if (!values) return tl::unexpected(values.error());

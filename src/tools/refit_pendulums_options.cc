@@ -120,6 +120,8 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   if (!run) return tl::unexpected(run.error());
   options.refit.threads = run->fit.threads;
   options.refit.run = *std::move(run);
+  // The store has a row for each model that was asked for.
+  options.refit.run.fit.may_be_spring = options.refit.run.rig_chooses_gravity = false;
   options.refit.force = flags.force;
   options.refit.retry_failed = flags.retry_failed;
   options.rig = flags.rig;

@@ -37,17 +37,54 @@ std::vector<Result<Identification>> FitTextbook(const IdentifyOptions& options) 
 }
 
 // Seconds labelled as milliseconds give a frequency a thousand times higher than the rig's masses and length predict.
-TEST(IdentifyEach, AsksAboutUnitsIfTheRigPredictsAnotherFrequency) {
+TEST(IdentifyEach, RefusesARigThatContradictsTheSwing) {
   const IdentifyOptions options = OptionsFor({"viscous"});
   const Rig rig = Must(ReadRig("datasets/textbook_rig.json"));
   for (const double factor : {1e-3, 1.0}) {
     Recording recording = Must(ReadRecording("datasets/textbook_rig.csv"));
     recording.time *= factor;
     const auto runs = IdentifyEach(options, Must(PrepareRecording(std::move(recording), options, rig)));
-    ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-    const bool warns = std::ranges::count(runs[0]->warnings, "frequency_differs_from_rig", &Warning::code) > 0;
-    EXPECT_EQ(warns, factor != 1);
+    EXPECT_EQ(runs.at(0).has_value(), factor == 1);
+    if (runs[0]) continue;
+    EXPECT_EQ(runs[0].error().code, StatusCode::kDataLoss);
+    EXPECT_THAT(runs[0].error().message, HasSubstr("correct the unit of the times"));
   }
+}
+
+Result<Identification> FitWithRig(const std::string& rig, IdentifyOptions options) {
+  return IdentifyEach(options, Must(PrepareFile("datasets/coulomb.csv", options, Must(ParseRig(rig, "rig.json")))))
+      .at(0);
+}
+
+// The rig of the recording is 0.43 m long; its G/I is 1.803 / 0.079 1/s² (src/docs/examples.md).
+TEST(IdentifyEach, ReportsGravityAndLengthOfAStringPendulum) {
+  const auto run = FitWithRig(R"({"length": 0.43, "gravity": 9.81})", OptionsFor({"coulomb"}));
+  ASSERT_TRUE(run) << run.error().message;
+  const FitReport& fit = run->fits[0];
+  const auto value = [&](const std::string& name) {
+    const auto found = std::ranges::find(fit.derived, name, &DerivedQuantity::name);
+    return found == fit.derived.end() ? 0 : found->estimate;
+  };
+  const double ratio = 1.80332325 / 0.079;
+  EXPECT_NEAR(value("gravity"), 0.43 * ratio, 1e-3 * 0.43 * ratio);
+  EXPECT_NEAR(value("effective_length"), 9.81 / ratio, 1e-3 * 9.81 / ratio);
+  EXPECT_EQ(fit.Find("inertia")->unit, "s^2");
+  EXPECT_FALSE(run->si_rig());
+  EXPECT_EQ(run->rig->source.dump(), R"({"length":0.43,"gravity":9.81})");
+}
+
+TEST(IdentifyEach, TakesALinearTorqueForARigWithAStiffness) {
+  IdentifyOptions options = OptionsFor({"viscous"});
+  const auto refused = FitWithRig(R"({"stiffness": 0.02})", options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().message, HasSubstr("give --gravity linear"));
+  options.rig_chooses_gravity = true;
+  const auto run = FitWithRig(R"({"stiffness": 0.02})", options);
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(run->fits[0].model.name, "linear");
+  EXPECT_EQ(run->fits[0].Find("inertia")->unit, "kg m^2");
+  EXPECT_EQ(std::ranges::count(run->warnings, "linear_restoring_torque", &Warning::code), 1);
 }
 
 /// Two recordings at 100 Hz joined; between them a hand seems to lift the pendulum for 4 s.

@@ -66,6 +66,27 @@ TEST(MotionModels, IncludeEachFrictionLawWithSineGravity) {
   });
 }
 
+TEST(FindMotionModels, GiveEachFrictionLawTheRequestedGravity) {
+  EXPECT_THAT(Names(*FindMotionModels("viscous,coulomb", Gravity::kLinear)), ElementsAre("linear", "linear_coulomb"));
+  EXPECT_THAT(Names(*FindMotionModels("linear_drag", Gravity::kLinear)), ElementsAre("linear_drag"));
+  EXPECT_THAT(Names(*FindMotionModels("coulomb", Gravity::kSine)), ElementsAre("coulomb"));
+  EXPECT_THAT(Names(*FindMotionModels("all", Gravity::kLinear)),
+              ElementsAre("linear", "linear_coulomb", "linear_drag", "linear_stribeck"));
+}
+
+TEST(FindMotionModels, RefuseAModelThatContradictsTheGravity) {
+  const auto linear = FindMotionModels("linear_coulomb", Gravity::kSine);
+  ASSERT_FALSE(linear);
+  EXPECT_EQ(
+      linear.error().message,
+      "model linear_coulomb has the restoring torque linear, but --gravity says sin; leave --gravity out, or give "
+      "--model coulomb");
+  const auto asymmetric = FindMotionModels("asymmetric", Gravity::kLinear);
+  ASSERT_FALSE(asymmetric);
+  EXPECT_THAT(asymmetric.error().message, HasSubstr("model asymmetric cannot be combined with --gravity linear"));
+  EXPECT_FALSE(FindMotionModels("linear,viscous", Gravity::kLinear));  // the same model twice
+}
+
 TEST(FindMotionModel, ListsTheModelsForAnUnknownName) {
   for (const std::string_view wrong : {"Coulomb", "coulom", "", "viscous,coulomb"}) {
     const Result<MotionModel> model = FindMotionModel(wrong);

@@ -72,6 +72,35 @@ TEST(MakeIdentifyOptions, AcceptsModelsWindowAndParameters) {
   EXPECT_EQ(options->read.unit, "counts");
 }
 
+TEST(MakeIdentifyOptions, GivesTheModelsALinearRestoringTorque) {
+  RunFlags flags;
+  flags.gravity = "linear";
+  auto options = MakeIdentifyOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_THAT(options->models, ElementsAre("linear_coulomb"));
+  EXPECT_EQ(options->fit.gravity, Gravity::kLinear);
+  flags.model = "viscous,drag";
+  options = MakeIdentifyOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_THAT(options->models, ElementsAre("linear", "linear_drag"));
+  flags.model = "linear_coulomb";
+  flags.gravity = "sin";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--gravity says sin"));
+  flags.gravity = "cos";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--gravity is 'cos'; it must be one of auto, sin, linear"));
+}
+
+// Only a user who says nothing about the motion leaves the choice to the recording.
+TEST(MakeIdentifyOptions, LeaveTheRestoringTorqueOpenOnlyByDefault) {
+  EXPECT_TRUE(MakeIdentifyOptions({})->fit.may_be_spring);
+  RunFlags flags;
+  flags.model = "coulomb";
+  EXPECT_FALSE(MakeIdentifyOptions(flags)->fit.may_be_spring);
+  flags = {};
+  flags.gravity = "sin";
+  EXPECT_FALSE(MakeIdentifyOptions(flags)->fit.may_be_spring);
+}
+
 TEST(MakeIdentifyOptions, NamesTheWrongFlag) {
   RunFlags flags;
   flags.model = "tar";

@@ -212,7 +212,9 @@ def work(job: Job) -> Verdict:
     (folder / "run.csv").write_text(recording.text(), encoding="utf-8")
     truth = {**recording.truth, "releases": recording.releases}
     (folder / "truth.json").write_text(json.dumps(truth, indent=2), encoding="utf-8")
-    command = [str(job.tools / "fit_pendulum"), "--data", "run.csv", "--model", model, "--json", "fit.json"]
+    command = [str(job.tools / "fit_pendulum"), "--data", "run.csv", "--json", "fit.json"]
+    if recording.model_given:
+        command += ["--model", model]
     fit = run_fit(command, folder)
     codes = sorted({warning["code"] for warning in fit.result["warnings"]}) if fit.result else []
     if fault := defect(fit):

@@ -217,6 +217,66 @@ def _hangs_at_pi(lab: Lab, how: str) -> Recording:
     return lab.swing() if how == "plain" else wrapped(lab, lab.swing(), -180)
 
 
+# Readings of an encoder or a data logger in degrees: decimals, and whole fractions of a turn.
+STEPS_DEG = (0.001, 0.01, 0.02, 0.05, 0.1, 360 / 4096, 360 / 8192, 360 / 16384, 360 / 32768, 360 / 65536)
+
+
+def without_model(lab: Lab) -> None:
+    """The user gives no model: the default is dry friction."""
+    lab.model = "coulomb"
+    lab.law.pop("drag", None)
+    lab.law.setdefault("coulomb", lab.rng.uniform(0, 0.01))
+
+
+@hazard("degrees labelled rad", 0.3, 0.6, 1.2, 2, 3, unit=" deg")
+def _degrees_labelled_rad(lab: Lab, degrees: float) -> Recording:
+    """A pendulum in small swings, whose period does not depend on the amplitude, as if it were a torsion spring."""
+    without_model(lab)
+    lab.amplitude, lab.zero = math.radians(degrees), 0
+    lab.law["coulomb"] = lab.rng.uniform(0, 0.01) * lab.amplitude
+    lab.resolution = lab.rng.choice([step for step in STEPS_DEG if step < 0.05 * degrees])
+    lab.noise = lab.resolution * lab.rng.uniform(1, 3)
+    lab.start = lab.released()
+    recording = lab.swing()
+    recording.header, recording.model_given = "time_s,angle_rad", False
+    return recording
+
+
+@hazard("radians labelled deg", 15, 40, 80, unit=" deg")
+def _radians_labelled_deg(lab: Lab, degrees: float) -> Recording:
+    """The readings are 57 times too small, but the period depends on the amplitude."""
+    without_model(lab)
+    lab.amplitude = math.radians(degrees)
+    lab.start = lab.released()
+    recording = lab.swing().readings(lambda _, value: math.radians(value))
+    recording.model_given = False
+    return recording
+
+
+@hazard("spring without a model", 40, 60, 80, 170, 400, unit=" deg")
+def _spring(lab: Lab, degrees: float) -> Recording:
+    """A torsion spring in degrees, with the default flags."""
+    without_model(lab)
+    lab.gravity, lab.amplitude = "linear", math.radians(degrees)
+    lab.start = lab.released()
+    recording = lab.swing()
+    recording.model_given = False
+    return recording
+
+
+@hazard("encoder spring in rad", 60, 100, unit=" deg")
+def _encoder_spring(lab: Lab, degrees: float) -> Recording:
+    """The same in rad, with an encoder of a whole number of levels in a turn."""
+    without_model(lab)
+    lab.gravity, lab.amplitude, lab.zero = "linear", math.radians(degrees), 0
+    lab.resolution = 360 / lab.rng.choice([500, 576, 578, 1000, 1024, 2048])
+    lab.noise = lab.resolution * lab.rng.uniform(1, 2)
+    lab.start = lab.released()
+    recording = lab.swing().readings(lambda _, value: math.radians(value))
+    recording.header, recording.model_given = "time_s,angle_rad", False
+    return recording
+
+
 @hazard("zero of the readings drifts", 0.05, 0.5, 5, unit=" deg")
 def _drift(lab: Lab, degrees: float) -> Recording:
     resolution, lab.resolution = lab.resolution, 0

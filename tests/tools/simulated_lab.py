@@ -24,6 +24,7 @@ class Recording:
     header: str = "time_s,angle_deg"
     zero_span: float = 0  # rad: every zero within +- this of the true value was correct at some time
     clock_turn: float = 0  # s: the clock shows times modulo this; 0 for a normal clock
+    model_given: bool = True  # whether the user gives --model
 
     def text(self) -> str:
         """The CSV file."""

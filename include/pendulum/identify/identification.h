@@ -59,7 +59,7 @@ struct JointPart {
 struct Identification {
   Recording used;  ///< The N samples that were fitted, without warnings.
   DataSummary data;
-  std::optional<Rig> rig;
+  std::optional<Rig> rig;                   ///< As the user described it; see also si_rig.
   nlohmann::ordered_json calibration;       ///< Converts counts or volts to angles, as given by the user; null: none.
   std::vector<FitReport> fits;              ///< In the order of the requested models; empty: closed forms only.
   std::optional<Sampling> sampling;         ///< Sampling of the used samples.
@@ -78,6 +78,9 @@ struct Identification {
 
   /// The constancy of fit `fit`, or nullptr.
   const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
+
+  /// The rig, if it gives the restoring torque that converts results to SI; otherwise torques are in units of G.
+  const std::optional<Rig>& si_rig() const;
 
   bool is_joint() const { return !runs.empty(); }
 

@@ -21,8 +21,9 @@ enum class Checks {
 struct IdentifyOptions {
   ReadOptions read;
   SwingChoice swing;
-  std::vector<std::string> models;  ///< In the requested order; several models are compared.
-  FitOptions fit;                   ///< Its model is the first of `models`; its rig is replaced by the recording's.
+  std::vector<std::string> models;   ///< In the requested order; several models are compared.
+  FitOptions fit;                    ///< Its model is the first of `models`; its rig is replaced by the recording's.
+  bool rig_chooses_gravity = false;  ///< A rig with a stiffness gives each model a linear restoring torque.
   Checks checks = Checks::kStandard;
   bool closed_form_only = false;    ///< No fit is made; of `fit`, only the model and the stop token are used.
   std::vector<std::string> shared;  ///< For a joint identification: names of the parameters that all recordings share.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,8 +30,12 @@ std::vector<MotionModel> MotionModels();
 Result<MotionModel> FindMotionModel(std::string_view name);
 
 /// The models of a comma-separated list such as "viscous,coulomb", in its order. "all" means one model for each
-/// friction law, with the default gravity. kInvalidArgument: a name is unknown, empty or repeated.
-Result<std::vector<MotionModel>> FindMotionModels(std::string_view names);
+/// friction law, with the default gravity. `gravity`, if given, replaces the default gravity: coulomb with linear
+/// gravity is linear_coulomb. kInvalidArgument: a name is unknown, empty or repeated, or its law contradicts `gravity`.
+Result<std::vector<MotionModel>> FindMotionModels(std::string_view names, std::optional<Gravity> gravity = {});
+
+/// The model with the same friction law and this law of gravity; std::nullopt if a fit could not determine it.
+std::optional<MotionModel> WithGravity(const MotionModel& model, Gravity gravity);
 
 /// The inertia and the parameters of the model's friction law, in the order in which trajectories take them.
 std::vector<ParameterInfo> PhysicalParameters(const MotionModel& model);

@@ -38,15 +38,31 @@ struct RigValue {
 /// Knowledge of the pendulum that does not come from its swing. It converts the ratios that a free swing determines to
 /// SI.
 struct Rig {
-  RigValue gravity_torque;          ///< G [N m], the torque at θ = 90 deg, with its propagated standard deviation.
+  /// The restoring torque G [N m], at θ = 90 deg of a pendulum, with its propagated standard deviation; the stiffness
+  /// k [N m/rad] if is_spring. 1 if gives_torque is false.
+  RigValue gravity_torque{1, 0};
   std::optional<RigValue> inertia;  ///< I_O from geometry or CAD [kg m^2]; compared with the fit, not used in it.
   nlohmann::ordered_json source;    ///< The rig file as it was read, for the report.
+  std::string name = "the rig";     ///< The name of the file, for messages.
+  bool gives_torque = true;         ///< False: torques and inertia stay in units of the restoring torque G.
+  bool is_spring = false;           ///< The restoring torque is that of a spring or wire, proportional to the angle.
+  std::optional<RigValue> known_inertia = {};  ///< I_O [kg m^2] if it, and not G, is known: the fit then gives G.
+  std::optional<RigValue> gravity = {};        ///< g [m/s^2]
+  std::optional<RigValue> length = {};         ///< Of a string or bifilar pendulum [m].
+  std::optional<RigValue> mass = {};           ///< Of the whole pendulum [kg].
 };
 
-/// Reads a rig from JSON text: one of {"bob_mass", "rod_mass", "rod_length", "gravity"}, {"gravity_torque"} or {"mass",
-/// "center_of_mass", "gravity"}, each with optional "inertia". Values are in SI units, each a number or {"value",
-/// "std_dev"}. A rod and a bob give I_O = m l²/3 + M l² (MODEL.md eq. (1.3)) unless "inertia" is given, and
-/// G = (M + m/2) g l (MODEL.md eq. (1.2)). Variances are propagated to first order; the values count as independent.
+/// Reads a rig from JSON text, in SI units. Each value is a number or {"value", "std_dev"}. A rig is one of
+///   {"bob_mass", "rod_mass", "rod_length", "gravity"}   G = (M + m/2) g l (MODEL.md eq. (1.2)), and for comparison
+///                                                       I_O = m l²/3 + M l² (eq. (1.3)) unless "inertia" is given
+///   {"gravity_torque"}                                  G
+///   {"mass", "center_of_mass", "gravity"}               G = m g d
+///   {"stiffness"}                                       k of a spring or wire, instead of G
+///   {"length"}, {"gravity"} or both, perhaps "mass"     a string or bifilar pendulum: without mass and gravity, G
+///   stays
+///                                                       unknown
+///   {"inertia"}, perhaps "mass" or "gravity"            I_O, from which the fit gives G
+/// each with optional "inertia". Variances are propagated to first order; the values count as independent.
 /// kDataLoss: not JSON (line and column), longer than 64 KiB, an unknown, missing or repeated key, keys of different
 /// descriptions, or a value that is not positive (rod_mass may be 0). The message begins with `name` and names the key.
 Result<Rig> ParseRig(std::string_view text, const std::string& name);

@@ -13,12 +13,15 @@
 
 namespace pendulum {
 
+inline constexpr std::string_view kDefaultModel = "coulomb";
+
 /// The flags for reading and fitting a recording, as given; empty or the default if not given. Used by the tools that
 /// fit recordings and by the service.
 struct RunFlags {
   std::string rig;
   std::string calibration;
-  std::string model = "coulomb";
+  std::string model;  ///< Empty: kDefaultModel, and the recording may show that it is a spring's (may_be_spring).
+  std::string gravity = "auto";
   std::string start = "auto";
   std::string release;
   std::string from;

@@ -96,7 +96,7 @@ ceres::Solver::Options SolverOptions(int max_iterations, bool several) {
 }
 
 /// One run of Ceres over the parameters that are not held. Ends at convergence or at a bound.
-void Run(LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
+void RunSolver(LeastSquares& cost, const SolveOptions& options, const std::vector<bool>& held, Solution& solution) {
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.disable_all_safety_checks = true;
@@ -177,7 +177,7 @@ Solution Solve(LeastSquares& cost, const std::vector<double>& start, const Solve
   // A parameter is held and freed once or twice. If this repeats, it differs from its bound only by rounding.
   const std::size_t most_runs = 4 * start.size();
   for (std::size_t run = 0; run < most_runs && !cost.is_stopped(); ++run) {
-    Run(cost, options, held, solution);
+    RunSolver(cost, options, held, solution);
     if (!solution.usable || cost.traces() >= options.max_traces) break;
     const std::vector<std::size_t> at_bound = AtBound(solution.parameters, options, held);
     for (const std::size_t i : at_bound) held[i] = true;

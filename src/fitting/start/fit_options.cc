@@ -6,7 +6,7 @@ namespace pendulum {
 FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces) {
   FitOptions trial;
   trial.model = "drag";
-  if (!recording.is_calibrated()) trial.gravity = Gravity::kLinear;
+  trial.gravity = recording.is_calibrated() ? options.gravity : Gravity::kLinear;
   trial.start = options.start;
   trial.search.max_traces = max_traces;
   trial.noise = IsRobust(options.noise) ? options.noise : NoiseFamily::kGaussian;

@@ -138,9 +138,11 @@ std::optional<OffsetJumps> CorrectOffset(FreeSwing& swing, const FitOptions& opt
   return jumps;
 }
 
-std::optional<std::string> NotAPendulumReason(const SwingFit& result, const std::stop_token& stop) {
+std::optional<std::string> NotAPendulumReason(SwingFit& result, const std::stop_token& stop) {
   if (result.swing.has_beats) return "its amplitude grows repeatedly, as in coupled pendulums";
-  return LinearOscillatorReason(result.used, result.fit, stop);
+  const auto linear = LinearOscillatorReason(result.used, result.fit, stop);
+  result.linear_reason = linear.value_or("");
+  return linear;
 }
 
 // ---- Rescues -------------------------------------------------------------------------------------------------------
@@ -343,10 +345,31 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
   return std::move(state.result);
 }
 
+/// Fits a linear oscillator with a linear restoring torque, and says so. If this does not help, the result stays.
+void FitAsSpring(const FitOptions& options, Result<SwingFit>& result) {
+  const std::optional<std::string> unit = ReasonForUnit(result->used);
+  const std::optional<MotionModel> spring = WithGravity(result->fit.model, Gravity::kLinear);
+  if (!unit || !spring) return;
+  FitOptions linear = options;
+  linear.model = spring->name;
+  linear.gravity = Gravity::kLinear;
+  Result<SwingFit> other = FitUnlessStopped(result->used, result->swing, linear);
+  if (!other || other->fit.termination != Termination::kConverged) return;
+  const std::string& why = result->linear_reason;
+  other->fit.warnings.insert(
+      other->fit.warnings.begin(),
+      {"linear_restoring_torque",
+       "a restoring torque proportional to the angle is assumed, as of a spring or wire (model " + linear.model +
+           "; G is its stiffness k), because " + why.substr(0, why.rfind(';')) + ". The readings are in " +
+           result->used.unit + ": " + *unit + ". For a pendulum give --gravity sin, and correct the unit with --unit"});
+  result = std::move(other);
+}
+
 }  // namespace
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
   Result<SwingFit> result = FitUnlessStopped(std::move(recording), std::move(swing), options);
+  if (result && options.may_be_spring && !result->linear_reason.empty()) FitAsSpring(options, result);
   if (options.stop.stop_requested()) return FitStopped();
   return result;
 }

@@ -49,6 +49,35 @@ bool DescribesAll(const FitReport& report) {
   });
 }
 
+/// The number of levels in a turn, if the levels of readings in rad are whole fractions of a turn: an encoder.
+std::optional<double> LevelsInTurn(const Recording& recording) {
+  constexpr double kMaxError = 0.02;  // of the number of levels, from the rounding of the printed readings
+  constexpr double kFewest = 8, kMost = 20000;
+  if (!(recording.resolution > 0)) return std::nullopt;
+  const double first = recording.value[0];
+  double step = recording.resolution;
+  double error = 0;
+  for (int pass = 0; pass < 4; ++pass) {  // the step found in the values is known from a few of them only
+    const Eigen::ArrayXd level = ((recording.value.array() - first) / step).round();
+    const double most = level.abs().maxCoeff();
+    if (!(most > 1)) return std::nullopt;
+    step = (level * (recording.value.array() - first)).sum() / level.square().sum();
+    error = (recording.value.array() - first - step * level).abs().maxCoeff() / (most * step);
+  }
+  const double levels = 2 * kPi / step;
+  const double levels_error = std::max(error * levels, 1e-9 * levels);
+  if (levels < kFewest || levels > kMost || levels_error > kMaxError) return std::nullopt;
+  return std::abs(levels - std::round(levels)) < levels_error ? std::optional(std::round(levels)) : std::nullopt;
+}
+
+/// The flags that a user may give for a linear oscillator.
+std::string FlagsForLinear(const Recording& recording, double amplitude) {
+  const std::string spring = "give --gravity linear for a spring or wire (Pohl wheel, torsion pendulum)";
+  if (ReasonForUnit(recording)) return spring;
+  return spring + ", or --unit deg if the readings are in degrees, of a pendulum with an amplitude of " +
+         NumberText(amplitude, 3) + " deg";
+}
+
 /// The reason why the motion is that of a linear oscillator, such as a mass on a spring, whose period is the same at
 /// every amplitude; otherwise std::nullopt. pendulum: a fit with sine gravity.
 std::optional<std::string> ReasonIfLinear(const Recording& recording, const FitReport& pendulum,
@@ -69,8 +98,8 @@ std::optional<std::string> ReasonIfLinear(const Recording& recording, const FitR
   return "the period does not depend on the amplitude as in a pendulum, whose period is " +
          Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
          NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
-         NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " + NumberText(left, 3) +
-         " rad; use --model linear for this recording";
+         NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " + NumberText(left, 3) + " rad; " +
+         FlagsForLinear(recording, amplitude);
 }
 
 /// A frequency and its share of the residuals.
@@ -131,6 +160,15 @@ std::optional<std::string> LinearOscillatorReason(const Recording& recording, co
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
   return richest ? ReasonIfLinear(some, *richest, stop) : std::nullopt;
+}
+
+std::optional<std::string> ReasonForUnit(const Recording& recording) {
+  if (recording.calibration) return "the calibration gives their unit";
+  if (recording.arc) return "they follow from two coordinates";
+  if (recording.unit == "deg") return "the file says deg, and in rad they would be several turns";
+  const std::optional<double> levels = LevelsInTurn(recording);
+  if (!levels) return std::nullopt;
+  return "their levels are 1/" + NumberText(*levels) + " of a turn";
 }
 
 std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,

@@ -54,7 +54,9 @@ std::vector<PowerProduct> PowerProducts(const std::vector<ParameterInfo>& infos,
     products.push_back({std::string(infos[i].name) + "_over_inertia", UnitOverInertia(infos[i]), 1, -1, i, 1});
     if (infos[i].name != kViscous.name) continue;
     products.push_back({"damping_ratio", "1", 0.5, -0.5, i, 1});
-    if (parameters[i] > 0) products.push_back({"quality_factor", "1", 1, 0.5, i, -1});
+    if (!(parameters[i] > 0)) continue;
+    products.push_back({"quality_factor", "1", 1, 0.5, i, -1});
+    products.push_back({"decay_time", "s", 2, 1, i, -1});
   }
   return products;
 }

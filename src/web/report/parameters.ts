@@ -111,14 +111,21 @@ function derivedTable(fit: Fit): HTMLElement | null {
     { head: 'Value ± standard error', kind: 'number' },
     { head: '95 % interval', kind: 'number' },
   ];
+  const systematic = rows.some(([, derived]) => derived.systematic_std_error !== undefined);
+  if (systematic) columns.push({ head: '± systematic', kind: 'number' });
   return table(
     'Computed from the parameters',
     columns,
-    rows.map(([name, derived]) => [
-      quantityName(name),
-      valueText(derived.estimate, derived.std_error, derived.unit),
-      intervalText(derived.interval95, derived.estimate, derived.std_error),
-    ]),
+    rows.map(([name, derived]) => {
+      const error = derived.systematic_std_error ?? null;
+      const cells: Cell[] = [
+        quantityName(name),
+        valueText(derived.estimate, derived.std_error, derived.unit),
+        intervalText(derived.interval95, derived.estimate, derived.std_error),
+      ];
+      if (systematic) cells.push(errorText(error, derived.estimate, derived.std_error));
+      return cells;
+    }),
   );
 }
 
@@ -143,7 +150,9 @@ function methods(fit: Fit): HTMLElement | null {
   const overG = fit.parameters.inertia?.unit === 's^2';
   if (overG)
     parts.push(
-      'Without a rig file a free swing determines only ratios to the gravity torque G: inertia and torques are in units of G.',
+      fit.model.startsWith('linear')
+        ? 'A free swing determines only ratios to the stiffness k of the spring (for a pendulum at small angles, to the gravity torque G): inertia and torques are in units of it, unless a rig gives it.'
+        : 'A free swing determines only ratios to the gravity torque G: inertia and torques are in units of G, unless a rig gives it.',
     );
   return text(typeset(parts.join(' ')), 'quiet');
 }

@@ -24,6 +24,7 @@ export interface Derived {
   std_error: Num;
   interval95?: [Num, Num] | null;
   unit: string;
+  systematic_std_error?: number;
   reason?: string;
 }
 

@@ -84,7 +84,77 @@ TEST(FitSwing, ReportsALinearOscillatorWithNumbers) {
     EXPECT_THAT(NumberAfter(fit.reason, "longer at "), DoubleNear(degrees * kRadFromDeg, 0.05 * degrees * kRadFromDeg));
     EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
     EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));
-    EXPECT_THAT(fit.reason, HasSubstr("; use --model linear for this recording"));
+    EXPECT_THAT(fit.reason, HasSubstr("; give --gravity linear for a spring or wire"));
+    EXPECT_THAT(fit.reason, HasSubstr("or --unit deg if the readings are in degrees"));
+  }
+}
+
+FitOptions OptionsWithoutGravity() {
+  FitOptions options = ModelOptions("coulomb");
+  options.may_be_spring = true;
+  return options;
+}
+
+/// Readings on the levels of an encoder with so many levels in a turn, printed with five decimals.
+Recording OnLevels(Recording recording, double levels) {
+  recording.resolution = 2 * kPi / levels;
+  for (double& value : recording.value) {
+    const double level = std::round(value / recording.resolution) * recording.resolution;
+    value = std::round(level * 1e5) / 1e5;
+  }
+  return recording;
+}
+
+void ExpectASpring(const FitReport& fit, const std::vector<double>& truth) {
+  EXPECT_EQ(fit.termination, Termination::kConverged) << fit.reason;
+  EXPECT_EQ(fit.model.name, "linear_coulomb");
+  EXPECT_THAT(Codes(fit), Contains("linear_restoring_torque"));
+  EXPECT_THAT(Codes(fit), Not(Contains("not_a_pendulum")));
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    ASSERT_TRUE(parameter.std_error) << parameter.info.name;
+    EXPECT_THAT(parameter.estimate, DoubleNear(truth[i], 4 * *parameter.std_error)) << parameter.info.name;
+  }
+}
+
+TEST(FitSwing, TakesASpringIfTheUnitIsCertain) {
+  const std::vector<double> truth = TextbookParameters(Must(FindMotionModel("coulomb")));
+  Recording degrees = LinearOscillator(60, "coulomb", 1);
+  degrees.unit = "deg";
+  const FitReport fit = FitLongest(degrees, OptionsWithoutGravity()).fit;
+  ExpectASpring(fit, truth);
+  EXPECT_THAT(fit.warnings.at(0).message, AllOf(HasSubstr("a restoring torque proportional to the angle is assumed"),
+                                                HasSubstr("the file says deg"), HasSubstr("give --gravity sin")));
+  const Recording levels = OnLevels(LinearOscillator(60, "coulomb", 2), 578);
+  const FitReport encoder = FitLongest(levels, OptionsWithoutGravity()).fit;
+  ExpectASpring(encoder, truth);
+  EXPECT_THAT(encoder.warnings.at(0).message, HasSubstr("their levels are 1/578 of a turn"));
+}
+
+TEST(FitSwing, DoesNotTakeASpringIfTheUserChoseTheModel) {
+  Recording degrees = LinearOscillator(60, "coulomb", 1);
+  degrees.unit = "deg";
+  ExpectWithdrawn(FitLongest(degrees, ModelOptions("coulomb")).fit);
+}
+
+// A pendulum that swings by 1.8 deg, with degrees taken for rad, has a period that does not depend on the amplitude.
+TEST(FitSwing, DoesNotTakeDegreesLabelledRadForASpring) {
+  for (const double step_deg : {0.0, 0.01, 0.05, 360.0 / 4096, 360.0 / 8192, 360.0 / 16384}) {
+    SCOPED_TRACE(step_deg);
+    SyntheticOptions run = NoisyRun("coulomb", 5);
+    run.release_angle = 1.8 * kRadFromDeg;
+    run.zero_angle = 0;
+    run.noise = 0.02 * kRadFromDeg;
+    run.parameters[2] = 1e-4;
+    run.duration = 20;
+    Recording recording = Must(SimulateRecording(run));
+    recording.value /= kRadFromDeg;
+    recording.resolution = step_deg;
+    if (step_deg > 0) recording.value = (recording.value.array() / step_deg).round() * step_deg;
+    EXPECT_FALSE(ReasonForUnit(recording));
+    const FitReport fit = FitLongest(recording, OptionsWithoutGravity()).fit;
+    ExpectWithdrawn(fit);
+    EXPECT_THAT(fit.reason, HasSubstr("--unit deg if the readings are in degrees, of a pendulum with an amplitude of"));
   }
 }
 

@@ -51,12 +51,13 @@ Eigen::MatrixXd Covariance() {
   return errors.asDiagonal() * correlation * errors.asDiagonal();
 }
 
-/// Definition of each quantity (ω0² = G / I, ζ = b ω0 / 2 G, T = 2 π / ω0, Q = 1 / 2 ζ).
+/// Definition of each quantity (ω0² = G / I, ζ = b ω0 / 2 G, T = 2 π / ω0, Q = 1 / 2 ζ, decay time 2 I / b).
 const std::map<std::string, std::function<double(const Eigen::VectorXd&)>> kDefinitions = {
     {"natural_frequency", [](const Eigen::VectorXd& p) { return std::sqrt(1 / p[0]); }},
     {"small_angle_period", [](const Eigen::VectorXd& p) { return 2 * kPi * std::sqrt(p[0]); }},
     {"damping_ratio", [](const Eigen::VectorXd& p) { return 0.5 * p[1] * std::sqrt(1 / p[0]); }},
     {"quality_factor", [](const Eigen::VectorXd& p) { return 1 / (p[1] * std::sqrt(1 / p[0])); }},
+    {"decay_time", [](const Eigen::VectorXd& p) { return 2 * p[0] / p[1]; }},
     {"gravity_over_inertia", [](const Eigen::VectorXd& p) { return 1 / p[0]; }},
     {"viscous_over_inertia", [](const Eigen::VectorXd& p) { return p[1] / p[0]; }},
     {"coulomb_over_inertia", [](const Eigen::VectorXd& p) { return p[2] / p[0]; }},
@@ -84,6 +85,7 @@ TEST(DerivedQuantities, MatchAPendulumOfFiveRadiansPerSecond) {
   EXPECT_THAT(quantities.at("small_angle_period"), is(0.4 * kPi, "s"));
   EXPECT_THAT(quantities.at("damping_ratio"), is(0.005, "1"));
   EXPECT_THAT(quantities.at("quality_factor"), is(100, "1"));
+  EXPECT_THAT(quantities.at("decay_time"), is(40, "s"));
   EXPECT_THAT(quantities.at("gravity_over_inertia"), is(25, "1/s^2"));
   EXPECT_THAT(quantities.at("viscous_over_inertia"), is(0.05, "1/s"));
   EXPECT_THAT(quantities.at("coulomb_over_inertia"), is(0.075, "1/s^2"));
@@ -123,6 +125,7 @@ TEST(DerivedQuantities, HaveNoQualityFactorWithoutDamping) {
   const Eigen::MatrixXd covariance = Covariance();
   const Quantities quantities = Derived("drag", parameters, &covariance);
   EXPECT_THAT(quantities, Not(Contains(Key("quality_factor"))));
+  EXPECT_THAT(quantities, Not(Contains(Key("decay_time"))));
   // ζ = b / (2 sqrt(I)): at b = 0 its error is that of b divided by 2 sqrt(0.04).
   EXPECT_THAT(*quantities.at("damping_ratio").std_error, DoubleNear(0.00002 / 0.4, 1e-12));
 }

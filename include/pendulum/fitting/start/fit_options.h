@@ -43,6 +43,9 @@ struct SearchOptions {
 struct FitOptions {
   std::string model = "coulomb";
   std::optional<Gravity> gravity;  ///< Replaces the model's own.
+  /// The user gave no law of gravity, and the rig does not say that this is a pendulum: FitSwing may take a linear
+  /// restoring torque instead of gravity if the recording shows it.
+  bool may_be_spring = false;
   std::optional<StartKind> start;  ///< std::nullopt: decided from the readings.
   std::optional<Rig> rig;
   ParameterValues fixed;

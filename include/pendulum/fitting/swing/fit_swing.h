@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/fitting/fit/fit_report.h"
@@ -13,13 +15,16 @@ struct SwingFit {
   Recording used;   ///< The samples that were fitted, without warnings.
   FreeSwing swing;  ///< The fitted window, with reasons; it may be shorter than the requested one.
   FitReport fit;
+  std::string linear_reason = {};  ///< Why the motion is that of a linear oscillator, if the fit was rejected for that.
 };
 
 /// Fits a free swing; an undersampled swing is fitted by FitUndersampled. If the residuals are more than noise,
 /// disturbed ends are left out as long as the richest law then fits the remaining window clearly better (warning
 /// `ends_trimmed`). If the fit does not converge, the window ends earlier. Ends chosen by the user stay. Larger motion
 /// outside the window gives the warning `larger_motion_outside`. A motion that is not a pendulum's ends kNotConverged,
-/// with `not_a_pendulum`. If an angle's zero jumps by whole counts, the later readings are shifted back, also in `used`
+/// with `not_a_pendulum`. If it is a linear oscillator's, options.may_be_spring is set and the unit of the
+/// readings is beyond doubt, it is fitted again with a linear restoring torque, with `linear_restoring_torque`. If an
+/// angle's zero jumps by whole counts, the later readings are shifted back, also in `used`
 /// (`lost_counts`). If the zero jumps by another amount, the fit ends kNotConverged, with `offset_jumps`. A possible
 /// jump gives `offset_unsteady`. Errors as FitRecording. Cost: as FitRecording, and some tens of small fits if
 /// something is wrong.

@@ -15,6 +15,10 @@ namespace pendulum {
 std::optional<std::string> LinearOscillatorReason(const Recording& recording, const FitReport& report,
                                                   const std::stop_token& stop = {});
 
+/// Why readings in this unit are beyond doubt, in a sentence; std::nullopt if angles in rad may be in degrees. The
+/// period of small swings in degrees, taken for rad, would not depend on the amplitude either.
+std::optional<std::string> ReasonForUnit(const Recording& recording);
+
 /// Checks for two modes: much of the richest law's residual oscillates at one frequency different from the swing's.
 /// Return value and stop as for LinearOscillatorReason.
 std::optional<std::string> TwoModesReason(const Recording& recording, const FitReport& report,

@@ -18,6 +18,7 @@ struct DerivedQuantity {
   double estimate = 0;
   std::optional<double> std_error = std::nullopt;
   std::optional<double> lower95 = std::nullopt, upper95 = std::nullopt;
+  std::optional<double> systematic_std_error = std::nullopt;  ///< Only of quantities that depend on the rig.
 };
 
 /// Ends of a parameter's confidence interval; one may be missing.
@@ -25,8 +26,9 @@ struct IntervalEnds {
   std::optional<double> lower, upper;
 };
 
-/// Derived quantities: natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor 1 / 2ζ (unless b is
-/// 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (6.4)). None depends on the rig.
+/// Derived quantities: natural_frequency ω0, damping_ratio ζ, small_angle_period, quality_factor Q = ω0 I / b and
+/// decay_time 2 I / b (unless b is 0), and gravity, viscous, coulomb, drag ... over inertia (MODEL.md eq. (6.4)). None
+/// depends on the rig.
 ///
 /// infos       The model's parameters, inertia first.
 /// parameters  P, in units of the restoring torque G.

@@ -9,12 +9,14 @@
 
 namespace pendulum {
 
-/// The gravity of the small-angle model, also a spring's torque:  g(θ) = θ.  MODEL.md eq. (2.3).
+/// The torque of a spring or a wire, and gravity in the small-angle model:  g(θ) = θ.  MODEL.md eq. (2.3).
 struct LinearGravity {
   static constexpr std::string_view kName = "linear";
-  static constexpr std::string_view kTitle = "small angles";
+  static constexpr std::string_view kTitle = "spring or small angles";
   static constexpr std::string_view kAbout =
-      "The textbook's pendulum, whose period does not depend on the angle: for comparison.";
+      "A Pohl wheel, a torsion wire, a mass on a spring, or the textbook's pendulum at small angles: the period does "
+      "not "
+      "depend on the angle.";
   static constexpr std::string_view kFormula = "th";
   static constexpr bool kIsLinear = true;
   static constexpr double kTop = kUnbounded;

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/model/rig_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "model/rig_entry.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/physics.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSameWithin = 1.5;   // larger ratios are questioned
+constexpr double kContradiction = 5;  // larger ratios are refused
+constexpr double kUnitWithin = 1.6;   // a unit explains a ratio that it changes to less than this
+constexpr double kOtherPlanet = 30;   // a length alone is refused if its g differs from the Earth's by more than this
+constexpr int kDigits = 3;
+
+/// A unit in which people write a quantity, and its size in SI.
+struct OtherUnit {
+  RigQuantity quantity;
+  std::string_view name;
+  double si;
+};
+
+constexpr std::array kOtherUnits = {OtherUnit{RigQuantity::kMass, "g", 1e-3},
+                                    OtherUnit{RigQuantity::kLength, "cm", 1e-2},
+                                    OtherUnit{RigQuantity::kLength, "mm", 1e-3},
+                                    OtherUnit{RigQuantity::kLength, "inches", 0.0254},
+                                    OtherUnit{RigQuantity::kAcceleration, "cm/s^2", 1e-2},
+                                    OtherUnit{RigQuantity::kAcceleration, "mm/s^2", 1e-3},
+                                    OtherUnit{RigQuantity::kTorque, "N cm", 1e-2},
+                                    OtherUnit{RigQuantity::kTorque, "mN m", 1e-3},
+                                    OtherUnit{RigQuantity::kStiffness, "N cm/rad", 1e-2},
+                                    OtherUnit{RigQuantity::kStiffness, "mN m/rad", 1e-3},
+                                    OtherUnit{RigQuantity::kStiffness, "N m/deg", 180 / kPi},
+                                    OtherUnit{RigQuantity::kInertia, "g m^2", 1e-3},
+                                    OtherUnit{RigQuantity::kInertia, "kg cm^2", 1e-4},
+                                    OtherUnit{RigQuantity::kInertia, "kg mm^2", 1e-6},
+                                    OtherUnit{RigQuantity::kInertia, "g cm^2", 1e-7},
+                                    OtherUnit{RigQuantity::kInertia, "g mm^2", 1e-9}};
+
+/// "rod_length is 43 m: in cm? Write 0.43."
+std::string Question(const RigKey& key, double value, const OtherUnit& unit) {
+  return std::string(key.name) + " is " + NumberText(value) + " " + std::string(key.unit) + ": in " +
+         std::string(unit.name) + "? Write " + NumberText(value * unit.si, 4);
+}
+
+// ---- Without the swing
+// -----------------------------------------------------------------------------------------------
+
+/// The range of values that are not odd.
+struct UsualRange {
+  double lower, upper;
+};
+
+/// A pendulum of the laboratory or of a large hall. Masses above 10 kg do not hang on less than a metre.
+UsualRange UsualRangeOf(RigQuantity quantity, double length) {
+  switch (quantity) {
+    case RigQuantity::kMass: return {1e-6, length < 1 ? 10.0 : 50.0};
+    case RigQuantity::kLength: return {1e-3, 10};
+    case RigQuantity::kAcceleration: return {9.7, 9.9};
+    case RigQuantity::kTorque:
+    case RigQuantity::kStiffness: return {0, 1e4};
+    case RigQuantity::kInertia: return {0, 1e3};
+  }
+  return {0, 1e30};
+}
+
+/// The longest length in the file; 1 m if there is none.
+double LongestLength(const Json& source) {
+  double longest = 0;
+  for (const RigKey& key : RigKeys()) {
+    if (key.quantity == RigQuantity::kLength && source.contains(key.name))
+      longest = std::max(longest, ValueOfEntry(source.at(key.name)));
+  }
+  return longest > 0 ? longest : 1;
+}
+
+std::string OddityOf(const RigKey& key, double value, const UsualRange& usual) {
+  for (const OtherUnit& unit : kOtherUnits) {
+    const double in_si = value * unit.si;
+    if (unit.quantity == key.quantity && unit.si < 1 && in_si >= usual.lower && in_si <= usual.upper)
+      return Question(key, value, unit);
+  }
+  return std::string(key.name) + " is " + NumberText(value) + " " + std::string(key.unit) +
+         (key.quantity == RigQuantity::kAcceleration ? ", which is not the Earth's (9.78 to 9.83 m/s^2): correct it, "
+                                                       "unless the pendulum is elsewhere or tilted"
+                                                     : ": correct it if it is in another unit");
+}
+
+void QuestionValues(const Rig& rig, std::vector<Warning>& warnings) {
+  for (const RigKey& key : RigKeys()) {
+    if (!rig.source.contains(key.name)) continue;
+    const double value = ValueOfEntry(rig.source.at(key.name));
+    const UsualRange usual = UsualRangeOf(key.quantity, LongestLength(rig.source));
+    if (value == 0 || (value >= usual.lower && value <= usual.upper)) continue;
+    warnings.push_back({"rig_implausible", rig.name + ": " + OddityOf(key, value, usual)});
+  }
+}
+
+/// The value that converts the fit's ratios.
+RigValue Converting(const Rig& rig) {
+  if (rig.gives_torque) return rig.gravity_torque;
+  if (rig.known_inertia) return *rig.known_inertia;
+  return rig.length ? *rig.length : *rig.gravity;
+}
+
+/// What the conversion yields, in words.
+std::string Converted(const Rig& rig) {
+  if (rig.gives_torque) return "inertia and each friction torque";
+  if (rig.known_inertia) return "the restoring torque and each friction torque";
+  return rig.length ? "g" : "the effective length";
+}
+
+/// The error of a value that nobody stated: ±1 g, ±1 mm, and 1 % of a value that was computed from others.
+double UnstatedError(const RigKey& key, double value) {
+  if (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength) return 1e-3;
+  return key.quantity == RigQuantity::kAcceleration ? 0 : 0.01 * value;
+}
+
+void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
+  Json with_errors = rig.source;
+  std::string_view example;
+  bool has_mass_or_length = false;
+  std::string others;
+  for (const RigKey& key : RigKeys()) {
+    if (!rig.source.contains(key.name)) continue;
+    const Json& entry = rig.source.at(key.name);
+    if (StdDevOfEntry(entry) > 0) return;
+    const double value = ValueOfEntry(entry);
+    const double error = UnstatedError(key, value);
+    with_errors[key.name] = {{"value", value}, {"std_dev", error}};
+    if (error == 0 || value == 0) continue;
+    if (example.empty()) example = key.name;
+    const bool is_direct = key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength;
+    has_mass_or_length = has_mass_or_length || is_direct;
+    if (!is_direct) others += (others.empty() ? "" : ", ") + std::string(key.name);
+  }
+  const Result<Rig> assumed = ParseRig(with_errors.dump(), rig.name);
+  if (!assumed || example.empty()) return;
+  const RigValue converting = Converting(*assumed);
+  if (!(converting.std_dev > 0)) return;
+  const double share = converting.std_dev / converting.value;
+  const bool is_direct = has_mass_or_length && (rig.gives_torque || rig.length);
+  const std::string errors = is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + others;
+  warnings.push_back({"rig_taken_as_exact",
+                      rig.name + ": no value has a standard deviation, so the rig counts as exact; " + errors +
+                          " would add a systematic error of " + NumberText(100 * share, 2) + " % to " + Converted(rig) +
+                          ". Write \"" + std::string(example) + "\": {\"value\": ..., \"std_dev\": ...}"});
+}
+
+// ---- With the swing
+// --------------------------------------------------------------------------------------------------
+
+/// How many times the larger one is the smaller one.
+double Factor(double a, double b) { return std::max(a / b, b / a); }
+
+/// The value in another unit, and the key it belongs to, that make the rig agree with the swing; "" if there is none.
+std::string LikelyUnit(const Rig& rig, double gravity_over_inertia, const auto& predicted) {
+  double best = kUnitWithin;
+  std::string question;
+  for (const RigKey& key : RigKeys()) {
+    if (!rig.source.contains(key.name)) continue;
+    const double value = ValueOfEntry(rig.source.at(key.name));
+    for (const OtherUnit& unit : kOtherUnits) {
+      if (unit.quantity != key.quantity || value == 0) continue;
+      Json changed = rig.source;
+      changed[key.name] = value * unit.si;
+      const Result<Rig> other = ParseRig(changed.dump(), rig.name);
+      const std::optional<double> ratio = other ? predicted(*other) : std::nullopt;
+      if (!ratio || !(Factor(*ratio, gravity_over_inertia) < best)) continue;
+      best = Factor(*ratio, gravity_over_inertia);
+      question = Question(key, value, unit);
+    }
+  }
+  return question;
+}
+
+/// The period of small swings [s].
+std::string PeriodText(double gravity_over_inertia) {
+  return NumberText(2 * kPi / std::sqrt(gravity_over_inertia), kDigits) + " s";
+}
+
+tl::unexpected<Status> Contradiction(const Rig& rig, double predicted, double seen, const std::string& question) {
+  const std::string ratio = rig.is_spring ? "k/I" : "G/I";
+  return Error(StatusCode::kDataLoss,
+               rig.name + ": the rig gives " + ratio + " = " + NumberText(predicted, kDigits) + " 1/s^2, a period of " +
+                   PeriodText(predicted) + ", but the recording shows " + NumberText(seen, kDigits) +
+                   " 1/s^2, a period of " + PeriodText(seen) + "; " +
+                   (question.empty() ? "correct the rig (SI units: kg, m, m/s^2, N m, kg m^2)" : question) +
+                   ". If the rig is right, correct the unit of the times with --time_column NAME:ms or "
+                   "--sample_rate_hz");
+}
+
+/// The largest G/I [1/s^2] that a body with its centre of mass at this distance can have: g/d, because I >= m d².
+std::optional<double> LargestRatio(const Rig& rig) {
+  if (!rig.source.contains("center_of_mass")) return std::nullopt;
+  return rig.gravity->value / ValueOfEntry(rig.source.at("center_of_mass"));
+}
+
+/// The Earth's g over the length: what a rig with a length alone predicts.
+std::optional<double> RatioOnEarth(const Rig& rig) {
+  if (!rig.length) return std::nullopt;
+  return kStandardGravity / rig.length->value;
+}
+
+/// The keys from which the rig's inertia follows.
+std::string KeysOfInertia(const Rig& rig) {
+  if (rig.source.contains("inertia")) return "inertia";
+  return rig.source.contains("rod_length") ? "rod_length and the masses" : "mass and length";
+}
+
+Result<std::vector<Warning>> CompareLength(const Rig& rig, double gravity_over_inertia) {
+  const double gravity = gravity_over_inertia * rig.length->value;
+  const double on_earth = *RatioOnEarth(rig);
+  if (Factor(gravity_over_inertia, on_earth) > kOtherPlanet)
+    return Contradiction(rig, on_earth, gravity_over_inertia, LikelyUnit(rig, gravity_over_inertia, RatioOnEarth));
+  constexpr double kEarthWithin = 1.1;
+  if (Factor(gravity, kStandardGravity) < kEarthWithin) return {};
+  return std::vector<Warning>{
+      {"rig_implausible",
+       rig.name + ": length " + NumberText(rig.length->value) + " m gives g = " + NumberText(gravity, kDigits) +
+           " m/s^2, which is not the Earth's; the swing's effective length there is " +
+           NumberText(kStandardGravity / gravity_over_inertia, kDigits) +
+           " m. Correct length, unless the pendulum is elsewhere, tilted, or not a small bob on a string"}};
+}
+
+}  // namespace
+
+std::vector<Warning> QuestionRig(const Rig& rig) {
+  std::vector<Warning> warnings;
+  if (!rig.source.is_object()) return warnings;  // not from a file
+  QuestionValues(rig, warnings);
+  QuestionExactness(rig, warnings);
+  return warnings;
+}
+
+std::optional<double> PredictedRatio(const Rig& rig) {
+  if (rig.length && rig.gravity) return rig.gravity->value / rig.length->value;
+  if (!rig.gives_torque || !rig.inertia) return std::nullopt;
+  return rig.gravity_torque.value / rig.inertia->value;
+}
+
+Result<std::vector<Warning>> CompareRigWithSwing(const Rig& rig, double gravity_over_inertia) {
+  if (!(gravity_over_inertia > 0) || !std::isfinite(gravity_over_inertia)) return {};
+  const std::optional<double> predicted = PredictedRatio(rig);
+  if (predicted) {
+    const double factor = Factor(*predicted, gravity_over_inertia);
+    if (factor > kContradiction) {
+      return Contradiction(rig, *predicted, gravity_over_inertia,
+                           LikelyUnit(rig, gravity_over_inertia, PredictedRatio));
+    }
+    if (factor < kSameWithin) return {};
+    const double times = *predicted / gravity_over_inertia;
+    return std::vector<Warning>{
+        {"inertia_differs_from_rig",
+         rig.name + ": the fitted inertia is " + NumberText(times, kDigits) + " times the one that " +
+             KeysOfInertia(rig) + (rig.source.contains("inertia") ? " gives" : " give") + "; check these values" +
+             (rig.source.contains("inertia") ? "" : ", and whether the bob is a point mass at that distance")}};
+  }
+  const std::optional<double> largest = LargestRatio(rig);
+  if (largest && gravity_over_inertia > kSameWithin * *largest)
+    return Contradiction(rig, *largest, gravity_over_inertia, LikelyUnit(rig, gravity_over_inertia, LargestRatio));
+  return rig.length ? CompareLength(rig, gravity_over_inertia) : Result<std::vector<Warning>>{};
+}
+
+}  // namespace pendulum
