@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "closed_form/low_band.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 #include <iomanip>
+#include <ios>
 #include <random>
 #include <sstream>
 #include <string>

@@ -14,7 +14,14 @@
 namespace pendulum {
 
 /// What kind of quantity a key of the rig is; it decides which units a value may have on the command line.
-enum class RigQuantity { kMass, kLength, kAcceleration, kTorque, kStiffness, kInertia };
+enum class RigQuantity {
+  kMass,
+  kLength,
+  kAcceleration,
+  kTorque,
+  kStiffness,
+  kInertia,
+};
 
 /// A key of the rig file.
 struct RigKey {

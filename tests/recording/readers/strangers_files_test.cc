@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Files as strangers write them: thousands of combinations of headers, languages, units, separators, lines above the
 /// table and stamps. The readings are those of a simulated swing, so the right answer is known.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <span>
@@ -57,6 +58,7 @@ class ColumnChooser {
 
   // Names and messages.
   std::string NameOf(std::size_t index) const;
+  std::vector<std::string> NamesOf(const Columns& columns) const;
   std::string FlagValueOf(std::size_t index) const;
   const char* PlaceOf(std::size_t index) const;
   std::string ColumnNames() const;
@@ -78,6 +80,7 @@ class ColumnChooser {
   // The time.
   Result<void> FindNamedTime();
   Columns TimesByName() const;
+  Columns TimesByNumbers();
   bool IsIncreasing(std::size_t index) const;
   bool IsRowNumber(std::size_t index) const;
   bool AreSeparated(const Columns& times) const;
@@ -91,7 +94,12 @@ class ColumnChooser {
   bool IsCandidate(std::size_t index) const;
   std::vector<Columns> CandidateClasses(bool has_unit_flag) const;
   Result<std::optional<std::size_t>> ChooseByName();
+  bool AskForRun(const Columns& candidates);
+  Columns WithNumbers(const Columns& candidates, bool must_swing) const;
+  double RowsPerPeriod(const Columns& columns) const;
+  Eigen::MatrixXd CovarianceOf(const Columns& columns, double period) const;
   Result<std::optional<std::size_t>> ChooseBySwing(const Columns& candidates, bool must_swing);
+  std::optional<std::size_t> ChooseByShare(const Columns& candidates, double period);
   void WarnOfOthers(std::size_t chosen, std::span<const Columns> classes);
   Columns WithoutCopies(const Columns& candidates, const Eigen::MatrixXd& covariance) const;
   bool CombineAxes(const Columns& axes, const Eigen::MatrixXd& covariance);
@@ -116,10 +124,16 @@ class ColumnChooser {
   std::vector<std::string> questions_, flags_;
 };
 
-// ---- Names and messages ------------------------------------------------------------------------------------------
+// ---- Names and messages -------------------------------------------------------------------------------------------
 
 std::string ColumnChooser::NameOf(std::size_t index) const {
   return index < names_.size() ? Quoted(names_[index].written) : std::to_string(index + 1);
+}
+
+std::vector<std::string> ColumnChooser::NamesOf(const Columns& columns) const {
+  std::vector<std::string> names;
+  for (const std::size_t i : columns) names.push_back(NameOf(i));
+  return names;
 }
 
 /// The column as a flag names it: its name, or its number if it has none of its own.
@@ -177,7 +191,7 @@ Result<void> ColumnChooser::Answer(std::size_t place) const {
   return WithTry(table_.line.Fault(PlaceOf(place), sentence), flags_);
 }
 
-// ---- Numbers -----------------------------------------------------------------------------------------------------
+// ---- Numbers ------------------------------------------------------------------------------------------------------
 
 Result<void> ColumnChooser::NeedNumbers() {
   if (numbers_) return {};
@@ -194,7 +208,7 @@ bool ColumnChooser::IsNumeric(std::size_t index) const {
   return count >= 2 && 20 * count > numbers.size();
 }
 
-// ---- The time ----------------------------------------------------------------------------------------------------
+// ---- The time -----------------------------------------------------------------------------------------------------
 
 /// NAME or NUMBER, optionally with :s, :ms or :us.
 Result<void> ColumnChooser::FindNamedTime() {
@@ -272,6 +286,20 @@ std::size_t ColumnChooser::TimeBefore(const Columns& times, std::size_t value) c
   return after == times.begin() ? times.front() : *std::prev(after);
 }
 
+/// The only column without a meaning whose numbers increase, if there is one.
+ColumnChooser::Columns ColumnChooser::TimesByNumbers() {
+  Columns times;
+  for (std::size_t i = 0; i < layout_.width; ++i) {
+    const bool is_free = i != value_ && !(i < names_.size() && (names_[i].is_hidden || Meaning(i).kind));
+    if (is_free && IsNumeric(i) && IsIncreasing(i) && !IsRowNumber(i)) times.push_back(i);
+  }
+  if (times.size() == 1) {
+    Assume("time_column_assumed",
+           "column " + NameOf(times[0]) + " increases and was assumed to be the time; --time_column chooses another");
+  }
+  return times;
+}
+
 Result<void> ColumnChooser::ChooseTime() {
   const bool has_asked_rate = options_.sample_rate_hz > 0;
   if (options_.time_column == "none") {
@@ -293,16 +321,7 @@ Result<void> ColumnChooser::ChooseTime() {
   }
   if (Result<void> read = NeedNumbers(); !read) return read;
   std::erase_if(times, [&](std::size_t i) { return !IsNumeric(i) || (times.size() > 1 && !IsIncreasing(i)); });
-  if (times.empty()) {
-    for (std::size_t i = 0; i < layout_.width; ++i) {
-      const bool is_free = i != value_ && !(i < names_.size() && (names_[i].is_hidden || Meaning(i).kind));
-      if (is_free && IsNumeric(i) && IsIncreasing(i) && !IsRowNumber(i)) times.push_back(i);
-    }
-    if (times.size() == 1) {
-      Assume("time_column_assumed",
-             "column " + NameOf(times[0]) + " increases and was assumed to be the time; --time_column chooses another");
-    }
-  }
+  if (times.empty()) times = TimesByNumbers();
   if (times.empty()) {
     const std::string none =
         names_.empty() ? "no column increases as a time does" : "none of the columns " + ColumnNames() + " is a time";
@@ -348,7 +367,7 @@ Result<void> ColumnChooser::SetTimeUnit(std::size_t index) {
   return {};
 }
 
-// ---- The quantity ------------------------------------------------------------------------------------------------
+// ---- The quantity -------------------------------------------------------------------------------------------------
 
 bool ColumnChooser::IsCandidate(std::size_t index) const {
   if (index == time_) return false;
@@ -396,6 +415,12 @@ Eigen::VectorXd ColumnChooser::SwingOf(std::size_t index) const {
   const Unit* unit = Meaning(index).unit;
   if (unit == nullptr) return NumbersOf(index);
   return NumbersOf(index).unaryExpr([unit](double number) { return unit->ToSi(number); });
+}
+
+Eigen::MatrixXd ColumnChooser::CovarianceOf(const Columns& columns, double period) const {
+  std::vector<Eigen::VectorXd> swings;
+  for (const std::size_t i : columns) swings.push_back(SwingOf(i));
+  return SwingCovariance(swings, period);
 }
 
 /// The candidates without those that show the same numbers as an earlier one, perhaps in another unit.
@@ -446,108 +471,107 @@ bool ColumnChooser::CombineAxes(const Columns& axes, const Eigen::MatrixXd& cova
   return true;
 }
 
-/// Of several candidates, chooses the one that carries the swing; std::nullopt if none does, or if the user was asked.
-/// Unless one `must_swing`, takes a single column of numbers, and asks which one of several it is.
-Result<std::optional<std::size_t>> ColumnChooser::ChooseBySwing(const Columns& candidates, bool must_swing) {
-  constexpr double kMost = 0.8;
-  constexpr double kNoticeable = 0.2;  // Of the largest amplitude: smaller swings do not set the period.
-  if (Result<void> read = NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
-  if (NumbersOf(0).size() == 0) return candidates.front();  // The number of rows will be the error.
+/// Asks for a column if the candidates belong to runs beside each other, each with its own time.
+bool ColumnChooser::AskForRun(const Columns& candidates) {
   const Columns times = TimesByName();
-  if (times.size() > 1 && AreSeparated(times)) {
-    std::set<std::size_t> runs;
-    for (const std::size_t i : candidates) runs.insert(TimeBefore(times, i));
-    if (runs.size() > 1) {
-      Columns firsts = candidates;
-      std::vector<std::string> names;
-      for (const std::size_t i : firsts) names.push_back(NameOf(i));
-      Ask("the file holds " + std::to_string(runs.size()) + " runs beside each other: " + ListOf(names) +
-              "; choose one with --value_column",
-          {"--value_column " + FlagValueOf(firsts.front())});
-      return std::nullopt;
-    }
-  }
+  if (times.size() < 2 || !AreSeparated(times)) return false;
+  std::set<std::size_t> runs;
+  for (const std::size_t i : candidates) runs.insert(TimeBefore(times, i));
+  if (runs.size() < 2) return false;
+  Ask("the file holds " + std::to_string(runs.size()) + " runs beside each other: " + ListOf(NamesOf(candidates)) +
+          "; choose one with --value_column",
+      {"--value_column " + FlagValueOf(candidates.front())});
+  return true;
+}
+
+/// The candidates with numbers. Columns that `must_swing` do not increase as times do; otherwise only the first such
+/// column is taken for the time.
+ColumnChooser::Columns ColumnChooser::WithNumbers(const Columns& candidates, bool must_swing) const {
   const auto may_be_time = [&](std::size_t i) { return !Meaning(i).kind && IsIncreasing(i); };
   Columns numeric;
   std::ranges::copy_if(candidates, std::back_inserter(numeric),
                        [&](std::size_t i) { return IsNumeric(i) && !numbers_->is_clock[i]; });
   if (must_swing) {
     std::erase_if(numeric, may_be_time);
-  } else if (!time_ && times.empty() && numeric.size() > 1 && may_be_time(numeric.front())) {
+  } else if (!time_ && TimesByName().empty() && numeric.size() > 1 && may_be_time(numeric.front())) {
     numeric.erase(numeric.begin());
   }
-  std::vector<Eigen::VectorXd> swings;
-  std::vector<std::optional<SwingSignature>> signatures;
-  double largest = 0;
-  for (const std::size_t i : numeric) {
-    swings.push_back(SwingOf(i));
-    signatures.push_back(FindSwingSignature(swings.back()));
-    if (signatures.back()) largest = std::max(largest, signatures.back()->amplitude);
+  return numeric;
+}
+
+/// The longest period of the columns that swing noticeably, in rows; 0 if none swings. A component along the rod
+/// oscillates twice as fast as the angle.
+double ColumnChooser::RowsPerPeriod(const Columns& columns) const {
+  constexpr double kNoticeable = 0.2;  // Of the largest amplitude.
+  std::vector<SwingSignature> signatures;
+  double largest = 0, period = 0;
+  for (const std::size_t i : columns) {
+    const auto signature = FindSwingSignature(SwingOf(i));
+    if (!signature) continue;
+    signatures.push_back(*signature);
+    largest = std::max(largest, signature->amplitude);
   }
-  double period = 0;
-  for (const auto& signature : signatures) {
-    if (signature && signature->amplitude >= kNoticeable * largest) {
-      period = std::max(period, signature->rows_per_period);
-    }
+  for (const SwingSignature& signature : signatures) {
+    if (signature.amplitude >= kNoticeable * largest) period = std::max(period, signature.rows_per_period);
   }
+  return period;
+}
+
+/// Of several candidates, chooses the one that carries the swing; std::nullopt if none does, or if the user was asked.
+/// Unless one `must_swing`, takes a single column of numbers, and asks which one of several it is.
+Result<std::optional<std::size_t>> ColumnChooser::ChooseBySwing(const Columns& candidates, bool must_swing) {
+  if (Result<void> read = NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
+  if (NumbersOf(0).size() == 0) return candidates.front();  // The number of rows will be the error.
+  if (AskForRun(candidates)) return std::nullopt;
+  const Columns numeric = WithNumbers(candidates, must_swing);
+  const double period = RowsPerPeriod(numeric);
   if (period == 0 && must_swing) return std::nullopt;
   if (numeric.size() == 1) return numeric.front();
   if (numeric.empty()) {  // Without numbers, the rows of a column with a unit say what is wrong.
     const bool is_clear = !must_swing && candidates.size() == 1 && Meaning(candidates.front()).unit != nullptr;
     return is_clear ? std::optional(candidates.front()) : std::nullopt;
   }
-  const std::string choose = "; choose one with --value_column";
-  std::vector<std::string> names;
-  if (period == 0) {
-    for (const std::size_t i : numeric) names.push_back(NameOf(i));
-    Ask("columns " + ListOf(names) + " could " + (names.size() == 2 ? "both" : "all") +
-            " be the quantity, and none of them shows a swing by itself" + choose,
-        {"--value_column " + FlagValueOf(numeric.front())});
-    return std::nullopt;
-  }
-  Eigen::MatrixXd covariance = SwingCovariance(swings, period);
-  const Columns distinct = WithoutCopies(numeric, covariance);
-  if (distinct.size() < numeric.size()) {
-    swings.clear();
-    for (const std::size_t i : distinct) swings.push_back(SwingOf(i));
-    covariance = SwingCovariance(swings, period);
-  }
-  const Kind kind = Meaning(distinct.front()).kind.value_or(Kind::kLength);
-  const double sum = covariance.trace();
-  Index best = 0;
-  const double share = covariance.diagonal().maxCoeff(&best) / sum;
-  for (std::size_t i = 0; i < distinct.size(); ++i) {
-    const auto row = static_cast<Index>(i);
-    if (row != best) names.push_back(NameOf(distinct[i]) + " " + Percent(covariance(row, row) / sum));
-  }
-  if (distinct.size() == 1) {
-    names.clear();
-    for (const std::size_t i : numeric) {
-      if (i != distinct.front()) names.push_back(NameOf(i));
-    }
-    Assume("value_column_assumed", "column " + NameOf(distinct.front()) + " was used; " + ListOf(names) +
-                                       (names.size() == 1 ? " shows" : " show") +
+  if (period > 0) return ChooseByShare(numeric, period);
+  Ask("columns " + ListOf(NamesOf(numeric)) + " could " + (numeric.size() == 2 ? "both" : "all") +
+          " be the quantity, and none of them shows a swing by itself; choose one with --value_column",
+      {"--value_column " + FlagValueOf(numeric.front())});
+  return std::nullopt;
+}
+
+/// Chooses by the share of each column in the variance of the swing.
+std::optional<std::size_t> ColumnChooser::ChooseByShare(const Columns& candidates, double period) {
+  constexpr double kMost = 0.8;
+  const Columns columns = WithoutCopies(candidates, CovarianceOf(candidates, period));
+  if (columns.size() == 1) {
+    Columns copies = candidates;
+    std::erase(copies, columns.front());
+    Assume("value_column_assumed", "column " + NameOf(columns.front()) + " was used; " + ListOf(NamesOf(copies)) +
+                                       (copies.size() == 1 ? " shows" : " show") +
                                        " the same; --value_column chooses another");
-    return distinct.front();
+    return columns.front();
   }
-  if (kind == Kind::kRate && distinct.size() <= 3 && CombineAxes(distinct, covariance)) {
-    if (axes_.empty()) {
-      Assume("value_column_assumed", "column " + NameOf(*value_) + " carries " + Percent(share) +
-                                         " of the swing and was used, not " + ListOf(names) +
-                                         "; --value_column chooses another");
-    }
-    return *value_;
+  const Eigen::MatrixXd covariance = CovarianceOf(columns, period);
+  const Eigen::VectorXd shares = covariance.diagonal() / covariance.trace();
+  Index best = 0;
+  const double share = shares.maxCoeff(&best);
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    if (row != best) others.push_back(NameOf(columns[i]) + " " + Percent(shares[row]));
   }
+  const std::optional<Kind> kind = Meaning(columns.front()).kind;
+  const bool is_rotation = kind == Kind::kRate && columns.size() <= 3 && CombineAxes(columns, covariance);
+  if (is_rotation && !axes_.empty()) return *value_;
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.
-  if (share >= (kind == Kind::kAcceleration ? kMost / 2 : kMost)) {
-    Assume("value_column_assumed", "column " + NameOf(distinct[best]) + " carries " + Percent(share) +
-                                       " of the swing and was used, not " + ListOf(names) +
+  if (is_rotation || share >= (kind == Kind::kAcceleration ? kMost / 2 : kMost)) {
+    Assume("value_column_assumed", "column " + NameOf(columns[best]) + " carries " + Percent(share) +
+                                       " of the swing and was used, not " + ListOf(others) +
                                        "; --value_column chooses another");
-    return distinct[best];
+    return columns[best];
   }
-  names.insert(names.begin(), NameOf(distinct[best]) + " " + Percent(share));
-  Ask("no single column carries the swing: " + ListOf(names) + choose,
-      {"--value_column " + FlagValueOf(distinct[best])});
+  others.insert(others.begin(), NameOf(columns[best]) + " " + Percent(share));
+  Ask("no single column carries the swing: " + ListOf(others) + "; choose one with --value_column",
+      {"--value_column " + FlagValueOf(columns[best])});
   return std::nullopt;
 }
 
