@@ -45,6 +45,9 @@ std::vector<Name> SplitAtBlanks(std::string_view header) {
 
 std::string Percent(double share) { return NumberText(100 * share, 3) + " %"; }
 
+/// The value of --value_column for the axes of a gyro together.
+constexpr std::string_view kCombined = "combined";
+
 /// Chooses the columns of one table.
 class ColumnChooser {
  public:
@@ -121,6 +124,7 @@ class ColumnChooser {
   std::optional<std::size_t> time_;   // The column of times, if the user named it or it has been chosen.
   std::optional<std::size_t> value_;  // The column of the quantity.
   Columns axes_;                      // The other axes of a rotation.
+  bool wants_combination_ = false;    // By the user: the axes of a gyro together.
   std::vector<std::string> questions_, flags_;
 };
 
@@ -446,8 +450,10 @@ ColumnChooser::Columns ColumnChooser::WithoutCopies(const Columns& candidates,
 /// Combines the axes of a gyro to the rotation about one fixed axis if several show it. Returns false if the axes turn
 /// about no fixed axis.
 bool ColumnChooser::CombineAxes(const Columns& axes, const Eigen::MatrixXd& covariance) {
-  constexpr double kFixed = 0.95;   // Share of the variance about one axis.
-  constexpr double kAlong = 0.999;  // Squared component along one of the gyro's axes: the others add nothing.
+  constexpr double kFixed = 0.95;  // Share of the variance about one axis.
+  // Squared component along one of the gyro's axes. From here on the others may show no more than the sensor's
+  // cross-axis sensitivity, and the axis alone is at most 1.5 % too small.
+  constexpr double kAlong = 0.97;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   const Index last = covariance.rows() - 1;
   if (solver.eigenvalues()[last] < kFixed * solver.eigenvalues().sum()) return false;
@@ -456,7 +462,7 @@ bool ColumnChooser::CombineAxes(const Columns& axes, const Eigen::MatrixXd& cova
   direction.cwiseAbs().maxCoeff(&largest);
   if (direction[largest] < 0) direction = -direction;
   value_ = axes[largest];
-  if (direction[largest] * direction[largest] > kAlong) return true;
+  if (!wants_combination_ && direction[largest] * direction[largest] > kAlong) return true;
   layout_.direction.resize(direction.size());
   layout_.direction[0] = direction[largest];
   std::string parts = NumberText(direction[largest], 3) + " " + NameOf(*value_);
@@ -566,7 +572,8 @@ std::optional<std::size_t> ColumnChooser::ChooseByShare(const Columns& candidate
   if (is_rotation || share >= (kind == Kind::kAcceleration ? kMost / 2 : kMost)) {
     Assume("value_column_assumed", "column " + NameOf(columns[best]) + " carries " + Percent(share) +
                                        " of the swing and was used, not " + ListOf(others) +
-                                       "; --value_column chooses another");
+                                       "; --value_column chooses another" +
+                                       (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""));
     return columns[best];
   }
   others.insert(others.begin(), NameOf(columns[best]) + " " + Percent(share));
@@ -629,7 +636,9 @@ void ColumnChooser::WarnOfOthers(std::size_t chosen, std::span<const Columns> cl
 
 /// The column of the quantity; std::nullopt if the user must be asked.
 Result<std::optional<std::size_t>> ColumnChooser::ChooseByName() {
-  if (!options_.value_column.empty()) {
+  wants_combination_ =
+      options_.value_column == kCombined && std::ranges::find(names_, kCombined, &Name::written) == names_.end();
+  if (!options_.value_column.empty() && !wants_combination_) {
     const Result<std::size_t> index = FindColumn("--value_column", options_.value_column);
     if (!index) return tl::unexpected(index.error());
     return *index;

@@ -64,6 +64,15 @@ TEST(ChooseColumns, CombinesTheAxesOfAGyroThatIsMountedAskew) {
   EXPECT_NEAR(scale / sum, 1, 2e-4);
 }
 
+/// 1 % of the variance may be the cross-axis sensitivity of the sensor; the user knows how it is mounted.
+TEST(ChooseColumns, ASmallShareIsCombinedOnlyOnRequest) {
+  const std::string text = Gyro({0, 0.1, std::sqrt(0.99)}, 0.002);
+  const Recording alone = RecordingOf(text);
+  EXPECT_EQ(alone.warnings.at(0).code, "value_column_assumed");
+  EXPECT_THAT(alone.warnings.at(0).message, HasSubstr("or 'combined' for a sensor that is mounted askew"));
+  EXPECT_LT(LargestError(RecordingOf(text, TimeAndValue("", "combined"))), 0.01);
+}
+
 TEST(ChooseColumns, OneAxisIsUsedAloneOnRequest) {
   const Recording recording = RecordingOf(Gyro({0, 0.6, 0.8}, 0), TimeAndValue("", "Gyroscope z (rad/s)"));
   EXPECT_NEAR(recording.value[30], 0.8 * RateAt(30), 1e-6);
