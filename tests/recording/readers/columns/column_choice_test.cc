@@ -87,7 +87,7 @@ TEST(ChooseColumns, AsksIfTwoColumnsSwingOnTheirOwn) {
   }
   const Result<Recording> recording = ParseRecording(text, "run.csv");
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().message, HasSubstr("no single column carries the swing: \"lower_deg\" 52"));
+  EXPECT_THAT(recording.error().message, HasSubstr("no single column carries the swing: \"lower_deg\" 53"));
   EXPECT_THAT(recording.error().try_flags, ElementsAre("--value_column lower_deg"));
 }
 
