@@ -313,23 +313,24 @@ double LargestOutside(const TurningPointTable& table, const std::vector<TurningP
   return largest;
 }
 
-/// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
+/// A pendulum's swing beyond the upright on both sides is impossible; most likely the unit is wrong.
 Result<void> CheckUnit(const TurningPointTable& table) {
   constexpr double kMaxAngle = 3.3;  // rad
   const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
   const double typical = Median(table.Amplitudes());
   if (!angle || typical < kMaxAngle) return {};
-  return Error(StatusCode::kFailedPrecondition, "the reading swings by " + NumberText(typical, 3) + " rad (" +
-                                                    NumberText(typical / kRadFromDeg, 3) +
-                                                    " deg) to both sides, but beyond 180 deg a pendulum goes over the "
-                                                    "top; check the unit of the column in the header or in --unit");
+  return Error(StatusCode::kFailedPrecondition,
+               "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
+                   " deg) to both sides, but beyond 180 deg a pendulum goes over the "
+                   "top; check the unit of the column in the header or in --unit, or give "
+                   "--gravity linear for a spring or wire");
 }
 
 }  // namespace
 
-Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring) {
   if (HasTurningPointView(recording)) {
-    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording));
+    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording), is_spring);
     if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
     return swings;
   }
@@ -338,7 +339,9 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
     const Result<TurningPointTable> found = FindTurningPoints(recording);
     return tl::unexpected(found ? Status{StatusCode::kFailedPrecondition, "no turning points"} : found.error());
   }
-  if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
+  if (!is_spring) {
+    if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
+  }
   const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
   const std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
   const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs);

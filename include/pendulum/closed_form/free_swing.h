@@ -30,7 +30,8 @@ struct FreeSwing {
 /// turning point begins, if that motion takes no longer than a half swing. After a hold within 15 deg of the upright it
 /// begins at the next turning point. It ends one period after the last motion larger than the noise, or before the
 /// pendulum is touched. kFailedPrecondition: there is no free swing; the message states whether the reading is
-/// constant, has too few turning points, is in a wrong unit, or shows a pendulum that was driven or moved by hand.
-Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
+/// constant, has too few turning points, is in a wrong unit, or shows a pendulum that was driven or moved by hand. A
+/// spring may turn beyond 180 deg.
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring = false);
 
 }  // namespace pendulum
