@@ -36,7 +36,7 @@ STANDS_ON = {
 # The rooms of a floor that has several: subfolders, lowest first; "" is the floor's own folder. A file may include its
 # own room and those listed before it.
 ROOMS = {
-    "recording": ["", "readers/columns", "readers/text", "readers/mat", "readers", "calibration"],
+    "recording": ["", "readers/columns", "readers/text", "readers/process", "readers/mat", "readers/containers", "readers", "calibration"],
     "fitting": ["likelihood", "start", "residuals", "solve", "uncertainty", "fit", "swing", "joint"],
 }
 
@@ -45,6 +45,7 @@ LIBRARY_FLOORS = {
     "boost": {"base", "trajectory", "closed_form", "fitting", "analysis", "service"},
     "ceres": {"fitting"},
     "csv.h": {"batch"},
+    "expat.h": {"recording"},
     "gflags": {"tools"},
     "glog": {"tools"},
     "hdf5.h": {"recording"},

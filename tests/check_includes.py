@@ -22,7 +22,7 @@ import cpp_text
 STANDARD = {
     "algorithm": "adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill "
                  "fill_n find find_if find_if_not for_each generate inplace_merge is_sorted lower_bound max max_element merge "
-                 "min min_element minmax minmax_element none_of nth_element partial_sort partition partition_point pop_heap "
+                 "min min_element minmax minmax_element none_of nth_element partial_sort stable_partition partition partition_point pop_heap "
                  "push_heap remove remove_if replace replace_if reverse rotate shuffle sort stable_sort transform unique "
                  "upper_bound",
     "array": "array get size to_array",
@@ -52,7 +52,7 @@ STANDARD = {
     "future": "async future promise",
     "initializer_list": "initializer_list",
     "iomanip": "setfill setprecision setw",
-    "ios": "hex ios streamoff streamsize",
+    "ios": "hex ios scientific streamoff streamsize",
     "iostream": "cerr cin clog cout",
     "istream": "istream ws",
     "iterator": "back_inserter distance istreambuf_iterator make_move_iterator next prev size ssize",
@@ -117,7 +117,7 @@ for _header, _names in STANDARD.items():
         HEADERS_OF.setdefault(_name, set()).add(_header)
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)', re.MULTILINE)
-_EVERYWHERE = {"ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library provide them
+_EVERYWHERE = {"nullptr_t", "ptrdiff_t", "size_t"}  # all headers of g++'s and clang's library provide them
 _STD_NAME = re.compile(r"(?<![\w:])std::(?:ranges::)?(\w+)")
 # Types, aliases, constants and functions that a header declares outside of classes: at the left edge of a line.
 _DECLARED = re.compile(

@@ -106,8 +106,9 @@ class SharedFits {
       Fit(i, richest_fit);
       for (Warning& warning : said) {
         const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
-        constexpr std::array kOfWindow = {"ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",
-                                          "offset_jumps"};
+        constexpr std::array kOfWindow = {"ends_trimmed", "larger_motion_outside", "not_a_pendulum",
+                                          "lost_counts",  "offset_jumps",          "presliding",
+                                          "vibration",    "ambiguous_frequency"};
         const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
         if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
       }

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/QR>
 
+#include "closed_form/low_band.h"
+#include "closed_form/swing_ends.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
@@ -42,146 +45,6 @@ std::vector<TurningPointRun> FreeRuns(const TurningPointTable& table, const std:
   return runs;
 }
 
-/// The first of the consecutive samples up to `sample` that all lie within `band` of `level`.
-Index FirstWithin(const Recording& recording, Index sample, double level, double band) {
-  while (sample > 0 && std::abs(recording.value[sample - 1] - level) <= band) --sample;
-  return sample;
-}
-
-Index LastWithin(const Recording& recording, Index sample, double level, double band) {
-  while (sample + 1 < recording.size() && std::abs(recording.value[sample + 1] - level) <= band) ++sample;
-  return sample;
-}
-
-/// Where and why a swing begins.
-struct Beginning {
-  Index sample;
-  WindowBegin why;
-  Index after_hold = sample;
-};
-
-/// Whether samples [first, last] show one value: drift below three standard deviations of the noise, and scatter below
-/// twice the noise.
-bool IsSteady(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
-  const Index count = last - first + 1;
-  Eigen::MatrixX2d basis(count, 2);
-  basis << Eigen::ArrayXd::Ones(count), Eigen::ArrayXd::LinSpaced(count, 0, 1);
-  const Eigen::VectorXd value = recording.value.segment(first, count);
-  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(value);
-  const double scatter = (value - basis * line).norm() / std::sqrt(static_cast<double>(count));
-  const double noise = std::max({table.noise, recording.resolution, 1e-2 * table.threshold});
-  return std::abs(line[1]) < 3 * noise && scatter < 2 * noise;
-}
-
-/// The swing begins with the steady part at the end of a hold. If no part is steady, the hand was moving, and the swing
-/// begins where the hold ends.
-Beginning SteadyPart(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
-  constexpr Index kMinSamples = 8;
-  // The last samples within the band may follow the release, so only the first 70 % count as held.
-  const Index held = first + 7 * (last - first) / 10;
-  for (Index begin = first; held - begin >= kMinSamples; begin += (held - begin + 1) / 2) {
-    if (IsSteady(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
-  }
-  return {last, {WindowBegin::Reason::kUnsteadyHold}};
-}
-
-/// The hold at the first turning point of a run, if the reading stays near this point for longer than in a swing.
-std::optional<Beginning> HoldBefore(const Recording& recording, const TurningPointTable& table, std::size_t turn) {
-  const bool rate = recording.quantity == Quantity::kRate;
-  // For a rate the hold is at its zero, a quarter period before its first turning point.
-  const double level = rate ? table.ZeroAt(turn) : table.points[turn].value;
-  const double band = 0.05 * table.Amplitude(turn) + 5 * table.noise + 2 * recording.resolution;
-  Index end = table.points[turn].sample;
-  if (rate) {
-    while (end > 0 && std::abs(recording.value[end] - level) > band) --end;
-    if (table.points[turn].time - recording.time[end] > table.half_period) return std::nullopt;
-  }
-  const Index begin = FirstWithin(recording, end, level, band);
-  const double natural = 0.25 * table.half_period * table.Stretch(turn);
-  const double dwell = recording.time[LastWithin(recording, end, level, band)] - recording.time[begin];
-  if (dwell < (rate ? 1.0 : 2.0) * natural || begin == end) return std::nullopt;
-  return SteadyPart(recording, table, begin, LastWithin(recording, end, level, band));
-}
-
-/// After turns over the top, or a fall from near the upright, the swing begins at the next turning point. Such a fall
-/// contains no information on the release.
-std::optional<Beginning> BeginAfterFall(const TurningPointTable& table, std::size_t turn) {
-  constexpr double kUpright = 165 * kRadFromDeg;
-  constexpr double kOverTheTop = 185 * kRadFromDeg;
-  const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
-  if (!angle || !(table.Amplitude(turn) > kUpright)) return std::nullopt;
-  const Index next = table.points[turn + 1].sample;
-  if (table.Amplitude(turn) > kOverTheTop) return Beginning{next, {WindowBegin::Reason::kAfterTurns}};
-  return Beginning{next, {WindowBegin::Reason::kAfterFall, table.Amplitude(turn) / kRadFromDeg}};
-}
-
-Beginning FindBeginning(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
-  if (auto after_fall = BeginAfterFall(table, run.first)) return *after_fall;
-  if (auto hold = HoldBefore(recording, table, run.first)) return *hold;
-  const double before = table.points[run.first].time - recording.time[0];
-  const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
-  const bool within =
-      std::abs(recording.value[0] - table.ZeroAt(run.first)) <= table.Amplitude(run.first) + table.Tolerance(run.first);
-  if (near_start && within) return {0, {WindowBegin::Reason::kInMotion}};
-  return {table.points[run.first].sample, {WindowBegin::Reason::kAfterMove}};
-}
-
-/// Fits an oscillation with the period of small swings to samples [first, first + count). Returns its amplitude divided
-/// by its standard error.
-double AmplitudeOverError(const Recording& recording, const TurningPointTable& table, Index first, Index count) {
-  const Eigen::ArrayXd phase =
-      kPi / table.half_period * (recording.time.segment(first, count).array() - recording.time[first]);
-  Eigen::MatrixX3d basis(count, 3);
-  basis << Eigen::ArrayXd::Ones(count), phase.cos(), phase.sin();
-  const Eigen::Vector3d c = basis.colPivHouseholderQr().solve(recording.value.segment(first, count));
-  // A constant reading shows no noise at all; the threshold of turning points then gives a scale.
-  const double noise = std::max({table.noise, 0.3 * recording.resolution, 1e-2 * table.threshold});
-  return std::hypot(c[1], c[2]) / (noise * std::sqrt(2.0 / static_cast<double>(count)));
-}
-
-/// The last sample at which the reading moves; checks one period at a time from `sample` to `limit`.
-Index EndOfMotion(const Recording& recording, const TurningPointTable& table, Index sample, Index limit) {
-  constexpr double kMoves = 5;
-  constexpr Index kMinSamples = 6;
-  Index end = sample;
-  while (sample < limit) {
-    Index next = sample;
-    while (next < limit && recording.time[next] - recording.time[sample] < 2 * table.half_period) ++next;
-    if (next - sample < kMinSamples || AmplitudeOverError(recording, table, sample, next - sample) > kMoves) end = next;
-    sample = next;
-  }
-  return end;
-}
-
-/// Whether the pendulum was stopped after turning point `last`: the next turning point is missing although there was
-/// time for two, and it would have been visible.
-bool IsStopped(const Recording& recording, const TurningPointTable& table, std::size_t last, Index limit) {
-  if (last == 0) return false;
-  const double time_left = recording.time[limit] - table.points[last].time;
-  const double next = table.Amplitude(last) - 1.5 * (table.Amplitude(last - 1) - table.Amplitude(last));
-  return time_left > 3 * table.half_period * table.Stretch(last) && next > table.threshold + table.Tolerance(last);
-}
-
-/// Where and why a swing ends.
-struct Ending {
-  Index sample;
-  WindowEnd why;
-};
-
-Ending FindEnding(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
-  const Index turn = table.points[run.last].sample;
-  // The hand that moves the pendulum afterwards may have held it before, so a standstill does not belong to the swing.
-  if (run.last < table.half_swings()) return {turn, {WindowEnd::Reason::kBeforeMove}};
-  const Index limit = recording.size() - 1;
-  if (IsStopped(recording, table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
-  const Index end = EndOfMotion(recording, table, turn, limit);
-  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period)
-    return {limit, {WindowEnd::Reason::kEndOfRecording}};
-  Index sample = end;
-  while (recording.time[sample] - recording.time[end] < 2 * table.half_period) ++sample;
-  return {sample, {WindowEnd::Reason::kAtRest, recording.time[end]}};
-}
-
 FreeSwing MakeSwing(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   FreeSwing swing;
   const Beginning beginning = FindBeginning(recording, table, run);
@@ -189,6 +52,8 @@ FreeSwing MakeSwing(const Recording& recording, const TurningPointTable& table, 
   swing.from = recording.time[beginning.sample];
   swing.to = recording.time[ending.sample];
   swing.after_hold = recording.time[std::min(beginning.after_hold, recording.size() - 1)];
+  swing.hold_from = recording.time[beginning.hold_first];
+  swing.hold_to = recording.time[beginning.hold_last];
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
@@ -245,16 +110,53 @@ bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last)
   return c[1] < -3 * scatter / index.matrix().norm() && c[1] < 0;
 }
 
+/// A weight for each half swing. Their sums decide what most of a recording shows.
+using Weights = std::vector<double>;
+
+Weights EqualWeights(const TurningPointTable& table) { return Weights(table.half_swings(), 1.0); }
+
+/// Weights by size: duration times the square of the height. Small fast motion then counts little, however long it
+/// lasts.
+Weights SizeWeights(const TurningPointTable& table) {
+  Weights weights;
+  for (std::size_t i = 0; i < table.half_swings(); ++i) {
+    const TurningPoint &from = table.points[i], &to = table.points[i + 1];
+    weights.push_back((to.time - from.time) * std::pow(to.value - from.value, 2));
+  }
+  return weights;
+}
+
+/// The sum over half swings [first, last).
+double SumOf(const Weights& weights, std::size_t first, std::size_t last) {
+  return std::accumulate(weights.begin() + static_cast<std::ptrdiff_t>(first),
+                         weights.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
+}
+
+/// The half period of small swings of which at least half the weight is longer.
+double WeightedHalfPeriod(const TurningPointTable& table, const Weights& weights) {
+  std::vector<std::pair<double, double>> durations;  // with weights
+  for (std::size_t i = 0; i < table.half_swings(); ++i) {
+    durations.emplace_back((table.points[i + 1].time - table.points[i].time) / table.Stretch(i), weights[i]);
+  }
+  std::ranges::sort(durations);
+  double left = 0.5 * SumOf(weights, 0, weights.size());
+  for (const auto& [duration, weight] : durations) {
+    left -= weight;
+    if (left <= 0) return duration;
+  }
+  return durations.back().first;
+}
+
 /// Share of the half swings that belong to a rise of the amplitude by at least a tenth over three or more half swings.
 /// Skips point 0, which may be the start of the recording.
-double RisingShare(const TurningPointTable& table) {
+double RisingShare(const TurningPointTable& table, const Weights& weights) {
   constexpr std::size_t kMinRise = 3;
-  std::size_t climbing = 0;
+  double climbing = 0;
   std::size_t low = 1;
   std::size_t high = 1;
   const auto close = [&] {
     const bool climbs = table.Amplitude(high) > 1.1 * table.Amplitude(low) + table.Tolerance(low);
-    if (climbs && high >= low + kMinRise) climbing += high - low;
+    if (climbs && high >= low + kMinRise) climbing += SumOf(weights, low, high);
   };
   for (std::size_t i = 2; i < table.points.size(); ++i) {
     if (table.Amplitude(i) >= table.Amplitude(high)) {
@@ -265,28 +167,31 @@ double RisingShare(const TurningPointTable& table) {
     }
   }
   close();
-  return static_cast<double>(climbing) / static_cast<double>(table.half_swings());
+  return climbing / SumOf(weights, 0, weights.size());
 }
 
 /// Returns an error if the turning points are not a free swing, a swing if it beats, and otherwise std::nullopt.
 Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording, const TurningPointTable& table,
-                                                     const std::vector<TurningPointRun>& runs) {
+                                                     const std::vector<TurningPointRun>& runs, const Weights& weights) {
   constexpr double kMaxRisingShare = 0.2;
   constexpr double kDecayed = 0.7;
   constexpr std::size_t kMinFreePoints = 6;
   const std::size_t turns = table.points.size();
-  const auto longest =
-      std::ranges::max_element(runs, {}, [](const TurningPointRun& run) { return run.last - run.first; });
+  const auto weight = [&](const TurningPointRun& run) { return SumOf(weights, run.first, run.last); };
+  const auto longest = std::ranges::max_element(runs, {}, weight);
   const std::size_t free = longest == runs.end() ? 0 : longest->last - longest->first + 1;
-  const bool climbs = RisingShare(table) > kMaxRisingShare;
-  if (!climbs && 2 * free >= turns) {
+  // With equal weights, the shares are those of the turning points.
+  const double all = SumOf(weights, 0, weights.size()) + weights.front();
+  const double share = longest == runs.end() ? 0 : (weight(*longest) + weights[longest->first]) / all;
+  const bool climbs = RisingShare(table, weights) > kMaxRisingShare;
+  if (!climbs && 2 * share >= 1) {
     if (Decays(table, longest->first, longest->last)) return std::nullopt;
     return Error(StatusCode::kFailedPrecondition, "the amplitude does not decay over " + std::to_string(free - 1) +
                                                       " half swings: the pendulum is driven, or its friction is too "
                                                       "small to see; give --from and --to to fit this window anyway");
   }
   const double largest = std::ranges::max(table.Amplitudes());
-  const bool scattered = 3 * free < turns && (free < kMinFreePoints || table.Amplitude(longest->first) < 0.5 * largest);
+  const bool scattered = 3 * share < 1 && (free < kMinFreePoints || table.Amplitude(longest->first) < 0.5 * largest);
   if (!climbs && !scattered) return std::nullopt;
   // A motion that begins near standstill and grows was not released.
   const bool from_standstill = climbs && table.Amplitude(1) < 0.35 * largest;
@@ -326,6 +231,74 @@ Result<void> CheckUnit(const TurningPointTable& table) {
                    "--gravity linear for a spring or wire");
 }
 
+Result<std::vector<FreeSwing>> FindAmong(const Recording& recording, const TurningPointTable& table,
+                                         const Weights& weights) {
+  const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
+  const std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
+  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs, weights);
+  if (!other_motion) return tl::unexpected(other_motion.error());
+  if (*other_motion) return std::vector<FreeSwing>{**other_motion};
+  std::vector<FreeSwing> swings;
+  const double outside = LargestOutside(table, runs);
+  for (const TurningPointRun& run : runs) {
+    swings.push_back(MakeSwing(recording, table, run));
+    swings.back().amplitude_outside = outside;
+  }
+  if (swings.empty()) return NoSwing("there are no two successive half swings that lose amplitude and cross the zero");
+  return swings;
+}
+
+/// Whether the largest motion is outside all swings.
+bool AreSmall(const std::vector<FreeSwing>& swings) {
+  constexpr double kLarger = 1.3;
+  return std::ranges::all_of(
+      swings, [](const FreeSwing& swing) { return swing.amplitude_outside > kLarger * swing.amplitude; });
+}
+
+/// The swings of a recording in which half swings are weighed by their size.
+Result<std::vector<FreeSwing>> FindLarge(const Recording& recording, TurningPointTable table) {
+  if (table.points.size() < 3) return NoSwing("there are too few turning points");
+  const Weights weights = SizeWeights(table);
+  table.half_period = WeightedHalfPeriod(table, weights);
+  return FindAmong(recording, table, weights);
+}
+
+/// Whether swings are credible although most turning points are not theirs.
+bool AreCredible(const Result<std::vector<FreeSwing>>& swings) {
+  constexpr std::size_t kMinTurns = 6;
+  return swings && !AreSmall(*swings) && std::ranges::none_of(*swings, &FreeSwing::has_beats) &&
+         std::ranges::any_of(*swings, [](const FreeSwing& swing) { return swing.turns.size() >= kMinTurns; });
+}
+
+/// In the low band, a sudden change of the motion begins earlier and ends later by half the length of the mean.
+void KeepAway(double length, FreeSwing& swing) {
+  if (swing.begins.reason == WindowBegin::Reason::kAfterMove) swing.from += length;
+  const bool is_touched =
+      swing.ends.reason == WindowEnd::Reason::kBeforeMove || swing.ends.reason == WindowEnd::Reason::kBeforeStop;
+  if (is_touched) swing.to -= length;
+}
+
+/// The swings that smaller or faster motion hides; std::nullopt if there are none.
+std::optional<std::vector<FreeSwing>> FindHidden(const Recording& recording, const TurningPointTable& table) {
+  constexpr double kLongest = 8, kStep = 1.5;  // times the fastest period
+  const double fastest = FastestPeriod(table);
+  Result<std::vector<FreeSwing>> swings = FindLarge(recording, table);
+  double length = 0;
+  for (double next = fastest; next < kLongest * fastest && !AreCredible(swings); next *= kStep) {
+    length = next;
+    const Recording low = LowBand(recording, length);
+    swings = FindLarge(low, FindAllTurningPoints(low));
+    // The low band must not weaken the swing much.
+    if (swings && swings->front().half_period < length) return std::nullopt;
+  }
+  if (!AreCredible(swings)) return std::nullopt;
+  for (FreeSwing& swing : *swings) {
+    KeepAway(length, swing);
+    LeaveOutVibration(recording, table.noise, std::max(length, fastest), swing);
+  }
+  return *std::move(swings);
+}
+
 }  // namespace
 
 Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring) {
@@ -342,18 +315,9 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool i
   if (!is_spring) {
     if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
   }
-  const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
-  const std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
-  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs);
-  if (!other_motion) return tl::unexpected(other_motion.error());
-  if (*other_motion) return std::vector<FreeSwing>{**other_motion};
-  std::vector<FreeSwing> swings;
-  const double outside = LargestOutside(table, runs);
-  for (const TurningPointRun& run : runs) {
-    swings.push_back(MakeSwing(recording, table, run));
-    swings.back().amplitude_outside = outside;
-  }
-  if (swings.empty()) return NoSwing("there are no two successive half swings that lose amplitude and cross the zero");
+  Result<std::vector<FreeSwing>> swings = FindAmong(recording, table, EqualWeights(table));
+  if (swings && !AreSmall(*swings)) return swings;
+  if (std::optional<std::vector<FreeSwing>> hidden = FindHidden(recording, table)) return *std::move(hidden);
   return swings;
 }
 

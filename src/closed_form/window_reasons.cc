@@ -21,6 +21,8 @@ std::string Sentence(const WindowBegin& begin) {
              " deg: so near the top the smallest push determines when it falls, so the release is not used";
     case kAfterTurns: return "after its turns over the top";
     case kAfterMove: return "the first turning point after the pendulum was moved";
+    case kAfterVibration:
+      return "after a faster vibration of " + NumberText(begin.frequency_hz, 2) + " Hz has died away";
     case kDisturbed:
       return "the motion before it does not fit the later motion: the pendulum was touched, or follows another law";
     case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
@@ -44,6 +46,7 @@ std::string Sentence(const WindowEnd& end) {
     case kBeforeStop: return "the last turning point before the pendulum is stopped";
     case kDisturbed:
       return "the motion after it does not fit the earlier motion: the pendulum was touched, or follows another law";
+    case kPresliding: return "smaller swings are faster: friction acts like a spring before it slides";
     case kNotConverging: return "with the motion after it the fit does not converge";
     case kCountsLost: return "an unknown number of counts was lost after it";
   }

@@ -441,7 +441,7 @@ Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
     if (!parsed) return tl::unexpected(parsed.error());
     options.read.calibration = *std::move(parsed);
   }
-  auto read = ParseRecording(files.data.bytes, files.data.name, options.read);
+  auto read = ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(options));
   if (!read) return tl::unexpected(read.error());
   files.data.bytes = {};  // a long recording takes much memory
   auto prepared = PrepareRecording(*std::move(read), options, std::move(rig));

@@ -39,7 +39,7 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 }
 
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, options.read);
+  auto read = ReadRecording(path, ReadOptionsOf(options));
   if (!read) return tl::unexpected(read.error());
   return PrepareRecording(*std::move(read), options, std::move(rig));
 }
@@ -49,8 +49,8 @@ tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path,
   if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
   const std::string where = name + ": ";
   const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
-  return Error(status.code, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
-                                status.message.substr(skip));
+  return WithMessage(status, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
+                                 status.message.substr(skip));
 }
 
 }  // namespace pendulum

@@ -8,6 +8,8 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
+#include "recording/packet_clock.h"
+#include "recording/significant_digits.h"
 #include "recording/stamp_order.h"
 #include "recording/uniform_clock.h"
 
@@ -24,6 +26,12 @@ std::string Count(Index count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
+/// A relative error of the times in a message.
+std::string ErrorText(double share) {
+  const auto percent = [](double each) { return NumberText(100 * each, 2) + " %"; };
+  return "an error of " + percent(share) + " in times and " + percent(2 * share) + " in inertia";
+}
+
 /// A counter has whole numbers and drops by nearly its whole range when it wraps around.
 struct Counter {
   const char* range_text;
@@ -34,12 +42,33 @@ struct Counter {
 constexpr std::array kCounters = {Counter{"2^32", 4294967296.0, 0}, Counter{"2^16", 65536.0, 0},
                                   Counter{"2^16", 65536.0, -32768.0}};
 
+double PerSecond(const std::string& time_unit) { return time_unit == "s" ? 1 : time_unit == "ms" ? 1e3 : 1e6; }
+
+/// Rows begin <= i < end.
+struct RowRange {
+  Index begin, end;
+
+  Index size() const { return end - begin; }
+};
+
+/// The first rows in succession that are in the window.
+RowRange RowsInWindow(const RawSamples& samples, const ClockWindow& window) {
+  const double per_second = PerSecond(samples.time_unit);
+  const Eigen::VectorXd& time = samples.time;
+  Index begin = 0;
+  while (begin < time.size() && time[begin] < window.from * per_second) ++begin;
+  Index end = begin;
+  while (end < time.size() && !(time[end] > window.to * per_second)) ++end;
+  return {begin, end};
+}
+
 /// Repairs the time stamps of one file.
 class ClockRepair {
  public:
   explicit ClockRepair(RawSamples samples) : samples_(std::move(samples)) {}
 
   Result<RawSamples> Repair();
+  void KeepOnly(const RowRange& rows);
 
  private:
   const Eigen::VectorXd& time() const { return samples_.time; }
@@ -66,6 +95,18 @@ class ClockRepair {
   Index FirstSharedRow() const;
   Index CountSharedRows(std::vector<bool>& keep) const;
   bool MakeUniform(double grid);
+  bool MakeUniformFromDigits();
+  Result<bool> MakeUniformFromPackets();
+  double RateHz(double interval) const;
+  std::string ReplacementText(double interval, double tolerance) const;
+  void UseClock(double start, double interval, double std_dev);
+  tl::unexpected<Status> SharedStampsFault(const PacketClockSearch& found) const;
+  void RemoveRepeatedEnds();
+  bool SharedRowsAreEqual() const;
+  bool IsSameRow(Index a, Index b) const {
+    return time()[a] == time()[b] && samples_.value[a] == samples_.value[b] &&
+           (samples_.second.size() == 0 || samples_.second[a] == samples_.second[b]);
+  }
   Check RemoveRowsWithSharedStamps();
   Check RemoveBackwardRows();
   void KeepRows(const std::vector<bool>& keep);
@@ -203,25 +244,105 @@ Index ClockRepair::CountUnusualSteps(double grid) const {
 bool ClockRepair::MakeUniform(double grid) {
   const double first = time()[0];
   const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
-  const std::optional<UniformClock> clock = FindUniformClock(time().unaryExpr(in_steps));
+  const std::optional<UniformClock> clock = FindUniformClock(IntervalsOfWholeSteps(time().unaryExpr(in_steps)));
   if (!clock) return false;
-  const double per_second = samples_.time_unit == "s" ? 1 : samples_.time_unit == "ms" ? 1e3 : 1e6;
-  const double rate_hz = per_second / (clock->slope * grid);
-  const double tolerance = clock->slope_tolerance / clock->slope;
-  const auto percent = [](double share) { return NumberText(100 * share, 2) + " %"; };
   Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(grid) +
-           ", which is coarse compared with the sampling interval. They were replaced by a uniform clock of " +
-           NumberText(rate_hz, 6) + " Hz, which assumes uniform sampling. Clocks within +- " +
-           NumberText(tolerance * rate_hz, 2) + " Hz agree with all times: an error of " + percent(tolerance) +
-           " in times and " + percent(2 * tolerance) +
-           " in inertia. If the times were truncated instead of rounded, the new times and release_time are " +
+       "the times are rounded to " + TimeText(grid) + ", which is coarse compared with the sampling interval. " +
+           ReplacementText(clock->slope * grid, clock->slope_tolerance / clock->slope) +
+           ". If the times were truncated instead of rounded, the new times and release_time are " +
            TimeText(grid / 2) + " too early");
-  samples_.clock_std_dev = tolerance / std::sqrt(3.0);
-  const double start = first + clock->start * grid;
-  samples_.time =
-      Eigen::VectorXd::LinSpaced(size(), start, start + clock->slope * grid * static_cast<double>(size() - 1));
+  UseClock(first + clock->start * grid, clock->slope * grid, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
   return true;
+}
+
+/// As MakeUniform, for times with so few significant digits that their steps become coarse.
+bool ClockRepair::MakeUniformFromDigits() {
+  constexpr double kCoarse = 0.1;
+  const std::optional<int> digits = SignificantDigits(time());
+  if (!digits || size() < 2) return false;
+  const double unit = LastUnit(std::max(std::abs(time()[0]), std::abs(time()[size() - 1])), *digits);
+  const std::optional<double> grid = Grid();
+  if (grid && *grid > 0.99 * unit) return false;  // no stamp has smaller steps than the largest
+  if (unit < kCoarse * (time()[size() - 1] - time()[0]) / static_cast<double>(size() - 1)) return false;
+  for (const DigitsRule rule : {DigitsRule::kRounded, DigitsRule::kTruncated}) {
+    const std::optional<UniformClock> clock = FindUniformClock(IntervalsOfDigits(time(), *digits, rule));
+    if (!clock) continue;
+    Warn("time_rounded", 0,
+         "the times are " + std::string(rule == DigitsRule::kRounded ? "rounded" : "truncated") + " to " +
+             std::to_string(*digits) + " significant digits, so their steps grow to " + TimeText(unit) +
+             ", which is coarse compared with the sampling interval. " +
+             ReplacementText(clock->slope, clock->slope_tolerance / clock->slope));
+    UseClock(clock->start, clock->slope, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
+    return true;
+  }
+  return false;
+}
+
+double ClockRepair::RateHz(double interval) const { return PerSecond(samples_.time_unit) / interval; }
+
+std::string ClockRepair::ReplacementText(double interval, double tolerance) const {
+  return "They were replaced by a uniform clock of " + NumberText(RateHz(interval), 6) +
+         " Hz, which assumes uniform sampling. Clocks within +- " + NumberText(tolerance * RateHz(interval), 2) +
+         " Hz agree with all times: " + ErrorText(tolerance);
+}
+
+void ClockRepair::UseClock(double start, double interval, double std_dev) {
+  samples_.clock_std_dev = std_dev;
+  samples_.time = Eigen::VectorXd::LinSpaced(size(), start, start + interval * static_cast<double>(size() - 1));
+}
+
+// ---- Packets -----------------------------------------------------------------------------------------------------
+
+/// Replaces the stamps of packets of rows by the clock of the device, if they show a uniform one. If they do not and
+/// rows share stamps, the error says why.
+Result<bool> ClockRepair::MakeUniformFromPackets() {
+  constexpr double kMinRows = 2;
+  const Packets packets = FindPackets(time());
+  if (packets.count == 0) return false;
+  std::vector<bool> keep;
+  const bool is_shared = 5 * CountSharedRows(keep) > size() && !SharedRowsAreEqual();
+  if (!is_shared && packets.rows < kMinRows) return false;
+  const PacketClockSearch found = FindPacketClock({time(), samples_.value, Grid().value_or(0)});
+  const PacketClock& clock = found.clock;
+  if (found.verdict != PacketClockVerdict::kFound) {
+    return is_shared ? Result<bool>(SharedStampsFault(found)) : false;
+  }
+  Warn("time_bursts", 0,
+       "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
+           " rows, and each packet has the time at which it was received. The times were replaced by a uniform clock "
+           "of " +
+           NumberText(RateHz(clock.interval), 6) + " Hz +- " + NumberText(clock.std_dev * RateHz(clock.interval), 2) +
+           " Hz, which assumes that no rows are missing: " + ErrorText(clock.std_dev) +
+           ". The shortest delay of the packets remains in release_time. If you know the sampling rate, give "
+           "--sample_rate_hz with --time_column none");
+  UseClock(clock.start, clock.interval, clock.std_dev);
+  return true;
+}
+
+/// The error for rows of which too many share a stamp.
+tl::unexpected<Status> ClockRepair::SharedStampsFault(const PacketClockSearch& found) const {
+  const Index first = FirstSharedRow();
+  std::vector<bool> keep;
+  const std::string sentence = "time " + TimeText(time()[first]) + " is also on line " +
+                               std::to_string(samples_.lines.LineOf(first)) + ", and " +
+                               std::to_string(CountSharedRows(keep)) + " of " + std::to_string(size()) +
+                               " rows share a time with another row; ";
+  if (found.verdict == PacketClockVerdict::kTooFewPackets) {
+    const std::string rate = NumberText(RateHz(found.clock.interval), 6);
+    return WithTry(Fault(first + 1, sentence + "the times suggest " + rate +
+                                        " Hz, but too few of them differ to prove that the sampling is uniform. If it "
+                                        "is, give --sample_rate_hz " +
+                                        rate + " with --time_column none"),
+                   {"--sample_rate_hz " + rate, "--time_column none"});
+  }
+  std::string reason = "no uniform clock agrees with all times";
+  if (found.uneven_to > found.uneven_from) {
+    reason += ", most clearly not between lines " + std::to_string(samples_.lines.LineOf(found.uneven_from)) + " and " +
+              std::to_string(samples_.lines.LineOf(found.uneven_to));
+  }
+  return Fault(first + 1, sentence + reason +
+                              ", so rows are missing or the rate changes. Give a part without this with --from and "
+                              "--to, or record the times with a finer step");
 }
 
 /// Warns of coarse stamps that increase but fit no uniform clock. There is no warning if nearly all steps are equal,
@@ -249,7 +370,7 @@ Index ClockRepair::FirstSharedRow() const {
 /// The number of rows to leave out. Of successive rows with the same stamp, one is kept if their values are equal, and
 /// none otherwise.
 Index ClockRepair::CountSharedRows(std::vector<bool>& keep) const {
-  keep.assign(size(), true);
+  keep.assign(static_cast<std::size_t>(size()), true);
   Index removed = 0;
   for (Index begin = 0, end = 0; begin < size(); begin = end) {
     bool is_equal = true;
@@ -264,6 +385,14 @@ Index ClockRepair::CountSharedRows(std::vector<bool>& keep) const {
   return removed;
 }
 
+/// Whether all rows that share a stamp also have the same values, so that nothing is lost without the repetitions.
+bool ClockRepair::SharedRowsAreEqual() const {
+  for (Index i = 1; i < size(); ++i) {
+    if (time()[i] == time()[i - 1] && !IsSameRow(i, i - 1)) return false;
+  }
+  return true;
+}
+
 Check ClockRepair::RemoveRowsWithSharedStamps() {
   constexpr double kMaxShare = 0.2;
   const Index first = FirstSharedRow();
@@ -271,11 +400,8 @@ Check ClockRepair::RemoveRowsWithSharedStamps() {
   std::vector<bool> keep;
   const Index removed = CountSharedRows(keep);
   const std::string many = std::to_string(removed) + " of " + std::to_string(size()) + " rows";
-  if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) {
-    return Fault(first + 1, "time " + TimeText(time()[first]) + " is also on line " +
-                                std::to_string(samples_.lines.LineOf(first)) + ", and " + many +
-                                " share a time with another row; no uniform clock agrees with all times. Record the "
-                                "times with a finer step, or give --sample_rate_hz with --time_column none");
+  if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size()) && !SharedRowsAreEqual()) {
+    return SharedStampsFault({});
   }
   Warn("time_repeated", first + 1,
        many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
@@ -299,6 +425,38 @@ void ClockRepair::KeepRows(const std::vector<bool>& keep) {
   samples_.value.conservativeResize(kept);
   if (samples_.second.size() > 0) samples_.second.conservativeResize(kept);
   samples_.lines = std::move(lines);
+}
+
+// ---- Ends that repeat --------------------------------------------------------------------------------------------
+
+/// Leaves out rows at the start or the end that repeat one row, time and value, as a logger writes that hangs. The
+/// usual number of rows that share a stamp is no repetition.
+void ClockRepair::RemoveRepeatedEnds() {
+  constexpr Index kMinRepeats = 3;
+  Index begin = 0, end = size() - 1;  // the rows to keep
+  while (begin < end && IsSameRow(begin, begin + 1)) ++begin;
+  if (begin == end) return;
+  while (IsSameRow(end, end - 1)) --end;
+  Index usual = 1;
+  for (Index i = begin + 1, shared = 1; i <= end; ++i) {
+    shared = time()[i] == time()[i - 1] ? shared + 1 : 1;
+    usual = std::max(usual, shared);
+  }
+  const Index at_start = begin, at_end = size() - 1 - end, least = std::max(kMinRepeats, 2 * usual);
+  const auto line = [&](Index row) { return std::to_string(samples_.lines.LineOf(row)); };
+  std::vector<bool> keep(static_cast<std::size_t>(size()), true);
+  if (at_end >= least) {
+    Warn("rows_repeated", end + 1,
+         "lines " + line(end + 1) + " to " + line(size() - 1) + " repeat line " + line(end) +
+             ", time and value, and were left out");
+    std::fill(keep.begin() + end + 1, keep.end(), false);
+  }
+  if (at_start >= least) {
+    Warn("rows_repeated", 1,
+         "lines " + line(1) + " to " + line(begin) + " repeat line " + line(0) + ", time and value, and were left out");
+    std::fill(keep.begin() + 1, keep.begin() + begin + 1, false);
+  }
+  if (std::ranges::find(keep, false) != keep.end()) KeepRows(keep);
 }
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
@@ -332,9 +490,22 @@ Check ClockRepair::RemoveBackwardRows() {
   return {};
 }
 
+void ClockRepair::KeepOnly(const RowRange& rows) {
+  std::vector<bool> keep(static_cast<std::size_t>(size()), false);
+  std::fill(keep.begin() + rows.begin, keep.begin() + rows.end, true);
+  KeepRows(keep);
+}
+
 Result<RawSamples> ClockRepair::Repair() {
   if (IsUniform()) return std::move(samples_);
+  RemoveRepeatedEnds();
+  if (IsUniform()) return std::move(samples_);
   Unwrap();
+  if (IsUniform()) return std::move(samples_);
+  if (SharedRowsAreEqual()) {  // otherwise a clock with two rows in each interval would fit rows that are there twice
+    if (Check done = RemoveRowsWithSharedStamps(); !done) return tl::unexpected(done.error());
+    if (IsUniform()) return std::move(samples_);
+  }
   // A uniform clock fits stamps with lost rows only if the losses are spread evenly. The probability that 8 losses fall
   // into 8 different eighths of the recording is 8!/8^8 = 0.2 %.
   constexpr Index kMinUnusualSteps = 8;
@@ -344,6 +515,10 @@ Result<RawSamples> ClockRepair::Repair() {
     const bool suggests_uniform_clock =
         grid && (CountUnusualSteps(*grid) >= kMinUnusualSteps || 5 * CountSharedRows(keep) > size());
     if (suggests_uniform_clock && MakeUniform(*grid)) return std::move(samples_);
+    if (MakeUniformFromDigits()) return std::move(samples_);
+    const Result<bool> made = MakeUniformFromPackets();
+    if (!made) return tl::unexpected(made.error());
+    if (*made) return std::move(samples_);
   }
   if (Increases()) {
     WarnOfScatter();
@@ -362,6 +537,23 @@ std::size_t LineNumbers::LineOf(Index row) const {
   return first_line + static_cast<std::size_t>(row - first_row);
 }
 
-Result<RawSamples> RepairClock(RawSamples samples) { return ClockRepair(std::move(samples)).Repair(); }
+Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
+  if (window.IsOpen()) return ClockRepair(std::move(samples)).Repair();
+  Result<RawSamples> repaired = ClockRepair(samples).Repair();
+  if (repaired) return repaired;
+  const auto rows = RowsInWindow(samples, window);
+  constexpr Index kMinRows = 3;
+  if (rows.size() < kMinRows) return repaired;
+  const Index all = samples.time.size();
+  if (rows.size() == all) return repaired;
+  ClockRepair part(std::move(samples));
+  part.KeepOnly(rows);
+  Result<RawSamples> repaired_part = part.Repair();
+  if (!repaired_part) return repaired_part;
+  repaired_part->warnings.push_back(
+      {"time_outside_window", repaired.error().message + ". Only the " + std::to_string(rows.size()) + " of " +
+                                  std::to_string(all) + " rows in the window of --from and --to were read"});
+  return repaired_part;
+}
 
 }  // namespace pendulum

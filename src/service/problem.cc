@@ -72,6 +72,17 @@ bool MaySucceedLater(ProblemKind kind) {
   return kind == ProblemKind::kTimedOut || kind == ProblemKind::kTooManyRequests || kind == ProblemKind::kStopping;
 }
 
+/// The flags "--name value" as parameters of a request: {"name": "value"}; a flag without a value is true.
+nlohmann::ordered_json TryParameters(const std::vector<std::string>& flags) {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
+  for (const std::string& flag : flags) {
+    const std::size_t space = std::min(flag.find(' '), flag.size());
+    const std::string name = flag.substr(flag.find_first_not_of('-'), space - flag.find_first_not_of('-'));
+    parameters[name] = space == flag.size() ? "true" : flag.substr(space + 1);
+  }
+  return parameters;
+}
+
 Problem ProblemOfKind(ProblemKind kind, std::string detail) {
   return MaySucceedLater(kind) ? RetryLater(kind, std::move(detail)) : Problem{kind, std::move(detail), {}};
 }
@@ -82,7 +93,11 @@ int Problem::status() const { return KindOf(kind).status; }
 
 std::string_view Problem::code() const { return KindOf(kind).code; }
 
-Problem ProblemOf(const Status& status) { return ProblemOfKind(KindOf(status.code), status.message); }
+Problem ProblemOf(const Status& status) {
+  Problem problem = ProblemOfKind(KindOf(status.code), status.message);
+  problem.try_flags = status.try_flags;
+  return problem;
+}
 
 Problem ProblemOf(int http_status, std::string detail) {
   return ProblemOfKind(KindOfHttpStatus(http_status), std::move(detail));
@@ -114,6 +129,7 @@ HttpResponse ProblemResponse(const Problem& problem) {
   json["detail"] = problem.detail;
   json["code"] = kind.code;
   json["exit_code"] = kind.exit_code ? nlohmann::ordered_json(*kind.exit_code) : nlohmann::ordered_json(nullptr);
+  if (!problem.try_flags.empty()) json["try"] = TryParameters(problem.try_flags);
   HttpResponse response;
   response.status = kind.status;
   response.fields = problem.fields;

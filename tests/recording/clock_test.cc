@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <iomanip>
+#include <ios>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -274,7 +277,271 @@ TEST(RepairClock, RefusesCoarseStampsWithLostRows) {
   EXPECT_EQ(
       FaultOf(Rows(Stamps(600, stamp))),
       "run.csv:3: time 0 s is also on line 2, and 598 of 600 rows share a time with another row; no uniform clock "
-      "agrees with all times. Record the times with a finer step, or give --sample_rate_hz with --time_column none");
+      "agrees with all times, most clearly not between lines 300 and 323, so rows are missing or the rate changes. "
+      "Give "
+      "a part without this with --from and --to, or record the times with a finer step");
+}
+
+// ---- Few significant digits --------------------------------------------------------------------------------------
+
+/// Uniform random numbers from 0 to 1 and derived ones, which are the same with every standard library.
+class Randomness {
+ public:
+  explicit Randomness(unsigned int seed) : engine_(seed) {}
+
+  double Uniform() { return (static_cast<double>(engine_()) + 0.5) / 4294967296.0; }
+  double Exponential() { return -std::log(Uniform()); }
+  double Normal() { return std::sqrt(-2 * std::log(Uniform())) * std::cos(6.283185307179586 * Uniform()); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// A number as a file shows it with this many significant digits.
+double Printed(double number, int digits) {
+  std::ostringstream text;
+  text << std::scientific << std::setprecision(digits - 1) << number;
+  return std::stod(text.str());
+}
+
+struct Digits {
+  int digits;
+  double rate_hz;
+  double duration;
+};
+
+TEST(RepairClock, FindsTheClockOfTimesWithFewSignificantDigits) {
+  for (const Digits& each : {Digits{3, 30, 30}, Digits{4, 240, 30}, Digits{4, 100, 120}, Digits{5, 2000, 15}}) {
+    int agree = 0;
+    for (unsigned int seed = 1; seed <= 200; ++seed) {
+      Randomness random(seed);
+      const double rate = each.rate_hz * (1 + 0.02 * (random.Uniform() - 0.5));
+      const double start = seed % 2 == 0 ? 0 : random.Uniform() / rate;
+      const RawSamples repaired = Repaired(Rows(Stamps(static_cast<int>(rate * each.duration),
+                                                       [&](int i) { return Printed(start + i / rate, each.digits); })));
+      ASSERT_EQ(repaired.warnings.at(0).code, "time_rounded") << each.digits << " digits, seed " << seed;
+      const Eigen::Index last = repaired.time.size() - 1;
+      const double found = static_cast<double>(last) / (repaired.time[last] - repaired.time[0]);
+      if (std::abs(found / rate - 1) <= std::sqrt(3.0) * repaired.clock_std_dev) ++agree;
+      EXPECT_LE(repaired.clock_std_dev, 0.001);
+      EXPECT_LE(std::abs(repaired.time[0] - start), 0.1 / rate);
+    }
+    EXPECT_EQ(agree, 200) << each.digits << " digits";  // the true clock agrees with all stamps
+  }
+}
+
+TEST(RepairClock, ReportsTimesWithFewSignificantDigits) {
+  const std::string warning = WarningOf(Repaired(Rows(Stamps(900, [](int i) { return Printed(i / 30.0, 3); }))));
+  EXPECT_THAT(warning, testing::StartsWith(
+                           "time_rounded: run.csv:2: the times are rounded to 3 significant digits, so their steps "
+                           "grow to 0.1 s, which is coarse compared with the sampling interval. They were replaced by "
+                           "a uniform clock of 30 Hz, which assumes uniform sampling. Clocks within +- "));
+}
+
+TEST(RepairClock, RefusesTimesWithFewDigitsAndLostRows) {
+  EXPECT_THAT(FaultOf(Rows(Stamps(900, [](int i) { return Printed((i < 500 ? i : i + 40) / 30.0, 3); }))),
+              testing::HasSubstr("so rows are missing or the rate changes"));
+}
+
+// ---- Packets -----------------------------------------------------------------------------------------------------
+
+/// How a host receives and stamps the rows of a device. Times in s.
+struct Transfer {
+  std::string name;
+  double rate_hz = 260;
+  double duration = 20;
+  int rows = 16;               ///< In a packet.
+  bool varies = false;         ///< A packet has from 1 to twice as many rows.
+  double latency = 0.002;      ///< Mean, exponential.
+  double latency_std_dev = 0;  ///< Of a normal latency with a mean of 3 standard deviations, in addition.
+  double poll = 0;             ///< Interval at which the host looks for packets; 0: it waits for them.
+  double grid = 0.001;         ///< Stamps are truncated to this.
+  double inner_step = 0;       ///< Between the stamps of a packet.
+  double noise_deg = 0.1;
+  double lost_rows = 0;             ///< Probability that the device skips a row.
+  double lost_packets = 0;          ///< Probability that a packet is lost.
+  int lost_packet_each = 0;         ///< Every so many packets, one is lost.
+  int lost_together = 0;            ///< Number of successive rows that are skipped once.
+  bool skips_after_packet = false;  ///< One row is skipped after each packet.
+  int missed = 0;                   ///< Of 200 recordings, so many may be read in spite of lost rows.
+};
+
+/// A decaying swing that was sampled at `rate_hz`, packed, and stamped by the host.
+RawSamples Transferred(const Transfer& transfer, double rate_hz, Randomness& random) {
+  struct Row {
+    double time, value;
+  };
+  std::vector<Row> rows;
+  const double phase = 6 * random.Uniform(), gap = transfer.duration * (0.2 + 0.6 * random.Uniform());
+  for (int i = 0; i < rate_hz * transfer.duration; ++i) {
+    const double time = i / rate_hz;
+    const double deg = 25 * std::exp(-time / 15) * std::cos(4.9 * time + phase) + transfer.noise_deg * random.Normal();
+    const bool is_skipped = random.Uniform() < transfer.lost_rows ||
+                            (transfer.skips_after_packet && i % (transfer.rows + 1) == 0) ||
+                            (time > gap && time < gap + transfer.lost_together / rate_hz);
+    if (!is_skipped) rows.push_back({time, std::round(100 * deg) / 100});
+  }
+  std::vector<double> stamps, values;
+  double arrival = 0;
+  const double start = 2000 * random.Uniform(), poll_phase = random.Uniform();
+  int packet = 0;
+  for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end, ++packet) {
+    const int size = transfer.varies ? 1 + static_cast<int>(2 * transfer.rows * random.Uniform()) : transfer.rows;
+    end = std::min(begin + static_cast<std::size_t>(size), rows.size());
+    double received = rows[end - 1].time + transfer.latency * random.Exponential() +
+                      std::max(0.0, transfer.latency_std_dev * (3 + random.Normal()));
+    if (transfer.poll > 0) received = (std::ceil(received / transfer.poll + poll_phase)) * transfer.poll;
+    arrival = std::max(arrival, start + received);
+    const bool is_lost = random.Uniform() < transfer.lost_packets ||
+                         (transfer.lost_packet_each > 0 && packet % transfer.lost_packet_each == 1);
+    for (std::size_t i = begin; i < end && !is_lost; ++i) {
+      stamps.push_back(std::floor(arrival / transfer.grid) * transfer.grid);
+      values.push_back(rows[i].value);
+      arrival += transfer.inner_step;
+    }
+  }
+  return Rows(stamps, "s", values);
+}
+
+double FoundRateHz(const RawSamples& repaired) {
+  const Eigen::Index last = repaired.time.size() - 1;
+  return static_cast<double>(last) / (repaired.time[last] - repaired.time[0]);
+}
+
+TEST(RepairClock, FindsTheRateOfPacketsWithinItsError) {
+  const std::vector<Transfer> transfers = {
+      {.name = "packets of one size"},
+      {.name = "packets of many sizes", .varies = true},
+      {.name = "long latencies", .latency = 0.01},
+      {.name = "normal latencies", .latency = 0, .latency_std_dev = 0.005},
+      {.name = "a host that polls", .latency = 0, .poll = 0.02},
+      {.name = "stamps that increase in packets", .grid = 1e-6, .inner_step = 12e-6},
+      {.name = "small packets", .rate_hz = 1000, .rows = 2, .latency = 0.0005, .grid = 1e-4},
+      {.name = "few packets", .rate_hz = 50, .rows = 25},
+      {.name = "coarse stamps", .grid = 0.01},
+      {.name = "noise", .noise_deg = 1}};
+  for (const Transfer& transfer : transfers) {
+    int found = 0, agree = 0;
+    double largest_std_dev = 0;
+    for (unsigned int seed = 1; seed <= 200; ++seed) {
+      Randomness random(seed);
+      const double rate_hz = transfer.rate_hz * (1 + 0.01 * (random.Uniform() - 0.5));
+      const Result<RawSamples> repaired = RepairClock(Transferred(transfer, rate_hz, random));
+      if (!repaired || repaired->warnings.empty() || repaired->warnings[0].code != "time_bursts") continue;
+      ++found;
+      if (std::abs(FoundRateHz(*repaired) / rate_hz - 1) <= 2 * repaired->clock_std_dev) ++agree;
+      largest_std_dev = std::max(largest_std_dev, repaired->clock_std_dev);
+    }
+    EXPECT_GE(found, 198) << transfer.name;
+    EXPECT_GE(agree, 0.95 * found) << transfer.name;
+    EXPECT_LE(largest_std_dev, 0.002) << transfer.name;
+  }
+}
+
+TEST(RepairClock, RefusesPacketsWithLostRows) {
+  const std::vector<Transfer> transfers = {
+      {.name = "5 % of the rows", .lost_rows = 0.05},
+      {.name = "5 % of the rows, long latencies", .latency = 0.01, .lost_rows = 0.05},
+      {.name = "5 % of the rows, stamps that increase in packets",
+       .grid = 1e-6,
+       .inner_step = 12e-6,
+       .lost_rows = 0.05},
+      {.name = "1 % of the rows", .lost_rows = 0.01, .missed = 4},
+      {.name = "5 % of the packets", .lost_packets = 0.05},
+      {.name = "5 % of the packets of many sizes", .varies = true, .lost_packets = 0.05},
+      {.name = "every twentieth packet", .lost_packet_each = 20},
+      {.name = "a row after each packet", .skips_after_packet = true},
+      {.name = "one packet", .lost_together = 16},
+      {.name = "a second", .lost_together = 260}};
+  for (const Transfer& transfer : transfers) {
+    int missed = 0;
+    for (unsigned int seed = 1; seed <= 200; ++seed) {
+      Randomness random(seed);
+      const Result<RawSamples> repaired = RepairClock(Transferred(transfer, transfer.rate_hz, random));
+      if (!repaired) {
+        EXPECT_THAT(repaired.error().message, testing::HasSubstr("so rows are missing or the rate changes"));
+        EXPECT_THAT(repaired.error().message, testing::Not(testing::HasSubstr("--sample_rate_hz")));
+        EXPECT_THAT(repaired.error().try_flags, IsEmpty());
+        continue;
+      }
+      missed += std::ranges::count(repaired->warnings, "time_bursts", &Warning::code) > 0 ? 1 : 0;
+    }
+    EXPECT_LE(missed, transfer.missed) << transfer.name;
+  }
+}
+
+TEST(RepairClock, ReportsPackets) {
+  Randomness random(1);
+  const std::string warning = WarningOf(Repaired(Transferred({}, 260, random)));
+  EXPECT_THAT(warning,
+              testing::MatchesRegex(
+                  "time_bursts: run.csv:2: the rows come in 32. packets of about 16 rows, and each packet has "
+                  "the time at which it was received. The times were replaced by a uniform clock of "
+                  "(259.9|260)[0-9.]* Hz .- 0.0[0-9]* Hz, which assumes that no rows are missing: an error of "
+                  "0.0[0-9]* % in times and 0.0[0-9]* % in inertia. The shortest delay of the packets remains in "
+                  "release_time. If you know the sampling rate, give --sample_rate_hz with --time_column none"));
+}
+
+/// A device that samples fast, then pauses: the stamps increase within groups of rows and are right.
+TEST(RepairClock, KeepsStampsOfADeviceThatPauses) {
+  const auto stamp = [](int i) { return std::round((i / 16) * 62000 + (i % 16) * 200) / 1e6; };
+  std::vector<double> values = Stamps(1600, [&](int i) { return 25 * std::cos(4.9 * stamp(i)); });
+  ExpectUntouched(Rows(Stamps(1600, stamp), "s", values));
+}
+
+TEST(RepairClock, SuggestsTheRateOfFewPackets) {
+  const auto stamp = [](int i) { return 3.0 * (i / 300); };  // five packets of 300 rows
+  const Result<RawSamples> repaired =
+      RepairClock(Rows(Stamps(1500, stamp), "s", Stamps(1500, [](int i) { return std::cos(0.05 * i); })));
+  ASSERT_FALSE(repaired.has_value());
+  EXPECT_THAT(repaired.error().message,
+              testing::HasSubstr("; the times suggest 100 Hz, but too few of them differ to prove that the sampling is "
+                                 "uniform. If it is, give --sample_rate_hz 100 with --time_column none"));
+  EXPECT_THAT(repaired.error().try_flags, ElementsAre("--sample_rate_hz 100", "--time_column none"));
+}
+
+// ---- Ends that repeat, and windows -------------------------------------------------------------------------------
+
+TEST(RepairClock, RemovesRowsThatRepeatTheFirstOrTheLast) {
+  std::vector<double> time = Stamps(300, Hundredth), value = Stamps(300, [](int i) { return i; });
+  time.insert(time.end(), 700, time.back());
+  value.insert(value.end(), 700, value.back());
+  time.insert(time.begin(), 5, time.front());
+  value.insert(value.begin(), 5, value.front());
+  const RawSamples repaired = Repaired(Rows(time, "s", value));
+  EXPECT_EQ(ValuesOf(repaired), Stamps(300, [](int i) { return i; }));
+  EXPECT_EQ(repaired.lines.LineOf(1), 8);
+  ASSERT_EQ(repaired.warnings.size(), 2);
+  EXPECT_EQ(repaired.warnings[0].code, "rows_repeated");
+  EXPECT_EQ(repaired.warnings[0].message,
+            "run.csv:307: lines 307 to 1006 repeat line 306, time and value, and were left out");
+  EXPECT_EQ(repaired.warnings[1].message, "run.csv:3: lines 3 to 7 repeat line 2, time and value, and were left out");
+}
+
+TEST(RepairClock, KeepsOneOfEachPairOfEqualRows) {
+  std::vector<double> time, value;
+  for (int i = 0; i < 200; ++i) {
+    time.insert(time.end(), 2, Hundredth(i));
+    value.insert(value.end(), 2, std::sin(0.05 * i));
+  }
+  const RawSamples repaired = Repaired(Rows(time, "s", value));
+  EXPECT_EQ(repaired.time.size(), 200);
+  EXPECT_EQ(repaired.warnings.at(0).code, "time_repeated");
+}
+
+TEST(RepairClock, JudgesTheWindowIfTheWholeFileCannotBeRepaired) {
+  const RawSamples samples = Rows(Stamps(900, [](int i) { return i < 600 ? 10 * i : 10 * (i - 600); }), "ms");
+  EXPECT_FALSE(RepairClock(samples).has_value());
+  const Result<RawSamples> repaired = RepairClock(samples, {1, 4.5});
+  ASSERT_TRUE(repaired.has_value());
+  EXPECT_EQ(repaired->time.size(), 351);  // 1 s to 4.5 s
+  EXPECT_EQ(repaired->time[0], 1000);
+  EXPECT_EQ(repaired->lines.LineOf(0), 102);
+  EXPECT_EQ(WarningOf(*repaired),
+            "time_outside_window: run.csv:602: time 0 ms follows 5990 ms, so the clock was set back: these are two "
+            "recordings in one file; split it before this line. Only the 351 of 900 rows in the window of --from and "
+            "--to were read");
+  EXPECT_EQ(RepairClock(samples, {1, 20}).error().message, RepairClock(samples).error().message);
 }
 
 // ---- Stamps that repeat ------------------------------------------------------------------------------------------

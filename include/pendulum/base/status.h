@@ -3,6 +3,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -23,6 +24,9 @@ enum class StatusCode {
 struct Status {
   StatusCode code;
   std::string message;
+  /// Flags with which the same request would succeed, each as "--name value" without quotes; empty: none are known.
+  /// The tools print the command with these flags, and the service returns them.
+  std::vector<std::string> try_flags = {};
 };
 
 /// A value, or the Status that explains why there is none.
@@ -32,6 +36,18 @@ using Result = tl::expected<T, Status>;
 /// Returns an error from a function that returns Result<T>.
 inline tl::unexpected<Status> Error(StatusCode code, std::string message) {
   return tl::unexpected<Status>(Status{code, std::move(message)});
+}
+
+/// The error with flags that would help: return WithTry(Error(code, message), {"--unit deg"}). See Status::try_flags.
+inline tl::unexpected<Status> WithTry(tl::unexpected<Status> error, std::vector<std::string> flags) {
+  error.value().try_flags = std::move(flags);
+  return error;
+}
+
+/// The error of a part with another message, and the same code and flags to try.
+inline tl::unexpected<Status> WithMessage(Status status, std::string message) {
+  status.message = std::move(message);
+  return tl::unexpected<Status>(std::move(status));
 }
 
 /// The process exit code of an error. Codes 0 and 1 belong to fits that ran (see ExitCode(Termination) in

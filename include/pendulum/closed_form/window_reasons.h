@@ -18,6 +18,7 @@ struct WindowBegin {
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
+    kAfterVibration,          ///< After a vibration with `frequency_hz` has died away.
     kDisturbed,               ///< The motion before the window does not fit the later motion.
     kUndersampled,            ///< The recording is undersampled: all of it is used.
     kUndersampledAfterFirst,  ///< As kUndersampled: all except the first reading.
@@ -25,6 +26,7 @@ struct WindowBegin {
   };
   Reason reason = Reason::kUnknown;
   double angle_deg = 0;
+  double frequency_hz = 0;
 };
 
 /// Why a window ends where it does.
@@ -37,6 +39,7 @@ struct WindowEnd {
     kBeforeMove,     ///< The last turning point before the pendulum is moved.
     kBeforeStop,     ///< The last turning point before the pendulum is stopped.
     kDisturbed,      ///< The motion after the window does not fit the earlier motion.
+    kPresliding,     ///< From there on swings are faster, as friction acts like a spring.
     kNotConverging,  ///< A fit that includes the motion after the window does not converge.
     kCountsLost,     ///< After the window an unknown number of counts was lost.
   };

@@ -29,4 +29,11 @@ struct IdentifyOptions {
   std::vector<std::string> shared;  ///< For a joint identification: names of the parameters that all recordings share.
 };
 
+/// The options for reading, with the window of the fit.
+inline ReadOptions ReadOptionsOf(const IdentifyOptions& options) {
+  ReadOptions read = options.read;
+  read.window = {options.swing.from, options.swing.to};
+  return read;
+}
+
 }  // namespace pendulum

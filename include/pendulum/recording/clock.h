@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,16 +47,30 @@ struct RawSamples {
   std::vector<Warning> warnings;
 };
 
+/// The part of a recording that is used, s on the file's clock; NaN leaves that end open.
+struct ClockWindow {
+  double from = std::numeric_limits<double>::quiet_NaN();
+  double to = std::numeric_limits<double>::quiet_NaN();
+
+  bool IsOpen() const { return std::isnan(from) && std::isnan(to); }
+};
+
 /// Makes the times increase where that is safe. Each warning gives a count and the first line. time_wrapped: whole ms
 /// or us that start again after 2³² or 2¹⁶ are continued, if the step across the restart is like the other steps.
 /// time_rounded: time stamps on a grid that is coarse compared with the sampling interval. They are replaced by the
 /// middle of the uniform clocks that agree with all of them; clock_std_dev gives the spread of these clocks. If no
-/// clock agrees and the stamps increase, they are kept. time_repeated: rows that share a time stamp are left out, up to
-/// a fifth of all; of identical rows one is kept. time_not_increasing: stamps go back by at most kMaxStepsBack sampling
-/// intervals. As few rows as possible are left out, up to a twentieth of all. Gaps and uneven sampling cause no
-/// warning. kDataLoss: any other stamps that do not increase; the message has the line, both times and what to do.
-/// Cost: one pass, about twenty if the stamps are not uniform.
-Result<RawSamples> RepairClock(RawSamples samples);
+/// clock agrees and the stamps increase, they are kept. Times with few significant digits are treated in the same way.
+/// time_bursts: rows that a host stamped in packets. The stamps are replaced by the uniform clock of the device, with
+/// its standard error in clock_std_dev, if nothing contradicts uniform sampling without lost rows. rows_repeated: at
+/// least 3 rows at the start or the end that repeat one row, time and value, are left out. time_repeated: rows that
+/// share a time stamp are left out, up to a fifth of all; of identical rows one is kept. time_not_increasing: stamps go
+/// back by at most kMaxStepsBack sampling intervals. As few rows as possible are left out, up to a twentieth of all.
+/// Gaps and uneven sampling cause no warning. kDataLoss: any other stamps that do not increase; the message has the
+/// line, both times and what to do. Cost: one pass, about twenty if the stamps are not uniform.
+///
+/// If the stamps of the whole file cannot be repaired, those in the window are. time_outside_window: only its rows are
+/// returned.
+Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window = {});
 
 /// A clock that goes back by more sampling intervals (median) than this was set back.
 inline constexpr int kMaxStepsBack = 5;

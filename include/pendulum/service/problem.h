@@ -37,8 +37,9 @@ enum class ProblemKind {
 /// Problem details (RFC 9457).
 struct Problem {
   ProblemKind kind = ProblemKind::kInternal;
-  std::string detail;             ///< A sentence, the same as on the command line.
-  std::vector<HttpField> fields;  ///< Additional fields of the answer: Allow, Retry-After, WWW-Authenticate.
+  std::string detail;                       ///< A sentence, the same as on the command line.
+  std::vector<HttpField> fields;            ///< Additional fields of the answer: Allow, Retry-After, WWW-Authenticate.
+  std::vector<std::string> try_flags = {};  ///< As in Status.
 
   int status() const;             ///< 422
   std::string_view code() const;  ///< "unusable_data"
@@ -65,7 +66,8 @@ Problem MethodNotAllowed(std::string_view method, std::string_view allowed);
 Problem RetryLater(ProblemKind kind, std::string detail, std::chrono::seconds after = kRetryAfter);
 
 /// application/problem+json: {"type": "urn:pendulum:problem:CODE", "title", "status", "detail", "code", "exit_code"},
-/// on one line. Bytes of the detail that are not valid UTF-8 become U+FFFD.
+/// on one line; if there are flags to try, also "try": {"unit": "deg"}. Bytes of the detail that are not valid UTF-8
+/// become U+FFFD.
 HttpResponse ProblemResponse(const Problem& problem);
 
 }  // namespace pendulum

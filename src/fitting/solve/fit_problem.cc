@@ -271,11 +271,7 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
   sensor_starts = starts->size();
   const SensorStart& start = (*starts)[std::min(options.search.sensor_start, starts->size() - 1)];
   Result<StartValues> values = estimate(start.view);
-  if (!values) return values;
-  const double zero = values->parameters.back();
-  values->parameters.pop_back();
-  values->parameters.insert(values->parameters.end(), start.parameters.begin(), start.parameters.end());
-  if (sensor.kind == SensorKind::kArc) values->parameters[values->parameters.size() - start.parameters.size()] = zero;
+  if (values) AppendSensorParameters(sensor, start, *values);
   return values;
 }
 
@@ -298,8 +294,8 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
                                         ? Result<StartValues>(*options.search.start_values)
                                         : FindStart(timed, *model, sensor, options, problem.sensor_starts);
   if (!start)
-    return Error(start.error().code,
-                 recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
+    return WithMessage(start.error(),
+                       recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
 
   problem.model = *model;
   problem.start = *start;

@@ -26,6 +26,9 @@ constexpr double kPhaseStep = 0.6;
 /// The first samples determine the frequency well enough for the solver, which then uses the remaining ones.
 constexpr Index kMaxScanSamples = 150;
 
+/// A linear oscillation describes the first periods of a pendulum well enough to find the sensor's scale.
+constexpr Index kMaxOscillationSamples = 60;
+
 constexpr std::size_t kMaxStarts = 12;
 
 /// Decay of the amplitude over the scanned part: to a share `end` of its first value, exponentially (viscous friction)
@@ -59,11 +62,12 @@ struct Candidate {
 /// The samples to scan.
 class Scan {
  public:
-  Scan(const Recording& recording, Gravity gravity, const std::stop_token& stop)
+  Scan(const Recording& recording, Gravity gravity, Index max_samples, const std::stop_token& stop)
       : quantity_(recording.quantity),
         gravity_(gravity),
-        time_(recording.clock_scale * (recording.time.head(Count(recording)).array() - recording.time[0])),
-        value_(recording.value.head(Count(recording))),
+        time_(recording.clock_scale *
+              (recording.time.head(std::min(recording.size(), max_samples)).array() - recording.time[0])),
+        value_(recording.value.head(time_.size())),
         stop_(stop) {}
 
   double duration() const { return time_[time_.size() - 1]; }
@@ -88,8 +92,6 @@ class Scan {
   }
 
  private:
-  static Index Count(const Recording& recording) { return std::min(recording.size(), kMaxScanSamples); }
-
   /// ∫ dt / PeriodRatio [s]: the phase at 1 rad/s. `amplitude` is in units of the reading.
   ArrayXd WarpedTime(const ArrayXd& amplitude, double frequency) const {
     if (gravity_.is_linear()) return time_;
@@ -193,7 +195,7 @@ StartValues StartAt(const Candidate& candidate, const Recording& recording, cons
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop) {
   constexpr double kMaxAmplitude = 3;  // in half ranges of the samples; the true amplitude is rarely larger
-  const Scan scan(recording, model.gravity, stop);
+  const Scan scan(recording, model.gravity, kMaxScanSamples, stop);
   const std::vector<double> frequencies = Grid(range, scan.duration());
   const std::vector<Candidate> rough = scan.At(frequencies, scan.half_range());
   const Candidate& best = *std::ranges::min_element(rough, {}, &Candidate::rss);
@@ -205,6 +207,19 @@ std::vector<StartValues> ScanFrequencies(const Recording& recording, const Motio
     starts.push_back(StartAt(candidate, recording, model, scan.duration()));
   }
   return starts;
+}
+
+std::vector<Oscillation> ScanOscillations(const Recording& view, const FrequencyRange& range,
+                                          const std::stop_token& stop) {
+  constexpr double kNearlyAsWell = 4;  // times the smallest sum of squares; other minima are side lobes
+  const Scan scan(view, Gravity::kLinear, kMaxOscillationSamples, stop);
+  const std::vector<Candidate> minima = LocalMinima(scan.At(Grid(range, scan.duration()), scan.half_range()));
+  std::vector<Oscillation> oscillations;
+  for (const Candidate& candidate : minima) {
+    if (candidate.rss > kNearlyAsWell * minima.front().rss) break;
+    oscillations.push_back({candidate.coefficients[2], candidate.amplitude(), candidate.frequency});
+  }
+  return oscillations;
 }
 
 }  // namespace pendulum

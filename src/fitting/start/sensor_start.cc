@@ -33,27 +33,21 @@ std::optional<double> KnownValue(const FitOptions& options, const ParameterInfo&
 /// Nominal direction of an accelerometer's axis: across the rod, or along it.
 double AxisOf(const Recording& recording) { return IsAlongRod(recording) ? 0.5 * kPi * RadialSide(recording) : 0.0; }
 
-/// The readings' view and the results from its turning points.
-struct Turns {
+/// The readings' view and its oscillation.
+struct Turns : Oscillation {
   Recording view;
-  double zero = 0;       ///< Of the view.
-  double amplitude = 0;  ///< The largest amplitude, of the view.
-  double frequency = 0;  ///< rad/s, as if the swings of the recording were small.
 
   /// ω0, if the largest amplitude is `angle`.
   double NaturalFrequency(double angle) const { return frequency * SineGravity::PeriodRatio(angle); }
 };
 
 Result<Turns> FindTurnsOf(const Recording& recording) {
-  Turns turns{TurningPointView(recording)};
-  const Result<TurningPointTable> table = FindTurningPoints(turns.view);
+  Recording view = TurningPointView(recording);
+  const Result<TurningPointTable> table = FindTurningPoints(view);
   if (!table) return tl::unexpected(table.error());
-  const Result<double> frequency = NaturalFrequency(turns.view, *table, Gravity::kLinear);
+  const Result<double> frequency = NaturalFrequency(view, *table, Gravity::kLinear);
   if (!frequency) return tl::unexpected(frequency.error());
-  turns.frequency = *frequency;
-  turns.zero = table->zero.value;
-  turns.amplitude = table->LargestAmplitude();
-  return turns;
+  return Turns{{table->zero.value, table->LargestAmplitude(), *frequency}, std::move(view)};
 }
 
 /// The amplitudes to try; only `known` if the scale is known.
@@ -149,6 +143,19 @@ std::vector<SensorStart> StartsAlong(const SensorModel& sensor, const Turns& tur
   return starts;
 }
 
+std::vector<SensorStart> StartsOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options,
+                                  const Turns& turns) {
+  if (sensor.kind == SensorKind::kCoordinate) return StartsOfCoordinate(turns, options);
+  if (sensor.kind == SensorKind::kScaledRate) return StartsOfRate(recording, turns, options);
+  return IsAlongRod(recording) ? StartsAlong(sensor, turns, AxisOf(recording), options)
+                               : StartsAcross(sensor, turns, options);
+}
+
+SensorStart StartOfArc(const Recording& recording) {
+  const Arc& arc = *recording.arc;
+  return {{0, arc.x, arc.y, arc.radius}, recording};
+}
+
 }  // namespace
 
 SensorModel SensorOf(const Recording& recording, Gravity gravity) {
@@ -210,16 +217,23 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
 
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
                                               const FitOptions& options) {
-  if (sensor.kind == SensorKind::kArc) {
-    const Arc& arc = *recording.arc;
-    return std::vector<SensorStart>{{{0, arc.x, arc.y, arc.radius}, recording}};
-  }
+  if (sensor.kind == SensorKind::kArc) return std::vector<SensorStart>{StartOfArc(recording)};
   const Result<Turns> turns = FindTurnsOf(recording);
   if (!turns) return tl::unexpected(turns.error());
-  if (sensor.kind == SensorKind::kCoordinate) return StartsOfCoordinate(*turns, options);
-  if (sensor.kind == SensorKind::kScaledRate) return StartsOfRate(recording, *turns, options);
-  return IsAlongRod(recording) ? StartsAlong(sensor, *turns, AxisOf(recording), options)
-                               : StartsAcross(sensor, *turns, options);
+  return StartsOf(recording, sensor, options, *turns);
+}
+
+std::vector<SensorStart> SensorStarts(const Recording& recording, const SensorModel& sensor, const FitOptions& options,
+                                      const Oscillation& oscillation) {
+  if (sensor.kind == SensorKind::kArc) return {StartOfArc(recording)};
+  return StartsOf(recording, sensor, options, {oscillation, TurningPointView(recording)});
+}
+
+void AppendSensorParameters(const SensorModel& sensor, const SensorStart& start, StartValues& values) {
+  const double zero = values.parameters.back();
+  values.parameters.pop_back();
+  values.parameters.insert(values.parameters.end(), start.parameters.begin(), start.parameters.end());
+  if (sensor.kind == SensorKind::kArc) values.parameters[values.parameters.size() - start.parameters.size()] = zero;
 }
 
 }  // namespace pendulum

@@ -49,7 +49,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));
-  if (!found) return Error(found.error().code, where + found.error().message);
+  if (!found) return WithMessage(found.error(), where + found.error().message);
   ChosenSwings swings{*std::move(found), {}};
   const auto count = static_cast<int>(swings.found.size());
   if (choice.release > count) return NoSuchSwing(where, choice.release, count);

@@ -11,6 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "fitting/swing/disturbed_ends.h"
+#include "fitting/swing/plausible_period.h"
+#include "fitting/swing/presliding.h"
+#include "fitting/swing/steady_hold.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/swing/lost_counts.h"
@@ -20,143 +24,6 @@
 
 namespace pendulum {
 namespace {
-
-/// Limits of the fits that compare windows: samples, samples per half swing, and trajectories.
-constexpr Eigen::Index kMaxTrialSamples = 3000;
-constexpr double kPerHalfSwing = 12;
-constexpr int kMaxTrialTraces = 60;
-
-/// Fits the richest law to windows of one recording, and gives the residuals of these fits in parts of the recording.
-class WindowTrials {
- public:
-  WindowTrials(Recording recording, const FitOptions& options)
-      : recording_(std::move(recording)), options_(TrialOptions(recording_, options, kMaxTrialTraces)) {}
-
-  /// rms of the residuals in [from, to] of a fit to [begin, end], all in s; infinite if there are none.
-  double Rms(double begin, double end, double from, double to) {
-    const Trial& trial = Fit(begin, end);
-    double sum = 0;
-    double count = 0;
-    for (Eigen::Index i = 0; i < trial.residual.size(); ++i) {
-      if (trial.time[i] < from || trial.time[i] > to) continue;
-      sum += trial.residual[i] * trial.residual[i];
-      ++count;
-    }
-    return count > 0 ? std::sqrt(sum / count) : kUnbounded;
-  }
-
- private:
-  struct Trial {
-    double begin, end;
-    Eigen::VectorXd time, residual;
-  };
-
-  const Trial& Fit(double begin, double end) {
-    const auto known =
-        std::ranges::find_if(trials_, [&](const Trial& trial) { return trial.begin == begin && trial.end == end; });
-    if (known != trials_.end()) return *known;
-    Trial trial{begin, end, {}, {}};
-    if (const auto part = SelectWindow(recording_, begin, end)) {
-      if (auto fit = FitRecording(*part, options_); fit && fit->termination != Termination::kFailed) {
-        trial.time = part->time;
-        trial.residual = std::move(fit->residual);
-      }
-    }
-    return trials_.emplace_back(std::move(trial));
-  }
-
-  Recording recording_;
-  FitOptions options_;
-  std::vector<Trial> trials_;
-};
-
-/// Numbers of turning points that may be left out at one end of a window: 0, 1, 2, 4 and so on, and a quarter of all.
-std::vector<std::size_t> TrimCandidates(std::size_t turns) {
-  const std::size_t most = std::max<std::size_t>(turns / 4, 1);
-  std::vector<std::size_t> steps = {0};
-  for (std::size_t k = 1; k < most; k *= 2) steps.push_back(k);
-  if (turns >= most + 4) steps.push_back(most);
-  return steps;
-}
-
-/// The number of turning points to leave out at one end of a window: the smallest number in `steps` for which leaving
-/// out more hardly improves the fit of the remaining window. If there is no such number, returns the largest one in
-/// `steps`. window(k) gives the window without k turning points.
-template <typename Window>
-std::size_t CountDisturbedTurningPoints(WindowTrials& trials, const std::vector<std::size_t>& steps,
-                                        const Window& window) {
-  // No law is exact: the shorter a window is, the better a law fits it.
-  constexpr double kAllowedRatio = 1.1;
-  constexpr double kAllowedPerTurningPoint = 0.02;
-  const auto fits = [&](std::size_t less, std::size_t more) {
-    const auto [from, to] = window(less);
-    const auto [inner_from, inner_to] = window(more);
-    const double allowed = kAllowedRatio + kAllowedPerTurningPoint * static_cast<double>(more - less - 1);
-    return trials.Rms(from, to, inner_from, inner_to) <=
-           allowed * trials.Rms(inner_from, inner_to, inner_from, inner_to);
-  };
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const bool enough = std::all_of(steps.begin() + static_cast<std::ptrdiff_t>(i) + 1, steps.end(),
-                                    [&](std::size_t more) { return fits(steps[i], more); });
-    if (enough) return steps[i];
-  }
-  return steps.back();
-}
-
-/// Turning points at which a window may begin or end. The hold and the first sample are excluded.
-std::vector<double> InnerTurningPoints(const FreeSwing& swing) {
-  std::vector<double> turns;
-  for (const double turn : swing.turns) {
-    if (turn > swing.from + 0.6 * swing.half_period && turn < swing.to) turns.push_back(turn);
-  }
-  return turns;
-}
-
-/// Leaves out a disturbed part at the end of the swing, or at its beginning.
-void TrimDisturbedPart(const Recording& recording, const FitOptions& options, bool at_end, FreeSwing& swing) {
-  const Recording excerpt = Excerpt(recording, kMaxTrialSamples, kPerHalfSwing / swing.half_period, at_end);
-  const double from = excerpt.time[0];
-  const double to = excerpt.time[excerpt.size() - 1];
-  std::vector<double> turns;
-  for (const double turn : InnerTurningPoints(swing)) {
-    if (turn > from && turn < to) turns.push_back(turn);
-  }
-  if (turns.size() < 2) return;
-  const auto window = [&](std::size_t k) {
-    if (k == 0) return std::pair(from, to);
-    return at_end ? std::pair(from, turns[turns.size() - k]) : std::pair(turns[k - 1], to);
-  };
-  WindowTrials trials(excerpt, options);
-  const std::size_t k = CountDisturbedTurningPoints(trials, TrimCandidates(turns.size()), window);
-  if (k == 0) return;
-  const auto [inner_from, inner_to] = window(k);
-  if (at_end) {
-    swing.to = inner_to;
-    swing.ends = {WindowEnd::Reason::kDisturbed};
-  } else {
-    swing.from = inner_from;
-    swing.begins = {WindowBegin::Reason::kDisturbed};
-  }
-}
-
-/// Whether the user gave a value, bound or prior for the start of the motion. It refers to the first sample or to the
-/// release in the present window, so the window must keep its beginning.
-bool ConstrainsStart(const FitOptions& options) {
-  const auto names = [](const auto& map) {
-    return std::ranges::any_of(map, [](const auto& entry) {
-      return entry.first == kReleaseAngle.name || entry.first == kReleaseTime.name ||
-             entry.first == kInitialAngle.name || entry.first == kInitialRate.name;
-    });
-  };
-  return names(options.fixed) || names(options.initial) || names(options.bounds) || names(options.priors);
-}
-
-/// Leaves out disturbed parts at both ends of the swing, unless the user chose the end.
-void Trim(const Recording& recording, const FitOptions& options, FreeSwing& swing) {
-  if (!(swing.half_period > 0)) return;
-  if (!swing.from_given && !ConstrainsStart(options)) TrimDisturbedPart(recording, options, false, swing);
-  if (!swing.to_given) TrimDisturbedPart(recording, options, true, swing);
-}
 
 /// Removes whole turns over the top from the readings, so that the zero angle is near the sensor's zero. Returns a
 /// sentence with the number of turns, or an empty one.
@@ -225,6 +92,13 @@ void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
                                     "choose another window with --from and --to if needed"});
 }
 
+void WarnOfVibration(const Recording& used, const Vibration& vibration, FitReport& fit) {
+  fit.warnings.push_back({"vibration", "a faster vibration of " + NumberText(vibration.frequency, 2) + " Hz, " +
+                                           NumberText(vibration.amplitude, 2) + " " + used.value_unit() +
+                                           " in size, lies over the swing; it is treated as noise. Damp it, or choose "
+                                           "a window without it with --from and --to"});
+}
+
 /// Marks the fit as not of a pendulum, and removes its errors, which are valid only for a pendulum.
 void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
@@ -279,6 +153,8 @@ struct SwingState {
   SwingFit result;                   ///< Result of the last fit.
   std::optional<OffsetJumps> jumps;  ///< Jumps of the readings' zero; std::nullopt: not searched or none.
   bool was_trimmed = false;          ///< Disturbed ends were left out.
+  std::optional<Presliding> presliding =
+      std::nullopt;  ///< The swings from there on were left out, unless the user chose the end.
   bool is_pendulum = true;
 
   /// Whether the fit leaves more than noise.
@@ -319,9 +195,29 @@ Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
   return why.has_value();
 }
 
+/// Small swings to which no law applies would otherwise outweigh the large ones.
+Result<bool> LeaveOutPresliding(const FitOptions& options, SwingState& state) {
+  constexpr double kBetter = 0.9;
+  state.presliding = FindPresliding(state.result.used, state.result.fit.model.gravity);
+  if (!state.presliding || state.swing.to_given) return false;
+  FreeSwing shorter = state.swing;
+  shorter.to = state.presliding->from;
+  shorter.ends = {WindowEnd::Reason::kPresliding};
+  Result<SwingFit> result = FitBetween(state.result.used, shorter, options);
+  if (!result) return tl::unexpected(result.error());
+  const Eigen::VectorXd former = state.result.fit.residual.head(result->used.size());
+  const bool is_better = result->fit.residual.norm() < kBetter * former.norm();
+  if (!is_better && state.result.fit.termination == Termination::kConverged) return false;
+  state.swing = shorter;
+  state.result = *std::move(result);
+  return true;
+}
+
+bool MayBeDisturbed(const SwingState& state) { return state.IsLacking() && !state.presliding; }
+
 /// If a hand disturbed the beginning or the end of a swing, this part does not fit the remaining swing.
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
-  Trim(state.result.used, options, state.swing);
+  LeaveOutDisturbedEnds(state.result.used, options, state.swing);
   if (!state.HasNewWindow()) return false;
   Result<SwingFit> result = FitBetween(std::move(state.result.used), state.swing, options);
   if (!result) return tl::unexpected(result.error());
@@ -346,10 +242,11 @@ Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
   return state.result.swing.to != to;
 }
 
-constexpr std::array<WindowRescue, 5> kWindowRescues = {{
+constexpr std::array<WindowRescue, 6> kWindowRescues = {{
     {"offset_jumps", MayHaveJumped, CorrectJumps},
     {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
-    {"disturbed_ends", IsLacking, TrimDisturbedEnds},
+    {"presliding", IsLacking, LeaveOutPresliding, false},
+    {"disturbed_ends", MayBeDisturbed, TrimDisturbedEnds},
     {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
     {"earlier_end", MayConvergeWithEarlierEnd, TryEarlierEnd},
 }};
@@ -375,20 +272,73 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
                              NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) +
                              " s; choose another one with --from and --to"});
   }
+  if (state.presliding) {
+    fit.warnings.push_back({"presliding", Sentence(*state.presliding, state.result.used.value_unit(),
+                                                   state.swing.ends.reason == WindowEnd::Reason::kPresliding)});
+  }
   WarnOfLargerMotion(state.swing, fit);
+  if (const auto assumed = AssumedFrequencyText(state.result.used, state.swing.half_period, options)) {
+    fit.warnings.push_back({"ambiguous_frequency", *assumed});
+  }
   WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);
-  const auto why = state.IsLacking() ? TwoModesReason(state.result.used, fit, options.stop) : std::nullopt;
+  if (state.swing.vibration) WarnOfVibration(state.result.used, *state.swing.vibration, fit);
+  const bool is_explained = state.swing.vibration || state.presliding;
+  const auto why =
+      state.IsLacking() && !is_explained ? TwoModesReason(state.result.used, fit, options.stop) : std::nullopt;
   if (why) RejectAsNotAPendulum(*why, fit);
+}
+
+/// A release that the user asks for needs the hold, even if it seems unsteady.
+void KeepRequestedHold(const FitOptions& options, FreeSwing& swing) {
+  const bool is_requested = options.start == StartKind::kRelease && !swing.from_given;
+  if (!is_requested || !(swing.hold_from < swing.hold_to)) return;
+  swing.from = swing.hold_from;
+  swing.begins = {WindowBegin::Reason::kHeld};
+}
+
+/// Whether a hold was left out as unsteady, but the noise of the swing may show that it is steady.
+bool MayUseHold(const FitOptions& options, const SwingState& state) {
+  const FreeSwing& swing = state.result.swing;
+  return swing.begins.reason == WindowBegin::Reason::kUnsteadyHold && !options.start && !ConstrainsStart(options) &&
+         state.result.fit.termination == Termination::kConverged &&
+         state.result.used.quantity != Quantity::kAcceleration && !(state.jumps && state.jumps->AreCorrected());
+}
+
+/// Fits the swing with its hold, if that is as steady as the swing. recording: with the hold.
+void FitWithHold(Recording recording, const FitOptions& options, SwingState& state) {
+  const std::optional<FreeSwing> held = WithSteadyHold(recording, state.result.swing, state.result.fit.noise.sigma);
+  if (!held) return;
+  Result<SwingFit> released = FitBetween(std::move(recording), *held, options);
+  const bool is_released =
+      released && released->fit.termination == Termination::kConverged && released->fit.start == StartKind::kRelease;
+  if (!is_released) return;
+  state.swing = released->swing;
+  state.result = *std::move(released);
+}
+
+/// With few samples, a fast swing may look like a slow one, whose law it does not follow.
+bool MayBeFaster(const FitOptions& options, const SwingState& state) {
+  return state.IsLacking() && AssumedFrequencyText(state.result.used, state.swing.half_period, options);
 }
 
 /// After a stop request the result is meaningless.
 Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
+    return Error(StatusCode::kFailedPrecondition, *why);
+  }
   if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
+  KeepRequestedHold(options, swing);
+  std::optional<Recording> with_hold;
+  if (swing.begins.reason == WindowBegin::Reason::kUnsteadyHold) with_hold = recording;
   Result<SwingFit> first = FitBetween(std::move(recording), swing, options);
   if (!first) return first;
   SwingState state{std::move(swing), *std::move(first), std::nullopt};
+  if (MayBeFaster(options, state)) {
+    if (std::optional<SwingFit> faster = FitFasterAlias(state.result, options)) return *std::move(faster);
+  }
   const auto records = ApplyRescues(options, state);
   if (!records) return tl::unexpected(records.error());
+  if (with_hold && MayUseHold(options, state)) FitWithHold(*std::move(with_hold), options, state);
   if (state.is_pendulum) AddWarnings(options, state);
   std::vector<AttemptRecord>& attempts = state.result.fit.solver.attempts;
   attempts.insert(attempts.begin(), records->begin(), records->end());

@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "fitting/swing/aliases.h"
 #include "pendulum/base/format.h"
-#include "pendulum/base/physics.h"
 #include "pendulum/closed_form/sampling.h"
+#include "pendulum/closed_form/turning_point_view.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/fitting/start/frequency_scan.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -19,57 +20,20 @@ namespace {
 
 using Eigen::Index;
 
-/// No recorded pendulum is shorter than 3 cm.
-constexpr double kFastestHz = 3;
-
 /// A difference of -2 log L that corresponds to three standard deviations.
 constexpr double kNearlyAsWell = 9;
 
 /// A difference of -2 log L that even a slightly wrong law does not cause: ten standard deviations.
 constexpr double kMinDevianceGap = 100;
 
-constexpr double kTurn = 2 * kPi;
+/// With this many samples per period the readings show the swing. A person who chose the sampling rate saw the period.
+constexpr double kShown = 8;
+
+/// With this many samples per period, turning points and windows are searched as in any other recording.
+constexpr double kSurelyShown = 12;
 
 /// Limit of trajectories for fits that are only compared. Fits that explain the readings need a few tens.
 constexpr int kMaxAliasTraces = 300;
-
-/// The frequencies that a recording may have.
-struct AllowedFrequencies {
-  FrequencyRange range;  ///< rad/s
-  bool bounded = false;  ///< Whether rig or user limit it; otherwise `range` is that of real pendulums.
-};
-
-/// Frequency of small swings in rad/s for an inertia in the units of the options.
-double FrequencyOf(double inertia, const FitOptions& options) {
-  return std::sqrt((options.rig ? options.rig->gravity_torque.value : 1.0) / inertia);
-}
-
-double DurationOf(const Recording& recording) {
-  return recording.clock_scale * (recording.time[recording.size() - 1] - recording.time[0]);
-}
-
-double SampleRateOf(const Recording& recording) {
-  return DescribeSampling(recording, std::nullopt, std::nullopt).rate_hz / recording.clock_scale;
-}
-
-AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOptions& options) {
-  AllowedFrequencies allowed{{kTurn / DurationOf(used), kTurn * kFastestHz}, false};
-  if (const auto expected = ExpectedFrequency(options.rig)) {
-    allowed = {{(1 - kExpectedWithin) * kTurn * *expected, (1 + kExpectedWithin) * kTurn * *expected}, true};
-  }
-  for (const auto* values : {&options.initial, &options.fixed}) {
-    const auto inertia = values->find(kInertia.name);
-    if (inertia == values->end() || !(inertia->second > 0)) continue;
-    const double frequency = FrequencyOf(inertia->second, options);
-    allowed = {{frequency, frequency}, values == &options.fixed};
-  }
-  const auto bounds = options.bounds.find(kInertia.name);
-  if (bounds == options.bounds.end()) return allowed;
-  if (bounds->second.lower > 0) allowed.range.high = FrequencyOf(bounds->second.lower, options);
-  if (bounds->second.upper < kUnbounded) allowed.range.low = FrequencyOf(bounds->second.upper, options);
-  allowed.bounded = allowed.bounded || (bounds->second.lower > 0 && bounds->second.upper < kUnbounded);
-  return allowed;
-}
 
 /// Removes constant readings at the start, because the time of a release between two samples is unknown. The first
 /// reading is removed too, because it may belong to the hold even if the second reading does not.
@@ -92,68 +56,6 @@ void RemoveHold(Recording& used, FreeSwing& swing) {
   used.value = used.value.tail(left).eval();
 }
 
-/// A fit from one local minimum of the scan.
-struct Alias {
-  StartValues start;
-  FitReport fit;
-  double frequency = 0;  ///< Hz, small swings, true seconds
-  double likelihood() const { return fit.statistics.log_likelihood; }
-};
-
-/// Fits from all local minima with a permitted frequency, the likeliest first, without duplicates.
-Result<std::vector<Alias>> FitAliases(const Recording& used, const AllowedFrequencies& allowed, FitOptions options) {
-  constexpr double kSame = 0.1;     // cycles over the recording
-  constexpr double kBeyond = 1.02;  // the limits of a range are not exact bounds
-  Result<MotionModel> model = FindMotionModel(options.model);
-  if (!model) return tl::unexpected(model.error());
-  model->gravity = options.gravity.value_or(model->gravity);
-  std::optional<Status> error;
-  std::vector<Alias> aliases;
-  for (StartValues& start : ScanFrequencies(used, *model, allowed.range, options.stop)) {
-    options.search.start_values = start;
-    Result<FitReport> fit = FitRecording(used, options);
-    if (!fit) error = fit.error();
-    if (!fit || fit->termination == Termination::kFailed) continue;
-    const double frequency = FrequencyOf(fit->Find(kInertia.name)->estimate, options) / kTurn;
-    const bool inside =
-        kTurn * frequency * kBeyond > allowed.range.low && kTurn * frequency < kBeyond * allowed.range.high;
-    if (inside) aliases.push_back({std::move(start), *std::move(fit), frequency});
-  }
-  if (options.stop.stop_requested()) return FitStopped();
-  if (aliases.empty() && error) return tl::unexpected(*error);
-  std::ranges::stable_sort(aliases, std::ranges::greater(), &Alias::likelihood);
-  std::vector<Alias> distinct;
-  for (Alias& alias : aliases) {
-    const bool known = std::ranges::any_of(distinct, [&](const Alias& other) {
-      return std::abs(other.frequency - alias.frequency) * DurationOf(used) < kSame;
-    });
-    if (!known) distinct.push_back(std::move(alias));
-  }
-  return distinct;
-}
-
-std::string Hz(double frequency) { return NumberText(frequency, 3) + " Hz"; }
-
-/// "0.079 kg m^2 (0.76 Hz), 0.0456 kg m^2 (1 Hz)".
-std::string ListOf(const std::vector<const Alias*>& aliases) {
-  std::string list;
-  for (const Alias* alias : aliases) {
-    const ParameterEstimate& inertia = *alias->fit.Find(kInertia.name);
-    list += (list.empty() ? "" : ", ") + NumberText(inertia.estimate, 4) + " " + inertia.unit + " (" +
-            Hz(alias->frequency) + ")";
-  }
-  return list;
-}
-
-/// The likeliest fit and those that explain the readings nearly as well.
-std::vector<const Alias*> NearlyAsGood(const std::vector<Alias>& aliases, double within) {
-  std::vector<const Alias*> near;
-  for (const Alias& alias : aliases) {
-    if (2 * (aliases.front().likelihood() - alias.likelihood()) <= within) near.push_back(&alias);
-  }
-  return near;
-}
-
 /// The reason to reject a poor fit, or std::nullopt. With few samples per period, a misfit may look like noise, because
 /// successive residuals are independent.
 std::optional<std::string> NotDescribedReason(const Recording& used, const FitReport& fit) {
@@ -172,20 +74,36 @@ std::optional<std::string> NotDescribedReason(const Recording& used, const FitRe
          " parameters and the choice of a frequency; record for longer";
 }
 
+/// Whether the samples show each period of a fit that neither rig nor bounds limit.
+bool IsShown(const Alias& alias, const AllowedFrequencies& allowed, double rate) {
+  return !allowed.bounded && rate >= kShown * alias.frequency;
+}
+
+/// Of the fits that explain the readings equally well, the one whose periods the samples show comes first.
+void PreferShown(const AllowedFrequencies& allowed, double rate, std::vector<Alias>& aliases) {
+  for (const Alias* alias : NearlyAsGood(aliases, kNearlyAsWell)) {
+    if (!IsShown(*alias, allowed, rate)) continue;
+    const auto shown = aliases.begin() + (alias - aliases.data());
+    std::rotate(aliases.begin(), shown, shown + 1);
+    return;
+  }
+}
+
 /// The reason to reject a fit if neither rig nor bounds limit the frequency. Only the slowest pendulum is accepted, and
-/// only if it is well sampled and no faster pendulum explains the readings nearly as well.
-std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& aliases, double rate) {
-  constexpr double kMinPerPeriod = 8;                 // samples
+/// only if the samples show its periods, or no faster pendulum explains the readings nearly as well.
+std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& aliases, double rate,
+                                                    const FitOptions& options) {
   constexpr double kMinPerPeriodIfUnambiguous = 4.5;  // if no pendulum could alias to this frequency
   const double frequency = aliases.front().frequency;
   const bool slowest = frequency < 0.5 * rate;
   const bool alone = NearlyAsGood(aliases, kMinDevianceGap).size() == 1;
-  const bool is_unambiguous = rate - frequency > kFastestHz;
-  if (slowest && alone && rate > (is_unambiguous ? kMinPerPeriodIfUnambiguous : kMinPerPeriod) * frequency)
-    return std::nullopt;
-  return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(ApparentFrequency(frequency, rate)) +
-         " or faster; the readings suggest " + Hz(frequency) +
-         ". Give --rig with rod and bob or with \"inertia\", give --bounds of inertia, or sample at 6 Hz or faster";
+  const bool is_unambiguous = alone && rate - frequency > kFastestHz;
+  if (slowest && rate > (is_unambiguous ? kMinPerPeriodIfUnambiguous : kShown) * frequency) return std::nullopt;
+  const double apparent = ApparentFrequency(frequency, rate);
+  return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) +
+         " or faster; the readings suggest " + Hz(frequency) + ". If it swings at about " + Hz(apparent) + ", give " +
+         BoundsFlag(apparent, options) +
+         "; otherwise give --rig with rod and bob or with \"inertia\", or sample at 6 Hz or faster";
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
@@ -199,24 +117,35 @@ bool SamplesTwoPhasesOnly(const Recording& used, double frequency) {
 
 /// The reason for an ambiguous result, or std::nullopt.
 std::optional<std::string> AmbiguityReason(const Recording& used, const std::vector<Alias>& aliases,
-                                           const AllowedFrequencies& allowed) {
+                                           const AllowedFrequencies& allowed, const FitOptions& options) {
   const double rate = SampleRateOf(used);
   const auto near = NearlyAsGood(aliases, kNearlyAsWell);
-  if (near.size() > 1) {
+  if (near.size() > 1 && !IsShown(aliases.front(), allowed, rate)) {
     return "several inertias fit the readings nearly equally well, because their samples at " + Hz(rate) +
-           " look the same: " + ListOf(near) + "; sample faster";
+           " look the same: " + ListOf(near, rate) + "; sample faster, or choose one with --bounds of inertia";
   }
   if (const double frequency = aliases.front().frequency; SamplesTwoPhasesOnly(used, frequency)) {
     return "sampled at " + Hz(rate) + ", once or twice per swing of " + Hz(frequency) +
            ", all readings show nearly the same two phases, so a slightly lower and a slightly higher frequency look "
            "the same; sample at another rate";
   }
-  return allowed.bounded ? std::nullopt : UnboundedFrequencyReason(aliases, rate);
+  return allowed.bounded ? std::nullopt : UnboundedFrequencyReason(aliases, rate, options);
+}
+
+/// The assumption that the samples show each swing.
+std::string ShownText(double frequency, double rate) {
+  return NumberText(rate / frequency, 2) + " samples per period show a swing of " + Hz(frequency) +
+         ", which is assumed; a swing of " + Hz(rate - frequency) +
+         " would look the same. If it is faster, give a rig file with masses and length, or --bounds of inertia";
 }
 
 /// The assumption on which an unambiguous result depends.
-std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate) {
-  const std::string chosen = ListOf({&aliases.front()});
+std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate,
+                           bool is_linear) {
+  const std::string chosen = ListOf({&aliases.front()}, rate);
+  if (!allowed.bounded && (is_linear || NearlyAsGood(aliases, kNearlyAsWell).size() > 1)) {
+    return ShownText(aliases.front().frequency, rate);
+  }
   if (!allowed.bounded) {
     return "sampled at " + Hz(rate) + ", a pendulum faster than " + Hz(0.5 * rate) +
            " would look slower than it is; up to " + Hz(kFastestHz) + " only " + chosen +
@@ -249,7 +178,7 @@ std::optional<Rejection> RejectionOf(const Recording& used, const std::vector<Al
                                      const AllowedFrequencies& allowed, const FitOptions& options) {
   if (const auto why = NotDescribedReason(used, aliases.front().fit))
     return Rejection{Termination::kNotConverged, *why};
-  auto why = AmbiguityReason(used, aliases, allowed);
+  auto why = AmbiguityReason(used, aliases, allowed, options);
   if (!why) why = RigMismatchReason(used, aliases.front().fit, options);
   return why ? std::optional(Rejection{Termination::kNotIdentifiable, *why}) : std::nullopt;
 }
@@ -261,7 +190,9 @@ void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, co
   const bool mirrors = CanAliasWithinRange(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
   const bool ambiguous = rejection && rejection->termination == Termination::kNotIdentifiable;
   if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", rejection->why});
-  if (!rejection && mirrors) fit.warnings.push_back({"ambiguous_frequency", AssumptionText(aliases, allowed, rate)});
+  if (!rejection && mirrors)
+    fit.warnings.push_back(
+        {"ambiguous_frequency", AssumptionText(aliases, allowed, rate, fit.model.gravity.is_linear())});
   // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!rejection) return;
@@ -282,18 +213,11 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
-/// A message if well-sampled swings have an impossibly long period, because the unit of the times is wrong; otherwise
-/// empty.
-std::string ImplausiblePeriodText(const Recording& recording) {
-  constexpr double kLongest = 300;      // s: the period of a pendulum 22 km long
-  constexpr double kMinPerPeriod = 20;  // samples; aliasing rarely looks this smooth
-  const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
-  if (!swings || swings->empty()) return "";
-  const double period = 2 * swings->front().half_period * recording.clock_scale;
-  if (!(period > kLongest) || SampleRateOf(recording) * period < kMinPerPeriod) return "";
-  return "the period is " + NumberText(period, 3) +
-         " s, which is impossible for a pendulum; if the times are milliseconds or microseconds, name their column "
-         "time_ms or time_us";
+/// The number of samples in each half swing's double that is seen in the readings, whether they are a free swing or
+/// not; 0 if fewer than three turning points are seen.
+double SeenPerPeriod(const Recording& recording) {
+  const TurningPointTable table = FindAllTurningPoints(TurningPointView(recording));
+  return 2 * table.half_period * recording.clock_scale * SampleRateOf(recording);
 }
 
 }  // namespace
@@ -301,6 +225,21 @@ std::string ImplausiblePeriodText(const Recording& recording) {
 std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
   if (!rig || !rig->inertia) return std::nullopt;
   return std::sqrt(rig->gravity_torque.value / rig->inertia->value) / kTurn;
+}
+
+std::optional<std::string> AssumedFrequencyText(const Recording& used, double half_period, const FitOptions& options) {
+  const double frequency = 0.5 / (half_period * used.clock_scale);
+  const double rate = SampleRateOf(used);
+  const bool is_settled = IsFrequencyKnown(options) || IsLinear(options) || !(half_period > 0);
+  if (is_settled || rate >= 2 * kFastestHz || rate - frequency > kFastestHz) return std::nullopt;
+  return ShownText(frequency, rate);
+}
+
+std::optional<SwingFit> FitFasterAlias(const SwingFit& slow, const FitOptions& options) {
+  constexpr double kSame = 0.05;
+  Result<SwingFit> other = FitUndersampled(slow.used, WholeRecording(slow.used), options);
+  if (!other || std::abs(other->swing.half_period / slow.swing.half_period - 1) < kSame) return std::nullopt;
+  return *std::move(other);
 }
 
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
@@ -312,9 +251,10 @@ bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
   if (expected) return rate < kMinPerPeriod * (1 + kExpectedWithin) * *expected;
   if (rate >= 2 * kFastestHz) return false;
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
-  return !swings || std::ranges::any_of(*swings, [&](const FreeSwing& swing) {
+  if (!swings) return SeenPerPeriod(recording) < kSurelyShown;
+  return std::ranges::any_of(*swings, [&](const FreeSwing& swing) {
     const double seen = 0.5 / (swing.half_period * recording.clock_scale);
-    return rate < kMinPerPeriod * seen || rate - seen <= kFastestHz;
+    return rate < kMinPerPeriod * seen || (rate < kSurelyShown * seen && rate - seen <= kFastestHz);
   });
 }
 
@@ -332,11 +272,6 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   if (options.start == StartKind::kRelease) {
     return Error(StatusCode::kFailedPrecondition,
                  "sampled too slowly to find the time of the release; --start moving fits the motion after it");
-  }
-  if (!ExpectedFrequency(options.rig)) {
-    if (const std::string implausible = ImplausiblePeriodText(recording); !implausible.empty()) {
-      return Error(StatusCode::kFailedPrecondition, implausible);
-    }
   }
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
@@ -357,6 +292,7 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
                                                       Hz(allowed.range.high / kTurn) +
                                                       " fits the readings; check --rig, or sample faster");
   }
+  PreferShown(allowed, SampleRateOf(*used), *aliases);
   const std::optional<Rejection> rejection = RejectionOf(*used, *aliases, allowed, moving);
   FitReport fit = aliases->front().fit;
   if (!rejection) {

@@ -88,13 +88,13 @@ Check TableReader::ReadHeader() {
 }
 
 /// The unit at the end of a name, even if a recording would not use it as a unit: delay_s.
-const csv::Unit* UnitOf(const csv::Name& name) { return csv::SplitName(csv::CanonicalName(name.text)).unit; }
+const csv::Unit* UnitOf(const csv::Name& name) { return csv::MeaningOf(name.text).unit; }
 
 /// Checks that every column has at most one unit, and that the table has the two required ones.
 Check TableReader::CheckUnits(const std::vector<csv::Name>& names) const {
   for (const csv::Name& name : names) {
     const csv::Unit* unit = UnitOf(name);
-    const csv::Unit* second = csv::SecondUnit(name.text);
+    const csv::Unit* second = csv::MeaningOf(name.text).second;
     if (unit == nullptr) continue;
     const std::string column = "column " + Quoted(name.text);
     if (unit->kind != Kind::kRaw && unit->kind != Kind::kAngle) {

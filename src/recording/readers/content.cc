@@ -2,9 +2,9 @@
 #include "recording/readers/content.h"
 
 #include <algorithm>
-#include <array>
 
 #include "pendulum/base/file.h"
+#include "recording/readers/foreign_formats.h"
 #include "recording/readers/mat/mat_version_4.h"
 
 namespace pendulum {
@@ -27,42 +27,49 @@ bool IsMat(std::string_view begin) {
   return order == "IM" || order == "MI" || begin.substr(std::min(kUserBlock, begin.size())).starts_with(kHdf5);
 }
 
-/// A recognized format that cannot be read.
-struct Foreign {
-  std::string_view magic;
-  std::string_view sentence;
-};
+/// The text without a byte order mark and blanks before it.
+std::string_view WithoutBeginning(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"sv;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  return text;
+}
 
-constexpr std::array kForeign = {
-    Foreign{kHdf5,
-            "this is an HDF5 file without MATLAB's header; export the recording as CSV, or save it from MATLAB "
-            "with save('run.mat', 't', 'angle_deg')"},
-    Foreign{"\x1F\x8B"sv, "this is a gzip file; unpack it and name the file in it"},
-    Foreign{"\xFD"
-            "7zXZ"sv,
-            "this is an xz file; unpack it and name the file in it"},
-    Foreign{"BZh"sv, "this is a bzip2 file; unpack it and name the file in it"},
-    Foreign{"7z\xBC\xAF\x27\x1C"sv, "this is a 7z file; unpack it and name the file in it"},
-    Foreign{"Rar!"sv, "this is a RAR file; unpack it and name the file in it"},
-    Foreign{"\xD0\xCF\x11\xE0"sv, "this is a workbook of an older Excel; save it as CSV and give the CSV file"},
-    Foreign{"#ROSBAG"sv, "this is a ROS bag; export the topic as CSV (rostopic echo -p) and give the CSV file"},
-    Foreign{"\x89MCAP"sv, "this is an MCAP log; export the topic as CSV and give the CSV file"},
-    Foreign{"SQLite format 3"sv, "this is an SQLite file, not a recording; name a file of rows, a zip or a MAT-file"},
-    Foreign{
-        "<?xml"sv,
-        "this is XML, such as the project of Logger Pro or Tracker; export its data as text and give the text file"},
-    Foreign{"# Created by Octave"sv,
-            "this is Octave's text format; save the variables with save -7 run.mat t angle_deg"},
-    Foreign{"Octave-1-"sv, "this is Octave's binary format; save the variables with save -7 run.mat t angle_deg"},
-    Foreign{"%PDF"sv, "this is a PDF; name the file of the recording"},
-    Foreign{"PK\5\6"sv, "this zip file is empty; name one that holds a recording"},
-    Foreign{"PK\7\x8"sv, "this is a part of a split zip file; put the parts together"},
-};
+bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-const Foreign* FindForeign(std::string_view begin) {
-  const auto* const found =
-      std::ranges::find_if(kForeign, [&](const Foreign& each) { return begin.starts_with(each.magic); });
-  return found == kForeign.end() ? nullptr : found;
+/// XML begins with a declaration, a comment or the name of an element. Rows such as <12,34> do not.
+bool IsXml(std::string_view begin) {
+  const std::string_view text = WithoutBeginning(begin);
+  if (text.starts_with("<?xml") || text.starts_with("<!--") || text.starts_with("<!DOCTYPE")) return true;
+  if (text.size() < 2 || text.front() != '<' || !IsLetter(text[1])) return false;
+  const auto is_of_name = [](char c) {
+    return IsLetter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == ':' || c == '.';
+  };
+  const auto end = std::find_if_not(text.begin() + 1, text.end(), is_of_name);
+  return end == text.end() || " \t\r\n/>"sv.find(*end) != std::string_view::npos;
+}
+
+/// A table may also begin with a bracket, as in "[Header]" or "[s],[deg]".
+bool IsJson(std::string_view begin) {
+  const std::string_view text = WithoutBeginning(begin);
+  if (text.empty() || (text.front() != '{' && text.front() != '[')) return false;
+  const std::string_view rest = WithoutBeginning(text.substr(1));
+  if (rest.empty()) return false;
+  if (text.front() == '{') return rest.front() == '"';
+  return "-0123456789[{\"]"sv.find(rest.front()) != std::string_view::npos || rest.starts_with("null") ||
+         rest.starts_with("NaN");
+}
+
+/// UTF-16 has a mark, or, where text is mostly ASCII, a NUL in each second byte.
+bool IsUtf16(std::string_view begin) {
+  constexpr std::size_t kEnough = 8;
+  if (begin.starts_with("\xFF\xFE"sv) || begin.starts_with("\xFE\xFF"sv)) return true;
+  std::size_t even = 0, odd = 0;
+  for (std::size_t i = 0; i < begin.size(); ++i) {
+    if (begin[i] == '\0') ++(i % 2 == 0 ? even : odd);
+  }
+  const std::size_t half = begin.size() / 2;
+  return half >= kEnough && std::min(even, odd) == 0 && 10 * std::max(even, odd) >= 9 * half;
 }
 
 }  // namespace
@@ -70,12 +77,17 @@ const Foreign* FindForeign(std::string_view begin) {
 Content ContentOf(std::string_view begin) {
   if (begin.starts_with("PK\3\4"sv)) return Content::kZip;
   if (IsMat(begin)) return Content::kMat;
-  return FindForeign(begin) != nullptr ? Content::kForeign : Content::kText;
+  if (begin.starts_with("\x93NUMPY"sv)) return Content::kNpy;
+  if (begin.starts_with("\xD0\xCF\x11\xE0"sv)) return Content::kCompound;
+  if (IsUtf16(begin)) return Content::kUtf16;
+  if (!ForeignFormat(begin).empty()) return Content::kForeign;
+  if (IsXml(begin)) return Content::kXml;
+  return IsJson(begin) ? Content::kJson : Content::kText;
 }
 
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name) {
-  const Foreign* foreign = FindForeign(begin);
-  return Fault(name, std::string(foreign == nullptr ? "the format of this file is not supported" : foreign->sentence));
+  const std::string_view sentence = ForeignFormat(begin);
+  return Fault(name, std::string(sentence.empty() ? "the format of this file is not supported" : sentence));
 }
 
 }  // namespace pendulum

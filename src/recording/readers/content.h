@@ -10,7 +10,17 @@
 namespace pendulum {
 
 /// The format of a file according to its first bytes; the file name is ignored.
-enum class Content { kText, kZip, kMat, kForeign };
+enum class Content {
+  kText,
+  kUtf16,  ///< Text with two bytes per character.
+  kZip,    ///< Also .xlsx, .ods and .npz.
+  kMat,    ///< MATLAB.
+  kNpy,    ///< NumPy.
+  kJson,
+  kXml,       ///< Workbooks of Excel 2003, .fods, states of phyphox, and others that are not read.
+  kCompound,  ///< Microsoft's compound file: .xls, and others that are not read.
+  kForeign,   ///< Not read.
+};
 
 inline constexpr std::size_t kContentBytes = 520;  ///< Number of bytes needed for the detection.
 

@@ -6,16 +6,21 @@
 #include <utility>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/sha256.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
+#include "recording/readers/bytes_recording.h"
+#include "recording/readers/containers/npy.h"
+#include "recording/readers/containers/utf16.h"
 #include "recording/readers/content.h"
 #include "recording/readers/mat/mat_recording.h"
 #include "recording/readers/text/row_reader.h"
+#include "recording/readers/workbook_recording.h"
 #include "recording/readers/zip_recording.h"
 
 namespace pendulum {
 namespace {
 
-/// Zip and MAT-files are read into memory completely. A larger file is refused, because it is not a recording.
+/// Files other than text are read into memory completely. A larger file is refused, because it is not a recording.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 29;
 
 /// Reads the remaining bytes of a file. `bytes` are its first bytes.
@@ -30,7 +35,7 @@ Result<std::string> ReadRest(InputFile& file, std::string bytes) {
     bytes.resize(used + *got);
     if (bytes.size() > kMaxBytes) {
       return Fault(file.name(), "the file has more than " + std::to_string(kMaxBytes) +
-                                    " bytes, too many for a zip or a MAT-file; export the recording as CSV");
+                                    " bytes, too many for a file other than text; export the recording as CSV");
     }
     if (is_end) return bytes;
   }
@@ -49,16 +54,43 @@ Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   return ParseRecording(*bytes, file.name(), options);
 }
 
+/// Reads text in UTF-16 as if it were UTF-8. An XML text names its encoding.
+Result<Recording> ReadUtf16(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                            Nesting nesting) {
+  const bool is_marked = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+  const bool is_big = is_marked ? bytes.starts_with('\xFE') : bytes.starts_with('\0');
+  const std::string text = Utf8OfUtf16(bytes.substr(is_marked ? 2 : 0), is_big ? ByteOrder::kBig : ByteOrder::kLittle);
+  if (ContentOf(std::string_view(text).substr(0, kContentBytes)) == Content::kXml) {
+    return ReadXml(bytes, name, options);
+  }
+  Result<Recording> recording = ReadBytes(text, name, options, nesting);
+  if (!recording) return recording;
+  Result<std::string> sha256 = Sha256(bytes);
+  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  recording->sha256 = *std::move(sha256);
+  return recording;
+}
+
 }  // namespace
 
-Result<Recording> ParseRecording(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+Result<Recording> ReadBytes(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                            Nesting nesting) {
   switch (ContentOf(bytes.substr(0, kContentBytes))) {
     case Content::kText: return ReadRows(LineReader(bytes, name), options);
-    case Content::kZip: return ReadZip(bytes, name, options);
+    case Content::kUtf16: return ReadUtf16(bytes, name, options, nesting);
+    case Content::kZip: return ReadZip(bytes, name, options, nesting);
     case Content::kMat: return ReadMat(bytes, name, options);
+    case Content::kNpy: return FromWorkbook(ReadNpy(bytes, options.most_unpacked_bytes), kArrays, bytes, name, options);
+    case Content::kJson: return ReadJson(bytes, name, options);
+    case Content::kXml: return ReadXml(bytes, name, options);
+    case Content::kCompound: return ReadCompound(bytes, name, options);
     case Content::kForeign: break;
   }
-  return ForeignContent(bytes, name);
+  return ForeignContent(bytes.substr(0, kContentBytes), name);
+}
+
+Result<Recording> ParseRecording(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  return ReadBytes(bytes, name, options, Nesting::kFile);
 }
 
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options) {

@@ -6,13 +6,14 @@
 
 #include "pendulum/recording/readers/columns/read_options.h"
 #include "pendulum/recording/recording.h"
+#include "recording/readers/bytes_recording.h"
 
 namespace pendulum {
 
-/// Reads a recording from the bytes of a zip file, such as phyphox exports. It uses the member that has a column for
-/// the quantity and its time, or the one that --value_column "MEMBER/COLUMN" names; MEMBER may omit its folders.
-/// Messages begin "name:member:line:". kDataLoss: the bytes are not a zip file, are damaged or encrypted, contain no
-/// such member or several, or the member unpacks to more than options.most_unpacked_bytes.
-Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const ReadOptions& options);
+/// Reads a recording from the bytes of a zip file: a workbook (.xlsx, .ods), arrays of NumPy (.npz), or a zip file with
+/// a recording, such as phyphox exports (see ReadOnlyMember). Messages begin "name:member:line:". kDataLoss: the bytes
+/// are not a zip file, are damaged or encrypted, contain no recording or several, or the member unpacks to more than
+/// options.most_unpacked_bytes.
+Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const ReadOptions& options, Nesting nesting);
 
 }  // namespace pendulum

@@ -206,18 +206,85 @@ TEST(FitUndersampled, FitsASlowPendulumWithoutAPlausibleAlias) {
   EXPECT_FALSE(result.swing.undersampled);
 }
 
-// Milliseconds and microseconds interpreted as seconds.
-TEST(FitUndersampled, RefusesAnImplausiblePeriod) {
-  for (const double factor : {1e3, 1e6}) {
+// Milliseconds and microseconds interpreted as seconds, and seconds interpreted as milliseconds.
+TEST(FitSwing, AsksAboutAnImplausiblePeriod) {
+  for (const double factor : {1e3, 1e6, 1e-3}) {
     Recording recording = Must(SimulateRecording(Swing(50, 0.423, 1)));
     recording.time *= factor;
     const ChosenSwings swings = Must(ChooseSwings(recording, {}, {}));
     const Result<SwingFit> result = FitSwing(recording, swings.found.front(), ModelOptions("viscous"));
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, StatusCode::kFailedPrecondition);
-    EXPECT_THAT(result.error().message,
-                HasSubstr("which is impossible for a pendulum; if the times are milliseconds or micro"));
+    EXPECT_THAT(result.error().message, HasSubstr("the periods of pendulums are 0.1 s to 20 s"));
+    EXPECT_THAT(result.error().message, HasSubstr(factor > 1 ? "--time_column NAME:ms" : "--time_column NAME:s"));
+    EXPECT_THAT(result.error().message, HasSubstr("--model linear"));
   }
+}
+
+TEST(FitSwing, AcceptsAnyPeriodIfTheInertiaIsKnown) {
+  Recording recording = Must(SimulateRecording(Swing(50, 0.1, 1)));
+  recording.time *= 1e3;
+  const double inertia = 1e6 * kInertiaTruth / kTextbookTorque;
+  FitOptions options = ModelOptions("viscous");
+  options.bounds["inertia"] = {0.5 * inertia, 2 * inertia};
+  const SwingFit result = FitAsTheToolDoes(recording, std::nullopt, options);
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), inertia, 4 * *result.fit.Find("inertia")->std_error);
+}
+
+// A frequency of 0.2 Hz sampled at 3 Hz: a swing of 2.8 Hz has the same samples if it is small.
+TEST(FitSwing, AssumesTheFrequencyThatFifteenSamplesAPeriodShow) {
+  SyntheticOptions run = Swing(3, 0.1, 1, kTextbookTorque / std::pow(2 * kPi * 0.2, 2));
+  run.duration = 100;
+  const SwingFit result = FitSimulated(run, std::nullopt, "viscous");
+  ASSERT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+  EXPECT_NEAR(InertiaOf(result), run.parameters[0], 4 * *result.fit.Find("inertia")->std_error);
+  EXPECT_THAT(result.fit.warnings, HasWarning("ambiguous_frequency"));
+}
+
+// 0.76 Hz sampled at 0.7 Hz seems to be 0.06 Hz, but its period depends on the amplitude twelve times as much.
+TEST(FitSwing, SeesThatASmoothCurveIsAFasterSwing) {
+  SyntheticOptions run = Swing(0.7, 0.6, 1);
+  run.duration = 150;
+  const SwingFit result = FitSimulated(run, std::nullopt, "viscous");
+  EXPECT_NE(result.fit.termination, Termination::kConverged);
+  EXPECT_FALSE(result.fit.Find("inertia")->std_error);
+}
+
+TEST(FitUndersampled, NamesFirstTheFrequencyThatTheSamplesShow) {
+  const SwingFit result = FitSimulated(Swing(3.5, 0.05, 1), std::nullopt, "viscous");
+  ASSERT_EQ(result.fit.termination, Termination::kNotIdentifiable);
+  const std::size_t first = result.fit.reason.find("(0.76");
+  EXPECT_THAT(result.fit.reason.find(" Hz)"), AllOf(Ge(first), Le(first + 10))) << result.fit.reason;
+}
+
+// ---- Sensors of unknown scale --------------------------------------------------------------------------------------
+
+TEST(FitUndersampled, FindsTheScaleOfAnySensor) {
+  for (const SyntheticOptions& measured :
+       {MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.001),
+        MeasuredSwing(Quantity::kPosition, SensorKind::kCoordinate, {0.01, 0.3, 0.4}, 0.0005),
+        MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, 0.02, 0.3}, 0.02)}) {
+    for (const double per_period : {4.6, 5.5, 6.5}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(measured.quantity)) + ", " + std::to_string(per_period));
+      SyntheticOptions run = measured;
+      run.sample_rate = per_period * std::sqrt(22.0) / (2 * kPi);
+      run.duration = 40;
+      const SwingFit result = FitSimulated(run, std::nullopt, "coulomb");
+      EXPECT_TRUE(result.swing.undersampled);
+      ExpectTruth(run, result.fit);
+    }
+  }
+}
+
+TEST(FitUndersampled, AsksForTheOtherAxisOfAnAccelerationAlongTheRod) {
+  SyntheticOptions run =
+      MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.1, 1.005, kPi / 2, 0.3}, 0.02);
+  run.sample_rate = 4;
+  const Recording recording = Must(SimulateRecording(run));
+  const auto refused = FitUndersampled(recording, WholeRecording(recording), ModelOptions("coulomb"));
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("choose the axis across the rod with --value_column"));
 }
 
 TEST(FitUndersampled, RefusesAFrequencyFarFromThePredictionOfTheRig) {

@@ -54,23 +54,20 @@ TEST(ForeignFormats, ReadColumnsSeparatedByBlanks) {
 
 TEST(ForeignFormats, TheUserChoosesAmongColumns) {
   const std::string text = "time_ms,time_s,angle_rad,pot_volts\n" + Rows("{t},9,9,{v}");
-  EXPECT_EQ(FaultOf(text),
-            "run.csv:1:9: columns \"time_ms\" and \"time_s\" could both be the time; choose one with "
-            "--time_column");
-  EXPECT_EQ(FaultOf(text, TimeAndValue("time_ms", "")),
-            "run.csv:1:26: columns \"angle_rad\" and \"pot_volts\" could both be the quantity; choose one with "
-            "--value_column");
+  EXPECT_EQ(RecordingOf(text).unit, "rad");
+  ExpectTheRows(RecordingOf(text, TimeAndValue("", "pot_volts")));  // time_s does not increase
   ExpectTheRows(RecordingOf(text, TimeAndValue("time_ms", "pot_volts")));
   ExpectTheRows(RecordingOf(text, TimeAndValue("1", "4")));
   ExpectTheRows(RecordingOf(text, TimeAndValue("1", "", "volts")));
   EXPECT_EQ(RecordingOf(text, TimeAndValue("1", "4")).unit, "volts");
 }
 
-TEST(ForeignFormats, ColumnsWithoutAUnitNeedAUnitFlag) {
+TEST(ForeignFormats, ColumnsWithoutAUnitTakeTheUnitFlag) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
-  EXPECT_EQ(FaultOf(text, TimeAndValue("t:ms", "x")),
-            "run.csv:1:3: column \"x\" does not give its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, "
-            "_volts, _m_s2, _px, _m, _cm or _mm, or give --unit");
+  EXPECT_EQ(
+      RecordingOf(text, TimeAndValue("t:ms", "x")).warnings.at(0).message,
+      "run.csv: column \"x\" does not give its unit and was assumed to be in px, a length of unknown scale; --unit "
+      "says otherwise");
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "x", "deg")), kDegree);
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "", "deg")), kDegree);
   ExpectTheRows(RecordingOf("t_ms,x\n" + Rows("{t},{v}"), TimeAndValue("t_ms", "", "deg")), kDegree);
@@ -81,12 +78,17 @@ TEST(ForeignFormats, FractionalTimesWithoutAUnitAreSeconds) {
   const Recording recording = RecordingOf("t,angle_rad\n" + Rows("0.{t}5,{v}"), TimeAndValue("t", ""));
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
-  EXPECT_EQ(recording.warnings[0].message,
-            "run.csv: column \"t\" does not give its unit and was assumed to be in seconds; give --time_column with "
-            ":s, :ms or :us after the column");
-  EXPECT_THAT(
-      WrongFlag("t,angle_rad\n" + Rows("{t},{v}"), TimeAndValue("t", "")),
-      HasSubstr("column \"t\" holds whole numbers and does not give its unit; give --time_column with :s, :ms"));
+  EXPECT_EQ(
+      recording.warnings[0].message,
+      "run.csv: column \"t\" does not give its unit and was assumed to be in s (the rows are then 0.0936 s apart); "
+      "--time_column t:ms or :us says otherwise");
+}
+
+TEST(ForeignFormats, WholeTimesWithoutAUnitAreMilliseconds) {
+  const std::string text = "t,angle_rad\n" + Rows("{t},{v}");
+  ExpectTheRows(RecordingOf(text));
+  EXPECT_EQ(RecordingOf(text).warnings.at(0).code, "time_unit_assumed");
+  EXPECT_EQ(RecordingOf(text, TimeAndValue("t:s", "")).time[1], 10);
 }
 
 TEST(ForeignFormats, RefuseMissingColumns) {
@@ -108,9 +110,10 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
   EXPECT_EQ(WrongFlag(text, Unit("rad")),
             "run.csv:1:8: column \"angle_deg\" is in deg, so --unit rad contradicts it; leave the flag out, or choose "
             "another column with --value_column");
-  EXPECT_EQ(WrongFlag(text, Unit("grad")),
-            "run.csv:1:8: --unit is \"grad\"; it must be rad, deg, rad_s, deg_s, counts, volts, "
-            "m_s2, px, m, cm or mm");
+  EXPECT_EQ(
+      WrongFlag(text, Unit("gon")),
+      "run.csv:1:8: --unit is \"gon\"; it must be rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, "
+      "g, px, m, cm or mm");
   EXPECT_EQ(
       WrongFlag(text, Unit("", 50)),
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "
@@ -134,13 +137,17 @@ TEST(ForeignFormats, RefuseANameWithTwoUnits) {
 
 TEST(ForeignFormats, NameTheFlagsAFileWithoutHeaderNeeds) {
   const std::string three = Rows("{t},{v},1");
-  const std::string common =
-      "run.csv:1:1: the first row has numbers instead of column names; put a header above it, such as "
-      "time_s,angle_deg, or describe the columns: give ";
-  EXPECT_EQ(FaultOf(three), common + "--time_column or --sample_rate_hz, --value_column and --unit");
-  EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "")), common + "--value_column and --unit");
-  EXPECT_EQ(FaultOf(three, TimeAndValue("1:ms", "2")), common + "--unit");
-  EXPECT_EQ(FaultOf(three, TimeAndValue("", "2", "deg")), common + "--time_column or --sample_rate_hz");
+  const std::string several = "columns 2 and 3 could both be the quantity, and none of them shows a swing by itself";
+  EXPECT_THAT(FaultOf(three), HasSubstr(several));
+  EXPECT_THAT(FaultOf(three, TimeAndValue("1:ms", "")), HasSubstr(several));
+  EXPECT_THAT(
+      FaultOf(three, TimeAndValue("1:ms", "2")),
+      HasSubstr("column 2 does not give its unit, and its name does not say whether it is an angle, a voltage or "
+                "a length: give it with --unit"));
+  const Recording recording = RecordingOf(three, TimeAndValue("", "2", "deg"));
+  ExpectTheRows(recording, kDegree);
+  EXPECT_EQ(recording.warnings.at(0).message,
+            "run.csv: column 1 increases and was assumed to be the time; --time_column chooses another");
   ExpectTheRows(RecordingOf(three, TimeAndValue("1:ms", "2", "deg")), kDegree);
 }
 

@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "pendulum/fitting/start/sensor_start.h"
 #include "pendulum/fitting/start/start_values.h"
 
 namespace pendulum {
@@ -21,5 +22,10 @@ struct FrequencyRange {
 /// eq. (6.15)). Cost: some ms to a second, depending on range and duration.
 std::vector<StartValues> ScanFrequencies(const Recording& recording, const MotionModel& model,
                                          const FrequencyRange& range, const std::stop_token& stop = {});
+
+/// The linear oscillations that describe the first 60 readings, whatever their unit: at most twelve, the best first.
+/// Left out are those that leave more than four times the smallest sum of squares.
+std::vector<Oscillation> ScanOscillations(const Recording& view, const FrequencyRange& range,
+                                          const std::stop_token& stop = {});
 
 }  // namespace pendulum

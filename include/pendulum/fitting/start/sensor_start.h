@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/fitting/start/start_values.h"
 #include "pendulum/model/sensor_model.h"
 #include "pendulum/recording/recording.h"
 
@@ -36,9 +37,23 @@ struct SensorStart {
   Recording view;                  ///< The readings converted with these parameters: rad or rad/s.
 };
 
+/// The motion that a view of the readings shows (TurningPointView), in the unit of the view.
+struct Oscillation {
+  double zero = 0;
+  double amplitude = 0;  ///< The largest one.
+  double frequency = 0;  ///< rad/s, as if the swings of the recording were small.
+};
+
 /// Start points of the search for a sensor that is not direct. If the scale is unknown, there is one for each amplitude
 /// that the readings may represent. kFailedPrecondition: as FindTurningPoints and NaturalFrequency.
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
                                               const FitOptions& options);
+
+/// The same start points if the oscillation is known from elsewhere, because the turning points cannot be seen.
+std::vector<SensorStart> SensorStarts(const Recording& recording, const SensorModel& sensor, const FitOptions& options,
+                                      const Oscillation& oscillation);
+
+/// Replaces the zero at the end of start values, which were estimated from start.view, by the sensor's parameters.
+void AppendSensorParameters(const SensorModel& sensor, const SensorStart& start, StartValues& values);
 
 }  // namespace pendulum

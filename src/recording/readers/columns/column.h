@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "pendulum/base/physics.h"
 #include "recording/readers/columns/csv.h"
 
-/// The information in a header: the file's separator, and the unit in each column's name.
+/// The information in a header: the file's separator, and what each column's name says.
 namespace pendulum::csv {
 
-/// An acceleration or a length is used as the quantity only if the file has no other quantity.
+/// The kinds of a quantity in the order in which a reader prefers them.
 enum class Kind { kTime, kAngle, kRate, kRaw, kAcceleration, kLength };
 
-/// The unit of a column whose name ends in `_suffix`. The value in SI is value * factor / divisor: 33 ms is 33 /
-/// 1000.0, the double nearest to 0.033, unlike 33 * 1e-3.
+/// A unit, and its suffix in the name of a column. The value in SI is value * factor / divisor: 33 ms is 33 / 1000.0,
+/// the double nearest to 0.033, unlike 33 * 1e-3.
 struct Unit {
   std::string_view suffix;
   Kind kind;
@@ -28,65 +29,33 @@ struct Unit {
   constexpr double ToSi(double number) const { return number * factor / divisor; }
 };
 
-/// True for an acceleration or a length.
-constexpr bool IsFallbackQuantity(const Unit& unit) {
-  return unit.kind == Kind::kAcceleration || unit.kind == Kind::kLength;
-}
-
-/// A suffix that ends in another suffix comes before it: rad_s before s.
 inline constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},
     Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
+    Unit{"rpm", Kind::kRate, "rad/s", 2 * kPi, 60},
     Unit{"rad", Kind::kAngle, "rad"},
     Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
+    Unit{"mrad", Kind::kAngle, "rad", 1, 1e3},
+    Unit{"rev", Kind::kAngle, "rad", 2 * kPi},
     Unit{"s", Kind::kTime, "s"},
     Unit{"ms", Kind::kTime, "ms", 1, 1e3},
     Unit{"us", Kind::kTime, "us", 1, 1e6},
+    Unit{"ns", Kind::kTime, "ns", 1, 1e9},
+    Unit{"min", Kind::kTime, "min", 60},
     Unit{"counts", Kind::kRaw, "counts"},
     Unit{"volts", Kind::kRaw, "volts"},
+    Unit{"mv", Kind::kRaw, "volts", 1, 1e3},
     Unit{"m_s2", Kind::kAcceleration, "m/s^2"},
+    Unit{"g", Kind::kAcceleration, "m/s^2", kStandardGravity},
     Unit{"px", Kind::kLength, "px"},
     Unit{"cm", Kind::kLength, "m", 1, 1e2},
     Unit{"mm", Kind::kLength, "m", 1, 1e3},
     Unit{"m", Kind::kLength, "m"},
 };
 
-/// Possible endings of the name of a column with a quantity.
-inline constexpr std::string_view kSuffixes = "_rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, _px, _m, _cm or _mm";
-
-/// Lower-case letters, with ASCII in place of ° and of the two code points of µ.
-inline std::string PlainName(std::string_view name) {
-  struct Spelling {
-    std::string_view letter, ascii;
-  };
-  constexpr std::array kSpellings = {Spelling{"\u00B0", "deg"}, Spelling{"\u00B5", "u"}, Spelling{"\u03BC", "u"}};
-  std::string plain;
-  while (!name.empty()) {
-    const auto* const found =
-        std::ranges::find_if(kSpellings, [&](const Spelling& each) { return name.starts_with(each.letter); });
-    const char c = name.front();
-    if (found != kSpellings.end()) {
-      plain += found->ascii;
-      name.remove_prefix(found->letter.size());
-    } else {
-      plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-      name.remove_prefix(1);
-    }
-  }
-  return plain;
-}
-
-/// The name in the form stem_unit and in plain letters: time_ms for `Time (ms)`, gyro_deg_s for `Gyro [°/s]`.
-inline std::string CanonicalName(std::string_view name) {
-  const std::size_t bracket = name.find_last_of("([");
-  if (bracket == std::string_view::npos || (name.back() != ')' && name.back() != ']')) return PlainName(name);
-  std::string canonical = PlainName(Trim(name.substr(0, bracket)));
-  canonical += '_';
-  for (const char c : PlainName(name.substr(bracket + 1, name.size() - bracket - 2))) {
-    if (!IsBlank(c) && c != '^') canonical += c == '/' ? '_' : c;
-  }
-  return canonical;
-}
+/// The units of a quantity, as --unit takes them.
+inline constexpr std::string_view kValueUnits =
+    "rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, g, px, m, cm or mm";
 
 /// The unit with this suffix, or nullptr.
 inline const Unit* UnitOfSuffix(std::string_view suffix) {
@@ -94,44 +63,44 @@ inline const Unit* UnitOfSuffix(std::string_view suffix) {
   return found == kUnits.end() ? nullptr : found;
 }
 
-/// The unit at the end of a canonical name, and the part before it.
-struct NameParts {
-  std::string_view stem;
-  const Unit* unit = nullptr;
+/// What the name of a column says.
+struct NameMeaning {
+  std::optional<Kind> kind;      // From the unit, else from the words; std::nullopt: the name says nothing.
+  const Unit* unit = nullptr;    // nullptr: not in the name.
+  const Unit* second = nullptr;  // Another unit before `unit`: `angle_deg [rad]`.
+  std::string stem;              // The name without its unit, in small plain letters; words are separated by blanks.
+  bool has_other_unit = false;   // A unit that no quantity of a swing has: degrees Celsius, newton, m/s.
+  bool is_secondary = false;     // By its words not a reading: a setpoint, an error, a model's value.
+
+  /// Whether one of the words of the name is `word`.
+  bool Has(std::string_view word) const;
 };
 
-inline NameParts SplitName(std::string_view canonical) {
-  for (const Unit& unit : kUnits) {
-    if (!canonical.ends_with(unit.suffix)) continue;
-    const std::string_view stem = canonical.substr(0, canonical.size() - unit.suffix.size());
-    if (stem.empty() || stem.ends_with('_')) return {stem, &unit};
-  }
-  return {canonical};
-}
+/// Reads a column's name, in the forms `angle_deg`, `Angle (deg)`, `Angle [deg]`, `phi/deg`, `angle in deg`,
+/// `angleDeg`, `degrees`; words in English, German, French, Spanish, Italian, Portuguese and others.
+NameMeaning MeaningOf(std::string_view name);
 
-/// The unit in the name, if any. Only `time` itself is a time; `delay_s` is not.
+/// Small letters of ASCII: letters with accents, Greek letters and signs such as the degree are written in plain
+/// letters.
+std::string PlainName(std::string_view name);
+
+/// The unit that a text names: `rad/s`, `°/s`, `Sekunden`; nullptr if it is none.
+const Unit* UnitOfText(std::string_view text);
+
+/// The unit in the name of a quantity or of a time, or nullptr. `delay_s` is not a time.
 inline const Unit* FindUnit(std::string_view name) {
-  const std::string canonical = CanonicalName(name);
-  const auto [stem, unit] = SplitName(canonical);
-  return unit != nullptr && unit->kind == Kind::kTime && stem != "time_" ? nullptr : unit;
+  const NameMeaning meaning = MeaningOf(name);
+  return meaning.kind ? meaning.unit : nullptr;
 }
 
-/// The unit of time in the name of a column that the user declares to be the time; also `t_ms`.
+/// The unit of time in the name of a column that the user declares to be the time; also `delay_ms`.
 inline const Unit* FindTimeUnit(std::string_view name) {
-  const std::string canonical = CanonicalName(name);
-  const Unit* unit = SplitName(canonical).unit;
+  const Unit* unit = MeaningOf(name).unit;
   return unit != nullptr && unit->kind == Kind::kTime ? unit : nullptr;
 }
 
-/// The unit before the last one if the name has two, such as `angle_deg [rad]`; otherwise nullptr.
-inline const Unit* SecondUnit(std::string_view name) {
-  const std::string canonical = CanonicalName(name);
-  std::string_view stem = SplitName(canonical).stem;
-  if (stem.size() == canonical.size() || stem.size() < 2) return nullptr;
-  stem.remove_suffix(1);
-  const auto [rest, unit] = SplitName(stem);
-  return unit == nullptr || rest.empty() || unit->kind == Kind::kTime ? nullptr : unit;
-}
+/// True for the name of a time, with or without its unit.
+inline bool IsTime(std::string_view name) { return MeaningOf(name).kind == Kind::kTime; }
 
 /// The most frequent separator outside quotes in the header; a blank if there is no other. In a tie a comma loses,
 /// because it is most likely part of a name.

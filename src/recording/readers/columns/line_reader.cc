@@ -42,11 +42,43 @@ Result<void> LineReader::Begin() {
   return {};
 }
 
+/// Fills `room` with the bytes that were read ahead, then from the file.
+Result<std::size_t> LineReader::Read(std::span<char> room) {
+  const std::size_t kept = std::min(room.size(), ahead_.size() - ahead_at_);
+  std::copy_n(ahead_.data() + ahead_at_, kept, room.data());
+  ahead_at_ += kept;
+  if (ahead_at_ == ahead_.size()) {
+    ahead_ = {};
+    ahead_at_ = 0;
+  }
+  if (kept == room.size()) return kept;
+  const Result<std::size_t> got = file_->Read(room.subspan(kept));
+  return got ? kept + *got : got;
+}
+
+Result<std::string> LineReader::Peek(std::size_t max_bytes) {
+  if (!has_begun_) {
+    if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
+  }
+  std::string bytes(at_, std::min<std::size_t>(end_ - at_, max_bytes));
+  if (file_ == nullptr || bytes.size() == max_bytes) return bytes;
+  const std::size_t wanted = max_bytes - bytes.size();
+  const std::size_t kept = ahead_.size() - ahead_at_;
+  if (kept < wanted) {
+    ahead_.erase(0, std::exchange(ahead_at_, 0));
+    ahead_.resize(wanted);
+    const Result<std::size_t> got = file_->Read(std::span(ahead_).subspan(kept));
+    if (!got) return tl::unexpected(got.error());
+    ahead_.resize(kept + *got);
+  }
+  return bytes + ahead_.substr(ahead_at_, wanted);
+}
+
 /// Moves the remaining bytes of the block to its front and reads more data after them.
 Result<void> LineReader::Refill() {
   const std::size_t left = end_ - at_;
   std::memmove(block_->data(), at_, left);
-  const Result<std::size_t> got = file_->Read({block_->data() + left, block_->size() - left});
+  const Result<std::size_t> got = Read({block_->data() + left, block_->size() - left});
   if (!got) return tl::unexpected(got.error());
   at_ = block_->data();
   end_ = at_ + left + *got;

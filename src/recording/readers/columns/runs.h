@@ -43,12 +43,6 @@ inline RunName SplitRun(std::string_view name) {
   return {Trim(name.substr(at)), Trim(rest)};
 }
 
-/// True for the name of a time with its unit.
-inline bool IsTime(std::string_view name) {
-  const Unit* unit = FindUnit(name);
-  return unit != nullptr && unit->kind == Kind::kTime;
-}
-
 /// Separates runs and columns if the name of a time contains a run. Returns whether it does.
 inline bool SplitRuns(std::vector<TableColumn>& columns) {
   const auto is_time_of_run = [](const TableColumn& column) {

@@ -15,11 +15,9 @@ namespace {
 
 /// The length of a vector has no sign, so it oscillates twice as fast as the angle.
 bool IsLengthOfVector(const TableColumn& column) {
-  constexpr std::string_view kWord = "absolute";
-  const std::string canonical = CanonicalName(column.meaning);
-  const Unit* unit = FindUnit(column.meaning);
-  if (unit == nullptr || (unit->kind != Kind::kRate && !IsFallbackQuantity(*unit))) return false;
-  return canonical.starts_with(kWord) && (canonical[kWord.size()] == '_' || IsBlank(canonical[kWord.size()]));
+  const NameMeaning meaning = MeaningOf(column.meaning);
+  if (!meaning.Has("absolute")) return false;
+  return meaning.kind == Kind::kRate || meaning.kind == Kind::kAcceleration || meaning.kind == Kind::kLength;
 }
 
 /// The run whose columns are read; std::nullopt if ColumnChooser must report the error.
@@ -38,7 +36,8 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
   std::vector<std::string> names;
   names.reserve(candidates.size());
   for (const std::size_t i : candidates) names.push_back(Quoted(columns[i].written));
-  return line.Fault(columns[candidates[1]].at, "columns " + SeveralQuantities(names));
+  return WithTry(line.Fault(columns[candidates[1]].at, "columns " + SeveralQuantities(names)),
+                 {"--value_column " + columns[candidates.front()].written});
 }
 
 }  // namespace
@@ -60,15 +59,18 @@ TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& 
 }
 
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit) {
-  std::vector<std::size_t> candidates, others, asked;
+  std::vector<std::size_t> candidates, others, asked, without_unit;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const Unit* own = FindUnit(columns[i].meaning);
-    if (own == nullptr || own->kind == Kind::kTime || IsLengthOfVector(columns[i])) continue;
-    (IsFallbackQuantity(*own) ? others : candidates).push_back(i);
-    if (own->suffix == unit) asked.push_back(i);
+    const NameMeaning meaning = MeaningOf(columns[i].meaning);
+    if (!meaning.kind || meaning.kind == Kind::kTime || meaning.is_secondary || IsLengthOfVector(columns[i])) continue;
+    const bool is_other = meaning.kind == Kind::kAcceleration || meaning.kind == Kind::kLength;
+    (meaning.unit == nullptr ? without_unit : is_other ? others : candidates).push_back(i);
+    if (meaning.unit != nullptr && meaning.unit == UnitOfText(unit)) asked.push_back(i);
   }
-  if (!asked.empty()) return asked;
-  return candidates.empty() ? others : candidates;
+  for (const auto* list : {&asked, &candidates, &others}) {
+    if (!list->empty()) return *list;
+  }
+  return without_unit;
 }
 
 Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColumn>& columns,
@@ -96,8 +98,10 @@ Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColum
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const TableColumn& column = columns[i];
     const bool is_other_run = run && !column.run.empty() && column.run != *run && i != time;
-    const bool is_hidden = is_other_run || IsLengthOfVector(column);
-    names.push_back({is_hidden ? std::string_view() : std::string_view(column.meaning), column.at, column.written});
+    const bool has_no_meaning = column.meaning.empty() && !column.written.empty();
+    const bool is_hidden = is_other_run || has_no_meaning || IsLengthOfVector(column);
+    const std::string_view meaning = is_hidden ? std::string_view() : std::string_view(column.meaning);
+    names.push_back({meaning, column.at, column.written, is_hidden});
   }
   return names;
 }

@@ -144,7 +144,7 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
   const Unit& unit = *vertical.unit;
   const Eigen::VectorXd height = y.unaryExpr([&](double number) { return unit.ToSi(number); });
   Result<Arc> arc = FitArc(recording.value, height);
-  if (!arc) return Error(arc.error().code, recording.path + ": " + arc.error().message);
+  if (!arc) return WithMessage(arc.error(), recording.path + ": " + arc.error().message);
   for (Eigen::Index i = 0; i < height.size(); ++i) recording.value[i] = arc->Angle(recording.value[i], height[i]);
   recording.quantity = Quantity::kAngle;
   recording.resolution = 0;  // levels of coordinates are not levels of the angle
@@ -155,8 +155,9 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
 }
 
 /// Sets value, unit, quantity, resolution, range and calibration from the numbers in `value`.
-inline void SetValues(const Column& column, const ReadOptions& options, const Metadata& metadata,
+inline void SetValues(const Layout& layout, const ReadOptions& options, const Metadata& metadata,
                       Recording& recording) {
+  const Column& column = layout.value;
   const Unit& unit = *column.unit;
   recording.quantity = QuantityOf(column);
   recording.shows_gravity = !column.is_without_gravity;

@@ -29,15 +29,10 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
          "the file says that " + lost +
              " samples were lost, so times computed from the sample rate are too early after each loss");
   }
-  if (layout.time && !layout.is_time_unit_known) {
-    warn("time_unit_assumed", "column " + layout.time->name +
-                                  " does not give its unit and was assumed to be in seconds; give "
-                                  "--time_column with :s, :ms or :us after the column");
-  }
 }
 
 /// Converts times to seconds and repairs the clock.
-Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions& options) {
+Result<void> SetTimes(ReadColumns& columns, const ReadOptions& options) {
   const Layout& layout = columns.layout;
   RawSamples& samples = columns.samples;
   if (!layout.time && RateOf(columns, options) > 0) {
@@ -46,18 +41,17 @@ Result<void> SetTimes(ReadColumns& columns, const Line& line, const ReadOptions&
     }
     return {};
   }
-  if (layout.time && !layout.is_time_unit_known && AllWhole(samples.time)) {
-    return line.Fault(line.text.data(),
-                      "column " + layout.time->name +
-                          " holds whole numbers and does not give its unit; give --time_column "
-                          "with :s, :ms or :us after the column",
-                      StatusCode::kInvalidArgument);
+  const Unit& unit = layout.time ? *layout.time->unit : *UnitOfSuffix("s");
+  const bool is_usual = unit.suffix == "s" || unit.suffix == "ms" || unit.suffix == "us";
+  if (!is_usual) {  // RepairClock knows s, ms and us.
+    for (double& time : samples.time) time = unit.ToSi(time);
+    samples.time_unit = "s";
   }
-  Result<RawSamples> repaired = RepairClock(std::move(samples));
+  if (layout.is_from_first) samples.time.array() -= double{samples.time[0]};
+  Result<RawSamples> repaired = RepairClock(std::move(samples), options.window);
   if (!repaired) return tl::unexpected(std::move(repaired).error());
   samples = *std::move(repaired);
-  const Unit& unit = layout.time ? *layout.time->unit : *UnitOfSuffix("s");
-  if (unit.divisor != 1) {
+  if (is_usual && unit.divisor != 1) {
     for (double& time : samples.time) time = unit.ToSi(time);
   }
   return {};
@@ -70,9 +64,9 @@ Warning EmptyCells(const std::string& file, std::size_t rows, const std::string&
   return {"empty_cells", file + ": " + count + " left out, with no number in column " + column + " or in its time"};
 }
 
-Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options) {
+Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   WarnOfClock(columns, options);
-  if (Result<void> set = SetTimes(columns, line, options); !set) return tl::unexpected(std::move(set).error());
+  if (Result<void> set = SetTimes(columns, options); !set) return tl::unexpected(std::move(set).error());
   RawSamples& samples = columns.samples;
   const Metadata& metadata = columns.metadata;
   Recording recording;
@@ -84,7 +78,7 @@ Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadO
   recording.clock_scale_std_dev =
       std::hypot(metadata.clock_scale_std_dev, metadata.clock_scale * samples.clock_std_dev);
   recording.rig_json = metadata.rig_json;
-  SetValues(columns.layout.value, options, metadata, recording);
+  SetValues(columns.layout, options, metadata, recording);
   if (columns.layout.second) {
     if (Result<void> turned = TurnIntoAngles(*columns.layout.second, samples.second, recording); !turned) {
       return tl::unexpected(std::move(turned).error());

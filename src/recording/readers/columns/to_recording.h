@@ -24,7 +24,7 @@ struct ReadColumns {
 /// A warning of rows that were left out because one of their two cells is empty.
 Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column);
 
-/// Repairs the clock, converts times to seconds and values to SI, and adds warnings. `line` is the header.
-Result<Recording> ToRecording(ReadColumns columns, const Line& line, const ReadOptions& options);
+/// Repairs the clock, converts times to seconds and values to SI, and adds warnings.
+Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options);
 
 }  // namespace pendulum::csv

@@ -59,13 +59,8 @@ void ForbidOpeningFiles() {
   ::setrlimit(RLIMIT_NOFILE, &none);
 }
 
-/// `t`, `time` and `tout` are probably times in seconds.
-std::string MeaningOf(const std::string& name) {
-  const std::string canonical = csv::CanonicalName(name);
-  if (canonical == "t" || canonical == "time" || canonical == "tout") return "time_s";
-  if (canonical == "t_s" || canonical == "t_ms" || canonical == "t_us") return "time" + canonical.substr(1);
-  return name;
-}
+/// Simulink's `tout` is in seconds.
+std::string MeaningOf(const std::string& name) { return name == "tout" ? "time_s" : name; }
 
 std::size_t CountOf(const matvar_t& variable) {
   std::size_t count = variable.rank > 0 ? 1 : 0;
@@ -158,7 +153,7 @@ class Collector {
     const std::size_t columns = numbers.size() / rows;
     if (columns == 1) {
       const std::string sense = MeaningOf(meaning);
-      table_.columns.push_back({{written, sense, run}, std::move(numbers), IsTimeUnitKnown(meaning, sense)});
+      table_.columns.push_back({{written, sense, run}, std::move(numbers), IsTimeUnitKnown(sense)});
       return;
     }
     if (variable.rank != 2 || columns > kMaxMatColumns) return;
@@ -181,9 +176,8 @@ class Collector {
 
   /// Whether the unit of a time is certain. Simulink's times are in seconds: `tout`, and the times of a structure
   /// with signals (AddStructure).
-  static bool IsTimeUnitKnown(const std::string& name, const std::string& sense) {
-    const std::string canonical = csv::CanonicalName(name);
-    return sense != "time_s" || (canonical != "t" && canonical != "time");
+  static bool IsTimeUnitKnown(const std::string& sense) {
+    return !csv::IsTime(sense) || csv::FindUnit(sense) != nullptr;
   }
 
   static std::size_t LongestOf(const matvar_t& variable) {
@@ -251,7 +245,9 @@ class Collector {
 
   void MarkUnitKnown(std::size_t first, const std::string& written) {
     for (MatColumn& column : std::span(table_.columns).subspan(first)) {
-      column.is_unit_known |= column.name.written == written;
+      if (column.name.written != written) continue;
+      column.is_unit_known = true;
+      if (csv::FindUnit(column.name.meaning) == nullptr) column.name.meaning = "time_s";
     }
   }
 

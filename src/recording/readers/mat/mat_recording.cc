@@ -25,9 +25,9 @@
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
-#include "recording/readers/mat/child_process.h"
 #include "recording/readers/mat/mat_elements.h"
 #include "recording/readers/mat/mat_version_4.h"
+#include "recording/readers/process/child_process.h"
 
 namespace pendulum {
 namespace {
@@ -215,44 +215,83 @@ Result<void> CheckVariables(const MatTable& table, const std::vector<csv::TableC
                          "; save the times as t and the angles as angle_deg");
 }
 
+/// The columns of the table that a layout reads.
+struct ChosenColumns {
+  std::vector<const std::vector<double>*> columns;  // Time, value, second coordinate or axes.
+  std::vector<std::string> names;
+};
+
+ChosenColumns ColumnsOf(const MatTable& table, const csv::Layout& layout) {
+  ChosenColumns chosen;
+  const auto add = [&](const csv::Column& column) {
+    chosen.columns.push_back(&table.columns[column.index].values);
+    chosen.names.push_back(column.name);
+  };
+  add(layout.time ? *layout.time : layout.value);
+  add(layout.value);
+  if (layout.second) add(*layout.second);
+  for (const csv::Column& axis : layout.axes) add(axis);
+  return chosen;
+}
+
 /// The numbers of the chosen columns, without rows in which one of them is NaN.
 Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, const std::string& name) {
-  const std::vector<double>& value = table.columns[layout.value.index].values;
-  const std::vector<double>& time = layout.time ? table.columns[layout.time->index].values : value;
-  const std::vector<double>& second = layout.second ? table.columns[layout.second->index].values : value;
-  if (time.size() != value.size()) {
-    return Fault(name, "column " + layout.time->name + " has " + std::to_string(time.size()) + " numbers and column " +
-                           layout.value.name + " " + std::to_string(value.size()) +
-                           "; choose the time of this quantity with --time_column");
-  }
-  if (second.size() != value.size()) {
-    return Fault(name, "column " + layout.second->name + " has " + std::to_string(second.size()) +
-                           " numbers and column " + layout.value.name + " " + std::to_string(value.size()) +
-                           "; choose one coordinate with --value_column");
+  const ChosenColumns chosen = ColumnsOf(table, layout);
+  const std::size_t size = chosen.columns[1]->size();
+  for (std::size_t i = 0; i < chosen.columns.size(); ++i) {
+    if (chosen.columns[i]->size() == size) continue;
+    return Fault(name, "column " + chosen.names[i] + " has " + std::to_string(chosen.columns[i]->size()) +
+                           " numbers and column " + layout.value.name + " " + std::to_string(size) +
+                           (i == 0 ? "; choose the time of this quantity with --time_column"
+                                   : "; choose one column with --value_column"));
   }
   RawSamples samples;
   samples.name = name;
-  samples.time.resize(static_cast<Eigen::Index>(value.size()));
+  samples.time.resize(static_cast<Eigen::Index>(size));
   samples.value.resize(samples.time.size());
   samples.second.resize(layout.second ? samples.time.size() : 0);
   Eigen::Index rows = 0;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    if (!std::isfinite(time[i]) || !std::isfinite(value[i]) || !std::isfinite(second[i])) continue;
-    samples.time[rows] = time[i];
-    samples.value[rows] = value[i];
-    if (layout.second) samples.second[rows] = second[i];
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto number = [&](std::size_t column) { return (*chosen.columns[column])[i]; };
+    bool is_complete = true;
+    for (std::size_t column = 0; column < chosen.columns.size(); ++column) is_complete &= std::isfinite(number(column));
+    if (!is_complete) continue;
+    samples.time[rows] = number(0);
+    samples.value[rows] = number(1);
+    if (layout.second) samples.second[rows] = number(2);
+    if (!layout.axes.empty()) {
+      samples.value[rows] *= layout.direction[0];
+      for (std::size_t axis = 0; axis < layout.axes.size(); ++axis) {
+        samples.value[rows] += layout.direction[static_cast<Eigen::Index>(axis) + 1] * number(2 + axis);
+      }
+    }
     samples.lines.Add(i + 1);
     ++rows;
   }
   samples.time.conservativeResize(rows);
   samples.value.conservativeResize(rows);
   if (layout.second) samples.second.conservativeResize(rows);
-  const std::size_t left_out = value.size() - static_cast<std::size_t>(rows);
+  const std::size_t left_out = size - static_cast<std::size_t>(rows);
   if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
   if (rows >= kMinimumSamples) return samples;
   return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
                                                     std::to_string(rows) + " numbers; at least " +
                                                     std::to_string(kMinimumSamples) + " are needed: record for longer");
+}
+
+/// All numbers of the table. Shorter columns end in NaN.
+csv::TableNumbers NumbersOf(const MatTable& table) {
+  csv::TableNumbers numbers;
+  numbers.is_clock.resize(table.columns.size());
+  std::size_t longest = 0;
+  for (const MatColumn& column : table.columns) longest = std::max(longest, column.values.size());
+  for (const MatColumn& column : table.columns) {
+    const auto rows = static_cast<Eigen::Index>(column.values.size());
+    Eigen::VectorXd padded = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(longest), std::nan(""));
+    padded.head(rows) = Eigen::VectorXd::Map(column.values.data(), rows);
+    numbers.columns.push_back(std::move(padded));
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -266,32 +305,38 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
                                const ReadOptions& options) {
   csv::Line line{name, "", csv::Line::kNoNumber};
   std::vector<csv::TableColumn> columns;
-  for (const MatColumn& column : table.columns) columns.push_back(column.name);
-  const std::string named = csv::TimeFlagOf(columns, options.time_column).column;
-  const std::size_t time = named.empty() ? columns.size() : csv::IndexOf(columns, named);
-  if (time < columns.size() && !table.columns[time].is_unit_known)
-    columns[time].meaning = "time";  // the user may give the unit
+  for (const MatColumn& column : table.columns) {
+    columns.push_back(column.name);
+    if (!column.is_unit_known) columns.back().meaning = "time";
+  }
   if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
   const auto names = csv::NamesOf(line, columns, options);
   if (!names) return tl::unexpected(names.error());
   csv::ReadColumns read;
   read.layout.width = columns.size();
   read.layout.has_header = true;
-  csv::ColumnChooser chooser(line, *names, options, false, false);
-  if (auto chosen = chooser.Choose(read.layout); !chosen) return tl::unexpected(chosen.error());
-  if (read.layout.time && read.layout.time->index != time) {
-    read.layout.is_time_unit_known = table.columns[read.layout.time->index].is_unit_known;
+  const csv::TableView view{.line = line,
+                            .names = *names,
+                            .has_rate = false,
+                            .has_host = false,
+                            .raw_input = options.calibration ? options.calibration->input : "",
+                            .value_unit = "",
+                            .numbers = [&table]() -> Result<csv::TableNumbers> { return NumbersOf(table); }};
+  std::vector<Warning> assumptions;
+  if (auto chosen = csv::ChooseColumns(view, options, read.layout, assumptions); !chosen) {
+    return tl::unexpected(chosen.error());
   }
   Result<RawSamples> samples = SamplesOf(table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);
   if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
   read.samples = *std::move(samples);
+  read.samples.warnings.insert(read.samples.warnings.begin(), assumptions.begin(), assumptions.end());
   if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings); !checked) {
     return tl::unexpected(checked.error());
   }
   read.sha256 = *std::move(sha256);
   if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
-  return csv::ToRecording(std::move(read), line, options);
+  return csv::ToRecording(std::move(read), options);
 }
 
 }  // namespace pendulum

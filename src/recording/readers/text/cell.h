@@ -12,14 +12,13 @@ namespace pendulum::csv {
 /// Reads the cells of one file that contain numbers.
 struct Cells {
   Numbers numbers;
-  bool may_have_gaps = false;
   bool is_gap = false;  // A cell of this row is empty.
 
   /// Reads a field, which may be quoted, empty or faulty.
   Result<void> Read(const Line& line, std::string_view field, const Column& column, double& number) {
     const std::string_view text = Unquote(field);
     if (numbers.Parse(text, number)) return {};
-    if (may_have_gaps && (text.empty() || text == "NaN" || text == "nan")) {
+    if (text.empty() || text == "NaN" || text == "nan") {
       is_gap = true;
       return {};
     }

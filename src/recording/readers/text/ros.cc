@@ -164,7 +164,9 @@ std::optional<RosTable> FindRos(std::vector<TableColumn>& columns, std::string_v
   RosTable table;
   const auto is_time = [](const TableColumn& column) {
     const Unit* unit = FindUnit(column.meaning);
-    return unit != nullptr && unit->kind == Kind::kTime;
+    const Path path = PathOf(column.written);
+    const bool is_part = IsOneOf(path.last, {"sec", "secs", "nsec", "nsecs", "nanosec"});  // of a stamp
+    return unit != nullptr && unit->kind == Kind::kTime && path.before.empty() && !is_part;
   };
   const bool has_time = std::ranges::any_of(columns, is_time);
   if (!has_time) FindStamps(columns, row, separator, table);

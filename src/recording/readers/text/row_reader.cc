@@ -2,6 +2,7 @@
 #include "recording/readers/text/row_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <exception>
 #include <optional>
@@ -30,7 +31,8 @@ namespace {
 using csv::FieldCutter, csv::Layout, csv::Line, csv::Trim;
 using Check = Result<void>;
 
-constexpr std::size_t kNoColumn = csv::kNoColumn;
+/// The bytes in which the structure of a text is looked for, and those whose numbers may decide on the columns.
+constexpr std::size_t kHeadBytes = std::size_t{1} << 16, kNumbersBytes = std::size_t{1} << 24;
 
 /// Reads one text, line by line.
 class Reader {
@@ -41,17 +43,21 @@ class Reader {
   Result<std::vector<csv::TableColumn>> ReadNames();
 
  private:
-  Check ReadLine();
+  /// What a field of a row is. Fields beyond kAxis are further axes of a gyro.
+  enum Slot : int { kNotRead = -1, kTime, kValue, kSecond, kAxis };
+
   Check ParseHead();
-  Check BeginRows();
+  Check ReadLine();
   Check ChooseColumns();
   Check ReadOrSetAsideRow();
   Check ReadRow();
   Check ReadRosRow();
   Check SelectJoint();
   Check ReadHostTime(const std::optional<csv::HostStamp>& stamp, double& time);
+  Check ReadField(FieldCutter& fields, int slot, double& number);
   Check MakeRoom();
-  const csv::Column& LastColumn() const;
+  const csv::Column& ColumnOf(int slot) const;
+  std::size_t LastIndex() const;
   Check Append(double time, double value, double second = 0);
   void WarnOfIncompleteRow(const Line& line);
   Check CheckEnd();
@@ -60,116 +66,114 @@ class Reader {
   void WarnOfEmptyCells();
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
-  bool is_host_time() const { return has_host_ && !layout_.time && !(rate_hz() > 0); }
+  bool is_host_time() const { return head_.has_host && !layout_.time && !(rate_hz() > 0); }
 
   LineReader lines_;
   const ReadOptions& options_;
   csv::Metadata metadata_;
-  std::vector<csv::HeadLine> lines_of_head_;
+  std::string first_bytes_;  // head_ refers to them.
   csv::Head head_;
-  bool is_head_only_ = false;
-  char separator_ = '\0';  // From the line `sep=`.
-  bool has_host_ = false;  // Lines begin with the stamp of a serial monitor.
   bool has_layout_ = false;
   Layout layout_;
-  std::size_t time_index_ = kNoColumn, second_index_ = kNoColumn;
-  Line line_;  // The current row; before the first row, the header.
+  std::vector<int> slots_;  // Of each field of a row.
+  Line line_;               // The current row; before the first row, the header.
   csv::Cells cells_;
+  csv::DayClock day_clock_;
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
   std::optional<Status> is_truncated_;             // The error of a possibly cut-off row; used if another row follows.
   Line truncated_line_;
   std::string truncated_text_;
-  bool is_short_ = false;      // The current row has too few fields.
-  double midnights_ = 0;       // s, added to the host's time of day.
-  double last_host_time_ = 0;  // s, with midnights.
+  bool is_short_ = false;  // The current row has too few fields.
   Eigen::Index rows_ = 0;
   RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
 };
 
 Result<Recording> Reader::Read() {
   samples_.name = lines_.name();
+  if (Check parsed = ParseHead(); !parsed) return tl::unexpected(std::move(parsed).error());
   if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
     return tl::unexpected(std::move(read).error());
   }
-  if (!has_layout_ && !lines_of_head_.empty()) {
-    if (Check begun = BeginRows(); !begun) return tl::unexpected(std::move(begun).error());
+  if (!has_layout_ && head_.names.number > 0) {
+    if (Check chosen = ChooseColumns(); !chosen) return tl::unexpected(std::move(chosen).error());
   }
   return Finish();
 }
 
 Result<std::vector<csv::TableColumn>> Reader::ReadNames() {
-  is_head_only_ = true;
-  line_.file = lines_.name();
-  while (!has_layout_) {
-    const Result<bool> next = lines_.Next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) break;
-    line_.text = lines_.line();
-    line_.number = lines_.number();
-    if (Check read = ReadLine(); !read) return tl::unexpected(std::move(read).error());
-  }
-  if (!has_layout_ && !lines_of_head_.empty()) {
-    if (Check begun = BeginRows(); !begun) return tl::unexpected(std::move(begun).error());
-  }
+  if (Check parsed = ParseHead(); !parsed) return tl::unexpected(std::move(parsed).error());
   return std::move(head_.columns);
 }
 
+/// Reads a line: metadata, a row, or a part of the head, which is known already.
 Check Reader::ReadLine() {
   if (csv::IsEmptyRow(line_.text)) return {};
   const std::string_view text = Trim(line_.text);
   if (text.front() == '#') return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
-  if (has_layout_) return ReadOrSetAsideRow();
-  if (const auto separator = csv::SeparatorLine(line_.text); separator && lines_of_head_.empty()) {
-    separator_ = *separator;
-    return {};
+  if (head_.first_row.number == 0 || line_.number < head_.first_row.number) return {};
+  if (!has_layout_) {
+    const Line row = line_;
+    if (Check chosen = ChooseColumns(); !chosen) return chosen;
+    line_ = row;
   }
-  lines_of_head_.push_back({std::string(line_.text), line_.number});
-  return lines_of_head_.size() < csv::HeadLines(lines_of_head_.front()) ? Check() : BeginRows();
+  return ReadOrSetAsideRow();
 }
 
 // ---- Columns -----------------------------------------------------------------------------------------------------
 
-/// Finds the names of the columns and the line that contains them.
+/// Finds the names of the columns and the first row.
 Check Reader::ParseHead() {
-  const std::vector<csv::HeadLine>& lines = lines_of_head_;
-  has_layout_ = true;
-  has_host_ = csv::HasHostStamps(lines);
-  head_ = csv::ParseHead(lines, has_host_, separator_, layout_);
-  line_ = {lines_.name(), lines[head_.names_line].text, lines[head_.names_line].number};
-  if (head_.columns.empty() || head_.first_row >= lines.size()) return {};
-  const auto table = csv::FindRos(head_.columns, lines[head_.first_row].text, layout_.separator, options_);
+  Result<std::string> bytes = lines_.Peek(kHeadBytes);
+  if (!bytes) return tl::unexpected(std::move(bytes).error());
+  first_bytes_ = *std::move(bytes);
+  std::string_view begin = first_bytes_;
+  const std::size_t last_line_end = begin.rfind('\n');
+  if (begin.size() == kHeadBytes && last_line_end != begin.npos) begin = begin.substr(0, last_line_end + 1);
+  head_ = csv::ParseHead(begin, layout_);
+  line_ = {lines_.name(), head_.names.text, head_.names.number};
+  if (head_.columns.empty() || head_.first_row.number == 0) return {};
+  const auto table = csv::FindRos(head_.columns, head_.first_row.text, layout_.separator, options_);
   if (table) ros_.emplace(*table, head_.columns, layout_);
   return {};
 }
 
-/// Examines the first lines, then reads those that are rows.
-Check Reader::BeginRows() {
-  if (Check looked = ParseHead(); !looked || is_head_only_) return looked;
-  if (Check chosen = ChooseColumns(); !chosen) return chosen;
-  for (std::size_t i = head_.first_row; i < lines_of_head_.size(); ++i) {
-    line_ = {lines_.name(), lines_of_head_[i].text, lines_of_head_[i].number};
-    if (Check taken = ReadOrSetAsideRow(); !taken) return taken;
-  }
-  return {};
-}
-
 Check Reader::ChooseColumns() {
+  has_layout_ = true;
+  const std::size_t next_line = lines_.number();
+  const Line header{lines_.name(), head_.names.text, head_.names.number};
+  const std::string row(next_line > 0 ? lines_.line() : std::string_view());
+  line_ = header;
   const ReadOptions options = ros_ ? ros_->SplitOffJoint(options_) : options_;
-  const auto names = csv::NamesOf(line_, head_.columns, options);
+  const auto names = csv::NamesOf(header, head_.columns, options);
   if (!names) return tl::unexpected(names.error());
-  csv::ColumnChooser chooser(line_, *names, options, metadata_.sample_rate_hz > 0, has_host_);
-  if (Check chosen = chooser.Choose(layout_); !chosen) return chosen;
-  if (Check checked = ros_ ? ros_->CheckSecond(line_) : Check(); !checked) return checked;
-  if (Check checked = CheckCalibration(line_, layout_.value, options_, metadata_, samples_.warnings); !checked) {
+  const bool has_times = std::ranges::any_of(*names, [](const csv::Name& name) { return csv::IsTime(name.text); });
+  if (!has_times && metadata_.sample_rate_hz == 0) metadata_.sample_rate_hz = head_.sample_rate_hz;
+  const auto& calibration = csv::ChosenCalibration(options_, metadata_);
+  const csv::TableView table{.line = header,
+                             .names = *names,
+                             .has_rate = metadata_.sample_rate_hz > 0,
+                             .has_host = head_.has_host,
+                             .raw_input = calibration ? calibration->input : "",
+                             .value_unit = head_.value_unit,
+                             .numbers = [&]() -> Result<csv::TableNumbers> {
+                               const Result<std::string> rest = lines_.Peek(kNumbersBytes);
+                               if (!rest) return tl::unexpected(rest.error());
+                               return csv::ReadNumbers(row + "\n" + *rest, next_line, head_, layout_);
+                             }};
+  if (Check chosen = csv::ChooseColumns(table, options, layout_, samples_.warnings); !chosen) return chosen;
+  if (Check checked = ros_ ? ros_->CheckSecond(header) : Check(); !checked) return checked;
+  if (Check checked = CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings); !checked) {
     return checked;
   }
-  cells_ = {csv::Numbers(layout_.separator != ','), head_.may_have_gaps || ros_};
-  if (layout_.time) {
-    time_index_ = layout_.time->index;
-    samples_.time_unit = layout_.time->unit->name;
-  }
-  if (layout_.second) second_index_ = layout_.second->index;
+  cells_ = {csv::Numbers(layout_.separator != ',')};
+  if (layout_.time) samples_.time_unit = layout_.time->unit->name;
+  slots_.assign(layout_.width, kNotRead);
+  const auto set_slot = [&](std::size_t index, int slot) { slots_.at(index) = slot; };
+  if (layout_.time) set_slot(layout_.time->index, kTime);
+  set_slot(layout_.value.index, kValue);
+  if (layout_.second) set_slot(layout_.second->index, kSecond);
+  for (std::size_t i = 0; i < layout_.axes.size(); ++i) set_slot(layout_.axes[i].index, kAxis + static_cast<int>(i));
   return {};
 }
 
@@ -182,8 +186,7 @@ Check Reader::ReadOrSetAsideRow() {
   is_short_ = false;
   Check read = ros_ ? ReadRosRow() : ReadRow();
   if (read) return read;
-  const std::vector<csv::HeadLine>& head = lines_of_head_;
-  const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head.front().number && head.size() > 1;
+  const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head_.first_row.number;
   if (is_first) {
     WarnOfIncompleteRow(line_);
     return {};
@@ -201,65 +204,92 @@ void Reader::WarnOfIncompleteRow(const Line& line) {
                                                      " is incomplete; it was left out"});
 }
 
+/// Reads the number of a field that is not a plain number: quoted, empty, a time of day, or faulty.
+Check Reader::ReadField(FieldCutter& fields, int slot, double& number) {
+  const std::string_view field = fields.Next();
+  if (slot != kTime || !layout_.is_clock) return cells_.Read(line_, field, ColumnOf(slot), number);
+  const std::string_view text = csv::Unquote(field);
+  const std::optional<double> second_of_day = csv::SecondOfDay(text);
+  if (second_of_day) number = day_clock_.Continue(*second_of_day);
+  if (second_of_day || text.empty()) {
+    cells_.is_gap |= text.empty();
+    return {};
+  }
+  return line_.Fault(Trim(field).data(), "column " + layout_.time->name + " holds " + Quoted(text) +
+                                             ", which is not a time of day such as 16:04:31.273; correct the field or "
+                                             "delete the row");
+}
+
 Check Reader::ReadRow() {
-  double time = 0, value = 0, second = 0;
+  constexpr std::size_t kMostSlots = 8;
+  std::array<double, kMostSlots> numbers{};
   std::size_t index = 0;
   std::string_view row = line_.text;
-  if (has_host_) {
+  if (head_.has_host) {
     const auto stamp = csv::FindHostStamp(row);
     if (stamp) row = stamp->rest;
-    if (Check taken = ReadHostTime(stamp, time); !taken) return taken;
+    if (Check taken = ReadHostTime(stamp, numbers[kTime]); !taken) return taken;
   }
   for (FieldCutter fields(row, layout_.separator); !fields.done(); ++index) {
-    const bool is_time = index == time_index_;
-    const bool is_second = index == second_index_;
-    if (is_time || is_second || index == layout_.value.index) {
-      double& number = is_time ? time : is_second ? second : value;
-      if (fields.NextNumber(cells_.numbers, number)) continue;
-      const csv::Column& column = is_time ? *layout_.time : is_second ? *layout_.second : layout_.value;
-      if (Check read = cells_.Read(line_, fields.Next(), column, number); !read) return read;
+    const int slot = index < slots_.size() ? slots_[index] : kNotRead;
+    if (slot != kNotRead) {
+      const bool is_clock = slot == kTime && layout_.is_clock;
+      if (!is_clock && fields.NextNumber(cells_.numbers, numbers.at(slot))) continue;
+      if (Check read = ReadField(fields, slot, numbers.at(slot)); !read) return read;
     } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
       return line_.Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
                                           " beyond the header's " + std::to_string(layout_.width) +
                                           " columns; name every column, and write decimals with a point");
     }
   }
-  const csv::Column& last = LastColumn();
-  if (cells_.TakeGap() || (cells_.may_have_gaps && index <= last.index)) {
-    ++gap_rows_;
+  const std::size_t last = LastIndex();
+  if (cells_.TakeGap() || (head_.may_be_short && index <= last)) {
+    const bool is_first = !layout_.has_header && line_.number == head_.first_row.number;
+    const bool is_cut_off = is_first || (!head_.may_be_short && !lines_.is_terminated());
+    if (is_cut_off) WarnOfIncompleteRow(line_);
+    gap_rows_ += is_cut_off ? 0 : 1;
     return {};
   }
-  if (index <= last.index) {
+  if (index <= last) {
     is_short_ = true;
     return line_.Fault(line_.text.data() + line_.text.size(),
                        "the row ends after " + std::to_string(index) + " of " + std::to_string(layout_.width) +
-                           " fields, before column " + last.name + "; complete the row or delete it");
+                           " fields, before column " + ColumnOf(slots_[last]).name + "; complete the row or delete it");
   }
-  return Append(time, value, second);
+  double value = numbers[kValue];
+  if (!layout_.axes.empty()) {
+    value *= layout_.direction[0];
+    for (std::size_t i = 0; i < layout_.axes.size(); ++i) {
+      value += layout_.direction[static_cast<Eigen::Index>(i) + 1] * numbers.at(kAxis + i);
+    }
+  }
+  return Append(numbers[kTime], value, numbers[kSecond]);
 }
 
-const csv::Column& Reader::LastColumn() const {
-  const csv::Column* last = &layout_.value;
-  if (layout_.time && layout_.time->index > last->index) last = &*layout_.time;
-  if (layout_.second && layout_.second->index > last->index) last = &*layout_.second;
-  return *last;
+const csv::Column& Reader::ColumnOf(int slot) const {
+  switch (slot) {
+    case kTime: return *layout_.time;
+    case kValue: return layout_.value;
+    case kSecond: return *layout_.second;
+    default: return layout_.axes.at(slot - kAxis);
+  }
+}
+
+/// The index of the last column that is read.
+std::size_t Reader::LastIndex() const {
+  const auto last = std::find_if(slots_.rbegin(), slots_.rend(), [](int slot) { return slot != kNotRead; });
+  return static_cast<std::size_t>(slots_.rend() - last) - 1;
 }
 
 /// If the host's stamp is the time, sets `time` to the seconds since the midnight before the first row.
 Check Reader::ReadHostTime(const std::optional<csv::HostStamp>& stamp, double& time) {
-  constexpr double kDay = 86400;
   if (!is_host_time()) return {};
   if (!stamp || !stamp->second_of_day) {
     return line_.Fault(line_.text.data(),
                        "this line does not begin with the host's time, such as 14:03:22.123 ->, although others do; "
                        "complete the row or delete it");
   }
-  time = *stamp->second_of_day + midnights_;
-  if (rows_ > 0 && time < last_host_time_ - kDay / 2) {
-    midnights_ += kDay;
-    time += kDay;
-  }
-  last_host_time_ = time;
+  time = day_clock_.Continue(*stamp->second_of_day);
   return {};
 }
 
@@ -303,8 +333,7 @@ Check Reader::ReadRosRow() {
 /// If each row belongs to one joint, selects the rows of one joint.
 Check Reader::SelectJoint() {
   if (!ros_ || !ros_->has_joints()) return {};
-  const csv::HeadLine& header = lines_of_head_[head_.names_line];
-  auto chosen = ros_->ChooseJoint({lines_.name(), header.text, header.number});
+  auto chosen = ros_->ChooseJoint({lines_.name(), head_.names.text, head_.names.number});
   if (!chosen) return tl::unexpected(std::move(chosen).error());
   if (*chosen == nullptr) return {};
   csv::JointRows& rows = **chosen;
@@ -325,8 +354,9 @@ Check Reader::CheckEnd() {
   const std::string least = "at least " + std::to_string(kMinimumSamples);
   const std::string sentence =
       lines_.is_empty() ? "the file is empty; a header and " + least + " rows of data are needed"
-      : !has_layout_    ? "the file holds only comments and blank lines; a header and " + least + " rows are needed"
-                     : "rows of data found: " + std::to_string(rows_) + "; " + least + " are needed: record for longer";
+      : head_.names.number == 0
+          ? "the file holds only comments and blank lines; a header and " + least + " rows are needed"
+          : "rows of data found: " + std::to_string(rows_) + "; " + least + " are needed: record for longer";
   const Line last{lines_.name(), "", lines_.number()};
   return last.Fault(last.text.data(), sentence, StatusCode::kFailedPrecondition);
 }
@@ -334,7 +364,7 @@ Check Reader::CheckEnd() {
 /// In a paste without a header, the first stamp may have lost its leading digits and still parse as a number.
 void Reader::RemoveTruncatedStamp() {
   if (layout_.has_header || !layout_.time || rows_ <= kMinimumSamples || !csv::IsTruncatedStamp(samples_.time)) return;
-  WarnOfIncompleteRow({lines_.name(), lines_of_head_.front().text, lines_of_head_.front().number});
+  WarnOfIncompleteRow({lines_.name(), head_.first_row.text, head_.first_row.number});
   LineNumbers lines;
   for (Eigen::Index i = 1; i < rows_; ++i) lines.Add(samples_.lines.LineOf(i));
   samples_.lines = std::move(lines);
@@ -374,7 +404,7 @@ Result<Recording> Reader::Finish() {
   Result<std::string> sha256 = lines_.Sha256();
   if (!sha256) return tl::unexpected(std::move(sha256).error());
   return csv::ToRecording({std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)},
-                          line_, options_);
+                          options_);
 }
 
 }  // namespace

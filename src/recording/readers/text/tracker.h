@@ -13,14 +13,11 @@
 /// tracks ("#multi:") each label is above the track's first column. In Capstone and SPARKvue, labels name runs.
 namespace pendulum::csv {
 
-/// Tracker's `t` is in seconds. Its lengths are in metres unless the film was scaled otherwise. `r` is the length of
+/// Tracker's lengths are in metres unless the film was scaled otherwise. `r` is the length of
 /// the vector (x, y). Angles and rates are in the unit chosen in Tracker, which it does not write.
 inline std::string TrackerColumnMeaning(const std::string& name) {
-  const std::string canonical = CanonicalName(name);
-  if (canonical == "t") return "time_s";
-  if (canonical == "t_s" || canonical == "t_ms") return "time" + canonical.substr(1);
-  if (canonical == "x" || canonical == "y") return canonical + " (m)";
-  if (canonical == "r") return "absolute r (m)";
+  if (name == "x" || name == "y") return name + " (m)";
+  if (name == "r") return "absolute r (m)";
   return PlainUnits(name);
 }
 

@@ -133,17 +133,15 @@ TEST(ReadMat, RemovesRowsWithNaN) {
             "run.csv: 1 row was left out, with no number in column \"angle_rad\" or in its time");
 }
 
-TEST(ReadMat, WholeNumbersOfATimeNeedAUnit) {
+TEST(ReadMat, WholeNumbersOfATimeAreMilliseconds) {
   const std::string vectors = MatOf({Matrix("t", 8, Times(1000)), Matrix("angle_rad", 8, Values())});
-  EXPECT_EQ(WrongFlag(vectors, {}),
-            "run.csv: column \"t\" holds whole numbers and does not give its unit; give --time_column with :s, :ms or "
-            ":us after the column");
+  ExpectTheRows(RecordingOf(vectors));
   ExpectTheRows(RecordingOf(vectors, TimeAndValue("t:ms", "")));
-  EXPECT_THAT(WrongFlag(vectors, TimeAndValue("t", "")), HasSubstr("holds whole numbers"));
+  EXPECT_EQ(RecordingOf(vectors, TimeAndValue("t", "")).warnings.at(0).code, "time_unit_assumed");
   std::vector<double> both = Times(1000);
   for (const double value : Values()) both.push_back(value);
   const std::string matrix = MatOf({Matrix("run_rad", 8, both)});
-  EXPECT_THAT(WrongFlag(matrix, {}), HasSubstr("column \"run_rad(:,1)\" holds whole numbers"));
+  ExpectTheRows(RecordingOf(matrix));
   ExpectTheRows(RecordingOf(matrix, TimeAndValue("run_rad(:,1):ms", "run_rad(:,2)")));
   ExpectTheRows(RecordingOf(MatOf({Matrix("t_ms", 8, Times(1000)), Matrix("angle_rad", 8, Values())})));
 }
@@ -163,7 +161,7 @@ TEST(ReadMat, WarnsThatATimeIsTakenAsSeconds) {
     return Structure("out", {{"time", Matrix("time", 8, Times(1000))}, {signals, inner}});
   };
   EXPECT_EQ(codes({structure("signals")}), "");  // written by Simulink: seconds, which may be whole
-  EXPECT_THAT(WrongFlag(MatOf({structure("mine")}), TimeAndValue("", "out.mine.values")), HasSubstr("whole numbers"));
+  EXPECT_EQ(codes({structure("mine")}), "time_unit_assumed ");
 }
 
 TEST(ReadMat, RefusesColumnsOfDifferentLengths) {
@@ -175,13 +173,15 @@ TEST(ReadMat, RefusesColumnsOfDifferentLengths) {
       "run.csv: column \"angle_rad\" has 2 numbers; at least 8 are needed: record for longer");
 }
 
-TEST(ReadMat, RefusesTwoCandidatesAndTwoTimes) {
+TEST(ReadMat, RefusesTwoCandidatesAndChoosesOneOfTwoTimes) {
   const std::string two = MatOf({Matrix("t", 8, Times()), Matrix("a_rad", 8, Values()), Matrix("b_deg", 8, Values())});
   EXPECT_EQ(FaultOf(two),
-            "run.csv: columns \"a_rad\" and \"b_deg\" could both be the quantity; choose one with --value_column");
+            "run.csv: columns \"a_rad\" and \"b_deg\" could both be the quantity, and none of them shows a swing by "
+            "itself; choose one with --value_column");
   ExpectTheRows(RecordingOf(two, Value("a_rad")));
-  EXPECT_THAT(FaultOf(MatOf({Matrix("t", 8, Times()), Matrix("tout", 8, Times()), Matrix("a_rad", 8, Values())})),
-              HasSubstr("could both be the time"));
+  const std::string times = MatOf({Matrix("t", 8, Times()), Matrix("tout", 8, Times()), Matrix("a_rad", 8, Values())});
+  EXPECT_EQ(RecordingOf(times).warnings.at(0).message,
+            "run.csv: column \"tout\" was taken as the time, not \"t\"; --time_column chooses another");
 }
 
 matvar_t* Complex(const char* name) {

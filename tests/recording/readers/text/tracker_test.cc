@@ -15,9 +15,7 @@ using testing::HasSubstr;
 
 ReadOptions Value(const std::string& column, const std::string& unit) { return TimeAndValue("", column, unit); }
 
-TEST(TrackerColumnMeaning, AssignsUnitsToTimesAndLengths) {
-  EXPECT_EQ(csv::TrackerColumnMeaning("t"), "time_s");
-  EXPECT_EQ(csv::TrackerColumnMeaning("t (s)"), "time_s");
+TEST(TrackerColumnMeaning, AssignsUnitsToLengths) {
   EXPECT_EQ(csv::TrackerColumnMeaning("x"), "x (m)");
   EXPECT_EQ(csv::TrackerColumnMeaning("\u03B8"), "\u03B8");
 }
@@ -25,7 +23,7 @@ TEST(TrackerColumnMeaning, AssignsUnitsToTimesAndLengths) {
 TEST(Tracker, IgnoresTheLengthOfTheVector) {
   const std::string text = "mass_A\nt\tr\t\u03B8\n" + Rows("0.0{t}\t1\t{v}");
   EXPECT_THAT(WrongFlag(text, Value("r", "")), HasSubstr("column \"r\" is the length of a vector"));
-  EXPECT_THAT(FaultOf(text), HasSubstr("none of the columns \"t\", \"r\", \"\u03B8\" is an angle"));
+  ExpectTheRows(RecordingOf(text), kDegree);
   ExpectTheRows(RecordingOf(text, Unit("deg")), kDegree);
   ExpectTheRows(RecordingOf("mass_A\nt\tx\tr\n" + Rows("0.0{t}\t{v}\t1")));
 }
@@ -33,8 +31,7 @@ TEST(Tracker, IgnoresTheLengthOfTheVector) {
 TEST(Tracker, ReadsTheRequestedAngleBesideCoordinates) {
   const std::string text = "mass_A\nt\tx\ty\t\u03B8\n" + Rows("0.0{t}\t0.1\t0.2\t{v}");
   ExpectTheRows(RecordingOf(text, Unit("deg")), kDegree);
-  EXPECT_THAT(FaultOf("mass_A\nt\tx\t\u03B8\t\u03C9\n" + Rows("0.0{t}\t0.1\t1\t2"), Unit("deg")),
-              HasSubstr("columns \"\u03B8\" and \"\u03C9\" could both be the quantity"));
+  ExpectTheRows(RecordingOf("mass_A\nt\tx\t\u03B8\t\u03C9\n" + Rows("0.0{t}\t0.1\t{v}\t2"), Unit("deg")), kDegree);
   EXPECT_THAT(WrongFlag("mass_A\nt\tx\n" + Rows("0.0{t}\t{v}"), Unit("deg")),
               HasSubstr("column \"x\" is in m, so --unit deg contradicts it"));
 }
@@ -47,10 +44,10 @@ TEST(Tracker, ReadsOneTrackByItsName) {
   ExpectTheRows(RecordingOf("mass_A\nt  \u03B8\n" + Rows("0.0{t}  {v}"), Unit("rad")));
 }
 
-TEST(Tracker, RequiresTheUnitOfAnAngle) {
-  EXPECT_THAT(FaultOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", "")),
-              HasSubstr("does not give its unit; end its name in _rad, _deg, _rad_s, _deg_s, _counts, _volts, _m_s2, "
-                        "_px, _m, _cm or _mm, or give --unit"));
+TEST(Tracker, AssumesTheUnitOfAnAngle) {
+  const Recording recording = RecordingOf("mass_A\nt\t\u03B8\n" + Rows("0.0{t}\t{v}"), Value("\u03B8", ""));
+  ExpectTheRows(recording, kDegree);
+  EXPECT_EQ(recording.warnings.back().code, "value_unit_assumed");
 }
 
 TEST(Tracker, ChoosesAmongSeveralTracks) {
@@ -63,12 +60,13 @@ TEST(Tracker, RemovesRowsWithoutAVelocity) {
   const std::string text = "mass_A\nt\t\u03B8\t\u03C9\n-0.01\t1\t\n" + Rows("0.0{t}\t1\t{v}") + "0.08\t1\t\n";
   const Recording recording = RecordingOf(text, Value("\u03C9", "rad_s"));
   ExpectTheRows(recording);
-  EXPECT_TRUE(recording.warnings.empty());
+  EXPECT_EQ(recording.warnings.at(0).code, "time_unit_assumed");
+  EXPECT_EQ(recording.warnings.size(), 1);
 }
 
 TEST(Tracker, ALineAboveTheNamesMustContainLabels) {
-  EXPECT_THAT(FaultOf("a recording of mine\nangle\trate\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: none of the"));
-  EXPECT_THAT(FaultOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")), HasSubstr("run.csv:1:1: the first row has numbers"));
+  EXPECT_THAT(FaultOf("a recording of mine\nangle\trate\n" + Rows("{t}\t{v}")), HasSubstr("is a time: give the rate"));
+  ExpectTheRows(RecordingOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")));
 }
 
 }  // namespace

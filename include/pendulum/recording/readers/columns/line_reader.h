@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,10 @@ class LineReader {
     return NextBlock();
   }
 
+  /// The bytes after the current line, at most about `max_bytes`, without advancing. The last line may be incomplete. A
+  /// pipe is read up to there and the bytes are kept. kDataLoss: as Next.
+  Result<std::string> Peek(std::size_t max_bytes);
+
   std::string_view line() const { return line_; }        ///< The line without its end (LF or CRLF), valid until Next.
   std::size_t number() const { return number_; }         ///< 1-based number of the line; 0 before the first line.
   bool is_terminated() const { return is_terminated_; }  ///< False for a last line without a line end.
@@ -58,11 +63,14 @@ class LineReader {
   void TakeLine(const char* line_end);
   Result<void> Begin();
   Result<void> Refill();
+  Result<std::size_t> Read(std::span<char> room);
   Result<void> HashAndCheck(std::string_view bytes);
   tl::unexpected<Status> TooLongError() const;
 
   std::string name_;
   std::unique_ptr<InputFile> file_;  // Null once all bytes are in memory.
+  std::string ahead_;                // Bytes that Peek read from the file beyond the block.
+  std::size_t ahead_at_ = 0;         // The first of them that is not yet in the block.
   std::unique_ptr<Block> block_;     // Null if all bytes were in memory from the start.
   const char* at_ = nullptr;         // First byte in memory after the current line.
   const char* end_ = nullptr;        // End of the bytes in memory.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/readers/mat/child_process.h"
+#include "recording/readers/process/child_process.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -30,11 +31,20 @@ class ZipMembers {
   const std::vector<Member>& members() const { return members_; }
 
   /// True if there is a file with this path, of any kind.
-  bool Has(std::string_view path) const;
+  bool Has(std::string_view path) const { return Find(path) != nullptr; }
+
+  /// True if a path of any file begins like this.
+  bool HasFolder(std::string_view begin) const;
+
+  /// The file with this path, of any kind. nullptr: there is none.
+  const Member* Find(std::string_view path) const;
 
   /// The first bytes of a member, at most `max_bytes`. kDataLoss: encrypted, damaged, or packed in a way that libzip
   /// cannot unpack.
   Result<std::string> Unpack(const Member& member, std::size_t max_bytes) const;
+
+  /// Unpacks a member in blocks until `take` returns false. Errors as Unpack.
+  Result<void> UnpackBlocks(const Member& member, const std::function<bool(std::string_view)>& take) const;
 
   /// "NAME:MEMBER", the beginning of messages.
   std::string NameOf(const Member& member) const;
@@ -49,7 +59,7 @@ class ZipMembers {
   std::string name_;
   std::unique_ptr<zip, Discard> archive_;
   std::vector<Member> members_;
-  std::vector<std::string> paths_;
+  std::vector<Member> all_;
 };
 
 }  // namespace pendulum

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/readers/zip_members.h"
+#include "recording/readers/containers/zip_members.h"
 
 #include <algorithm>
 #include <array>
@@ -50,12 +50,19 @@ void ZipMembers::FindMembers() {
     if (zip_stat_index(archive_.get(), i, ZIP_FL_ENC_GUESS, &stat) != 0) continue;
     if ((stat.valid & ZIP_STAT_NAME) == 0 || stat.name == nullptr) continue;
     const bool is_encrypted = (stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE;
-    paths_.emplace_back(stat.name);
-    if (MayBeRecording(stat.name)) members_.push_back({stat.name, static_cast<std::uint64_t>(i), is_encrypted});
+    all_.push_back({stat.name, static_cast<std::uint64_t>(i), is_encrypted});
+    if (MayBeRecording(stat.name)) members_.push_back(all_.back());
   }
 }
 
-bool ZipMembers::Has(std::string_view path) const { return std::ranges::find(paths_, path) != paths_.end(); }
+const ZipMembers::Member* ZipMembers::Find(std::string_view path) const {
+  const auto found = std::ranges::find(all_, path, &Member::path);
+  return found == all_.end() ? nullptr : &*found;
+}
+
+bool ZipMembers::HasFolder(std::string_view begin) const {
+  return std::ranges::any_of(all_, [&](const Member& member) { return member.path.starts_with(begin); });
+}
 
 std::string ZipMembers::NameOf(const Member& member) const {
   const std::string quoted = Quoted(member.path);
@@ -63,6 +70,16 @@ std::string ZipMembers::NameOf(const Member& member) const {
 }
 
 Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t max_bytes) const {
+  std::string text;
+  const auto add = [&](std::string_view block) {
+    text += block.substr(0, max_bytes - text.size());
+    return text.size() < max_bytes;
+  };
+  if (Result<void> unpacked = UnpackBlocks(member, add); !unpacked) return tl::unexpected(unpacked.error());
+  return text;
+}
+
+Result<void> ZipMembers::UnpackBlocks(const Member& member, const std::function<bool(std::string_view)>& take) const {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   if (member.is_encrypted) {
     return Fault(NameOf(member), "it is encrypted; unpack it with its password and name the file");
@@ -72,16 +89,12 @@ Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t max_byt
   };
   const std::unique_ptr<zip_file_t, Close> file(zip_fopen_index(archive_.get(), member.index, 0));
   if (file == nullptr) return damaged(zip_error_strerror(zip_get_error(archive_.get())));
-  std::string text;
-  while (text.size() < max_bytes) {
-    const std::size_t used = text.size();
-    text.resize(std::min(used + std::max(used, kBlock), max_bytes));
-    const zip_int64_t got = zip_fread(file.get(), text.data() + used, text.size() - used);
+  std::string block(kBlock, '\0');
+  while (true) {
+    const zip_int64_t got = zip_fread(file.get(), block.data(), block.size());
     if (got < 0) return damaged(zip_error_strerror(zip_file_get_error(file.get())));
-    text.resize(used + static_cast<std::size_t>(got));
-    if (got == 0) break;
+    if (got == 0 || !take({block.data(), static_cast<std::size_t>(got)})) return {};
   }
-  return text;
 }
 
 }  // namespace pendulum

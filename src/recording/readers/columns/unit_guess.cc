@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/unit_guess.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/median.h"
+#include "pendulum/base/physics.h"
+#include "recording/swing_signature.h"
+
+namespace pendulum::csv {
+namespace {
+
+constexpr double kShortestPeriod = 0.1, kLongestPeriod = 20;  // s
+constexpr double kLargestSwing = 3.3;  // rad; a pendulum that does not turn over stays within pi.
+constexpr double kLeastSwing = 0.02;   // rad
+/// rad; from here on the period shows the amplitude (MODEL.md section 3: 2.3 % at 0.6 rad).
+constexpr double kTellingSwing = 0.6;
+
+double HalfRange(const Eigen::VectorXd& values) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return high > low ? (high - low) / 2 : 0;
+}
+
+bool AreWhole(const Eigen::VectorXd& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return !std::isfinite(value) || value == std::floor(value); });
+}
+
+double MedianMagnitude(const Eigen::VectorXd& values) {
+  std::vector<double> magnitudes;
+  for (const double value : values) {
+    if (std::isfinite(value)) magnitudes.push_back(std::abs(value));
+  }
+  return magnitudes.empty() ? 0 : Median(std::move(magnitudes));
+}
+
+/// Whether the period of the swing depends on the amplitude as for a pendulum with this amplitude [rad].
+enum class Evidence { kNone, kPendulum, kLinear };
+
+Evidence EvidenceOf(const SwingSignature& swing, double rad_per_unit) {
+  constexpr double kLeastExcess = 0.02;  // Smaller differences of the period are not measured well enough.
+  constexpr double kNear = 0.4;
+  const double large = PendulumPeriodRatio(swing.amplitude * rad_per_unit);
+  const double expected = large / PendulumPeriodRatio(swing.last_amplitude * rad_per_unit) - 1;
+  const double seen = swing.period_ratio - 1;
+  if (expected < kLeastExcess) return Evidence::kNone;
+  if (std::abs(seen - expected) < kNear * expected) return Evidence::kPendulum;
+  return std::abs(seen) < kNear * expected ? Evidence::kLinear : Evidence::kNone;
+}
+
+/// Degrees or radians, for a swing of this amplitude in the file's unit. `rad_per_unit` converts the amplitude of the
+/// readings to that of the angle.
+UnitGuess GuessAngleUnit(const std::optional<SwingSignature>& swing, double amplitude, double rad_per_unit,
+                         std::string_view rad, std::string_view deg) {
+  const double angle = amplitude * rad_per_unit;
+  const std::string reached = " (the swing reaches " + NumberText(angle, 3);
+  if (angle > kLargestSwing) return {deg, reached + ", too much for radians)", ""};
+  if (angle < kLeastSwing) {
+    return {"", ", and a swing of " + NumberText(angle, 2) + " may be radians or degrees", std::string(rad)};
+  }
+  if (angle < kTellingSwing || !swing) return {rad, reached + ", too little for degrees)", ""};
+  switch (EvidenceOf(*swing, rad_per_unit)) {
+    case Evidence::kPendulum: return {rad, reached + ", and its period depends on the amplitude as in radians)", ""};
+    case Evidence::kLinear:
+      return {"",
+              ", and its period does not depend on the amplitude: a small swing in degrees, or a torsion spring in "
+              "radians",
+              std::string(deg)};
+    case Evidence::kNone: break;
+  }
+  return {rad, reached + ")", ""};
+}
+
+UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingSignature>& swing, double amplitude) {
+  constexpr double kMostDegrees = 400;
+  const bool is_whole = AreWhole(values);
+  if (amplitude > kMostDegrees) return {is_whole ? "counts" : "", is_whole ? " (whole numbers)" : "", "counts"};
+  if (amplitude > kLargestSwing && !is_whole) {
+    return {"deg", " (the swing reaches " + NumberText(amplitude, 3) + ")", ""};
+  }
+  if (swing && amplitude > kTellingSwing && amplitude < kLargestSwing && EvidenceOf(*swing, 1) == Evidence::kPendulum) {
+    return {"rad", " (its period depends on the amplitude as in radians)", ""};
+  }
+  return {"", ", and its name does not say whether it is an angle, a voltage or a length", is_whole ? "counts" : "rad"};
+}
+
+UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude) {
+  constexpr double kNearG = 1.5, kNearOne = 0.2, kMore = 2;
+  const double usual = MedianMagnitude(values);
+  if (std::abs(usual - 1) < kNearOne && amplitude < kMore) return {"g", " (it is about 1 at rest)", ""};
+  if (std::abs(usual - kStandardGravity) < kNearG || amplitude > kMore) return {"m_s2", "", ""};
+  return {"", ", which may be m/s^2 or g", "m_s2"};
+}
+
+}  // namespace
+
+double MedianStep(const Eigen::VectorXd& numbers) {
+  std::vector<double> steps;
+  for (Eigen::Index i = 1; i < numbers.size(); ++i) {
+    const double step = numbers[i] - numbers[i - 1];
+    if (std::isfinite(step) && step > 0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0;
+  // Coarse stamps repeat; the mean step is the sampling interval then.
+  const double mean = (numbers.maxCoeff() - numbers.minCoeff()) / static_cast<double>(numbers.size() - 1);
+  const double median = Median(std::move(steps));
+  return std::isfinite(mean) && mean > 0 ? std::min(mean, median) : median;
+}
+
+TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {
+  struct Scale {
+    std::string_view unit;
+    double seconds;
+  };
+  constexpr std::array kScales = {Scale{"s", 1}, Scale{"ms", 1e-3}, Scale{"us", 1e-6}, Scale{"ns", 1e-9}};
+  constexpr double kEpochFirst = 5e8, kEpochLast = 5e9;  // s: the years 1985 to 2128.
+  constexpr double kLongestStep = 0.5;                   // s
+  const double step = MedianStep(times);
+  for (const Scale& scale : kScales) {
+    const double first = times.size() > 0 ? times[0] * scale.seconds : 0;
+    const bool is_usual_step = step * scale.seconds <= kLongestStep;
+    if (first > kEpochFirst && first < kEpochLast && is_usual_step) return {scale.unit, " (it counts from 1970)", true};
+  }
+  const auto swing = FindSwingSignature(values);
+  if (swing) {
+    for (const Scale& scale : kScales) {
+      const double period = swing->rows_per_period * step * scale.seconds;
+      if (period < kShortestPeriod || period > kLongestPeriod) continue;
+      return {scale.unit, " (the period is then " + NumberText(period, 3) + " s)"};
+    }
+  }
+  for (const Scale& scale : kScales) {
+    if (step * scale.seconds <= kLongestStep) {
+      return {scale.unit, " (the rows are then " + NumberText(step * scale.seconds, 3) + " s apart)"};
+    }
+  }
+  return {"s", ""};
+}
+
+UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds) {
+  const auto swing = FindSwingSignature(values);
+  const double amplitude = swing ? swing->amplitude : HalfRange(values);
+  if (!kind) return GuessUnnamed(values, swing, amplitude);
+  switch (*kind) {
+    case Kind::kAngle: {
+      constexpr double kMostDegrees = 400;
+      if (amplitude > kMostDegrees && AreWhole(values)) return {"counts", " (whole numbers)", ""};
+      return GuessAngleUnit(swing, amplitude, 1, "rad", "deg");
+    }
+    case Kind::kRate: {
+      if (!swing || seconds <= 0) return {"", ", which may be rad/s or deg/s", "rad_s"};
+      const double per_rate = swing->rows_per_period * seconds / (2 * kPi);
+      return GuessAngleUnit(swing, amplitude, per_rate, "rad_s", "deg_s");
+    }
+    case Kind::kRaw: return {AreWhole(values) ? "counts" : "volts", "", ""};
+    case Kind::kAcceleration: return GuessAccelerationUnit(values, amplitude);
+    case Kind::kLength: return {"px", ", a length of unknown scale", ""};
+    case Kind::kTime: break;
+  }
+  return {"", "", "deg"};
+}
+
+}  // namespace pendulum::csv

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "recording/readers/columns/column.h"
+
+/// Finds units that a header does not give, from what is plausible for a pendulum.
+namespace pendulum::csv {
+
+/// The median step between successive numbers; 0 if there is none.
+double MedianStep(const Eigen::VectorXd& numbers);
+
+struct TimeGuess {
+  std::string_view unit;       // Suffix: s, ms, us or ns.
+  std::string reason;          // ", because ...".
+  bool is_since_1970 = false;  // The times count from 1970.
+};
+
+/// The unit of times: the one that gives a swing a period between 0.1 s and 20 s, of which only one exists; for values
+/// without a swing the one that gives a usual sampling interval. `values` may be empty.
+TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values);
+
+struct UnitGuess {
+  std::string_view unit;  // Suffix; empty if several units are plausible.
+  std::string reason;     // ", because ...", or why it is not clear.
+  std::string example;    // A plausible suffix.
+};
+
+/// The unit of a quantity of this kind, or of any kind. `seconds` is the sampling interval, 0 if unknown.
+UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds);
+
+}  // namespace pendulum::csv

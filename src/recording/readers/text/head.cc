@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/text/head.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "recording/readers/text/tracker.h"
+#include "recording/readers/text/vernier.h"
+
+namespace pendulum::csv {
+namespace {
+
+// ---- Lines -------------------------------------------------------------------------------------------------------
+
+/// The first lines of a text, without empty ones.
+struct FirstLines {
+  std::vector<TextLine> lines, comments;
+  char separator = '\0';  // From the line `sep=`.
+};
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Calls take(text, number) for each complete line until it returns false.
+template <typename Take>
+void ForEachTextLine(std::string_view text, std::size_t number, const Take& take) {
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = text.substr(begin, end - begin);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (!take(line, number)) return;
+    begin = end + 1;
+  }
+}
+
+FirstLines SplitFirstLines(std::string_view begin) {
+  constexpr std::size_t kMost = 400;
+  FirstLines found;
+  ForEachTextLine(begin, 1, [&](std::string_view text, std::size_t number) {
+    if (IsEmptyRow(text)) return true;
+    if (Trim(text).front() == '#') {
+      found.comments.push_back({text, number});
+      return true;
+    }
+    const auto separator = found.lines.empty() ? SeparatorLine(text) : std::nullopt;
+    if (separator) {
+      found.separator = *separator;
+      return true;
+    }
+    found.lines.push_back({text, number});
+    return found.lines.size() < kMost;
+  });
+  return found;
+}
+
+bool HasHostStamps(const std::vector<TextLine>& lines) {
+  constexpr std::size_t kEnough = 3;
+  for (std::size_t i = 0; i < std::min(lines.size(), kEnough); ++i) {
+    const auto stamp = FindHostStamp(lines[i].text);
+    if (stamp && stamp->second_of_day) return true;
+  }
+  return false;
+}
+
+// ---- The rows ----------------------------------------------------------------------------------------------------
+
+/// What each field of a line holds: kNumber (or a time of day), kText, kEmpty.
+constexpr char kNumber = 'n', kText = 't', kEmpty = '-';
+
+bool IsMissing(std::string_view text) { return text.empty() || text == "NaN" || text == "nan" || text == "NAN"; }
+
+std::string MaskOf(std::string_view line, char separator) {
+  Numbers numbers(separator != ',');
+  std::string mask;
+  for (FieldCutter fields(line, separator); !fields.done();) {
+    const std::string_view text = Unquote(fields.Next());
+    double number = 0;
+    mask += IsMissing(text) ? kEmpty : numbers.Parse(text, number) || SecondOfDay(text) ? kNumber : kText;
+  }
+  return mask;
+}
+
+/// The most frequent width of the lines in the second half, and where most of them have numbers; the width 0 if they
+/// have none.
+std::string UsualMask(const std::vector<std::string>& masks) {
+  std::map<std::size_t, std::size_t> widths;
+  const std::size_t half = masks.size() / 2;
+  for (std::size_t i = half; i < masks.size(); ++i) {
+    if (masks[i].find(kNumber) != std::string::npos) ++widths[masks[i].size()];
+  }
+  if (widths.empty()) return "";
+  const std::size_t width = std::ranges::max_element(widths, {}, [](const auto& entry) { return entry.second; })->first;
+  std::string usual;
+  for (std::size_t j = 0; j < width; ++j) {
+    std::map<char, std::size_t> uses;
+    for (std::size_t i = half; i < masks.size(); ++i) {
+      if (masks[i].size() == width && masks[i].find(kNumber) != std::string::npos) ++uses[masks[i][j]];
+    }
+    usual += uses[kNumber] > uses[kText] ? kNumber : uses[kText] > 0 ? kText : kEmpty;
+  }
+  return usual;
+}
+
+/// Whether a line can be the first row: it has most of the numbers of the usual row, up to the last of them.
+bool IsFullRow(const std::string& mask, const std::string& usual) {
+  const std::size_t last = usual.rfind(kNumber);
+  if (last == std::string::npos || mask.size() <= last) return false;
+  std::size_t wanted = 0, found = 0;
+  for (std::size_t j = 0; j <= last; ++j) {
+    if (usual[j] != kNumber) continue;
+    if (mask[j] == kText) return false;
+    ++wanted;
+    found += mask[j] == kNumber ? 1 : 0;
+  }
+  return 2 * found >= wanted;
+}
+
+/// Whether a line has numbers, and no text where the usual row has numbers.
+bool IsRow(const std::string& mask, const std::string& usual) {
+  bool has_number = false;
+  for (std::size_t j = 0; j < std::min(mask.size(), usual.size()); ++j) {
+    if (usual[j] != kNumber) continue;
+    if (mask[j] == kText) return false;
+    has_number |= mask[j] == kNumber;
+  }
+  return has_number;
+}
+
+/// A line of dashes below a header.
+bool IsRule(std::string_view line) {
+  constexpr std::string_view kMarks = "-=_+|*~ \t,;";
+  return line.find_first_not_of(kMarks) == std::string_view::npos && line.find_first_of("-=_*~") != line.npos;
+}
+
+/// Where the table is, for one separator.
+struct Table {
+  char separator = ',';
+  std::size_t first_row = 0;  // Index of a line; the number of lines if there are no rows.
+  std::size_t names = 0;      // Index of the line with the names, or first_row.
+  std::size_t width = 0;      // Of the rows.
+  double score = 0;
+};
+
+Table FindTable(const std::vector<std::string_view>& lines, char separator) {
+  std::vector<std::string> masks;
+  masks.reserve(lines.size());
+  for (const std::string_view line : lines) masks.push_back(MaskOf(line, separator));
+  const std::string usual = UsualMask(masks);
+  Table table{separator, lines.size(), lines.size(), usual.size()};
+  const auto is_row = [&](std::size_t i) { return i >= masks.size() || IsFullRow(masks[i], usual); };
+  for (std::size_t i = 0; i < masks.size() && table.first_row == lines.size(); ++i) {
+    if (is_row(i) && is_row(i + 1)) table.first_row = i;
+  }
+  table.names = table.first_row;
+  if (table.first_row == lines.size()) return table;
+  const auto rows = std::ranges::count_if(masks, [&](const auto& mask) { return IsRow(mask, usual); });
+  const auto numbers = static_cast<double>(std::ranges::count(usual, kNumber));
+  const auto texts = static_cast<double>(std::ranges::count(usual, kText));
+  table.score = static_cast<double>(rows) * std::max(numbers - texts, numbers / 8);
+  if (table.first_row == 0) return table;
+  table.names = table.first_row - 1;
+  while (table.names > 0 && IsRule(lines[table.names])) --table.names;
+  // A faulty row below the names.
+  const auto are_names = [&](std::size_t i) {
+    const std::vector<Name> above = SplitHeader(lines[i], separator);
+    return above.size() == table.width &&
+           std::ranges::all_of(above, [](const Name& name) { return IsName(name.text); });
+  };
+  while (table.names > 0 && masks[table.names].find(kNumber) != std::string::npos && are_names(table.names - 1)) {
+    table.first_row = table.names--;
+  }
+  constexpr double kSame = 1.5, kOther = 0.4;
+  const std::vector<Name> names = SplitHeader(lines[table.names], separator);
+  const bool has_names = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
+  if (has_names) table.score *= names.size() == table.width ? kSame : kOther;
+  return table;
+}
+
+Table BestTable(const std::vector<std::string_view>& lines, char separator) {
+  if (separator != '\0') return FindTable(lines, separator);
+  Table best;
+  for (const char each : {'\t', ';', ',', ' '}) {
+    const bool is_used = each == ' ' || std::ranges::any_of(lines, [each](std::string_view line) {
+                           return line.find(each) != std::string_view::npos;
+                         });
+    if (!is_used) continue;
+    const Table table = FindTable(lines, each);
+    if (best.score == 0 || table.score > best.score) best = table;
+  }
+  return best;
+}
+
+// ---- The header --------------------------------------------------------------------------------------------------
+
+/// The names without what some programs write before them: `% t theta`, `DEF="Zeit" t / s`.
+std::string_view NamesIn(std::string_view line, char separator) {
+  for (const std::string_view mark : {"% ", "%\t", "//", ";", "DEF="}) {
+    const bool is_mark = Trim(line).starts_with(mark) && mark.front() != separator;
+    if (is_mark) return line.substr(line.find(mark) + mark.size());
+  }
+  return line;
+}
+
+/// Whether each field is a unit, perhaps in brackets, or empty.
+bool AreUnits(const std::vector<Name>& names) {
+  bool has_unit = false;
+  for (const Name& name : names) {
+    std::string_view text = name.text;
+    if (text.size() > 2 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
+    if (text.empty() || text == "-") continue;
+    const NameMeaning meaning = MeaningOf(text);
+    const bool is_unit = UnitOfText(text) != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
+    if (!is_unit) return false;
+    has_unit = true;
+  }
+  return has_unit;
+}
+
+/// Names and, from the line below, their units.
+std::vector<TableColumn> WithUnits(const std::vector<Name>& names, const std::vector<Name>& units) {
+  std::vector<TableColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string name(names[i].text);
+    std::string_view unit = i < units.size() ? units[i].text : std::string_view();
+    if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
+    const bool adds = UnitOfText(unit) != nullptr && MeaningOf(name).unit == nullptr;
+    columns.push_back({name, adds ? name + " (" + std::string(unit) + ")" : name, "", names[i].at});
+  }
+  return columns;
+}
+
+/// The columns of an ordinary header, or of a header in the style of one of the known programs.
+std::vector<TableColumn> ColumnsOf(const std::vector<Name>& names) {
+  std::vector<TableColumn> columns;
+  for (const Name& name : names) {
+    const std::string written(name.text);
+    columns.push_back({written, written == "X_Value" ? "time" : written, "", name.at});  // LabVIEW's time
+  }
+  SplitRuns(columns);
+  return columns;
+}
+
+bool SaysSomething(const std::vector<Name>& names) {
+  return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
+}
+
+/// The header of numpy's savetxt: a comment above the first row with as many names as columns.
+std::optional<TextLine> CommentWithNames(const FirstLines& first, const TextLine& row, std::size_t before,
+                                         const Table& table) {
+  for (auto comment = first.comments.rbegin(); comment != first.comments.rend(); ++comment) {
+    if (comment->number >= row.number || comment->number <= before) continue;
+    const std::string_view names = Trim(Trim(comment->text).substr(1));
+    const std::vector<Name> split = SplitHeader(names, table.separator);
+    return split.size() == table.width && SaysSomething(split) ? std::optional(TextLine{names, comment->number})
+                                                               : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// ---- Lines above the table ---------------------------------------------------------------------------------------
+
+/// What the lines above a table say about it: the sampling interval and the unit of the values.
+void ReadPreamble(const std::vector<std::string_view>& lines, std::size_t end, Head& head) {
+  constexpr std::array<std::string_view, 4> kUnitKeys = {"Y_Unit_Label", "Vertical Units", "Y Units", "VUnit"};
+  constexpr std::array<std::string_view, 4> kStepKeys = {"Delta_X", "Sample Interval", "HResolution",
+                                                         "Sampling Period"};
+  for (std::size_t i = 0; i < end; ++i) {
+    if (lines[i].starts_with("inDegrees=")) head.value_unit = lines[i].ends_with("yes") ? "deg" : "rad";
+    const char separator = lines[i].find('\t') != std::string_view::npos ? '\t' : ',';
+    std::string_view key;
+    for (FieldCutter fields(lines[i], separator); !fields.done();) {
+      const std::string_view field = Unquote(fields.Next());
+      double number = 0;
+      if (std::ranges::find(kStepKeys, key) != kStepKeys.end() && ParseNumber(field, number) && number > 0) {
+        head.sample_rate_hz = 1 / number;
+      }
+      const Unit* unit = std::ranges::find(kUnitKeys, key) != kUnitKeys.end() ? UnitOfText(field) : nullptr;
+      if (unit != nullptr && unit->kind != Kind::kTime) head.value_unit = unit->suffix;
+      key = field;
+    }
+  }
+}
+
+/// Rigol's header: X,CH1,Start,Increment, and the numbers of the last two in the line below, beside the unit.
+bool ReadRigolHeader(const std::vector<Name>& names, const std::vector<Name>& below, Head& head) {
+  bool is_rigol = false;
+  for (std::size_t i = 0; i < std::min(names.size(), below.size()); ++i) {
+    double number = 0;
+    if (names[i].text == "Increment" && ParseNumber(below[i].text, number) && number > 0) {
+      head.sample_rate_hz = 1 / number;
+      is_rigol = true;
+    }
+  }
+  return is_rigol;
+}
+
+Head ParseVernierHead(const std::vector<TextLine>& lines, Layout& layout) {
+  const std::size_t first = lines.front().number;
+  Head head;
+  std::string_view units;
+  for (const TextLine& line : lines) {
+    if (line.number == first + kVernierNames) head.names = line;
+    if (line.number == first + kVernierUnits) units = line.text;
+    if (line.number > first + kVernierUnits && head.first_row.number == 0) head.first_row = line;
+  }
+  layout.separator = '\t';
+  layout.has_header = true;
+  head.columns = VernierColumns(head.names.text, units);
+  layout.width = head.columns.size();
+  head.may_be_short = true;
+  return head;
+}
+
+}  // namespace
+
+std::optional<char> SeparatorLine(std::string_view line) {
+  constexpr std::string_view kKey = "sep=";
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  line.remove_prefix(line.starts_with('"') ? 1 : 0);
+  if (line.size() <= kKey.size() || !line.starts_with(kKey)) return std::nullopt;
+  return line[kKey.size()];
+}
+
+Head ParseHead(std::string_view begin, Layout& layout) {
+  const FirstLines first = SplitFirstLines(begin);
+  if (first.lines.empty()) return {};
+  if (IsVernier(first.lines.front().text)) return ParseVernierHead(first.lines, layout);
+  Head head;
+  head.has_host = HasHostStamps(first.lines);
+  std::vector<std::string_view> lines;
+  for (const TextLine& line : first.lines) lines.push_back(DevicePart(line.text, head.has_host));
+  Table table = BestTable(lines, first.separator);
+  if (table.score ==
+      0) {  // No rows of numbers: the first line is taken as the header, so that messages name its columns.
+    table = {first.separator != '\0' ? first.separator : Separator(lines[0]), std::min<std::size_t>(1, lines.size()),
+             0};
+  }
+  layout.separator = table.separator;
+  const auto split = [&](std::size_t i) { return SplitHeader(NamesIn(lines[i], table.separator), table.separator); };
+  std::vector<Name> names = table.names < table.first_row ? split(table.names) : std::vector<Name>();
+  std::vector<Name> units;
+  if (table.names > 0 && table.names < table.first_row) {
+    std::vector<Name> above = split(table.names - 1);
+    const bool has_names = std::ranges::any_of(above, [](const Name& name) { return IsName(name.text); });
+    if (has_names && (AreUnits(names) || ReadRigolHeader(above, names, head))) {
+      units = std::exchange(names, std::move(above));
+      --table.names;
+    }
+  }
+  layout.has_header = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
+  // Text above a table without a header.
+  if (layout.has_header && table.names > 0 && names.size() != table.width && !SaysSomething(names)) {
+    layout.has_header = false;
+  }
+  const bool is_first_row_cut_off = !layout.has_header && table.first_row == 1 && table.names == 0;
+  if (is_first_row_cut_off && !names.empty()) table.first_row = 0;
+  ReadPreamble(lines, std::min(table.first_row + 3, lines.size()), head);
+  if (table.first_row < lines.size()) head.first_row = {lines[table.first_row], first.lines[table.first_row].number};
+  if (!layout.has_header) {
+    const std::size_t before = table.first_row > 0 ? first.lines[table.first_row - 1].number : 0;
+    const auto comment = CommentWithNames(first, head.first_row, before, table);
+    if (comment) {
+      names = SplitHeader(comment->text, table.separator);
+      layout.has_header = true;
+      head.names = *comment;
+    } else {
+      head.names = first.lines[std::min(table.first_row, lines.size() - 1)];
+      layout.width = std::max<std::size_t>(table.width, 1);
+      return head;
+    }
+  } else {
+    head.names = first.lines[table.names];
+  }
+  if (units.empty() && table.names > 0 && head.names.number == first.lines[table.names].number) {
+    head.columns = LabelledColumns(lines[table.names - 1], NamesIn(lines[table.names], table.separator),
+                                   lines[table.first_row], table.separator);
+    head.may_be_short = !head.columns.empty();
+  }
+  if (head.columns.empty() && table.width == 1 && table.separator == ' ' && names.size() > 1) {
+    // The name of a single column may contain blanks.
+    names = {{Unquote(NamesIn(lines[table.names], table.separator)),
+              Trim(NamesIn(lines[table.names], table.separator)).data()}};
+  }
+  if (head.columns.empty()) head.columns = units.empty() ? ColumnsOf(names) : WithUnits(names, units);
+  const auto times = std::ranges::count_if(head.columns, [](const TableColumn& each) { return IsTime(each.meaning); });
+  head.may_be_short |= times > 1;
+  layout.width = head.columns.size();
+  return head;
+}
+
+TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& head, const Layout& layout) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::vector<double>> columns(layout.width);
+  TableNumbers found;
+  found.is_clock.resize(layout.width);
+  std::vector<DayClock> clocks(layout.width);
+  Numbers numbers(layout.separator != ',');
+  ForEachTextLine(text, number, [&](std::string_view line, std::size_t at) {
+    if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
+    std::size_t index = 0;
+    for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator); !fields.done() && index < layout.width;
+         ++index) {
+      double value = kNone;
+      if (!fields.NextNumber(numbers, value)) {
+        const std::string_view field = Unquote(fields.Next());
+        const auto time = numbers.Parse(field, value) ? std::nullopt : SecondOfDay(field);
+        if (time) found.is_clock[index] = true;
+        if (time) value = clocks[index].Continue(*time);
+        if (!time && !numbers.Parse(field, value)) value = kNone;
+      }
+      columns[index].push_back(value);
+    }
+    for (; index < layout.width; ++index) columns[index].push_back(kNone);
+    return true;
+  });
+  for (const std::vector<double>& column : columns) {
+    found.columns.emplace_back(Eigen::VectorXd::Map(column.data(), static_cast<Eigen::Index>(column.size())));
+  }
+  return found;
+}
+
+}  // namespace pendulum::csv
