@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/batch/refit.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -55,6 +56,8 @@ IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& bat
   options.models.clear();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   options.fit.model = options.models.front();
+  options.swing.is_spring =
+      std::ranges::all_of(*models, [](const MotionModel& model) { return model.gravity.is_linear(); });
   return options;
 }
 

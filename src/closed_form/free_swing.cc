@@ -218,16 +218,17 @@ double LargestOutside(const TurningPointTable& table, const std::vector<TurningP
   return largest;
 }
 
-/// A swing beyond the upright on both sides is impossible; most likely the unit is wrong.
+/// A pendulum's swing beyond the upright on both sides is impossible; most likely the unit is wrong.
 Result<void> CheckUnit(const TurningPointTable& table) {
   constexpr double kMaxAngle = 3.3;  // rad
   const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
   const double typical = Median(table.Amplitudes());
   if (!angle || typical < kMaxAngle) return {};
-  return Error(StatusCode::kFailedPrecondition, "the reading swings by " + NumberText(typical, 3) + " rad (" +
-                                                    NumberText(typical / kRadFromDeg, 3) +
-                                                    " deg) to both sides, but beyond 180 deg a pendulum goes over the "
-                                                    "top; check the unit of the column in the header or in --unit");
+  return Error(StatusCode::kFailedPrecondition,
+               "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
+                   " deg) to both sides, but beyond 180 deg a pendulum goes over the "
+                   "top; check the unit of the column in the header or in --unit, or give "
+                   "--gravity linear for a spring or wire");
 }
 
 Result<std::vector<FreeSwing>> FindAmong(const Recording& recording, const TurningPointTable& table,
@@ -300,9 +301,9 @@ std::optional<std::vector<FreeSwing>> FindHidden(const Recording& recording, con
 
 }  // namespace
 
-Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring) {
   if (HasTurningPointView(recording)) {
-    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording));
+    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording), is_spring);
     if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
     return swings;
   }
@@ -311,7 +312,9 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording) {
     const Result<TurningPointTable> found = FindTurningPoints(recording);
     return tl::unexpected(found ? Status{StatusCode::kFailedPrecondition, "no turning points"} : found.error());
   }
-  if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
+  if (!is_spring) {
+    if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
+  }
   Result<std::vector<FreeSwing>> swings = FindAmong(recording, table, EqualWeights(table));
   if (swings && !AreSmall(*swings)) return swings;
   if (std::optional<std::vector<FreeSwing>> hidden = FindHidden(recording, table)) return *std::move(hidden);

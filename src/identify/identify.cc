@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,7 +17,9 @@
 #include "pendulum/analysis/joint_comparison.h"
 #include "pendulum/analysis/joint_fit.h"
 #include "pendulum/analysis/model_comparison.h"
+#include "pendulum/base/format.h"
 #include "pendulum/base/parallel.h"
+#include "pendulum/base/physics.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/fitting/fit/rig_quantities.h"
 #include "pendulum/model/motion_model.h"
@@ -102,6 +105,21 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& iden
        "the readings are in " + identification.used.unit +
            ", not in a unit of angle; the closed forms are those of model linear, which assumes small angles"});
   return linear;
+}
+
+/// Readings in rad under the name of degrees are 57 times too small. The period of so small a swing says nothing of its
+/// amplitude, so only the size tells.
+void QuestionUnit(const Recording& used, bool is_spring, Identification& identification) {
+  constexpr double kOddlySmall = 0.6 * kRadFromDeg;
+  if (is_spring || used.unit != "deg" || used.quantity != Quantity::kAngle) return;
+  const double amplitude = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
+  if (amplitude > kOddlySmall) return;
+  const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
+  identification.warnings.push_back(
+      {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in rad (" +
+                              NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
+                              " deg), correct the unit (--unit rad, or in the column's name): the period stays, but "
+                              "angles and dry friction are 57.3 times larger"});
 }
 
 /// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
@@ -206,6 +224,8 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
   }
   if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
     return tl::unexpected(applied.error());
+  const bool is_spring = !identification.fits.empty() && identification.fits[main].model.gravity.is_linear();
+  QuestionUnit(run->alone.used, is_spring, identification);
   CompleteIdentification(options, *std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !identification.closed_forms) {

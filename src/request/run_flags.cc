@@ -480,6 +480,8 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   const auto models = FindMotionModels(ModelOf(flags), *gravity);
   if (!models) return BadFlag("--model: " + models.error().message);
   options.fit.gravity = *gravity;
+  options.swing.is_spring =
+      std::ranges::all_of(*models, [](const MotionModel& model) { return model.gravity.is_linear(); });
   options.rig_chooses_gravity = !*gravity;
   options.fit.may_be_spring = !*gravity && flags.model.empty();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);

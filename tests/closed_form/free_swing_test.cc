@@ -376,6 +376,7 @@ TEST(FindFreeSwings, AsksForTheUnitIfASwingExceedsTheUpright) {
   EXPECT_THAT(ErrorMessage(in_degrees),
               testing::HasSubstr("to both sides, but beyond 180 deg a pendulum goes over the top; "
                                  "check the unit of the column in the header or in"));
+  EXPECT_THAT(FindFreeSwings(in_degrees, true).value(), testing::SizeIs(1));  // a torsion wire
 }
 
 TEST(FindFreeSwings, DoesNotTreatCountsAsAnAngle) {

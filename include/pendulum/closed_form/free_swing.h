@@ -42,7 +42,7 @@ struct FreeSwing {
 /// is found among all turning points, or if larger motion lies outside, half swings are weighed by their size, and then
 /// the low band of the readings is searched. kFailedPrecondition: there is no free swing; the message states whether
 /// the reading is constant, has too few turning points, is in a wrong unit, or shows a pendulum that was driven or
-/// moved by hand.
-Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording);
+/// moved by hand. A spring may turn beyond 180 deg.
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring = false);
 
 }  // namespace pendulum

@@ -48,7 +48,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     return ChosenSwings{{WholeRecording(*part)}, {1}};
   }
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
-  Result<std::vector<FreeSwing>> found = FindFreeSwings(*part);
+  Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));
   if (!found) return WithMessage(found.error(), where + found.error().message);
   ChosenSwings swings{*std::move(found), {}};
   const auto count = static_cast<int>(swings.found.size());

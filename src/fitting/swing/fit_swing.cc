@@ -361,7 +361,8 @@ void FitAsSpring(const FitOptions& options, Result<SwingFit>& result) {
       {"linear_restoring_torque",
        "a restoring torque proportional to the angle is assumed, as of a spring or wire (model " + linear.model +
            "; G is its stiffness k), because " + why.substr(0, why.rfind(';')) + ". The readings are in " +
-           result->used.unit + ": " + *unit + ". For a pendulum give --gravity sin, and correct the unit with --unit"});
+           result->used.unit + ": " + *unit +
+           ". For a pendulum give --gravity sin, and correct the unit (--unit, or in the column's name)"});
   result = std::move(other);
 }
 

@@ -74,7 +74,9 @@ std::optional<double> LevelsInTurn(const Recording& recording) {
 std::string FlagsForLinear(const Recording& recording, double amplitude) {
   const std::string spring = "give --gravity linear for a spring or wire (Pohl wheel, torsion pendulum)";
   if (ReasonForUnit(recording)) return spring;
-  return spring + ", or --unit deg if the readings are in degrees, of a pendulum with an amplitude of " +
+  return spring +
+         ", or correct the unit to deg (--unit deg, or in the column's name) if this is a pendulum with an "
+         "amplitude of " +
          NumberText(amplitude, 3) + " deg";
 }
 

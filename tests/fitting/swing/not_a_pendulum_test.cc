@@ -85,7 +85,7 @@ TEST(FitSwing, ReportsALinearOscillatorWithNumbers) {
     EXPECT_THAT(NumberAfter(fit.reason, "a linear oscillator leaves "), DoubleNear(0.002, 2e-4));
     EXPECT_THAT(NumberAfter(fit.reason, "(rms), a pendulum "), testing::Gt(0.004));
     EXPECT_THAT(fit.reason, HasSubstr("; give --gravity linear for a spring or wire"));
-    EXPECT_THAT(fit.reason, HasSubstr("or --unit deg if the readings are in degrees"));
+    EXPECT_THAT(fit.reason, HasSubstr("or correct the unit to deg (--unit deg, or in the column's name)"));
   }
 }
 
@@ -143,7 +143,7 @@ TEST(FitSwing, DoesNotTakeDegreesLabelledRadForASpring) {
     SCOPED_TRACE(step_deg);
     SyntheticOptions run = NoisyRun("coulomb", 5);
     run.release_angle = 1.8 * kRadFromDeg;
-    run.zero_angle = 0;
+    run.zero = 0;
     run.noise = 0.02 * kRadFromDeg;
     run.parameters[2] = 1e-4;
     run.duration = 20;
@@ -154,7 +154,7 @@ TEST(FitSwing, DoesNotTakeDegreesLabelledRadForASpring) {
     EXPECT_FALSE(ReasonForUnit(recording));
     const FitReport fit = FitLongest(recording, OptionsWithoutGravity()).fit;
     ExpectWithdrawn(fit);
-    EXPECT_THAT(fit.reason, HasSubstr("--unit deg if the readings are in degrees, of a pendulum with an amplitude of"));
+    EXPECT_THAT(fit.reason, HasSubstr("if this is a pendulum with an amplitude of"));
   }
 }
 

@@ -21,6 +21,7 @@ struct SwingChoice {
   double from = std::numeric_limits<double>::quiet_NaN();
   double to = std::numeric_limits<double>::quiet_NaN();
   int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
+  bool is_spring = false;  ///< The restoring torque is linear, so the angle may exceed 180 deg.
 };
 
 /// The free swings of a recording, and the numbers of the chosen swings.
