@@ -119,16 +119,17 @@ TEST(OptionsJson, DependsOnEveryOption) {
 }
 
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. Some
-// members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; users
-// cannot set `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
+// members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
+// the reader is that of the swing; users cannot set `start_values` and `sensor_start`; `shared` is for joint
+// identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, checks, closed_form_only, shared] = options;
-  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range,
+  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, window,
                           most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;
-  [[maybe_unused]] auto& [model, gravity, start, rig, fixed, initial, bounds, priors, noise, interval, seed, threads,
-                          progress, search, stop] = fit;
+  [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
+                          seed, threads, progress, search, stop] = fit;
   [[maybe_unused]] auto& [start_values, sensor_start, max_trace_error, max_iterations, max_traces] = search;
 }
 
