@@ -120,11 +120,11 @@ TEST(OptionsJson, DependsOnEveryOption) {
 
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. Some
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
-// the reader is that of the swing; users cannot set `start_values` and `sensor_start`; `shared` is for joint
-// identifications, of which a batch has none.
+// the reader is that of the swing; a rig chooses the gravity only where `gravity` is not given; users cannot set
+// `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
-  [[maybe_unused]] auto& [read, swing, models, fit, checks, closed_form_only, shared] = options;
+  [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, shared] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, window,
                           most_unpacked_bytes] = read;
   [[maybe_unused]] auto& [from, to, release] = swing;

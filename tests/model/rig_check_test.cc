@@ -126,7 +126,7 @@ TEST(CompareRigWithSwing, RefusesAnInertiaInAnotherUnit) {
   EXPECT_THAT(Refusal(RigOf(R"({"gravity_torque": 1803, "inertia": 0.079})"), kSeen),
               HasSubstr("gravity_torque is 1803 N m: in mN m? Write 1.803"));
   EXPECT_THAT(Refusal(RigOf(R"({"stiffness": 0.02, "inertia": 16.2})"), 12.33),
-              AllOf(HasSubstr("k/I"), HasSubstr("inertia is 16.2 kg m^2: in g m^2? Write 0.0162")));
+              AllOf(HasSubstr("k/I"), HasSubstr("inertia is 16.2 kg m^2: in kg cm^2? Write 0.00162")));
 }
 
 TEST(CompareRigWithSwing, RefusesACenterOfMassThatNoInertiaAllows) {

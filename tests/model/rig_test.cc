@@ -183,7 +183,7 @@ TEST(ParseRig, NamesAMissingKey) {
 
 TEST(ParseRig, RefusesAnIncompleteDescription) {
   EXPECT_THAT(FaultOf("{}"), HasSubstr("the rig has no complete description; it must be {\"bob_mass\""));
-  EXPECT_THAT(FaultOf(R"({"mass": 1})"), HasSubstr(R"("center_of_mass" is missing beside "mass")"));
+  EXPECT_THAT(FaultOf(R"({"mass": 1})"), HasSubstr(R"("gravity" is missing beside "mass")"));
 }
 
 TEST(ParseRig, RefusesAMixtureOfDescriptions) {
