@@ -82,10 +82,12 @@ Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
   Result<void> done;
   std::string what = "there is no such file or folder";
   if (fs::is_directory(pattern, error)) {
-    for (const char* const kind : {"*.[cC][sS][vV]", "*.[mM][aA][tT]", "*.[zZ][iI][pP]"}) {
+    // Excel keeps a file ~$run.xlsx while run.xlsx is open.
+    for (const char* const kind : {"*.[cC][sS][vV]", "*.[mM][aA][tT]", "*.[zZ][iI][pP]", "[!~]*.[xX][lL][sS]",
+                                   "[!~]*.[xX][lL][sS][xX]", "*.[oO][dD][sS]", "*.[nN][pP][zZ]"}) {
       if (done) done = Find(pattern, std::vector<std::string>{kAnyFolders, kind}, found);
     }
-    what = "there is no *.csv, *.mat or *.zip file in this folder or below it";
+    what = "there is no *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx or *.zip file in this folder or below it";
   } else if (fs::exists(pattern, error)) {
     found.push_back(pattern);
   } else if (IsPattern(pattern)) {

@@ -8,6 +8,7 @@ set(pendulum_third_parties
   libceres-dev
   libcsv-dev
   libeigen3-dev
+  libexpat1-dev
   libexpected-dev
   libgflags-dev
   libgoogle-glog-dev

@@ -48,7 +48,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"data", &Flags::data,
        "Recording, or several of one rig, separated by commas and fitted together (--shared): CSV whose header names "
        "the columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
-       "Graphical Analysis, Capstone and ROS; MAT-files; - is standard input."},
+       "Graphical Analysis, Capstone and ROS; workbooks (xlsx, xls, ods); MAT-files; NumPy arrays; JSON; - is standard "
+       "input."},
       {"data_list", &Flags::data_list, "File with one path of a recording per line, instead of --data; default none."},
       {"shared", &Flags::shared,
        "Parameters that several recordings share: all (inertia and friction), a list of names, or none (each recording "

@@ -56,8 +56,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Runs to refit: CSV file with the column path (relative to the CSV file) and optional columns such as id, rig, "
        "calibration, from_s, to_s and models; or a file made by pack; - is standard input."},
       {"data", &Flags::data,
-       "Instead of a manifest: folders (all *.csv, *.mat and *.zip files below), patterns such as "
-       "'runs/**/*.txt' and files, separated by commas."},
+       "Instead of a manifest: folders (all *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx and *.zip files below), patterns "
+       "such as 'runs/**/*.txt' and files, separated by commas."},
       {"store", &Flags::store, "SQLite file of the results; it is created or updated."},
       {"force", &Flags::force,
        "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},

@@ -66,6 +66,11 @@ TEST_F(FindRecordingsTest, IncludesPackedRecordingsAndMatFiles) {
   EXPECT_THAT(Find(""), ElementsAre("a/R.MAT", "a/phone.zip", "b.mat", "c.ZIP"));
 }
 
+TEST_F(FindRecordingsTest, IncludesWorkbooksButNotTheirLocks) {
+  Make({"a.xlsx", "b.XLS", "c.ods", "d.npz", "~$a.xlsx", ".~lock.c.ods#", "e.json", "f.xlsm.bak"});
+  EXPECT_THAT(Find(""), ElementsAre("a.xlsx", "b.XLS", "c.ods", "d.npz"));
+}
+
 TEST_F(FindRecordingsTest, IgnoresATrailingSlash) {
   Make({"a.csv", "b/c.csv"});
   EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
@@ -161,8 +166,10 @@ TEST_F(FindRecordingsTest, ReportsPathsAndPatternsThatAreNotFound) {
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("none.csv").message, folder + "/none.csv: there is no such file or folder; check the path");
   EXPECT_EQ(FaultOf("a").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("a").message,
-            folder + "/a: there is no *.csv, *.mat or *.zip file in this folder or below it; check the path");
+  EXPECT_EQ(FaultOf("a").message, folder +
+                                      "/a: there is no *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx or *.zip file in this "
+                                      "folder or below it; check the "
+                                      "path");
   EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file matches this pattern; check the path");
   EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file matches this pattern; check the path");

@@ -50,9 +50,10 @@ inline std::string BeginRecord(std::uint16_t kind, std::uint16_t version = 0x060
   return BiffRecordOf(0x0809, U16(version) + U16(kind) + std::string(12, '\0'));
 }
 
-/// A compound file with these streams, each in sectors of its own.
-inline std::string CompoundFileOf(const std::vector<std::pair<std::string, std::string>>& streams) {
-  constexpr std::size_t kSector = 512, kSmallest = 4096;
+/// A compound file with these streams, each in sectors of its own. Excel's shortest stream there has 4096 bytes.
+inline std::string CompoundFileOf(const std::vector<std::pair<std::string, std::string>>& streams,
+                                  std::size_t smallest = 4096) {
+  constexpr std::size_t kSector = 512;
   constexpr std::uint32_t kEnd = 0xFFFFFFFE, kFree = 0xFFFFFFFF, kTable = 0xFFFFFFFD;
   const auto entry = [](const std::string& name, char type, std::uint32_t first, std::size_t size) {
     std::string bytes(128, '\0');
@@ -67,7 +68,7 @@ inline std::string CompoundFileOf(const std::vector<std::pair<std::string, std::
   std::vector<std::uint32_t> next;
   for (const auto& [name, stream] : streams) {
     const auto first = static_cast<std::uint32_t>(next.size());
-    const std::size_t size = std::max(stream.size(), kSmallest);
+    const std::size_t size = std::max(stream.size(), smallest);
     const std::size_t sectors = (size + kSector - 1) / kSector;
     for (std::size_t i = 1; i < sectors; ++i) next.push_back(static_cast<std::uint32_t>(next.size() + 1));
     next.push_back(kEnd);
@@ -88,7 +89,7 @@ inline std::string CompoundFileOf(const std::vector<std::pair<std::string, std::
   header.replace(0, 8, "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1");
   header.replace(26, 6, U16(3) + U16(0xFFFE) + U16(9));
   header.replace(44, 8, U32(static_cast<std::uint32_t>(tables)) + U32(directory_at));
-  header.replace(56, 20, U32(kSmallest) + U32(kEnd) + U32(0) + U32(kEnd) + U32(0));
+  header.replace(56, 20, U32(static_cast<std::uint32_t>(smallest)) + U32(kEnd) + U32(0) + U32(kEnd) + U32(0));
   for (std::size_t i = 0; i < 109; ++i) {
     header.replace(76 + 4 * i, 4, U32(i < tables ? table_at + static_cast<std::uint32_t>(i) : kFree));
   }

@@ -9,7 +9,8 @@
 namespace pendulum {
 
 /// The recordings of a folder or a pattern, in the order of their names.
-/// Folder: all *.csv, *.mat and *.zip files in it and in its subfolders, in lower or upper case.
+/// Folder: all *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx and *.zip files in it and in its subfolders, in lower or upper
+/// case.
 /// Pattern ("runs/2026-*/*.csv", "**/pendulum?.csv"): the files whose path matches part by part (fnmatch(3)); a part **
 /// matches any number of folders. Hidden files and folders match only a pattern that begins with a dot. Links to
 /// folders below the named folder are not followed, to avoid loops; links to files are.

@@ -40,19 +40,21 @@ ChildLimits LimitsForWorkbook(std::size_t bytes, std::size_t max_unpacked) {
   return limits;
 }
 
-tl::unexpected<Status> NoWorkbook(ChildFailure failure, const ChildLimits& limits, const std::string& name) {
+tl::unexpected<Status> NoWorkbook(ChildFailure failure, const ChildLimits& limits, WorkbookWords words,
+                                  const std::string& name) {
+  const std::string what = "this " + std::string(words.kind);
   const std::string less(kLess);
   switch (failure) {
     case ChildFailure::kNotStarted: break;
-    case ChildFailure::kCrashed: return Fault(name, "this workbook is damaged: its reader crashed; save it again");
+    case ChildFailure::kCrashed: return Fault(name, what + " is damaged: its reader crashed; save it again");
     case ChildFailure::kOutOfTime:
-      return Fault(name, "this workbook takes longer to read than " + std::to_string(limits.processor_seconds) +
+      return Fault(name, what + " takes longer to read than " + std::to_string(limits.processor_seconds) +
                              " s of processor time: it is damaged or too large" + less);
     case ChildFailure::kOutOfMemory:
-      return Fault(name, "this workbook needs more memory to read than the " + std::to_string(limits.memory_bytes) +
+      return Fault(name, what + " needs more memory to read than the " + std::to_string(limits.memory_bytes) +
                              " bytes that are allowed: it is damaged or too large" + less);
     case ChildFailure::kAnswerTooLarge:
-      return Fault(name, "this workbook unpacks to more than " + std::to_string(limits.answer_bytes) +
+      return Fault(name, what + " unpacks to more than " + std::to_string(limits.answer_bytes) +
                              " bytes, too many for a recording" + less);
   }
   return Error(StatusCode::kTryAgain, name + ": the process that reads it could not be started; try again");
@@ -103,7 +105,9 @@ std::string UnknownXml(const std::string& root) {
 
 Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::string_view bytes, const std::string& name,
                                const ReadOptions& options) {
-  if (!workbook.complaint.empty()) return Fault(name, workbook.complaint);
+  if (!workbook.complaint.empty()) {
+    return Fault(workbook.place.empty() ? name : name + ":" + workbook.place, workbook.complaint);
+  }
   if (workbook.is_too_large) {
     return Fault(name, "this " + std::string(words.kind) + " has more than " + std::to_string(kMaxSheetRows) +
                            " rows or " + std::to_string(options.most_unpacked_bytes) +
@@ -125,12 +129,12 @@ Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::stri
   return recording;
 }
 
-Result<Recording> ReadWorkbook(const std::function<Workbook()>& read, std::string_view bytes, const std::string& name,
-                               const ReadOptions& options) {
+Result<Recording> ReadWorkbook(const std::function<Workbook()>& read, WorkbookWords words, std::string_view bytes,
+                               const std::string& name, const ReadOptions& options) {
   const ChildLimits limits = LimitsForWorkbook(bytes.size(), options.most_unpacked_bytes);
   const auto packed = RunInChildProcess([&] { return Pack(read()); }, limits);
-  if (!packed) return NoWorkbook(packed.error(), limits, name);
-  return FromWorkbook(UnpackWorkbook(*packed), kSheets, bytes, name, options);
+  if (!packed) return NoWorkbook(packed.error(), limits, words, name);
+  return FromWorkbook(UnpackWorkbook(*packed), words, bytes, name, options);
 }
 
 Result<Recording> ReadXml(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -141,7 +145,7 @@ Result<Recording> ReadXml(std::string_view bytes, const std::string& name, const
   if (root == "Workbook") read = [&] { return ReadExcelXml(bytes, max_bytes); };
   if (root == "document") read = [&] { return ReadFlatOds(bytes, max_bytes); };
   if (!read) return Fault(name, UnknownXml(root));
-  return ReadWorkbook(read, bytes, name, options);
+  return ReadWorkbook(read, kSheets, bytes, name, options);
 }
 
 Result<Recording> ReadCompound(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -157,13 +161,12 @@ Result<Recording> ReadCompound(std::string_view bytes, const std::string& name, 
                  "this is a document of an Office program, but not a workbook; save the table as .xlsx or CSV, or copy "
                  "the file again if it should be a workbook");
   }
-  return ReadWorkbook([&] { return ReadXls(bytes, options.most_unpacked_bytes); }, bytes, name, options);
+  return ReadWorkbook([&] { return ReadXls(bytes, options.most_unpacked_bytes); }, kSheets, bytes, name, options);
 }
 
 Result<Recording> ReadJson(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  Result<Workbook> tables = ReadJsonTables(bytes, name, options.most_unpacked_bytes);
-  if (!tables) return tl::unexpected(std::move(tables).error());
-  return FromWorkbook(*std::move(tables), kJsonTables, bytes, name, options);
+  return ReadWorkbook([&] { return ReadJsonTables(bytes, options.most_unpacked_bytes); }, kJsonTables, bytes, name,
+                      options);
 }
 
 }  // namespace pendulum

@@ -23,8 +23,8 @@ inline constexpr WorkbookWords kJsonTables = {"JSON text", "table"};
 /// Reads a recording from a workbook, which `read` reads in a child process with limits. `bytes` are the file's.
 /// Messages begin "name:sheet:row:". kDataLoss: damaged, too large, no sheet with a recording or several. kTryAgain: no
 /// process could be started.
-Result<Recording> ReadWorkbook(const std::function<Workbook()>& read, std::string_view bytes, const std::string& name,
-                               const ReadOptions& options);
+Result<Recording> ReadWorkbook(const std::function<Workbook()>& read, WorkbookWords words, std::string_view bytes,
+                               const std::string& name, const ReadOptions& options);
 
 /// Reads a recording from one of the tables. The sheets of metadata that phyphox writes are left out.
 Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::string_view bytes, const std::string& name,
@@ -38,7 +38,7 @@ Result<Recording> ReadXml(std::string_view bytes, const std::string& name, const
 /// names.
 Result<Recording> ReadCompound(std::string_view bytes, const std::string& name, const ReadOptions& options);
 
-/// Reads a recording from a JSON text.
+/// Reads a recording from a JSON text. Messages about its form begin "name:line:column:".
 Result<Recording> ReadJson(std::string_view bytes, const std::string& name, const ReadOptions& options);
 
 }  // namespace pendulum

@@ -73,10 +73,10 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   const Result<ZipMembers> zip = ZipMembers::Open(bytes, name);
   if (!zip) return tl::unexpected(zip.error());
   const std::size_t max_bytes = options.most_unpacked_bytes;
-  if (IsXlsx(*zip)) return ReadWorkbook([&] { return ReadXlsx(*zip, max_bytes); }, bytes, name, options);
+  if (IsXlsx(*zip)) return ReadWorkbook([&] { return ReadXlsx(*zip, max_bytes); }, kSheets, bytes, name, options);
   const std::string type = TypeOf(*zip);
   if (type.starts_with("application/vnd.oasis.opendocument.spreadsheet")) {
-    return ReadWorkbook([&] { return ReadOds(*zip, max_bytes); }, bytes, name, options);
+    return ReadWorkbook([&] { return ReadOds(*zip, max_bytes); }, kSheets, bytes, name, options);
   }
   if (IsNpz(*zip)) return FromWorkbook(ReadNpz(*zip, max_bytes), kArrays, bytes, name, options);
   if (const std::string sentence = ForeignZipSentence(*zip, type); !sentence.empty()) return Fault(name, sentence);

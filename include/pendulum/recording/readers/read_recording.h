@@ -10,10 +10,16 @@
 
 namespace pendulum {
 
-/// Reads a recording from a file; "-" is standard input. The format is detected from the content: CSV, including
-/// exports of phyphox, Tracker, Logger Pro, Graphical Analysis, Capstone and ROS; a zip file that contains one of these
-/// (--value_column "FILE/COLUMN" selects one); a MAT-file of version 4 to 7.3. Cost: one pass, 16 bytes per row and one
-/// block. Zip and MAT files are held in memory completely; a MAT-file is read in a separate process.
+/// Reads a recording from a file; "-" is standard input. The format is detected from the content: CSV in UTF-8 or
+/// UTF-16, including exports of phyphox, Tracker, Logger Pro, Graphical Analysis, Capstone and ROS; a zip file that
+/// contains one of these (--value_column "FILE/COLUMN" selects one); a MAT-file of version 4 to 7.3; a workbook (.xlsx,
+/// .xlsm, .xls, .ods, .fods, XML of Excel 2003) with the recording in one sheet ("SHEET/COLUMN"); a saved state of
+/// phyphox; arrays of NumPy (.npy, .npz); JSON (arrays, objects, one object on each line). Other formats are named,
+/// with how to export from them. Cost: one pass, 16 bytes per row and one block. Files other than text are held in
+/// memory completely; MAT-files, workbooks and states of phyphox are read in a separate process.
+///
+/// The tables of workbooks, JSON and arrays are read as if they were CSV; dates and times of day become text, and cells
+/// with errors are empty. In messages, "path:SHEET:12:" is row 12 of the sheet.
 ///
 /// In CSV the first line names the columns: time `time_s`, `time_ms` or `time_us`, the quantity by its suffix `_rad`,
 /// `_deg`, `_rad_s`, `_deg_s`, `_counts` or `_volts`; `Time (ms)` is equivalent. ReadOptions must resolve what the
@@ -26,9 +32,9 @@ namespace pendulum {
 /// 0 or the full scale of 10, 12, 14 or 16 bits have this range.
 ///
 /// Warnings: those of RepairClock; incomplete_row, empty_cells, host_time, time_unit_assumed, lost_samples;
-/// unreadable_member (in a zip file); metadata_not_applied (a calibration in a file of angles). kNotFound: no such
+/// unreadable_member (in a zip file); member_assumed (several sheets); metadata_not_applied (a calibration in a file of angles). kNotFound: no such
 /// file. kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options contradict
-/// the file. kFailedPrecondition: fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file.
+/// the file. kFailedPrecondition: fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file or a workbook.
 /// Messages begin "path:line:", or "path:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -33,12 +33,13 @@ class CsvText {
 
  private:
   struct Row {
-    std::uint32_t cells = 0;
-    bool is_comment = false;
+    std::uint32_t cells : 31 = 0;
+    std::uint32_t is_comment : 1 = 0;
   };
 
   bool BeginCell(std::size_t row, std::size_t column);
   bool HasRoom(std::size_t bytes);
+  void QuoteComment();
   std::string Padded(std::size_t width) const;
 
   std::size_t max_bytes_, max_rows_;

@@ -11,20 +11,19 @@
 #include <variant>
 #include <vector>
 
-#include "pendulum/base/file.h"
 #include "recording/readers/containers/csv_text.h"
 #include "recording/readers/containers/json_value.h"
 
 namespace pendulum {
 namespace {
 
-tl::unexpected<Status> JsonError(std::string_view text, std::size_t line_offset, const JsonFault& fault,
-                                 const std::string& name) {
+/// `first_line`: the line of the file in which the text begins, from 0.
+void SetFault(std::string_view text, std::size_t first_line, const JsonFault& fault, Workbook& workbook) {
   const std::string_view before = text.substr(0, fault.byte);
-  const std::size_t line = line_offset + 1 + static_cast<std::size_t>(std::ranges::count(before, '\n'));
+  const std::size_t line = first_line + 1 + static_cast<std::size_t>(std::ranges::count(before, '\n'));
   const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-  return Error(StatusCode::kDataLoss, name + ":" + std::to_string(line) + ":" + std::to_string(column) +
-                                          ": this is not JSON (" + fault.reason + "); correct it here");
+  workbook.place = std::to_string(line) + ":" + std::to_string(column);
+  workbook.complaint = "this is not JSON (" + fault.reason + "); correct it here";
 }
 
 bool IsNumeric(std::string_view text) {
@@ -269,7 +268,7 @@ struct JsonLines {
   std::string incomplete;  // A last line that is cut off.
 };
 
-Result<JsonLines> ParseLines(std::string_view text, const std::string& name, JsonKeys& keys) {
+JsonLines ParseLines(std::string_view text, JsonKeys& keys, Workbook& workbook) {
   JsonLines lines;
   for (std::size_t number = 0; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -284,7 +283,8 @@ Result<JsonLines> ParseLines(std::string_view text, const std::string& name, Jso
     } else if (is_last) {
       lines.incomplete = line;
     } else {
-      return JsonError(line, number, fault, name);
+      SetFault(line, number, fault, workbook);
+      return lines;
     }
   }
   return lines;
@@ -301,27 +301,26 @@ bool HasValueOnEachLine(std::string_view text) {
 
 }  // namespace
 
-Result<Workbook> ReadJsonTables(std::string_view text, const std::string& name, std::size_t max_bytes) {
+Workbook ReadJsonTables(std::string_view text, std::size_t max_bytes) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  const std::string_view begun = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  Workbook workbook;
   JsonKeys keys;
   JsonValue root;
   std::string incomplete;
-  if (HasValueOnEachLine(begun)) {
-    Result<JsonLines> lines = ParseLines(text, name, keys);
-    if (!lines) return tl::unexpected(std::move(lines).error());
-    root = std::make_unique<JsonArray>(std::move(lines->values));
-    incomplete = std::move(lines->incomplete);
+  if (HasValueOnEachLine(text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size())))) {
+    JsonLines lines = ParseLines(text, keys, workbook);
+    root = std::make_unique<JsonArray>(std::move(lines.values));
+    incomplete = std::move(lines.incomplete);
   } else if (const JsonFault fault = ParseJson(text, keys, root); !fault.reason.empty()) {
-    return JsonError(text, 0, fault, name);
+    SetFault(text, 0, fault, workbook);
   }
-  Workbook workbook;
+  if (!workbook.complaint.empty()) return workbook;
   JsonTableFinder(workbook, max_bytes).Find(root, "");
   if (workbook.is_too_large || !workbook.complaint.empty()) return workbook;
   if (workbook.sheets.empty()) {
-    return Fault(name,
-                 R"(this JSON has no arrays of numbers; a recording is {"t": [0, 0.01], "angle_deg": [10, 9.9]})");
+    workbook.complaint =
+        R"(this JSON has no arrays of numbers; a recording is {"t": [0, 0.01], "angle_deg": [10, 9.9]})";
   }
   if (workbook.sheets.size() == 1) workbook.sheets.front().text += incomplete;
   return workbook;

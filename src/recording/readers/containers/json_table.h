@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 
-#include "pendulum/base/status.h"
 #include "recording/readers/containers/workbook.h"
 
 namespace pendulum {
@@ -16,8 +14,7 @@ namespace pendulum {
 /// - an array of rows: [[0, 3], [1, 4]], the first of which may contain names; or one row on each line;
 /// - the forms of pandas: {"t": {"0": 0, "1": 1}, ...} and {"columns": [...], "data": [...]};
 /// - objects with such tables, each of which is named after its key.
-/// Other members with the keys of metadata, such as sample_rate_hz, become lines `# key: value`. kDataLoss: not JSON
-/// (line and column), or without a table.
-Result<Workbook> ReadJsonTables(std::string_view text, const std::string& name, std::size_t max_bytes);
+/// Other members with the keys of metadata, such as sample_rate_hz, become lines `# key: value`.
+Workbook ReadJsonTables(std::string_view text, std::size_t max_bytes);
 
 }  // namespace pendulum

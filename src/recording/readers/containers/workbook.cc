@@ -48,6 +48,7 @@ bool FinishSheet(CsvText& csv, Sheet& sheet, Workbook& workbook) {
 std::string Pack(const Workbook& workbook) {
   std::string bytes;
   PutString(workbook.complaint, bytes);
+  PutString(workbook.place, bytes);
   bytes += workbook.is_too_large ? 'L' : ' ';
   for (const Sheet& sheet : workbook.sheets) {
     PutString(sheet.name, bytes);
@@ -59,6 +60,7 @@ std::string Pack(const Workbook& workbook) {
 Workbook UnpackWorkbook(std::string_view bytes) {
   Workbook workbook;
   workbook.complaint = TakeString(bytes);
+  workbook.place = TakeString(bytes);
   workbook.is_too_large = bytes.starts_with('L');
   bytes.remove_prefix(bytes.empty() ? 0 : 1);
   while (bytes.size() >= 2 * sizeof(std::uint64_t)) {

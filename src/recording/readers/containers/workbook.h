@@ -20,6 +20,7 @@ struct Sheet {
 struct Workbook {
   std::vector<Sheet> sheets;
   std::string complaint;  // Why the file could not be read, and what to do; otherwise empty.
+  std::string place;      // Where, if known: "LINE:COLUMN".
   bool is_too_large = false;
 };
 

@@ -245,8 +245,7 @@ class XlsSheetReader {
   }
 
   void WriteTo(CsvText& csv) {
-    std::ranges::stable_sort(cells_, std::less<>(),
-                             [](const XlsCell& cell) { return std::tuple(cell.row, cell.column); });
+    std::ranges::sort(cells_, std::less<>(), [](const XlsCell& cell) { return std::tuple(cell.row, cell.column); });
     for (const XlsCell& cell : cells_) {
       if (cell.number) {
         csv.AddNumber(cell.row, cell.column, *cell.number);

@@ -37,6 +37,15 @@ TEST(CsvText, KeepsCommentsAsTheyAre) {
   EXPECT_EQ(csv.Finish(), "# range: 0,1023\n1;2\n");
 }
 
+TEST(CsvText, QuotesAHeaderThatBeginsLikeAComment) {
+  CsvText csv(kMaxBytes);
+  csv.AddText(0, 0, "#");
+  csv.AddText(0, 1, "time_s");
+  csv.AddNumber(1, 0, 1);
+  csv.AddNumber(1, 1, 0.5);
+  EXPECT_EQ(csv.Finish(), "\"#\";time_s\n1;0.5\n");
+}
+
 TEST(CsvText, RefusesCellsThatComeTooLate) {
   CsvText csv(kMaxBytes);
   csv.AddNumber(1, 1, 1);

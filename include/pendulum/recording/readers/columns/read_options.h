@@ -19,8 +19,8 @@ struct ReadOptions {
   std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
   std::optional<double> resolution;        ///< In the file's unit; 0: continuous; std::nullopt: the file's.
   std::optional<SensorRange> range;        ///< The sensor's range, in the file's unit; std::nullopt: the file's own.
-  /// Limit for a member of a zip file and for all columns of a MAT-file, which may be a thousand times larger than the
-  /// file.
+  /// Limit for a member of a zip file, for all columns of a MAT-file and for all sheets of a workbook as text, which may
+  /// be a thousand times larger than the file.
   std::size_t most_unpacked_bytes = std::size_t{1} << 29;
 };
 
