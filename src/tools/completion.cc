@@ -18,14 +18,14 @@ std::vector<FlagInfo> OwnFlags(std::span<const FlagInfo> flags) {
   return own;
 }
 
-std::string Join(const std::vector<std::string>& words, std::string_view separator) {
+std::string JoinWords(const std::vector<std::string>& words, std::string_view separator) {
   std::string text;
   for (const std::string& word : words) text.append(text.empty() ? "" : separator).append(word);
   return text;
 }
 
 /// The beginning of the help of a flag, without characters that a shell would interpret.
-std::string Summary(const FlagInfo& flag) {
+std::string ShortHelp(const FlagInfo& flag) {
   constexpr std::size_t kLongest = 70;
   std::string text = flag.help.substr(0, std::min(flag.help.find(". "), flag.help.find("; ")));
   text = text.substr(0, text.find(": "));
@@ -45,7 +45,7 @@ std::string BashScript(const std::string& tool, const std::vector<FlagInfo>& fla
     all.push_back("--" + flag.name);
     if (flag.type == "bool") continue;
     if (!flag.words.empty()) {
-      choices += "    --" + flag.name + ") words='" + Join(flag.words, " ") + "' ;;\n";
+      choices += "    --" + flag.name + ") words='" + JoinWords(flag.words, " ") + "' ;;\n";
     } else {
       (flag.is_path ? files : others).push_back("--" + flag.name);
     }
@@ -63,13 +63,13 @@ std::string BashScript(const std::string& tool, const std::vector<FlagInfo>& fla
       "  if [[ $flag == -[!-]* ]]; then flag=-$flag; fi\n"
       "  case $flag in\n" +
       choices;
-  if (!others.empty()) script += "    " + Join(others, " | ") + ") return ;;\n";
-  if (!files.empty()) script += "    " + Join(files, " | ") + ") words='<file>' ;;\n";
+  if (!others.empty()) script += "    " + JoinWords(others, " | ") + ") return ;;\n";
+  if (!files.empty()) script += "    " + JoinWords(files, " | ") + ") words='<file>' ;;\n";
   script +=
       "  esac\n"
       "  if [[ -z $words && $current == -* ]]; then\n"
       "    mapfile -t COMPREPLY < <(compgen -W '" +
-      Join(all, " ") +
+      JoinWords(all, " ") +
       "' -- \"$current\")\n"
       "  elif [[ -z $words || $words == '<file>' ]]; then\n"
       "    compopt -o filenames 2> /dev/null\n"
@@ -91,10 +91,10 @@ std::string ZshScript(const std::string& tool, const std::vector<FlagInfo>& flag
     std::string value;
     if (flag.type != "bool") {
       value = ":" + flag.name + ":";
-      if (!flag.words.empty()) value += "(" + Join(flag.words, " ") + ")";
+      if (!flag.words.empty()) value += "(" + JoinWords(flag.words, " ") + ")";
       if (flag.is_path) value += "_files";
     }
-    script += "  '--" + flag.name + (value.empty() ? "" : "=") + "[" + Summary(flag) + "]" + value + "' \\\n";
+    script += "  '--" + flag.name + (value.empty() ? "" : "=") + "[" + ShortHelp(flag) + "]" + value + "' \\\n";
   }
   return script + "  '*:file:_files'\n";
 }
@@ -104,9 +104,9 @@ std::string FishScript(const std::string& tool, const std::vector<FlagInfo>& fla
   for (const FlagInfo& flag : flags) {
     std::string value;
     if (flag.type != "bool") {
-      value = flag.is_path ? " -r -F" : flag.words.empty() ? " -x" : " -x -a '" + Join(flag.words, " ") + "'";
+      value = flag.is_path ? " -r -F" : flag.words.empty() ? " -x" : " -x -a '" + JoinWords(flag.words, " ") + "'";
     }
-    script += "complete -c " + tool + " -l " + flag.name + value + " -d '" + Summary(flag) + "'\n";
+    script += "complete -c " + tool + " -l " + flag.name + value + " -d '" + ShortHelp(flag) + "'\n";
   }
   return script;
 }

@@ -13,7 +13,7 @@ namespace pendulum {
 namespace {
 
 /// A heading, and the flags below it in their order.
-struct Heading {
+struct HelpHeading {
   std::string_view title;
   std::vector<std::string_view> flags;
 };
@@ -21,9 +21,9 @@ struct Heading {
 constexpr std::string_view kOther = "Other";
 
 /// The flags of all tools, the most used ones first. Keys of the rig follow --rig.
-const std::vector<Heading>& Headings() {
-  static const std::vector<Heading> headings = [] {
-    std::vector<Heading> all = {
+const std::vector<HelpHeading>& Headings() {
+  static const std::vector<HelpHeading> headings = [] {
+    std::vector<HelpHeading> all = {
         {"Input",
          {"data", "data_list", "manifest", "port", "baud", "time_column", "value_column", "unit", "sample_rate_hz",
           "calibration", "resolution", "input_range", "bits", "range"}},
@@ -47,7 +47,7 @@ const std::vector<Heading>& Headings() {
         {"Output",
          {"json", "report", "residuals", "series", "markdown", "terminal_plot", "plot", "out", "truth", "threads"}},
         {"About", {"help", "version"}}};
-    for (Heading& heading : all) {
+    for (HelpHeading& heading : all) {
       if (heading.title != "Rig") continue;
       for (const RigKey& key : RigKeys()) heading.flags.push_back(key.flag);
     }
@@ -61,7 +61,7 @@ std::string FlagText(const FlagInfo& flag, std::size_t width) {
   return Paragraph(flag.help, "  --" + flag.name + std::string(width - flag.name.size() + 2, ' '), kWidth);
 }
 
-std::string Section(std::string_view title, std::span<const FlagInfo> flags, std::size_t width) {
+std::string TitledFlags(std::string_view title, std::span<const FlagInfo> flags, std::size_t width) {
   if (flags.empty()) return {};
   std::string text = "\n" + std::string(title) + ":\n";
   for (const FlagInfo& flag : flags) text += FlagText(flag, width);
@@ -93,7 +93,7 @@ UsageParts SplitUsage(std::string_view usage) {
 }  // namespace
 
 std::string_view HelpGroup(std::string_view flag) {
-  for (const Heading& heading : Headings()) {
+  for (const HelpHeading& heading : Headings()) {
     if (std::ranges::find(heading.flags, flag) != heading.flags.end()) return heading.title;
   }
   return kOther;
@@ -103,24 +103,24 @@ std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags) {
   const std::size_t width = LongestName(flags, true);
   const UsageParts parts = SplitUsage(usage);
   std::string text = parts.before;
-  for (const Heading& heading : Headings()) {
+  for (const HelpHeading& heading : Headings()) {
     std::vector<FlagInfo> below;
     for (const std::string_view name : heading.flags) {
       const auto found = std::ranges::find(flags, name, &FlagInfo::name);
       if (found != flags.end() && found->own) below.push_back(*found);
     }
-    text += Section(heading.title, below, width);
+    text += TitledFlags(heading.title, below, width);
   }
   std::vector<FlagInfo> others;
   std::ranges::copy_if(flags, std::back_inserter(others),
                        [](const FlagInfo& flag) { return flag.own && HelpGroup(flag.name) == kOther; });
-  return text + Section(kOther, others, width) + parts.exit_codes;
+  return text + TitledFlags(kOther, others, width) + parts.exit_codes;
 }
 
 std::string FullHelpText(std::string_view usage, std::span<const FlagInfo> flags) {
   std::vector<FlagInfo> others;
   std::ranges::copy_if(flags, std::back_inserter(others), [](const FlagInfo& flag) { return !flag.own; });
-  return HelpText(usage, flags) + Section("Flags of libraries", others, LongestName(flags, false));
+  return HelpText(usage, flags) + TitledFlags("Flags of libraries", others, LongestName(flags, false));
 }
 
 }  // namespace pendulum

@@ -21,15 +21,15 @@ TEST(CalibrationFromText, ReadsJson) {
 }
 
 TEST(CalibrationFromText, FitsALineToATable) {
-  // angle = 54 V - 135 deg, with errors of +-0.5 deg that are orthogonal to the line: 1, -1, -1, 1.
-  const auto calibration = CalibrationFromText("pot_volts,angle_deg\n1,-80.5\n2,-27.5\n3,26.5\n4,81.5\n", "table.csv");
+  // angle = 54 V - 135 deg, with the errors -0.1, 0.3, -0.3, 0.1 deg, to which no parabola is similar.
+  const auto calibration = CalibrationFromText("pot_volts,angle_deg\n1,-81.1\n2,-26.7\n3,26.7\n4,81.1\n", "table.csv");
   ASSERT_TRUE(calibration) << calibration.error().message;
   EXPECT_NEAR(calibration->coefficients[0], -135, 1e-9);
   EXPECT_NEAR(calibration->coefficients[1], 54, 1e-9);
-  // The residual variance is 4 · 0.25 / 2 degrees of freedom.
+  // The residual variance is 0.2 / 2 degrees of freedom.
   EXPECT_EQ(calibration->note,
             "the calibration is a straight line through the 4 points of table.csv: slope 54 deg per volt, residual "
-            "standard deviation 0.71 deg");
+            "standard deviation 0.32 deg");
 }
 
 TEST(CalibrationFromText, SaysIfACurveFitsBetter) {
