@@ -77,14 +77,16 @@ bool Provenance::Agrees(const Provenance& other) const {
 
 std::string OptionsJson(const IdentifyOptions& options) {
   const SwingChoice& swing = options.swing;
-  const Json json = {{"models", options.models},
-                     {"from_s", NumberOrNull(swing.from)},
-                     {"to_s", NumberOrNull(swing.to)},
-                     {"release", swing.release},
-                     {"closed_form_only", options.closed_form_only},
-                     {"checks", static_cast<int>(options.checks)},
-                     {"read", ReadJson(options.read)},
-                     {"fit", FitJson(options.fit)}};
+  Json json = {{"models", options.models},
+               {"from_s", NumberOrNull(swing.from)},
+               {"to_s", NumberOrNull(swing.to)},
+               {"release", swing.release},
+               {"closed_form_only", options.closed_form_only},
+               {"checks", static_cast<int>(options.checks)},
+               {"read", ReadJson(options.read)},
+               {"fit", FitJson(options.fit)}};
+  // Without flags for the rig the hash is that of earlier versions.
+  if (!options.rig_values.empty()) json["rig_values"] = options.rig_values;
   return JsonText(json);
 }
 

@@ -24,6 +24,8 @@
 #include "pendulum/fitting/fit/rig_quantities.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig_check.h"
+#include "pendulum/model/rig_values.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/recording/window.h"
@@ -432,12 +434,12 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
 Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
   std::optional<Rig> rig;
   if (files.rig) {
-    auto parsed = ParseRig(files.rig->bytes, files.rig->name);
+    auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name);
     if (!parsed) return tl::unexpected(parsed.error());
     rig = *std::move(parsed);
   }
   if (files.calibration) {
-    auto parsed = ParseCalibration(files.calibration->bytes, files.calibration->name);
+    auto parsed = CalibrationFromText(files.calibration->bytes, files.calibration->name);
     if (!parsed) return tl::unexpected(parsed.error());
     options.read.calibration = *std::move(parsed);
   }

@@ -9,17 +9,22 @@
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/model/rig_check.h"
+#include "pendulum/model/rig_values.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/repair_values.h"
 
 namespace pendulum {
 
 Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions& options, std::optional<Rig> rig) {
-  if (!rig && !read.rig_json.empty()) {
-    auto own = ParseRig(read.rig_json, read.path + ": # rig");
+  std::vector<Warning> notes = options.notes;
+  const bool has_file = rig || !read.rig_json.empty();
+  if (!rig && (has_file || !options.rig_values.empty())) {
+    auto own = has_file ? ParseRigWith(options.rig_values, read.rig_json, read.path + ": # rig")
+                        : RigOfValues(options.rig_values, notes);
     if (!own) return tl::unexpected(own.error());
     rig = *std::move(own);
   }
+  if (has_file && !options.rig_values.empty()) notes.push_back(OverrideWarning(options.rig_values));
   PreparedRecording prepared;
   prepared.samples = read.size();
   // Repairs compare a reading with its neighbours, which an undersampled recording does not allow.
@@ -34,7 +39,12 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
   if (prepared.known.rig)
     std::ranges::move(QuestionRig(*prepared.known.rig), std::back_inserter(prepared.known.warnings));
-  if (prepared.recording.calibration) prepared.known.calibration = prepared.recording.calibration->source;
+  std::ranges::move(notes, std::back_inserter(prepared.known.warnings));
+  if (!prepared.recording.calibration) return prepared;
+  prepared.known.calibration = prepared.recording.calibration->source;
+  if (const std::string& note = prepared.recording.calibration->note; !note.empty()) {
+    prepared.known.warnings.push_back({"calibration_from_table", note});
+  }
   return prepared;
 }
 

@@ -96,6 +96,7 @@ class ClockRepair {
   Index CountSharedRows(std::vector<bool>& keep) const;
   bool MakeUniform(double grid);
   bool MakeUniformFromDigits();
+  bool IsEventDriven() const;
   Result<bool> MakeUniformFromPackets();
   double RateHz(double interval) const;
   std::string ReplacementText(double interval, double tolerance) const;
@@ -293,6 +294,16 @@ void ClockRepair::UseClock(double start, double interval, double std_dev) {
 
 // ---- Packets -----------------------------------------------------------------------------------------------------
 
+/// Whether nearly all rows are changes of a count by one step. Such rows are dense where the motion is fast.
+bool ClockRepair::IsEventDriven() const {
+  constexpr double kShare = 0.85;
+  std::vector<double> changes;
+  for (Index i = 1; i < size(); ++i) changes.push_back(std::abs(samples_.value[i] - samples_.value[i - 1]));
+  const double usual = Median(changes);
+  const auto equal = std::ranges::count_if(changes, [&](double each) { return std::abs(each - usual) < 1e-6 * usual; });
+  return static_cast<double>(equal) > kShare * static_cast<double>(changes.size());
+}
+
 /// Replaces the stamps of packets of rows by the clock of the device, if they show a uniform one. If they do not and
 /// rows share stamps, the error says why.
 Result<bool> ClockRepair::MakeUniformFromPackets() {
@@ -301,7 +312,7 @@ Result<bool> ClockRepair::MakeUniformFromPackets() {
   if (packets.count == 0) return false;
   std::vector<bool> keep;
   const bool is_shared = 5 * CountSharedRows(keep) > size() && !SharedRowsAreEqual();
-  if (!is_shared && packets.rows < kMinRows) return false;
+  if (IsEventDriven() || (!is_shared && packets.rows < kMinRows)) return false;
   const PacketClockSearch found = FindPacketClock({time(), samples_.value, Grid().value_or(0)});
   const PacketClock& clock = found.clock;
   if (found.verdict != PacketClockVerdict::kFound) {

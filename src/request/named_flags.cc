@@ -26,18 +26,19 @@ using SimulationFlag = NamedFlag<SimulationFlags, Value>;
 template <typename Value>
 using CalibrationFlag = NamedFlag<CalibrationFlags, Value>;
 
-/// A flag of a fit, whose member is of one of several types.
+/// A flag of a fit.
 struct NamedRunFlag {
   std::string_view name;
-  decltype(RunFlag::value) member;
+  const RunFlag* member;
 };
 
 /// The flags of RunFlagTable that requests may give; `models` is another name of `model`.
 const std::vector<NamedRunFlag>& NamedRunFlags() {
   static const auto flags = [] {
-    std::vector<NamedRunFlag> all = {{"models", &RunFlags::model}};
+    std::vector<NamedRunFlag> all;
     for (const RunFlag& flag : RunFlagTable()) {
-      if (!flag.is_local) all.push_back({flag.name, flag.value});
+      if (flag.name == "model") all.push_back({"models", &flag});
+      if (!flag.is_local) all.push_back({flag.name, &flag});
     }
     return all;
   }();
@@ -108,8 +109,8 @@ Result<void> Set(Value Flags::*member, std::string_view name, const std::string&
   return Parse("--" + std::string(name), text, flags.*member);
 }
 
-Result<void> Set(decltype(RunFlag::value) member, std::string_view name, const std::string& text, RunFlags& flags) {
-  return std::visit([&](auto one) { return Set(one, name, text, flags); }, member);
+Result<void> Set(const RunFlag* flag, std::string_view name, const std::string& text, RunFlags& flags) {
+  return std::visit([&](auto* value) { return Parse("--" + std::string(name), text, *value); }, flag->In(flags));
 }
 
 /// Sets the member with this name, if the table has it.

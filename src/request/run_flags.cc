@@ -12,6 +12,7 @@
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/request/flag_values.h"
+#include "pendulum/request/rig_flags.h"
 
 namespace pendulum {
 namespace {
@@ -253,9 +254,10 @@ Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
 /// Refuses flags that only a fit uses.
 Result<void> CheckClosedFormOnly(const RunFlags& flags) {
   if (!flags.closed_form_only) return {};
-  const RunFlags none;
+  RunFlags given = flags, none;
   for (const RunFlag& flag : RunFlagTable()) {
-    const bool is_given = std::visit([&](auto member) { return flags.*member != none.*member; }, flag.value);
+    const auto is_different = [&](auto* value) { return *value != *std::get<decltype(value)>(flag.In(none)); };
+    const bool is_given = std::visit(is_different, flag.In(given));
     if (flag.needs_fit && is_given) return NeedsFitError("--" + std::string(flag.name));
   }
   return {};
@@ -279,8 +281,8 @@ Json WordSchema(const RunFlag& flag) {
   for (const auto& [word, label] : flag.words) {
     if (!word.empty()) schema["enum"].push_back(word);
   }
-  const auto member = std::get<std::string RunFlags::*>(flag.value);
-  if (const std::string word = RunFlags().*member; !word.empty()) schema["default"] = word;
+  RunFlags none;
+  if (const std::string word = *std::get<std::string*>(flag.In(none)); !word.empty()) schema["default"] = word;
   return schema;
 }
 
@@ -451,11 +453,37 @@ std::vector<RunFlag> MakeTable() {
   };
 }
 
+/// A flag for each key of the rig.
+void AddRigFlags(std::vector<RunFlag>& flags) {
+  for (std::size_t i = 0; i < RigKeys().size(); ++i) {
+    const RigKey& key = RigKeys()[i];
+    const std::string example = key.quantity == RigQuantity::kMass     ? "380g"
+                                : key.quantity == RigQuantity::kLength ? "43.2+-0.1cm"
+                                                                       : "9.81";
+    flags.push_back(
+        {.name = key.flag,
+         .value = RigFlagValue{i},
+         .help = std::string(key.help) + " In " + std::string(key.unit) + " unless a unit follows" +
+                 (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength ? ", such as " + example
+                                                                                             : "") +
+                 "; default the value in --rig.",
+         .schema = TextSchema(),
+         .example = example});
+  }
+}
+
 }  // namespace
+
+std::variant<std::string*, bool*> RunFlag::In(RunFlags& flags) const {
+  if (const auto* of_rig = std::get_if<RigFlagValue>(&value)) return &flags.rig_values[of_rig->key];
+  if (const auto* text = std::get_if<std::string RunFlags::*>(&value)) return &(flags.**text);
+  return &(flags.*std::get<bool RunFlags::*>(value));
+}
 
 const std::vector<RunFlag>& RunFlagTable() {
   static const std::vector<RunFlag> table = [] {
     std::vector<RunFlag> flags = MakeTable();
+    AddRigFlags(flags);
     for (RunFlag& flag : flags) {
       if (!flag.words.empty()) flag.schema = WordSchema(flag);
     }
@@ -490,6 +518,9 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   const auto release = ParseRelease(flags);
   if (!release) return tl::unexpected(release.error());
   options.swing.release = *release;
+  auto rig_values = RigValuesOf(flags.rig_values, options.notes);
+  if (!rig_values) return tl::unexpected(rig_values.error());
+  options.rig_values = *std::move(rig_values);
   if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
   return options;
 }

@@ -13,6 +13,7 @@
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
@@ -237,11 +238,11 @@ HttpResponse GetSamples(ServiceState& state, const Call& call) {
   if (!options) return ProblemAnswer(options.error());
   const RunFiles& files = kept->order.files;
   if (files.calibration) {
-    auto calibration = ParseCalibration(files.calibration->bytes, files.calibration->name);
+    auto calibration = CalibrationFromText(files.calibration->bytes, files.calibration->name);
     if (!calibration) return ProblemAnswer(calibration.error());
     options->read.calibration = *std::move(calibration);
   }
-  const auto recording = ParseRecording(files.data.bytes, files.data.name, options->read);
+  const auto recording = ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(*options));
   if (!recording) return ProblemAnswer(recording.error());
   return JsonAnswer(SamplesJson(*recording));
 }

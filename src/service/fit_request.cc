@@ -13,8 +13,8 @@
 #include "pendulum/base/json.h"
 #include "pendulum/batch/source.h"
 #include "pendulum/fitting/swing/choose_swings.h"
-#include "pendulum/model/rig.h"
-#include "pendulum/recording/sensor.h"
+#include "pendulum/model/rig_values.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/service/form_data.h"
 #include "pendulum/service/media_type.h"
 #include "service/escapes.h"
@@ -250,10 +250,11 @@ ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limi
   auto options = IdentifyOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
   if (request.rig) {
-    if (const auto rig = ParseRig(request.rig->bytes, request.rig->name); !rig) return Refused(rig.error());
+    if (const auto rig = ParseRigWith(options->rig_values, request.rig->bytes, request.rig->name); !rig)
+      return Refused(rig.error());
   }
   if (request.calibration) {
-    const auto calibration = ParseCalibration(request.calibration->bytes, request.calibration->name);
+    const auto calibration = CalibrationFromText(request.calibration->bytes, request.calibration->name);
     if (!calibration) return Refused(calibration.error());
   }
   request.options = *std::move(options);

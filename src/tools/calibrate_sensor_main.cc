@@ -22,7 +22,8 @@ constexpr std::string_view kName = "calibrate_sensor";
 constexpr const char* kUsage =
     "Turns a table of readings at known angles into the calibration that fit_pendulum reads, or plans a sensor.\n"
     "\n"
-    "  calibrate_sensor --data table.csv --json cal.json --plot cal.svg\n"
+    "  calibrate_sensor table.csv\n"
+    "  calibrate_sensor table.csv --order 2 --json cal.json --plot cal.svg\n"
     "  calibrate_sensor --plan --reference_voltage 5,3.3,1.1 --potentiometer_range_deg 270\n"
     "\n"
     "Exit codes: 0 done, 2 wrong flags, 3 file not found, 4 a table that cannot be read or calibrated, 70 a bug, 73 "
@@ -34,7 +35,9 @@ using Flags = CalibrateSensorFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
-      {"data", &Flags::data, "Table with the columns counts or volts and angle_deg or angle_rad; - is standard input."},
+      {"data", &Flags::data,
+       "Table, which may also be named without a flag, with the columns counts or volts and angle_deg or angle_rad; - "
+       "is standard input."},
       {"order", &Flags::order, "Highest power of the reading in the curve, 1 to 5; default 1, a straight line."},
       {"input_range", &Flags::input_range,
        "Range of the sensor, low,high, in the unit of the readings; default unknown."},

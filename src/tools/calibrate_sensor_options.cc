@@ -25,11 +25,20 @@ Result<void> CheckBelongs(bool is_given, const std::string& flag, bool plan) {
                               : " belongs to a plan; add --plan, or leave it out"));
 }
 
+/// The path of the table, named without a flag or with --data.
+std::string TableOf(const CalibrateSensorFlags& flags) {
+  return flags.positional.empty() ? flags.data : flags.positional.front();
+}
+
 Result<void> CheckTask(const CalibrateSensorFlags& flags) {
-  if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
-  if (!flags.plan && flags.data.empty()) {
+  if (flags.positional.size() > (flags.plan || !flags.data.empty() ? 0U : 1U)) {
+    return BadFlag("'" + flags.positional.back() + "' does not belong to a flag" +
+                   (flags.plan ? "" : "; give one table, without a flag or with --data"));
+  }
+  if (!flags.plan && TableOf(flags).empty()) {
     return BadFlag(
-        "--data is missing: a table of counts or volts and angles, or - for standard input; --plan needs none");
+        "no table was given: a file with counts or volts and angles, as in calibrate_sensor table.csv, or - for "
+        "standard input; --plan needs none");
   }
   const CalibrateSensorFlags unset;
   const std::array<std::pair<bool, const char*>, 5> of_a_table = {{{!flags.data.empty(), "--data"},
@@ -101,7 +110,7 @@ Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorF
   const Result<CalibrationOptions> calibration = MakeCalibrationOptions(flags);
   if (!calibration) return tl::unexpected(calibration.error());
   static_cast<CalibrationOptions&>(options) = *calibration;
-  options.data = flags.data;
+  options.data = TableOf(flags);
   options.json = flags.json;
   options.plot = flags.plot;
   return options;

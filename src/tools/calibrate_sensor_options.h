@@ -21,7 +21,7 @@ struct CalibrateSensorFlags : CalibrationFlags {
   double supply_voltage = 5;      ///< V
   double potentiometer_range_deg = 270;
   double divider = 1;
-  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: the table, instead of `data`.
 };
 
 /// The task of calibrate_sensor: a plan if `plan` has sensors, otherwise a calibration.

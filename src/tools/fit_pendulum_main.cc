@@ -22,6 +22,7 @@
 #include "tools/gnuplot.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
+#include "tools/shell_command.h"
 
 namespace pendulum {
 namespace {
@@ -31,7 +32,11 @@ constexpr std::string_view kName = "fit_pendulum";
 constexpr const char* kUsage =
     "Moment of inertia and friction of a pendulum, with error bars, from a recording of its free swing.\n"
     "\n"
-    "  fit_pendulum --data run.csv [--rig rig.json] [--model coulomb] [--json fit.json]\n"
+    "  fit_pendulum run.csv\n"
+    "  fit_pendulum run.csv --models all --report fit.html\n"
+    "  fit_pendulum run.csv --bob_mass 380g --rod_mass 120g --rod_length 43cm --g 9.81\n"
+    "  fit_pendulum monday.csv tuesday.csv --rig rig.json --json fit.json\n"
+    "  fit_pendulum volts.csv --calibration table.csv --from 2 --to 30\n"
     "\n"
     "Exit codes: 0 converged, 1 fitted but not converged, not identifiable or not a free swing, 2 wrong flags,\n"
     "3 file not found, 4 unreadable data, calibration or rig, 5 no swing in the data or too little, 70 a bug,\n"
@@ -46,7 +51,9 @@ using Flags = FitPendulumFlags;
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
       {"data", &Flags::data,
-       "Recording, or several of one rig, separated by commas and fitted together (--shared): CSV whose header names "
+       "Recording, or several of one rig, separated by commas and fitted together (--shared). Files named without a "
+       "flag "
+       "are the same. CSV whose header names "
        "the columns and their units, such as time_s,angle_deg; exports of phyphox (CSV, zip), Tracker, Logger Pro, "
        "Graphical Analysis, Capstone and ROS; workbooks (xlsx, xls, ods); MAT-files; NumPy arrays; JSON; - is standard "
        "input."},
@@ -67,22 +74,6 @@ std::vector<ToolFlag<Flags>> FlagTable() {
   };
 }
 
-/// The command line, quoted for a shell.
-std::string CommandLine() {
-  std::string command;
-  for (const std::string& word : gflags::GetArgvs()) {
-    const bool plain =
-        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%") ==
-        std::string::npos;
-    std::string quoted = word;
-    for (std::size_t at = quoted.find('\''); at != std::string::npos; at = quoted.find('\'', at + 4)) {
-      quoted.replace(at, 1, "'\\''");
-    }
-    command += (command.empty() ? "" : " ") + (plain && !word.empty() ? word : "'" + quoted + "'");
-  }
-  return command;
-}
-
 /// Adds the outputs of run `index` (0-based) of `count`, except the text for standard output.
 void RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
                  std::vector<Output>& outputs) {
@@ -98,7 +89,7 @@ void RenderFiles(const FitPendulumOptions& options, const Identification& run, i
     outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run)});
   }
   if (!options.report.empty()) {
-    outputs.push_back({NumberedPath(options.report, index, count), ToHtml(run, CommandLine())});
+    outputs.push_back({NumberedPath(options.report, index, count), ToHtml(run, ShellCommand(gflags::GetArgvs()))});
   }
   if (!options.markdown.empty()) {
     outputs.push_back({NumberedPath(options.markdown, index, count), ToMarkdown(run)});
@@ -128,7 +119,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   for (int i = 0; i < count; ++i) {
     const Result<Identification>& run = runs[static_cast<std::size_t>(i)];
     if (!run) {
-      PrintMessage(kName, run.error().message);
+      PrintError(kName, run.error());
       continue;
     }
     RenderFiles(options, *run, i, count, outputs);

@@ -15,20 +15,31 @@ namespace {
 
 bool IsStandardInput(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0"; }
 
+/// The recordings named without a flag or with --data.
+std::vector<std::string> RecordingPaths(const FitPendulumFlags& flags) {
+  return flags.positional.empty() ? Split(flags.data, ',') : flags.positional;
+}
+
 Result<void> CheckData(const FitPendulumFlags& flags) {
-  if (!flags.positional.empty()) {
-    return BadFlag("'" + flags.positional.front() + "' does not belong to a flag; give the recording with --data");
+  const std::string list = flags.data.empty() ? "--data_list" : "--data";
+  if (!flags.positional.empty() && !(flags.data.empty() && flags.data_list.empty())) {
+    return BadFlag("'" + flags.positional.front() + "' and " + list +
+                   " both name recordings; give all of them without a flag, or all with " + list);
   }
-  if (flags.data.empty() == flags.data_list.empty()) {
-    return BadFlag(flags.data.empty() ? "no recording was given; name its CSV file with --data"
-                                      : "--data and --data_list both name recordings; give one of them");
+  if (!flags.data.empty() && !flags.data_list.empty()) {
+    return BadFlag("--data and --data_list both name recordings; give one of them");
   }
-  const std::vector<std::string> paths = Split(flags.data, ',');
+  if (flags.positional.empty() && flags.data.empty() && flags.data_list.empty()) {
+    return BadFlag("no recording was given; name its file, as in fit_pendulum run.csv; --help shows examples");
+  }
+  const std::vector<std::string> paths = RecordingPaths(flags);
   for (const std::string& path : paths) {
     if (path.empty()) return BadFlag("--data '" + flags.data + "' has an empty name between its commas");
   }
   if (std::ranges::count_if(paths, IsStandardInput) > 1) {
-    return BadFlag("--data '" + flags.data + "' names standard input twice, but it can be read only once");
+    return BadFlag((flags.data.empty() ? "standard input is named twice"
+                                       : "--data '" + flags.data + "' names standard input twice") +
+                   std::string(", but it can be read only once"));
   }
   return {};
 }
@@ -113,7 +124,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   if (!run) return tl::unexpected(run.error());
   static_cast<IdentifyOptions&>(options) = *std::move(run);
   if (const auto parsed = ParseShared(flags, options); !parsed) return tl::unexpected(parsed.error());
-  options.data = Split(flags.data, ',');
+  options.data = RecordingPaths(flags);
   options.data_list = flags.data_list;
   options.calibration = flags.calibration;
   options.rig = flags.rig;

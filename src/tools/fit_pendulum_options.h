@@ -26,7 +26,7 @@ struct FitPendulumFlags : RunFlags, FitOutputs {
   std::string data;
   std::string data_list;
   std::string shared;
-  std::vector<std::string> positional;  ///< Arguments that belong to no flag: an error.
+  std::vector<std::string> positional;  ///< Arguments that belong to no flag: recordings, instead of `data`.
 };
 
 /// Whether recordings are fitted together. By default several recordings are fitted together, and several releases of

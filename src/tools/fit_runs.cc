@@ -5,21 +5,26 @@
 #include <iterator>
 #include <utility>
 
+#include "pendulum/base/file.h"
+#include "pendulum/base/json.h"
 #include "pendulum/identify/prepared_recording.h"
+#include "pendulum/model/rig_values.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/recording/readers/data_list.h"
-#include "pendulum/recording/sensor.h"
 
 namespace pendulum {
 
 Result<Setup> ReadSetup(FitPendulumOptions& options) {
   Setup setup{options.data, options.Inputs(), std::nullopt};
   if (!options.rig.empty()) {
-    auto rig = ReadRig(options.rig);
+    const auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
+    if (!text) return tl::unexpected(text.error());
+    auto rig = ParseRigWith(options.rig_values, *text, options.rig);
     if (!rig) return tl::unexpected(rig.error());
     setup.rig = *std::move(rig);
   }
   if (!options.calibration.empty()) {
-    auto calibration = ReadCalibration(options.calibration);
+    auto calibration = CalibrationFromFile(options.calibration);
     if (!calibration) return tl::unexpected(calibration.error());
     options.read.calibration = *std::move(calibration);
   }

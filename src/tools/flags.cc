@@ -14,11 +14,19 @@
 #include <gflags/gflags.h>
 
 #include "pendulum/base/version.h"
-#include "pendulum/report/layout.h"
+#include "pendulum/model/motion_model.h"
 #include "pendulum/request/flag_values.h"
+#include "pendulum/request/run_flags.h"
+#include "tools/completion.h"
+#include "tools/help.h"
 
 DECLARE_bool(help);
+DECLARE_bool(helpfull);
+DECLARE_bool(helpshort);
+DECLARE_bool(helppackage);
+DECLARE_bool(helpxml);
 DECLARE_bool(version);
+DEFINE_string(completion, "", "Prints a script that completes the flags in a shell: bash, zsh or fish.");
 
 namespace pendulum {
 namespace {
@@ -30,15 +38,45 @@ void ExitWithTwo() {
   if (gflags_is_parsing) std::_Exit(ExitCode(StatusCode::kInvalidArgument));
 }
 
+/// The values of a flag if they are words.
+std::vector<std::string> WordsOf(std::string_view name, bool is_run_flag) {
+  std::vector<std::string> words;
+  if (name == "model") {
+    for (const MotionModel& model : MotionModels()) words.emplace_back(model.name);
+    words.emplace_back("all");
+  }
+  if (!is_run_flag) return words;
+  const auto& table = RunFlagTable();
+  const auto flag = std::ranges::find(table, name, &RunFlag::name);
+  if (flag == table.end()) return words;
+  for (const auto& [word, label] : flag->words) {
+    if (!word.empty()) words.emplace_back(word);
+  }
+  return words;
+}
+
+bool IsPathFlag(const std::string& name, const std::string& type) {
+  constexpr std::array<std::string_view, 22> kPaths = {
+      "data",      "data_list", "manifest",          "rig",  "calibration", "json",  "report",
+      "residuals", "series",    "markdown",          "plot", "out",         "truth", "store",
+      "scratch",   "shard_dir", "store_calibration", "port", "token_file",  "live",  "docs",
+      "flagfile"};
+  return type == "string" && std::ranges::find(kPaths, name) != kPaths.end();
+}
+
 std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
   std::vector<gflags::CommandLineFlagInfo> registered;
   gflags::GetAllFlags(&registered);
   std::vector<FlagInfo> flags;
+  const bool has_run_flags =
+      std::ranges::find(registered, "closed_form_only", &gflags::CommandLineFlagInfo::name) != registered.end();
   for (const gflags::CommandLineFlagInfo& flag : registered) {
     if (flag.name == "help" || flag.name == "version") continue;
-    flags.push_back({flag.name, flag.description, flag.type, IsOwnFlag(flag.filename, main_file)});
+    const bool own = flag.name != "completion" && IsOwnFlag(flag.filename, main_file);
+    flags.push_back({flag.name, flag.description, flag.type, own, WordsOf(flag.name, own && has_run_flags),
+                     IsPathFlag(flag.name, flag.type)});
   }
-  flags.push_back({"help", "Print this text.", "bool", true});
+  flags.push_back({"help", "Print this text (also -h); --helpfull adds the flags of libraries.", "bool", true});
   flags.push_back({"version", "Print the version.", "bool", true});
   return flags;
 }
@@ -111,6 +149,15 @@ Result<void> CheckGivenOnce(const GivenFlag& flag, std::map<std::string, std::st
                              earlier->second + "," + flag.value);
 }
 
+/// The output of a flag that asks for a text instead of work; empty if there is none.
+Result<std::string> AnswerOf(const std::string& program, std::string_view usage, std::span<const FlagInfo> flags) {
+  if (FLAGS_helpfull) return FullHelpText(usage, flags);
+  if (FLAGS_help || FLAGS_helpshort || FLAGS_helppackage || FLAGS_helpxml) return HelpText(usage, flags);
+  if (FLAGS_version) return program + " " + std::string(kVersion) + "\n";
+  if (!FLAGS_completion.empty()) return CompletionScript(FLAGS_completion, program, flags);
+  return std::string();
+}
+
 }  // namespace
 
 bool IsOwnFlag(std::string_view flag_file, std::string_view main_file) {
@@ -122,7 +169,7 @@ Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file
   const std::vector<FlagInfo> flags = RegisteredFlags(main_file);
   const bool has_model = std::ranges::find(flags, "model", &FlagInfo::name) != flags.end();
   static std::vector<std::string> arguments;  // gflags keeps pointers
-  arguments = has_model ? ReplaceModelsAlias({argv + 1, argv + argc}) : std::vector<std::string>(argv + 1, argv + argc);
+  arguments = ReplaceAliases({argv + 1, argv + argc}, has_model);
   for (int i = 1; i < argc; ++i) argv[i] = arguments[static_cast<std::size_t>(i - 1)].data();
   auto positional = PositionalArguments(arguments, flags);
   if (!positional) return tl::unexpected(positional.error());
@@ -130,14 +177,9 @@ Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file
   gflags_is_parsing = true;
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   gflags_is_parsing = false;
-  ParsedFlags parsed;
-  parsed.positional = *std::move(positional);
-  if (FLAGS_help) {
-    parsed.answer = HelpText(usage, flags);
-  } else if (FLAGS_version) {
-    parsed.answer = std::filesystem::path(argv[0]).filename().string() + " " + std::string(kVersion) + "\n";
-  }
-  return parsed;
+  Result<std::string> answer = AnswerOf(std::filesystem::path(argv[0]).filename().string(), usage, flags);
+  if (!answer) return tl::unexpected(answer.error());
+  return ParsedFlags{*std::move(answer), *std::move(positional)};
 }
 
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
@@ -161,27 +203,16 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
   return positional;
 }
 
-std::vector<std::string> ReplaceModelsAlias(std::vector<std::string> arguments) {
+std::vector<std::string> ReplaceAliases(std::vector<std::string> arguments, bool has_model) {
   for (std::string& argument : arguments) {
     if (argument == "--") break;
+    if (argument == "-h") argument = "--help";
     const std::size_t dashes = argument.starts_with("--") ? 2 : 1;
     const std::string_view name = std::string_view(argument).substr(std::min(dashes, argument.size()));
-    const bool is_match = argument.starts_with('-') && (name == "models" || name.starts_with("models="));
-    if (is_match) argument.erase(dashes + std::string_view("model").size(), 1);
+    const bool is_models = argument.starts_with('-') && (name == "models" || name.starts_with("models="));
+    if (has_model && is_models) argument.erase(dashes + std::string_view("model").size(), 1);
   }
   return arguments;
-}
-
-std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags) {
-  constexpr int kWidth = 100;
-  std::size_t longest = 0;
-  for (const FlagInfo& flag : flags) longest = std::max(longest, flag.own ? flag.name.size() : 0);
-  std::string text(usage);
-  for (const FlagInfo& flag : flags) {
-    if (!flag.own) continue;
-    text += Paragraph(flag.help, "  --" + flag.name + std::string(longest - flag.name.size() + 2, ' '), kWidth);
-  }
-  return text;
 }
 
 }  // namespace pendulum

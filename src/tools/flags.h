@@ -12,7 +12,7 @@ namespace pendulum {
 
 /// The result of parsing; the flags are set.
 struct ParsedFlags {
-  std::string answer;                   ///< The text of --help or --version; empty if the tool is to run.
+  std::string answer;                   ///< The text of --help, --version or --completion; empty if the tool is to run.
   std::vector<std::string> positional;  ///< Arguments that belong to no flag.
 };
 
@@ -32,6 +32,8 @@ struct FlagInfo {
   std::string help;             ///< Meaning, unit and default.
   std::string type = "string";  ///< gflags' type: bool (no value in a following argument), string, double, int32, ...
   bool own = true;              ///< Defined by the tool, not by a library. Only own flags are in --help.
+  std::vector<std::string> words = {};  ///< All its values if they are words, for the completion.
+  bool is_path = false;                 ///< Its value is the path of a file or a folder.
 };
 
 /// Parses the arguments (without the program's name) by gflags' grammar, without setting flags. Returns the arguments
@@ -42,10 +44,7 @@ struct FlagInfo {
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
                                                      std::span<const FlagInfo> flags);
 
-/// The arguments with --models replaced by --model; both names mean the same flag.
-std::vector<std::string> ReplaceModelsAlias(std::vector<std::string> arguments);
-
-/// The output of --help: the usage, then the own flags.
-std::string HelpText(std::string_view usage, std::span<const FlagInfo> flags);
+/// The arguments with --models replaced by --model, and -h by --help; both names mean the same flag.
+std::vector<std::string> ReplaceAliases(std::vector<std::string> arguments, bool has_model);
 
 }  // namespace pendulum

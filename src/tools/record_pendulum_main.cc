@@ -17,6 +17,7 @@
 #include "pendulum/acquisition/serial_port.h"
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/report/text.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
@@ -117,7 +118,7 @@ Result<void> CheckOut(const RecordPendulumOptions& options) {
 
 Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOptions& options) {
   if (options.calibration.empty()) return std::nullopt;
-  auto calibration = ReadCalibration(options.calibration);
+  auto calibration = CalibrationFromFile(options.calibration);
   if (!calibration) return tl::unexpected(calibration.error());
   if (calibration->input != "counts") {
     return Error(StatusCode::kDataLoss, options.calibration + " is of " + calibration->input +

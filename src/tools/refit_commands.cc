@@ -18,7 +18,8 @@
 #include "pendulum/batch/export.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
-#include "pendulum/model/rig.h"
+#include "pendulum/model/rig_values.h"
+#include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/web/summary_page.h"
 #include "tools/output.h"
 #include "tools/refit_text.h"
@@ -58,13 +59,14 @@ Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refi
   if (!options.rig.empty()) {
     auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
-    if (const auto rig = ParseRig(*text, options.rig); !rig) return tl::unexpected(rig.error());
+    const auto rig = ParseRigWith(options.refit.run.rig_values, *text, options.rig);
+    if (!rig) return tl::unexpected(rig.error());
     refit.rig = *std::move(text);
   }
   if (options.calibration.empty()) return {};
   auto text = ReadFile(options.calibration, "calibration", kMaxJsonBytes);
   if (!text) return tl::unexpected(text.error());
-  if (const auto calibration = ParseCalibration(*text, options.calibration); !calibration) {
+  if (const auto calibration = CalibrationFromText(*text, options.calibration); !calibration) {
     return tl::unexpected(calibration.error());
   }
   refit.calibration = *std::move(text);

@@ -16,15 +16,15 @@ namespace {
 constexpr const char* kUsage =
     "Fits all recordings of a batch as fit_pendulum does and stores the results. Refits only the runs that changed.\n"
     "\n"
-    "  refit_pendulums --manifest runs.csv --models viscous,coulomb --store results.sqlite\n"
-    "  refit_pendulums --data recordings --models all --store results.sqlite\n"
+    "  refit_pendulums runs.csv --models viscous,coulomb --store results.sqlite\n"
+    "  refit_pendulums recordings/ --models all --store results.sqlite\n"
     "\n"
     "  refit_pendulums status  --store results.sqlite\n"
     "  refit_pendulums report  --store results.sqlite --out summary.html [--group_by rig] [--trend_by date]\n"
     "  refit_pendulums export  --store results.sqlite --out results.csv|results.jsonl\n"
     "  refit_pendulums compare before.sqlite after.sqlite\n"
-    "  refit_pendulums pack    --manifest runs.csv --out runs.pack\n"
-    "  refit_pendulums --manifest runs.csv --store out/shard-3.sqlite --shard 3/64\n"
+    "  refit_pendulums pack    runs.csv --out runs.pack\n"
+    "  refit_pendulums runs.csv --store out/shard-3.sqlite --shard 3/64\n"
     "  refit_pendulums missing --shard_dir out --shard_count 64\n"
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
@@ -53,7 +53,8 @@ using Flags = RefitFlags;
 std::vector<ToolFlag<Flags>> FlagTable() {
   return {
       {"manifest", &Flags::manifest,
-       "Runs to refit: CSV file with the column path (relative to the CSV file) and optional columns such as id, rig, "
+       "Runs to refit; may also be named without a flag: CSV file with the column path (relative to the CSV file) and "
+       "optional columns such as id, rig, "
        "calibration, from_s, to_s and models; or a file made by pack; - is standard input."},
       {"data", &Flags::data,
        "Instead of a manifest: folders (all *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx and *.zip files below), patterns "

@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -49,7 +51,8 @@ Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) 
     if (Contains(command.needed, name) || Contains(command.taken, name)) continue;
     return BadFlag("--" + name + " is not a flag of " + std::string(command.name) + "; leave it out");
   }
-  const std::size_t most = command.command == RefitCommand::kCompare ? 3 : 1;
+  const bool is_pack = command.command == RefitCommand::kPack;
+  const std::size_t most = command.command == RefitCommand::kCompare ? 3 : is_pack ? flags.positional.size() : 1;
   if (flags.positional.size() <= most) return {};
   return BadFlag("'" + flags.positional[most] + "' does not belong to a flag of " + std::string(command.name));
 }
@@ -71,15 +74,32 @@ Result<Shard> ParseShard(const std::string& text) {
 
 /// Parses the source of the runs.
 Result<void> ParseSource(const RefitFlags& flags, RefitPendulumsOptions& options) {
+  if (!options.manifest.empty() || !options.patterns.empty()) {  // named without a flag
+    if (flags.manifest.empty() && flags.data.empty()) return {};
+    return BadFlag((flags.manifest.empty() ? "--data" : "--manifest") + std::string(" and '") +
+                   flags.positional.back() + "' both name runs; give one of them");
+  }
   if (flags.manifest.empty() == flags.data.empty()) {
-    return BadFlag(flags.manifest.empty() ? "no runs were given; name their manifest with --manifest, or folders, "
-                                            "patterns and files with --data"
+    return BadFlag(flags.manifest.empty() ? "no runs were given; name their manifest, as in refit_pendulums runs.csv "
+                                            "--store results.sqlite, or folders, patterns and files with --data"
                                           : "--manifest and --data both name runs; give one of them");
   }
   options.manifest = flags.manifest;
   options.patterns = Split(flags.data, ',');
   if (!Contains(options.patterns, "")) return {};
   return BadFlag("--data '" + flags.data + "' has an empty name between its commas");
+}
+
+/// Takes the arguments from number `first` on as the source of the runs: a manifest, or a folder, or several files.
+void TakeSource(const RefitFlags& flags, std::size_t first, RefitPendulumsOptions& options) {
+  const std::vector<std::string>& names = flags.positional;
+  if (names.size() <= first) return;
+  std::error_code unknown;
+  if (names.size() == first + 1 && !std::filesystem::is_directory(names[first], unknown)) {
+    options.manifest = names[first];
+  } else {
+    options.patterns.assign(names.begin() + static_cast<std::ptrdiff_t>(first), names.end());
+  }
 }
 
 Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& options) {
@@ -101,11 +121,16 @@ Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& opt
 }
 
 Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options) {
-  if (!flags.positional.empty()) {
+  std::error_code unknown;
+  const bool is_file = !flags.positional.empty() && (flags.positional.size() > 1 || flags.positional[0] == "-" ||
+                                                     std::filesystem::exists(flags.positional[0], unknown));
+  if (is_file) {
+    TakeSource(flags, 0, options);
+  } else if (!flags.positional.empty()) {
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);
     return BadFlag("'" + flags.positional.front() + "' is not a command; the commands are " + NameList(names) +
-                   "; to refit, give no command");
+                   "; to refit, give an existing manifest or folder instead");
   }
   for (const std::string_view name : kNotForRefit) {
     if (Contains(flags.given, name))
@@ -139,7 +164,10 @@ Result<void> ParseOther(const CommandFlags& command, const RefitFlags& flags, Re
   if (Contains(command.needed, "shard_count") && flags.shard_count < 1) {
     return BadFlag("--shard_count is " + std::to_string(flags.shard_count) + "; it must be at least 1");
   }
-  if (command.command == RefitCommand::kPack) return ParseSource(flags, options);
+  if (command.command == RefitCommand::kPack) {
+    TakeSource(flags, 1, options);
+    return ParseSource(flags, options);
+  }
   if (command.command != RefitCommand::kCompare) return {};
   if (flags.positional.size() != 3)
     return BadFlag("compare takes two stores: refit_pendulums compare a.sqlite b.sqlite");

@@ -28,7 +28,7 @@ struct RefitFlags : RunFlags {
   std::int64_t shard_count = 0;
   bool force = false;
   bool retry_failed = false;
-  std::vector<std::string> positional;  ///< The command and its arguments.
+  std::vector<std::string> positional;  ///< The command and its arguments, or the runs of a refit.
   std::vector<std::string> given;       ///< Names of the given flags.
 };
 

@@ -31,6 +31,10 @@ inline constexpr int kInterrupted = 130;
 /// Prints "name: sentence" on standard error.
 void PrintMessage(std::string_view name, std::string_view sentence);
 
+/// Prints an error as PrintMessage does. If there are flags to try, a line with the command that has them follows:
+/// "try: fit_pendulum run.csv --unit deg".
+void PrintError(std::string_view name, const Status& error);
+
 /// Runs a tool: parses flags, handles --help and --version, prints errors and maps them to exit codes. An exception is
 /// a bug: exit code 70.
 int RunTool(const Tool& tool, int argc, char** argv);

@@ -34,6 +34,14 @@ TEST(Error, ConvertsToAResultOfAnyType) {
   EXPECT_EQ(words.error().message, "swing.csv: no such file");
 }
 
+TEST(WithTry, AddsFlagsThatAPartKeeps) {
+  const Result<int> part = WithTry(Error(StatusCode::kDataLoss, "no unit"), {"--unit deg"});
+  const Result<double> whole = WithMessage(part.error(), "run.csv: no unit");
+  EXPECT_EQ(whole.error().code, StatusCode::kDataLoss);
+  EXPECT_EQ(whole.error().message, "run.csv: no unit");
+  EXPECT_THAT(whole.error().try_flags, testing::ElementsAre("--unit deg"));
+}
+
 TEST(Result, HoldsTheValueWithoutAnError) {
   const Result<int> number = 7;
   ASSERT_TRUE(number);

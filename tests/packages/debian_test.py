@@ -63,6 +63,9 @@ class DebianTest(unittest.TestCase):
                                          r"\./usr/share/doc/pendulum/(?:changelog\.gz|copyright|examples/nginx\.conf|README\.md)",
                                          r"\./usr/share/doc/pendulum/examples/datasets/\w+\.(?:csv|json|txt)",
                                          r"\./usr/share/doc/pendulum/html/\w+\.(?:css|html|png)", r"\./usr/share/doc-base/pendulum",
+                                         r"\./usr/share/bash-completion/completions/[a-z_]+",
+                                         r"\./usr/share/zsh/vendor-completions/_[a-z_]+",
+                                         r"\./usr/share/fish/vendor_completions\.d/[a-z_]+\.fish",
                                          r"\./etc/default/serve_pendulum", r"\./lib/systemd/system/serve_pendulum\.service"])
         self.check_dependencies(self.tools, {"libc6", "libgoogle-glog0v6", "libprometheus-cpp-core1.0", "libssl3", "libstdc++6"})
         self.assertEqual({path.name for path in (self.root / "usr/bin").iterdir()}, tool_names())
@@ -70,6 +73,15 @@ class DebianTest(unittest.TestCase):
     def test_the_guide_is_where_the_service_looks_for_it(self):
         pages = {path.stem for path in (self.root / "usr/share/doc/pendulum/html").glob("*.html")}
         self.assertLessEqual({path.stem for path in (empty_root.TOP / "src/docs").glob("*.md")}, pages)
+
+    def test_each_tool_has_completions(self):
+        share = self.root / "usr/share"
+        for folder, pattern in (("bash-completion/completions", "{}"), ("zsh/vendor-completions", "_{}"),
+                                ("fish/vendor_completions.d", "{}.fish")):
+            files = {path.name: path for path in (share / folder).iterdir()}
+            self.assertEqual(set(files), {pattern.format(name) for name in tool_names()})
+            for path in files.values():
+                self.assertIn("--completion", path.read_text())
 
     def test_configuration_files_are_conffiles(self):
         self.assertEqual(output("dpkg-deb", "--info", self.tools, "conffiles"), "/etc/default/serve_pendulum\n")

@@ -2,13 +2,12 @@
 #include "pendulum/recording/clock.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <iomanip>
-#include <ios>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -275,7 +274,7 @@ TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
 TEST(RepairClock, RefusesCoarseStampsWithLostRows) {
   const auto stamp = [](int i) { return std::round((i < 300 ? i : i + 40) / 3.0) / 10; };
   EXPECT_EQ(
-      FaultOf(Rows(Stamps(600, stamp))),
+      FaultOf(Rows(Stamps(600, stamp), "s", Stamps(600, [](int i) { return std::cos(0.1 * i); }))),
       "run.csv:3: time 0 s is also on line 2, and 598 of 600 rows share a time with another row; no uniform clock "
       "agrees with all times, most clearly not between lines 300 and 323, so rows are missing or the rate changes. "
       "Give "
@@ -299,9 +298,9 @@ class Randomness {
 
 /// A number as a file shows it with this many significant digits.
 double Printed(double number, int digits) {
-  std::ostringstream text;
-  text << std::scientific << std::setprecision(digits - 1) << number;
-  return std::stod(text.str());
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, number);
+  return std::strtod(text.data(), nullptr);
 }
 
 struct Digits {
@@ -339,7 +338,9 @@ TEST(RepairClock, ReportsTimesWithFewSignificantDigits) {
 }
 
 TEST(RepairClock, RefusesTimesWithFewDigitsAndLostRows) {
-  EXPECT_THAT(FaultOf(Rows(Stamps(900, [](int i) { return Printed((i < 500 ? i : i + 40) / 30.0, 3); }))),
+  const std::vector<double> values = Stamps(900, [](int i) { return std::cos(0.1 * i); });
+  const auto stamp = [](int i) { return Printed((i < 500 ? i : i + 40) / 30.0, 3); };
+  EXPECT_THAT(FaultOf(Rows(Stamps(900, stamp), "s", values)),
               testing::HasSubstr("so rows are missing or the rate changes"));
 }
 
@@ -487,6 +488,25 @@ TEST(RepairClock, KeepsStampsOfADeviceThatPauses) {
   const auto stamp = [](int i) { return std::round((i / 16) * 62000 + (i % 16) * 200) / 1e6; };
   std::vector<double> values = Stamps(1600, [&](int i) { return 25 * std::cos(4.9 * stamp(i)); });
   ExpectUntouched(Rows(Stamps(1600, stamp), "s", values));
+}
+
+/// A row for each change of a count. Rows are dense where the pendulum is fast, so they seem to come in packets.
+TEST(RepairClock, KeepsStampsOfAnEncoder) {
+  for (const double decay : {0.0, 0.002, 0.02}) {
+    for (const int levels : {3, 7, 20, 60}) {
+      std::vector<double> time, value;
+      double count = 0;
+      for (int k = 0; k < 2'000'000; ++k) {  // every 20 us
+        const double now = 2e-5 * k;
+        const double angle = levels * std::exp(-decay * now) * std::cos(4.9 * now);
+        if (std::abs(angle - count) < 1) continue;  // hysteresis of half a count
+        count += angle > count ? 1 : -1;
+        time.push_back(now);
+        value.push_back(count);
+      }
+      ExpectUntouched(Rows(time, "s", value));
+    }
+  }
 }
 
 TEST(RepairClock, SuggestsTheRateOfFewPackets) {

@@ -27,12 +27,13 @@ std::string Refusal(const RunFlags& flags) {
 /// The default flags, except for a valid value of `flag`.
 RunFlags With(const RunFlag& flag) {
   RunFlags flags;
-  if (const auto* is_on = std::get_if<bool RunFlags::*>(&flag.value)) {
-    flags.** is_on = true;
+  const auto value = flag.In(flags);
+  if (const auto* is_on = std::get_if<bool*>(&value)) {
+    **is_on = true;
     return flags;
   }
   const std::string word = flag.words.empty() ? "2" : std::string(flag.words.back().word);
-  flags.*std::get<std::string RunFlags::*>(flag.value) = flag.example.empty() ? word : flag.example;
+  *std::get<std::string*>(value) = flag.example.empty() ? word : flag.example;
   return flags;
 }
 

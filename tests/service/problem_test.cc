@@ -51,6 +51,14 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
             "\n");
 }
 
+TEST(ProblemResponse, HasTheFlagsToTryAsParameters) {
+  const Status status{
+      StatusCode::kInvalidArgument, "no unit", {"--unit deg", "--value_column gyro z (rad/s)", "--fast"}};
+  const Json json = Json::parse(ProblemResponse(ProblemOf(status)).body);
+  EXPECT_EQ(json["try"], Json::parse(R"({"unit": "deg", "value_column": "gyro z (rad/s)", "fast": "true"
+})"));
+}
+
 // The exit codes are those that the tools give (src/docs/reference.md).
 TEST(ProblemOf, MapsEachStatusCodeToHttpStatusAndExitCode) {
   const auto figures = [](StatusCode code) { return Figures(ProblemOf(Status{code, "why"})); };

@@ -115,7 +115,7 @@ using Flags = CalibrateSensorFlags;
 
 TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfATable) {
   ExpectRefusals(TableFlags(),
-                 {{"--data is missing: a table of counts or volts", [](Flags& f) { f.data.clear(); }},
+                 {{"no table was given: a file with counts or volts and angles", [](Flags& f) { f.data.clear(); }},
                   {"--order is 0; it must be 1 to 5", [](Flags& f) { f.order = 0; }},
                   {"--order is 6", [](Flags& f) { f.order = 6; }},
                   {"--input_range is '5'; it must be low,high", [](Flags& f) { f.input_range = "5"; }},
@@ -131,7 +131,17 @@ TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfATable) {
                   {"--supply_voltage belongs to a plan", [](Flags& f) { f.supply_voltage = 3; }},
                   {"--potentiometer_range_deg belongs to a plan", [](Flags& f) { f.potentiometer_range_deg = 300; }},
                   {"--divider belongs to a plan", [](Flags& f) { f.divider = 0.5; }},
-                  {"'stray' does not belong to a flag", [](Flags& f) { f.positional = {"stray"}; }}});
+                  {"'stray' does not belong to a flag; give one table", [](Flags& f) { f.positional = {"stray"}; }}});
+}
+
+TEST(MakeCalibrateSensorOptions, TakesATableWithoutAFlag) {
+  Flags flags;
+  flags.positional = {"table.csv"};
+  const auto options = MakeCalibrateSensorOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->data, "table.csv");
+  ExpectRefusals(flags, {{"'b.csv' does not belong to a flag", [](Flags& f) { f.positional.emplace_back("b.csv"); }},
+                         {"'table.csv' does not belong to a flag", [](Flags& f) { f.plan = true; }}});
 }
 
 TEST(MakeCalibrateSensorOptions, RefusesWrongFlagsOfAPlan) {

@@ -57,7 +57,8 @@ class CliTest(unittest.TestCase):
         run = self.run_tool(*flags)
         self.assertEqual(run.returncode, code, run.stderr)
         self.assertEqual(run.stdout, "")
-        self.assertRegex(run.stderr, r"\Afit_pendulum: [^\n]+\n\Z")
+        self.assertRegex(run.stderr, r"\Afit_pendulum: [^\n]+\n(?:try: fit_pendulum [^\n]+\n)?\Z".replace(
+            "try: fit_pendulum", "try: " + re.escape(TOOL)))
         self.assertRegex(run.stderr, sentence)
         self.assertEqual(self.names(), before)
 
@@ -122,10 +123,10 @@ class BadFlags(CliTest):
         self.assert_flags_refused("--data needs a value", "--data")
 
     def test_no_data(self):
-        self.assert_flags_refused("--data")
+        self.assert_flags_refused("no recording was given; .* fit_pendulum run.csv")
 
-    def test_positional_argument(self):
-        self.assert_flags_refused("'run.csv' does not belong to a flag; .*--data", "run.csv")
+    def test_recordings_with_and_without_a_flag(self):
+        self.assert_flags_refused("'run.csv' and --data both name recordings", "run.csv", "--data", "run.csv")
 
     def test_unknown_model_lists_the_models(self):
         self.assert_flags_refused("viscous, coulomb, drag, .*linear, linear_coulomb", "--data", "run.csv", "--model", "columb")
@@ -368,10 +369,68 @@ class ClosedFormsOnly(CliTest):
                             "forms.json")
 
 
+class PeoplesHabits(CliTest):
+    def fit(self, *flags):
+        run = self.run_tool(*flags, "--json", "fit.json")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        return strict_json((self.folder / "fit.json").read_text(encoding="utf-8"))
+
+    def test_recording_without_a_flag(self):
+        self.assertEqual(self.fit("run.csv")["fits"], self.fit("--data", "run.csv")["fits"])
+
+    def test_values_of_the_rig_as_flags(self):
+        # G = (M + m/2) g l and I_O = m l²/3 + M l²
+        result = self.fit("run.csv", "--bob_mass", "380+-1g", "--rod_mass=0.12", "--rod_length", "43cm")
+        self.assertEqual(result["rig"], {"bob_mass": {"value": 0.38, "std_dev": 0.001}, "rod_mass": 0.12,
+                                         "rod_length": 0.43, "gravity": {"value": 9.806, "std_dev": 0.015}})
+        warnings = {warning["code"]: warning["message"] for warning in result["warnings"]}
+        self.assertIn("--rod_mass 0.12 kg", warnings["rig_unit_assumed"])
+        self.assertIn("--g", warnings["gravity_assumed"])
+
+    def test_a_flag_overrides_the_rig_file(self):
+        self.write("rig.json", json.dumps({"gravity_torque": 5}))
+        result = self.fit("run.csv", "--rig", "rig.json", "--gravity_torque", "2000mNm")
+        self.assertEqual(result["rig"], {"gravity_torque": 2.0})
+        self.assertIn("rig_overridden", {warning["code"] for warning in result["warnings"]})
+
+    def test_incomplete_rig(self):
+        self.assert_refused(2, '"rod_mass" is missing beside "bob_mass"', "run.csv", "--bob_mass", "380g", "--rod_length",
+                            "43cm")
+        self.assert_refused(2, "--bob_mass is '380cm'; it must be a number with a unit", "run.csv", "--bob_mass", "380cm")
+
+    def test_calibration_from_a_table(self):
+        # A sensor with 54 deg per volt; -135 deg at 0 V.
+        rows = GOOD_DATA.splitlines()[1:]
+        volts = "".join("{},{:.6f}\n".format(time, (float(angle) + 135) / 54) for time, angle in (row.split(",") for row in rows))
+        self.write("volts.csv", "time_s,pot_volts\n" + volts)
+        self.write("table.csv", "pot_volts,angle_deg\n1,-81.1\n2,-27\n3,27.1\n4,81\n")
+        result = self.fit("volts.csv", "--calibration", "table.csv")
+        self.assertAlmostEqual(result["calibration"]["coefficients"][1], 54.04, places=6)
+        warning = next(each for each in result["warnings"] if each["code"] == "calibration_from_table")
+        self.assertIn("a straight line through the 4 points of table.csv", warning["message"])
+
+    def test_refusal_ends_with_the_command_to_try(self):
+        rows = "".join(f"{3 * (i // 300)},{10 * (i % 97)}\n" for i in range(1500))
+        self.write("coarse.csv", "time_s,angle_deg\n" + rows)
+        run = self.run_tool("coarse.csv", "--model", "viscous")
+        self.assertEqual(run.returncode, 4)
+        self.assertRegex(run.stderr, r"\ntry: \S*fit_pendulum coarse.csv --model viscous --sample_rate_hz 100 --time_column none\n\Z")
+
+
 class Answers(CliTest):
+    def test_help_has_several_names(self):
+        text = self.run_tool("--help").stdout
+        for flag in ("-h", "-help"):
+            run = self.run_tool(flag)
+            self.assertEqual((run.returncode, run.stdout), (0, text))
+        self.assertRegex(text, r"\A[^\n]+\n\n(?:  fit_pendulum [^\n]+\n){3,6}\nInput:\n  --data ")
+        full = self.run_tool("--helpfull").stdout
+        self.assertIn("logtostderr", full)
+
     def test_help_shows_only_the_tools_flags(self):
         run = self.run_tool("--help")
         self.assertEqual(run.returncode, 0)
+        self.assertNotIn("\nOther:\n", run.stdout)
         for flag in ("data", "rig", "model", "start", "from", "to", "fix", "json", "residuals", "series",
                      "closed_form_only", "calibration",
                      "time_column", "value_column", "unit", "sample_rate_hz", "help", "version"):

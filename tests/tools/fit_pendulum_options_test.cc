@@ -117,11 +117,28 @@ TEST(MakeFitPendulumOptions, RefusesFitFlagsForClosedFormsOnly) {
   }
 }
 
-TEST(MakeFitPendulumOptions, RequiresTheFlagOfTheData) {
+TEST(MakeFitPendulumOptions, RequiresARecording) {
   FitPendulumFlags flags;
-  EXPECT_EQ(Refusal(flags), "no recording was given; name its CSV file with --data");
-  flags.positional = {"run.csv"};
-  EXPECT_EQ(Refusal(flags), "'run.csv' does not belong to a flag; give the recording with --data");
+  EXPECT_EQ(Refusal(flags), "no recording was given; name its file, as in fit_pendulum run.csv; --help shows examples");
+}
+
+TEST(MakeFitPendulumOptions, TakesRecordingsWithoutAFlag) {
+  FitPendulumFlags flags;
+  flags.positional = {"run.csv", "a,b.csv"};
+  const auto options = MakeFitPendulumOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_THAT(options->data, ElementsAre("run.csv", "a,b.csv"));
+  EXPECT_TRUE(options->IsJoint(2));
+  flags.data = "c.csv";
+  EXPECT_EQ(Refusal(flags),
+            "'run.csv' and --data both name recordings; give all of them without a flag, or all with --data");
+  flags.data.clear();
+  flags.data_list = "list.txt";
+  EXPECT_EQ(Refusal(flags),
+            "'run.csv' and --data_list both name recordings; give all of them without a flag, or all with --data_list");
+  flags.data_list.clear();
+  flags.positional = {"-", "/dev/stdin"};
+  EXPECT_EQ(Refusal(flags), "standard input is named twice, but it can be read only once");
 }
 
 TEST(MakeFitPendulumOptions, ListsTheModels) {

@@ -110,6 +110,20 @@ TEST(MakeRefitPendulumsOptions, NamesTheWrongFlagOfARefit) {
   }
 }
 
+TEST(MakeRefitPendulumsOptions, TakesRunsWithoutAFlag) {
+  RefitFlags flags = GoodFlags();
+  flags.positional = {"CMakeLists.txt"};  // any existing file
+  EXPECT_THAT(Refusal(flags), HasSubstr("--manifest and 'CMakeLists.txt' both name runs"));
+  flags.manifest.clear();
+  EXPECT_EQ(MakeRefitPendulumsOptions(flags)->manifest, "CMakeLists.txt");
+  flags.positional = {"datasets"};
+  EXPECT_THAT(MakeRefitPendulumsOptions(flags)->patterns, ElementsAre("datasets"));
+  flags.positional = {"a.csv", "b,c.csv"};
+  EXPECT_THAT(MakeRefitPendulumsOptions(flags)->patterns, ElementsAre("a.csv", "b,c.csv"));
+  RefitFlags pack = CommandFlags({"pack", "runs.csv"}, {"out"});
+  EXPECT_EQ(MakeRefitPendulumsOptions(pack)->manifest, "runs.csv");
+}
+
 TEST(MakeRefitPendulumsOptions, AcceptsTheCommands) {
   const std::vector<std::pair<RefitFlags, RefitCommand>> commands = {
       {CommandFlags({"status"}, {"store"}), RefitCommand::kStatus},

@@ -18,9 +18,9 @@ TEST(RegisterRunFlags, RegistersEachFlagOfTheTableOnce) {
     ASSERT_TRUE(gflags::GetCommandLineFlagInfo(flag.name.data(), &info)) << flag.name;
     EXPECT_EQ(info.type, flag.name == "closed_form_only" ? "bool" : "string");
     EXPECT_EQ(info.description, flag.help);
-    if (const auto* text = std::get_if<std::string RunFlags::*>(&flag.value)) {
-      EXPECT_EQ(info.default_value, RunFlags().**text);
-    }
+    RunFlags unset;
+    const auto value = flag.In(unset);
+    if (const auto* text = std::get_if<std::string*>(&value)) EXPECT_EQ(info.default_value, **text);
   }
   gflags::SetCommandLineOption("noise", "quantized");
   EXPECT_EQ(values.noise, "quantized");

@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "pendulum/base/status.h"
 #include "pendulum/fitting/start/fit_options.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/recording/readers/columns/read_options.h"
@@ -25,7 +28,9 @@ struct IdentifyOptions {
   FitOptions fit;                    ///< Its model is the first of `models`; its rig is replaced by the recording's.
   bool rig_chooses_gravity = false;  ///< A rig with a stiffness gives each model a linear restoring torque.
   Checks checks = Checks::kStandard;
-  bool closed_form_only = false;    ///< No fit is made; of `fit`, only the model and the stop token are used.
+  bool closed_form_only = false;  ///< No fit is made; of `fit`, only the model and the stop token are used.
+  nlohmann::ordered_json rig_values = nlohmann::ordered_json::object();  ///< They replace those of a rig file.
+  std::vector<Warning> notes;       ///< What was assumed about the options, for the warnings of the report.
   std::vector<std::string> shared;  ///< For a joint identification: names of the parameters that all recordings share.
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -10,6 +11,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/identify/identify_options.h"
+#include "pendulum/model/rig.h"
 
 namespace pendulum {
 
@@ -43,6 +45,13 @@ struct RunFlags {
   std::string seed;
   std::string threads;
   bool closed_form_only = false;
+  /// Values of the rig, in the order of RigKeys, such as "380g".
+  std::vector<std::string> rig_values = std::vector<std::string>(RigKeys().size());
+};
+
+/// The value of the flag of a key of the rig, by its index in RigKeys.
+struct RigFlagValue {
+  std::size_t key;
 };
 
 /// A value that a flag may have, and its label in the form of the service.
@@ -53,7 +62,7 @@ struct FlagWord {
 /// A flag for reading and fitting a recording.
 struct RunFlag {
   std::string_view name;
-  std::variant<std::string RunFlags::*, bool RunFlags::*> value;
+  std::variant<std::string RunFlags::*, bool RunFlags::*, RigFlagValue> value;
   std::string help;             ///< What it is, its unit, and what the default means. Other flags appear as --name.
   std::string_view label = {};  ///< Label of its field in the form of the service; empty: no field.
   std::string_view unit = {};   ///< Unit of its number, for the label.
@@ -62,10 +71,16 @@ struct RunFlag {
   std::string example = {};                 ///< A value for the description of the service; empty: none.
   bool needs_fit = false;                   ///< It cannot be combined with --closed_form_only.
   bool is_local = false;                    ///< It names a file or threads; requests do not have it.
+
+  /// Its value in `flags`.
+  std::variant<std::string*, bool*> In(RunFlags& flags) const;
+
+  /// Whether it is a value of the rig.
+  bool IsOfRig() const { return std::holds_alternative<RigFlagValue>(value); }
 };
 
-/// All members of RunFlags. The command line, --help, the parameters of requests, openapi.json and the form of the
-/// service are made from this table.
+/// All members of RunFlags, one flag for each key of the rig. The command line, --help, the parameters of requests,
+/// openapi.json and the form of the service are made from this table.
 const std::vector<RunFlag>& RunFlagTable();
 
 /// The error for a flag that cannot be combined with --closed_form_only.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/model/rig_values.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// g at sea level is 9.780 to 9.832 m/s² from the equator to the poles.
+constexpr double kMeanGravity = 9.806, kGravityStdDev = 0.015;
+
+/// Whether the values are part of a description that has g, without it.
+bool LacksGravity(const Json& values) {
+  constexpr std::array<std::string_view, 5> kBesideGravity = {"bob_mass", "rod_mass", "rod_length", "mass",
+                                                              "center_of_mass"};
+  return !values.contains("gravity") && !values.contains("gravity_torque") &&
+         std::ranges::any_of(kBesideGravity, [&](std::string_view key) { return values.contains(key); });
+}
+
+}  // namespace
+
+Result<Rig> ParseRigWith(const Json& values, std::string_view text, const std::string& name) {
+  auto rig = ParseJsonObject(text, name, "rig", "{}");
+  if (!rig || values.empty()) return ParseRig(text, name);  // ParseRig has the better message
+  rig->update(values);
+  return ParseRig(JsonText(*rig), name);
+}
+
+Result<Rig> RigOfValues(Json values, std::vector<Warning>& warnings) {
+  const bool lacks_gravity = LacksGravity(values);
+  if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
+  Result<Rig> rig = ParseRig(JsonText(values), std::string(kRigOfValuesName));
+  if (!rig) return Error(StatusCode::kInvalidArgument, rig.error().message);
+  if (lacks_gravity) {
+    warnings.push_back({"gravity_assumed", "g was taken as " + NumberText(kMeanGravity) + " +- " +
+                                               NumberText(kGravityStdDev) +
+                                               " m/s^2, as at sea level; give the local value with --g"});
+  }
+  return rig;
+}
+
+Warning OverrideWarning(const Json& values) {
+  std::vector<std::string> flags;
+  for (const RigKey& key : RigKeys()) {
+    if (values.contains(key.name)) flags.push_back("--" + std::string(key.flag));
+  }
+  return {"rig_overridden", "the values of the rig file were replaced by " + NameList(flags)};
+}
+
+}  // namespace pendulum

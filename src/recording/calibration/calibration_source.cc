@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/calibration/calibration_source.h"
+
+#include "pendulum/base/file.h"
+#include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
+#include "pendulum/recording/calibration/calibrate.h"
+#include "pendulum/recording/calibration/calibration_table.h"
+
+namespace pendulum {
+namespace {
+
+/// Whether the text is meant as JSON. A table begins with a name of a column or a comment.
+bool IsJson(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first == std::string_view::npos || text[first] == '{' || text[first] == '[';
+}
+
+std::string NoteOn(const CalibrationTable& table, const CalibrationFit& fit) {
+  constexpr double kSmallP = 0.001;
+  std::string note = "the calibration is a straight line through the " + std::to_string(table.size()) + " points of " +
+                     table.path + ": slope " + NumberText(fit.calibration.coefficients[1], 4) + " " + table.angle_unit +
+                     " per " + (table.input == "counts" ? "count" : "volt");
+  if (fit.calibration.residual_std_dev) {
+    note +=
+        ", residual standard deviation " + NumberText(*fit.calibration.residual_std_dev, 2) + " " + table.angle_unit;
+  }
+  if (fit.higher_order && fit.higher_order->p < kSmallP) {
+    note += ". A parabola fits better (p " + ProbabilityText(fit.higher_order->p) + "): make the calibration with " +
+            "calibrate_sensor --order 2 --json, and give its file";
+  }
+  return note;
+}
+
+}  // namespace
+
+Result<Calibration> CalibrationFromText(std::string_view text, const std::string& name) {
+  if (IsJson(text)) return ParseCalibration(text, name);
+  const Result<CalibrationTable> table = ParseCalibrationTable(text, name);
+  if (!table) {
+    return WithMessage(table.error(), table.error().message +
+                                          ". A calibration is JSON, or a table with a column of counts or volts and a "
+                                          "column of angles, such as adc_counts,angle_deg");
+  }
+  Result<CalibrationFit> fit = CalibrateSensor(*table, 1);
+  if (!fit) return tl::unexpected(std::move(fit).error());
+  fit->calibration.note = NoteOn(*table, *fit);
+  return std::move(fit->calibration);
+}
+
+Result<Calibration> CalibrationFromFile(const std::filesystem::path& path) {
+  const Result<std::string> text = ReadFile(path, "calibration", kMaxJsonBytes);
+  if (!text) return tl::unexpected(text.error());
+  return CalibrationFromText(*text, path.string());
+}
+
+}  // namespace pendulum

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/request/rig_flags.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "pendulum/base/format.h"
+#include "pendulum/request/flag_values.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RigUnit {
+  RigQuantity quantity;
+  std::string_view name;  ///< As in messages. Blanks, *, · and ^ are ignored, and ² is 2.
+  double si;
+};
+
+constexpr std::array kRigUnits = {
+    RigUnit{RigQuantity::kMass, "kg", 1},
+    RigUnit{RigQuantity::kMass, "g", 1e-3},
+    RigUnit{RigQuantity::kMass, "mg", 1e-6},
+    RigUnit{RigQuantity::kMass, "lb", 0.45359237},
+    RigUnit{RigQuantity::kMass, "oz", 0.028349523125},
+    RigUnit{RigQuantity::kLength, "m", 1},
+    RigUnit{RigQuantity::kLength, "cm", 1e-2},
+    RigUnit{RigQuantity::kLength, "mm", 1e-3},
+    RigUnit{RigQuantity::kLength, "in", 0.0254},
+    RigUnit{RigQuantity::kLength, "ft", 0.3048},
+    RigUnit{RigQuantity::kAcceleration, "m/s^2", 1},
+    RigUnit{RigQuantity::kTorque, "N m", 1},
+    RigUnit{RigQuantity::kTorque, "mN m", 1e-3},
+    RigUnit{RigQuantity::kTorque, "N cm", 1e-2},
+    RigUnit{RigQuantity::kStiffness, "N m/rad", 1},
+    RigUnit{RigQuantity::kStiffness, "mN m/rad", 1e-3},
+    RigUnit{RigQuantity::kStiffness, "N/m", 1},
+    RigUnit{RigQuantity::kInertia, "kg m^2", 1},
+    RigUnit{RigQuantity::kInertia, "kg cm^2", 1e-4},
+    RigUnit{RigQuantity::kInertia, "g cm^2", 1e-7},
+    RigUnit{RigQuantity::kInertia, "g m^2", 1e-3},
+    RigUnit{RigQuantity::kInertia, "kg", 1},
+};
+
+/// A unit without the characters in which its spellings differ.
+std::string Plain(std::string_view unit) {
+  std::string text(unit);
+  const auto replace = [&](std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+  };
+  replace("²", "2");
+  for (const std::string_view ignored : {" ", "*", "·", "^", "\t"}) replace(ignored, "");
+  return text;
+}
+
+std::string UnitsOf(RigQuantity quantity) {
+  std::vector<std::string_view> names;
+  for (const RigUnit& unit : kRigUnits) {
+    if (unit.quantity == quantity) names.push_back(unit.name);
+  }
+  return NameList(names);
+}
+
+/// Takes a number from the beginning of the text.
+std::optional<double> TakeNumber(std::string_view& text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  double number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  return number;
+}
+
+bool TakePlusMinus(std::string_view& text) {
+  for (const std::string_view sign : {"+-", "+/-", "±"}) {
+    if (!text.starts_with(sign)) continue;
+    text.remove_prefix(sign.size());
+    return true;
+  }
+  return false;
+}
+
+bool HasUnit(const std::string& text) {
+  std::string_view rest = text;
+  TakeNumber(rest);
+  if (TakePlusMinus(rest)) TakeNumber(rest);
+  return !rest.empty();
+}
+
+Json JsonOf(const RigValue& value) {
+  if (value.std_dev == 0) return value.value;
+  return {{"value", value.value}, {"std_dev", value.std_dev}};
+}
+
+}  // namespace
+
+Result<RigValue> ParseRigValue(const std::string& flag, const std::string& text, const RigKey& key) {
+  const auto fault = [&] {
+    return BadFlag(flag + " is '" + text + "'; it must be a number with a unit, such as " +
+                   (key.quantity == RigQuantity::kMass     ? "380g or 380+-1g"
+                    : key.quantity == RigQuantity::kLength ? "43cm or 43+-0.1cm"
+                                                           : "1.5" + Plain(key.unit)) +
+                   "; the units are " + UnitsOf(key.quantity));
+  };
+  std::string_view rest = text;
+  const std::optional<double> number = TakeNumber(rest);
+  if (!number) return fault();
+  RigValue value{*number, 0};
+  if (TakePlusMinus(rest)) {
+    const std::optional<double> error = TakeNumber(rest);
+    if (!error || *error < 0) return fault();
+    value.std_dev = *error;
+  }
+  if (rest.empty()) return value;
+  for (const RigUnit& unit : kRigUnits) {
+    if (unit.quantity == key.quantity && Plain(unit.name) == Plain(rest)) {
+      return RigValue{value.value * unit.si, value.std_dev * unit.si};
+    }
+  }
+  return fault();
+}
+
+Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts, std::vector<Warning>& warnings) {
+  Json values = Json::object();
+  std::vector<std::string> without_unit;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (texts[i].empty()) continue;
+    const RigKey& key = RigKeys()[i];
+    const std::string flag = "--" + std::string(key.flag);
+    const Result<RigValue> value = ParseRigValue(flag, texts[i], key);
+    if (!value) return tl::unexpected(value.error());
+    values[std::string(key.name)] = JsonOf(*value);
+    if (key.quantity == RigQuantity::kAcceleration || HasUnit(texts[i])) continue;
+    without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
+  }
+  if (!without_unit.empty()) {
+    warnings.push_back({"rig_unit_assumed", "values without a unit were taken in SI units: " + NameList(without_unit) +
+                                                "; write the unit after the number, such as 380g or 43cm"});
+  }
+  return values;
+}
+
+}  // namespace pendulum

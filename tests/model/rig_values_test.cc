@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/model/rig_values.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pendulum::rig_values_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::IsEmpty;
+
+constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": 0.1, "rod_length": 0.5, "gravity": 9.8})";
+
+TEST(ParseRigWith, ReplacesValuesOfTheText) {
+  const auto rig = ParseRigWith({{"bob_mass", {{"value", 0.3}, {"std_dev", 0.001}}}}, kRodAndBob, "rig.json");
+  ASSERT_TRUE(rig) << rig.error().message;
+  // G = (M + m/2) g l
+  EXPECT_NEAR(rig->gravity_torque.value, 0.35 * 9.8 * 0.5, 1e-12);
+  EXPECT_NEAR(rig->gravity_torque.std_dev, 0.001 * 9.8 * 0.5, 1e-12);
+  EXPECT_EQ(rig->source["bob_mass"]["value"], 0.3);
+}
+
+TEST(ParseRigWith, RefusesAWrongText) {
+  EXPECT_THAT(ParseRigWith({{"bob_mass", 0.3}}, "{", "rig.json").error().message, testing::StartsWith("rig.json:"));
+  EXPECT_THAT(ParseRigWith({{"mass", 0.3}}, kRodAndBob, "rig.json").error().message,
+              testing::HasSubstr("belong to different descriptions"));
+}
+
+TEST(RigOfValues, AssumesGravityIfItIsNeeded) {
+  std::vector<Warning> warnings;
+  const Json values = {{"bob_mass", 0.4}, {"rod_mass", 0.1}, {"rod_length", 0.5}};
+  const auto rig = RigOfValues(values, warnings);
+  ASSERT_TRUE(rig) << rig.error().message;
+  EXPECT_NEAR(rig->gravity_torque.value, 0.45 * 9.806 * 0.5, 1e-12);
+  EXPECT_NEAR(rig->gravity_torque.std_dev, 0.45 * 0.015 * 0.5, 1e-12);
+  ASSERT_EQ(warnings.size(), 1);
+  EXPECT_EQ(warnings[0].code, "gravity_assumed");
+  EXPECT_EQ(warnings[0].message, "g was taken as 9.806 +- 0.015 m/s^2, as at sea level; give the local value with --g");
+}
+
+TEST(RigOfValues, NeedsNoGravityBesideATorque) {
+  std::vector<Warning> warnings;
+  EXPECT_EQ(RigOfValues({{"gravity_torque", 1.8}}, warnings)->gravity_torque.value, 1.8);
+  EXPECT_THAT(warnings, IsEmpty());
+}
+
+TEST(RigOfValues, NamesAMissingValue) {
+  std::vector<Warning> warnings;
+  const auto rig = RigOfValues({{"bob_mass", 0.4}, {"rod_length", 0.5}}, warnings);
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().code, StatusCode::kInvalidArgument);
+  EXPECT_EQ(rig.error().message, "the rig of the flags: \"rod_mass\" is missing beside \"bob_mass\"; add it");
+  EXPECT_THAT(warnings, IsEmpty());
+}
+
+TEST(OverrideWarning, NamesTheFlags) {
+  EXPECT_EQ(OverrideWarning({{"gravity", 9.8}, {"bob_mass", 0.4}}).message,
+            "the values of the rig file were replaced by --bob_mass, --g");
+}
+
+}  // namespace
+}  // namespace pendulum::rig_values_test
