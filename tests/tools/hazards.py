@@ -228,12 +228,9 @@ def without_model(lab: Lab) -> None:
     lab.law.setdefault("coulomb", lab.rng.uniform(0, 0.01))
 
 
-@hazard("degrees labelled rad", 1.2, 2, 3, unit=" deg")
+@hazard("degrees labelled rad", 0.3, 0.6, 1.2, 2, 3, unit=" deg")
 def _degrees_labelled_rad(lab: Lab, degrees: float) -> Recording:
-    """A pendulum in small swings, whose period does not depend on the amplitude, as if it were a torsion spring.
-
-    Swings below 0.6 deg are excluded: read as rad, their period depends on the amplitude by less than the noise shows.
-    """
+    """A pendulum in small swings, whose period does not depend on the amplitude, as if it were a torsion spring."""
     without_model(lab)
     lab.amplitude, lab.zero = math.radians(degrees), 0
     lab.law["coulomb"] = lab.rng.uniform(0, 0.01) * lab.amplitude
