@@ -57,7 +57,7 @@ bool CsvText::BeginCell(std::size_t row, std::size_t column) {
   text_.append(rows_.empty() ? lines - 1 : lines, '\n');
   rows_.resize(row + 1);
   Row& last = rows_.back();
-  if (last.is_comment != 0) QuoteComment();
+  if (last.is_comment) QuoteComment();
   text_.append(last.cells == 0 ? column : column + 1 - last.cells, kSeparator);
   last.cells = static_cast<std::uint32_t>(column + 1);
   return true;
@@ -69,7 +69,7 @@ void CsvText::QuoteComment() {
   const std::string cell = text_.substr(begin);
   text_.erase(begin);
   text_ += InQuotes(cell);
-  rows_.back().is_comment = 0;
+  rows_.back().is_comment = false;
 }
 
 void CsvText::AddNumber(std::size_t row, std::size_t column, double number) {
@@ -84,7 +84,7 @@ void CsvText::AddText(std::size_t row, std::size_t column, std::string_view text
   if (text.empty() || !HasRoom(2 * text.size() + 2) || !BeginCell(row, column)) return;
   if (column == 0 && IsComment(text)) {
     text_ += OnOneLine(text);
-    rows_.back().is_comment = 1;
+    rows_.back().is_comment = true;
     return;
   }
   text_ += CsvCell(text);
@@ -96,7 +96,7 @@ std::string CsvText::Padded(std::size_t width) const {
   for (const Row& row : rows_) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     padded += rest.substr(0, end);
-    if (row.cells > 0 && row.is_comment == 0) padded.append(width - row.cells, kSeparator);
+    if (row.cells > 0 && !row.is_comment) padded.append(width - row.cells, kSeparator);
     padded += '\n';
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
@@ -106,7 +106,7 @@ std::string CsvText::Padded(std::size_t width) const {
 std::string CsvText::Finish() {
   std::size_t width = 0, missing = 0;
   for (const Row& row : rows_) width = std::max<std::size_t>(width, row.cells);
-  for (const Row& row : rows_) missing += row.cells == 0 || row.is_comment != 0 ? 0 : width - row.cells;
+  for (const Row& row : rows_) missing += row.cells == 0 || row.is_comment ? 0 : width - row.cells;
   if (!HasRoom(missing)) return "";
   if (missing > 0) return Padded(width);
   if (!rows_.empty()) text_ += '\n';

@@ -33,8 +33,8 @@ class CsvText {
 
  private:
   struct Row {
-    std::uint32_t cells : 31 = 0;
-    std::uint32_t is_comment : 1 = 0;
+    std::uint32_t cells = 0;
+    bool is_comment = false;
   };
 
   bool BeginCell(std::size_t row, std::size_t column);
