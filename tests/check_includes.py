@@ -22,7 +22,7 @@ import cpp_text
 STANDARD = {
     "algorithm": "adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill "
                  "fill_n find find_if find_if_not for_each generate inplace_merge is_sorted lower_bound max max_element merge "
-                 "min min_element minmax minmax_element none_of nth_element partial_sort stable_partition partition partition_point pop_heap "
+                 "min min_element minmax minmax_element mismatch none_of nth_element partial_sort stable_partition partition partition_point pop_heap "
                  "push_heap remove remove_if replace replace_if reverse rotate shuffle sort stable_sort transform unique "
                  "upper_bound",
     "array": "array get size to_array",

@@ -28,7 +28,7 @@ struct RunInputs {
   Result<std::string> data;
   Result<std::optional<std::string>> rig, calibration;  ///< std::nullopt: none.
   std::string rig_name, calibration_name;
-  IdentifyOptions options;
+  Result<IdentifyOptions> options;
 };
 
 Result<std::optional<std::string>> ReadNamed(const Source& source, const std::string& path,
@@ -40,19 +40,16 @@ Result<std::optional<std::string>> ReadNamed(const Source& source, const std::st
 }
 
 /// The options of a run: the batch's options with the changes of its entry. Runs are parallel, so each fit uses one
-/// thread.
-IdentifyOptions OptionsOf(const ManifestEntry& entry, const IdentifyOptions& batch) {
+/// thread. kInvalidArgument: the entry's models contradict the batch's law of gravity.
+Result<IdentifyOptions> OptionsOf(const ManifestEntry& entry, const IdentifyOptions& batch) {
   IdentifyOptions options = batch;
   options.fit.threads = 1;
   if (entry.from) options.swing.from = *entry.from;
   if (entry.to) options.swing.to = *entry.to;
   if (entry.models.empty()) return options;
-  auto models = FindMotionModels(entry.models, batch.fit.gravity);
-  if (!models) {  // the manifest's own law of gravity has precedence
-    models = FindMotionModels(entry.models);
-    options.fit.gravity = std::nullopt;
-  }
-  if (!models) return options;  // the manifest was already checked
+  const auto models = FindMotionModels(entry.models, batch.fit.gravity);
+  if (!models)
+    return Error(StatusCode::kInvalidArgument, entry.path + ": models in the manifest: " + models.error().message);
   options.models.clear();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   options.fit.model = options.models.front();
@@ -87,6 +84,7 @@ Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
 std::string PathsOf(const ManifestEntry& entry) { return JsonText({entry.path, entry.rig, entry.calibration, 0}); }
 
 Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inputs) {
+  if (!inputs.options) return tl::unexpected(inputs.options.error());
   Provenance provenance;
   provenance.version = std::string(kVersion);
   provenance.cpu = CpuType();
@@ -98,7 +96,7 @@ Result<Provenance> ProvenanceOf(const ManifestEntry& entry, const RunInputs& inp
   auto done = set(HashOf(inputs.data), provenance.data_sha256);
   if (done) done = set(HashOf(inputs.rig), provenance.rig_sha256);
   if (done) done = set(HashOf(inputs.calibration), provenance.calibration_sha256);
-  if (done) done = set(Sha256(OptionsJson(inputs.options) + PathsOf(entry)), provenance.options_sha256);
+  if (done) done = set(Sha256(OptionsJson(*inputs.options) + PathsOf(entry)), provenance.options_sha256);
   if (!done) return tl::unexpected(done.error());
   return provenance;
 }
@@ -111,15 +109,15 @@ Result<Identification> FitInputs(const ManifestEntry& entry, RunInputs& inputs) 
   if (!inputs.data) return tl::unexpected(inputs.data.error());
   if (!inputs.rig) return tl::unexpected(inputs.rig.error());
   if (!inputs.calibration) return tl::unexpected(inputs.calibration.error());
-  return IdentifyBytes(inputs.options, {{entry.path, *std::move(inputs.data)},
-                                        Named(inputs.rig_name, *std::move(inputs.rig)),
-                                        Named(inputs.calibration_name, *std::move(inputs.calibration))});
+  return IdentifyBytes(*inputs.options, {{entry.path, *std::move(inputs.data)},
+                                         Named(inputs.rig_name, *std::move(inputs.rig)),
+                                         Named(inputs.calibration_name, *std::move(inputs.calibration))});
 }
 
 RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance) {
   RunOutcome outcome;
   outcome.provenance = std::move(provenance);
-  outcome.models = inputs.options.models;
+  outcome.models = inputs.options->models;
   const Result<Identification> run = FitInputs(entry, inputs);
   if (run) {
     outcome.exit_code = ExitCode(*run);
@@ -133,7 +131,8 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
 
 RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, const Status& status) {
   RunOutcome outcome;
-  outcome.models = OptionsOf(entry, options.run).models;
+  const auto run = OptionsOf(entry, options.run);
+  outcome.models = (run ? *run : options.run).models;
   outcome.exit_code = ExitCode(status.code);
   outcome.reason = status.message;
   return outcome;

@@ -9,12 +9,12 @@
 
 #include <Eigen/QR>
 
-#include "closed_form/low_band.h"
 #include "closed_form/swing_ends.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/classify_half_swings.h"
+#include "pendulum/closed_form/low_band.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
 
@@ -113,7 +113,10 @@ bool Decays(const TurningPointTable& table, std::size_t first, std::size_t last)
 /// A weight for each half swing. Their sums decide what most of a recording shows.
 using Weights = std::vector<double>;
 
-Weights EqualWeights(const TurningPointTable& table) { return Weights(table.half_swings(), 1.0); }
+Weights EqualWeights(const TurningPointTable& table) {
+  Weights weights(table.half_swings(), 1.0);
+  return weights;
+}
 
 /// Weights by size: duration times the square of the height. Small fast motion then counts little, however long it
 /// lasts.
@@ -255,6 +258,19 @@ bool AreSmall(const std::vector<FreeSwing>& swings) {
       swings, [](const FreeSwing& swing) { return swing.amplitude_outside > kLarger * swing.amplitude; });
 }
 
+/// The duration of the longest swing [s].
+double LongestDuration(const std::vector<FreeSwing>& swings) {
+  double longest = 0;
+  for (const FreeSwing& swing : swings) longest = std::max(longest, swing.to - swing.from);
+  return longest;
+}
+
+/// Whether the longest swing is a small part of the motion, as of a vibration that dies away.
+bool AreShort(const std::vector<FreeSwing>& swings, const TurningPointTable& table) {
+  constexpr double kShort = 0.25;  // of the motion
+  return LongestDuration(swings) < kShort * (table.points.back().time - table.points.front().time);
+}
+
 /// The swings of a recording in which half swings are weighed by their size.
 Result<std::vector<FreeSwing>> FindLarge(const Recording& recording, TurningPointTable table) {
   if (table.points.size() < 3) return NoSwing("there are too few turning points");
@@ -288,7 +304,7 @@ std::optional<std::vector<FreeSwing>> FindHidden(const Recording& recording, con
     length = next;
     const Recording low = LowBand(recording, length);
     swings = FindLarge(low, FindAllTurningPoints(low));
-    // The low band must not weaken the swing much.
+    // The low band keeps at least 41 % of the swing's amplitude.
     if (swings && swings->front().half_period < length) return std::nullopt;
   }
   if (!AreCredible(swings)) return std::nullopt;
@@ -316,8 +332,13 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool i
     if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
   }
   Result<std::vector<FreeSwing>> swings = FindAmong(recording, table, EqualWeights(table));
-  if (swings && !AreSmall(*swings)) return swings;
-  if (std::optional<std::vector<FreeSwing>> hidden = FindHidden(recording, table)) return *std::move(hidden);
+  constexpr double kMuchLonger = 2;
+  const bool is_large = swings && !AreSmall(*swings);
+  if (is_large && !AreShort(*swings, table)) return swings;
+  std::optional<std::vector<FreeSwing>> hidden = FindHidden(recording, table);
+  if (hidden && (!is_large || LongestDuration(*hidden) > kMuchLonger * LongestDuration(*swings))) {
+    return *std::move(hidden);
+  }
   return swings;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "closed_form/low_band.h"
+#include "pendulum/closed_form/low_band.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/QR>
-
 #include "pendulum/base/physics.h"
+#include "pendulum/closed_form/steady.h"
 
 namespace pendulum {
 namespace {
@@ -25,17 +24,10 @@ Index LastWithin(const Recording& recording, Index sample, double level, double 
   return sample;
 }
 
-/// Whether samples [first, last] show one value: drift below three standard deviations of the noise, and scatter below
-/// twice the noise.
-bool IsSteady(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
-  const Index count = last - first + 1;
-  Eigen::MatrixX2d basis(count, 2);
-  basis << Eigen::ArrayXd::Ones(count), Eigen::ArrayXd::LinSpaced(count, 0, 1);
-  const Eigen::VectorXd value = recording.value.segment(first, count);
-  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(value);
-  const double scatter = (value - basis * line).norm() / std::sqrt(static_cast<double>(count));
-  const double noise = std::max({table.noise, recording.resolution, 1e-2 * table.threshold});
-  return std::abs(line[1]) < 3 * noise && scatter < 2 * noise;
+/// Whether samples [first, last] show one value.
+bool IsSteadyBetween(const Recording& recording, const TurningPointTable& table, Index first, Index last) {
+  return IsSteady(recording.value.segment(first, last - first + 1),
+                  std::max({table.noise, recording.resolution, 1e-2 * table.threshold}));
 }
 
 /// The swing begins with the steady part at the end of a hold. If no part is steady, the hand was moving, and the swing
@@ -45,7 +37,7 @@ Beginning SteadyPart(const Recording& recording, const TurningPointTable& table,
   // The last samples within the band may follow the release, so only the first 70 % count as held.
   const Index held = first + 7 * (last - first) / 10;
   for (Index begin = first; held - begin >= kMinSamples; begin += (held - begin + 1) / 2) {
-    if (IsSteady(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
+    if (IsSteadyBetween(recording, table, begin, held)) return {begin, {WindowBegin::Reason::kHeld}, last + 1};
   }
   return {last, {WindowBegin::Reason::kUnsteadyHold}, last, first, held};
 }

@@ -59,7 +59,7 @@ void AddSampling(const FreeSwing& swing, Identification& identification) {
     half_period = identification.closed_forms->table.half_period / clock_scale;
   const bool is_seen = half_period > 0 && !(swing.undersampled && identification.si_rig());
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
-  std::optional<double> expected = ExpectedFrequency(identification.si_rig());
+  std::optional<double> expected = ExpectedFrequency(identification.rig);
   if (expected) *expected *= clock_scale;
   const bool is_fitted = swing.undersampled && !identification.fits.empty() &&
                          ExitCode(identification.fits[identification.MainFit()].termination) == 0;

@@ -110,17 +110,21 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& iden
 }
 
 /// Readings in rad under the name of degrees are 57 times too small. The period of so small a swing says nothing of its
-/// amplitude, so only the size tells.
-void QuestionUnit(const Recording& used, bool is_spring, Identification& identification) {
+/// amplitude, so only the size tells. half_period: of the swing [s].
+void QuestionUnit(const Recording& used, double half_period, bool is_spring, Identification& identification) {
   constexpr double kOddlySmall = 0.6 * kRadFromDeg;
-  if (is_spring || used.unit != "deg" || used.quantity != Quantity::kAngle) return;
-  const double amplitude = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
+  const bool is_rate = used.unit == "deg/s";
+  if (is_spring || (used.unit != "deg" && !is_rate)) return;
+  const double range = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
+  const double amplitude = is_rate ? range * half_period / kPi : range;
   if (amplitude > kOddlySmall) return;
   const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
   identification.warnings.push_back(
-      {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in rad (" +
+      {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in " +
+                              (is_rate ? "rad/s" : "rad") + " (" +
                               NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
-                              " deg), correct the unit (--unit rad, or in the column's name): the period stays, but "
+                              " deg), correct the unit (--unit " + (is_rate ? "rad_s" : "rad") +
+                              ", or in the column's name): the period stays, but "
                               "angles and dry friction are 57.3 times larger"});
 }
 
@@ -147,11 +151,6 @@ void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::
 
 // ---- The rig --------------------------------------------------------------------------------------------------------
 
-/// The rig, if it converts to SI. Fits do without any other rig.
-std::optional<Rig> ConvertingRig(const std::optional<Rig>& rig) {
-  return rig && rig->gives_torque ? rig : std::nullopt;
-}
-
 /// Whether the rig leaves open what pulls the pendulum back.
 bool MayBelongToSpring(const std::optional<Rig>& rig) {
   return !rig || (rig->known_inertia && !rig->gravity && !rig->length);
@@ -167,10 +166,11 @@ Result<IdentifyOptions> OptionsForRig(IdentifyOptions options, const std::option
     if (model->gravity.is_linear()) continue;
     const auto spring = WithGravity(*model, Gravity::kLinear);
     if (!options.rig_chooses_gravity || !spring) {
-      return Error(StatusCode::kInvalidArgument, rig->name + ": the rig gives the stiffness of a spring, but model " +
-                                                     name + " has the restoring torque of gravity; give " +
-                                                     (spring ? "--gravity linear" : "--model coulomb") +
-                                                     ", or a rig with a gravity torque");
+      return WithTry(Error(StatusCode::kInvalidArgument,
+                           rig->name + ": the rig gives the stiffness of a spring, but model " + name +
+                               " has the restoring torque of gravity; give " +
+                               (spring ? "--gravity linear" : "--model coulomb") + ", or a rig with a gravity torque"),
+                     {spring ? "--gravity linear" : "--model coulomb"});
     }
     name = spring->name;
   }
@@ -182,11 +182,10 @@ Result<IdentifyOptions> OptionsForRig(IdentifyOptions options, const std::option
 /// Says that the rig changed the models.
 void WarnOfSpring(const IdentifyOptions& asked, const IdentifyOptions& options, Identification& identification) {
   if (asked.models == options.models) return;
-  identification.warnings.push_back(
-      {"linear_restoring_torque", identification.rig->name +
-                                      ": the rig gives a stiffness, so a restoring torque proportional to the angle is "
-                                      "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
-                                      "masses and lengths, or gravity_torque"});
+  identification.warnings.push_back({"linear_restoring_torque",
+                                     "the rig gives a stiffness, so a restoring torque proportional to the angle is "
+                                     "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
+                                     "masses and lengths, or gravity_torque"});
 }
 
 /// Adds what the rig makes known to the fits, and compares the rig with the first converged fit. kDataLoss: the rig
@@ -211,7 +210,7 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
   if (!for_rig) return tl::unexpected(for_rig.error());
   const IdentifyOptions& options = *for_rig;
   FitOptions fit_options = options.fit;
-  fit_options.rig = ConvertingRig(swing.known.rig);
+  fit_options.rig = swing.known.rig;
   auto run = FitAlone(options, fit_options, swing);
   if (!run) return tl::unexpected(run.error());
   Identification identification = std::move(swing.known);
@@ -227,7 +226,7 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
   if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
     return tl::unexpected(applied.error());
   const bool is_spring = !identification.fits.empty() && identification.fits[main].model.gravity.is_linear();
-  QuestionUnit(run->alone.used, is_spring, identification);
+  QuestionUnit(run->alone.used, run->alone.swing.half_period, is_spring, identification);
   CompleteIdentification(options, *std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !identification.closed_forms) {
@@ -409,7 +408,7 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
   for_rig->fit.may_be_spring = false;  // all recordings have the same models
   const IdentifyOptions& options = *for_rig;
   FitOptions fit_options = options.fit;
-  fit_options.rig = ConvertingRig(*rig);
+  fit_options.rig = *rig;
   auto alone = FitEachAlone(options, fit_options, *swings);
   if (!alone) return tl::unexpected(alone.error());
   JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
@@ -424,6 +423,8 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
     identification.rig = *rig;
     for (std::size_t m = 0; m < joint.models.size(); ++m) identification.fits.push_back(joint.FitOf(k, m));
     AddOwnWarnings(joint.runs[k].alone.fits[main], identification.fits[main], identification);
+    QuestionUnit(joint.runs[k].alone.used, joint.runs[k].alone.swing.half_period,
+                 identification.fits[main].model.gravity.is_linear(), identification);
     CompleteIdentification(options, std::move(joint.runs[k]), main, identification);
     whole.runs.push_back(std::move(identification));
   }

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "model/rig_entry.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
@@ -163,15 +164,20 @@ Result<void> CheckKeys(const Json& rig, const Form& form, const std::string& ide
     if (IsKeyOf(form, item.key())) continue;
     const std::string other = Quoted(item.key());
     const std::string own = Quoted(identifying_key);
-    return Fault(name, (is_after ? own + " and " + other : other + " and " + own) +
+    const std::string& first = is_after ? own : other;
+    return Fault(name, first + " and " + (is_after ? other : own) +
                            " belong to different descriptions of a rig, which cannot be mixed; a rig is " +
                            std::string(kFormsText));
   }
+  std::vector<std::string> missing;
   for (const RigKey& key : kRigKeys) {
-    if (HasKey(form.required, key.name) && !rig.contains(key.name))
-      return Fault(name, Quoted(key.name) + " is missing beside " + Quoted(identifying_key) + "; add it");
+    if (HasKey(form.required, key.name) && !rig.contains(key.name)) missing.push_back(KeyText(key, name));
   }
-  return {};
+  if (missing.empty()) return {};
+  const bool is_one = missing.size() == 1;
+  const RigKey& identifying = *std::ranges::find(kRigKeys, identifying_key, &RigKey::name);
+  return Fault(name, NameList(missing) + (is_one ? " is" : " are") + " missing beside " + KeyText(identifying, name) +
+                         (is_one ? "; add it" : "; add them"));
 }
 
 /// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.

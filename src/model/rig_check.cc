@@ -2,15 +2,15 @@
 #include "pendulum/model/rig_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "model/rig_entry.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/model/rig_units.h"
 
 namespace pendulum {
 namespace {
@@ -23,38 +23,22 @@ constexpr double kUnitWithin = 1.6;   // a unit explains a ratio that it changes
 constexpr double kOtherPlanet = 30;   // a length alone is refused if its g differs from the Earth's by more than this
 constexpr int kDigits = 3;
 
-/// A unit in which people write a quantity, and its size in SI.
-struct OtherUnit {
-  RigQuantity quantity;
-  std::string_view name;
-  double si;
-};
-
-constexpr std::array kOtherUnits = {OtherUnit{RigQuantity::kMass, "g", 1e-3},
-                                    OtherUnit{RigQuantity::kLength, "cm", 1e-2},
-                                    OtherUnit{RigQuantity::kLength, "mm", 1e-3},
-                                    OtherUnit{RigQuantity::kLength, "inches", 0.0254},
-                                    OtherUnit{RigQuantity::kAcceleration, "cm/s^2", 1e-2},
-                                    OtherUnit{RigQuantity::kAcceleration, "mm/s^2", 1e-3},
-                                    OtherUnit{RigQuantity::kTorque, "N cm", 1e-2},
-                                    OtherUnit{RigQuantity::kTorque, "mN m", 1e-3},
-                                    OtherUnit{RigQuantity::kStiffness, "N cm/rad", 1e-2},
-                                    OtherUnit{RigQuantity::kStiffness, "mN m/rad", 1e-3},
-                                    OtherUnit{RigQuantity::kStiffness, "N m/deg", 180 / kPi},
-                                    OtherUnit{RigQuantity::kInertia, "g m^2", 1e-3},
-                                    OtherUnit{RigQuantity::kInertia, "kg cm^2", 1e-4},
-                                    OtherUnit{RigQuantity::kInertia, "kg mm^2", 1e-6},
-                                    OtherUnit{RigQuantity::kInertia, "g cm^2", 1e-7},
-                                    OtherUnit{RigQuantity::kInertia, "g mm^2", 1e-9}};
-
-/// "rod_length is 43 m: in cm? Write 0.43."
-std::string Question(const RigKey& key, double value, const OtherUnit& unit) {
-  return std::string(key.name) + " is " + NumberText(value) + " " + std::string(key.unit) + ": in " +
-         std::string(unit.name) + "? Write " + NumberText(value * unit.si, 4);
+/// A value with its unit as on the command line: 0.43m, 380g.
+std::string FlagValue(double value, std::string_view unit) {
+  std::string text = NumberText(value) + std::string(unit);
+  std::erase(text, ' ');
+  return text;
 }
 
-// ---- Without the swing
-// -----------------------------------------------------------------------------------------------
+/// `"rod_length" is 43 m: in cm? Write 0.43`
+std::string Question(const RigKey& key, double value, const RigUnit& unit, const std::string& rig_name) {
+  return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) + ": in " +
+         std::string(unit.name) + "? " +
+         (IsGivenByFlags(rig_name) ? "Give " + KeyText(key, rig_name) + " " + FlagValue(value, unit.name)
+                                   : "Write " + NumberText(value * unit.si, 4));
+}
+
+// ---- Without the swing ---------------------------------------------------------------------------------------------
 
 /// The range of values that are not odd.
 struct UsualRange {
@@ -84,13 +68,13 @@ double LongestLength(const Json& source) {
   return longest > 0 ? longest : 1;
 }
 
-std::string OddityOf(const RigKey& key, double value, const UsualRange& usual) {
-  for (const OtherUnit& unit : kOtherUnits) {
+std::string OddityOf(const RigKey& key, double value, const UsualRange& usual, const std::string& rig_name) {
+  for (const RigUnit& unit : kRigUnits) {
     const double in_si = value * unit.si;
     if (unit.quantity == key.quantity && unit.si < 1 && in_si >= usual.lower && in_si <= usual.upper)
-      return Question(key, value, unit);
+      return Question(key, value, unit, rig_name);
   }
-  return std::string(key.name) + " is " + NumberText(value) + " " + std::string(key.unit) +
+  return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) +
          (key.quantity == RigQuantity::kAcceleration ? ", which is not the Earth's (9.78 to 9.83 m/s^2): correct it, "
                                                        "unless the pendulum is elsewhere or tilted"
                                                      : ": correct it if it is in another unit");
@@ -102,7 +86,7 @@ void QuestionValues(const Rig& rig, std::vector<Warning>& warnings) {
     const double value = ValueOfEntry(rig.source.at(key.name));
     const UsualRange usual = UsualRangeOf(key.quantity, LongestLength(rig.source));
     if (value == 0 || (value >= usual.lower && value <= usual.upper)) continue;
-    warnings.push_back({"rig_implausible", rig.name + ": " + OddityOf(key, value, usual)});
+    warnings.push_back({"rig_implausible", "the rig: " + OddityOf(key, value, usual, rig.name)});
   }
 }
 
@@ -126,62 +110,80 @@ double UnstatedError(const RigKey& key, double value) {
   return key.quantity == RigQuantity::kAcceleration ? 0 : 0.01 * value;
 }
 
+/// Whether the converting value follows from masses and lengths, not from a torque, a stiffness or an inertia.
+bool ConvertsByMassesAndLengths(const Rig& rig) {
+  return rig.source.contains("rod_length") || rig.source.contains("center_of_mass") ||
+         (rig.length && !rig.known_inertia) || (rig.known_inertia && !rig.source.contains("inertia"));
+}
+
+/// Whether a key enters the converting value if that follows from masses and lengths, or does not.
+bool IsConverting(const RigKey& key, bool by_masses_and_lengths) {
+  if (key.quantity == RigQuantity::kAcceleration) return false;
+  return by_masses_and_lengths == (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength);
+}
+
+/// How to give a standard deviation.
+std::string HowToGiveError(const RigKey& key, const Rig& rig) {
+  if (!IsGivenByFlags(rig.name)) return "Write " + Quoted(key.name) + R"(: {"value": ..., "std_dev": ...})";
+  return "Give it after the value: " + KeyText(key, rig.name) + " " +
+         NumberText(ValueOfEntry(rig.source.at(std::string(key.name)))) + "+-...";
+}
+
 void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
+  const bool is_direct = ConvertsByMassesAndLengths(rig);
   Json with_errors = rig.source;
-  std::string_view example;
-  bool has_mass_or_length = false;
-  std::string others;
+  const RigKey* example = nullptr;
   for (const RigKey& key : RigKeys()) {
     if (!rig.source.contains(key.name)) continue;
     const Json& entry = rig.source.at(key.name);
-    if (StdDevOfEntry(entry) > 0) return;
+    // That of g may be the one that was assumed with g.
+    if (key.quantity != RigQuantity::kAcceleration && StdDevOfEntry(entry) > 0) return;
     const double value = ValueOfEntry(entry);
-    const double error = UnstatedError(key, value);
-    with_errors[key.name] = {{"value", value}, {"std_dev", error}};
-    if (error == 0 || value == 0) continue;
-    if (example.empty()) example = key.name;
-    const bool is_direct = key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength;
-    has_mass_or_length = has_mass_or_length || is_direct;
-    if (!is_direct) others += (others.empty() ? "" : ", ") + std::string(key.name);
+    const bool has_error = IsConverting(key, is_direct) && value > 0;
+    with_errors[key.name] = {{"value", value}, {"std_dev", has_error ? UnstatedError(key, value) : 0}};
+    if (has_error && example == nullptr) example = &key;
   }
   const Result<Rig> assumed = ParseRig(with_errors.dump(), rig.name);
-  if (!assumed || example.empty()) return;
+  if (!assumed || example == nullptr) return;
   const RigValue converting = Converting(*assumed);
   if (!(converting.std_dev > 0)) return;
-  const double share = converting.std_dev / converting.value;
-  const bool is_direct = has_mass_or_length && (rig.gives_torque || rig.length);
-  const std::string errors = is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + others;
-  warnings.push_back({"rig_taken_as_exact",
-                      rig.name + ": no value has a standard deviation, so the rig counts as exact; " + errors +
-                          " would add a systematic error of " + NumberText(100 * share, 2) + " % to " + Converted(rig) +
-                          ". Write \"" + std::string(example) + "\": {\"value\": ..., \"std_dev\": ...}"});
+  const std::string errors =
+      is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + std::string(example->name);
+  warnings.push_back({"rig_taken_as_exact", "the rig's values have no standard deviation, so they count as exact; " +
+                                                errors + " would add a systematic error of " +
+                                                NumberText(100 * converting.std_dev / converting.value, 2) + " % to " +
+                                                Converted(rig) + ". " + HowToGiveError(*example, rig)});
 }
 
-// ---- With the swing
-// --------------------------------------------------------------------------------------------------
+// ---- With the swing ------------------------------------------------------------------------------------------------
 
 /// How many times the larger one is the smaller one.
 double Factor(double a, double b) { return std::max(a / b, b / a); }
 
-/// The value in another unit, and the key it belongs to, that make the rig agree with the swing; "" if there is none.
-std::string LikelyUnit(const Rig& rig, double gravity_over_inertia, const auto& predicted) {
+/// A unit that makes the rig agree with the swing.
+struct LikelyUnit {
+  std::string question;  ///< "": there is none.
+  std::string flag;      ///< The flag that gives the value in this unit.
+};
+
+LikelyUnit FindLikelyUnit(const Rig& rig, double gravity_over_inertia, const auto& predicted) {
   double best = kUnitWithin;
-  std::string question;
+  LikelyUnit likely;
   for (const RigKey& key : RigKeys()) {
     if (!rig.source.contains(key.name)) continue;
     const double value = ValueOfEntry(rig.source.at(key.name));
-    for (const OtherUnit& unit : kOtherUnits) {
-      if (unit.quantity != key.quantity || value == 0) continue;
+    for (const RigUnit& unit : kRigUnits) {
+      if (unit.quantity != key.quantity || unit.si == 1 || value == 0) continue;
       Json changed = rig.source;
       changed[key.name] = value * unit.si;
       const Result<Rig> other = ParseRig(changed.dump(), rig.name);
       const std::optional<double> ratio = other ? predicted(*other) : std::nullopt;
       if (!ratio || !(Factor(*ratio, gravity_over_inertia) < best)) continue;
       best = Factor(*ratio, gravity_over_inertia);
-      question = Question(key, value, unit);
+      likely = {Question(key, value, unit, rig.name), "--" + std::string(key.flag) + " " + FlagValue(value, unit.name)};
     }
   }
-  return question;
+  return likely;
 }
 
 /// The period of small swings [s].
@@ -189,15 +191,19 @@ std::string PeriodText(double gravity_over_inertia) {
   return NumberText(2 * kPi / std::sqrt(gravity_over_inertia), kDigits) + " s";
 }
 
-tl::unexpected<Status> Contradiction(const Rig& rig, double predicted, double seen, const std::string& question) {
+/// The error if the rig contradicts the swing. gives: what the rig says of G/I, with `predicted`.
+tl::unexpected<Status> Contradiction(const Rig& rig, double predicted, double seen, const LikelyUnit& likely,
+                                     const std::string& gives = "gives") {
   const std::string ratio = rig.is_spring ? "k/I" : "G/I";
-  return Error(StatusCode::kDataLoss,
-               rig.name + ": the rig gives " + ratio + " = " + NumberText(predicted, kDigits) + " 1/s^2, a period of " +
-                   PeriodText(predicted) + ", but the recording shows " + NumberText(seen, kDigits) +
-                   " 1/s^2, a period of " + PeriodText(seen) + "; " +
-                   (question.empty() ? "correct the rig (SI units: kg, m, m/s^2, N m, kg m^2)" : question) +
-                   ". If the rig is right, correct the unit of the times with --time_column NAME:ms or "
-                   "--sample_rate_hz");
+  auto error =
+      Error(StatusCode::kDataLoss,
+            rig.name + ": the rig " + gives + " " + ratio + " = " + NumberText(predicted, kDigits) +
+                " 1/s^2, a period of " + PeriodText(predicted) + ", but the recording shows " +
+                NumberText(seen, kDigits) + " 1/s^2, a period of " + PeriodText(seen) + "; " +
+                (likely.question.empty() ? "correct the rig (SI units: kg, m, m/s^2, N m, kg m^2)" : likely.question) +
+                ". If the rig is right, correct the unit of the times with --time_column NAME:ms or "
+                "--sample_rate_hz");
+  return likely.flag.empty() ? error : WithTry(std::move(error), {likely.flag});
 }
 
 /// The largest G/I [1/s^2] that a body with its centre of mass at this distance can have: g/d, because I >= m d².
@@ -222,15 +228,23 @@ Result<std::vector<Warning>> CompareLength(const Rig& rig, double gravity_over_i
   const double gravity = gravity_over_inertia * rig.length->value;
   const double on_earth = *RatioOnEarth(rig);
   if (Factor(gravity_over_inertia, on_earth) > kOtherPlanet)
-    return Contradiction(rig, on_earth, gravity_over_inertia, LikelyUnit(rig, gravity_over_inertia, RatioOnEarth));
+    return Contradiction(rig, on_earth, gravity_over_inertia, FindLikelyUnit(rig, gravity_over_inertia, RatioOnEarth));
   constexpr double kEarthWithin = 1.1;
   if (Factor(gravity, kStandardGravity) < kEarthWithin) return {};
   return std::vector<Warning>{
       {"rig_implausible",
-       rig.name + ": length " + NumberText(rig.length->value) + " m gives g = " + NumberText(gravity, kDigits) +
+       "the rig: length " + NumberText(rig.length->value) + " m gives g = " + NumberText(gravity, kDigits) +
            " m/s^2, which is not the Earth's; the swing's effective length there is " +
            NumberText(kStandardGravity / gravity_over_inertia, kDigits) +
            " m. Correct length, unless the pendulum is elsewhere, tilted, or not a small bob on a string"}};
+}
+
+/// Length and g predict another period than the swing shows.
+std::vector<Warning> QuestionPeriod(const Rig& rig, double predicted, double seen) {
+  return {{"rig_implausible", "the rig: length " + NumberText(rig.length->value) + " m and g predict a period of " +
+                                  PeriodText(predicted) + ", but the swing has one of " + PeriodText(seen) +
+                                  ", an effective length of " + NumberText(rig.gravity->value / seen, kDigits) +
+                                  " m; correct length, unless the pendulum is not a small bob on a string"}};
 }
 
 }  // namespace
@@ -256,19 +270,21 @@ Result<std::vector<Warning>> CompareRigWithSwing(const Rig& rig, double gravity_
     const double factor = Factor(*predicted, gravity_over_inertia);
     if (factor > kContradiction) {
       return Contradiction(rig, *predicted, gravity_over_inertia,
-                           LikelyUnit(rig, gravity_over_inertia, PredictedRatio));
+                           FindLikelyUnit(rig, gravity_over_inertia, PredictedRatio));
     }
     if (factor < kSameWithin) return {};
+    if (rig.length && rig.gravity && !rig.mass) return QuestionPeriod(rig, *predicted, gravity_over_inertia);
     const double times = *predicted / gravity_over_inertia;
     return std::vector<Warning>{
         {"inertia_differs_from_rig",
-         rig.name + ": the fitted inertia is " + NumberText(times, kDigits) + " times the one that " +
-             KeysOfInertia(rig) + (rig.source.contains("inertia") ? " gives" : " give") + "; check these values" +
+         "the fitted inertia is " + NumberText(times, kDigits) + " times the one that the rig's " + KeysOfInertia(rig) +
+             (rig.source.contains("inertia") ? " gives" : " give") + "; check these values" +
              (rig.source.contains("inertia") ? "" : ", and whether the bob is a point mass at that distance")}};
   }
   const std::optional<double> largest = LargestRatio(rig);
   if (largest && gravity_over_inertia > kSameWithin * *largest)
-    return Contradiction(rig, *largest, gravity_over_inertia, LikelyUnit(rig, gravity_over_inertia, LargestRatio));
+    return Contradiction(rig, *largest, gravity_over_inertia, FindLikelyUnit(rig, gravity_over_inertia, LargestRatio),
+                         "allows at most");
   return rig.length ? CompareLength(rig, gravity_over_inertia) : Result<std::vector<Warning>>{};
 }
 

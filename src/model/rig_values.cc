@@ -16,10 +16,10 @@ using Json = nlohmann::ordered_json;
 /// g at sea level is 9.780 to 9.832 m/s² from the equator to the poles.
 constexpr double kMeanGravity = 9.806, kGravityStdDev = 0.015;
 
-/// Whether the values are part of a description that has g, without it.
+/// Whether the values are part of a description that needs g, without it. A length or an inertia beside a mass needs
+/// none; g may be what the user measures.
 bool LacksGravity(const Json& values) {
-  constexpr std::array<std::string_view, 5> kBesideGravity = {"bob_mass", "rod_mass", "rod_length", "mass",
-                                                              "center_of_mass"};
+  constexpr std::array<std::string_view, 4> kBesideGravity = {"bob_mass", "rod_mass", "rod_length", "center_of_mass"};
   return !values.contains("gravity") && !values.contains("gravity_torque") &&
          std::ranges::any_of(kBesideGravity, [&](std::string_view key) { return values.contains(key); });
 }

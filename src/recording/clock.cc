@@ -101,6 +101,8 @@ class ClockRepair {
   double RateHz(double interval) const;
   std::string ReplacementText(double interval, double tolerance) const;
   void UseClock(double start, double interval, double std_dev);
+  std::string UnevenText(const PacketClockSearch& found) const;
+  void WarnOfPackets(const Packets& packets, const PacketClockSearch& found);
   tl::unexpected<Status> SharedStampsFault(const PacketClockSearch& found) const;
   void RemoveRepeatedEnds();
   bool SharedRowsAreEqual() const;
@@ -265,18 +267,20 @@ bool ClockRepair::MakeUniformFromDigits() {
   const std::optional<double> grid = Grid();
   if (grid && *grid > 0.99 * unit) return false;  // no stamp has smaller steps than the largest
   if (unit < kCoarse * (time()[size() - 1] - time()[0]) / static_cast<double>(size() - 1)) return false;
-  for (const DigitsRule rule : {DigitsRule::kRounded, DigitsRule::kTruncated}) {
-    const std::optional<UniformClock> clock = FindUniformClock(IntervalsOfDigits(time(), *digits, rule));
-    if (!clock) continue;
-    Warn("time_rounded", 0,
-         "the times are " + std::string(rule == DigitsRule::kRounded ? "rounded" : "truncated") + " to " +
-             std::to_string(*digits) + " significant digits, so their steps grow to " + TimeText(unit) +
-             ", which is coarse compared with the sampling interval. " +
-             ReplacementText(clock->slope, clock->slope_tolerance / clock->slope));
-    UseClock(clock->start, clock->slope, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
-    return true;
+  const auto clock_of = [&](DigitsRule rule) { return FindUniformClock(IntervalsOfDigits(time(), *digits, rule)); };
+  std::string rounded = "rounded";
+  std::optional<UniformClock> clock = clock_of(DigitsRule::kRounded);
+  if (!clock) {
+    rounded = "truncated";
+    clock = clock_of(DigitsRule::kTruncated);
   }
-  return false;
+  if (!clock) return false;
+  Warn("time_rounded", 0,
+       "the times are " + rounded + " to " + std::to_string(*digits) + " significant digits, so their steps grow to " +
+           TimeText(unit) + ", which is coarse compared with the sampling interval. " +
+           ReplacementText(clock->slope, clock->slope_tolerance / clock->slope));
+  UseClock(clock->start, clock->slope, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
+  return true;
 }
 
 double ClockRepair::RateHz(double interval) const { return PerSecond(samples_.time_unit) / interval; }
@@ -316,7 +320,9 @@ Result<bool> ClockRepair::MakeUniformFromPackets() {
   const PacketClockSearch found = FindPacketClock({time(), samples_.value, Grid().value_or(0)});
   const PacketClock& clock = found.clock;
   if (found.verdict != PacketClockVerdict::kFound) {
-    return is_shared ? Result<bool>(SharedStampsFault(found)) : false;
+    if (is_shared) return SharedStampsFault(found);
+    if (found.verdict == PacketClockVerdict::kUneven && packets.has_inner_steps) WarnOfPackets(packets, found);
+    return false;
   }
   Warn("time_bursts", 0,
        "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
@@ -328,6 +334,23 @@ Result<bool> ClockRepair::MakeUniformFromPackets() {
            "--sample_rate_hz with --time_column none");
   UseClock(clock.start, clock.interval, clock.std_dev);
   return true;
+}
+
+/// The lines between which rows are missing or the rate changes most; empty if not known.
+std::string ClockRepair::UnevenText(const PacketClockSearch& found) const {
+  if (found.uneven_to <= found.uneven_from) return "";
+  return ", most clearly between lines " + std::to_string(samples_.lines.LineOf(found.uneven_from)) + " and " +
+         std::to_string(samples_.lines.LineOf(found.uneven_to));
+}
+
+/// Warns of stamps of packets that are wrong, because the values show that the rows are sampled uniformly, and that no
+/// uniform clock can replace.
+void ClockRepair::WarnOfPackets(const Packets& packets, const PacketClockSearch& found) {
+  Warn("time_bursts", 0,
+       "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
+           " rows, and the times are those at which the packets were received. No uniform clock agrees with them, so "
+           "rows are missing or the rate changes" +
+           UnevenText(found) + ", and the times were not changed. Give a part without gaps with --from and --to");
 }
 
 /// The error for rows of which too many share a stamp.
@@ -346,14 +369,9 @@ tl::unexpected<Status> ClockRepair::SharedStampsFault(const PacketClockSearch& f
                                         rate + " with --time_column none"),
                    {"--sample_rate_hz " + rate, "--time_column none"});
   }
-  std::string reason = "no uniform clock agrees with all times";
-  if (found.uneven_to > found.uneven_from) {
-    reason += ", most clearly not between lines " + std::to_string(samples_.lines.LineOf(found.uneven_from)) + " and " +
-              std::to_string(samples_.lines.LineOf(found.uneven_to));
-  }
-  return Fault(first + 1, sentence + reason +
-                              ", so rows are missing or the rate changes. Give a part without this with --from and "
-                              "--to, or record the times with a finer step");
+  return Fault(first + 1, sentence + "no uniform clock agrees with all times, so rows are missing or the rate changes" +
+                              UnevenText(found) +
+                              ". Give a part without this with --from and --to, or record the times with a finer step");
 }
 
 /// Warns of coarse stamps that increase but fit no uniform clock. There is no warning if nearly all steps are equal,
@@ -520,7 +538,8 @@ Result<RawSamples> ClockRepair::Repair() {
   // A uniform clock fits stamps with lost rows only if the losses are spread evenly. The probability that 8 losses fall
   // into 8 different eighths of the recording is 8!/8^8 = 0.2 %.
   constexpr Index kMinUnusualSteps = 8;
-  if (IsNotDecreasing()) {
+  const bool has_true_gaps = samples_.left_out > 0 && Increases();
+  if (IsNotDecreasing() && !has_true_gaps) {
     const std::optional<double> grid = Grid();
     std::vector<bool> keep;
     const bool suggests_uniform_clock =
@@ -532,7 +551,7 @@ Result<RawSamples> ClockRepair::Repair() {
     if (*made) return std::move(samples_);
   }
   if (Increases()) {
-    WarnOfScatter();
+    if (!has_true_gaps) WarnOfScatter();
     return std::move(samples_);
   }
   if (Check done = RemoveRowsWithSharedStamps(); !done) return tl::unexpected(done.error());

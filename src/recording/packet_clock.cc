@@ -315,7 +315,6 @@ PacketClockSearch SearchBaseLine(const std::vector<Packet>& packets, double grid
     if (!(base_line.line.slope > 0) || error > kMuchLess * least_error) continue;
     least_error = error;
     search.clock = {base_line.line.start, base_line.line.slope, error};
-    search.deviation = base_line.largest;
     const bool is_found = error < kLargestError && IsStraight(base_line, packets, key, grid);
     search.verdict = is_found ? PacketClockVerdict::kFound : PacketClockVerdict::kUneven;
     LocateUnevenness(base_line, CentralInterval(packets, key).value, search);
@@ -333,7 +332,7 @@ PacketClockSearch SearchFewPackets(const std::vector<Packet>& packets) {
   search.clock.start = first.stamp;
   search.clock.interval = (last.stamp - first.stamp) / static_cast<double>(last.first - first.first);
   for (std::size_t i = 1; i < packets.size(); ++i) {
-    const double rows = static_cast<double>(packets[i].first - packets[i - 1].first);
+    const auto rows = static_cast<double>(packets[i].first - packets[i - 1].first);
     const double step = packets[i].stamp - packets[i - 1].stamp;
     if (std::abs(step - rows * search.clock.interval) > kTolerance * step) return search;
   }

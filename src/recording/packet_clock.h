@@ -37,7 +37,6 @@ enum class PacketClockVerdict {
 struct PacketClockSearch {
   PacketClockVerdict verdict = PacketClockVerdict::kUneven;
   PacketClock clock = {};
-  double deviation = 0;  ///< Largest deviation of the stamps' base line from the clock, in the unit of time.
   Eigen::Index uneven_from = 0, uneven_to = 0;  ///< For kUneven: rows between which the rate differs most.
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <numeric>
 
 #include "pendulum/base/median.h"
 
@@ -33,15 +33,33 @@ struct Crossing {
   double low, high;
 };
 
+/// The finite ones of a series of values, and their rows.
+struct FiniteValues {
+  std::vector<double> values, rows;
+};
+
+FiniteValues FindFinite(const Eigen::VectorXd& values) {
+  FiniteValues found;
+  found.values.reserve(values.size());
+  found.rows.reserve(values.size());
+  for (Index i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    found.values.push_back(values[i]);
+    found.rows.push_back(static_cast<double>(i));
+  }
+  return found;
+}
+
 /// The rising crossings after the values were below the middle by more than the hysteresis, and the extremes between.
-std::vector<Crossing> FindCrossings(const std::vector<double>& values, double middle, double hysteresis) {
+std::vector<Crossing> FindCrossings(const FiniteValues& finite, double middle, double hysteresis) {
+  const std::vector<double>&values = finite.values, &rows = finite.rows;
   std::vector<Crossing> crossings;
   bool was_low = false;
   double at = 0;  // Row of the last rising step through the middle.
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double before = values[i - 1] - middle, now = values[i] - middle;
     if (now < -hysteresis) was_low = true;
-    if (before < 0 && now >= 0) at = static_cast<double>(i - 1) + before / (before - now);
+    if (before < 0 && now >= 0) at = rows[i - 1] + (rows[i] - rows[i - 1]) * before / (before - now);
     if (was_low && now > hysteresis) {
       crossings.push_back({at, now, now});
       was_low = false;
@@ -80,11 +98,9 @@ std::optional<SwingSignature> FindSwingSignature(const Eigen::VectorXd& values) 
   constexpr double kAlike = 0.3;        // Intervals differ by less than this share of their median.
   constexpr double kMostRegular = 0.7;  // Share of such intervals.
   constexpr std::size_t kFewest = 3;
-  std::vector<double> finite;
-  finite.reserve(values.size());
-  std::ranges::copy_if(values, std::back_inserter(finite), [](double value) { return std::isfinite(value); });
-  if (finite.size() < 2 * kFewest) return std::nullopt;
-  const auto [low, high] = RobustRange(finite);
+  const FiniteValues finite = FindFinite(values);
+  if (finite.values.size() < 2 * kFewest) return std::nullopt;
+  const auto [low, high] = RobustRange(finite.values);
   if (!(high > low)) return std::nullopt;
   const double amplitude = (high - low) / 2;
   std::vector<Crossing> crossings = FindCrossings(finite, low + amplitude, kHysteresis * amplitude);
@@ -99,7 +115,6 @@ std::optional<SwingSignature> FindSwingSignature(const Eigen::VectorXd& values) 
   SwingSignature found;
   found.rows_per_period = period;
   found.amplitude = amplitude;
-  found.cycles = (crossings.back().row - crossings.front().row) / period;
   crossings.pop_back();  // its extremes may be cut off
   found.last_amplitude = swing_of(crossings.back());
   constexpr double kDecay = 0.98;
@@ -107,10 +122,8 @@ std::optional<SwingSignature> FindSwingSignature(const Eigen::VectorXd& values) 
   found.decays = found.last_amplitude < kDecay * swing_of(*largest);
   const auto first = static_cast<std::size_t>(largest - crossings.begin());
   const std::size_t ends = std::min<std::size_t>(2, intervals.size() - first);
-  const double early = intervals.size() > first ? intervals[first] : period;
-  double late = 0;
-  for (std::size_t i = intervals.size() - ends; i < intervals.size(); ++i) late += intervals[i];
-  if (ends > 0) found.period_ratio = early / (late / static_cast<double>(ends));
+  const double late = std::accumulate(intervals.end() - static_cast<std::ptrdiff_t>(ends), intervals.end(), 0.0);
+  found.period_ratio = intervals[first] / (late / static_cast<double>(ends));
   return found;
 }
 
@@ -127,8 +140,8 @@ Eigen::MatrixXd SwingCovariance(const std::vector<Eigen::VectorXd>& columns, dou
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
   for (Index i = 0; i < count; ++i) {
-    for (Index j = 0; j < count; ++j) {
-      if (swings[i].size() > 0) covariance(i, j) = swings[i].dot(swings[j]) / static_cast<double>(swings[i].size());
+    for (Index j = 0; j <= i && swings[i].size() > 0; ++j) {
+      covariance(i, j) = covariance(j, i) = swings[i].dot(swings[j]) / static_cast<double>(swings[i].size());
     }
   }
   return covariance;

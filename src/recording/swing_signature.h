@@ -14,15 +14,15 @@ namespace pendulum {
 struct SwingSignature {
   double rows_per_period = 0;  ///< Median distance of rising crossings of the middle, in rows.
   double amplitude = 0;        ///< Half of the largest peak-to-peak value, in the unit of the readings.
-  double cycles = 0;           ///< Periods between the first and the last counted crossing.
-  bool decays = false;         ///< The last counted period is smaller than the first.
+  bool decays = false;         ///< The last counted amplitude is below 98 % of the largest.
   /// Period at the largest amplitude divided by the period at the smallest counted one; 1 for a linear oscillator.
   double period_ratio = 1;
   double last_amplitude = 0;  ///< Amplitude at the end of the counted periods.
 };
 
-/// Finds a swing: rising crossings of the middle at regular intervals. `values` may contain NaN, which are ignored;
-/// std::nullopt if the values do not swing. Crossings are counted while the amplitude exceeds a quarter of the largest.
+/// Finds a swing: rising crossings of the middle at regular intervals. `values` may contain NaN: rows without a reading
+/// count as rows. std::nullopt if the values do not swing. Crossings are counted while the amplitude exceeds a quarter
+/// of the largest.
 std::optional<SwingSignature> FindSwingSignature(const Eigen::VectorXd& values);
 
 /// Covariance of the columns of a table in the band of a swing, K x K in the squared unit of the readings. Constants,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/request/rig_flags.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +8,7 @@
 #include <string_view>
 
 #include "pendulum/base/format.h"
+#include "pendulum/model/rig_units.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -16,38 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct RigUnit {
-  RigQuantity quantity;
-  std::string_view name;  ///< As in messages. Blanks, *, · and ^ are ignored, and ² is 2.
-  double si;
-};
-
-constexpr std::array kRigUnits = {
-    RigUnit{RigQuantity::kMass, "kg", 1},
-    RigUnit{RigQuantity::kMass, "g", 1e-3},
-    RigUnit{RigQuantity::kMass, "mg", 1e-6},
-    RigUnit{RigQuantity::kMass, "lb", 0.45359237},
-    RigUnit{RigQuantity::kMass, "oz", 0.028349523125},
-    RigUnit{RigQuantity::kLength, "m", 1},
-    RigUnit{RigQuantity::kLength, "cm", 1e-2},
-    RigUnit{RigQuantity::kLength, "mm", 1e-3},
-    RigUnit{RigQuantity::kLength, "in", 0.0254},
-    RigUnit{RigQuantity::kLength, "ft", 0.3048},
-    RigUnit{RigQuantity::kAcceleration, "m/s^2", 1},
-    RigUnit{RigQuantity::kTorque, "N m", 1},
-    RigUnit{RigQuantity::kTorque, "mN m", 1e-3},
-    RigUnit{RigQuantity::kTorque, "N cm", 1e-2},
-    RigUnit{RigQuantity::kStiffness, "N m/rad", 1},
-    RigUnit{RigQuantity::kStiffness, "mN m/rad", 1e-3},
-    RigUnit{RigQuantity::kStiffness, "N/m", 1},
-    RigUnit{RigQuantity::kInertia, "kg m^2", 1},
-    RigUnit{RigQuantity::kInertia, "kg cm^2", 1e-4},
-    RigUnit{RigQuantity::kInertia, "g cm^2", 1e-7},
-    RigUnit{RigQuantity::kInertia, "g m^2", 1e-3},
-    RigUnit{RigQuantity::kInertia, "kg", 1},
-};
-
-/// A unit without the characters in which its spellings differ.
+/// A unit without the characters in which its spellings differ: blanks, *, · and ^; ² is 2.
 std::string Plain(std::string_view unit) {
   std::string text(unit);
   const auto replace = [&](std::string_view from, std::string_view to) {
@@ -138,7 +107,8 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     const Result<RigValue> value = ParseRigValue(flag, texts[i], key);
     if (!value) return tl::unexpected(value.error());
     values[std::string(key.name)] = JsonOf(*value);
-    if (key.quantity == RigQuantity::kAcceleration || HasUnit(texts[i])) continue;
+    const bool is_zero = value->value == 0 && value->std_dev == 0;
+    if (key.quantity == RigQuantity::kAcceleration || is_zero || HasUnit(texts[i])) continue;
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
   }
   if (!without_unit.empty()) {

@@ -318,7 +318,8 @@ std::vector<RunFlag> MakeTable() {
        .value = &RunFlags::gravity,
        .help = "Restoring torque: sin (gravity: a pendulum), linear (a spring: Pohl wheel, torsion wire, mass on a "
                "spring; G is then the stiffness k) or auto (sin; linear if the rig gives a stiffness or, with the "
-               "default model, if the recording clearly shows a spring, which is said); default auto.",
+               "default model, if the recording clearly shows a spring, which is said; in a batch always sin); default "
+               "auto.",
        .label = "What pulls it back",
        .words = WordsOf(kGravities)},
       {.name = "start",
@@ -386,14 +387,15 @@ std::vector<RunFlag> MakeTable() {
        .example = "1:ms"},
       {.name = "value_column",
        .value = &RunFlags::value_column,
-       .help = "Column of the angle or rate: its name, or its number from 1; default found by the unit in its name.",
+       .help = "Column of the angle or rate: its name, or its number from 1; combined: the rate about the fixed axis "
+               "that the axes of a gyro share; default found by its name, its unit and its swing.",
        .label = "Column of the angle",
        .schema = TextSchema(),
        .example = "angle_deg"},
       {.name = "unit",
        .value = &RunFlags::unit,
-       .help = "Unit of the values: rad, deg, rad_s, deg_s, counts, volts, m_s2, px, m, cm or mm; default the unit in "
-               "the column's name.",
+       .help = "Unit of the values: rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, g, px, m, cm or "
+               "mm; default the unit in the column's name, or the one that the numbers show.",
        .label = "Unit of the values",
        .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",

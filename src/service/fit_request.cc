@@ -25,7 +25,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 200, kMaxOptionBytes = 8192;
-constexpr std::size_t kMaxUnpackedBytes = std::size_t{1} << 27;  // Limit for a body that is a zip, a workbook or a MAT-file.
+constexpr std::size_t kMaxUnpackedBytes = std::size_t{1}
+                                          << 27;  // Limit for a body that is a zip, a workbook or a MAT-file.
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
 
 /// The client's name of a file, without folders (old browsers send them) and without control characters.

@@ -103,10 +103,12 @@ std::string FishScript(const std::string& tool, const std::vector<FlagInfo>& fla
   std::string script = "# fish completion of " + tool + ", made by " + tool + " --completion fish\n";
   for (const FlagInfo& flag : flags) {
     std::string value;
-    if (flag.type != "bool") {
-      value = flag.is_path ? " -r -F" : flag.words.empty() ? " -x" : " -x -a '" + JoinWords(flag.words, " ") + "'";
+    if (flag.type != "bool") value = flag.is_path ? " -r -F" : " -x";
+    if (flag.type != "bool" && !flag.is_path && !flag.words.empty()) {
+      value.append(" -a '").append(JoinWords(flag.words, " ")).append("'");
     }
-    script += "complete -c " + tool + " -l " + flag.name + value + " -d '" + ShortHelp(flag) + "'\n";
+    script.append("complete -c ").append(tool).append(" -l ").append(flag.name).append(value);
+    script.append(" -d '").append(ShortHelp(flag)).append("'\n");
   }
   return script;
 }

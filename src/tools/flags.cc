@@ -72,7 +72,7 @@ std::vector<FlagInfo> RegisteredFlags(std::string_view main_file) {
       std::ranges::find(registered, "closed_form_only", &gflags::CommandLineFlagInfo::name) != registered.end();
   for (const gflags::CommandLineFlagInfo& flag : registered) {
     if (flag.name == "help" || flag.name == "version") continue;
-    const bool own = flag.name != "completion" && IsOwnFlag(flag.filename, main_file);
+    const bool own = flag.name == "completion" || IsOwnFlag(flag.filename, main_file);
     flags.push_back({flag.name, flag.description, flag.type, own, WordsOf(flag.name, own && has_run_flags),
                      IsPathFlag(flag.name, flag.type)});
   }

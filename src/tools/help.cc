@@ -46,7 +46,7 @@ const std::vector<HelpHeading>& Headings() {
           "request_seconds", "stop_seconds"}},
         {"Output",
          {"json", "report", "residuals", "series", "markdown", "terminal_plot", "plot", "out", "truth", "threads"}},
-        {"About", {"help", "version"}}};
+        {"About", {"help", "version", "completion"}}};
     for (HelpHeading& heading : all) {
       if (heading.title != "Rig") continue;
       for (const RigKey& key : RigKeys()) heading.flags.push_back(key.flag);

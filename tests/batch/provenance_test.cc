@@ -65,6 +65,7 @@ std::vector<Change> ChangesOfTheRun() {
       {"checks none", [](IdentifyOptions& o) { o.checks = Checks::kNone; }},
       {"checks full", [](IdentifyOptions& o) { o.checks = Checks::kFull; }},
       {"closed_form_only", [](IdentifyOptions& o) { o.closed_form_only = true; }},
+      {"rig value", [](IdentifyOptions& o) { o.rig_values["bob_mass"] = 0.38; }},
   };
 }
 
@@ -120,17 +121,20 @@ TEST(OptionsJson, DependsOnEveryOption) {
 
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. Some
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
-// the reader is that of the swing; a rig chooses the gravity only where `gravity` is not given; users cannot set
-// `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
+// the reader is that of the swing; `notes` are warnings; a rig chooses the gravity, and `is_spring` is set, only by
+// what `gravity` and the models say;
+// users cannot set `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
-  [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, shared] = options;
+  [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, rig_values, notes,
+                          shared] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, window,
                           most_unpacked_bytes] = read;
-  [[maybe_unused]] auto& [from, to, release] = swing;
+  [[maybe_unused]] auto& [from, to, release, is_spring] = swing;
   [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
                           seed, threads, progress, search, stop] = fit;
-  [[maybe_unused]] auto& [start_values, sensor_start, max_trace_error, max_iterations, max_traces] = search;
+  [[maybe_unused]] auto& [start_values, sensor_start, vibration_period, max_trace_error, max_iterations, max_traces] =
+      search;
 }
 
 TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {

@@ -53,8 +53,23 @@ TEST(RigOfValues, NamesAMissingValue) {
   const auto rig = RigOfValues({{"bob_mass", 0.4}, {"rod_length", 0.5}}, warnings);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(rig.error().message, "the rig of the flags: \"rod_mass\" is missing beside \"bob_mass\"; add it");
+  EXPECT_EQ(rig.error().message, "the rig given by flags: --rod_mass is missing beside --bob_mass; add it");
   EXPECT_THAT(warnings, IsEmpty());
+}
+
+TEST(RigOfValues, NamesAllMissingValuesAtOnce) {
+  std::vector<Warning> warnings;
+  EXPECT_EQ(RigOfValues({{"bob_mass", 0.4}}, warnings).error().message,
+            "the rig given by flags: --rod_mass, --rod_length are missing beside --bob_mass; add them");
+}
+
+/// Whoever gives a length may want to measure g.
+TEST(RigOfValues, AssumesNoGravityBesideALengthOrAnInertia) {
+  for (const Json& values : {Json{{"length", 0.42}, {"mass", 0.1}}, Json{{"inertia", 0.079}, {"mass", 0.475}}}) {
+    std::vector<Warning> warnings;
+    EXPECT_FALSE(RigOfValues(values, warnings)->gravity);
+    EXPECT_THAT(warnings, IsEmpty());
+  }
 }
 
 TEST(OverrideWarning, NamesTheFlags) {

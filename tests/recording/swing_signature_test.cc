@@ -40,6 +40,19 @@ TEST(FindSwingSignature, IgnoresMissingNumbersAndAHold) {
   EXPECT_NEAR(found->rows_per_period, 50, 1);
 }
 
+/// A logger writes rows of several sensors: each fills only some of them.
+TEST(FindSwingSignature, CountsRowsWithoutNumbers) {
+  const Eigen::VectorXd full = Oscillation(6000, 400, 0.0002);
+  Eigen::VectorXd sparse = Eigen::VectorXd::Constant(6000, std::numeric_limits<double>::quiet_NaN());
+  for (int i = 0; i < 6000; i += 10) sparse[i] = full[i];
+  const auto found = FindSwingSignature(sparse);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->rows_per_period, 400, 1);
+  const Eigen::MatrixXd covariance = SwingCovariance({full, sparse}, found->rows_per_period);
+  EXPECT_NEAR(covariance(1, 1), covariance(0, 0), 0.02 * covariance(0, 0));
+  EXPECT_EQ(covariance(0, 1), covariance(1, 0));
+}
+
 TEST(FindSwingSignature, ADrivenOscillationDoesNotDecay) {
   const auto found = FindSwingSignature(Oscillation(1000, 40, 0));
   ASSERT_TRUE(found);

@@ -117,7 +117,8 @@ void PrependRest(const Case& c, const SyntheticOptions& run, Recording& recordin
   SyntheticOptions rest = run;
   rest.model = Must(FindMotionModel("coulomb"));
   rest.parameters = {run.parameters[0], 0, 0.5};  // friction holds it
-  rest.initial_angle = rest.initial_rate = 0;
+  rest.initial_angle = 0;
+  rest.initial_rate = 1e-6;  // it stops at once
   rest.duration = 2 * c.per_period / run.sample_rate + 9 / run.sample_rate;
   rest.seed = c.seed + 1000;
   const Recording still = Must(SimulateRecording(rest));

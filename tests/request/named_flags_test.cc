@@ -32,7 +32,9 @@ TEST(FlagNames, MatchTheFlagsOfTheTools) {
   EXPECT_THAT(RunFlagNames(),
               UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
                                    "prior", "time_column", "value_column", "unit", "sample_rate_hz", "resolution",
-                                   "range", "noise", "loss", "interval", "checks", "seed", "closed_form_only"));
+                                   "range", "noise", "loss", "interval", "checks", "seed", "closed_form_only",
+                                   "gravity", "bob_mass", "rod_mass", "rod_length", "g", "gravity_torque", "mass",
+                                   "center_of_mass", "stiffness", "length", "inertia"));
   EXPECT_THAT(SimulationFlagNames(),
               IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
                             "noise_correlation", "noise_freedom", "resolution", "range", "lose", "event_driven",
@@ -57,7 +59,7 @@ TEST(CheckFlagName, SuggestsTheNearestName) {
 TEST(RunFlagsOf, KeepsDefaultsForMissingFlags) {
   const auto flags = RunFlagsOf({});
   ASSERT_TRUE(flags) << flags.error().message;
-  EXPECT_EQ(flags->model, "coulomb");
+  EXPECT_EQ(flags->model, "");  // Coulomb, unless the recording shows a spring.
   EXPECT_EQ(flags->start, "auto");
   EXPECT_EQ(flags->release, "");
   EXPECT_EQ(flags->noise, "auto");

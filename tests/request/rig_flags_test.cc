@@ -55,7 +55,7 @@ TEST(ParseRigValue, RefusesOtherTexts) {
       "--bob_mass is '380 cm'; it must be a number with a unit, such as 380g or 380+-1g; the units are kg, g, mg, "
       "lb, oz");
   EXPECT_THAT(Refusal("heavy", "bob_mass"), HasSubstr("--bob_mass is 'heavy'"));
-  EXPECT_THAT(Refusal("43+-cm", "rod_length"), HasSubstr("the units are m, cm, mm, in, ft"));
+  EXPECT_THAT(Refusal("43+-cm", "rod_length"), HasSubstr("the units are m, cm, mm, inch, in, ft"));
   EXPECT_THAT(Refusal("nan", "rod_length"), HasSubstr("it must be a number with a unit"));
 }
 

@@ -55,8 +55,8 @@ TEST(ProblemResponse, HasTheFlagsToTryAsParameters) {
   const Status status{
       StatusCode::kInvalidArgument, "no unit", {"--unit deg", "--value_column gyro z (rad/s)", "--fast"}};
   const Json json = Json::parse(ProblemResponse(ProblemOf(status)).body);
-  EXPECT_EQ(json["try"], Json::parse(R"({"unit": "deg", "value_column": "gyro z (rad/s)", "fast": "true"
-})"));
+  const Json parameters = {{"unit", "deg"}, {"value_column", "gyro z (rad/s)"}, {"fast", "true"}};
+  EXPECT_EQ(json["try"], parameters);
 }
 
 // The exit codes are those that the tools give (src/docs/reference.md).

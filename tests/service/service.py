@@ -186,9 +186,9 @@ def json_part(name, value):
 
 
 def run_tool(name, *arguments, folder):
-    """Exit code, standard output, and the last sentence on standard error without the tool's name."""
+    """Exit code, standard output, and the last sentence on standard error without the tool's name and the command to try."""
     done = subprocess.run([TOOLS / name, *map(str, arguments)], cwd=folder, capture_output=True, timeout=TIMEOUT_S)
-    lines = [line for line in done.stderr.decode().splitlines() if not line.startswith(f"{name}: warning: ")]
+    lines = [line for line in done.stderr.decode().splitlines() if not line.startswith((f"{name}: warning: ", "try: "))]
     return done.returncode, done.stdout, lines[-1].removeprefix(f"{name}: ") if lines else ""
 
 

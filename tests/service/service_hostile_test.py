@@ -120,7 +120,7 @@ class Bodies(Hostile):
         with zipfile.ZipFile(zeros, "w", zipfile.ZIP_DEFLATED) as file:
             file.writestr("run.csv", b"\0" * (50 << 20))
         for data in (zeros.getvalue(), b"\0" * (8 << 20), gzip.compress(COULOMB), bytes(range(256)) * 20000,
-                     b"\xff\xfe" + COULOMB.decode().encode("utf-16-le"),
+                     b"\xff\xfe" + COULOMB.decode().encode("utf-16-le")[1:],
                      b",".join([b"a"] * 10**6), b'"' * 10**6, b"\n" * 10**6, b"time_s,angle_deg\n" + b"9" * 10**6,
                      b"# resolution: " + b"9" * 10**6,
                      b"time_s,angle_deg\n0,\xff\xfe\n1,2\n"):

@@ -138,7 +138,7 @@ class Knowledge(Curl):
 
     def test_models_are_those_of_the_command_line(self):
         _, out, _ = run_tool("fit_pendulum", "--help", folder=self.folder)
-        listed = " ".join(out.decode().split()).partition("Model of the motion: one of ")[2].partition("; several")[0].split(", ")
+        listed = " ".join(out.decode().split()).partition("Model of the friction: one of ")[2].partition("; several")[0].split(", ")
         models = self.curl("/v1/models").json()["models"]
         self.assertEqual([model["name"] for model in models], listed)
         by_name = {model["name"]: model for model in models}

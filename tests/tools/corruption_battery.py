@@ -52,7 +52,7 @@ MOST_BEYOND = 1e-3  # share of the judged parameters
 COUNTING_WARNINGS = {
     "another_minimum", "at_bound", "correlated_residuals", "event_driven", "lack_of_fit",
     "larger_motion_outside", "many_spikes", "noise_below_resolution", "not_a_pendulum", "saturated",
-    "stale_values", "time_rounded", "trajectory_accuracy", "uncertain_stop", "unit_questioned", "zero_drift",
+    "stale_values", "time_bursts", "time_rounded", "trajectory_accuracy", "uncertain_stop", "unit_questioned", "zero_drift",
 }
 
 KINDS = ["fits", "beyond 4", "warned", "not converged", "refused", "expected", "unexpected", "WRONG", "DEFECT"]

@@ -55,8 +55,8 @@ TEST_F(FlagsTest, RefusesBadFlagsWithoutSettingAnything) {
 TEST_F(FlagsTest, AnswersHelpWithTheToolsFlags) {
   const auto parsed = Parse({"--help"});
   ASSERT_TRUE(parsed);
-  EXPECT_THAT(parsed->answer, HasSubstr("\nOther:\n  --shape    Shape of the bob.\n  --width    Width, m.\n"));
-  EXPECT_THAT(parsed->answer, HasSubstr("  --version  Print the version.\n"));
+  EXPECT_THAT(parsed->answer, HasSubstr("\nOther:\n  --shape       Shape of the bob.\n  --width       Width, m.\n"));
+  EXPECT_THAT(parsed->answer, HasSubstr("  --version     Print the version.\n"));
   EXPECT_THAT(parsed->answer, Not(HasSubstr("flagfile")));
 }
 

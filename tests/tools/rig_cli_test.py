@@ -195,13 +195,13 @@ class Units(RigTest):
     def test_grams_are_asked_about(self):
         result, text = self.fit("--data", "run.csv", rig=dict(swing.RIG, bob_mass=380, rod_mass=95))
         self.assertEqual(self.codes(result).count("rig_implausible"), 2)
-        self.assertIn("bob_mass is 380 kg: in g? Write 0.38", " ".join(text.split()))
+        self.assertIn('"bob_mass" is 380 kg: in g? Write 0.38', " ".join(text.split()))
 
     def test_centimetres_are_refused(self):
-        for key, value, question in (("rod_length", 43, "rod_length is 43 m: in cm. Write 0.43"),
-                                     ("rod_length", 430, "rod_length is 430 m: in mm. Write 0.43"),
-                                     ("gravity", 981, "gravity is 981 m/s.2: in cm/s.2. Write 9.81"),
-                                     ("inertia", 79, "inertia is 79 kg m.2: in g m.2. Write 0.079")):
+        for key, value, question in (("rod_length", 43, '"rod_length" is 43 m: in cm. Write 0.43'),
+                                     ("rod_length", 430, '"rod_length" is 430 m: in mm. Write 0.43'),
+                                     ("gravity", 981, '"gravity" is 981 m/s.2: in cm/s.2. Write 9.81'),
+                                     ("inertia", 79, '"inertia" is 79 kg m.2: in g m.2. Write 0.079')):
             run = self.run_tool("--data", "run.csv", rig={**swing.RIG, key: value})
             self.assertEqual(run.returncode, 4, run.stderr)
             self.assertRegex(run.stderr, question)

@@ -19,12 +19,12 @@ namespace pendulum {
 /// options.fit.stop is requested, all elements that are not finished are kTryAgain.
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording);
 
-/// Identifies one pendulum from all chosen swings of all recordings together, with options.shared in common. Each swing
-/// is fitted alone first, on options.fit.threads threads. Every error message names the recording. Errors: those of
-/// IdentifyEach; kInvalidArgument: options.closed_form_only, fewer than two swings, the same readings twice, or one
-/// options.read.resolution for readings of several units; kDataLoss: the recordings describe different rigs; kTryAgain:
-/// options.fit.stop was requested.
-Result<Identification> IdentifyJointly(const IdentifyOptions& options, std::vector<PreparedRecording> recordings);
+/// Identifies one pendulum from all chosen swings of all recordings together, with asked.shared in common. Each swing
+/// is fitted alone first, on asked.fit.threads threads. Every error message names the recording. Errors: those of
+/// IdentifyEach; kInvalidArgument: asked.closed_form_only, fewer than two swings, the same readings twice, or one
+/// asked.read.resolution for readings of several units; kDataLoss: the recordings describe different rigs; kTryAgain:
+/// asked.fit.stop was requested.
+Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector<PreparedRecording> recordings);
 
 /// The bytes of a file, and the name it has in messages.
 struct NamedBytes {

@@ -10,8 +10,8 @@
 namespace pendulum {
 
 /// Questions about a rig that do not need its swing. rig_implausible: a value that is odd in its SI unit, such as a bob
-/// of 380 kg; the sentence names the key, the likely unit and the number to write. rig_taken_as_exact: no value has a
-/// standard deviation; the sentence says what ±1 g and ±1 mm would add to the results.
+/// of 380 kg; the sentence names the key, the likely unit and the number to write. rig_taken_as_exact: no value, g
+/// aside, has a standard deviation; the sentence says what ±1 g and ±1 mm would add to the results.
 std::vector<Warning> QuestionRig(const Rig& rig);
 
 /// The ratio G/I [1/s^2] that the rig alone predicts: from its torque and its inertia, or g over the length of a string
@@ -19,9 +19,11 @@ std::vector<Warning> QuestionRig(const Rig& rig);
 std::optional<double> PredictedRatio(const Rig& rig);
 
 /// Compares a rig with the ratio G/I [1/s^2] that its swing shows. Returns warnings: inertia_differs_from_rig if the
-/// inertias differ by more than 1.5 times, rig_implausible if a length gives a g far from that of the Earth.
-/// kDataLoss: the rig contradicts the swing, by more than 5 times; the message names the key that is probably in
-/// another unit, and the number to write.
+/// inertias differ by more than 1.5 times, rig_implausible if a length gives a g or a period
+/// far from what is usual.
+/// kDataLoss: the rig contradicts the swing. Its G/I differs by more than 5 times; or a length alone gives a g that
+/// differs from the Earth's by more than 30 times; or the G/I of the swing is more than 1.5 times the largest one that
+/// the centre of mass allows. The message names the key that is probably in another unit, and the number to write.
 Result<std::vector<Warning>> CompareRigWithSwing(const Rig& rig, double gravity_over_inertia);
 
 }  // namespace pendulum

@@ -13,7 +13,7 @@
 namespace pendulum {
 
 /// The name of a rig that is given by values alone, for messages.
-inline constexpr std::string_view kRigOfValuesName = "the rig of the flags";
+inline constexpr std::string_view kRigOfValuesName = "the rig given by flags";
 
 /// As ParseRig, with `values`, an object with keys of the rig, in the place of those of the text.
 Result<Rig> ParseRigWith(const nlohmann::ordered_json& values, std::string_view text, const std::string& name);

@@ -45,6 +45,7 @@ struct RawSamples {
   LineNumbers lines;            ///< Line number of each of the N rows.
   double clock_std_dev = 0;     ///< Relative; of the rate of a clock computed from coarse time stamps.
   std::vector<Warning> warnings;
+  std::size_t left_out = 0;  ///< Rows between these that have no reading; their times are missing here.
 };
 
 /// The part of a recording that is used, s on the file's clock; NaN leaves that end open.
@@ -59,14 +60,16 @@ struct ClockWindow {
 /// or us that start again after 2³² or 2¹⁶ are continued, if the step across the restart is like the other steps.
 /// time_rounded: time stamps on a grid that is coarse compared with the sampling interval. They are replaced by the
 /// middle of the uniform clocks that agree with all of them; clock_std_dev gives the spread of these clocks. If no
-/// clock agrees and the stamps increase, they are kept. Times with few significant digits are treated in the same way.
+/// clock agrees and the stamps increase, they are kept; also if rows were left out, which leaves gaps like those of
+/// rounding. Times with few significant digits are treated in the same way.
 /// time_bursts: rows that a host stamped in packets. The stamps are replaced by the uniform clock of the device, with
-/// its standard error in clock_std_dev, if nothing contradicts uniform sampling without lost rows. rows_repeated: at
-/// least 3 rows at the start or the end that repeat one row, time and value, are left out. time_repeated: rows that
-/// share a time stamp are left out, up to a fifth of all; of identical rows one is kept. time_not_increasing: stamps go
-/// back by at most kMaxStepsBack sampling intervals. As few rows as possible are left out, up to a twentieth of all.
-/// Gaps and uneven sampling cause no warning. kDataLoss: any other stamps that do not increase; the message has the
-/// line, both times and what to do. Cost: one pass, about twenty if the stamps are not uniform.
+/// its standard error in clock_std_dev, if nothing contradicts uniform sampling without lost rows. Otherwise stamps
+/// that increase within packets are kept although they are wrong, and the warning says so. rows_repeated: at least 3
+/// rows at the start or the end that repeat one row, time and value, are left out. time_repeated: rows that share a
+/// time stamp are left out, up to a fifth of all; of identical rows one is kept. time_not_increasing: stamps go back by
+/// at most kMaxStepsBack sampling intervals. As few rows as possible are left out, up to a twentieth of all. Gaps and
+/// uneven sampling cause no warning. kDataLoss: any other stamps that do not increase; the message has the line, both
+/// times and what to do. Cost: one pass, about twenty if the stamps are not uniform.
 ///
 /// If the stamps of the whole file cannot be repaired, those in the window are. time_outside_window: only its rows are
 /// returned.

@@ -24,11 +24,12 @@ struct Recording {
   /// The source, as the user named it; SHA-256 of the bytes read, lower-case hexadecimal. Either may be empty.
   std::string path, sha256;
   Quantity quantity = Quantity::kAngle;
-  std::string unit = "rad";  ///< Of the file's value column: rad, deg, rad/s, deg/s, counts, volts, m/s^2, m or px.
-  Eigen::VectorXd time;      ///< N x 1, s, on the file's own clock.
-  Eigen::VectorXd value;     ///< N x 1, rad or rad/s regardless of `unit`; in `unit` if not is_calibrated().
-  double resolution = 0;     ///< Spacing of the values the sensor can give, in the unit of value; 0 if unknown or
-                             ///< continuous.
+  std::string unit = "rad";      ///< Of the file's value column: rad, deg, rad/s, deg/s, counts, volts, m/s^2, m or px.
+  bool is_unit_assumed = false;  ///< The file does not give the unit; it was guessed from the values.
+  Eigen::VectorXd time;          ///< N x 1, s, on the file's own clock.
+  Eigen::VectorXd value;         ///< N x 1, rad or rad/s regardless of `unit`; in `unit` if not is_calibrated().
+  double resolution = 0;         ///< Spacing of the values the sensor can give, in the unit of value; 0 if unknown or
+                                 ///< continuous.
   std::string resolution_source;  ///< Its origin: "given" by the user, from the "file", or "found" in the values.
   /// For events (ConvertToEdges): one of the edges between counts, in the unit of value. A reading at a whole number of
   /// resolutions from this edge is an edge that was crossed at the reading's time. A reading halfway between two edges

@@ -56,7 +56,7 @@ ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& opt
                                const Solution& solution, std::size_t i) {
   ParameterEstimate parameter;
   parameter.info = problem.infos[i];
-  parameter.unit = options.rig ? parameter.info.unit : parameter.info.relative_unit;
+  parameter.unit = SiRig(options) ? parameter.info.unit : parameter.info.relative_unit;
   SetReadingUnit(recording, problem.data.sensor, parameter);
   parameter.estimate = problem.Reported(i, solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];

@@ -73,7 +73,10 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
 /// Checks that all runs have the same model and rig, because shared parameters are in units of the rig's gravity
 /// torque.
 Result<void> CheckSameModelAndRig(std::span<const JointRun> runs) {
-  const auto torque = [](const JointRun& run) { return run.options.rig ? run.options.rig->gravity_torque.value : 0; };
+  const auto torque = [](const JointRun& run) {
+    const Rig* rig = SiRig(run.options);
+    return rig != nullptr ? rig->gravity_torque.value : 0;
+  };
   for (std::size_t k = 1; k < runs.size(); ++k) {
     if (runs[k].alone.model.name != runs[0].alone.model.name) {
       return Error(StatusCode::kInvalidArgument, NumberOf(k) + " was fitted with a different model from the first");

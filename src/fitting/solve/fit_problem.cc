@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pendulum/base/format.h"
+#include "pendulum/closed_form/low_band.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
@@ -260,7 +261,9 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
                               const FitOptions& options, std::size_t& sensor_starts) {
   const auto estimate = [&](const Recording& view) {
     const auto choice = timed.quantity == Quantity::kAcceleration ? StartKind::kMoving : options.start;
-    return EstimateStartValues(IsRobust(options.noise) ? WithoutOutliers(view) : view, model, choice);
+    Recording quiet = IsRobust(options.noise) ? WithoutOutliers(view) : view;
+    if (options.search.vibration_period > 0) quiet = LowBand(quiet, options.search.vibration_period);
+    return EstimateStartValues(quiet, model, choice);
   };
   if (sensor.kind == SensorKind::kDirect)
     return HasTurningPointView(timed) ? estimate(TurningPointView(timed)) : estimate(timed);
@@ -279,9 +282,8 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
 
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
   if (const Result<void> checked = CheckNoise(recording, options); !checked) return tl::unexpected(checked.error());
-  Result<MotionModel> model = FindMotionModel(options.model);
+  const Result<MotionModel> model = ModelOf(options);
   if (!model) return tl::unexpected(model.error());
-  model->gravity = options.gravity.value_or(model->gravity);
   const SensorModel sensor = SensorOf(recording, model->gravity);
   if (const Result<void> checked = CheckSensor(recording, *model, sensor, options); !checked) {
     return tl::unexpected(checked.error());

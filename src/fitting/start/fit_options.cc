@@ -3,10 +3,21 @@
 
 namespace pendulum {
 
+const Rig* SiRig(const FitOptions& options) {
+  return options.rig && options.rig->gives_torque ? &*options.rig : nullptr;
+}
+
+Result<MotionModel> ModelOf(const FitOptions& options) {
+  Result<MotionModel> model = FindMotionModel(options.model);
+  if (model) model->gravity = options.gravity.value_or(model->gravity);
+  return model;
+}
+
 FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces) {
   FitOptions trial;
   trial.model = "drag";
-  trial.gravity = recording.is_calibrated() ? options.gravity : Gravity::kLinear;
+  const Result<MotionModel> model = ModelOf(options);
+  trial.gravity = recording.is_calibrated() && model ? model->gravity : Gravity::kLinear;
   trial.start = options.start;
   trial.search.max_traces = max_traces;
   trial.noise = IsRobust(options.noise) ? options.noise : NoiseFamily::kGaussian;

@@ -19,13 +19,6 @@ double TorqueOf(const FitOptions& options) { return options.rig ? options.rig->g
 /// Frequency of small swings in rad/s for an inertia in the units of the options.
 double FrequencyOf(double inertia, const FitOptions& options) { return std::sqrt(TorqueOf(options) / inertia); }
 
-/// The model of the options, with their law of gravity.
-Result<MotionModel> ModelOf(const FitOptions& options) {
-  Result<MotionModel> model = FindMotionModel(options.model);
-  if (model) model->gravity = options.gravity.value_or(model->gravity);
-  return model;
-}
-
 /// Without those whose frequency is that of a likelier one.
 std::vector<Alias> WithoutDuplicates(std::vector<Alias> aliases, double duration) {
   constexpr double kSame = 0.1;  // cycles over the recording

@@ -40,11 +40,12 @@ std::string UnwrapOffset(Recording& used) {
          " whole turns were subtracted from the readings, so the zero refers to the turn in which the pendulum swings";
 }
 
-Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, const FitOptions& options) {
+Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, FitOptions options) {
   Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
   if (!used) return tl::unexpected(used.error());
   used->warnings.clear();
   const std::string turns_message = UnwrapOffset(*used);
+  if (swing.vibration) options.search.vibration_period = used->clock_scale / swing.vibration->frequency;
   Result<FitReport> fit = FitRecording(*used, options);
   if (!fit) return tl::unexpected(fit.error());
   if (!turns_message.empty()) fit->warnings.push_back({"whole_turns_removed", turns_message});
@@ -93,7 +94,8 @@ void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
 }
 
 void WarnOfVibration(const Recording& used, const Vibration& vibration, FitReport& fit) {
-  fit.warnings.push_back({"vibration", "a faster vibration of " + NumberText(vibration.frequency, 2) + " Hz, " +
+  fit.warnings.push_back({"vibration", "a faster vibration of " +
+                                           NumberText(vibration.frequency / used.clock_scale, 2) + " Hz, " +
                                            NumberText(vibration.amplitude, 2) + " " + used.value_unit() +
                                            " in size, lies over the swing; it is treated as noise. Damp it, or choose "
                                            "a window without it with --from and --to"});
@@ -140,9 +142,10 @@ std::optional<OffsetJumps> CorrectOffset(FreeSwing& swing, const FitOptions& opt
 
 std::optional<std::string> NotAPendulumReason(SwingFit& result, const std::stop_token& stop) {
   if (result.swing.has_beats) return "its amplitude grows repeatedly, as in coupled pendulums";
-  const auto linear = LinearOscillatorReason(result.used, result.fit, stop);
-  result.linear_reason = linear.value_or("");
-  return linear;
+  const auto linear = FindLinearMotion(result.used, result.fit, stop);
+  if (!linear) return std::nullopt;
+  result.linear_reason = linear->why;
+  return linear->why + "; " + linear->advice;
 }
 
 // ---- Rescues -------------------------------------------------------------------------------------------------------
@@ -153,8 +156,9 @@ struct SwingState {
   SwingFit result;                   ///< Result of the last fit.
   std::optional<OffsetJumps> jumps;  ///< Jumps of the readings' zero; std::nullopt: not searched or none.
   bool was_trimmed = false;          ///< Disturbed ends were left out.
-  std::optional<Presliding> presliding =
-      std::nullopt;  ///< The swings from there on were left out, unless the user chose the end.
+  /// Small swings that friction makes faster, which explains a lack of fit. They were left out if that improved the
+  /// fit and the user did not choose the end.
+  std::optional<Presliding> presliding = std::nullopt;
   bool is_pendulum = true;
 
   /// Whether the fit leaves more than noise.
@@ -171,7 +175,7 @@ struct WindowRescue {
   std::string_view name;  ///< As in SolverSummary::attempts.
   bool (*applies)(const SwingState& state);
   Result<bool> (*run)(const FitOptions& options, SwingState& state);  ///< Returns whether the fit has changed.
-  bool is_attempt = true;                                             ///< False: it may only reject the fit.
+  bool is_attempt = true;  ///< False: it is recorded only if it changed the fit.
 };
 
 bool IsLacking(const SwingState& state) { return state.IsLacking(); }
@@ -346,22 +350,22 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
 }
 
 /// Fits a linear oscillator with a linear restoring torque, and says so. If this does not help, the result stays.
-void FitAsSpring(const FitOptions& options, Result<SwingFit>& result) {
+/// recording, swing: as they were before the first fit, which may have changed readings and window.
+void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options, Result<SwingFit>& result) {
   const std::optional<std::string> unit = ReasonForUnit(result->used);
   const std::optional<MotionModel> spring = WithGravity(result->fit.model, Gravity::kLinear);
   if (!unit || !spring) return;
   FitOptions linear = options;
   linear.model = spring->name;
   linear.gravity = Gravity::kLinear;
-  Result<SwingFit> other = FitUnlessStopped(result->used, result->swing, linear);
+  Result<SwingFit> other = FitUnlessStopped(std::move(recording), std::move(swing), linear);
   if (!other || other->fit.termination != Termination::kConverged) return;
-  const std::string& why = result->linear_reason;
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
       {"linear_restoring_torque",
        "a restoring torque proportional to the angle is assumed, as of a spring or wire (model " + linear.model +
-           "; G is its stiffness k), because " + why.substr(0, why.rfind(';')) + ". The readings are in " +
-           result->used.unit + ": " + *unit +
+           "; G is its stiffness k), because " + result->linear_reason + ". The readings are in " + result->used.unit +
+           ": " + *unit +
            ". For a pendulum give --gravity sin, and correct the unit (--unit, or in the column's name)"});
   result = std::move(other);
 }
@@ -369,8 +373,12 @@ void FitAsSpring(const FitOptions& options, Result<SwingFit>& result) {
 }  // namespace
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
-  Result<SwingFit> result = FitUnlessStopped(std::move(recording), std::move(swing), options);
-  if (result && options.may_be_spring && !result->linear_reason.empty()) FitAsSpring(options, result);
+  std::optional<Recording> original;
+  if (options.may_be_spring) original = recording;
+  Result<SwingFit> result = FitUnlessStopped(std::move(recording), swing, options);
+  if (result && original && !result->linear_reason.empty()) {
+    FitAsSpring(*std::move(original), std::move(swing), options, result);
+  }
   if (options.stop.stop_requested()) return FitStopped();
   return result;
 }

@@ -72,7 +72,7 @@ std::optional<double> LevelsInTurn(const Recording& recording) {
 
 /// The flags that a user may give for a linear oscillator.
 std::string FlagsForLinear(const Recording& recording, double amplitude) {
-  const std::string spring = "give --gravity linear for a spring or wire (Pohl wheel, torsion pendulum)";
+  std::string spring = "give --gravity linear for a spring or wire (Pohl wheel, torsion pendulum)";
   if (ReasonForUnit(recording)) return spring;
   return spring +
          ", or correct the unit to deg (--unit deg, or in the column's name) if this is a pendulum with an "
@@ -80,10 +80,10 @@ std::string FlagsForLinear(const Recording& recording, double amplitude) {
          NumberText(amplitude, 3) + " deg";
 }
 
-/// The reason why the motion is that of a linear oscillator, such as a mass on a spring, whose period is the same at
-/// every amplitude; otherwise std::nullopt. pendulum: a fit with sine gravity.
-std::optional<std::string> ReasonIfLinear(const Recording& recording, const FitReport& pendulum,
-                                          const std::stop_token& stop) {
+/// Whether and why the motion is that of a linear oscillator, such as a mass on a spring, whose period is the same at
+/// every amplitude. pendulum: a fit with sine gravity.
+std::optional<LinearMotion> CompareWithLinear(const Recording& recording, const FitReport& pendulum,
+                                              const std::stop_token& stop) {
   constexpr double kMinAmplitude = 0.2;  // rad; for smaller amplitudes the two models hardly differ
   constexpr double kMuchLess = 0.7;
   constexpr double kSurely = 30;
@@ -97,11 +97,12 @@ std::optional<std::string> ReasonIfLinear(const Recording& recording, const FitR
   const double gain = -2 * static_cast<double>(recording.size()) * std::log(ratio);  // in -2 log L
   if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
   constexpr double kNearTop = 3.1;
-  return "the period does not depend on the amplitude as in a pendulum, whose period is " +
-         Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
-         NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
-         NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " + NumberText(left, 3) + " rad; " +
-         FlagsForLinear(recording, amplitude);
+  return LinearMotion{"the period does not depend on the amplitude as in a pendulum, whose period is " +
+                          Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
+                          NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
+                          NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " +
+                          NumberText(left, 3) + " rad",
+                      FlagsForLinear(recording, amplitude)};
 }
 
 /// A frequency and its share of the residuals.
@@ -156,17 +157,18 @@ std::optional<std::string> ReasonIfTwoModes(const Recording& recording, const Fi
 
 }  // namespace
 
-std::optional<std::string> LinearOscillatorReason(const Recording& recording, const FitReport& report,
-                                                  const std::stop_token& stop) {
+std::optional<LinearMotion> FindLinearMotion(const Recording& recording, const FitReport& report,
+                                             const std::stop_token& stop) {
   if (report.termination == Termination::kFailed || report.model.gravity.is_linear()) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest = FitRichest(some, Gravity::kSine, stop);
-  return richest ? ReasonIfLinear(some, *richest, stop) : std::nullopt;
+  return richest ? CompareWithLinear(some, *richest, stop) : std::nullopt;
 }
 
 std::optional<std::string> ReasonForUnit(const Recording& recording) {
   if (recording.calibration) return "the calibration gives their unit";
   if (recording.arc) return "they follow from two coordinates";
+  if (recording.is_unit_assumed) return std::nullopt;
   if (recording.unit == "deg") return "the file says deg, and in rad they would be several turns";
   const std::optional<double> levels = LevelsInTurn(recording);
   if (!levels) return std::nullopt;
@@ -178,7 +180,7 @@ std::optional<std::string> TwoModesReason(const Recording& recording, const FitR
   if (report.termination == Termination::kFailed) return std::nullopt;
   const Recording some = FirstSwings(recording, report);
   const std::optional<FitReport> richest =
-      FitRichest(some, recording.is_calibrated() ? Gravity::kSine : Gravity::kLinear, stop);
+      FitRichest(some, recording.is_calibrated() ? report.model.gravity : Gravity::kLinear, stop);
   return richest ? ReasonIfTwoModes(some, *richest) : std::nullopt;
 }
 

@@ -27,7 +27,7 @@ std::string WrongUnitText(double period) {
 /// A sampling rate that is too low makes a swing look slower than it is.
 std::string SlowSamplingText(const Recording& recording, double period) {
   const double rate = SampleRateOf(recording);
-  constexpr double kSlowestHz = 0.2;  // of the pendulums that a person may take for slow ones
+  constexpr double kSlowestHz = 0.2;  // slower pendulums are not suspected
   const double faster = rate - 1 / period;
   if (period < kLongestPeriod || faster < kSlowestHz || faster > kFastestHz) return "";
   return "If the pendulum swings at about " + Hz(faster) + ", sample faster than " + Hz(rate) + ". ";
@@ -37,13 +37,14 @@ std::string SlowSamplingText(const Recording& recording, double period) {
 
 std::optional<std::string> ImplausiblePeriodReason(const Recording& recording, const FreeSwing& swing,
                                                    const FitOptions& options) {
-  if (swing.undersampled || IsFrequencyKnown(options) || IsLinear(options)) return std::nullopt;
+  const bool is_inertia_known = options.rig && options.rig->known_inertia;
+  if (swing.undersampled || IsFrequencyKnown(options) || is_inertia_known || IsLinear(options)) return std::nullopt;
   const double period = 2 * HalfPeriodOf(recording, swing) * recording.clock_scale;
   if (!(period > 0) || (period >= kShortestPeriod && period <= kLongestPeriod)) return std::nullopt;
   return "the period is " + NumberText(period, 3) + " s, but the periods of pendulums are " +
          NumberText(kShortestPeriod) + " s to " + NumberText(kLongestPeriod) + " s. " + WrongUnitText(period) + ". " +
          SlowSamplingText(recording, period) +
-         "If the times are right, this is another oscillator, such as a torsion balance: add --model linear, or give "
+         "If the times are right, this is another oscillator, such as a torsion balance: give --gravity linear, or "
          "the inertia in --rig or with --bounds";
 }
 

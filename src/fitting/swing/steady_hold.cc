@@ -1,29 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fitting/swing/steady_hold.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <Eigen/QR>
-
+#include "pendulum/closed_form/steady.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
-namespace {
-
 using Eigen::Index;
-
-/// Whether the readings scatter by less than twice the noise, and drift by less than three times the noise.
-bool IsSteady(const Eigen::VectorXd& value, double sigma) {
-  const Index count = value.size();
-  Eigen::MatrixX2d basis(count, 2);
-  basis << Eigen::ArrayXd::Ones(count), Eigen::ArrayXd::LinSpaced(count, 0, 1);
-  const Eigen::Vector2d line = basis.colPivHouseholderQr().solve(value);
-  const double scatter = (value - basis * line).norm() / std::sqrt(static_cast<double>(count));
-  return std::abs(line[1]) < 3 * sigma && scatter < 2 * sigma;
-}
-
-}  // namespace
 
 std::optional<FreeSwing> WithSteadyHold(const Recording& recording, const FreeSwing& swing, double sigma) {
   if (!(swing.hold_from < swing.hold_to)) return std::nullopt;

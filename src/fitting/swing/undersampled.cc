@@ -13,6 +13,7 @@
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/model/rig_check.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -103,7 +104,7 @@ std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& al
   return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) +
          " or faster; the readings suggest " + Hz(frequency) + ". If it swings at about " + Hz(apparent) + ", give " +
          BoundsFlag(apparent, options) +
-         "; otherwise give --rig with rod and bob or with \"inertia\", or sample at 6 Hz or faster";
+         "; otherwise give --rig with rod and bob, or with length and gravity, or sample at 6 Hz or faster";
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
@@ -213,8 +214,8 @@ void WarnOfSampling(const Recording& used, double frequency, const FitOptions& o
   }
 }
 
-/// The number of samples in each half swing's double that is seen in the readings, whether they are a free swing or
-/// not; 0 if fewer than three turning points are seen.
+/// Samples per period as the turning points show it, in a free swing or not; 0 if fewer than three turning points are
+/// seen.
 double SeenPerPeriod(const Recording& recording) {
   const TurningPointTable table = FindAllTurningPoints(TurningPointView(recording));
   return 2 * table.half_period * recording.clock_scale * SampleRateOf(recording);
@@ -223,8 +224,8 @@ double SeenPerPeriod(const Recording& recording) {
 }  // namespace
 
 std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
-  if (!rig || !rig->inertia) return std::nullopt;
-  return std::sqrt(rig->gravity_torque.value / rig->inertia->value) / kTurn;
+  const std::optional<double> ratio = rig ? PredictedRatio(*rig) : std::nullopt;
+  return ratio ? std::optional(std::sqrt(*ratio) / kTurn) : std::nullopt;
 }
 
 std::optional<std::string> AssumedFrequencyText(const Recording& used, double half_period, const FitOptions& options) {

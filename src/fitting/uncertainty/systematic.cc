@@ -94,7 +94,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   for (Index i = 0; i < size; ++i) {
     const ParameterInfo& info = problem.infos[static_cast<std::size_t>(i)];
     time[i] = PowerOfTime(info, recording.quantity);
-    if (options.rig && info.scales_with_gravity()) gravity[i] = 1;
+    if (SiRig(options) && info.scales_with_gravity()) gravity[i] = 1;
   }
   std::vector<SystematicSource> sources;
   const auto add_scale = [&](const std::string& identity, const Eigen::VectorXd& powers, double relative) {
@@ -102,7 +102,9 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
     sources.push_back({identity, powers, ScoresByScale(powers, cost, solution),
                        Eigen::MatrixXd::Constant(1, 1, relative * relative)});
   };
-  if (options.rig) add_scale("rig", gravity, options.rig->gravity_torque.std_dev / options.rig->gravity_torque.value);
+  if (const Rig* rig = SiRig(options)) {
+    add_scale("rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
+  }
   add_scale("clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
             recording.clock_scale_std_dev / recording.clock_scale);
   const std::optional<Calibration>& calibration = recording.calibration;

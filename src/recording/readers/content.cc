@@ -45,8 +45,17 @@ bool IsXml(std::string_view begin) {
   const auto is_of_name = [](char c) {
     return IsLetter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == ':' || c == '.';
   };
-  const auto end = std::find_if_not(text.begin() + 1, text.end(), is_of_name);
+  const auto* const end = std::find_if_not(text.begin() + 1, text.end(), is_of_name);
   return end == text.end() || " \t\r\n/>"sv.find(*end) != std::string_view::npos;
+}
+
+/// Whether a text after "[", which begins with a number, is the rest of a list of JSON and not of a row with a stamp,
+/// such as "[12:00:01.123] 0.5".
+bool IsListOfNumbers(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of("+-.0123456789eE"), text.size()));
+  text = WithoutBeginning(text);
+  if (text.empty() || text.front() == ',') return true;
+  return text.front() == ']' && WithoutBeginning(text.substr(1)).empty();
 }
 
 /// A table may also begin with a bracket, as in "[Header]" or "[s],[deg]".
@@ -56,7 +65,8 @@ bool IsJson(std::string_view begin) {
   const std::string_view rest = WithoutBeginning(text.substr(1));
   if (rest.empty()) return false;
   if (text.front() == '{') return rest.front() == '"';
-  return "-0123456789[{\"]"sv.find(rest.front()) != std::string_view::npos || rest.starts_with("null") ||
+  if ("-0123456789"sv.find(rest.front()) != std::string_view::npos) return IsListOfNumbers(rest);
+  return R"([{"])"sv.find(rest.front()) != std::string_view::npos || rest.starts_with("null") ||
          rest.starts_with("NaN");
 }
 

@@ -11,6 +11,7 @@
 #include "pendulum/recording/readers/columns/line_reader.h"
 #include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/runs.h"
+#include "recording/readers/columns/swing_choice.h"
 #include "recording/readers/content.h"
 #include "recording/readers/text/row_reader.h"
 
@@ -27,12 +28,25 @@ struct MemberSummary {
   std::optional<Status> fault;  // Why the member cannot be read.
 };
 
+/// The flag that chooses a column of a member, or the member alone.
+std::string FlagOf(const std::string& member, const std::string& column = "") {
+  return "--value_column " + member + (column.empty() ? "" : "/" + column);
+}
+
 /// "MEMBER/COLUMN", each shortened as for a message.
 std::string QuotedMemberAndColumn(const std::string& member, const std::string& column) {
   std::string pair = Quoted(member);
   if (column.empty()) return pair;
   pair.back() = '/';
   return pair + Quoted(column).substr(1);
+}
+
+/// Whether a member has two or more columns of a rate, which --value_column combined combines.
+bool HasAxes(const std::vector<csv::TableColumn>& columns) {
+  const auto is_rate = [](const csv::TableColumn& column) {
+    return csv::MeaningOf(column.meaning).kind == csv::Kind::kRate;
+  };
+  return std::ranges::count_if(columns, is_rate) > 1;
 }
 
 /// The columns that could be the quantity; empty without a time.
@@ -45,6 +59,9 @@ std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& colum
   if (!options.value_column.empty()) {
     const std::size_t named = csv::IndexOf(columns, options.value_column);
     if (named < columns.size()) candidates.push_back(columns[named].written);
+    if (named == columns.size() && options.value_column == csv::kCombined && HasAxes(columns)) {
+      candidates.emplace_back(csv::kCombined);
+    }
     return candidates;
   }
   for (const std::size_t i : csv::CandidatesOf(columns, options.unit)) candidates.push_back(columns[i].written);
@@ -91,10 +108,11 @@ Result<std::optional<std::size_t>> FindNamed(const Folder& folder, ReadOptions& 
   for (std::size_t i = 0; i < folder.paths.size(); ++i) {
     if (!is_named(file_of(i))) continue;
     if (by_file && file_of(i) == file_of(*by_file)) {
-      return Error(StatusCode::kInvalidArgument, folder.name + ": --value_column is " + Quoted(flag) + ", but both " +
-                                                     Quoted(folder.paths[*by_file]) + " and " +
-                                                     Quoted(folder.paths[i]) +
-                                                     " have this name; give the path within the " + folder.kind);
+      return WithTry(
+          Error(StatusCode::kInvalidArgument, folder.name + ": --value_column is " + Quoted(flag) + ", but both " +
+                                                  Quoted(folder.paths[*by_file]) + " and " + Quoted(folder.paths[i]) +
+                                                  " have this name; give the path within the " + folder.kind),
+          {FlagOf(folder.paths[*by_file] + flag.substr(file_of(i).size()))});
     }
     by_file = i;
   }
@@ -149,7 +167,11 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
     for (const std::string& column : summary.candidates)
       candidates.push_back(QuotedMemberAndColumn(folder.paths[summary.index], column));
   }
-  if (!raw) return Fault(folder.name, "columns " + SeveralQuantities(candidates));
+  if (!raw) {
+    const MemberSummary& first = summaries.front();
+    return WithTry(Fault(folder.name, "columns " + SeveralQuantities(candidates)),
+                   {FlagOf(folder.paths[first.index], first.candidates.front())});
+  }
   warnings.push_back({"member_assumed", folder.name + ": " + folder.member +
                                             " \"Raw Data\" was read, although others have columns of a swing too; "
                                             "choose another with --value_column " +
@@ -167,20 +189,49 @@ Result<Recording> ReadWhole(const Folder& folder, std::size_t index, const ReadO
                                           " bytes, too many for a recording; give a smaller file, or split it");
 }
 
+/// The error if no member can be read, with that of the first member and the flags that it needs.
+tl::unexpected<Status> NoneReadable(const Folder& folder, const Status& first) {
+  constexpr std::string_view kFlag = "--value_column ";
+  std::vector<std::string> flags;
+  bool has_column = false;
+  for (const std::string& flag : first.try_flags) {
+    const bool is_column = flag.starts_with(kFlag);
+    has_column |= is_column;
+    flags.push_back(is_column ? FlagOf(folder.paths.front(), flag.substr(kFlag.size())) : flag);
+  }
+  if (!flags.empty() && !has_column) flags.push_back(FlagOf(folder.paths.front()));
+  tl::unexpected<Status> none = NoMember(folder);
+  none.value().message += ". The first " + folder.member + " says: " + first.message;
+  return WithTry(std::move(none), std::move(flags));
+}
+
 /// Tries to read each member. Returns the recording of the only one that can be read.
 Result<Recording> ReadOnlyReadable(const Folder& folder, const ReadOptions& options, const MemberReader& read) {
   constexpr std::size_t kMaxTried = 20;
-  Result<Recording> only = NoMember(folder);
-  std::vector<std::string> readable;
-  for (std::size_t i = 0; i < folder.paths.size() && folder.paths.size() <= kMaxTried; ++i) {
+  if (folder.paths.empty()) return NoMember(folder);
+  if (folder.paths.size() > kMaxTried) {
+    return Fault(folder.name, "it has " + std::to_string(folder.paths.size()) + " " + folder.member +
+                                  "s, and no header shows which one is the recording; choose one with --value_column " +
+                                  FlagExample(folder));
+  }
+  std::vector<std::size_t> readable;
+  std::optional<Status> fault;  // Of the first member.
+  Result<Recording> only;
+  for (std::size_t i = 0; i < folder.paths.size(); ++i) {
     Result<Recording> recording = ReadWhole(folder, i, options, read);
+    if (!recording && i == 0) fault = recording.error();
     if (!recording) continue;
-    readable.push_back(Quoted(folder.paths[i]));
+    readable.push_back(i);
     only = std::move(recording);
   }
-  if (readable.size() < 2) return only;
-  return Fault(folder.name, "its " + folder.member + "s " + ListOf(readable) +
-                                " could all be the recording; choose one with --value_column " + FlagExample(folder));
+  if (readable.empty()) return NoneReadable(folder, *std::move(fault));
+  if (readable.size() == 1) return only;
+  std::vector<std::string> names;
+  for (const std::size_t i : readable) names.push_back(Quoted(folder.paths[i]));
+  return WithTry(Fault(folder.name, "its " + folder.member + "s " + ListOf(names) + " could " +
+                                        (names.size() == 2 ? "both" : "all") +
+                                        " be the recording; choose one with --value_column " + FlagExample(folder)),
+                 {FlagOf(folder.paths[readable.front()])});
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ constexpr std::array kForeign = {
     ForeignMark{"ID3\4"sv, kSound},
     ForeignMark{"%PDF"sv, "this is a PDF; name the file of the recording"},
     ForeignMark{"%!PS"sv, kPicture},
-    ForeignMark{"{\\rtf"sv, "this is a text document (RTF); save the table in it as CSV"},
+    ForeignMark{R"({\rtf)"sv, "this is a text document (RTF); save the table in it as CSV"},
     ForeignMark{"\x7F"
                 "ELF"sv,
                 kProgram},

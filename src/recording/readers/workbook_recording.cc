@@ -26,7 +26,15 @@
 namespace pendulum {
 namespace {
 
-constexpr std::string_view kLess = "; save only the sheet with the times and the angles, or export it as CSV";
+std::string SaveLess(WorkbookWords words) {
+  return "; save only the " + std::string(words.sheet) + " with the times and the angles, or export it as CSV";
+}
+
+/// "512 MiB", or bytes if they are not whole MiB.
+std::string SizeText(std::size_t bytes) {
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
+  return bytes % kMiB == 0 ? std::to_string(bytes / kMiB) + " MiB" : std::to_string(bytes) + " bytes";
+}
 
 /// A million rows take some seconds, and their file is compressed to a tenth. Several copies of the text exist until
 /// the answer is complete.
@@ -43,7 +51,7 @@ ChildLimits LimitsForWorkbook(std::size_t bytes, std::size_t max_unpacked) {
 tl::unexpected<Status> NoWorkbook(ChildFailure failure, const ChildLimits& limits, WorkbookWords words,
                                   const std::string& name) {
   const std::string what = "this " + std::string(words.kind);
-  const std::string less(kLess);
+  const std::string less = SaveLess(words);
   switch (failure) {
     case ChildFailure::kNotStarted: break;
     case ChildFailure::kCrashed: return Fault(name, what + " is damaged: its reader crashed; save it again");
@@ -51,11 +59,11 @@ tl::unexpected<Status> NoWorkbook(ChildFailure failure, const ChildLimits& limit
       return Fault(name, what + " takes longer to read than " + std::to_string(limits.processor_seconds) +
                              " s of processor time: it is damaged or too large" + less);
     case ChildFailure::kOutOfMemory:
-      return Fault(name, what + " needs more memory to read than the " + std::to_string(limits.memory_bytes) +
-                             " bytes that are allowed: it is damaged or too large" + less);
+      return Fault(name, what + " needs more memory to read than the " + SizeText(limits.memory_bytes) +
+                             " that are allowed: it is damaged or too large" + less);
     case ChildFailure::kAnswerTooLarge:
-      return Fault(name, what + " unpacks to more than " + std::to_string(limits.answer_bytes) +
-                             " bytes, too many for a recording" + less);
+      return Fault(
+          name, what + " unpacks to more than " + SizeText(limits.answer_bytes) + ", too many for a recording" + less);
   }
   return Error(StatusCode::kTryAgain, name + ": the process that reads it could not be started; try again");
 }
@@ -80,7 +88,7 @@ Folder FolderOfSheets(const std::vector<Sheet>& sheets, WorkbookWords words, con
   return folder;
 }
 
-/// The name of the first element of an XML text, and its first bytes.
+/// The name of the first element of an XML text.
 std::string RootOf(std::string_view xml) {
   std::string root;
   XmlParser* running = nullptr;
@@ -98,7 +106,7 @@ std::string RootOf(std::string_view xml) {
 std::string UnknownXml(const std::string& root) {
   if (const std::string_view sentence = ForeignXml(root); !sentence.empty()) return std::string(sentence);
   return "this is XML" + (root.empty() ? "" : " (its first element is " + Quoted(root) + ")") +
-         ", such as the project of Logger Pro or Tracker; export its data as text and give the text file";
+         ", which is not read; export the data as CSV";
 }
 
 }  // namespace
@@ -109,9 +117,9 @@ Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::stri
     return Fault(workbook.place.empty() ? name : name + ":" + workbook.place, workbook.complaint);
   }
   if (workbook.is_too_large) {
-    return Fault(name, "this " + std::string(words.kind) + " has more than " + std::to_string(kMaxSheetRows) +
-                           " rows or " + std::to_string(options.most_unpacked_bytes) +
-                           " bytes, too many for a recording" + std::string(kLess));
+    const std::string rows = words.sheet == kSheets.sheet ? std::to_string(kMaxSheetRows) + " rows or " : "";
+    return Fault(name, "this " + std::string(words.kind) + " has more than " + rows +
+                           SizeText(options.most_unpacked_bytes) + ", too many for a recording" + SaveLess(words));
   }
   RemoveUnusedSheets(workbook.sheets);
   if (workbook.sheets.empty()) {

@@ -163,19 +163,19 @@ TEST(FitSwing, AcceptsALinearOscillatorForTheLinearModel) {
     const Recording recording = LinearOscillator(degrees, "viscous", 1);
     const FitReport fit = FitLongest(recording, ModelOptions("linear")).fit;
     ExpectAPendulum(fit);
-    EXPECT_FALSE(LinearOscillatorReason(recording, fit));
+    EXPECT_FALSE(FindLinearMotion(recording, fit));
   }
 }
 
-TEST(LinearOscillatorReason, IsMissingForSmallSwings) {
+TEST(FindLinearMotion, IsMissingForSmallSwings) {
   const Recording recording = LinearOscillator(10, "coulomb", 1);
-  EXPECT_FALSE(LinearOscillatorReason(recording, Fit(recording, ModelOptions("coulomb"))));
+  EXPECT_FALSE(FindLinearMotion(recording, Fit(recording, ModelOptions("coulomb"))));
 }
 
-TEST(LinearOscillatorReason, IsMissingForAFailedFit) {
+TEST(FindLinearMotion, IsMissingForAFailedFit) {
   FitReport failed;
   failed.termination = Termination::kFailed;
-  EXPECT_FALSE(LinearOscillatorReason(LinearOscillator(40, "coulomb", 1), failed));
+  EXPECT_FALSE(FindLinearMotion(LinearOscillator(40, "coulomb", 1), failed));
   EXPECT_FALSE(TwoModesReason(LinearOscillator(40, "coulomb", 1), failed));
 }
 
@@ -255,7 +255,7 @@ TEST(FitSwing, AcceptsAPendulumWithAnotherFrictionLaw) {
       SCOPED_TRACE(std::string(model) + ", recording " + std::to_string(&recording - recordings));
       const FitReport fit = FitLongest(recording, ModelOptions(model)).fit;
       ExpectAPendulum(fit);
-      EXPECT_FALSE(LinearOscillatorReason(recording, fit));
+      EXPECT_FALSE(FindLinearMotion(recording, fit));
       EXPECT_FALSE(TwoModesReason(recording, fit));
     }
   }

@@ -134,7 +134,7 @@ TEST(DerivedQuantities, CoverOnlyTheModelsParameters) {
   const Quantities quantities = Derived("viscous", {0.04, 0.002, 0.3, -0.7, 0.01}, nullptr);
   EXPECT_THAT(quantities, Contains(Key("viscous_over_inertia")));
   EXPECT_THAT(quantities, Not(Contains(Key("coulomb_over_inertia"))));
-  EXPECT_EQ(quantities.size(), 6);
+  EXPECT_EQ(quantities.size(), 7);
 }
 
 // ---- Intervals -----------------------------------------------------------------------------------------------------

@@ -33,10 +33,20 @@ TEST(Content, IsDetectedFromTheFirstBytes) {
   }
 }
 
+TEST(Content, ARowWithAStampInBracketsIsNoJson) {
+  for (const char* const row : {"[12:00:01.123] 0.5\n", "[0.5] 3\n", "[0.5], 3\n", "[Header]\n", "[s],[deg]\n"}) {
+    EXPECT_EQ(ContentOf(row), Content::kText) << row;
+  }
+  for (const char* const list : {"[0.5, 3]", "[ -1e-3 ]\n", "[\n 0,\n 1]", "[[0, 1], [2, 3]]", "[{\"t\": 0}]"}) {
+    EXPECT_EQ(ContentOf(list), Content::kJson) << list;
+  }
+}
+
 TEST(Content, NamesTheFormatOfAnUnreadableFile) {
   EXPECT_THAT(FaultOf("\x89HDF\r\n\x1A\n"s), StartsWith("run.csv: this is an HDF5 file without MATLAB's header;"));
   EXPECT_THAT(FaultOf("\x1F\x8B\x08"s), StartsWith("run.csv: this is a gzip file; unpack it"));
-  EXPECT_THAT(FaultOf("<?xml version=\"1.0\"?>\n"), HasSubstr("such as the project of Logger Pro or Tracker"));
+  EXPECT_THAT(FaultOf("<?xml version=\"1.0\"?>\n"),
+              HasSubstr("this is XML, which is not read; export the data as CSV"));
   EXPECT_EQ(FaultOf("# Created by Octave 8.4.0, Tue Nov 24 12:00:00 2026 UTC <a@b>\n# name: t\n# type: matrix\n"),
             "run.csv: this is Octave's text format; save the variables with save -7 run.mat t angle_deg");
   EXPECT_THAT(FaultOf("Octave-1-L\0"s), HasSubstr("this is Octave's binary format; save the variables with save -7"));

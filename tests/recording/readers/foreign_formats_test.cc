@@ -105,11 +105,24 @@ TEST(ForeignFormats, RefuseMissingColumns) {
             "--value_column");
 }
 
+TEST(ForeignFormats, TakeTheUnitOfAFlagBeforeThatOfAName) {
+  const std::string text = "time_s,angle_deg\n" + Rows("{t},{v}");
+  const Recording recording = RecordingOf(text, TimeAndValue("time_s:ms", "", "rad"));
+  EXPECT_EQ(recording.unit, "rad");
+  EXPECT_NEAR(recording.time[1] - recording.time[0], (RecordingOf(text).time[1] - RecordingOf(text).time[0]) / 1000,
+              1e-12);
+  EXPECT_EQ(recording.warnings.at(0).message,
+            "run.csv: column \"time_s\" names s, but --time_column says ms, which was used");
+  EXPECT_EQ(recording.warnings.at(1).message,
+            "run.csv: column \"angle_deg\" names deg, but --unit says rad, which was used");
+}
+
 TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
   const std::string text = "time_s,angle_deg\n" + Rows("{t},{v}");
-  EXPECT_EQ(WrongFlag(text, Unit("rad")),
-            "run.csv:1:8: column \"angle_deg\" is in deg, so --unit rad contradicts it; leave the flag out, or choose "
-            "another column with --value_column");
+  EXPECT_EQ(
+      WrongFlag(text, Unit("volts")),
+      "run.csv:1:8: column \"angle_deg\" is in deg, so --unit volts contradicts it; leave the flag out, or choose "
+      "another column with --value_column");
   EXPECT_EQ(
       WrongFlag(text, Unit("gon")),
       "run.csv:1:8: --unit is \"gon\"; it must be rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, "
@@ -118,8 +131,6 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
       WrongFlag(text, Unit("", 50)),
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "
       "or add --time_column none to ignore the column");
-  EXPECT_THAT(WrongFlag(text, TimeAndValue("time_s:ms", "")),
-              HasSubstr("column \"time_s\" is in s, but --time_column time_s:ms says ms"));
   ReadOptions both = Unit("", 50);
   both.time_column = "time_s";
   EXPECT_THAT(WrongFlag(text, both), HasSubstr("--time_column and --sample_rate_hz both define the times"));

@@ -40,6 +40,20 @@ TEST(ParseRecording, ReadsAccelerationsAndCoordinates) {
   EXPECT_EQ(Of("time_s,calibrated_volts\n" + kRows).quantity, Quantity::kAngle);
 }
 
+TEST(ParseRecording, NamesUnitsAsTheFileHasThem) {
+  std::string text = "time_s,acc\n";
+  for (int i = 0; i < 40; ++i) text += std::to_string(0.01 * i) + "," + std::to_string(1 + 0.05 * std::cos(i)) + "\n";
+  const Recording acceleration = Of(text);
+  EXPECT_THAT(acceleration.warnings,
+              testing::Contains(
+                  testing::Field(&Warning::message, HasSubstr("was assumed to be in g (it is about 1 at rest)"))));
+  ReadOptions rad;
+  rad.unit = "rad";
+  const auto overridden = ParseRecording("time_s,angle_mrad\n" + kRows, "run.csv", rad);
+  ASSERT_TRUE(overridden);
+  EXPECT_THAT(overridden->warnings.at(0).message, HasSubstr("names mrad, but --unit says rad, which was used"));
+}
+
 TEST(ParseRecording, PrefersAnAngleToCoordinates) {
   std::string text = "time_s,height_m,angle_rad\n";
   for (int i = 0; i < 8; ++i) text += std::to_string(i) + ",1," + std::to_string(i) + "\n";

@@ -207,7 +207,7 @@ TEST(ParseRecording, RefusesAHeaderWithoutTime) {
   const Status error = ErrorOf("angle_rad,rate\n1,0\n0,2\n1,1\n0,3\n1,1\n0,2\n1,1\n0,2\n");
   EXPECT_EQ(error.message,
             "run.csv:1:1: none of the columns \"angle_rad\", \"rate\" is a time: give the rate of the rows with "
-            "--sample_rate_hz, or the column with --time_column");
+            "--sample_rate_hz (100 is an example; give your rate), or the column with --time_column");
   EXPECT_THAT(error.try_flags, testing::ElementsAre("--sample_rate_hz 100"));
 }
 
@@ -258,6 +258,15 @@ TEST(ParseRecording, RefusesAndShowsTextThatIsNotANumber) {
   EXPECT_THAT(FaultOfRow("0x10,1"), StartsWith("run.csv:9:1: column \"time_s\" holds \"0x10\", a number followed by"));
   for (const char* const text : {"--1", "+-1", "+", ".", "e5", "1 2", "1e", "\"1", "1\"", "٣"}) {
     EXPECT_THAT(FaultOfRow("3.5," + std::string(text)), StartsWith("run.csv:9:5: column \"angle_rad\" holds ")) << text;
+  }
+}
+
+TEST(ParseRecording, LeavesOutRowsThatSayThatANumberIsMissing) {
+  for (const char* const text : {"", "NaN", "NA", "N/A", "#N/A", "null", "None"}) {
+    const Recording recording = RecordingOf("time_s,angle_rad\n0,1\n0.1," + std::string(text) +
+                                            "\n0.2,1\n0.3,2\n0.4,1\n0.5,2\n0.6,1\n0.7,2\n0.8,1\n");
+    EXPECT_EQ(recording.size(), 8) << text;
+    EXPECT_EQ(recording.warnings.at(0).code, "empty_cells") << text;
   }
 }
 

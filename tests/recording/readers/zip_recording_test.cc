@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/readers/zip_recording.h"
 
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,6 +49,18 @@ TEST(ReadZip, ReadsTheNamedColumn) {
   }
 }
 
+TEST(ReadZip, CombinesTheAxesOfTheOnlyMemberThatHasSome) {
+  std::string gyro = "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\"\n";
+  for (int i = 0; i < 500; ++i) {
+    const double rate = 2 * std::cos(0.1 * i);
+    gyro += std::to_string(0.01 * i) + "," + std::to_string(0.6 * rate) + "," + std::to_string(0.8 * rate) + "\n";
+  }
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const Recording recording = RecordingOf(ZipOf({{"angle.csv", angle}, {"gyro.csv", gyro}}), Value("combined"));
+  EXPECT_EQ(recording.quantity, Quantity::kRate);
+  EXPECT_NEAR(recording.value[0], 2, 1e-3);
+}
+
 TEST(ReadZip, HashesThePackedBytes) {
   EXPECT_EQ(RecordingOf(Phyphox(), Value("Gyroscope y (rad/s)")).sha256, Sha256(Phyphox()).value());
 }
@@ -74,6 +89,7 @@ TEST(ReadZip, RefusesTwoMembersWithCandidatesAndNamesThem) {
   EXPECT_EQ(FaultOf(two),
             "run.csv: columns \"a.csv/angle_deg\" and \"runs/b.csv/angle_deg\" could both be the quantity; choose one "
             "with --value_column");
+  EXPECT_THAT(ParseRecording(two, "run.csv").error().try_flags, testing::ElementsAre("--value_column a.csv/angle_deg"));
   ExpectTheRows(RecordingOf(two, Value("b.csv/angle_deg")), kDegree);
   ExpectTheRows(RecordingOf(two, Value("runs/b.csv/angle_deg")), kDegree);
   ExpectTheRows(RecordingOf(two, Value("a.csv")), kDegree);
@@ -113,9 +129,15 @@ TEST(ReadZip, ReadsSemicolonsAndDecimalCommasAndLeavesOutNaN) {
 // ---- Not a recording ---------------------------------------------------------------------------------------------
 
 TEST(ReadZip, ReportsThatNoMemberIsARecording) {
-  EXPECT_EQ(FaultOf(ZipOf({{"Light.csv", kLight}, {"notes.txt", "hello\n"}})),
-            "run.csv: none of its files \"Light.csv\" and \"notes.txt\" has a column of times and one of an angle or a "
-            "rate; choose with --value_column \"FILE/COLUMN\", or name another recording");
+  const std::string none = FaultOf(ZipOf({{"Light.csv", kLight}, {"notes.txt", "hello\n"}}));
+  EXPECT_THAT(none,
+              StartsWith("run.csv: none of its files \"Light.csv\" and \"notes.txt\" has a column of times and one of "
+                         "an angle or a rate; choose with --value_column \"FILE/COLUMN\", or name another recording. "
+                         "The first file says: run.csv:Light.csv:1:"));
+  EXPECT_THAT(none, HasSubstr("none of the columns \"Time (s)\", \"Illuminance (lx)\" is an angle"));
+  std::vector<std::pair<std::string, std::string>> many;
+  for (int i = 0; i < 21; ++i) many.emplace_back(std::to_string(i) + ".csv", kLight);
+  EXPECT_THAT(FaultOf(ZipOf(many)), StartsWith("run.csv: it has 21 files, and no header shows which one"));
   EXPECT_THAT(FaultOf(ZipOf({{"meta/device.csv", kMeta}})), HasSubstr("this zip file contains no recording"));
   EXPECT_EQ(FaultOf(ZipOf({{"inner.zip", ZipOf({{"a.csv", kLight}})}})),
             "run.csv:inner.zip: this is a zip file in a zip file; unpack it and give the unpacked file");

@@ -32,6 +32,7 @@ enum class IntervalMethod {
 struct SearchOptions {
   std::optional<StartValues> start_values;  ///< Replaces EstimateStartValues; all values must be set.
   std::size_t sensor_start = 0;             ///< Index into SensorStarts.
+  double vibration_period = 0;              ///< Of a vibration that start values must not see [s]; 0: none.
   /// Target error of the trajectory [rad]; sigma / 1000 if that is smaller. Warning above sigma / 100.
   double max_trace_error = 1e-8;
   int max_iterations = 100;  ///< Limit for the iterations of Ceres in each run.
@@ -72,8 +73,14 @@ inline tl::unexpected<Status> FitStopped() {
       "intervals by covariance");
 }
 
-/// Options of a quick trial fit whose residuals are to be inspected: the richest law (drag), without errors. Start, a
-/// robust noise family, threads and stop are copied from `options`.
+/// The rig that converts to SI; nullptr: torques and inertia are in units of the restoring torque G.
+const Rig* SiRig(const FitOptions& options);
+
+/// The model of the options, with their law of gravity. Errors as FindMotionModel.
+Result<MotionModel> ModelOf(const FitOptions& options);
+
+/// Options of a quick trial fit whose residuals are to be inspected: the richest law (drag), without errors. The law of
+/// gravity, the start, a robust noise family, threads and stop are those of `options`.
 FitOptions TrialOptions(const Recording& recording, const FitOptions& options, int max_traces);
 
 }  // namespace pendulum

@@ -26,7 +26,10 @@ struct SwingFit {
 /// readings is beyond doubt, it is fitted again with a linear restoring torque, with `linear_restoring_torque`. If an
 /// angle's zero jumps by whole counts, the later readings are shifted back, also in `used`
 /// (`lost_counts`). If the zero jumps by another amount, the fit ends kNotConverged, with `offset_jumps`. A possible
-/// jump gives `offset_unsteady`. Errors as FitRecording. Cost: as FitRecording, and some tens of small fits if
+/// jump gives `offset_unsteady`. Small swings to which no friction law applies are left out (`presliding`), and a
+/// vibration over the swing is named (`vibration`). A swing that few samples show may be fitted as a faster one, or the
+/// choice is named (`ambiguous_frequency`). Errors as FitRecording; kFailedPrecondition: the period is not that of a
+/// pendulum. Cost: as FitRecording, and some tens of small fits if
 /// something is wrong.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 

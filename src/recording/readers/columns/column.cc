@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/readers/columns/column.h"
 
-#include <cctype>
-#include <span>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -15,7 +14,8 @@ struct Spelling {
   std::string_view letters, plain;
 };
 
-/// Letters of other alphabets. The last ones are single bytes of Latin-1, which old programs write.
+/// Letters of other alphabets. The last ones are single bytes of Latin-1, which old programs write. They count only
+/// where no character of UTF-8 begins: the second byte of a Cyrillic letter is no degree sign.
 constexpr std::array kSpellings = {
     Spelling{"\u00E1", "a"},
     Spelling{"\u00E0", "a"},
@@ -81,6 +81,16 @@ constexpr std::array kSpellings = {
     Spelling{"\xF3", "o"},
     Spelling{"\xF1", "n"},
 };
+
+/// The number of bytes of the UTF-8 character at the beginning of a text; 0 if none begins there.
+std::size_t SizeOfCharacter(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  if (lead < 0x80) return 1;
+  const std::size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || size > text.size()) return 0;
+  const auto is_later_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
+  return std::ranges::all_of(text.substr(1, size - 1), is_later_byte) ? size : 0;
+}
 
 constexpr bool IsUpper(char c) { return c >= 'A' && c <= 'Z'; }
 constexpr bool IsLower(char c) { return c >= 'a' && c <= 'z'; }
@@ -160,6 +170,7 @@ constexpr std::array kUnitWords = {
     UnitWord{"minuten", "min"},
     UnitWord{"minutos", "min"},
     UnitWord{"rads", "rad"},
+    UnitWord{"bogenmass", "rad"},
     UnitWord{"radian", "rad"},
     UnitWord{"radians", "rad"},
     UnitWord{"radiant", "rad"},
@@ -214,6 +225,7 @@ constexpr std::array kUnitWords = {
     UnitWord{"dps", "deg_s"},
     UnitWord{"degps", "deg_s"},
     UnitWord{"u/min", "rpm"},
+    UnitWord{"tr/min", "rpm"},
     UnitWord{"1/min", "rpm"},
     UnitWord{"rev/min", "rpm"},
     UnitWord{"count", "counts"},
@@ -222,6 +234,12 @@ constexpr std::array kUnitWords = {
     UnitWord{"adc", "counts"},
     UnitWord{"lsb", "counts"},
     UnitWord{"tick", "counts"},
+    UnitWord{"step", "counts"},
+    UnitWord{"steps", "counts"},
+    UnitWord{"pulse", "counts"},
+    UnitWord{"pulses", "counts"},
+    UnitWord{"impulse", "counts"},
+    UnitWord{"impulses", "counts"},
     UnitWord{"ticks", "counts"},
     UnitWord{"volt", "volts"},
     UnitWord{"v", "volts"},
@@ -281,8 +299,8 @@ const Unit* UnitOfLetters(std::string_view letters) {
 
 // ---- Words -------------------------------------------------------------------------------------------------------
 
-/// What a word in a name means. kAngular makes a velocity a rate.
-enum class Sense { kTime, kAngle, kRate, kRaw, kAcceleration, kLength, kVelocity, kAngular, kSecondary };
+/// What a word in a name means. kAngular makes a velocity a rate; kOther is no quantity of a swing.
+enum class Sense { kTime, kAngle, kRate, kRaw, kAcceleration, kLength, kVelocity, kAngular, kOther, kSecondary };
 
 struct Word {
   std::string_view word;
@@ -408,6 +426,35 @@ constexpr std::array kWords = {
     Word{"angolare", Sense::kAngular},
     Word{"rotational", Sense::kAngular},
     Word{"rot", Sense::kAngular},
+    Word{"temperature", Sense::kOther},
+    Word{"temperatur", Sense::kOther},
+    Word{"temperatura", Sense::kOther},
+    Word{"temp", Sense::kOther},
+    Word{"force", Sense::kOther},
+    Word{"kraft", Sense::kOther},
+    Word{"fuerza", Sense::kOther},
+    Word{"forza", Sense::kOther},
+    Word{"pressure", Sense::kOther},
+    Word{"druck", Sense::kOther},
+    Word{"humidity", Sense::kOther},
+    Word{"battery", Sense::kOther},
+    Word{"illuminance", Sense::kOther},
+    Word{"light", Sense::kOther},
+    Word{"lux", Sense::kOther},
+    Word{"magnetic", Sense::kOther},
+    Word{"magnetfeld", Sense::kOther},
+    Word{"sound", Sense::kOther},
+    Word{"mass", Sense::kOther},
+    Word{"weight", Sense::kOther},
+    Word{"energy", Sense::kOther},
+    Word{"energie", Sense::kOther},
+    Word{"energia", Sense::kOther},
+    Word{"power", Sense::kOther},
+    Word{"momentum", Sense::kOther},
+    Word{"torque", Sense::kOther},
+    Word{"latitude", Sense::kOther},
+    Word{"longitude", Sense::kOther},
+    Word{"altitude", Sense::kOther},
     Word{"setpoint", Sense::kSecondary},
     Word{"target", Sense::kSecondary},
     Word{"ref", Sense::kSecondary},
@@ -444,7 +491,7 @@ std::optional<Sense> SenseOf(std::string_view word) {
 /// The kind that the words of a name say.
 struct WordMeaning {
   std::optional<Kind> kind;
-  bool is_of_other_quantity = false;  // A linear speed, an angular acceleration.
+  bool is_of_other_quantity = false;  // A linear speed, an angular acceleration, a temperature.
   bool is_secondary = false;
 };
 
@@ -463,15 +510,16 @@ WordMeaning MeaningOfWords(std::string_view stem) {
   const bool is_velocity = says(Sense::kVelocity);
   const bool has_quantity =
       says(Sense::kAngle) || says(Sense::kRate) || says(Sense::kRaw) || says(Sense::kAcceleration) || is_velocity;
-  if (says(Sense::kTime) && (last == Sense::kTime || !has_quantity)) {
+  const bool is_linear_speed = is_velocity && !is_angular && !says(Sense::kAcceleration) && !says(Sense::kRate);
+  if (says(Sense::kOther) || (is_linear_speed && last != Sense::kTime)) {
+    meaning.is_of_other_quantity = true;
+  } else if (says(Sense::kTime) && (last == Sense::kTime || !has_quantity)) {
     meaning.kind = Kind::kTime;
   } else if (says(Sense::kAcceleration)) {
     meaning.is_of_other_quantity = says(Sense::kAngular);
     if (!meaning.is_of_other_quantity) meaning.kind = Kind::kAcceleration;
   } else if (says(Sense::kRate) || (is_velocity && is_angular)) {
     meaning.kind = Kind::kRate;
-  } else if (is_velocity) {
-    meaning.is_of_other_quantity = true;
   } else if (says(Sense::kRaw)) {
     meaning.kind = Kind::kRaw;
   } else if (says(Sense::kAngle)) {
@@ -490,6 +538,35 @@ struct Division {
   std::string stem;  // In plain letters.
   bool has_other_unit = false;
 };
+
+/// The text in the last brackets of a name; empty if there are none.
+std::string_view InBrackets(std::string_view name) {
+  const std::size_t open = name.find_last_of("([");
+  if (open == std::string_view::npos) return "";
+  const std::size_t close = name.find(name[open] == '(' ? ')' : ']', open);
+  return close == std::string_view::npos ? "" : Trim(name.substr(open + 1, close - open - 1));
+}
+
+/// `10 ms`, `x0.1 deg`: a multiple of a unit.
+bool IsMultiple(std::string_view text) {
+  if (text.starts_with('x') || text.starts_with('*')) text.remove_prefix(1);
+  const std::size_t end = text.find_first_not_of("0123456789., ");
+  const bool has_digit =
+      text.substr(0, std::min(end, text.size())).find_first_of("0123456789") != std::string_view::npos;
+  return has_digit && end != std::string_view::npos && text[end] != '/' && text[end] != ':';
+}
+
+/// Whether a text in brackets may be a unit: one short word that says nothing else.
+bool IsLikeUnit(std::string_view text) {
+  constexpr std::size_t kMostLetters = 8;
+  constexpr std::array<std::string_view, 14> kRemarks = {"raw",      "left",   "right",     "top",  "bottom",
+                                                         "filtered", "abs",    "rel",       "data", "measured",
+                                                         "sensor",   "camera", "unwrapped", "mean"};
+  const std::string plain = PlainName(text);
+  const bool is_word = plain.find_first_of(" ,;:_") == std::string::npos && plain.size() <= kMostLetters &&
+                       plain.find_first_not_of("0123456789xyz") != std::string::npos;
+  return is_word && std::ranges::find(kRemarks, plain) == kRemarks.end() && !MeaningOfWords(plain).kind;
+}
 
 /// `Angle (deg)`, `Angle [deg] left`.
 std::optional<Division> DivideAtBrackets(std::string_view name) {
@@ -521,9 +598,9 @@ std::optional<Division> DivideAt(std::string_view name, std::string_view mark) {
 }
 
 /// Whether a short word at the end of a name is its unit and not an index or an abbreviation: `theta_min`, `pos_g`.
-bool IsUnitAfter(const Unit& unit, std::string_view word, const std::string& stem) {
+bool IsUnitAfter(std::string_view word, const std::string& stem) {
   const std::optional<Kind> kind = MeaningOfWords(stem).kind;
-  if (word == "min" || unit.kind == Kind::kTime) return word == "min" ? kind == Kind::kTime : true;
+  if (word == "min") return kind == Kind::kTime;
   if (word == "g") return kind == Kind::kAcceleration;
   if (word == "v") return kind != Kind::kAngle && kind != Kind::kRate;
   if (word == "rev" || word == "turns") return kind == Kind::kAngle;
@@ -536,7 +613,7 @@ std::optional<Division> DivideAtSuffix(const std::string& plain) {
   constexpr std::size_t kMostWords = 3;
   for (std::size_t count = std::min(kMostWords, words.size()); count > 0; --count) {
     const std::string_view first = words[words.size() - count];
-    const std::size_t at = static_cast<std::size_t>(first.data() - plain.data());
+    const auto at = static_cast<std::size_t>(first.data() - plain.data());
     if (at == 0) continue;
     const std::string stem = plain.substr(0, at);
     std::string letters;
@@ -545,7 +622,7 @@ std::optional<Division> DivideAtSuffix(const std::string& plain) {
     }
     const Unit* unit = UnitOfLetters(letters);
     if (unit == nullptr) unit = UnitOfLetters(UnitLetters(std::string_view(plain).substr(at)));
-    if (unit != nullptr && IsUnitAfter(*unit, letters, stem)) return Division{unit, stem};
+    if (unit != nullptr && IsUnitAfter(letters, stem)) return Division{unit, stem};
     if (count > 1 && IsOtherUnit(letters)) return Division{nullptr, stem, true};
   }
   return std::nullopt;
@@ -555,6 +632,8 @@ Division DivideName(std::string_view name) {
   const std::string letters = UnitLetters(name);
   const bool is_ambiguous = letters == "min" || letters == "g" || letters == "m";
   if (const Unit* unit = is_ambiguous ? nullptr : UnitOfLetters(letters)) return {unit, ""};
+  if (IsMultiple(InBrackets(name)))
+    return {nullptr, PlainName(SplitCamelCase(name.substr(0, name.find_last_of("(["))))};
   if (auto found = DivideAtBrackets(name)) return *std::move(found);
   if (auto found = DivideAt(name, "/")) return *std::move(found);
   if (auto found = DivideAt(name, " in ")) return *std::move(found);
@@ -578,15 +657,20 @@ const Unit* TimeUnitAmong(std::string_view stem) {
 std::string PlainName(std::string_view name) {
   std::string plain;
   while (!name.empty()) {
-    const auto* const found =
-        std::ranges::find_if(kSpellings, [&](const Spelling& each) { return name.starts_with(each.letters); });
+    const std::size_t size = SizeOfCharacter(name);
+    const auto* const found = std::ranges::find_if(kSpellings, [&](const Spelling& each) {
+      return name.starts_with(each.letters) && (size == 0 || each.letters.size() > 1);
+    });
     const char c = name.front();
     if (found != kSpellings.end()) {
       plain += found->plain;
       name.remove_prefix(found->letters.size());
-    } else if (c == '\xC3' && name.size() > 1 && static_cast<unsigned char>(name[1]) < 0x9F) {
+    } else if (size == 2 && c == '\xC3' && static_cast<unsigned char>(name[1]) < 0x9F) {
       plain += PlainName(std::string{c, static_cast<char>(name[1] + ('a' - 'A'))});  // a capital letter with an accent
       name.remove_prefix(2);
+    } else if (size > 1) {
+      plain += name.substr(0, size);
+      name.remove_prefix(size);
     } else {
       plain += IsUpper(c) ? static_cast<char>(c - 'A' + 'a') : c;
       name.remove_prefix(1);
@@ -598,6 +682,13 @@ std::string PlainName(std::string_view name) {
 bool NameMeaning::Has(std::string_view word) const {
   const std::vector<std::string_view> words = WordsIn(stem);
   return std::ranges::find(words, word) != words.end();
+}
+
+std::optional<std::size_t> ColumnOfNumber(std::string_view text, std::size_t count) {
+  double number = 0;
+  const bool is_column =
+      ParseNumber(text, number) && number >= 1 && number <= static_cast<double>(count) && number == std::floor(number);
+  return is_column ? std::optional(static_cast<std::size_t>(number) - 1) : std::nullopt;
 }
 
 const Unit* UnitOfText(std::string_view text) { return UnitOfLetters(UnitLetters(text)); }
@@ -624,6 +715,8 @@ NameMeaning MeaningOf(std::string_view name) {
   } else if (!meaning.has_other_unit) {
     meaning.kind = words.kind;
     meaning.has_other_unit = words.is_of_other_quantity;
+    const std::string_view text = InBrackets(name);
+    if (IsMultiple(text) || IsLikeUnit(text)) meaning.unknown_unit = text;
     if (meaning.kind == Kind::kTime) meaning.unit = TimeUnitAmong(meaning.stem);
   }
   return meaning;

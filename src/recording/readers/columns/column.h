@@ -27,6 +27,9 @@ struct Unit {
   double divisor = 1;
 
   constexpr double ToSi(double number) const { return number * factor / divisor; }
+
+  /// The unit of the numbers in the file, for messages: "g", "mrad", "deg/s". `name` is the unit after ToSi.
+  constexpr std::string_view Written() const { return suffix.find('_') == std::string_view::npos ? suffix : name; }
 };
 
 inline constexpr std::array kUnits = {
@@ -69,6 +72,7 @@ struct NameMeaning {
   const Unit* unit = nullptr;    // nullptr: not in the name.
   const Unit* second = nullptr;  // Another unit before `unit`: `angle_deg [rad]`.
   std::string stem;              // The name without its unit, in small plain letters; words are separated by blanks.
+  std::string unknown_unit;      // What stands in brackets as a unit does, but is none of kUnits; empty: nothing.
   bool has_other_unit = false;   // A unit that no quantity of a swing has: degrees Celsius, newton, m/s.
   bool is_secondary = false;     // By its words not a reading: a setpoint, an error, a model's value.
 
@@ -83,6 +87,9 @@ NameMeaning MeaningOf(std::string_view name);
 /// Small letters of ASCII: letters with accents, Greek letters and signs such as the degree are written in plain
 /// letters.
 std::string PlainName(std::string_view name);
+
+/// The index of the column that a number from 1 to `count` means; std::nullopt for another text.
+std::optional<std::size_t> ColumnOfNumber(std::string_view text, std::size_t count);
 
 /// The unit that a text names: `rad/s`, `°/s`, `Sekunden`; nullptr if it is none.
 const Unit* UnitOfText(std::string_view text);

@@ -26,6 +26,12 @@ inline std::string_view Trim(std::string_view text) {
   return text;
 }
 
+/// Whether a cell says that there is no number, as programs write it.
+inline bool IsMissing(std::string_view text) {
+  constexpr std::array<std::string_view, 9> kWords = {"", "NaN", "nan", "NAN", "NA", "N/A", "#N/A", "null", "None"};
+  return std::find(kWords.begin(), kWords.end(), text) != kWords.end();
+}
+
 inline std::string_view Unquote(std::string_view text) {
   text = Trim(text);
   return text.size() < 2 || text.front() != '"' || text.back() != '"' ? text : Trim(text.substr(1, text.size() - 2));

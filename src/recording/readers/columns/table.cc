@@ -44,10 +44,8 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
 
 std::size_t IndexOf(const std::vector<TableColumn>& columns, const std::string& name) {
   const auto found = std::ranges::find(columns, name, &TableColumn::written);
-  double number = 0;
-  if (found != columns.end() || !ParseNumber(name, number)) return found - columns.begin();
-  if (number < 1 || number > static_cast<double>(columns.size())) return columns.size();
-  return static_cast<std::size_t>(number) - 1;
+  if (found != columns.end()) return found - columns.begin();
+  return ColumnOfNumber(name, columns.size()).value_or(columns.size());
 }
 
 TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& time_column) {

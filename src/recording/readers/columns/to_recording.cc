@@ -79,6 +79,7 @@ Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
       std::hypot(metadata.clock_scale_std_dev, metadata.clock_scale * samples.clock_std_dev);
   recording.rig_json = metadata.rig_json;
   SetValues(columns.layout, options, metadata, recording);
+  recording.is_unit_assumed = columns.layout.is_unit_assumed;
   if (columns.layout.second) {
     if (Result<void> turned = TurnIntoAngles(*columns.layout.second, samples.second, recording); !turned) {
       return tl::unexpected(std::move(turned).error());

@@ -14,8 +14,11 @@
 namespace pendulum::csv {
 namespace {
 
+using Eigen::Index;
+
 constexpr double kShortestPeriod = 0.1, kLongestPeriod = 20;  // s
 constexpr double kLargestSwing = 3.3;  // rad; a pendulum that does not turn over stays within pi.
+constexpr double kMostDegrees = 400;   // A larger amplitude is not an angle in degrees.
 constexpr double kLeastSwing = 0.02;   // rad
 /// rad; from here on the period shows the amplitude (MODEL.md section 3: 2.3 % at 0.6 rad).
 constexpr double kTellingSwing = 0.6;
@@ -81,9 +84,11 @@ UnitGuess GuessAngleUnit(const std::optional<SwingSignature>& swing, double ampl
 }
 
 UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingSignature>& swing, double amplitude) {
-  constexpr double kMostDegrees = 400;
   const bool is_whole = AreWhole(values);
-  if (amplitude > kMostDegrees) return {is_whole ? "counts" : "", is_whole ? " (whole numbers)" : "", "counts"};
+  // NaN, where a cell has no number, is not larger.
+  const bool is_large = std::ranges::any_of(values, [](double value) { return std::abs(value) > kMostDegrees; });
+  if (is_whole && is_large) return {"counts", " (whole numbers)", ""};
+  if (amplitude > kMostDegrees) return {"", "", "counts"};
   if (amplitude > kLargestSwing && !is_whole) {
     return {"deg", " (the swing reaches " + NumberText(amplitude, 3) + ")", ""};
   }
@@ -105,15 +110,21 @@ UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude)
 
 double MedianStep(const Eigen::VectorXd& numbers) {
   std::vector<double> steps;
-  for (Eigen::Index i = 1; i < numbers.size(); ++i) {
-    const double step = numbers[i] - numbers[i - 1];
-    if (std::isfinite(step) && step > 0) steps.push_back(step);
+  std::optional<Index> last;  // Row of the last finite number.
+  double advance = 0, rows = 0;
+  for (Index i = 0; i < numbers.size(); ++i) {
+    if (!std::isfinite(numbers[i])) continue;
+    const double step = last ? numbers[i] - numbers[*last] : 0;
+    const auto distance = static_cast<double>(i - last.value_or(i));
+    last = i;
+    if (step < 0) continue;  // A counter that overflows.
+    advance += step;
+    rows += distance;
+    if (step > 0) steps.push_back(step / distance);
   }
   if (steps.empty()) return 0;
   // Coarse stamps repeat; the mean step is the sampling interval then.
-  const double mean = (numbers.maxCoeff() - numbers.minCoeff()) / static_cast<double>(numbers.size() - 1);
-  const double median = Median(std::move(steps));
-  return std::isfinite(mean) && mean > 0 ? std::min(mean, median) : median;
+  return std::min(advance / rows, Median(std::move(steps)));
 }
 
 TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {
@@ -125,8 +136,9 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
   constexpr double kEpochFirst = 5e8, kEpochLast = 5e9;  // s: the years 1985 to 2128.
   constexpr double kLongestStep = 0.5;                   // s
   const double step = MedianStep(times);
+  const auto first_time = std::find_if(times.begin(), times.end(), [](double time) { return std::isfinite(time); });
   for (const Scale& scale : kScales) {
-    const double first = times.size() > 0 ? times[0] * scale.seconds : 0;
+    const double first = first_time == times.end() ? 0 : *first_time * scale.seconds;
     const bool is_usual_step = step * scale.seconds <= kLongestStep;
     if (first > kEpochFirst && first < kEpochLast && is_usual_step) return {scale.unit, " (it counts from 1970)", true};
   }
@@ -152,7 +164,6 @@ UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values
   if (!kind) return GuessUnnamed(values, swing, amplitude);
   switch (*kind) {
     case Kind::kAngle: {
-      constexpr double kMostDegrees = 400;
       if (amplitude > kMostDegrees && AreWhole(values)) return {"counts", " (whole numbers)", ""};
       return GuessAngleUnit(swing, amplitude, 1, "rad", "deg");
     }

@@ -12,7 +12,7 @@
 /// Finds units that a header does not give, from what is plausible for a pendulum.
 namespace pendulum::csv {
 
-/// The median step between successive numbers; 0 if there is none.
+/// The median step between rows, from successive finite numbers; 0 if there is none.
 double MedianStep(const Eigen::VectorXd& numbers);
 
 struct TimeGuess {

@@ -19,12 +19,15 @@ std::string Padded(std::int64_t number, std::size_t digits) {
   return text.size() < digits ? std::string(digits - text.size(), '0') + text : text;
 }
 
-/// The time since midnight, or a duration, as hours, minutes and seconds.
-std::string ClockText(std::int64_t us) {
-  const std::string text = Padded(us / (3600 * kUsPerSecond), 2) + ':' + Padded(us / (60 * kUsPerSecond) % 60, 2) +
-                           ':' + Padded(us / kUsPerSecond % 60, 2) + '.' + Padded(us % kUsPerSecond, 6);
+/// The time since midnight, or a duration, as hours, minutes and seconds. `part` is the fraction of a second in units
+/// of 10^-digits.
+std::string ClockText(std::int64_t seconds, std::int64_t part, std::size_t digits) {
+  const std::string text = Padded(seconds / 3600, 2) + ':' + Padded(seconds / 60 % 60, 2) + ':' +
+                           Padded(seconds % 60, 2) + '.' + Padded(part, digits);
   return std::string(WithoutEndZeros(text));
 }
+
+std::string ClockText(std::int64_t us) { return ClockText(us / kUsPerSecond, us % kUsPerSecond, 6); }
 
 /// A date has more than 16 digits in this unit, so the last ones are noise.
 std::int64_t Microseconds(double days) {
@@ -83,6 +86,16 @@ std::string_view WithoutEndZeros(std::string_view text) {
   return text;
 }
 
+std::string DateText(std::int64_t seconds, std::int64_t part, std::size_t digits) {
+  const std::chrono::sys_seconds moment{std::chrono::seconds(seconds)};
+  const auto day = std::chrono::floor<std::chrono::days>(moment);
+  const std::chrono::year_month_day date(day);
+  const std::string text = Padded(static_cast<int>(date.year()), 4) + '-' +
+                           Padded(static_cast<unsigned>(date.month()), 2) + '-' +
+                           Padded(static_cast<unsigned>(date.day()), 2);
+  return text + 'T' + ClockText((moment - day).count(), part, digits);
+}
+
 std::string TimeText(double days, bool is_1904) {
   using std::chrono::sys_days, std::chrono::year;
   constexpr double kFirstDate = 60;      // Below it is a duration. Excel has a day 60 that never existed.
@@ -92,11 +105,8 @@ std::string TimeText(double days, bool is_1904) {
   if (days < kFirstDate) return ClockText(us);
   constexpr sys_days kOrigin = year(1899) / 12 / 30;
   constexpr sys_days kOrigin1904 = year(1904) / 1 / 1;
-  const std::chrono::year_month_day date((is_1904 ? kOrigin1904 : kOrigin) + std::chrono::days(us / kUsPerDay));
-  const std::string text = Padded(static_cast<int>(date.year()), 4) + '-' +
-                           Padded(static_cast<unsigned>(date.month()), 2) + '-' +
-                           Padded(static_cast<unsigned>(date.day()), 2);
-  return text + 'T' + ClockText(us % kUsPerDay);
+  const std::chrono::sys_seconds origin = is_1904 ? kOrigin1904 : kOrigin;
+  return DateText(origin.time_since_epoch().count() + us / kUsPerSecond, us % kUsPerSecond, 6);
 }
 
 std::string DurationText(std::string_view duration) {
@@ -113,7 +123,7 @@ std::string DurationText(std::string_view duration) {
     seconds += number * (*end == 'H' ? 3600 : *end == 'M' ? 60 : 1);
     duration.remove_prefix(end + 1 - duration.data());
   }
-  if (!(seconds < 1e9)) return "";
+  if (!(seconds >= 0 && seconds < 1e9)) return "";
   return (is_negative ? "-" : "") + ClockText(std::llround(seconds * static_cast<double>(kUsPerSecond)));
 }
 

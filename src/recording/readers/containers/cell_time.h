@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,9 @@ bool IsTimeFormat(int built_in_format);
 /// duration. `is_1904`: day 0 is 1 January 1904, not 30 December 1899. Empty for a number that is no date. Resolution:
 /// 1 ms if the number is that of a millisecond, otherwise 1 us.
 std::string TimeText(double days, bool is_1904);
+
+/// "2024-03-01T16:04:31.273" for whole seconds since 1970 and a fraction of a second in units of 10^-digits.
+std::string DateText(std::int64_t seconds, std::int64_t part, std::size_t digits);
 
 /// The text without zeros at the end of its decimals: "16:04:31.273" for "16:04:31.273000000".
 std::string_view WithoutEndZeros(std::string_view text);

@@ -53,7 +53,7 @@ void CompoundFile::ReadTable() {
   constexpr std::size_t kListAt = 76, kListed = 109, kNextListAt = 68;
   std::vector<std::uint32_t> list;
   AppendWords(bytes_.substr(kListAt, kListed * kWord), list);
-  std::uint32_t next = NumberAt<std::uint32_t>(bytes_, kNextListAt);
+  auto next = NumberAt<std::uint32_t>(bytes_, kNextListAt);
   for (std::size_t left = bytes_.size() / sector_size_; left > 0 && next < kLastSector; --left) {
     std::vector<std::uint32_t> words;
     AppendWords(Sector(next), words);
@@ -70,7 +70,7 @@ void CompoundFile::ReadTable() {
 void CompoundFile::ReadEntries() {
   constexpr std::size_t kDirectoryAt = 48, kTypeAt = 66, kFirstAt = 116, kSizeAt = 120;
   constexpr char kRoot = 5;
-  std::uint32_t sector = NumberAt<std::uint32_t>(bytes_, kDirectoryAt);
+  auto sector = NumberAt<std::uint32_t>(bytes_, kDirectoryAt);
   for (std::size_t left = next_.size(); left > 0 && sector < next_.size(); --left) {
     const std::string_view entries = Sector(sector);
     for (std::size_t at = 0; at + kEntryBytes <= entries.size(); at += kEntryBytes) {

@@ -35,7 +35,7 @@ std::string InQuotes(std::string_view text) {
 }  // namespace
 
 std::string CsvCell(std::string_view text) {
-  const std::string line = OnOneLine(text);
+  std::string line = OnOneLine(text);
   const bool has_end_blanks = !line.empty() && (line.front() == ' ' || line.back() == ' ');
   if (line.find_first_of(kSpecial) == std::string::npos && !has_end_blanks) return line;
   return InQuotes(line);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/readers/containers/excel_xml.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <system_error>
@@ -51,7 +52,7 @@ class ExcelXmlReader {
     if (element == "Row") ++row_;
     if (element != "Worksheet" || workbook_.sheets.empty()) return;
     Sheet& sheet = workbook_.sheets.back();
-    if (FinishSheet(csv_, sheet, workbook_)) max_bytes_ -= sheet.text.size();
+    FinishSheet(csv_, max_bytes_, sheet, workbook_);
   }
 
  private:

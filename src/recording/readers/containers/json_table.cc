@@ -252,8 +252,7 @@ class JsonTableFinder {
       }
     }
     Sheet sheet{name, ""};
-    if (!FinishSheet(csv, sheet, workbook_)) return;
-    max_bytes_ -= sheet.text.size();
+    if (!FinishSheet(csv, max_bytes_, sheet, workbook_)) return;
     workbook_.sheets.push_back(std::move(sheet));
   }
 

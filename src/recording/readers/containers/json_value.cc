@@ -25,7 +25,7 @@ class JsonBuilder {
   }
   bool number_float(double value, const std::string&) { return Add(value); }
   bool string(std::string& value) { return Add(std::make_unique<std::string>(std::move(value))); }
-  bool binary(std::vector<std::uint8_t>&) { return false; }
+  static bool binary(std::vector<std::uint8_t>&) { return false; }
   bool start_object(std::size_t) { return Begin(std::make_unique<JsonObject>()); }
   bool start_array(std::size_t) { return Begin(std::make_unique<JsonArray>()); }
   bool key(std::string& key) {

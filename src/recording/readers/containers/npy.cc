@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -61,9 +60,10 @@ class NpyHeaderParser {
     while (!Take('}')) {
       const std::optional<std::string> key = String();
       if (!key || !Take(':') || !Value(*key, header)) return std::nullopt;
+      if (!header.unreadable.empty()) return header;
       Take(',');
     }
-    if (header.fields.empty() && header.unreadable.empty()) return std::nullopt;
+    if (header.fields.empty()) return std::nullopt;
     return header;
   }
 
@@ -99,8 +99,10 @@ class NpyHeaderParser {
       std::vector<std::size_t> shape;
       if (!type || (Take(',') && Peek() == '(' && !Shape(shape)) || !Take(')')) return false;
       std::size_t count = 1;
-      for (const std::size_t size : shape) count *= std::min<std::size_t>(size, kMaxParts);
-      if (count > kMaxParts) return false;
+      for (const std::size_t size : shape) {
+        if (size == 0 || size > kMaxParts / count) return false;
+        count *= size;
+      }
       for (std::size_t i = 0; i < count; ++i) {
         AddField(shape.empty() ? *name : *name + "." + std::to_string(i), *type, header);
       }
@@ -118,7 +120,7 @@ class NpyHeaderParser {
   }
 
   /// A type such as "<f8" or "<M8[ns]".
-  void AddField(const std::string& name, const std::string& text, NpyHeader& header) {
+  static void AddField(const std::string& name, const std::string& text, NpyHeader& header) {
     constexpr std::size_t kMaxElement = std::size_t{1} << 20;
     NpyType type;
     std::size_t at = text.find_first_not_of("<>|=");
@@ -243,84 +245,83 @@ constexpr std::array kDateUnits = {
 };
 
 /// "2024-03-01T16:04:31.273" for a count of units since 1970.
-std::string DateText(std::int64_t count, const DateUnit& unit) {
-  using std::chrono::seconds, std::chrono::days, std::chrono::sys_days;
+std::string TextOfDate(std::int64_t count, const DateUnit& unit) {
   constexpr std::int64_t kMaxSeconds = 253402300800;  // The year 10000.
   std::int64_t whole = count / unit.per_second;
   std::int64_t part = count % unit.per_second;
   if (part < 0) part += unit.per_second, --whole;
   if (std::abs(whole) > kMaxSeconds / unit.seconds) return "";
-  whole *= unit.seconds;
-  const auto day = std::chrono::floor<days>(seconds(whole));
-  const std::chrono::year_month_day date{sys_days(day)};
-  const std::int64_t second = whole - std::chrono::seconds(day).count();
-  const auto padded = [](std::int64_t number, std::size_t digits) {
-    const std::string text = std::to_string(number);
-    return std::string(digits - std::min(digits, text.size()), '0') + text;
-  };
-  std::string text = padded(static_cast<int>(date.year()), 4) + '-' + padded(static_cast<unsigned>(date.month()), 2) +
-                     '-' + padded(static_cast<unsigned>(date.day()), 2) + 'T' + padded(second / 3600, 2) + ':' +
-                     padded(second / 60 % 60, 2) + ':' + padded(second % 60, 2);
-  if (part != 0) text += '.' + padded(part, std::to_string(unit.per_second).size() - 1);
-  return std::string(WithoutEndZeros(text));
+  return DateText(whole * unit.seconds, part, std::to_string(unit.per_second).size() - 1);
 }
 
-/// Writes one element into a cell.
-class NpyElementWriter {
- public:
-  NpyElementWriter(CsvText& csv, std::size_t row, std::size_t column) : csv_(csv), row_(row), column_(column) {}
+/// An element's bytes as a number without a sign.
+std::uint64_t BitsOf(std::string_view element, const NpyType& type) {
+  std::array<char, sizeof(std::uint64_t)> ordered{};
+  std::copy(element.begin(), element.end(), ordered.begin());
+  if (type.is_swapped) std::reverse(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(element.size()));
+  return NumberAt<std::uint64_t>({ordered.data(), ordered.size()}, 0);
+}
 
-  void Write(std::string_view element, const NpyType& type) const {
-    std::array<char, sizeof(std::uint64_t)> ordered{};
-    if (type.kind == 'S' || type.kind == 'U') return WriteText(element, type);
-    std::copy(element.begin(), element.end(), ordered.begin());
-    if (type.is_swapped) std::reverse(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(element.size()));
-    const auto bits = NumberAt<std::uint64_t>({ordered.data(), ordered.size()}, 0);
-    switch (type.kind) {
-      case 'f': return csv_.AddNumber(row_, column_, Float(bits, type.size));
-      case 'u': return csv_.AddText(row_, column_, std::to_string(bits));
-      case 'i': return csv_.AddText(row_, column_, std::to_string(Signed(bits, type.size)));
-      case 'b': return csv_.AddText(row_, column_, bits == 0 ? "0" : "1");
-      default: return WriteTime(static_cast<std::int64_t>(bits), type);
-    }
+double FloatOf(std::uint64_t bits, std::size_t size) {
+  if (size == sizeof(std::uint16_t)) return NumberOfHalf(static_cast<std::uint16_t>(bits));
+  if (size == sizeof(float)) return NumberOfBits<float>(static_cast<std::uint32_t>(bits));
+  return NumberOfBits<double>(bits);
+}
+
+std::int64_t SignedOf(std::uint64_t bits, std::size_t size) {
+  const int unused = 64 - 8 * static_cast<int>(size);
+  return static_cast<std::int64_t>(bits << unused) >> unused;
+}
+
+/// The unit of a date or a duration; nullptr if there is none, or if the element is NaT (not a time).
+const DateUnit* UnitOf(std::int64_t count, const NpyType& type) {
+  const auto* const unit = std::ranges::find(kDateUnits, type.unit, &DateUnit::name);
+  const bool is_time = unit != kDateUnits.end() && count != std::numeric_limits<std::int64_t>::min();
+  return is_time ? unit : nullptr;
+}
+
+std::string LettersOf(std::string_view element, const NpyType& type) {
+  if (type.kind == 'S') return std::string(element.substr(0, element.find('\0')));
+  std::string units;  // Each letter has four bytes; those outside of UTF-16's two do not matter here.
+  for (std::size_t at = 0; at + 4 <= element.size(); at += 4) {
+    const std::string_view pair = element.substr(type.is_swapped ? at + 2 : at, 2);
+    if (pair == std::string_view("\0\0", 2)) break;
+    units += pair;
   }
+  return Utf8OfUtf16(units, type.is_swapped ? ByteOrder::kBig : ByteOrder::kLittle);
+}
 
- private:
-  static double Float(std::uint64_t bits, std::size_t size) {
-    if (size == sizeof(std::uint16_t)) return NumberOfHalf(static_cast<std::uint16_t>(bits));
-    if (size == sizeof(float)) return NumberOfBits<float>(static_cast<std::uint32_t>(bits));
-    return NumberOfBits<double>(bits);
+/// An element with a fraction, or a duration in seconds; std::nullopt for elements of other types.
+std::optional<double> NumberOf(std::string_view element, const NpyType& type) {
+  if (type.kind != 'f' && type.kind != 'm') return std::nullopt;
+  const std::uint64_t bits = BitsOf(element, type);
+  if (type.kind == 'f') return FloatOf(bits, type.size);
+  const auto count = static_cast<std::int64_t>(bits);
+  const DateUnit* const unit = UnitOf(count, type);
+  if (unit == nullptr) return NAN;
+  return static_cast<double>(count) * static_cast<double>(unit->seconds) / static_cast<double>(unit->per_second);
+}
+
+/// An element of another type: a whole number, a date, or text.
+std::string TextOf(std::string_view element, const NpyType& type) {
+  if (type.kind == 'S' || type.kind == 'U') return LettersOf(element, type);
+  const std::uint64_t bits = BitsOf(element, type);
+  switch (type.kind) {
+    case 'u': return std::to_string(bits);
+    case 'i': return std::to_string(SignedOf(bits, type.size));
+    case 'b': return bits == 0 ? "0" : "1";
+    default: break;
   }
+  const auto count = static_cast<std::int64_t>(bits);
+  const DateUnit* const unit = UnitOf(count, type);
+  return unit == nullptr ? "" : TextOfDate(count, *unit);
+}
 
-  static std::int64_t Signed(std::uint64_t bits, std::size_t size) {
-    const int unused = 64 - 8 * static_cast<int>(size);
-    return static_cast<std::int64_t>(bits << unused) >> unused;
-  }
-
-  /// Dates as text, durations in seconds.
-  void WriteTime(std::int64_t count, const NpyType& type) const {
-    const auto* const unit = std::ranges::find(kDateUnits, type.unit, &DateUnit::name);
-    if (unit == kDateUnits.end() || count == std::numeric_limits<std::int64_t>::min()) return;  // NaT
-    if (type.kind == 'M') return csv_.AddText(row_, column_, DateText(count, *unit));
-    csv_.AddNumber(
-        row_, column_,
-        static_cast<double>(count) * static_cast<double>(unit->seconds) / static_cast<double>(unit->per_second));
-  }
-
-  void WriteText(std::string_view element, const NpyType& type) const {
-    if (type.kind == 'S') return csv_.AddText(row_, column_, element.substr(0, element.find('\0')));
-    std::string units;  // Each letter has four bytes; those outside of UTF-16's two do not matter here.
-    for (std::size_t at = 0; at + 4 <= element.size(); at += 4) {
-      const std::string_view pair = element.substr(type.is_swapped ? at + 2 : at, 2);
-      if (pair == std::string_view("\0\0", 2)) break;
-      units += pair;
-    }
-    csv_.AddText(row_, column_, Utf8OfUtf16(units, type.is_swapped ? ByteOrder::kBig : ByteOrder::kLittle));
-  }
-
-  CsvText& csv_;
-  std::size_t row_, column_;
-};
+/// Writes one element into a cell. What is no number stays empty.
+void WriteElement(std::string_view element, const NpyType& type, std::size_t row, std::size_t column, CsvText& csv) {
+  if (const auto number = NumberOf(element, type)) return csv.AddNumber(row, column, *number);
+  csv.AddText(row, column, TextOf(element, type));
+}
 
 // ---- Arrays ------------------------------------------------------------------------------------------------------
 
@@ -396,7 +397,7 @@ void WriteArray(const NpyArray& array, CsvText& csv) {
     for (std::size_t column = 0; column < array.columns; ++column) {
       for (std::size_t i = 0; i < width; ++i) {
         const NpyField& field = array.header.fields[i];
-        NpyElementWriter(csv, first + row, column * width + i).Write(array.Element(row, column, field), field.type);
+        WriteElement(array.Element(row, column, field), field.type, first + row, column * width + i, csv);
       }
     }
   }
@@ -421,18 +422,20 @@ void WriteVectors(const std::vector<NpyVector>& vectors, const std::vector<std::
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       const NpyArray& array = vectors[i].array;
       const NpyField& field = array.header.fields.front();
-      if (r < array.rows) NpyElementWriter(csv, row, i).Write(array.Element(r, 0, field), field.type);
+      if (r < array.rows) WriteElement(array.Element(r, 0, field), field.type, row, i, csv);
     }
   }
 }
 
-/// A number without dimensions as "# key: value".
+/// A number or a text without dimensions as "# key: value", or the parts of a record.
 std::string CommentOf(const std::string& name, const NpyArray& array) {
-  CsvText csv(array.data.size() + 1000);
-  WriteArray(array, csv);
-  std::string text = csv.Finish();
-  if (text.ends_with('\n')) text.pop_back();
-  return "# " + name + ": " + text;
+  std::string comment = "# " + name + ":";
+  for (const NpyField& field : array.header.fields) {
+    const std::string_view element = array.Element(0, 0, field);
+    const auto number = NumberOf(element, field.type);
+    comment += " " + (number ? NumberText(*number) : TextOf(element, field.type));
+  }
+  return comment;
 }
 
 }  // namespace
@@ -445,7 +448,7 @@ Workbook ReadNpy(std::string_view bytes, std::size_t max_bytes) {
   CsvText csv(max_bytes);
   WriteArray(array, csv);
   Sheet sheet;
-  if (FinishSheet(csv, sheet, workbook)) workbook.sheets.push_back(std::move(sheet));
+  if (FinishSheet(csv, max_bytes, sheet, workbook)) workbook.sheets.push_back(std::move(sheet));
   return workbook;
 }
 
@@ -483,7 +486,7 @@ Workbook ReadNpz(const ZipMembers& zip, std::size_t max_bytes) {
       CsvText csv(max_bytes);
       WriteArray(vector.array, csv);
       Sheet sheet{vector.name, ""};
-      if (!FinishSheet(csv, sheet, workbook)) return workbook;
+      if (!FinishSheet(csv, max_bytes, sheet, workbook)) return workbook;
       workbook.sheets.push_back(std::move(sheet));
       vectors.pop_back();
     }
@@ -492,7 +495,7 @@ Workbook ReadNpz(const ZipMembers& zip, std::size_t max_bytes) {
     CsvText csv(max_bytes);
     WriteVectors(vectors, comments, csv);
     Sheet sheet;
-    if (!FinishSheet(csv, sheet, workbook)) return workbook;
+    if (!FinishSheet(csv, max_bytes, sheet, workbook)) return workbook;
     workbook.sheets.insert(workbook.sheets.begin(), std::move(sheet));
   }
   if (workbook.sheets.empty()) workbook.complaint = complaint;

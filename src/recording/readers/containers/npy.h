@@ -20,7 +20,7 @@ Workbook ReadNpy(std::string_view bytes, std::size_t max_bytes);
 bool IsNpz(const ZipMembers& zip);
 
 /// The tables in a file of several arrays (.npz). All vectors are the columns of one table; a matrix or an array of
-/// records is a table with the name of its file. Single numbers are lines `# key: value`.
+/// records is a table with the name of its file. Single numbers and texts are lines `# key: value`.
 Workbook ReadNpz(const ZipMembers& zip, std::size_t max_bytes);
 
 }  // namespace pendulum

@@ -76,7 +76,7 @@ class OdsReader {
   void EndTable() {
     is_in_table_ = false;
     Sheet& sheet = workbook_.sheets.back();
-    if (FinishSheet(csv_, sheet, workbook_)) max_bytes_ -= sheet.text.size();
+    FinishSheet(csv_, max_bytes_, sheet, workbook_);
   }
 
   void BeginCell(const XmlAttributes& attributes) {
@@ -105,7 +105,8 @@ class OdsReader {
   /// Empty rows at the end of a sheet are repeated a million times. A malicious file repeats rows that are not empty.
   void EndRow() {
     const std::size_t repeats = cells_.empty() ? 0 : row_repeats_;
-    workbook_.is_too_large |= repeats * next_column_ > max_bytes_;  // A cell has at least a separator.
+    const std::size_t width = cells_.empty() ? 0 : cells_.back().column + cells_.back().repeats;
+    workbook_.is_too_large |= width > 0 && repeats > max_bytes_ / width;  // A cell has at least a separator.
     for (std::size_t i = 0; i < repeats && !is_done() && !csv_.is_full(); ++i) AddRow(row_ + i);
     row_ += row_repeats_;
     workbook_.is_too_large |= csv_.is_full();

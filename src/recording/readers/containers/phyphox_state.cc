@@ -107,8 +107,7 @@ Workbook ReadPhyphoxState(std::string_view xml, std::size_t max_bytes) {
     CsvText csv(max_bytes);
     if (WriteSet(set, state, csv) <= kNoRecording) continue;
     Sheet sheet{set.name, ""};
-    if (!FinishSheet(csv, sheet, workbook)) return workbook;
-    max_bytes -= sheet.text.size();
+    if (!FinishSheet(csv, max_bytes, sheet, workbook)) return workbook;
     workbook.sheets.push_back(std::move(sheet));
   }
   if (workbook.sheets.empty()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/readers/containers/workbook.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -36,13 +37,19 @@ std::string TakeString(std::string_view& bytes) {
 
 }  // namespace
 
-bool FinishSheet(CsvText& csv, Sheet& sheet, Workbook& workbook) {
+bool FinishSheet(CsvText& csv, std::size_t& max_bytes, Sheet& sheet, Workbook& workbook) {
   sheet.text = csv.Finish();
+  max_bytes -= std::min(max_bytes, sheet.text.size());
   workbook.is_too_large |= csv.is_full();
   if (csv.is_disordered() && !workbook.is_too_large) {
     workbook.complaint = "the cells of sheet " + Quoted(sheet.name) + " are not in order; save the workbook again";
   }
   return !workbook.is_too_large && workbook.complaint.empty();
+}
+
+void ComplainIfEmpty(Workbook& workbook) {
+  if (!workbook.sheets.empty()) return;
+  workbook.complaint = "this workbook has no sheet with cells, only charts or macros; name one with the numbers";
 }
 
 std::string Pack(const Workbook& workbook) {

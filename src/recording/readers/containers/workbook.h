@@ -27,8 +27,12 @@ struct Workbook {
 /// The rows of a sheet in Excel and LibreOffice. A file may claim to have more, to use up memory.
 inline constexpr std::size_t kMaxSheetRows = std::size_t{1} << 20;
 
-/// Sets the text of a sheet. Returns false and sets the complaint, or is_too_large, if cells were left out.
-bool FinishSheet(CsvText& csv, Sheet& sheet, Workbook& workbook);
+/// Sets the text of a sheet and subtracts its size from max_bytes, the limit of the sheets that follow. Returns false
+/// and sets the complaint, or is_too_large, if cells were left out.
+bool FinishSheet(CsvText& csv, std::size_t& max_bytes, Sheet& sheet, Workbook& workbook);
+
+/// Sets the complaint of a workbook of Excel without a sheet of cells.
+void ComplainIfEmpty(Workbook& workbook);
 
 /// A workbook as bytes, to be sent by a child process.
 std::string Pack(const Workbook& workbook);

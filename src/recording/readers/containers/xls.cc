@@ -118,7 +118,7 @@ class XlsStrings {
     return number;
   }
 
-  /// Where the characters go on in the next record, that begins with their width.
+  /// A string may continue in the next record, whose first byte gives the width again.
   std::string ReadOne() {
     constexpr unsigned kWide = 1, kExtended = 4, kRich = 8;
     constexpr std::size_t kRunBytes = 4;
@@ -351,13 +351,10 @@ Workbook ReadXls(std::string_view bytes, std::size_t max_bytes) {
     CsvText csv(max_bytes, kMaxSheetRows);
     reader.WriteTo(csv);
     Sheet sheet{listed.name, ""};
-    if (!FinishSheet(csv, sheet, workbook)) return workbook;
-    max_bytes -= sheet.text.size();
+    if (!FinishSheet(csv, max_bytes, sheet, workbook)) return workbook;
     workbook.sheets.push_back(std::move(sheet));
   }
-  if (workbook.sheets.empty()) {
-    workbook.complaint = "this workbook has no sheet with cells, only charts or macros; name one with the numbers";
-  }
+  ComplainIfEmpty(workbook);
   return workbook;
 }
 

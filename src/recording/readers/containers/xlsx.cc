@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
 #include "recording/readers/containers/cell_time.h"
 #include "recording/readers/containers/csv_text.h"
 #include "recording/readers/containers/xml_parser.h"
@@ -17,7 +18,7 @@
 namespace pendulum {
 namespace {
 
-/// Where the files of a workbook refer to.
+/// A file that another file of the workbook refers to.
 struct XlsxRelation {
   std::string type;  // The end of the type's address: worksheet, sharedStrings, ...
   std::string path;  // In the zip file.
@@ -36,14 +37,14 @@ struct XlsxBook {
 bool ParseMember(const ZipMembers& zip, const std::string& path, XmlHandlers handlers, Workbook& workbook) {
   const ZipMembers::Member* const member = zip.Find(path);
   if (member == nullptr) {
-    workbook.complaint = "this workbook is damaged: " + path + " is missing; save it again";
+    workbook.complaint = "this workbook is damaged: " + Quoted(path) + " is missing; save it again";
     return false;
   }
   XmlParser parser(std::move(handlers));
   const auto unpacked = zip.UnpackBlocks(*member, [&](std::string_view block) { return parser.Add(block); });
   if (unpacked) parser.Add("", true);
   if (unpacked && parser.fault().empty()) return true;
-  workbook.complaint = "this workbook is damaged: " + path + " cannot be read (" +
+  workbook.complaint = "this workbook is damaged: " + Quoted(path) + " cannot be read (" +
                        (unpacked ? parser.fault() : "it cannot be unpacked") + "); save it again";
   return false;
 }
@@ -227,7 +228,7 @@ class XlsxSheetReader {
 };
 
 /// Reads a sheet; returns false if the workbook cannot be read further.
-bool ReadSheet(const ZipMembers& zip, const std::string& path, const XlsxBook& book, std::size_t max_bytes,
+bool ReadSheet(const ZipMembers& zip, const std::string& path, const XlsxBook& book, std::size_t& max_bytes,
                Sheet& sheet, Workbook& workbook) {
   XlsxSheetReader reader(book, max_bytes);
   XmlHandlers handlers;
@@ -236,7 +237,7 @@ bool ReadSheet(const ZipMembers& zip, const std::string& path, const XlsxBook& b
   };
   handlers.text = [&](std::string_view text) { reader.Add(text); };
   handlers.end = [&](std::string_view element) { reader.End(element); };
-  return ParseMember(zip, path, std::move(handlers), workbook) && FinishSheet(reader.csv(), sheet, workbook);
+  return ParseMember(zip, path, std::move(handlers), workbook) && FinishSheet(reader.csv(), max_bytes, sheet, workbook);
 }
 
 /// A sheet as the workbook lists it.
@@ -292,12 +293,9 @@ Workbook ReadXlsx(const ZipMembers& zip, std::size_t max_bytes) {
     if (relation == relations.end() || relation->second.type != "worksheet") continue;  // A chart or a macro.
     Sheet sheet{listed.name, ""};
     if (!ReadSheet(zip, relation->second.path, book, max_bytes, sheet, workbook)) return workbook;
-    max_bytes -= sheet.text.size();
     workbook.sheets.push_back(std::move(sheet));
   }
-  if (workbook.sheets.empty()) {
-    workbook.complaint = "this workbook has no sheet with cells, only charts or macros; name one with the numbers";
-  }
+  ComplainIfEmpty(workbook);
   return workbook;
 }
 

@@ -272,6 +272,7 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
   samples.value.conservativeResize(rows);
   if (layout.second) samples.second.conservativeResize(rows);
   const std::size_t left_out = size - static_cast<std::size_t>(rows);
+  samples.left_out = left_out;
   if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
   if (rows >= kMinimumSamples) return samples;
   return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
@@ -279,14 +280,15 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
                                                     std::to_string(kMinimumSamples) + " are needed: record for longer");
 }
 
-/// All numbers of the table. Shorter columns end in NaN.
+/// The numbers of the table, as far as they are needed to choose columns. Shorter columns end in NaN.
 csv::TableNumbers NumbersOf(const MatTable& table) {
   csv::TableNumbers numbers;
   numbers.is_clock.resize(table.columns.size());
   std::size_t longest = 0;
   for (const MatColumn& column : table.columns) longest = std::max(longest, column.values.size());
+  longest = std::min(longest, csv::kMostCells / std::max<std::size_t>(table.columns.size(), 1));
   for (const MatColumn& column : table.columns) {
-    const auto rows = static_cast<Eigen::Index>(column.values.size());
+    const auto rows = static_cast<Eigen::Index>(std::min(column.values.size(), longest));
     Eigen::VectorXd padded = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(longest), std::nan(""));
     padded.head(rows) = Eigen::VectorXd::Map(column.values.data(), rows);
     numbers.columns.push_back(std::move(padded));

@@ -18,7 +18,7 @@ struct Cells {
   Result<void> Read(const Line& line, std::string_view field, const Column& column, double& number) {
     const std::string_view text = Unquote(field);
     if (numbers.Parse(text, number)) return {};
-    if (text.empty() || text == "NaN" || text == "nan") {
+    if (IsMissing(text)) {
       is_gap = true;
       return {};
     }

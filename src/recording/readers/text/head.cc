@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "recording/readers/text/tracker.h"
@@ -24,7 +25,7 @@ struct FirstLines {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Calls take(text, number) for each complete line until it returns false.
+/// Calls take(text, number) for each line, also for a last one without a line end, until it returns false.
 template <typename Take>
 void ForEachTextLine(std::string_view text, std::size_t number, const Take& take) {
   for (std::size_t begin = 0; begin < text.size(); ++number) {
@@ -69,8 +70,6 @@ bool HasHostStamps(const std::vector<TextLine>& lines) {
 
 /// What each field of a line holds: kNumber (or a time of day), kText, kEmpty.
 constexpr char kNumber = 'n', kText = 't', kEmpty = '-';
-
-bool IsMissing(std::string_view text) { return text.empty() || text == "NaN" || text == "nan" || text == "NAN"; }
 
 std::string MaskOf(std::string_view line, char separator) {
   Numbers numbers(separator != ',');
@@ -132,7 +131,8 @@ bool IsRow(const std::string& mask, const std::string& usual) {
 /// A line of dashes below a header.
 bool IsRule(std::string_view line) {
   constexpr std::string_view kMarks = "-=_+|*~ \t,;";
-  return line.find_first_not_of(kMarks) == std::string_view::npos && line.find_first_of("-=_*~") != line.npos;
+  return line.find_first_not_of(kMarks) == std::string_view::npos &&
+         line.find_first_of("-=_*~") != std::string_view::npos;
 }
 
 /// Where the table is, for one separator.
@@ -204,12 +204,16 @@ std::string_view NamesIn(std::string_view line, char separator) {
   return line;
 }
 
+std::string_view WithoutBrackets(std::string_view text) {
+  const bool has_brackets = text.size() > 2 && (text.front() == '(' || text.front() == '[');
+  return has_brackets ? text.substr(1, text.size() - 2) : text;
+}
+
 /// Whether each field is a unit, perhaps in brackets, or empty.
 bool AreUnits(const std::vector<Name>& names) {
   bool has_unit = false;
   for (const Name& name : names) {
-    std::string_view text = name.text;
-    if (text.size() > 2 && (text.front() == '(' || text.front() == '[')) text = text.substr(1, text.size() - 2);
+    const std::string_view text = WithoutBrackets(name.text);
     if (text.empty() || text == "-") continue;
     const NameMeaning meaning = MeaningOf(text);
     const bool is_unit = UnitOfText(text) != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
@@ -224,8 +228,7 @@ std::vector<TableColumn> WithUnits(const std::vector<Name>& names, const std::ve
   std::vector<TableColumn> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name(names[i].text);
-    std::string_view unit = i < units.size() ? units[i].text : std::string_view();
-    if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '[')) unit = unit.substr(1, unit.size() - 2);
+    const std::string_view unit = i < units.size() ? WithoutBrackets(units[i].text) : std::string_view();
     const bool adds = UnitOfText(unit) != nullptr && MeaningOf(name).unit == nullptr;
     columns.push_back({name, adds ? name + " (" + std::string(unit) + ")" : name, "", names[i].at});
   }
@@ -247,14 +250,19 @@ bool SaysSomething(const std::vector<Name>& names) {
   return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
 }
 
+std::string_view WithoutLeadingBlanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
 /// The header of numpy's savetxt: a comment above the first row with as many names as columns.
 std::optional<TextLine> CommentWithNames(const FirstLines& first, const TextLine& row, std::size_t before,
                                          const Table& table) {
-  for (auto comment = first.comments.rbegin(); comment != first.comments.rend(); ++comment) {
-    if (comment->number >= row.number || comment->number <= before) continue;
-    const std::string_view names = Trim(Trim(comment->text).substr(1));
+  for (const TextLine& comment : std::views::reverse(first.comments)) {
+    if (comment.number >= row.number || comment.number <= before) continue;
+    std::string_view names = comment.text.substr(comment.text.find('#') + 1);
+    names = table.separator == '\t' ? WithoutLeadingBlanks(names) : Trim(names);  // An empty last name is a column.
     const std::vector<Name> split = SplitHeader(names, table.separator);
-    return split.size() == table.width && SaysSomething(split) ? std::optional(TextLine{names, comment->number})
+    return split.size() == table.width && SaysSomething(split) ? std::optional(TextLine{names, comment.number})
                                                                : std::nullopt;
   }
   return std::nullopt;
@@ -314,6 +322,101 @@ Head ParseVernierHead(const std::vector<TextLine>& lines, Layout& layout) {
   return head;
 }
 
+/// Examines the first lines of a text in steps, each of which needs the ones before.
+class HeadParser {
+ public:
+  HeadParser(const FirstLines& first, Layout& layout) : first_(first), layout_(layout) {}
+
+  Head Parse() {
+    ChooseTable();
+    FindNames();
+    ReadPreamble(lines_, std::min(table_.first_row + 3, lines_.size()), head_);
+    if (table_.first_row < lines_.size()) head_.first_row = LineOf(table_.first_row);
+    if (layout_.has_header) {
+      head_.names = first_.lines[table_.names];
+      MakeColumns();
+    } else if (UseCommentAsHeader()) {
+      MakeColumns();
+    } else {
+      head_.names = first_.lines[std::min(table_.first_row, lines_.size() - 1)];
+      layout_.width = std::max<std::size_t>(table_.width, 1);
+    }
+    return std::move(head_);
+  }
+
+ private:
+  TextLine LineOf(std::size_t i) const { return {lines_[i], first_.lines[i].number}; }
+  std::string_view NamesOf(std::size_t i) const { return NamesIn(lines_[i], table_.separator); }
+
+  static bool HasName(const std::vector<Name>& names) {
+    return std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
+  }
+
+  void ChooseTable() {
+    head_.has_host = HasHostStamps(first_.lines);
+    for (const TextLine& line : first_.lines) lines_.push_back(DevicePart(line.text, head_.has_host));
+    table_ = BestTable(lines_, first_.separator);
+    if (table_.score == 0) {  // Without rows of numbers, the first line is the header, so that messages name columns.
+      const char separator = first_.separator != '\0' ? first_.separator : Separator(lines_[0]);
+      table_ = {separator, std::min<std::size_t>(1, lines_.size()), 0};
+    }
+    layout_.separator = table_.separator;
+  }
+
+  /// Finds the names, perhaps above a line of units, and whether they are a header.
+  void FindNames() {
+    if (table_.names < table_.first_row) names_ = SplitHeader(NamesOf(table_.names), table_.separator);
+    if (table_.names > 0 && table_.names < table_.first_row) {
+      std::vector<Name> above = SplitHeader(NamesOf(table_.names - 1), table_.separator);
+      if (HasName(above) && (AreUnits(names_) || ReadRigolHeader(above, names_, head_))) {
+        units_ = std::exchange(names_, std::move(above));
+        --table_.names;
+      }
+    }
+    // Text above a table without a header says nothing.
+    const bool is_text = table_.names > 0 && names_.size() != table_.width && !SaysSomething(names_);
+    layout_.has_header = HasName(names_) && !is_text;
+    const bool is_first_row_cut_off = !layout_.has_header && table_.first_row == 1 && table_.names == 0;
+    if (is_first_row_cut_off && !names_.empty()) table_.first_row = 0;
+  }
+
+  /// Takes the names from a comment above the table. Returns false if there is none.
+  bool UseCommentAsHeader() {
+    const std::size_t before = table_.first_row > 0 ? first_.lines[table_.first_row - 1].number : 0;
+    const auto comment = CommentWithNames(first_, head_.first_row, before, table_);
+    if (!comment) return false;
+    names_ = SplitHeader(comment->text, table_.separator);
+    layout_.has_header = true;
+    head_.names = *comment;
+    return true;
+  }
+
+  void MakeColumns() {
+    const bool is_comment = head_.names.number != first_.lines[table_.names].number;
+    if (units_.empty() && table_.names > 0 && !is_comment) {
+      head_.columns =
+          LabelledColumns(lines_[table_.names - 1], NamesOf(table_.names), lines_[table_.first_row], table_.separator);
+      head_.may_be_short = !head_.columns.empty();
+    }
+    if (head_.columns.empty() && table_.width == 1 && table_.separator == ' ' && names_.size() > 1) {
+      // The name of a single column may contain blanks.
+      names_ = {{Unquote(NamesOf(table_.names)), Trim(NamesOf(table_.names)).data()}};
+    }
+    if (head_.columns.empty()) head_.columns = units_.empty() ? ColumnsOf(names_) : WithUnits(names_, units_);
+    const auto times =
+        std::ranges::count_if(head_.columns, [](const TableColumn& each) { return IsTime(each.meaning); });
+    head_.may_be_short |= times > 1;
+    layout_.width = head_.columns.size();
+  }
+
+  const FirstLines& first_;
+  Layout& layout_;
+  Head head_;
+  Table table_;
+  std::vector<std::string_view> lines_;  // What the device sent.
+  std::vector<Name> names_, units_;
+};
+
 }  // namespace
 
 std::optional<char> SeparatorLine(std::string_view line) {
@@ -328,78 +431,20 @@ Head ParseHead(std::string_view begin, Layout& layout) {
   const FirstLines first = SplitFirstLines(begin);
   if (first.lines.empty()) return {};
   if (IsVernier(first.lines.front().text)) return ParseVernierHead(first.lines, layout);
-  Head head;
-  head.has_host = HasHostStamps(first.lines);
-  std::vector<std::string_view> lines;
-  for (const TextLine& line : first.lines) lines.push_back(DevicePart(line.text, head.has_host));
-  Table table = BestTable(lines, first.separator);
-  if (table.score ==
-      0) {  // No rows of numbers: the first line is taken as the header, so that messages name its columns.
-    table = {first.separator != '\0' ? first.separator : Separator(lines[0]), std::min<std::size_t>(1, lines.size()),
-             0};
-  }
-  layout.separator = table.separator;
-  const auto split = [&](std::size_t i) { return SplitHeader(NamesIn(lines[i], table.separator), table.separator); };
-  std::vector<Name> names = table.names < table.first_row ? split(table.names) : std::vector<Name>();
-  std::vector<Name> units;
-  if (table.names > 0 && table.names < table.first_row) {
-    std::vector<Name> above = split(table.names - 1);
-    const bool has_names = std::ranges::any_of(above, [](const Name& name) { return IsName(name.text); });
-    if (has_names && (AreUnits(names) || ReadRigolHeader(above, names, head))) {
-      units = std::exchange(names, std::move(above));
-      --table.names;
-    }
-  }
-  layout.has_header = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
-  // Text above a table without a header.
-  if (layout.has_header && table.names > 0 && names.size() != table.width && !SaysSomething(names)) {
-    layout.has_header = false;
-  }
-  const bool is_first_row_cut_off = !layout.has_header && table.first_row == 1 && table.names == 0;
-  if (is_first_row_cut_off && !names.empty()) table.first_row = 0;
-  ReadPreamble(lines, std::min(table.first_row + 3, lines.size()), head);
-  if (table.first_row < lines.size()) head.first_row = {lines[table.first_row], first.lines[table.first_row].number};
-  if (!layout.has_header) {
-    const std::size_t before = table.first_row > 0 ? first.lines[table.first_row - 1].number : 0;
-    const auto comment = CommentWithNames(first, head.first_row, before, table);
-    if (comment) {
-      names = SplitHeader(comment->text, table.separator);
-      layout.has_header = true;
-      head.names = *comment;
-    } else {
-      head.names = first.lines[std::min(table.first_row, lines.size() - 1)];
-      layout.width = std::max<std::size_t>(table.width, 1);
-      return head;
-    }
-  } else {
-    head.names = first.lines[table.names];
-  }
-  if (units.empty() && table.names > 0 && head.names.number == first.lines[table.names].number) {
-    head.columns = LabelledColumns(lines[table.names - 1], NamesIn(lines[table.names], table.separator),
-                                   lines[table.first_row], table.separator);
-    head.may_be_short = !head.columns.empty();
-  }
-  if (head.columns.empty() && table.width == 1 && table.separator == ' ' && names.size() > 1) {
-    // The name of a single column may contain blanks.
-    names = {{Unquote(NamesIn(lines[table.names], table.separator)),
-              Trim(NamesIn(lines[table.names], table.separator)).data()}};
-  }
-  if (head.columns.empty()) head.columns = units.empty() ? ColumnsOf(names) : WithUnits(names, units);
-  const auto times = std::ranges::count_if(head.columns, [](const TableColumn& each) { return IsTime(each.meaning); });
-  head.may_be_short |= times > 1;
-  layout.width = head.columns.size();
-  return head;
+  return HeadParser(first, layout).Parse();
 }
 
 TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& head, const Layout& layout) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::vector<double>> columns(layout.width);
+  std::size_t rows = 0;
   TableNumbers found;
   found.is_clock.resize(layout.width);
   std::vector<DayClock> clocks(layout.width);
   Numbers numbers(layout.separator != ',');
   ForEachTextLine(text, number, [&](std::string_view line, std::size_t at) {
     if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
+    if (++rows * layout.width > kMostCells) return false;
     std::size_t index = 0;
     for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator); !fields.done() && index < layout.width;
          ++index) {

@@ -48,7 +48,8 @@ inline std::string_view DevicePart(std::string_view line, bool has_host) {
 /// and has_header. `begin` must outlive the result.
 Head ParseHead(std::string_view begin, Layout& layout);
 
-/// Reads the numbers of the rows of a text from line `first_row` on; `number` is the number of the text's first line.
+/// Reads the numbers of the rows of a text from line `first_row` on, at most kMostCells; `number` is the number of the
+/// text's first line.
 TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& head, const Layout& layout);
 
 }  // namespace pendulum::csv

@@ -34,6 +34,11 @@ using Check = Result<void>;
 /// The bytes in which the structure of a text is looked for, and those whose numbers may decide on the columns.
 constexpr std::size_t kHeadBytes = std::size_t{1} << 16, kNumbersBytes = std::size_t{1} << 24;
 
+/// The bytes for the numbers without a last line that is cut off at their end.
+std::string WholeLines(const std::string& bytes) {
+  return bytes.size() < kNumbersBytes ? bytes : bytes.substr(0, bytes.rfind('\n') + 1);  // npos + 1 is 0
+}
+
 /// Reads one text, line by line.
 class Reader {
  public:
@@ -129,7 +134,7 @@ Check Reader::ParseHead() {
   first_bytes_ = *std::move(bytes);
   std::string_view begin = first_bytes_;
   const std::size_t last_line_end = begin.rfind('\n');
-  if (begin.size() == kHeadBytes && last_line_end != begin.npos) begin = begin.substr(0, last_line_end + 1);
+  if (begin.size() == kHeadBytes && last_line_end != std::string_view::npos) begin = begin.substr(0, last_line_end + 1);
   head_ = csv::ParseHead(begin, layout_);
   line_ = {lines_.name(), head_.names.text, head_.names.number};
   if (head_.columns.empty() || head_.first_row.number == 0) return {};
@@ -159,7 +164,7 @@ Check Reader::ChooseColumns() {
                              .numbers = [&]() -> Result<csv::TableNumbers> {
                                const Result<std::string> rest = lines_.Peek(kNumbersBytes);
                                if (!rest) return tl::unexpected(rest.error());
-                               return csv::ReadNumbers(row + "\n" + *rest, next_line, head_, layout_);
+                               return csv::ReadNumbers(row + "\n" + WholeLines(*rest), next_line, head_, layout_);
                              }};
   if (Check chosen = csv::ChooseColumns(table, options, layout_, samples_.warnings); !chosen) return chosen;
   if (Check checked = ros_ ? ros_->CheckSecond(header) : Check(); !checked) return checked;
@@ -389,6 +394,7 @@ void Reader::RemoveTruncatedValue() {
 /// Does not count empty cells before the first complete row and after the last: there, only other columns have values.
 void Reader::WarnOfEmptyCells() {
   if (inner_gap_rows_ == 0) return;
+  samples_.left_out = inner_gap_rows_;
   samples_.warnings.push_back(csv::EmptyCells(lines_.name(), inner_gap_rows_, layout_.value.name));
 }
 

@@ -73,6 +73,70 @@ TEST(ChooseColumns, ASmallShareIsCombinedOnlyOnRequest) {
   EXPECT_LT(LargestError(RecordingOf(text, TimeAndValue("", "combined"))), 0.01);
 }
 
+/// Axes that are both askew by 45 degrees show the same, but neither is a copy of the other.
+TEST(ChooseColumns, CombinesAxesThatShareTheSwingEqually) {
+  const Recording recording = RecordingOf(Gyro({std::sqrt(0.5), std::sqrt(0.5), 0}, 0.0005));
+  EXPECT_EQ(recording.warnings.at(0).code, "axes_combined");
+  EXPECT_LT(LargestError(recording), 0.01);
+}
+
+/// The names of three axes: x, y and z stand for #, X, Y and Z for @.
+std::string NamesOfAxes(const std::string& pattern) {
+  std::string names = "Time (s)";
+  for (const char axis : {'x', 'y', 'z'}) {
+    names += ',';
+    for (const char c : pattern) names += c == '#' ? axis : c == '@' ? static_cast<char>(axis - 'a' + 'A') : c;
+  }
+  return names;
+}
+
+TEST(ChooseColumns, RecognisesTheAxesOfAGyroByTheirNames) {
+  for (const char* const pattern : {"Gyroscope # (rad/s)", "gyro@_rad_s", "gyro_#_rad_s", "w# (rad/s)",
+                                    "Gyroscope @ [dps]", "rotationRate@(rad/s)", "# (rad/s)"}) {
+    const Recording recording = RecordingOf(Gyro({0.6, 0, 0.8}, 0.002, NamesOfAxes(pattern)));
+    EXPECT_EQ(recording.warnings.at(0).code, "axes_combined") << pattern;
+  }
+  for (const char* const pattern : {"gyro_#", "Gyr@"}) {
+    const Recording recording = RecordingOf(Gyro({0.6, 0, 0.8}, 0.002, NamesOfAxes(pattern)), Unit("rad_s"));
+    EXPECT_EQ(recording.warnings.at(0).code, "axes_combined") << pattern;
+  }
+}
+
+/// The sum of two sensors on one axis would be 1.4 times the rate.
+TEST(ChooseColumns, DoesNotCombineSensorsThatAreNotAxesInOneUnit) {
+  for (const char* const names :
+       {"time_s,gyro1_rad_s,gyro2_rad_s", "time_s,omega_encoder (rad/s),omega_gyro (rad/s)",
+        "time_s,gyro_raw (rad/s),gyro_filtered (rad/s)", "time_s,gyro_x1_rad_s,gyro_x2_rad_s"}) {
+    EXPECT_THAT(FaultOf(Gyro({1, 0.97}, 0.002, names)), HasSubstr("no single column carries the swing")) << names;
+  }
+  EXPECT_THAT(FaultOf(Gyro({0.6, 0.8 / kDegree}, 0.002, "time_s,gyro_x_rad_s,gyro_y_deg_s")),
+              HasSubstr("no single column carries the swing"));
+}
+
+TEST(ChooseColumns, RefusesToCombineWhatIsNoRotation) {
+  const ReadOptions combined = TimeAndValue("", "combined");
+  for (const char* const names : {"time_s,Gyroscope x (rad/s)", "time_s,angle_deg", "time_s,Acceleration x (m/s^2)"}) {
+    EXPECT_THAT(WrongFlag(Gyro({1}, 0.002, names), combined),
+                HasSubstr("--value_column combined needs two or three gyro axes in one unit"))
+        << names;
+  }
+  // An angle is preferred to a rate otherwise.
+  const std::string both = Gyro({1, 0.6, 0.8}, 0.002, "time_s,angle_deg,gyro_x_rad_s,gyro_y_rad_s");
+  EXPECT_LT(LargestError(RecordingOf(both, combined)), 0.02);
+}
+
+TEST(ChooseColumns, AsksForOneOfVeryManyColumns) {
+  std::string text = "time_s";
+  for (int column = 0; column < 65; ++column) text += ",c" + std::to_string(column) + "_deg";
+  text += "\n";
+  for (int i = 0; i < 300; ++i) {
+    text += std::to_string(0.01 * i);
+    for (int column = 0; column < 65; ++column) text += "," + std::to_string(20 * std::cos(0.1 * i + column));
+    text += "\n";
+  }
+  EXPECT_THAT(FaultOf(text), HasSubstr("65 columns could all be the quantity: \"c0_deg\", "));
+}
+
 TEST(ChooseColumns, OneAxisIsUsedAloneOnRequest) {
   const Recording recording = RecordingOf(Gyro({0, 0.6, 0.8}, 0), TimeAndValue("", "Gyroscope z (rad/s)"));
   EXPECT_NEAR(recording.value[30], 0.8 * RateAt(30), 1e-6);
@@ -108,6 +172,17 @@ TEST(ChooseColumns, AColumnByItsNumberAlwaysWorks) {
   ExpectTheRows(RecordingOf(Rows("x,0.0{t},{v}"), TimeAndValue("2:s", "3", "deg")), kDegree);
 }
 
+TEST(ChooseColumns, ANumberOfAColumnIsWhole) {
+  const std::string text = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  EXPECT_THAT(WrongFlag(text, TimeAndValue("", "1.5")), HasSubstr("--value_column is \"1.5\", which is none of the"));
+}
+
+TEST(ChooseColumns, QuotedNamesAreSeparatedByBlanks) {
+  ExpectTheRows(RecordingOf("\"t\" \"theta\" \"omega\"\n" + Rows("0.0{t} {v} 0"), TimeAndValue("t:s", "theta", "deg")),
+                kDegree);
+  ExpectTheRows(RecordingOf("\"time s\" \"angle deg\"\n" + Rows("0.0{t} {v}")), kDegree);
+}
+
 /// Milliseconds that a header calls seconds, and degrees called radians, are not guessed away: a name that gives a unit
 /// is believed, and the fit judges the physics.
 TEST(ChooseColumns, AUnitInANameIsBelieved) {
@@ -119,6 +194,43 @@ TEST(ChooseColumns, AUnitInANameIsBelieved) {
   EXPECT_EQ(recording.time[1], 10);
   EXPECT_EQ(recording.value[0], 20);
   EXPECT_TRUE(recording.warnings.empty());
+}
+
+std::string Refusal(const std::string& text) {
+  const Result<Recording> recording = ParseRecording(text, "run.csv");
+  EXPECT_FALSE(recording);
+  return recording ? "" : recording.error().message;
+}
+
+/// A swing in degrees, with a time that grows by `step` in each row.
+std::string Table(const std::string& header, double step) {
+  std::string text = header + "\n";
+  for (int i = 0; i < 1000; ++i) {
+    text += std::to_string(step * i) + "," + std::to_string(20 * std::exp(-0.0005 * i) * std::cos(0.05 * i)) + "\n";
+  }
+  return text;
+}
+
+TEST(ChooseColumns, AsksForAnUnknownUnitInBrackets) {
+  EXPECT_THAT(Refusal(Table("t (s),angle (gon)", 0.01)), HasSubstr("column \"angle (gon)\" is in \"gon\""));
+  EXPECT_THAT(Refusal(Table("t (s),angle (0.1 deg)", 0.01)), HasSubstr("is in \"0.1 deg\""));
+  EXPECT_THAT(Refusal(Table("t (10 ms),angle (deg)", 1)), HasSubstr("column \"t (10 ms)\" is in \"10 ms\""));
+  EXPECT_THAT(Refusal(Table("t (cs),angle (deg)", 1)), HasSubstr("is in \"cs\""));
+  for (const char* const header : {"t (s),theta (left)", "t (s),angle (encoder 1)"}) {
+    EXPECT_NEAR(RecordingOf(Table(header, 0.01)).value[0], 20 * kDegree, 1e-6) << header;
+  }
+}
+
+/// 0, 1, 2, ... are rows, or milliseconds at 1 kHz.
+TEST(ChooseColumns, AsksWhetherATimeCountsRows) {
+  EXPECT_THAT(Refusal(Table("t,angle_deg", 1)), HasSubstr("column \"t\" increases by 1 in each row"));
+  EXPECT_NEAR(RecordingOf(Table("t,angle_deg", 1), TimeAndValue("t:ms", "")).time[1], 1e-3, 1e-12);
+}
+
+TEST(ChooseColumns, TakesTheIncreasingOneOfXAndYForTheTime) {
+  const Recording recording = RecordingOf(Table("x,y", 0.01));
+  EXPECT_NEAR(recording.time[1], 0.01, 1e-9);
+  EXPECT_EQ(recording.warnings.at(0).code, "time_column_assumed");
 }
 
 }  // namespace

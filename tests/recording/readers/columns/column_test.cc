@@ -46,6 +46,7 @@ TEST(MeaningOf, ReadsNamesInManyForms) {
       {"\u00C1ngulo (grados)", Kind::kAngle, "deg"},
       {"\"Winkel\" w / rad", Kind::kAngle, "rad"},
       {"Winkel (\xB0)", Kind::kAngle, "deg"},  // Latin-1
+      {"t (\xB5s)", Kind::kTime, "us"},
       {"position", Kind::kAngle, ""},
       {"Position (rad)", Kind::kAngle, "rad"},
       {"Voltage ( V )", Kind::kRaw, "volts"},
@@ -69,12 +70,22 @@ TEST(MeaningOf, ReadsNamesInManyForms) {
 }
 
 TEST(MeaningOf, RecognisesOtherQuantities) {
-  for (const char* const name : {"Temperature (\u00B0C)", "v (m/s)", "delay_s", "force (N)", "alpha (rad/s^2)"}) {
+  for (const char* const name :
+       {"Temperature (\u00B0C)", "v (m/s)", "delay_s", "force (N)", "temperature_C", "battery", "alpha (rad/s^2)"}) {
     EXPECT_FALSE(MeaningOf(name).kind) << name;
     EXPECT_TRUE(MeaningOf(name).has_other_unit) << name;
   }
   for (const char* const name : {"theta_min", "n", "min", "comment"}) EXPECT_EQ(MeaningOf(name).unit, nullptr) << name;
   EXPECT_TRUE(MeaningOf("theta_setpoint (deg)").is_secondary);
+}
+
+/// The second bytes of Cyrillic letters are the degree sign and other signs in Latin-1.
+TEST(MeaningOf, DoesNotReadPartsOfALetterAsSigns) {
+  const NameMeaning coordinate = MeaningOf("\u041A\u043E\u043E\u0440\u0434\u0438\u043D\u0430\u0442\u0430 (\u043C)");
+  EXPECT_EQ(coordinate.unit, nullptr);
+  EXPECT_FALSE(coordinate.kind);
+  EXPECT_EQ(csv::PlainName("\u0430\u0435\u0431"), "\u0430\u0435\u0431");
+  EXPECT_EQ(csv::PlainName("\xB0 \xE4t \u00C4"), "deg at a");
 }
 
 TEST(MeaningOf, ReportsASecondUnit) {

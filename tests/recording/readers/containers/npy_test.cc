@@ -118,6 +118,25 @@ TEST(ReadNpz, ReadsVectorsAsColumns) {
       RecordingOf(ZipOf({{"arr_0.npy", matrix}, {"arr_1.npy", matrix}}), TimeAndValue("1", "arr_1/2", "rad")));
 }
 
+TEST(ReadNpz, WritesATextAsMetadataWithoutQuotes) {
+  const std::string rig = NpyOf("'|S16'", "()", "{\"inertia\": 0.1}"), angle = NpyOf("'<f8'", "(8,)", Raw(kAngles));
+  const std::string bytes = ZipOf({{"rig.npy", rig}, {"angle_rad.npy", angle}});
+  const Workbook workbook = ReadNpz(ZipMembers::Open(bytes, "run.npz").value(), 100'000);
+  ASSERT_EQ(workbook.sheets.size(), 1);
+  EXPECT_THAT(workbook.sheets[0].text, StartsWith("# rig: {\"inertia\": 0.1}\nangle_rad\n100\n"));
+}
+
+/// All arrays together have at most as many bytes as are allowed.
+TEST(ReadNpz, LimitsTheBytesOfAllSheets) {
+  std::vector<double> numbers(400, 0.1);
+  const std::string matrix = NpyOf("'<f8'", "(200, 2)", Raw(numbers));  // 1600 bytes of text
+  const std::string two = ZipOf({{"a.npy", matrix}, {"b.npy", matrix}});
+  EXPECT_FALSE(ReadNpz(ZipMembers::Open(two, "run.npz").value(), 8'000).is_too_large);
+  const std::string text = NpyOf("'<i8'", "(200, 2)", Raw(std::vector<std::int64_t>(400, 1'000'000'000'000'000'000)));
+  const std::string long_texts = ZipOf({{"a.npy", text}, {"b.npy", text}});  // twice 8000 bytes of text
+  EXPECT_TRUE(ReadNpz(ZipMembers::Open(long_texts, "run.npz").value(), 12'000).is_too_large);
+}
+
 TEST(ReadNpz, ReadsTheArraysThatItCan) {
   const std::string angle = NpyOf("'<f8'", "(8,)", Raw(kAngles)), time = NpyOf("'<f8'", "(8,)", Raw(kTimes));
   const std::string objects = NpyOf("'|O'", "(1,)", "\x80\x04x");
@@ -131,6 +150,8 @@ TEST(ReadNpy, ExplainsWhatItRefuses) {
             "run.csv: this array of NumPy contains Python objects (pickle), which are not read" + save);
   EXPECT_EQ(FaultOf(NpyOf("'<c16'", "(1,)", std::string(16, '\0'))),
             "run.csv: this array of NumPy has elements of type \"<c16\", which are not read" + save);
+  EXPECT_EQ(FaultOf(NpyOf("[('t', [('s', '<f8')])]", "(1,)", std::string(8, '\0'))),
+            "run.csv: this array of NumPy has elements of type \"records in records\", which are not read" + save);
   EXPECT_EQ(FaultOf(NpyOf("'<f8'", "(1, 2, 3)", std::string(48, '\0'))),
             "run.csv: this array of NumPy has 3 dimensions; save the times and the angles as two columns: "
             "np.column_stack([t, angle])");

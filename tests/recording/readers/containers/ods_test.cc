@@ -63,6 +63,14 @@ TEST(ReadOds, RepeatsCellsAndRows) {
             ";;7;7\n\n\n8;;;\n8;;;\n8;;;\n");
 }
 
+/// LibreOffice fills equal rows with empty cells up to its last column.
+TEST(ReadOds, EmptyCellsAtTheEndOfARowNeedNoBytes) {
+  const std::string end = "<table:table-cell table:number-columns-repeated=\"16383\"/>";
+  std::string expected;
+  for (int i = 0; i < 100; ++i) expected += "7\n";
+  EXPECT_EQ(TextOfSheet(OdsRow(OdsNumber("7") + end, " table:number-rows-repeated=\"100\"")), expected);
+}
+
 TEST(ReadOds, IgnoresNotesAndHeaderGroups) {
   const std::string note =
       "<table:table-cell office:value-type=\"float\" office:value=\"5\"><office:annotation><text:p>"

@@ -144,9 +144,10 @@ TEST(ReadXlsx, NamesTheSheetsThatCouldBeTheRecording) {
             "--value_column");
   ExpectTheRows(RecordingOf(two, TimeAndValue("", "Run 1/angle_rad")));
   ExpectTheRows(RecordingOf(two, TimeAndValue("", "Run 2")), kDegree);
-  EXPECT_EQ(FaultOf(XlsxOf({{"a", Sheet({"x", "y"})}, {"b", Sheet({"x", "y"})}})),
-            "run.csv: none of its sheets \"a\" and \"b\" has a column of times and one of an angle or a rate; choose "
-            "with --value_column \"SHEET/COLUMN\", or name another recording");
+  EXPECT_THAT(FaultOf(XlsxOf({{"a", Sheet({"force", "mass"})}, {"b", Sheet({"force", "mass"})}})),
+              StartsWith("run.csv: none of its sheets \"a\" and \"b\" has a column of times and one of an angle or a "
+                         "rate; choose with --value_column \"SHEET/COLUMN\", or name another recording. The first "
+                         "sheet says: run.csv:a:"));
 }
 
 TEST(ReadXlsx, ReadsTheOnlySheetThatCanBeRead) {
@@ -170,10 +171,10 @@ TEST(ReadXlsx, NamesWorkbooksThatCannotBeRead) {
   EXPECT_EQ(FaultOf(XlsxOf({{"Chart1", ""}}, charts)),
             "run.csv: this workbook has no sheet with cells, only charts or macros; name one with the numbers");
   EXPECT_EQ(FaultOf(ZipOf({{"xl/workbook.xml", "<x/>"}, {"[Content_Types].xml", "<x/>"}})),
-            "run.csv: this workbook is damaged: xl/_rels/workbook.xml.rels is missing; save it again");
+            "run.csv: this workbook is damaged: \"xl/_rels/workbook.xml.rels\" is missing; save it again");
   EXPECT_EQ(
       FaultOf(XlsxOf({{"Sheet1", "<sheetData><row></sheetData>"}})),
-      "run.csv: this workbook is damaged: xl/worksheets/sheet1.xml cannot be read (line 1, column 117: mismatched "
+      "run.csv: this workbook is damaged: \"xl/worksheets/sheet1.xml\" cannot be read (line 1, column 117: mismatched "
       "tag); save it again");
   EXPECT_THAT(FaultOf(ZipOf({{"xl/workbook.bin", "x"}, {"[Content_Types].xml", "<x/>"}})),
               StartsWith("run.csv: this is a binary workbook (.xlsb); save it as .xlsx"));
@@ -190,7 +191,7 @@ TEST(ReadXlsx, RefusesEntities) {
                              {"xl/_rels/workbook.xml.rels",
                               "<R><Relationship Id=\"1\" Type=\"/worksheet\" Target=\"s.xml\"/></R>"},
                              {"xl/s.xml", bomb}})),
-              HasSubstr("xl/s.xml cannot be read (line 1, column 13: a document type)"));
+              HasSubstr("\"xl/s.xml\" cannot be read (line 1, column 13: a document type)"));
 }
 
 TEST(ReadXlsx, LimitsTheSizeOfSheets) {

@@ -299,7 +299,7 @@ TEST(ReadMat, ASampleRateReplacesTheTime) {
 
 TEST(ReadMat, RefusesFlagsThatContradictTheFile) {
   const std::string bytes = MatOf({Matrix("t", 8, Times()), Matrix("angle_deg", 8, Values())});
-  EXPECT_THAT(WrongFlag(bytes, Unit("rad")), HasSubstr("run.csv: column \"angle_deg\" is in deg"));
+  EXPECT_THAT(WrongFlag(bytes, Unit("volts")), HasSubstr("run.csv: column \"angle_deg\" is in deg"));
   EXPECT_THAT(WrongFlag(bytes, Value("phi")), HasSubstr("none of the 2 columns \"t\", \"angle_deg\""));
 }
 

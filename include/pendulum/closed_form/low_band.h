@@ -14,7 +14,7 @@ namespace pendulum {
 /// points stay at their times. Cost: O(N).
 Recording LowBand(const Recording& recording, double length);
 
-/// The period [s] of the fastest motion that moves between turning points, as a length for LowBand.
+/// Twice the lower quartile of the times between turning points [s], as a length for LowBand.
 double FastestPeriod(const TurningPointTable& table);
 
 /// Lets a swing begin after a vibration with the period `length` [s], if it has died away early enough to leave most of

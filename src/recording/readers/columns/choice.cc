@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace pendulum::csv {
+
+using Eigen::Index;
+
+std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t width) {
+  std::vector<NameMeaning> meanings;
+  meanings.reserve(std::max(names.size(), width));
+  for (const Name& name : names) meanings.push_back(MeaningOf(name.text));
+  meanings.resize(std::max(names.size(), width));
+  return meanings;
+}
+
+std::string Choice::NameOf(std::size_t index) const {
+  return index < names.size() ? Quoted(names[index].written) : std::to_string(index + 1);
+}
+
+std::vector<std::string> Choice::NamesOf(const Columns& columns) const {
+  std::vector<std::string> list;
+  for (const std::size_t i : columns) list.push_back(NameOf(i));
+  return list;
+}
+
+std::string Choice::FlagValueOf(std::size_t index) const {
+  const bool is_unique = index < names.size() && !names[index].written.empty() &&
+                         std::ranges::count(names, names[index].written, &Name::written) == 1;
+  return is_unique ? std::string(names[index].written) : std::to_string(index + 1);
+}
+
+std::string Choice::ColumnNames() const {
+  constexpr std::size_t kShown = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) list += (i == 0 ? "" : ", ") + NameOf(i);
+  return list + (names.size() > kShown ? ", ..." : "");
+}
+
+Result<std::size_t> Choice::FindColumn(const std::string& flag, std::string_view name) const {
+  const auto found = std::ranges::find(names, name, &Name::written);
+  if (found != names.end()) return found - names.begin();
+  if (const auto index = ColumnOfNumber(name, layout.width)) return *index;
+  const std::string count = std::to_string(layout.width) + (layout.width == 1 ? " column" : " columns");
+  return WrongFlag(0, flag + " is " + Quoted(name) + ", which is none of the " + count +
+                          (names.empty() ? "; give its number, the first is 1"
+                                         : " " + ColumnNames() + "; give a name, or a number from 1 on"));
+}
+
+Columns Choice::TimesByName() const {
+  Columns times;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!names[i].is_hidden && Meaning(i).kind == Kind::kTime) times.push_back(i);
+  }
+  return times;
+}
+
+const char* Choice::PlaceOf(std::size_t index) const {
+  return index < names.size() ? names[index].at : table.line.text.data();
+}
+
+tl::unexpected<Status> Choice::WrongFlag(std::size_t index, const std::string& sentence) const {
+  return table.line.Fault(PlaceOf(index), sentence, StatusCode::kInvalidArgument);
+}
+
+void Choice::Assume(const std::string& code, const std::string& sentence) {
+  warnings.push_back({code, std::string(table.line.file) + ": " + sentence});
+}
+
+void Choice::Ask(const std::string& sentence, const std::vector<std::string>& flags) {
+  questions.push_back(sentence);
+  try_flags.insert(try_flags.end(), flags.begin(), flags.end());
+}
+
+void Choice::AskForColumn(const std::string& sentence, std::size_t best) {
+  Ask(sentence + "; choose one with --value_column", {"--value_column " + FlagValueOf(best)});
+  example = best;
+}
+
+Result<void> Choice::Answer(std::size_t place) const {
+  if (questions.empty()) return {};
+  std::string sentence;
+  for (const std::string& question : questions) sentence += (sentence.empty() ? "" : "; ") + question;
+  return WithTry(table.line.Fault(PlaceOf(place), sentence), try_flags);
+}
+
+Result<void> Choice::NeedNumbers() {
+  if (numbers) return {};
+  Result<TableNumbers> read = table.numbers();
+  if (!read) return tl::unexpected(std::move(read).error());
+  numbers = *std::move(read);
+  return {};
+}
+
+Eigen::VectorXd Choice::SwingOf(std::size_t index) const {
+  const Unit* unit = Meaning(index).unit;
+  if (unit == nullptr) return NumbersOf(index);
+  return NumbersOf(index).unaryExpr([unit](double number) { return unit->ToSi(number); });
+}
+
+bool Choice::IsNumeric(std::size_t index) const {
+  const Eigen::VectorXd& cells = NumbersOf(index);
+  const Index count = cells.array().isFinite().count();
+  return count >= 2 && 20 * count > cells.size();
+}
+
+bool Choice::MayBeTime(std::size_t index) const {
+  const NameMeaning& meaning = Meaning(index);
+  return !meaning.kind || (meaning.kind == Kind::kLength && meaning.unit == nullptr);
+}
+
+bool Choice::IsIncreasing(std::size_t index) const {
+  double last = -std::numeric_limits<double>::infinity(), first = last;
+  for (const double number : NumbersOf(index)) {
+    if (!std::isfinite(number)) continue;
+    if (number < last) return false;
+    if (!std::isfinite(first)) first = number;
+    last = number;
+  }
+  return last > first;
+}
+
+bool AreSeparated(const Columns& times) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1] + 1) return true;
+  }
+  return false;
+}
+
+std::size_t TimeBefore(const Columns& times, std::size_t value) {
+  const auto after = std::ranges::upper_bound(times, value);
+  return after == times.begin() ? times.front() : *std::prev(after);
+}
+
+}  // namespace pendulum::csv

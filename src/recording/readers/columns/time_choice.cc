@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/time_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendulum/recording/recording.h"
+#include "recording/readers/columns/unit_guess.h"
+
+namespace pendulum::csv {
+namespace {
+
+using Eigen::Index;
+
+void UseTime(Choice& choice, std::size_t index, const Unit& unit) {
+  choice.time = index;
+  choice.layout.time = Column{index, choice.NameOf(index), &unit};
+}
+
+/// Whether a column counts the rows: whole numbers that increase by 1.
+bool IsRowNumber(const Choice& choice, std::size_t index) {
+  const Eigen::VectorXd& numbers = choice.NumbersOf(index);
+  for (Index i = 1; i < numbers.size(); ++i) {
+    if (std::isfinite(numbers[i]) && std::isfinite(numbers[i - 1]) && numbers[i] - numbers[i - 1] != 1) return false;
+  }
+  return numbers.size() >= kMinimumSamples && numbers[0] == std::floor(numbers[0]);
+}
+
+/// The columns without a meaning whose numbers increase. A single one is assumed to be the time.
+Columns TimesByNumbers(Choice& choice) {
+  Columns times;
+  for (std::size_t i = 0; i < choice.layout.width; ++i) {
+    const bool is_hidden = i < choice.names.size() && choice.names[i].is_hidden;
+    const bool is_free = i != choice.value && !is_hidden && choice.MayBeTime(i);
+    if (is_free && choice.IsNumeric(i) && choice.IsIncreasing(i) && !IsRowNumber(choice, i)) times.push_back(i);
+  }
+  if (times.size() == 1) {
+    choice.Assume("time_column_assumed",
+                  "column " + choice.NameOf(times[0]) +
+                      " increases and was assumed to be the time; --time_column chooses another");
+  }
+  return times;
+}
+
+/// Whether the unit of times must be asked for: the name has an unknown one, or the column may count rows.
+bool AskForTimeUnit(Choice& choice, std::size_t index) {
+  const std::string column = "column " + choice.NameOf(index);
+  const std::string flag = "--time_column " + choice.FlagValueOf(index);
+  if (const std::string& unknown = choice.Meaning(index).unknown_unit; !unknown.empty()) {
+    choice.Ask(column + " is in " + Quoted(unknown) + ", which is not a unit known here: convert the column, or give " +
+                   "its unit with " + flag + ":s, :ms or :us",
+               {flag + ":s"});
+    return true;
+  }
+  if (!IsRowNumber(choice, index)) return false;
+  choice.Ask(column +
+                 " increases by 1 in each row, so it counts rows or milliseconds: give the rate of the rows with " +
+                 "--sample_rate_hz and --time_column none (100 is an example; give your rate), or the unit with " +
+                 flag + ":ms",
+             {"--sample_rate_hz 100", "--time_column none"});
+  return true;
+}
+
+/// A word of a command as a shell takes it.
+std::string InShell(const std::string& word) {
+  const bool is_plain = word.find_first_of(" ()[]{}<>$&|;*?!#~'`\"\\") == std::string::npos;
+  return is_plain ? word : Quoted(word);
+}
+
+/// Finds the unit of times whose name does not give it.
+Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
+  if (Result<void> read = choice.NeedNumbers(); !read) return read;
+  if (!choice.IsClock(index) && AskForTimeUnit(choice, index)) return {};
+  if (choice.IsClock(index)) {
+    choice.layout.is_clock = choice.layout.is_from_first = true;
+    UseTime(choice, index, *UnitOfSuffix("s"));
+    choice.Assume("times_of_day",
+                  "column " + choice.NameOf(index) + " holds times of day; times count from the first row");
+    return {};
+  }
+  const TimeGuess guess =
+      GuessTimeUnit(choice.NumbersOf(index), choice.value ? choice.SwingOf(*choice.value) : Eigen::VectorXd());
+  choice.layout.is_from_first = guess.is_since_1970;
+  UseTime(choice, index, *UnitOfSuffix(guess.unit));
+  const std::string column = choice.FlagValueOf(index);
+  const bool is_s = guess.unit == "s";
+  const std::string others = InShell(column + (is_s ? ":ms" : ":s")) + (is_s ? " or :us" : "");
+  choice.Assume("time_unit_assumed", "column " + choice.NameOf(index) +
+                                         " does not give its unit and was assumed to be in " + std::string(guess.unit) +
+                                         guess.reason +
+                                         (guess.is_since_1970 ? "; times count from the first row" : "") +
+                                         "; --time_column " + others + " says otherwise");
+  return {};
+}
+
+Result<void> SetTime(Choice& choice, std::size_t index, const Unit* unit) {
+  if (unit == nullptr) return SetTimeUnit(choice, index);
+  UseTime(choice, index, *unit);
+  return {};
+}
+
+}  // namespace
+
+Result<void> FindNamedTime(Choice& choice) {
+  if (choice.options.time_column.empty() || choice.options.time_column == "none") return {};
+  if (choice.options.sample_rate_hz > 0) {
+    return choice.WrongFlag(0, "--time_column and --sample_rate_hz both define the times; leave one of them out");
+  }
+  std::string_view name = choice.options.time_column;
+  const std::size_t colon = name.rfind(':');
+  const Unit* unit = nullptr;
+  if (colon != std::string_view::npos && std::ranges::find(choice.names, name, &Name::written) == choice.names.end()) {
+    unit = UnitOfSuffix(name.substr(colon + 1));
+    if (unit != nullptr && unit->kind != Kind::kTime) unit = nullptr;
+    if (unit != nullptr) name = name.substr(0, colon);
+  }
+  const Result<std::size_t> index = choice.FindColumn("--time_column", name);
+  if (!index) return tl::unexpected(index.error());
+  const Unit* own = *index < choice.names.size() ? FindTimeUnit(choice.names[*index].text) : nullptr;
+  if (unit != nullptr && own != nullptr && unit != own) {
+    choice.Assume("unit_overridden", "column " + choice.NameOf(*index) + " names " + std::string(own->name) +
+                                         ", but --time_column says " + std::string(unit->name) + ", which was used");
+  }
+  choice.time = *index;
+  if (unit == nullptr) unit = own;
+  if (unit != nullptr) UseTime(choice, *index, *unit);
+  return {};
+}
+
+Result<void> ChooseTime(Choice& choice) {
+  const bool has_asked_rate = choice.options.sample_rate_hz > 0;
+  if (choice.options.time_column == "none") {
+    if (choice.table.has_rate || has_asked_rate || choice.table.has_host) return {};
+    return choice.WrongFlag(0, "with --time_column none there are no times; give --sample_rate_hz");
+  }
+  if (choice.time) return choice.layout.time ? Result<void>() : SetTimeUnit(choice, *choice.time);
+  Columns times = choice.TimesByName();
+  if (!times.empty() && has_asked_rate) {
+    return choice.WrongFlag(times[0],
+                            "column " + choice.NameOf(times[0]) + " holds the times, so --sample_rate_hz " +
+                                NumberText(choice.options.sample_rate_hz) +
+                                " contradicts it; leave the flag out, or add --time_column none to ignore the column");
+  }
+  if (has_asked_rate || (times.empty() && (choice.table.has_rate || choice.table.has_host))) return {};
+  if (times.size() > 1 && AreSeparated(times) && choice.value) times = {TimeBefore(times, *choice.value)};
+  if (times.size() == 1 && choice.Meaning(times[0]).unit != nullptr && !choice.names[times[0]].is_hidden) {
+    return SetTime(choice, times[0], choice.Meaning(times[0]).unit);
+  }
+  if (Result<void> read = choice.NeedNumbers(); !read) return read;
+  std::erase_if(times,
+                [&](std::size_t i) { return !choice.IsNumeric(i) || (times.size() > 1 && !choice.IsIncreasing(i)); });
+  if (times.empty()) times = TimesByNumbers(choice);
+  if (times.empty()) {
+    const std::string none = choice.names.empty() ? "no column increases as a time does"
+                                                  : "none of the columns " + choice.ColumnNames() + " is a time";
+    choice.Ask(
+        none +
+            ": give the rate of the rows with --sample_rate_hz (100 is an example; give your rate), or the column "
+            "with --time_column",
+        {"--sample_rate_hz 100"});
+    return {};
+  }
+  const auto has_unit = [&](std::size_t i) { return choice.Meaning(i).unit != nullptr; };
+  const auto known = std::ranges::find_if(times, has_unit);
+  const std::size_t chosen = known != times.end() ? *known : times.front();
+  if (times.size() > 1) {
+    choice.Assume("time_column_assumed", "column " + choice.NameOf(chosen) + " was taken as the time, not " +
+                                             choice.NameOf(times[chosen == times.front() ? 1 : 0]) +
+                                             "; --time_column chooses another");
+  }
+  return SetTime(choice, chosen, choice.Meaning(chosen).unit);
+}
+
+}  // namespace pendulum::csv

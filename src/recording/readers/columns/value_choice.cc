@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/value_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "recording/readers/columns/name_list.h"
+#include "recording/readers/columns/swing_choice.h"
+#include "recording/readers/columns/unit_guess.h"
+
+namespace pendulum::csv {
+namespace {
+
+bool IsCandidate(const Choice& choice, std::size_t index) {
+  if (index == choice.time) return false;
+  if (choice.names.empty()) return true;
+  if (choice.names[index].is_hidden) return false;
+  const NameMeaning& meaning = choice.Meaning(index);
+  return !meaning.is_secondary && !meaning.has_other_unit && meaning.kind != Kind::kTime;
+}
+
+/// The columns that may be the quantity, those that are preferred first. With --unit, only those in this unit or
+/// without a unit.
+std::vector<Columns> CandidateClasses(const Choice& choice, bool has_unit_flag) {
+  struct Class {
+    std::optional<Kind> kind;
+    bool has_unit;
+  };
+  constexpr std::array kOrder = {
+      Class{Kind::kAngle, true},        Class{Kind::kRate, true},   Class{Kind::kRaw, true},
+      Class{Kind::kAngle, false},       Class{Kind::kRate, false},  Class{Kind::kRaw, false},
+      Class{Kind::kAcceleration, true}, Class{Kind::kLength, true}, Class{Kind::kAcceleration, false},
+      Class{Kind::kLength, false},      Class{std::nullopt, false},
+  };
+  std::vector<Columns> classes(kOrder.size() + 1);  // The first one: those that the user's unit or calibration selects.
+  for (std::size_t i = 0; i < choice.layout.width; ++i) {
+    if (!IsCandidate(choice, i)) continue;
+    const NameMeaning& meaning = choice.Meaning(i);
+    const bool has_unit = meaning.unit != nullptr;
+    const bool is_asked = has_unit && has_unit_flag && meaning.unit == UnitOfText(choice.options.unit);
+    const bool is_calibrated = has_unit && !has_unit_flag && meaning.unit->name == choice.table.raw_input;
+    if (is_asked || is_calibrated) {
+      classes.front().push_back(i);
+      continue;
+    }
+    if (has_unit_flag && has_unit) continue;
+    const auto* const found = std::ranges::find_if(
+        kOrder, [&](const Class& each) { return each.kind == meaning.kind && each.has_unit == has_unit; });
+    if (found != kOrder.end()) classes[found - kOrder.begin() + 1].push_back(i);
+  }
+  std::erase_if(classes, [](const Columns& columns) { return columns.empty(); });
+  return classes;
+}
+
+/// The words of a column's name without its unit, each between blanks.
+std::string WordsOf(const NameMeaning& meaning) {
+  std::string words = " " + meaning.stem + " ";
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+/// The column with the other coordinate of the same point: bob_y_px for bob_x_px.
+std::optional<std::size_t> FindVertical(const Choice& choice, std::size_t horizontal) {
+  const NameMeaning& x = choice.Meaning(horizontal);
+  if (x.kind != Kind::kLength || x.unit == nullptr || !x.Has("x")) return std::nullopt;
+  std::string wanted = WordsOf(x);
+  wanted.replace(wanted.rfind(" x ") + 1, 1, "y");
+  for (std::size_t i = 0; i < choice.names.size(); ++i) {
+    const NameMeaning& y = choice.Meaning(i);
+    const bool may_be_point = y.kind == Kind::kLength && y.unit == x.unit && y.stem.size() == x.stem.size();
+    if (may_be_point && !choice.names[i].is_hidden && WordsOf(y) == wanted) return i;
+  }
+  return std::nullopt;
+}
+
+/// The horizontal coordinate if the candidates contain one point.
+std::optional<std::size_t> FindPoint(const Choice& choice, const Columns& candidates) {
+  Columns points;
+  std::ranges::copy_if(candidates, std::back_inserter(points),
+                       [&](std::size_t i) { return FindVertical(choice, i).has_value(); });
+  return points.size() == 1 ? std::optional(points.front()) : std::nullopt;
+}
+
+/// Refuses a vertical coordinate. It is the same on both sides, so it oscillates twice as fast as the angle.
+Result<void> CheckCoordinate(const Choice& choice, std::size_t index) {
+  const NameMeaning& meaning = choice.Meaning(index);
+  if (meaning.kind != Kind::kLength || meaning.unit == nullptr || !meaning.Has("y")) return {};
+  const bool asked = !choice.options.value_column.empty();
+  const StatusCode code = asked ? StatusCode::kInvalidArgument : StatusCode::kDataLoss;
+  return choice.table.line.Fault(
+      choice.PlaceOf(index),
+      "column " + choice.NameOf(index) +
+          " is the height of the point, which is the same on both sides; choose the horizontal "
+          "coordinate with --value_column, or leave the flag out to use both",
+      code);
+}
+
+/// Names the columns of numbers that were not chosen although they may be a quantity.
+void WarnOfOthers(Choice& choice, std::size_t chosen, std::span<const Columns> classes) {
+  std::vector<std::string> names;
+  for (const Columns& columns : classes) {
+    for (const std::size_t i : columns) {
+      if (choice.IsNumeric(i) && choice.Meaning(i).kind) names.push_back(choice.NameOf(i));
+    }
+  }
+  if (names.empty()) return;
+  choice.Assume("value_column_assumed", "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names) +
+                                            "; --value_column chooses another");
+}
+
+/// The error for --value_column combined without axes that turn about one fixed axis.
+tl::unexpected<Status> NoRotation(const Choice& choice, std::size_t index) {
+  return choice.WrongFlag(index,
+                          "--value_column combined needs two or three gyro axes in one unit that turn about one fixed "
+                          "axis; name one column");
+}
+
+void KeepRates(const Choice& choice, std::vector<Columns>& classes) {
+  for (Columns& columns : classes) {
+    std::erase_if(columns, [&](std::size_t i) { return choice.Meaning(i).kind != Kind::kRate; });
+  }
+  std::erase_if(classes, [](const Columns& columns) { return columns.empty(); });
+}
+
+/// The column of the quantity; std::nullopt if the user must be asked.
+Result<std::optional<std::size_t>> ChooseByName(Choice& choice) {
+  if (!choice.options.value_column.empty() && !WantsCombination(choice)) {
+    const Result<std::size_t> index = choice.FindColumn("--value_column", choice.options.value_column);
+    if (!index) return tl::unexpected(index.error());
+    return *index;
+  }
+  std::vector<Columns> classes = CandidateClasses(choice, !choice.options.unit.empty());
+  if (classes.empty()) classes = CandidateClasses(choice, false);  // The flag contradicts the only candidates.
+  if (WantsCombination(choice)) {
+    KeepRates(choice, classes);
+    if (classes.empty()) return NoRotation(choice, 0);
+  }
+  const bool is_only = classes.size() == 1 && classes.front().size() == 1;
+  if (is_only && !(choice.names.empty() && choice.layout.width > 1)) return classes.front().front();
+  // Columns that swing come first; if none does, the first numbers that may be a quantity.
+  for (const bool must_swing : {true, false}) {
+    for (std::size_t i = 0; i < classes.size() && choice.questions.empty(); ++i) {
+      if (const auto point = FindPoint(choice, classes[i])) return *point;
+      auto chosen = ChooseBySwing(choice, classes[i], must_swing);
+      if (chosen && !*chosen) continue;
+      if (chosen && classes[i].size() == 1) WarnOfOthers(choice, **chosen, std::span(classes).subspan(i + 1));
+      return chosen;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Checks --unit against the unit in the name of the column.
+Result<void> CheckUnitFlag(Choice& choice, std::size_t index) {
+  const NameMeaning& meaning = choice.Meaning(index);
+  const std::string column = "column " + choice.NameOf(index);
+  if (meaning.unit != nullptr && meaning.second != nullptr && meaning.second != meaning.unit) {
+    return choice.table.line.Fault(choice.PlaceOf(index),
+                                   column + " names two units, " + std::string(meaning.second->Written()) + " and " +
+                                       std::string(meaning.unit->Written()) + "; keep the unit of its values");
+  }
+  const Unit* asked = choice.options.unit.empty() ? nullptr : UnitOfText(choice.options.unit);
+  if (!choice.options.unit.empty() && (asked == nullptr || asked->kind == Kind::kTime)) {
+    return choice.WrongFlag(index,
+                            "--unit is " + Quoted(choice.options.unit) + "; it must be " + std::string(kValueUnits));
+  }
+  const bool is_quantity = meaning.unit != nullptr && meaning.unit->kind != Kind::kTime;
+  if (is_quantity && asked != nullptr && meaning.unit->kind != asked->kind) {
+    return choice.WrongFlag(
+        index, column + " is in " + std::string(meaning.unit->Written()) + ", so --unit " + choice.options.unit +
+                   " contradicts it; leave the flag out, or choose another column with --value_column");
+  }
+  if (is_quantity && asked != nullptr && meaning.unit != asked) {
+    choice.Assume("unit_overridden", column + " names " + std::string(meaning.unit->Written()) + ", but --unit says " +
+                                         std::string(asked->Written()) + ", which was used");
+  }
+  if (meaning.unit != nullptr && meaning.unit->kind == Kind::kTime && asked == nullptr) {
+    return choice.table.line.Fault(
+        choice.PlaceOf(index), column + " is in " + std::string(meaning.unit->Written()) +
+                                   ", which is not a quantity of a swing; choose another with --value_column, or give "
+                                   "its unit with --unit");
+  }
+  return {};
+}
+
+/// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
+Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
+  const NameMeaning& meaning = choice.Meaning(index);
+  if (!choice.options.unit.empty()) return UnitOfText(choice.options.unit);
+  if (meaning.unit != nullptr) return meaning.unit;
+  if (!choice.table.value_unit.empty()) return UnitOfSuffix(choice.table.value_unit);
+  if (!choice.table.raw_input.empty() && meaning.kind.value_or(Kind::kRaw) == Kind::kRaw) {
+    return UnitOfText(choice.table.raw_input);
+  }
+  if (Result<void> read = choice.NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
+  const double step = choice.layout.time ? MedianStep(choice.NumbersOf(choice.layout.time->index)) : 0;
+  const double seconds = choice.layout.time ? choice.layout.time->unit->ToSi(step) : 0;
+  const UnitGuess guess = GuessValueUnit(meaning.kind, choice.NumbersOf(index), seconds);
+  const std::string column = "column " + choice.NameOf(index) + " does not give its unit";
+  if (!meaning.unknown_unit.empty()) {
+    choice.Ask("column " + choice.NameOf(index) + " is in " + Quoted(meaning.unknown_unit) +
+                   ", which is not a unit known here: convert the column, or give its unit with --unit (" +
+                   std::string(kValueUnits) + ")",
+               {"--unit " + (guess.unit.empty() ? guess.example : std::string(guess.unit))});
+    return nullptr;
+  }
+  if (guess.unit.empty()) {
+    choice.Ask(column + guess.reason + ": give it with --unit (" + std::string(kValueUnits) + ")",
+               {"--unit " + guess.example});
+    return nullptr;
+  }
+  choice.Assume("value_unit_assumed", column + " and was assumed to be in " +
+                                          std::string(UnitOfSuffix(guess.unit)->Written()) + guess.reason +
+                                          "; --unit says otherwise");
+  choice.layout.is_unit_assumed = true;
+  return UnitOfSuffix(guess.unit);
+}
+
+Column ColumnOf(const Choice& choice, std::size_t index, const Unit& unit) {
+  const NameMeaning& meaning = choice.Meaning(index);
+  const bool is_gyro = meaning.stem.find("gyro") != std::string::npos || meaning.Has("rate");
+  const bool is_without_gravity = meaning.stem.find("linear") != std::string::npos ||
+                                  meaning.stem.find("without g") != std::string::npos ||
+                                  meaning.stem.find("without_g") != std::string::npos;
+  return {index, choice.NameOf(index), &unit, is_gyro, is_without_gravity};
+}
+
+}  // namespace
+
+Result<void> ChooseValue(Choice& choice) {
+  auto chosen = ChooseByName(choice);
+  if (!chosen) return tl::unexpected(std::move(chosen).error());
+  choice.value = *chosen;
+  if (!choice.value) {
+    if (choice.questions.empty()) {
+      const bool is_rate = MeaningOf(choice.Meaning(choice.layout.width - 1).stem).kind == Kind::kRate;
+      choice.Ask(
+          "none of the columns " + choice.ColumnNames() +
+              " is an angle, a rate or another quantity of a swing: choose one " +
+              "with --value_column, and give its unit with --unit",
+          {"--value_column " + choice.FlagValueOf(choice.layout.width - 1), is_rate ? "--unit rad_s" : "--unit deg"});
+    }
+    return {};
+  }
+  if (WantsCombination(choice) && choice.axes.empty()) return NoRotation(choice, *choice.value);
+  if (choice.value == choice.time) {
+    return choice.WrongFlag(*choice.value,
+                            "column " + choice.NameOf(*choice.value) +
+                                " cannot be both the time and the quantity; choose another with --value_column");
+  }
+  return CheckCoordinate(choice, *choice.value);
+}
+
+Result<void> SetValue(Choice& choice) {
+  if (!choice.value) {
+    // The column that the user chooses may need a unit too. All questions are asked at once.
+    const auto unit = choice.example ? ValueUnit(choice, *choice.example) : Result<const Unit*>(nullptr);
+    return unit ? Result<void>() : tl::unexpected(unit.error());
+  }
+  if (Result<void> checked = CheckUnitFlag(choice, *choice.value); !checked) return checked;
+  const Result<const Unit*> unit = ValueUnit(choice, *choice.value);
+  if (!unit) return tl::unexpected(unit.error());
+  if (*unit == nullptr) return {};
+  choice.layout.value = ColumnOf(choice, *choice.value, **unit);
+  for (const std::size_t axis : choice.axes) choice.layout.axes.push_back(ColumnOf(choice, axis, **unit));
+  const std::optional<std::size_t> vertical =
+      choice.options.value_column.empty() ? FindVertical(choice, *choice.value) : std::nullopt;
+  if (vertical) choice.layout.second = Column{*vertical, choice.NameOf(*vertical), choice.layout.value.unit};
+  return {};
+}
+
+}  // namespace pendulum::csv
