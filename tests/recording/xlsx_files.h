@@ -77,7 +77,7 @@ inline std::string XlsxOf(const std::vector<SheetXml>& sheets, const XlsxParts& 
   return ZipOf(members);
 }
 
-/// An OpenDocument spreadsheet; `tables` are <table:table> elements.
+/// An OpenDocument spreadsheet; `tables` are its elements table:table.
 inline std::string OdsContent(const std::string& tables) {
   return "<?xml version=\"1.0\"?><office:document-content xmlns:office=\"o\" xmlns:table=\"t\" xmlns:text=\"x\" "
          "xmlns:calcext=\"c\"><office:body><office:spreadsheet>" +

@@ -54,10 +54,10 @@ async function unfitted(name, content) {
 }
 
 test('a failed run is fitted after the options that its problem names are filled in', async (t) => {
-  const run = await unfitted('bare.csv', kBare);
-  assert.match(run.reason, /--time_column/);
+  const run = await unfitted('bare.csv', `battery,temperature\n${kBare}`);
+  assert.match(run.reason, /--value_column/);
   const page = await openView(t, service, `/fits/${run.id}`, { refused });
-  const detail = await problemLike(page, '“Column of times”');
+  const detail = await problemLike(page, '“Column of the angle”');
   assert.doesNotMatch(await detail.textContent(), /--/);
   assert.equal(await page.locator('#again .plot').count(), 0); // the columns to draw are unknown
   await field(page, 'Column of times').fill('1');

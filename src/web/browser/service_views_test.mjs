@@ -280,8 +280,10 @@ test('several recordings are fitted with visible progress, and each failed one g
   );
   const letter = fits.find((fit) => fit.name === 'letter.txt');
   const reason = letter.reason
-    .replace('--time_column', '“Column of times”')
-    .replace('--sample_rate_hz', '“Samples per second”');
+    .replaceAll('--time_column', '“Column of times”')
+    .replaceAll('--value_column', '“Column of the angle”')
+    .replaceAll('--unit', '“Unit of the values”')
+    .replaceAll('--sample_rate_hz', '“Samples per second”');
   assert.doesNotMatch(reason, /--/);
   assert.ok((await rows.nth(5).textContent()).includes(reason));
   const { fits: items } = await service.json(`/v1/fits?batch=${id}`);
