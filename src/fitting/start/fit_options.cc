@@ -18,6 +18,9 @@ FitOptions TrialOptions(const Recording& recording, const FitOptions& options, i
   trial.model = "drag";
   const Result<MotionModel> model = ModelOf(options);
   trial.gravity = recording.is_calibrated() && model ? model->gravity : Gravity::kLinear;
+  // Model linear alone may be the textbook's approximation of a pendulum, whose misfit is no disturbance.
+  const bool may_be_pendulum = options.model == "linear" && !options.gravity;
+  if (recording.is_calibrated() && may_be_pendulum) trial.gravity = Gravity::kSine;
   trial.start = options.start;
   trial.search.max_traces = max_traces;
   trial.noise = IsRobust(options.noise) ? options.noise : NoiseFamily::kGaussian;
