@@ -8,11 +8,14 @@
 namespace pendulum {
 namespace {
 
-/// True when `text` begins with a letter such as ° or θ: two bytes of valid UTF-8 that control no terminal.
-bool StartsWithLetterBeyondAscii(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  return text.size() > 1 && byte(0) >= 0xC2 && byte(0) <= 0xDF && (byte(1) & 0xC0) == 0x80 &&
-         (byte(0) > 0xC2 || byte(1) >= 0xA0);
+/// The number of bytes of a letter beyond ASCII at the beginning of `text`, such as °, θ or 角, in valid UTF-8; 0 for
+/// other text. Characters that could control a terminal or reverse the direction of a text have other first bytes.
+std::size_t SizeOfLetterBeyondAscii(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
+  if (byte(0) >= 0xC2 && byte(0) <= 0xDF && follows(1)) return byte(0) > 0xC2 || byte(1) >= 0xA0 ? 2 : 0;
+  const bool is_east_asian = byte(0) >= 0xE3 && byte(0) <= 0xEC;  // U+3000 to U+CFFF
+  return is_east_asian && follows(1) && follows(2) ? 3 : 0;
 }
 
 }  // namespace
@@ -45,8 +48,9 @@ std::string Quoted(std::string_view text) {
   std::string shown = "\"";
   for (std::size_t i = 0; i < std::min(text.size(), kShown); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    if (StartsWithLetterBeyondAscii(text.substr(i))) {
-      shown += text.substr(i++, 2);
+    if (const std::size_t size = SizeOfLetterBeyondAscii(text.substr(i)); size > 0) {
+      shown += text.substr(i, size);
+      i += size - 1;
     } else if (byte >= 0x20 && byte < 0x7F) {
       shown += text[i];
     } else {
@@ -54,6 +58,16 @@ std::string Quoted(std::string_view text) {
     }
   }
   return shown + (text.size() > kShown ? "...\"" : "\"");
+}
+
+std::string ShellWord(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = word;
+  for (std::size_t at = quoted.find('\''); at != std::string::npos; at = quoted.find('\'', at + 4)) {
+    quoted.replace(at, 1, "'\\''");
+  }
+  return "'" + quoted + "'";
 }
 
 }  // namespace pendulum

@@ -221,17 +221,22 @@ double LargestOutside(const TurningPointTable& table, const std::vector<TurningP
   return largest;
 }
 
-/// A pendulum's swing beyond the upright on both sides is impossible; most likely the unit is wrong.
+/// A pendulum's swing beyond the upright on both sides is impossible; most likely the unit is wrong. The amplitude of a
+/// rate is multiplied by half the period and divided by pi, as for a sine. For a pendulum that swings to 176 deg this
+/// gives 6 rad.
 Result<void> CheckUnit(const TurningPointTable& table) {
-  constexpr double kMaxAngle = 3.3;  // rad
-  const bool angle = table.quantity == Quantity::kAngle && table.is_calibrated;
+  constexpr double kMaxAngle = 3.3, kMaxFromRate = 6;  // rad
+  const bool is_rate = table.quantity == Quantity::kRate;
+  if (!table.is_calibrated || (table.quantity != Quantity::kAngle && !is_rate)) return {};
   const double typical = Median(table.Amplitudes());
-  if (!angle || typical < kMaxAngle) return {};
+  const double angle = is_rate ? typical * table.half_period / kPi : typical;
+  if (angle < (is_rate ? kMaxFromRate : kMaxAngle)) return {};
+  const std::string reading = is_rate ? "a rate of " + NumberText(typical, 3) + " rad/s means that the pendulum swings"
+                                      : std::string("the reading swings");
   return Error(StatusCode::kFailedPrecondition,
-               "the reading swings by " + NumberText(typical, 3) + " rad (" + NumberText(typical / kRadFromDeg, 3) +
-                   " deg) to both sides, but beyond 180 deg a pendulum goes over the "
-                   "top; check the unit of the column in the header or in --unit, or give "
-                   "--gravity linear for a spring or wire");
+               reading + " by " + NumberText(angle, 3) + " rad (" + NumberText(angle / kRadFromDeg, 3) +
+                   " deg) to both sides, but beyond 180 deg a pendulum goes over the top; check the unit of the column "
+                   "in the header or in --unit, or give --gravity linear for a spring or wire");
 }
 
 Result<std::vector<FreeSwing>> FindAmong(const Recording& recording, const TurningPointTable& table,

@@ -35,7 +35,7 @@ std::string Question(const RigKey& key, double value, const RigUnit& unit, const
   return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) + ": in " +
          std::string(unit.name) + "? " +
          (IsGivenByFlags(rig_name) ? "Give " + KeyText(key, rig_name) + " " + FlagValue(value, unit.name)
-                                   : "Write " + NumberText(value * unit.si, 4));
+                                   : "Write " + NumberText(unit.ToSi(value), 4));
 }
 
 // ---- Without the swing ---------------------------------------------------------------------------------------------
@@ -70,8 +70,8 @@ double LongestLength(const Json& source) {
 
 std::string OddityOf(const RigKey& key, double value, const UsualRange& usual, const std::string& rig_name) {
   for (const RigUnit& unit : kRigUnits) {
-    const double in_si = value * unit.si;
-    if (unit.quantity == key.quantity && unit.si < 1 && in_si >= usual.lower && in_si <= usual.upper)
+    const double in_si = unit.ToSi(value);
+    if (unit.quantity == key.quantity && unit.ToSi(1) < 1 && in_si >= usual.lower && in_si <= usual.upper)
       return Question(key, value, unit, rig_name);
   }
   return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) +
@@ -173,9 +173,9 @@ LikelyUnit FindLikelyUnit(const Rig& rig, double gravity_over_inertia, const aut
     if (!rig.source.contains(key.name)) continue;
     const double value = ValueOfEntry(rig.source.at(key.name));
     for (const RigUnit& unit : kRigUnits) {
-      if (unit.quantity != key.quantity || unit.si == 1 || value == 0) continue;
+      if (unit.quantity != key.quantity || unit.ToSi(1) == 1 || value == 0) continue;
       Json changed = rig.source;
-      changed[key.name] = value * unit.si;
+      changed[key.name] = unit.ToSi(value);
       const Result<Rig> other = ParseRig(changed.dump(), rig.name);
       const std::optional<double> ratio = other ? predicted(*other) : std::nullopt;
       if (!ratio || !(Factor(*ratio, gravity_over_inertia) < best)) continue;

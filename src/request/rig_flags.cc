@@ -91,7 +91,7 @@ Result<RigValue> ParseRigValue(const std::string& flag, const std::string& text,
   if (rest.empty()) return value;
   for (const RigUnit& unit : kRigUnits) {
     if (unit.quantity == key.quantity && Plain(unit.name) == Plain(rest)) {
-      return RigValue{value.value * unit.si, value.std_dev * unit.si};
+      return RigValue{unit.ToSi(value.value), unit.ToSi(value.std_dev)};
     }
   }
   return fault();

@@ -71,14 +71,19 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {
 constexpr std::array<Word<Checks>, 3> kChecks = {
     {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
 
-constexpr std::array<FlagWord, 12> kReadingUnits = {{{"", "in the column’s name"},
+constexpr std::array<FlagWord, 17> kReadingUnits = {{{"", "in the column’s name"},
                                                      {"rad", "radians"},
                                                      {"deg", "degrees"},
+                                                     {"mrad", "milliradians"},
+                                                     {"rev", "revolutions"},
                                                      {"rad_s", "radians per second"},
                                                      {"deg_s", "degrees per second"},
+                                                     {"rpm", "revolutions per minute"},
                                                      {"counts", "counts of a converter"},
                                                      {"volts", "volts"},
+                                                     {"mv", "millivolts"},
                                                      {"m_s2", "metres per second squared"},
+                                                     {"g", "standard gravity (9.80665 m/s²)"},
                                                      {"px", "pixels"},
                                                      {"m", "metres"},
                                                      {"cm", "centimetres"},

@@ -6,18 +6,10 @@
 #include <map>
 #include <vector>
 
+#include "pendulum/base/format.h"
+
 namespace pendulum {
 namespace {
-
-std::string ShellWord(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = word;
-  for (std::size_t at = quoted.find('\''); at != std::string::npos; at = quoted.find('\'', at + 4)) {
-    quoted.replace(at, 1, "'\\''");
-  }
-  return "'" + quoted + "'";
-}
 
 /// The name of the flag in an argument, with underscores: "time_column" for "-time-column=1:ms"; empty for other
 /// arguments.

@@ -18,6 +18,13 @@ TEST(ProbabilityText, HasTwoDigitsAndNoZero) {
   EXPECT_EQ(ProbabilityText(0), "< 1e-99");
 }
 
+TEST(ShellWord, IsQuotedIfItHasSpecialCharacters) {
+  EXPECT_EQ(ShellWord("run_1.csv"), "run_1.csv");
+  EXPECT_EQ(ShellWord("Time (s):ms"), "'Time (s):ms'");
+  EXPECT_EQ(ShellWord("it's"), "'it'\\''s'");
+  EXPECT_EQ(ShellWord(""), "''");
+}
+
 TEST(NumberText, RoundsToSignificantDigits) {
   EXPECT_EQ(NumberText(0.0123456, 2), "0.012");
   EXPECT_EQ(NumberText(99.6, 2), "1e+02");
@@ -36,6 +43,8 @@ TEST(Quoted, KeepsPrintableTextAndEscapesOtherBytes) {
   EXPECT_EQ(Quoted(""), R"("")");
   EXPECT_EQ(Quoted("angle_deg"), R"("angle_deg")");
   EXPECT_EQ(Quoted("θ [°]"), R"("θ [°]")");
+  EXPECT_EQ(Quoted("角度"), R"("角度")");
+  EXPECT_EQ(Quoted("\xE2\x80\xAE"), R"("\xe2\x80\xae")");  // reverses the direction of the text
   EXPECT_EQ(Quoted("a\x1b[31m\n"), R"("a\x1b[31m\x0a")");
   EXPECT_EQ(Quoted("\xC2\x9B"), R"("\xc2\x9b")");  // a control sequence introducer, two bytes of valid UTF-8
   EXPECT_EQ(Quoted("\xFF"), R"("\xff")");

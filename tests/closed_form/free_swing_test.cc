@@ -379,6 +379,14 @@ TEST(FindFreeSwings, AsksForTheUnitIfASwingExceedsTheUpright) {
   EXPECT_THAT(FindFreeSwings(in_degrees, true).value(), testing::SizeIs(1));  // a torsion wire
 }
 
+TEST(FindFreeSwings, AsksForTheUnitIfARateExceedsTheUpright) {
+  Recording rate = Sample([](double t) { return 125 * std::exp(-0.02 * t) * std::cos(kOmega * t); }, 20, kRate);
+  rate.quantity = Quantity::kRate;
+  EXPECT_THAT(ErrorMessage(rate), testing::AllOf(testing::StartsWith("a rate of 1"),
+                                                 testing::HasSubstr("means that the pendulum swings by 2"),
+                                                 testing::HasSubstr("check the unit of the column")));
+}
+
 TEST(FindFreeSwings, DoesNotTreatCountsAsAnAngle) {
   Recording counts = Joined({Still(0.4, 1), Swing(0.4, 10)});
   counts.value = 500 + 300 * counts.value.array();

@@ -128,9 +128,12 @@ void PrependRest(const Case& c, const SyntheticOptions& run, Recording& recordin
   recording.time = Eigen::ArrayXd::LinSpaced(value.size(), 0, static_cast<double>(value.size() - 1)) / run.sample_rate;
 }
 
-Recording Simulated(const Case& c) {
+/// The recording of a case, or why there is none: noisy points on a short arc do not determine their pivot.
+Result<Recording> Simulated(const Case& c) {
   const SyntheticOptions run = Simulation(c);
-  Recording recording = Must(SimulateRecording(run));
+  Result<Recording> simulated = SimulateRecording(run);
+  if (!simulated) return simulated;
+  Recording recording = *std::move(simulated);
   if (c.start == GridStart::kPushed) PrependRest(c, run, recording);
   if (c.IsDirect()) recording.value *= c.sensor.scale;
   if (c.sensor.resolution > 0) recording.value = recording.value.array().round() + 512;
@@ -139,7 +142,7 @@ Recording Simulated(const Case& c) {
   recording.resolution = c.sensor.resolution;
   if (!c.sensor.unit.empty()) recording.unit = c.sensor.unit;
   recording.path = "run.csv";
-  return Must(MakeRecording(std::move(recording)));
+  return MakeRecording(std::move(recording));
 }
 
 // ---- The outcome --------------------------------------------------------------------------------------------------
@@ -206,7 +209,9 @@ Outcome OutcomeOf(const Case& c) {
   options.models = {std::string(c.model.name)};
   options.fit.model = options.models.front();
   options.fit.threads = 1;
-  auto prepared = PrepareRecording(Simulated(c), options, std::nullopt);
+  Result<Recording> recording = Simulated(c);
+  if (!recording) return CheckRefusal(recording.error());
+  auto prepared = PrepareRecording(*std::move(recording), options, std::nullopt);
   if (!prepared) return CheckRefusal(prepared.error());
   const std::vector<Result<Identification>> runs = IdentifyEach(options, *std::move(prepared));
   return runs.at(0) ? CheckFit(c, *runs[0]) : CheckRefusal(runs[0].error());

@@ -25,6 +25,9 @@ constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; 
 /// terminal become \xNN.
 std::string Quoted(std::string_view text);
 
+/// A word of a command for a POSIX shell: in single quotes if it has special characters.
+std::string ShellWord(const std::string& word);
+
 /// Names joined by commas, for a sentence: "inertia, viscous, zero_angle". An item is a name or has a member `name`.
 template <typename Range>
 std::string NameList(const Range& items) {

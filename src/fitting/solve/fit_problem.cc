@@ -172,10 +172,11 @@ Recording WithoutOutliers(Recording recording) {
 
 tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
-  return Error(StatusCode::kDataLoss, where + "the readings are in " + recording.unit + ", but model " +
-                                          std::string(model.name) +
-                                          " needs an angle; calibrate first (--calibration), or fit --model linear, "
-                                          "whose period and damping need no angle");
+  return WithTry(Error(StatusCode::kDataLoss, where + "the readings are in " + recording.unit + ", but model " +
+                                                  std::string(model.name) +
+                                                  " needs an angle; calibrate first (--calibration), or fit --model "
+                                                  "linear, whose period and damping need no angle"),
+                 {"--model linear"});
 }
 
 ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {

@@ -374,7 +374,7 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
   std::optional<Recording> original;
-  if (options.may_be_spring) original = recording;
+  if (options.may_be_spring && ReasonForUnit(recording)) original = recording;
   Result<SwingFit> result = FitUnlessStopped(std::move(recording), swing, options);
   if (result && original && !result->linear_reason.empty()) {
     FitAsSpring(*std::move(original), std::move(swing), options, result);

@@ -82,6 +82,10 @@ bool IsUtf16(std::string_view begin) {
   return half >= kEnough && std::min(even, odd) == 0 && 10 * std::max(even, odd) >= 9 * half;
 }
 
+bool HasReturnsAlone(std::string_view begin) {
+  return begin.find('\r') < begin.size() - 1 && begin.find('\n') == std::string_view::npos;
+}
+
 }  // namespace
 
 Content ContentOf(std::string_view begin) {
@@ -92,7 +96,8 @@ Content ContentOf(std::string_view begin) {
   if (IsUtf16(begin)) return Content::kUtf16;
   if (!ForeignFormat(begin).empty()) return Content::kForeign;
   if (IsXml(begin)) return Content::kXml;
-  return IsJson(begin) ? Content::kJson : Content::kText;
+  if (IsJson(begin)) return Content::kJson;
+  return HasReturnsAlone(begin) ? Content::kReturns : Content::kText;
 }
 
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name) {

@@ -12,10 +12,11 @@ namespace pendulum {
 /// The format of a file according to its first bytes; the file name is ignored.
 enum class Content {
   kText,
-  kUtf16,  ///< Text with two bytes per character.
-  kZip,    ///< Also .xlsx, .ods and .npz.
-  kMat,    ///< MATLAB.
-  kNpy,    ///< NumPy.
+  kReturns,  ///< Text whose lines end with a carriage return alone, as spreadsheets on a Macintosh write it.
+  kUtf16,    ///< Text with two bytes per character.
+  kZip,      ///< Also .xlsx, .ods and .npz.
+  kMat,      ///< MATLAB.
+  kNpy,      ///< NumPy.
   kJson,
   kXml,       ///< Workbooks of Excel 2003, .fods, states of phyphox, and others that are not read.
   kCompound,  ///< Microsoft's compound file: .xls, and others that are not read.

@@ -54,6 +54,17 @@ Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   return ParseRecording(*bytes, file.name(), options);
 }
 
+/// Reads a text that was made from the bytes of a file.
+Result<Recording> ReadConverted(const std::string& text, std::string_view bytes, const std::string& name,
+                                const ReadOptions& options, Nesting nesting) {
+  Result<Recording> recording = ReadBytes(text, name, options, nesting);
+  if (!recording) return recording;
+  Result<std::string> sha256 = Sha256(bytes);
+  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  recording->sha256 = *std::move(sha256);
+  return recording;
+}
+
 /// Reads text in UTF-16 as if it were UTF-8. An XML text names its encoding.
 Result<Recording> ReadUtf16(std::string_view bytes, const std::string& name, const ReadOptions& options,
                             Nesting nesting) {
@@ -63,12 +74,14 @@ Result<Recording> ReadUtf16(std::string_view bytes, const std::string& name, con
   if (ContentOf(std::string_view(text).substr(0, kContentBytes)) == Content::kXml) {
     return ReadXml(bytes, name, options);
   }
-  Result<Recording> recording = ReadBytes(text, name, options, nesting);
-  if (!recording) return recording;
-  Result<std::string> sha256 = Sha256(bytes);
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
-  recording->sha256 = *std::move(sha256);
-  return recording;
+  return ReadConverted(text, bytes, name, options, nesting);
+}
+
+Result<Recording> ReadLinesWithReturns(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                                       Nesting nesting) {
+  std::string text(bytes);
+  std::ranges::replace(text, '\r', '\n');
+  return ReadConverted(text, bytes, name, options, nesting);
 }
 
 }  // namespace
@@ -77,6 +90,7 @@ Result<Recording> ReadBytes(std::string_view bytes, const std::string& name, con
                             Nesting nesting) {
   switch (ContentOf(bytes.substr(0, kContentBytes))) {
     case Content::kText: return ReadRows(LineReader(bytes, name), options);
+    case Content::kReturns: return ReadLinesWithReturns(bytes, name, options, nesting);
     case Content::kUtf16: return ReadUtf16(bytes, name, options, nesting);
     case Content::kZip: return ReadZip(bytes, name, options, nesting);
     case Content::kMat: return ReadMat(bytes, name, options);

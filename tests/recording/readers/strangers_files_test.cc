@@ -69,7 +69,7 @@ Swing SimulatedSwing(double amplitude, double rate_hz, double seconds, double ho
 }
 
 /// How a time is named and written.
-enum class TimeForm { kNumber, kEpoch, kClock, kIso, kAmPm };
+enum class TimeForm { kNumber, kEpoch, kDays, kClock, kIso, kDotted, kAmPm };
 
 struct TimeStyle {
   std::string_view name;
@@ -114,11 +114,15 @@ constexpr std::array kTimes = {
     TimeStyle{"timestamp_us", 1e6},
     TimeStyle{"timestamp", 1, TimeForm::kEpoch},
     TimeStyle{"timestamp", 1e3, TimeForm::kEpoch},
+    TimeStyle{"Date", 1.0 / 86400, TimeForm::kDays},
+    TimeStyle{"Zeit", 1.0 / 86400, TimeForm::kDays},
     TimeStyle{"Timestamp", 1, TimeForm::kClock},
     TimeStyle{"Uhrzeit", 1, TimeForm::kClock},
     TimeStyle{"time", 1, TimeForm::kClock},
     TimeStyle{"timestamp", 1, TimeForm::kIso},
     TimeStyle{"datetime", 1, TimeForm::kIso},
+    TimeStyle{"Datum", 1, TimeForm::kDotted},
+    TimeStyle{"Zeit", 1, TimeForm::kDotted},
     TimeStyle{"Time", 1, TimeForm::kAmPm},
 };
 
@@ -185,6 +189,10 @@ constexpr std::array<std::string_view, 7> kPreambles = {
     "\xEF\xBB\xBF",
 };
 
+/// Text below the table.
+constexpr std::array<std::string_view, 6> kFooters = {"",     "", "", "End of measurement\n", "\nMean;0.5\nStd;3.5\n",
+                                                      "---\n"};
+
 /// Other columns beside the two that count.
 enum class Other { kNone, kIndex, kText, kTemperature, kSetpoint, kEmpty };
 constexpr std::array kOthers = {Other::kNone, Other::kNone,        Other::kNone,     Other::kIndex,
@@ -201,7 +209,7 @@ std::string Number(double number, int decimals, bool has_comma) {
 }
 
 /// 16:04:31.273, with a date or AM and PM.
-std::string ClockText(double seconds, TimeForm form) {
+std::string ClockText(double seconds, TimeForm form, bool has_comma) {
   const auto whole = static_cast<long>(std::floor(seconds + 5e-7));
   const long day = whole / 86400, hour = whole / 3600 % 24;
   const double second = seconds - static_cast<double>(whole - whole % 60);
@@ -211,13 +219,19 @@ std::string ClockText(double seconds, TimeForm form) {
       std::snprintf(text.data(), text.size(), "2024-03-%02ld %02ld:%02ld:%09.6f", 1 + day, hour, whole / 60 % 60,
                     second);
       break;
+    case TimeForm::kDotted:
+      std::snprintf(text.data(), text.size(), "%02ld.03.2024 %02ld:%02ld:%09.6f", 1 + day, hour, whole / 60 % 60,
+                    second);
+      break;
     case TimeForm::kAmPm:
       std::snprintf(text.data(), text.size(), "%ld:%02ld:%09.6f %s", hour % 12 == 0 ? 12 : hour % 12, whole / 60 % 60,
                     second, hour < 12 ? "AM" : "PM");
       break;
     default: std::snprintf(text.data(), text.size(), "%02ld:%02ld:%09.6f", hour, whole / 60 % 60, second);
   }
-  return text.data();
+  std::string written = text.data();
+  if (has_comma) written[written.rfind('.')] = ',';
+  return written;
 }
 
 /// Where the names of the columns stand.
@@ -227,7 +241,7 @@ enum class Header { kPlain, kComment, kNone };
 struct FileStyle {
   TimeStyle time;
   ValueStyle value;
-  std::string separator, preamble;
+  std::string separator, preamble, footer;
   std::string line_end = "\n";
   Header header = Header::kPlain;
   bool has_decimal_comma = false, has_units_row = false, has_rule = false;
@@ -247,6 +261,7 @@ struct FileStyle {
 
 double BeginOf(TimeForm form, Random& random) {
   if (form == TimeForm::kEpoch) return 1709308800.25;
+  if (form == TimeForm::kDays) return 45352.25 * 86400;
   if (form != TimeForm::kNumber) return Chance(0.3, random) ? 86395.5 : 57871.273;  // The first one passes midnight.
   return Chance(0.3, random) ? Uniform(0, 10, random) : 0;
 }
@@ -258,10 +273,11 @@ FileStyle PickStyle(Random& random) {
   style.separator = Pick(kSeparators, random);
   style.preamble = Pick(kPreambles, random);
   if (style.preamble == "sep=") style.preamble += style.separator.substr(0, 1) + "\n";
+  style.footer = Pick(kFooters, random);
   style.has_decimal_comma = style.separator[0] != ',' && Chance(0.3, random);
   style.has_units_row = Chance(0.1, random);
   style.has_rule = Chance(0.1, random);
-  if (Chance(0.2, random)) style.line_end = "\r\n";
+  if (Chance(0.2, random)) style.line_end = Chance(0.2, random) ? "\r" : "\r\n";
   if (Chance(0.5, random)) style.first = Pick(kOthers, random);
   style.last = Pick(kOthers, random);
   style.has_axes = style.value.is_gyro && Chance(0.5, random);
@@ -269,6 +285,7 @@ FileStyle PickStyle(Random& random) {
   style.offset = Uniform(0, 1, random);
   const bool is_since_1970 = style.time.form == TimeForm::kEpoch;
   style.time_decimals = style.time.per_second == 1 ? 6 : style.time.per_second == 1e3 ? (is_since_1970 ? 2 : 3) : 0;
+  if (style.time.form == TimeForm::kDays) style.time_decimals = 10;
   const double per_si = style.value.per_si;
   style.value_decimals = style.value.unit == "counts" ? 0 : per_si >= 1e3 ? 2 : per_si > 1 ? 3 : 5;
   return style;
@@ -360,14 +377,14 @@ StrangersFile FileOf(const FileStyle& style, const Swing& swing, Random& random)
   StrangersFile file;
   file.unit = style.value.unit;
   std::normal_distribution<double> noise(0, 0.001);
-  const bool is_number = style.time.form == TimeForm::kNumber || style.time.form == TimeForm::kEpoch;
+  const bool is_number = style.time.form <= TimeForm::kDays;
   std::string rows;
   for (std::size_t i = 0; i < swing.time.size(); ++i) {
     std::vector<std::string> fields;
     if (style.first != Other::kNone) fields.push_back(FieldOf(style.first, i, style.has_decimal_comma, random));
     const double seconds = style.begin + swing.time[i];
     fields.push_back(is_number ? Number(seconds * style.time.per_second, style.time_decimals, style.has_decimal_comma)
-                               : ClockText(seconds, style.time.form));
+                               : ClockText(seconds, style.time.form, style.has_decimal_comma));
     for (int axis = 0; axis < 2 && style.has_axes; ++axis) {
       fields.push_back(Number(noise(random), 5, style.has_decimal_comma));
     }
@@ -379,7 +396,8 @@ StrangersFile FileOf(const FileStyle& style, const Swing& swing, Random& random)
     file.value.push_back(reading);
   }
   const std::string header = HeaderOf(style);
-  file.text = header + rows;
+  file.text = header + rows + style.footer;
+  if (style.line_end == "\r") std::ranges::replace(file.text, '\n', '\r');
   file.description = header + rows.substr(0, rows.find('\n') + 1);
   file.time_step = std::max(1e-6, std::pow(10, -style.time_decimals) / style.time.per_second);
   file.value_step = std::pow(10, -style.value_decimals) / style.ValuePerSi();

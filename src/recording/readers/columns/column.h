@@ -45,6 +45,7 @@ inline constexpr std::array kUnits = {
     Unit{"us", Kind::kTime, "us", 1, 1e6},
     Unit{"ns", Kind::kTime, "ns", 1, 1e9},
     Unit{"min", Kind::kTime, "min", 60},
+    Unit{"days", Kind::kTime, "days", 86400},
     Unit{"counts", Kind::kRaw, "counts"},
     Unit{"volts", Kind::kRaw, "volts"},
     Unit{"mv", Kind::kRaw, "volts", 1, 1e3},

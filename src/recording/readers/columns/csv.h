@@ -32,6 +32,16 @@ inline bool IsMissing(std::string_view text) {
   return std::find(kWords.begin(), kWords.end(), text) != kWords.end();
 }
 
+/// Whether a line is text and no row with a fault: a letter comes before any digit.
+inline bool IsText(std::string_view line) {
+  const auto is_letter_or_digit = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           static_cast<signed char>(c) < 0;
+  };
+  const auto* const first = std::find_if(line.begin(), line.end(), is_letter_or_digit);
+  return first == line.end() || *first < '0' || *first > '9';
+}
+
 inline std::string_view Unquote(std::string_view text) {
   text = Trim(text);
   return text.size() < 2 || text.front() != '"' || text.back() != '"' ? text : Trim(text.substr(1, text.size() - 2));
@@ -109,11 +119,14 @@ class Numbers {
     return comma;
   }
 
-  /// True if the whole text is a finite number.
+  /// True if the whole text is a finite number. Other text, such as the date 05.11.2026, decides nothing.
   bool Parse(std::string_view text, double& number) {
     const char* end = text.data() + text.size();
-    const auto [stop, error] = From(text.data(), end, number);
-    return error == std::errc() && stop == end && std::isfinite(number);
+    Numbers trial = *this;
+    const auto [stop, error] = trial.From(text.data(), end, number);
+    const bool is_number = error == std::errc() && stop == end && std::isfinite(number);
+    if (is_number) *this = trial;
+    return is_number;
   }
 
   /// Why Parse refuses the field, and what to do.
@@ -184,9 +197,11 @@ class FieldCutter {
   /// Reads the next field if it is an unquoted finite number, without first finding its end. Otherwise does not
   /// advance.
   bool NextNumber(Numbers& numbers, double& number) {
-    const auto [stop, error] = numbers.From(SkipBlanks(at_), end_, number);
+    Numbers trial = numbers;
+    const auto [stop, error] = trial.From(SkipBlanks(at_), end_, number);
     const char* next = SkipBlanks(stop);
     if (error != std::errc() || !std::isfinite(number) || (next != end_ && *next != separator_)) return false;
+    numbers = trial;
     Advance(next);
     return true;
   }

@@ -61,12 +61,6 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
   return true;
 }
 
-/// A word of a command as a shell takes it.
-std::string InShell(const std::string& word) {
-  const bool is_plain = word.find_first_of(" ()[]{}<>$&|;*?!#~'`\"\\") == std::string::npos;
-  return is_plain ? word : Quoted(word);
-}
-
 /// Finds the unit of times whose name does not give it.
 Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   if (Result<void> read = choice.NeedNumbers(); !read) return read;
@@ -84,7 +78,7 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   UseTime(choice, index, *UnitOfSuffix(guess.unit));
   const std::string column = choice.FlagValueOf(index);
   const bool is_s = guess.unit == "s";
-  const std::string others = InShell(column + (is_s ? ":ms" : ":s")) + (is_s ? " or :us" : "");
+  const std::string others = ShellWord(column + (is_s ? ":ms" : ":s")) + (is_s ? " or :us" : "");
   choice.Assume("time_unit_assumed", "column " + choice.NameOf(index) +
                                          " does not give its unit and was assumed to be in " + std::string(guess.unit) +
                                          guess.reason +

@@ -42,12 +42,12 @@ Result<void> SetTimes(ReadColumns& columns, const ReadOptions& options) {
     return {};
   }
   const Unit& unit = layout.time ? *layout.time->unit : *UnitOfSuffix("s");
+  if (layout.is_from_first) samples.time.array() -= double{samples.time[0]};
   const bool is_usual = unit.suffix == "s" || unit.suffix == "ms" || unit.suffix == "us";
   if (!is_usual) {  // RepairClock knows s, ms and us.
     for (double& time : samples.time) time = unit.ToSi(time);
     samples.time_unit = "s";
   }
-  if (layout.is_from_first) samples.time.array() -= double{samples.time[0]};
   Result<RawSamples> repaired = RepairClock(std::move(samples), options.window);
   if (!repaired) return tl::unexpected(std::move(repaired).error());
   samples = *std::move(repaired);

@@ -83,6 +83,13 @@ UnitGuess GuessAngleUnit(const std::optional<SwingSignature>& swing, double ampl
   return {rad, reached + ")", ""};
 }
 
+/// Whether times are numbers of days from 1900, as a spreadsheet writes dates: of the years 1954 to 2119, with a step
+/// that in seconds would be a few microseconds.
+bool AreDaysOfSpreadsheet(double first, double step) {
+  constexpr double kFirst = 2e4, kLast = 8e4, kLongestStep = 6e-6;  // days
+  return first > kFirst && first < kLast && step > 0 && step < kLongestStep;
+}
+
 UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingSignature>& swing, double amplitude) {
   const bool is_whole = AreWhole(values);
   // NaN, where a cell has no number, is not larger.
@@ -141,6 +148,9 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
     const double first = first_time == times.end() ? 0 : *first_time * scale.seconds;
     const bool is_usual_step = step * scale.seconds <= kLongestStep;
     if (first > kEpochFirst && first < kEpochLast && is_usual_step) return {scale.unit, " (it counts from 1970)", true};
+  }
+  if (const double first = first_time == times.end() ? 0 : *first_time; AreDaysOfSpreadsheet(first, step)) {
+    return {"days", " (it counts days from 1900, as spreadsheets do)", true};
   }
   const auto swing = FindSwingSignature(values);
   if (swing) {

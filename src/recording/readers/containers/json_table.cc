@@ -165,12 +165,33 @@ class JsonTableFinder {
       for (const JsonValue& item : array.items) records.push_back(&item);
       WriteRecords(records, name);
     } else if (is_all([](const JsonValue& item) { return AsArray(item) != nullptr; })) {
-      WriteRows(array, name);
+      AreColumns(array) ? WriteLists(array, name) : WriteRows(array, name);
     } else if (is_all(IsScalar)) {
       std::vector<Column> columns(1);
       for (const JsonValue& item : array.items) columns[0].cells.push_back(&item);
       Write(columns, name);
     }
+  }
+
+  /// Whether a few long lists of numbers hold a column each: [[0, 0.01, ...], [3, 2.9, ...]].
+  static bool AreColumns(const JsonArray& lists) {
+    constexpr std::size_t kMostColumns = 7;  // A recording has more rows.
+    const std::size_t length = AsArray(lists.items.front())->items.size();
+    const auto is_column = [&](const JsonValue& list) {
+      const JsonArray& items = *AsArray(list);
+      return items.items.size() == length && std::ranges::all_of(items.items, [](const JsonValue& item) {
+               return IsScalar(item) && AsString(item) == nullptr;
+             });
+    };
+    return lists.items.size() <= kMostColumns && length > kMostColumns && std::ranges::all_of(lists.items, is_column);
+  }
+
+  void WriteLists(const JsonArray& lists, const std::string& name) {
+    std::vector<Column> columns(lists.items.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      for (const JsonValue& item : AsArray(lists.items[i])->items) columns[i].cells.push_back(&item);
+    }
+    Write(columns, name);
   }
 
   /// [[0, 3], [1, 4]], with or without names in the first row.

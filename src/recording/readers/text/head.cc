@@ -37,10 +37,32 @@ void ForEachTextLine(std::string_view text, std::size_t number, const Take& take
   }
 }
 
+/// The row that begins with `line`, which is a part of `begin`, and its number of lines: a quoted name may contain line
+/// breaks. A quote that few lines do not close belongs to its text, as in 5" pipe.
+std::pair<std::string_view, std::size_t> WholeRow(std::string_view begin, std::string_view line) {
+  constexpr std::size_t kMostLines = 4;
+  const auto is_open = [](std::string_view text) { return std::ranges::count(text, '"') % 2 != 0; };
+  if (!is_open(line)) return {line, 1};
+  const auto at = static_cast<std::size_t>(line.data() - begin.data());
+  std::size_t end = at + line.size();
+  for (std::size_t lines = 2; lines <= kMostLines && end < begin.size(); ++lines) {
+    end = std::min(begin.find('\n', begin.find('\n', end) + 1), begin.size());
+    std::string_view row = begin.substr(at, end - at);
+    if (row.ends_with('\r')) row.remove_suffix(1);
+    if (!is_open(row)) return {row, lines};
+  }
+  return {line, 1};
+}
+
 FirstLines SplitFirstLines(std::string_view begin) {
   constexpr std::size_t kMost = 400;
   FirstLines found;
+  std::size_t next = 0;  // The line after a row of several lines.
   ForEachTextLine(begin, 1, [&](std::string_view text, std::size_t number) {
+    if (number < next) return true;
+    const auto [row, row_lines] = WholeRow(begin, text);
+    text = row;
+    next = number + row_lines;
     if (IsEmptyRow(text)) return true;
     if (Trim(text).front() == '#') {
       found.comments.push_back({text, number});
@@ -126,6 +148,12 @@ bool IsRow(const std::string& mask, const std::string& usual) {
     has_number |= mask[j] == kNumber;
   }
   return has_number;
+}
+
+std::size_t CountFields(std::string_view line, char separator) {
+  std::size_t count = 0;
+  for (FieldCutter fields(line, separator); !fields.done(); ++count) fields.Next();
+  return count;
 }
 
 /// A line of dashes below a header.
@@ -223,11 +251,19 @@ bool AreUnits(const std::vector<Name>& names) {
   return has_unit;
 }
 
+/// A name on one line.
+std::string OnOneLine(std::string_view name) {
+  std::string line(name);
+  std::erase(line, '\r');
+  std::ranges::replace(line, '\n', ' ');
+  return line;
+}
+
 /// Names and, from the line below, their units.
 std::vector<TableColumn> WithUnits(const std::vector<Name>& names, const std::vector<Name>& units) {
   std::vector<TableColumn> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string name(names[i].text);
+    const std::string name = OnOneLine(names[i].text);
     const std::string_view unit = i < units.size() ? WithoutBrackets(units[i].text) : std::string_view();
     const bool adds = UnitOfText(unit) != nullptr && MeaningOf(name).unit == nullptr;
     columns.push_back({name, adds ? name + " (" + std::string(unit) + ")" : name, "", names[i].at});
@@ -239,7 +275,7 @@ std::vector<TableColumn> WithUnits(const std::vector<Name>& names, const std::ve
 std::vector<TableColumn> ColumnsOf(const std::vector<Name>& names) {
   std::vector<TableColumn> columns;
   for (const Name& name : names) {
-    const std::string written(name.text);
+    const std::string written = OnOneLine(name.text);
     columns.push_back({written, written == "X_Value" ? "time" : written, "", name.at});  // LabVIEW's time
   }
   SplitRuns(columns);
@@ -250,8 +286,9 @@ bool SaysSomething(const std::vector<Name>& names) {
   return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
 }
 
-std::string_view WithoutLeadingBlanks(std::string_view text) {
-  return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+/// The text without these blanks at its beginning.
+std::string_view Without(std::string_view blanks, std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(blanks), text.size()));
 }
 
 /// The header of numpy's savetxt: a comment above the first row with as many names as columns.
@@ -259,11 +296,15 @@ std::optional<TextLine> CommentWithNames(const FirstLines& first, const TextLine
                                          const Table& table) {
   for (const TextLine& comment : std::views::reverse(first.comments)) {
     if (comment.number >= row.number || comment.number <= before) continue;
-    std::string_view names = comment.text.substr(comment.text.find('#') + 1);
-    names = table.separator == '\t' ? WithoutLeadingBlanks(names) : Trim(names);  // An empty last name is a column.
-    const std::vector<Name> split = SplitHeader(names, table.separator);
-    return split.size() == table.width && SaysSomething(split) ? std::optional(TextLine{names, comment.number})
-                                                               : std::nullopt;
+    const std::string_view text = comment.text.substr(comment.text.find('#') + 1);
+    // If tabs separate, empty names at the ends are columns too.
+    const bool has_tabs = table.separator == '\t';
+    for (const std::string_view blanks : {has_tabs ? " " : " \t", " \t"}) {
+      const std::string_view names = Without(blanks, has_tabs ? text : Trim(text));
+      const std::vector<Name> split = SplitHeader(names, table.separator);
+      if (split.size() == table.width && SaysSomething(split)) return TextLine{names, comment.number};
+    }
+    return std::nullopt;
   }
   return std::nullopt;
 }
@@ -442,8 +483,13 @@ TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& 
   found.is_clock.resize(layout.width);
   std::vector<DayClock> clocks(layout.width);
   Numbers numbers(layout.separator != ',');
+  // Rows may begin with text. Text below them has fewer fields.
+  const std::size_t fields_of_text =
+      IsText(head.first_row.text) ? CountFields(head.first_row.text, layout.separator) : 0;
   ForEachTextLine(text, number, [&](std::string_view line, std::size_t at) {
     if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
+    if (layout.has_header && Trim(line) == Trim(head.names.text)) return false;  // a second table
+    if (IsText(line) && (fields_of_text == 0 || CountFields(line, layout.separator) < fields_of_text)) return true;
     if (++rows * layout.width > kMostCells) return false;
     std::size_t index = 0;
     for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator); !fields.done() && index < layout.width;

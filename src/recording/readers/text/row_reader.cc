@@ -39,6 +39,14 @@ std::string WholeLines(const std::string& bytes) {
   return bytes.size() < kNumbersBytes ? bytes : bytes.substr(0, bytes.rfind('\n') + 1);  // npos + 1 is 0
 }
 
+/// A line that could not be read as a row. Its error counts if a row follows.
+struct RowSetAside {
+  Status error;
+  std::string text;
+  std::size_t number = 0;
+  bool is_text = false;  // Not a row that is cut off.
+};
+
 /// Reads one text, line by line.
 class Reader {
  public:
@@ -55,6 +63,7 @@ class Reader {
   Check ReadLine();
   Check ChooseColumns();
   Check ReadOrSetAsideRow();
+  Check SetAside(Status error);
   Check ReadRow();
   Check ReadRosRow();
   Check SelectJoint();
@@ -64,7 +73,9 @@ class Reader {
   const csv::Column& ColumnOf(int slot) const;
   std::size_t LastIndex() const;
   Check Append(double time, double value, double second = 0);
+  void Warn(const std::string& code, std::size_t line, const std::string& sentence);
   void WarnOfIncompleteRow(const Line& line);
+  void WarnOfNote(std::string_view text);
   Check CheckEnd();
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
@@ -86,10 +97,10 @@ class Reader {
   csv::DayClock day_clock_;
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
-  std::optional<Status> is_truncated_;             // The error of a possibly cut-off row; used if another row follows.
-  Line truncated_line_;
-  std::string truncated_text_;
-  bool is_short_ = false;  // The current row has too few fields.
+  std::optional<RowSetAside> below_;               // The first line after the last row that could be read.
+  bool is_over_ = false;                           // A second table follows.
+  bool has_note_ = false;                          // A row has text beyond the columns.
+  bool is_short_ = false;                          // The current row has too few fields.
   Eigen::Index rows_ = 0;
   RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
 };
@@ -184,29 +195,48 @@ Check Reader::ChooseColumns() {
 
 // ---- Rows --------------------------------------------------------------------------------------------------------
 
-/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off. The error of such
-/// a row is set aside.
+/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off, and text or a
+/// second table may follow. The error of such a line is set aside.
 Check Reader::ReadOrSetAsideRow() {
-  if (is_truncated_) return tl::unexpected(*is_truncated_);
+  if (is_over_) return {};
+  if (below_ && !below_->is_text) return tl::unexpected(below_->error);
   is_short_ = false;
   Check read = ros_ ? ReadRosRow() : ReadRow();
-  if (read) return read;
+  if (read) return below_ ? tl::unexpected(below_->error) : read;
   const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head_.first_row.number;
-  if (is_first) {
-    WarnOfIncompleteRow(line_);
-    return {};
-  }
-  if (!is_short_ && lines_.is_terminated()) return read;
-  is_truncated_ = std::move(read).error();
-  truncated_text_ = line_.text;
-  truncated_line_ = {lines_.name(), truncated_text_, line_.number};
+  if (!is_first) return SetAside(std::move(read).error());
+  WarnOfIncompleteRow(line_);
   return {};
 }
 
+/// Sets aside a line that cannot be read. Returns its error if it can be neither a cut-off row nor text.
+Check Reader::SetAside(Status error) {
+  const bool is_text = csv::IsText(line_.text);
+  if (layout_.has_header && Trim(line_.text) == Trim(head_.names.text)) {
+    Warn("second_table", line_.number,
+         "a second table begins here; only the first was read. Save each table in a file of its own to fit the others");
+    is_over_ = true;
+  } else if (!is_text && !is_short_ && lines_.is_terminated()) {
+    return tl::unexpected(below_ ? below_->error : std::move(error));
+  } else if (!below_) {
+    below_ = {std::move(error), std::string(line_.text), line_.number, is_text && lines_.is_terminated()};
+  }
+  return {};
+}
+
+void Reader::Warn(const std::string& code, std::size_t line, const std::string& sentence) {
+  samples_.warnings.push_back({code, std::string(lines_.name()) + ":" + std::to_string(line) + ": " + sentence});
+}
+
 void Reader::WarnOfIncompleteRow(const Line& line) {
-  samples_.warnings.push_back({"incomplete_row", std::string(line.file) + ":" + std::to_string(line.number) +
-                                                     ": the row " + Quoted(line.text) +
-                                                     " is incomplete; it was left out"});
+  Warn("incomplete_row", line.number, "the row " + Quoted(line.text) + " is incomplete; it was left out");
+}
+
+/// `text`: what the current row holds beyond the columns.
+void Reader::WarnOfNote(std::string_view text) {
+  if (!std::exchange(has_note_, true)) {
+    Warn("notes_left_out", line_.number, "the text " + Quoted(text) + " stands beyond the columns; it was left out");
+  }
 }
 
 /// Reads the number of a field that is not a plain number: quoted, empty, a time of day, or faulty.
@@ -242,6 +272,10 @@ Check Reader::ReadRow() {
       if (!is_clock && fields.NextNumber(cells_.numbers, numbers.at(slot))) continue;
       if (Check read = ReadField(fields, slot, numbers.at(slot)); !read) return read;
     } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
+      if (layout_.separator != ' ' && csv::IsText(text)) {
+        WarnOfNote(csv::Unquote(text));
+        continue;
+      }
       return line_.Fault(text.data(), "field " + std::to_string(index + 1) + " holds " + Quoted(text) +
                                           " beyond the header's " + std::to_string(layout_.width) +
                                           " columns; name every column, and write decimals with a point");
@@ -353,8 +387,13 @@ Check Reader::SelectJoint() {
 // ---- The end -----------------------------------------------------------------------------------------------------
 
 Check Reader::CheckEnd() {
-  if (is_truncated_ && rows_ < kMinimumSamples) return tl::unexpected(*is_truncated_);
-  if (is_truncated_) WarnOfIncompleteRow(truncated_line_);
+  if (below_ && rows_ < kMinimumSamples) return tl::unexpected(below_->error);
+  if (below_ && below_->is_text) {
+    Warn("text_below_table", below_->number,
+         "the text " + Quoted(below_->text) + " stands below the table; what follows was left out");
+  } else if (below_) {
+    WarnOfIncompleteRow({lines_.name(), below_->text, below_->number});
+  }
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
   const std::string sentence =

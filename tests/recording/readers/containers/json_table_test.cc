@@ -72,6 +72,11 @@ TEST(ReadJsonTables, ReadsRowsWithoutNames) {
   ExpectTheRows(RecordingOf(kAngles, options));
 }
 
+TEST(ReadJsonTables, AFewLongListsAreColumns) {
+  ExpectTheRows(
+      RecordingOf("[[0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07], " + kAngles + "]", TimeAndValue("1:s", "2", "rad")));
+}
+
 TEST(ReadJsonTables, ReadsMetadataBesideTheArrays) {
   const Recording recording =
       RecordingOf(R"({"device": "esp32", "sample_rate_hz": 100, "resolution": 0.5, "range": [0, 1023], )"
