@@ -14,7 +14,7 @@ std::size_t SizeOfLetterBeyondAscii(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
   if (byte(0) >= 0xC2 && byte(0) <= 0xDF && follows(1)) return byte(0) > 0xC2 || byte(1) >= 0xA0 ? 2 : 0;
-  const bool is_east_asian = byte(0) >= 0xE3 && byte(0) <= 0xEC;  // U+3000 to U+CFFF
+  const bool is_east_asian = byte(0) >= 0xE3 && (byte(0) <= 0xEC || (byte(0) == 0xED && byte(1) < 0xA0));  // to U+D7FF
   return is_east_asian && follows(1) && follows(2) ? 3 : 0;
 }
 

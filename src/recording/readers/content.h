@@ -23,7 +23,7 @@ enum class Content {
   kForeign,   ///< Not read.
 };
 
-inline constexpr std::size_t kContentBytes = 520;  ///< Number of bytes needed for the detection.
+inline constexpr std::size_t kContentBytes = 4096;  ///< Number of bytes needed for the detection.
 
 /// Detects the format from a file's first kContentBytes, or from all its bytes if it is shorter.
 Content ContentOf(std::string_view begin);

@@ -71,14 +71,15 @@ std::vector<std::string> CandidatesIn(const std::vector<csv::TableColumn>& colum
 MemberSummary SummarizeMember(const Folder& folder, std::size_t index, const ReadOptions& options) {
   constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
   MemberSummary summary{index, {}, true, {}};
-  const Result<std::string> begin = folder.read(index, kHeadBytes);
+  Result<std::string> begin = folder.read(index, kHeadBytes);
   if (!begin) {
     summary.fault = begin.error();
     return summary;
   }
   const Content content = ContentOf(std::string_view(*begin).substr(0, kContentBytes));
   if (content == Content::kForeign) return summary;
-  if (content != Content::kText) {
+  if (content == Content::kReturns) std::ranges::replace(*begin, '\r', '\n');
+  if (content != Content::kText && content != Content::kReturns) {
     summary.candidates.emplace_back();
     summary.is_examined = content == Content::kMat;
     return summary;

@@ -77,6 +77,7 @@ Result<Recording> ReadUtf16(std::string_view bytes, const std::string& name, con
   return ReadConverted(text, bytes, name, options, nesting);
 }
 
+/// Reads text whose lines end with a carriage return alone.
 Result<Recording> ReadLinesWithReturns(std::string_view bytes, const std::string& name, const ReadOptions& options,
                                        Nesting nesting) {
   std::string text(bytes);

@@ -30,7 +30,9 @@ std::vector<std::string> Choice::NamesOf(const Columns& columns) const {
 }
 
 std::string Choice::FlagValueOf(std::size_t index) const {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
   const bool is_unique = index < names.size() && !names[index].written.empty() &&
+                         std::ranges::none_of(names[index].written, is_control) &&
                          std::ranges::count(names, names[index].written, &Name::written) == 1;
   return is_unique ? std::string(names[index].written) : std::to_string(index + 1);
 }

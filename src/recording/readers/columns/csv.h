@@ -32,7 +32,7 @@ inline bool IsMissing(std::string_view text) {
   return std::find(kWords.begin(), kWords.end(), text) != kWords.end();
 }
 
-/// Whether a line is text and no row with a fault: a letter comes before any digit.
+/// Whether a line begins with text: a letter comes before any digit, or it has neither.
 inline bool IsText(std::string_view line) {
   const auto is_letter_or_digit = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -119,7 +119,8 @@ class Numbers {
     return comma;
   }
 
-  /// True if the whole text is a finite number. Other text, such as the date 05.11.2026, decides nothing.
+  /// True if the whole text is a finite number. Other text, such as the date 05.11.2026, does not fix
+  /// the decimal mark.
   bool Parse(std::string_view text, double& number) {
     const char* end = text.data() + text.size();
     Numbers trial = *this;

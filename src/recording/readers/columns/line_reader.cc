@@ -118,7 +118,7 @@ bool LineReader::TakeBufferedLine() {
 
 void LineReader::TakeLine(const char* line_end) {
   line_ = {at_, line_end};
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  while (line_.ends_with('\r')) line_.remove_suffix(1);
   ++number_;
 }
 

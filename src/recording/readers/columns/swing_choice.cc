@@ -11,6 +11,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "pendulum/base/format.h"
 #include "recording/readers/columns/name_list.h"
 #include "recording/swing_signature.h"
 
@@ -100,7 +101,7 @@ bool CombineAxes(Choice& choice, const Columns& axes, const Eigen::MatrixXd& cov
   }
   choice.Assume("axes_combined",
                 "the axes share the swing, so the rate about the fixed axis of the rotation was computed: " + parts +
-                    "; --value_column " + Quoted(choice.FlagValueOf(*choice.value)) + " uses this axis alone");
+                    "; --value_column " + ShellWord(choice.FlagValueOf(*choice.value)) + " uses this axis alone");
   return true;
 }
 
@@ -150,6 +151,12 @@ double RowsPerPeriod(const Choice& choice, const Columns& columns) {
   return period;
 }
 
+/// Whether several columns swing, perhaps in different units, so that their sizes cannot be compared.
+bool HaveSeveralSwings(const Choice& choice, const Columns& columns) {
+  const auto swings = [&](std::size_t i) { return FindSwingSignature(choice.SwingOf(i)).has_value(); };
+  return std::ranges::count_if(columns, swings) > 1;
+}
+
 /// Chooses by the share of each column in the variance of the swing.
 std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidates, double period) {
   constexpr double kMost = 0.8;
@@ -180,6 +187,12 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     if (row != best) others.push_back(choice.NameOf(columns[i]) + " " + Percent(shares[row]));
   }
   const std::optional<Kind> kind = choice.Meaning(columns.front()).kind;
+  if (!kind && HaveSeveralSwings(choice, columns)) {
+    choice.AskForColumn(
+        "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns)),
+        columns.front());
+    return std::nullopt;
+  }
   const bool is_rotation = IsRotation(choice, columns) && CombineAxes(choice, columns, covariance);
   if (is_rotation && !choice.axes.empty()) return choice.value;
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.

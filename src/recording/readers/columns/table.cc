@@ -20,7 +20,7 @@ bool IsLengthOfVector(const TableColumn& column) {
   return meaning.kind == Kind::kRate || meaning.kind == Kind::kAcceleration || meaning.kind == Kind::kLength;
 }
 
-/// The run whose columns are read; std::nullopt if ColumnChooser must report the error.
+/// The run whose columns are read; std::nullopt if ChooseColumns must report the error.
 Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector<TableColumn>& columns,
                                              const ReadOptions& options) {
   for (const std::string& flag : {options.value_column, TimeFlagOf(columns, options.time_column).column}) {

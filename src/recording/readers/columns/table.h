@@ -33,7 +33,7 @@ TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& 
 /// The columns that could be the quantity. If any column has the requested unit, only columns with this unit.
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit);
 
-/// The names from which a ColumnChooser chooses; they refer to `columns`. If there are several runs, only one run can
+/// The names from which ChooseColumns chooses; they refer to `columns`. If there are several runs, only one run can
 /// be chosen: the run of the requested column or of the only candidate. Lengths of vectors are excluded. kDataLoss:
 /// several runs have a candidate. kInvalidArgument: the user requests the length of a vector.
 Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColumn>& columns,

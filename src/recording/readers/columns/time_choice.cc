@@ -74,7 +74,14 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   }
   const TimeGuess guess =
       GuessTimeUnit(choice.NumbersOf(index), choice.value ? choice.SwingOf(*choice.value) : Eigen::VectorXd());
-  choice.layout.is_from_first = guess.is_since_1970;
+  if (guess.unit.empty()) {
+    const std::string flag = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
+    choice.Ask("column " + choice.NameOf(index) + " does not give its unit, and " + guess.reason + ": give it with " +
+                   flag + " or :ms",
+               {"--time_column " + choice.FlagValueOf(index) + ":s"});
+    return {};
+  }
+  choice.layout.is_from_first = guess.has_calendar_origin;
   UseTime(choice, index, *UnitOfSuffix(guess.unit));
   const std::string column = choice.FlagValueOf(index);
   const bool is_s = guess.unit == "s";
@@ -82,7 +89,7 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   choice.Assume("time_unit_assumed", "column " + choice.NameOf(index) +
                                          " does not give its unit and was assumed to be in " + std::string(guess.unit) +
                                          guess.reason +
-                                         (guess.is_since_1970 ? "; times count from the first row" : "") +
+                                         (guess.has_calendar_origin ? "; times count from the first row" : "") +
                                          "; --time_column " + others + " says otherwise");
   return {};
 }

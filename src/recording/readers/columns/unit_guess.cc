@@ -83,10 +83,10 @@ UnitGuess GuessAngleUnit(const std::optional<SwingSignature>& swing, double ampl
   return {rad, reached + ")", ""};
 }
 
-/// Whether times are numbers of days from 1900, as a spreadsheet writes dates: of the years 1954 to 2119, with a step
-/// that in seconds would be a few microseconds.
+/// Whether times are numbers of days from 1900, as a spreadsheet writes dates: of the years 1954 to 2119, with steps
+/// below 2 s. As seconds they would be sampled at more than 40 kHz, hours after the start.
 bool AreDaysOfSpreadsheet(double first, double step) {
-  constexpr double kFirst = 2e4, kLast = 8e4, kLongestStep = 6e-6;  // days
+  constexpr double kFirst = 2e4, kLast = 8e4, kLongestStep = 2.4e-5;  // days
   return first > kFirst && first < kLast && step > 0 && step < kLongestStep;
 }
 
@@ -111,6 +111,13 @@ UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude)
   if (std::abs(usual - 1) < kNearOne && amplitude < kMore) return {"g", " (it is about 1 at rest)", ""};
   if (std::abs(usual - kStandardGravity) < kNearG || amplitude > kMore) return {"m_s2", "", ""};
   return {"", ", which may be m/s^2 or g", "m_s2"};
+}
+
+/// Whether times may be seconds of a slow torsion pendulum or milliseconds of a fast pendulum: milliseconds are usually
+/// whole numbers. step, period: if the times are seconds.
+bool IsSlowOrInMs(const Eigen::VectorXd& times, double step, double period) {
+  constexpr double kLongestSlowPeriod = 400, kLongestStep = 1;  // s
+  return period > kLongestPeriod && period < kLongestSlowPeriod && step < kLongestStep && !AreWhole(times);
 }
 
 }  // namespace
@@ -144,16 +151,21 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
   constexpr double kLongestStep = 0.5;                   // s
   const double step = MedianStep(times);
   const auto first_time = std::find_if(times.begin(), times.end(), [](double time) { return std::isfinite(time); });
+  const double begin = first_time == times.end() ? 0 : *first_time;
   for (const Scale& scale : kScales) {
-    const double first = first_time == times.end() ? 0 : *first_time * scale.seconds;
+    const double first = begin * scale.seconds;
     const bool is_usual_step = step * scale.seconds <= kLongestStep;
     if (first > kEpochFirst && first < kEpochLast && is_usual_step) return {scale.unit, " (it counts from 1970)", true};
   }
-  if (const double first = first_time == times.end() ? 0 : *first_time; AreDaysOfSpreadsheet(first, step)) {
+  if (AreDaysOfSpreadsheet(begin, step)) {
     return {"days", " (it counts days from 1900, as spreadsheets do)", true};
   }
   const auto swing = FindSwingSignature(values);
   if (swing) {
+    if (const double period = swing->rows_per_period * step; IsSlowOrInMs(times, step, period)) {
+      return {"", "the period is " + NumberText(period, 3) + " s if the times are in s, and " +
+                      NumberText(period / 1e3, 3) + " s if they are in ms"};
+    }
     for (const Scale& scale : kScales) {
       const double period = swing->rows_per_period * step * scale.seconds;
       if (period < kShortestPeriod || period > kLongestPeriod) continue;

@@ -16,9 +16,9 @@ namespace pendulum::csv {
 double MedianStep(const Eigen::VectorXd& numbers);
 
 struct TimeGuess {
-  std::string_view unit;       // Suffix: s, ms, us or ns.
-  std::string reason;          // ", because ...".
-  bool is_since_1970 = false;  // The times count from 1970.
+  std::string_view unit;             // Suffix: s, ms, us, ns or days; empty if two are plausible.
+  std::string reason;                // " (...)", or why it is not clear.
+  bool has_calendar_origin = false;  // The times count from 1970 or 1900.
 };
 
 /// The unit of times: the one that gives a swing a period between 0.1 s and 20 s, of which only one exists; for values

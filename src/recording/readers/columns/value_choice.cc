@@ -58,7 +58,8 @@ std::vector<Columns> CandidateClasses(const Choice& choice, bool has_unit_flag) 
 /// The words of a column's name without its unit, each between blanks.
 std::string WordsOf(const NameMeaning& meaning) {
   std::string words = " " + meaning.stem + " ";
-  std::ranges::replace(words, '_', ' ');
+  std::ranges::replace_if(
+      words, [](char c) { return c == '_' || c == '.' || c == '-'; }, ' ');
   return words;
 }
 
@@ -67,7 +68,9 @@ std::optional<std::size_t> FindVertical(const Choice& choice, std::size_t horizo
   const NameMeaning& x = choice.Meaning(horizontal);
   if (x.kind != Kind::kLength || x.unit == nullptr || !x.Has("x")) return std::nullopt;
   std::string wanted = WordsOf(x);
-  wanted.replace(wanted.rfind(" x ") + 1, 1, "y");
+  const std::size_t at = wanted.rfind(" x ");
+  if (at == std::string::npos) return std::nullopt;
+  wanted.replace(at + 1, 1, "y");
   for (std::size_t i = 0; i < choice.names.size(); ++i) {
     const NameMeaning& y = choice.Meaning(i);
     const bool may_be_point = y.kind == Kind::kLength && y.unit == x.unit && y.stem.size() == x.stem.size();

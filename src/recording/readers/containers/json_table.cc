@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "pendulum/recording/recording.h"
 #include "recording/readers/containers/csv_text.h"
 #include "recording/readers/containers/json_value.h"
 
@@ -165,7 +166,8 @@ class JsonTableFinder {
       for (const JsonValue& item : array.items) records.push_back(&item);
       WriteRecords(records, name);
     } else if (is_all([](const JsonValue& item) { return AsArray(item) != nullptr; })) {
-      AreColumns(array) ? WriteLists(array, name) : WriteRows(array, name);
+      if (AreColumns(array)) return WriteLists(array, name);
+      WriteRows(array, name);
     } else if (is_all(IsScalar)) {
       std::vector<Column> columns(1);
       for (const JsonValue& item : array.items) columns[0].cells.push_back(&item);
@@ -175,12 +177,13 @@ class JsonTableFinder {
 
   /// Whether a few long lists of numbers hold a column each: [[0, 0.01, ...], [3, 2.9, ...]].
   static bool AreColumns(const JsonArray& lists) {
-    constexpr std::size_t kMostColumns = 7;  // A recording has more rows.
+    constexpr auto kMostColumns = static_cast<std::size_t>(kMinimumSamples) - 1;
     const std::size_t length = AsArray(lists.items.front())->items.size();
     const auto is_column = [&](const JsonValue& list) {
       const JsonArray& items = *AsArray(list);
       return items.items.size() == length && std::ranges::all_of(items.items, [](const JsonValue& item) {
-               return IsScalar(item) && AsString(item) == nullptr;
+               const std::string* const text = AsString(item);
+               return IsScalar(item) && (text == nullptr || text->empty());  // NaN is an empty text.
              });
     };
     return lists.items.size() <= kMostColumns && length > kMostColumns && std::ranges::all_of(lists.items, is_column);

@@ -31,25 +31,36 @@ void ForEachTextLine(std::string_view text, std::size_t number, const Take& take
   for (std::size_t begin = 0; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     std::string_view line = text.substr(begin, end - begin);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    while (line.ends_with('\r')) line.remove_suffix(1);
     if (!take(line, number)) return;
     begin = end + 1;
   }
 }
 
+/// Whether a field in quotes does not end. A quote elsewhere belongs to its text, as in 5" pipe.
+bool HasOpenQuote(std::string_view text) {
+  bool is_open = false;
+  char before = ',';
+  for (const char c : text) {
+    const bool may_open = before == ',' || before == ';' || IsBlank(before);
+    if (c == '"' && (is_open || may_open)) is_open = !is_open;
+    before = c;
+  }
+  return is_open;
+}
+
 /// The row that begins with `line`, which is a part of `begin`, and its number of lines: a quoted name may contain line
-/// breaks. A quote that few lines do not close belongs to its text, as in 5" pipe.
+/// breaks. A quote that few lines do not close is ignored.
 std::pair<std::string_view, std::size_t> WholeRow(std::string_view begin, std::string_view line) {
   constexpr std::size_t kMostLines = 4;
-  const auto is_open = [](std::string_view text) { return std::ranges::count(text, '"') % 2 != 0; };
-  if (!is_open(line)) return {line, 1};
+  if (!HasOpenQuote(line)) return {line, 1};
   const auto at = static_cast<std::size_t>(line.data() - begin.data());
   std::size_t end = at + line.size();
   for (std::size_t lines = 2; lines <= kMostLines && end < begin.size(); ++lines) {
     end = std::min(begin.find('\n', begin.find('\n', end) + 1), begin.size());
     std::string_view row = begin.substr(at, end - at);
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    if (!is_open(row)) return {row, lines};
+    while (row.ends_with('\r')) row.remove_suffix(1);
+    if (!HasOpenQuote(row)) return {row, lines};
   }
   return {line, 1};
 }
@@ -287,7 +298,7 @@ bool SaysSomething(const std::vector<Name>& names) {
 }
 
 /// The text without these blanks at its beginning.
-std::string_view Without(std::string_view blanks, std::string_view text) {
+std::string_view WithoutLeading(std::string_view blanks, std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(blanks), text.size()));
 }
 
@@ -299,8 +310,8 @@ std::optional<TextLine> CommentWithNames(const FirstLines& first, const TextLine
     const std::string_view text = comment.text.substr(comment.text.find('#') + 1);
     // If tabs separate, empty names at the ends are columns too.
     const bool has_tabs = table.separator == '\t';
-    for (const std::string_view blanks : {has_tabs ? " " : " \t", " \t"}) {
-      const std::string_view names = Without(blanks, has_tabs ? text : Trim(text));
+    for (const std::string_view blanks : {" ", " \t"}) {
+      const std::string_view names = WithoutLeading(blanks, has_tabs ? text : Trim(text));
       const std::vector<Name> split = SplitHeader(names, table.separator);
       if (split.size() == table.width && SaysSomething(split)) return TextLine{names, comment.number};
     }
@@ -323,7 +334,8 @@ void ReadPreamble(const std::vector<std::string_view>& lines, std::size_t end, H
     for (FieldCutter fields(lines[i], separator); !fields.done();) {
       const std::string_view field = Unquote(fields.Next());
       double number = 0;
-      if (std::ranges::find(kStepKeys, key) != kStepKeys.end() && ParseNumber(field, number) && number > 0) {
+      if (std::ranges::find(kStepKeys, key) != kStepKeys.end() && Numbers(separator == '\t').Parse(field, number) &&
+          number > 0) {
         head.sample_rate_hz = 1 / number;
       }
       const Unit* unit = std::ranges::find(kUnitKeys, key) != kUnitKeys.end() ? UnitOfText(field) : nullptr;
@@ -468,11 +480,25 @@ std::optional<char> SeparatorLine(std::string_view line) {
   return line[kKey.size()];
 }
 
+bool IsTextAmongRows(std::string_view line, const Head& head, char separator) {
+  const std::string_view row = DevicePart(line, head.has_host);
+  if (!IsText(row) || IsMissing(Unquote(FieldCutter(row, separator).Next()))) return false;
+  return head.fields_of_text == 0 || CountFields(row, separator) < head.fields_of_text;
+}
+
+bool IsHeaderAgain(std::string_view line, const Head& head, const Layout& layout) {
+  const std::string_view names = head.names.text.substr(0, head.names.text.find_first_of("\r\n"));
+  return layout.has_header && Trim(DevicePart(line, head.has_host)) == Trim(DevicePart(names, head.has_host));
+}
+
 Head ParseHead(std::string_view begin, Layout& layout) {
   const FirstLines first = SplitFirstLines(begin);
   if (first.lines.empty()) return {};
   if (IsVernier(first.lines.front().text)) return ParseVernierHead(first.lines, layout);
-  return HeadParser(first, layout).Parse();
+  Head head = HeadParser(first, layout).Parse();
+  const std::string_view row = DevicePart(head.first_row.text, head.has_host);
+  if (IsText(row)) head.fields_of_text = CountFields(row, layout.separator);
+  return head;
 }
 
 TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& head, const Layout& layout) {
@@ -483,13 +509,10 @@ TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& 
   found.is_clock.resize(layout.width);
   std::vector<DayClock> clocks(layout.width);
   Numbers numbers(layout.separator != ',');
-  // Rows may begin with text. Text below them has fewer fields.
-  const std::size_t fields_of_text =
-      IsText(head.first_row.text) ? CountFields(head.first_row.text, layout.separator) : 0;
   ForEachTextLine(text, number, [&](std::string_view line, std::size_t at) {
     if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
-    if (layout.has_header && Trim(line) == Trim(head.names.text)) return false;  // a second table
-    if (IsText(line) && (fields_of_text == 0 || CountFields(line, layout.separator) < fields_of_text)) return true;
+    if (IsHeaderAgain(line, head, layout)) return false;
+    if (IsTextAmongRows(line, head, layout.separator)) return true;
     if (++rows * layout.width > kMostCells) return false;
     std::size_t index = 0;
     for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator); !fields.done() && index < layout.width;

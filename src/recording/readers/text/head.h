@@ -32,9 +32,10 @@ struct Head {
   TextLine names;                    // The line with the names; without a header, the first row.
   TextLine first_row;                // Its number is 0 if there is no row.
   bool has_host = false;             // Lines begin with the stamp of a serial monitor.
-  bool may_be_short = false;  // Rows may end early: columns of other lengths, and their separators, are left out.
-  double sample_rate_hz = 0;  // From the lines above the table, as LabVIEW and oscilloscopes write it; 0: none.
-  std::string value_unit;     // Suffix of a unit from the lines above the table; empty: none.
+  bool may_be_short = false;       // Rows may end early: columns of other lengths, and their separators, are left out.
+  double sample_rate_hz = 0;       // From the lines above the table, as LabVIEW and oscilloscopes write it; 0: none.
+  std::string value_unit;          // Suffix of a unit from the lines above the table; empty: none.
+  std::size_t fields_of_text = 0;  // Of the first row, if it begins with text.
 };
 
 /// The part of a line that the device sent.
@@ -42,6 +43,13 @@ inline std::string_view DevicePart(std::string_view line, bool has_host) {
   const auto stamp = has_host ? FindHostStamp(line) : std::nullopt;
   return stamp ? stamp->rest : line;
 }
+
+/// Whether a line from the first row on is text and no row: it begins with text other than a missing number. If rows
+/// begin with text too, it has fewer fields.
+bool IsTextAmongRows(std::string_view line, const Head& head, char separator);
+
+/// Whether a line has the names of the columns, or the first line of names with line breaks.
+bool IsHeaderAgain(std::string_view line, const Head& head, const Layout& layout);
 
 /// Examines the first lines of a text. The table begins with the first two rows that have numbers where the later rows
 /// have numbers; the names are in the line above, or in the one above a line of units or a rule. Sets separator, width

@@ -39,11 +39,15 @@ std::string WholeLines(const std::string& bytes) {
   return bytes.size() < kNumbersBytes ? bytes : bytes.substr(0, bytes.rfind('\n') + 1);  // npos + 1 is 0
 }
 
-/// A line that could not be read as a row. Its error counts if a row follows.
-struct RowSetAside {
-  Status error;
+struct TextOfLine {
   std::string text;
   std::size_t number = 0;
+};
+
+/// A line that could not be read as a row. Its error is returned if a row follows.
+struct RowSetAside {
+  Status error;
+  TextOfLine line;
   bool is_text = false;  // Not a row that is cut off.
 };
 
@@ -61,9 +65,11 @@ class Reader {
 
   Check ParseHead();
   Check ReadLine();
+  Check ReadComments();
   Check ChooseColumns();
   Check ReadOrSetAsideRow();
   Check SetAside(Status error);
+  bool BeginsSecondTable(double time) const;
   Check ReadRow();
   Check ReadRosRow();
   Check SelectJoint();
@@ -77,6 +83,7 @@ class Reader {
   void WarnOfIncompleteRow(const Line& line);
   void WarnOfNote(std::string_view text);
   Check CheckEnd();
+  void WarnOfTheEnd();
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
   void WarnOfEmptyCells();
@@ -98,7 +105,10 @@ class Reader {
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
   std::optional<RowSetAside> below_;               // The first line after the last row that could be read.
-  bool is_over_ = false;                           // A second table follows.
+  std::vector<TextOfLine> comments_;               // After the last row. They may belong to a second table.
+  std::size_t header_again_ = 0;                   // The line in which the header stands again, after the last row.
+  bool is_over_ = false;                           // A second table follows, below that line.
+  std::size_t lines_not_read_ = 0;                 // Of the second table.
   bool has_note_ = false;                          // A row has text beyond the columns.
   bool is_short_ = false;                          // The current row has too few fields.
   Eigen::Index rows_ = 0;
@@ -125,8 +135,14 @@ Result<std::vector<csv::TableColumn>> Reader::ReadNames() {
 /// Reads a line: metadata, a row, or a part of the head, which is known already.
 Check Reader::ReadLine() {
   if (csv::IsEmptyRow(line_.text)) return {};
+  lines_not_read_ += is_over_ ? 1 : 0;
+  if (is_over_) return {};
   const std::string_view text = Trim(line_.text);
-  if (text.front() == '#') return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
+  if (text.front() == '#') {
+    if (rows_ == 0) return csv::ReadMetadata(line_, Trim(text.substr(1)), metadata_);
+    comments_.push_back({std::string(line_.text), line_.number});
+    return {};
+  }
   if (head_.first_row.number == 0 || line_.number < head_.first_row.number) return {};
   if (!has_layout_) {
     const Line row = line_;
@@ -195,13 +211,25 @@ Check Reader::ChooseColumns() {
 
 // ---- Rows --------------------------------------------------------------------------------------------------------
 
+/// Reads the comments after the last row, when it is known that they belong to this table.
+Check Reader::ReadComments() {
+  for (const TextOfLine& comment : std::exchange(comments_, {})) {
+    const Line line{lines_.name(), comment.text, comment.number};
+    if (Check read = csv::ReadMetadata(line, Trim(Trim(line.text).substr(1)), metadata_); !read) return read;
+  }
+  return {};
+}
+
 /// Reads a row. The first row of a paste without a header and the last row of a file may be cut off, and text or a
 /// second table may follow. The error of such a line is set aside.
 Check Reader::ReadOrSetAsideRow() {
-  if (is_over_) return {};
   if (below_ && !below_->is_text) return tl::unexpected(below_->error);
   is_short_ = false;
-  Check read = ros_ ? ReadRosRow() : ReadRow();
+  const bool is_text = !ros_ && csv::IsTextAmongRows(line_.text, head_, layout_.separator);
+  Check read = is_text ? line_.Fault(Trim(line_.text).data(),
+                                     "the text " + Quoted(Trim(line_.text)) + " stands between rows; delete the line")
+               : ros_  ? ReadRosRow()
+                       : ReadRow();
   if (read) return below_ ? tl::unexpected(below_->error) : read;
   const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head_.first_row.number;
   if (!is_first) return SetAside(std::move(read).error());
@@ -211,17 +239,23 @@ Check Reader::ReadOrSetAsideRow() {
 
 /// Sets aside a line that cannot be read. Returns its error if it can be neither a cut-off row nor text.
 Check Reader::SetAside(Status error) {
+  if (csv::IsHeaderAgain(line_.text, head_, layout_)) {
+    header_again_ = line_.number;
+    below_.reset();
+    return {};
+  }
   const bool is_text = csv::IsText(line_.text);
-  if (layout_.has_header && Trim(line_.text) == Trim(head_.names.text)) {
-    Warn("second_table", line_.number,
-         "a second table begins here; only the first was read. Save each table in a file of its own to fit the others");
-    is_over_ = true;
-  } else if (!is_text && !is_short_ && lines_.is_terminated()) {
-    return tl::unexpected(below_ ? below_->error : std::move(error));
-  } else if (!below_) {
-    below_ = {std::move(error), std::string(line_.text), line_.number, is_text && lines_.is_terminated()};
+  if (is_text && header_again_ > 0) return {};  // units below the names
+  if (!below_ && !is_text && !is_short_ && lines_.is_terminated()) return tl::unexpected(std::move(error));
+  if (!below_) {
+    below_ = {std::move(error), {std::string(line_.text), line_.number}, is_text && lines_.is_terminated()};
   }
   return {};
+}
+
+/// Whether the row after a repeated header begins a second table: its time does not continue the times before.
+bool Reader::BeginsSecondTable(double time) const {
+  return header_again_ > 0 && rows_ > 0 && !(layout_.time && time > samples_.time[rows_ - 1]);
 }
 
 void Reader::Warn(const std::string& code, std::size_t line, const std::string& sentence) {
@@ -235,7 +269,9 @@ void Reader::WarnOfIncompleteRow(const Line& line) {
 /// `text`: what the current row holds beyond the columns.
 void Reader::WarnOfNote(std::string_view text) {
   if (!std::exchange(has_note_, true)) {
-    Warn("notes_left_out", line_.number, "the text " + Quoted(text) + " stands beyond the columns; it was left out");
+    Warn("notes_left_out", line_.number,
+         "this row has text after its last column, " + Quoted(text) +
+             "; such text was left out in all rows. If it is a reading, name its column in the header");
   }
 }
 
@@ -346,6 +382,15 @@ Check Reader::MakeRoom() {
 }
 
 Check Reader::Append(double time, double value, double second) {
+  if (BeginsSecondTable(time)) {
+    is_over_ = true;
+    lines_not_read_ = 1;
+    return {};
+  }
+  header_again_ = 0;
+  if (!comments_.empty()) {
+    if (Check read = ReadComments(); !read) return read;
+  }
   if (rows_ == samples_.time.size()) {
     if (Check made = MakeRoom(); !made) return made;
   }
@@ -387,22 +432,36 @@ Check Reader::SelectJoint() {
 // ---- The end -----------------------------------------------------------------------------------------------------
 
 Check Reader::CheckEnd() {
-  if (below_ && rows_ < kMinimumSamples) return tl::unexpected(below_->error);
-  if (below_ && below_->is_text) {
-    Warn("text_below_table", below_->number,
-         "the text " + Quoted(below_->text) + " stands below the table; what follows was left out");
-  } else if (below_) {
-    WarnOfIncompleteRow({lines_.name(), below_->text, below_->number});
+  if (!is_over_) {
+    if (Check read = ReadComments(); !read) return read;
   }
+  if (below_ && !below_->is_text && rows_ < kMinimumSamples) return tl::unexpected(below_->error);
+  WarnOfTheEnd();
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
+  const std::string second =
+      is_over_ ? " before the header stands again in line " + std::to_string(header_again_) : std::string();
   const std::string sentence =
       lines_.is_empty() ? "the file is empty; a header and " + least + " rows of data are needed"
       : head_.names.number == 0
           ? "the file holds only comments and blank lines; a header and " + least + " rows are needed"
-          : "rows of data found: " + std::to_string(rows_) + "; " + least + " are needed: record for longer";
+          : "rows of data found: " + std::to_string(rows_) + second + "; " + least + " are needed: record for longer";
   const Line last{lines_.name(), "", lines_.number()};
   return last.Fault(last.text.data(), sentence, StatusCode::kFailedPrecondition);
+}
+
+/// Warns of what stands below the last row.
+void Reader::WarnOfTheEnd() {
+  if (is_over_) {
+    Warn("second_table", header_again_,
+         "the header stands again, and the times begin again; the " + std::to_string(lines_not_read_) +
+             " lines below it were not read. Save each table in a file of its own to fit the others");
+  }
+  if (!below_) return;
+  const TextOfLine& line = below_->line;
+  if (!below_->is_text) return WarnOfIncompleteRow({lines_.name(), line.text, line.number});
+  Warn("text_below_table", line.number,
+       "the table ends here, at the text " + Quoted(line.text) + "; this line and all below it were not read");
 }
 
 /// In a paste without a header, the first stamp may have lost its leading digits and still parse as a number.

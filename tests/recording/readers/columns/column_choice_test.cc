@@ -2,7 +2,9 @@
 /// Which column carries the swing.
 #include "recording/readers/columns/column_choice.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <string>
 #include <vector>
@@ -225,6 +227,49 @@ TEST(ChooseColumns, AsksForAnUnknownUnitInBrackets) {
 TEST(ChooseColumns, AsksWhetherATimeCountsRows) {
   EXPECT_THAT(Refusal(Table("t,angle_deg", 1)), HasSubstr("column \"t\" increases by 1 in each row"));
   EXPECT_NEAR(RecordingOf(Table("t,angle_deg", 1), TimeAndValue("t:ms", "")).time[1], 1e-3, 1e-12);
+}
+
+/// 125 rows a period and 0.4 a row are a period of 50 s, or of 0.05 s in milliseconds.
+TEST(ChooseColumns, AsksWhetherASlowSwingIsInMilliseconds) {
+  EXPECT_THAT(Refusal(Table("time,angle_deg", 0.4)),
+              HasSubstr("column \"time\" does not give its unit, and the period is 50.3 s if the times are in s, and "
+                        "0.0503 s if they are in ms: give it with --time_column time:s or :ms"));
+  EXPECT_NEAR(RecordingOf(Table("time,angle_deg", 0.4), TimeAndValue("time:s", "")).time[1], 0.4, 1e-12);
+}
+
+TEST(ChooseColumns, ReadsTheDaysOfASpreadsheet) {
+  for (const double step : {0.01, 1.0}) {  // s
+    std::string text = "Date,angle_deg\n";
+    for (int i = 0; i < 1000; ++i) {
+      std::array<char, 32> day{};
+      std::snprintf(day.data(), day.size(), "%.10f", 46331.507 + i * step / 86400);
+      text += std::string(day.data()) + "," + std::to_string(20 * std::cos(0.05 * i)) + "\n";
+    }
+    const Recording recording = RecordingOf(text);
+    EXPECT_EQ(recording.time[0], 0);
+    EXPECT_NEAR(recording.time[999], 999 * step, 1e-4) << step;
+  }
+}
+
+/// An angle and its rate in degrees: the sizes say nothing, because the units differ.
+TEST(ChooseColumns, AsksWhichOfSeveralSwingsWithoutNames) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) {
+    text += std::to_string(0.01 * i) + "," + std::to_string(20 * std::cos(0.05 * i)) + "," +
+            std::to_string(-100 * std::sin(0.05 * i)) + "\n";
+  }
+  EXPECT_THAT(Refusal(text), HasSubstr("several columns swing, and their names do not say which is an angle"));
+  EXPECT_NEAR(RecordingOf(text, TimeAndValue("", "2")).value[0], 20 * kDegree, 1e-6);
+}
+
+TEST(ChooseColumns, FindsTheOtherCoordinateOfANameWithADot) {
+  std::string text = "t (s),bob.x_px,bob.y_px\n";
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = 0.5 * std::cos(0.05 * i);
+    text += std::to_string(0.01 * i) + "," + std::to_string(300 + 200 * std::sin(angle)) + "," +
+            std::to_string(100 + 200 * std::cos(angle)) + "\n";
+  }
+  EXPECT_TRUE(RecordingOf(text).arc);
 }
 
 TEST(ChooseColumns, TakesTheIncreasingOneOfXAndYForTheTime) {

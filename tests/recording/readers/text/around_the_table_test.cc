@@ -13,6 +13,7 @@ namespace pendulum::around_the_table_test {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::StartsWith;
 
 std::vector<std::string> MessagesOf(const Recording& recording) {
@@ -30,25 +31,62 @@ TEST(AroundTheTable, TextBelowIsLeftOut) {
     ASSERT_EQ(recording.warnings.size(), 1) << text;
     EXPECT_EQ(recording.warnings[0].code, "text_below_table") << text;
   }
-  EXPECT_THAT(MessagesOf(RecordingOf(kTable + "\nMean,0.5\nStd,3.5\n")),
-              ElementsAre("run.csv:11: the text \"Mean,0.5\" stands below the table; what follows was left out"));
+  EXPECT_THAT(MessagesOf(RecordingOf(kTable + "\nMean,0.5\nStd,3.5\n2026-11-05 14:03\n")),
+              ElementsAre("run.csv:11: the table ends here, at the text \"Mean,0.5\"; this line and all below it were "
+                          "not read"));
+}
+
+TEST(AroundTheTable, TextBelowIsNoRowIfItsFirstColumnIsNotRead) {
+  const std::string table = "n,time_ms,angle_deg\n" + Rows("{t},{t},{v}");
+  for (const std::string text : {"N,2000,2000\n", "Mean,3.5,0.02\n"}) {
+    const Recording recording = RecordingOf(table + text);
+    ExpectTheRows(recording, kDegree);
+    EXPECT_EQ(recording.warnings.at(0).code, "text_below_table");
+  }
+}
+
+TEST(AroundTheTable, RowsMayBeginWithText) {
+  ExpectTheRows(RecordingOf("state,time_ms,angle_deg\n" + Rows("fine,{t},{v}") + "Mean,3.5\n"), kDegree);
 }
 
 TEST(AroundTheTable, TextBetweenRowsIsAFault) {
-  EXPECT_THAT(FaultOf(kTable + "pause\n80,108\n"), StartsWith("run.csv:10:1: column \"time_ms\" holds \"pause\""));
-  EXPECT_THAT(FaultOf(kTable + "Mean,0.5\n80,108\n"), StartsWith("run.csv:10:1: column \"time_ms\" holds \"Mean\""));
+  EXPECT_THAT(FaultOf(kTable + "pause\n80,108\n"),
+              StartsWith("run.csv:10:1: the text \"pause\" stands between rows; delete the line"));
+  EXPECT_THAT(FaultOf(kTable + "Mean,0.5\n80,108\n"), StartsWith("run.csv:10:1: the text \"Mean,0.5\" stands"));
 }
 
+TEST(AroundTheTable, AShortTableWithTextBelowHasTooFewRows) {
+  EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + "End\n", {}, StatusCode::kFailedPrecondition),
+              HasSubstr("rows of data found: 5; at least 8 are needed"));
+}
+
+const std::string kSecond = "time_ms,angle_deg\n" + Rows("{t},9");
+
 TEST(AroundTheTable, ASecondTableIsLeftOut) {
-  const std::string second = "time_ms,angle_deg\n" + Rows("{t},9");
-  for (const std::string between : {"", "\n\n", "Run 2\n"}) {
-    const Recording recording = RecordingOf(kTable + between + second + "End\n");
+  for (const std::string between : {"", "\n\n", "Run 2\n", "# range: [0, 1]\n"}) {
+    const Recording recording = RecordingOf(kTable + between + kSecond + "End\n");
     ExpectTheRows(recording, kDegree);
     EXPECT_EQ(recording.warnings.at(0).code, "second_table") << between;
+    EXPECT_FALSE(recording.range) << between;
   }
-  EXPECT_THAT(MessagesOf(RecordingOf(kTable + second)),
-              ElementsAre("run.csv:10: a second table begins here; only the first was read. Save each table in a file "
-                          "of its own to fit the others"));
+  EXPECT_THAT(MessagesOf(RecordingOf(kTable + kSecond)),
+              ElementsAre("run.csv:10: the header stands again, and the times begin again; the 8 lines below it were "
+                          "not read. Save each table in a file of its own to fit the others"));
+  EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + kSecond, {}, StatusCode::kFailedPrecondition),
+              HasSubstr("rows of data found: 5 before the header stands again in line 7"));
+}
+
+TEST(AroundTheTable, AHeaderAmongRowsIsSkipped) {
+  const Recording recording = RecordingOf("time_ms,angle_deg\n" + Rows("{t},{v}", 3) +
+                                          "time_ms,angle_deg\n30,103\n40,104\n50,105\n60,106\n70,107\n");
+  ExpectTheRows(recording, kDegree);
+  EXPECT_TRUE(recording.warnings.empty());
+  const std::string stamped = "14:03:22.113 -> time_ms,adc_counts\n" + Rows("14:03:22.123 -> {t},{v}");
+  EXPECT_EQ(RecordingOf(stamped + stamped).warnings.at(0).code, "second_table");
+}
+
+TEST(AroundTheTable, CommentsBelowTheRowsBelongToTheTable) {
+  EXPECT_EQ(RecordingOf(kTable + "# resolution: 0.5\n").resolution, 0.5 * kDegree);
 }
 
 TEST(AroundTheTable, NotesBesideItAreLeftOut) {
@@ -56,7 +94,8 @@ TEST(AroundTheTable, NotesBesideItAreLeftOut) {
                                           "10,101\n20,102,\"swings\"\n" + "30,103\n40,104\n50,105\n60,106\n70,107\n");
   ExpectTheRows(recording, kDegree);
   EXPECT_THAT(MessagesOf(recording),
-              ElementsAre("run.csv:2: the text \"released\" stands beyond the columns; it was left out"));
+              ElementsAre("run.csv:2: this row has text after its last column, \"released\"; such text was left out in "
+                          "all rows. If it is a reading, name its column in the header"));
 }
 
 TEST(AroundTheTable, NamesMayHaveLineBreaks) {
@@ -67,13 +106,18 @@ TEST(AroundTheTable, NamesMayHaveLineBreaks) {
     ExpectTheRows(RecordingOf(header + Rows("{t},{v}"), TimeAndValue("", "Angle (deg)")), kDegree);
     EXPECT_THAT(FaultOf(header + Rows("{t},{v}") + "80,x\n90,1\n"), StartsWith("run.csv:12:4: column \"Angle (deg)\""));
   }
-  ExpectTheRows(RecordingOf("pipe of 5\"\n" + kTable), kDegree);
+  ExpectTheRows(RecordingOf("pipe of 5\"\n\"Time\n(ms)\",\"Angle\n(deg)\"\n" + Rows("{t},{v}")), kDegree);
 }
 
-TEST(AroundTheTable, LinesMayEndWithACarriageReturnAlone) {
-  std::string text = kTable;
-  for (char& c : text) c = c == '\n' ? '\r' : c;
-  ExpectTheRows(RecordingOf(text), kDegree);
+std::string WithLineEnds(const std::string& text, const std::string& line_end) {
+  std::string changed;
+  for (const char c : text) changed += c == '\n' ? line_end : std::string(1, c);
+  return changed;
+}
+
+TEST(AroundTheTable, LinesMayEndWithOtherCharacters) {
+  ExpectTheRows(RecordingOf(WithLineEnds(kTable, "\r")), kDegree);
+  ExpectTheRows(RecordingOf(WithLineEnds(kTable, "\r\r\n")), kDegree);  // Python's csv on Windows without newline=''
 }
 
 }  // namespace
