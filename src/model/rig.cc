@@ -176,8 +176,11 @@ Result<void> CheckKeys(const Json& rig, const Form& form, const std::string& ide
   if (missing.empty()) return {};
   const bool is_one = missing.size() == 1;
   const RigKey& identifying = *std::ranges::find(kRigKeys, identifying_key, &RigKey::name);
-  return Fault(name, NameList(missing) + (is_one ? " is" : " are") + " missing beside " + KeyText(identifying, name) +
-                         (is_one ? "; add it" : "; add them"));
+  const bool is_rod = is_one && !rig.contains("rod_mass") && HasKey(form.required, "rod_mass");
+  auto fault =
+      Fault(name, NameList(missing) + (is_one ? " is" : " are") + " missing beside " + KeyText(identifying, name) +
+                      (is_one ? "; add it" : "; add them") + (is_rod ? ", 0 for a string" : ""));
+  return is_rod && IsGivenByFlags(name) ? WithTry(std::move(fault), {"--rod_mass 0g"}) : fault;
 }
 
 /// The kind of description that `rig` is. All keys of that kind are present, and no other key except `inertia`.

@@ -11,6 +11,7 @@ namespace pendulum::rig_values_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": 0.1, "rod_length": 0.5, "gravity": 9.8})";
@@ -53,7 +54,8 @@ TEST(RigOfValues, NamesAMissingValue) {
   const auto rig = RigOfValues({{"bob_mass", 0.4}, {"rod_length", 0.5}}, warnings);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(rig.error().message, "the rig given by flags: --rod_mass is missing beside --bob_mass; add it");
+  EXPECT_EQ(rig.error().message, "the rig given by flags: --rod_mass is missing beside --bob_mass; add it, 0 for a string");
+  EXPECT_THAT(rig.error().try_flags, ElementsAre("--rod_mass 0g"));
   EXPECT_THAT(warnings, IsEmpty());
 }
 

@@ -121,6 +121,12 @@ void PrependRest(const Case& c, const SyntheticOptions& run, Recording& recordin
   rest.initial_rate = 1e-6;  // it stops at once
   rest.duration = 2 * c.per_period / run.sample_rate + 9 / run.sample_rate;
   rest.seed = c.seed + 1000;
+  if (c.IsArc()) {  // Points at rest determine no circle; angles need none.
+    rest.sensor = {};
+    rest.sensor_parameters.clear();
+    rest.zero = run.sensor_parameters.front();
+    rest.noise = run.noise / run.sensor_parameters.back();
+  }
   const Recording still = Must(SimulateRecording(rest));
   Eigen::VectorXd value(still.size() + recording.size());
   value << still.value, recording.value;
