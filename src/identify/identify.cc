@@ -21,6 +21,7 @@
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/free_swing.h"
+#include "pendulum/fitting/fit/fit.h"
 #include "pendulum/fitting/fit/rig_quantities.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig_check.h"
@@ -109,15 +110,40 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& iden
   return linear;
 }
 
-/// Readings in rad under the name of degrees are 57 times too small. The period of so small a swing says nothing of its
-/// amplitude, so only the size tells. half_period: of the swing [s].
-void QuestionUnit(const Recording& used, double half_period, bool is_spring, Identification& identification) {
-  constexpr double kOddlySmall = 0.6 * kRadFromDeg;
+/// Whether readings that are named degrees follow the equation of motion much better as radians, because their period
+/// depends on the amplitude.
+bool FitsBetterInRadians(const Recording& used, const FitReport& fit, const FitOptions& options) {
+  constexpr double kMuchLess = 0.7;
+  Recording in_radians = used;
+  in_radians.value /= kRadFromDeg;
+  in_radians.resolution /= kRadFromDeg;
+  in_radians.range.reset();
+  in_radians.edge.reset();
+  FitOptions quick;
+  quick.model = fit.model.name;
+  quick.search.max_traces = 200;
+  quick.noise = NoiseFamily::kGaussian;
+  quick.interval = IntervalMethod::kCovariance;
+  quick.stop = options.stop;
+  const Result<FitReport> other = FitRecording(in_radians, quick);
+  return other && other->termination != Termination::kFailed &&
+         other->statistics.rms_residual * kRadFromDeg < kMuchLess * fit.statistics.rms_residual;
+}
+
+/// Readings in rad under the name of degrees are 57 times too small. Below 0.6 deg the size tells; the period of so
+/// small a swing says nothing of its amplitude. Above, a fit of the readings as radians tells. half_period: of the
+/// swing [s].
+void QuestionUnit(const Recording& used, double half_period, bool is_spring, const FitOptions& options,
+                  Identification& identification) {
+  constexpr double kOddlySmall = 0.6 * kRadFromDeg, kMayBeRadians = 3.4 * kRadFromDeg;
   const bool is_rate = used.unit == "deg/s";
   if (is_spring || (used.unit != "deg" && !is_rate)) return;
   const double range = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
   const double amplitude = is_rate ? range * half_period / kPi : range;
-  if (amplitude > kOddlySmall) return;
+  if (amplitude > kMayBeRadians) return;
+  const bool is_odd = amplitude <= kOddlySmall ||
+                      (!identification.fits.empty() && FitsBetterInRadians(used, identification.fits.front(), options));
+  if (!is_odd) return;
   const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
   identification.warnings.push_back(
       {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in " +
@@ -226,7 +252,7 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
   if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
     return tl::unexpected(applied.error());
   const bool is_spring = !identification.fits.empty() && identification.fits[main].model.gravity.is_linear();
-  QuestionUnit(run->alone.used, run->alone.swing.half_period, is_spring, identification);
+  QuestionUnit(run->alone.used, run->alone.swing.half_period, is_spring, options.fit, identification);
   CompleteIdentification(options, *std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !identification.closed_forms) {
@@ -424,7 +450,7 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
     for (std::size_t m = 0; m < joint.models.size(); ++m) identification.fits.push_back(joint.FitOf(k, m));
     AddOwnWarnings(joint.runs[k].alone.fits[main], identification.fits[main], identification);
     QuestionUnit(joint.runs[k].alone.used, joint.runs[k].alone.swing.half_period,
-                 identification.fits[main].model.gravity.is_linear(), identification);
+                 identification.fits[main].model.gravity.is_linear(), options.fit, identification);
     CompleteIdentification(options, std::move(joint.runs[k]), main, identification);
     whole.runs.push_back(std::move(identification));
   }

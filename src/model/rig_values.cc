@@ -37,7 +37,11 @@ Result<Rig> RigOfValues(Json values, std::vector<Warning>& warnings) {
   const bool lacks_gravity = LacksGravity(values);
   if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
   Result<Rig> rig = ParseRig(JsonText(values), std::string(kRigOfValuesName));
-  if (!rig) return Error(StatusCode::kInvalidArgument, rig.error().message);
+  if (!rig) {
+    Status error = std::move(rig).error();
+    error.code = StatusCode::kInvalidArgument;
+    return tl::unexpected(std::move(error));
+  }
   if (lacks_gravity) {
     warnings.push_back({"gravity_assumed", "g was taken as " + NumberText(kMeanGravity) + " +- " +
                                                NumberText(kGravityStdDev) +

@@ -71,14 +71,16 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {
 constexpr std::array<Word<Checks>, 3> kChecks = {
     {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
 
-constexpr std::array<FlagWord, 17> kReadingUnits = {{{"", "in the column’s name"},
+constexpr std::array<FlagWord, 19> kReadingUnits = {{{"", "in the column’s name"},
                                                      {"rad", "radians"},
                                                      {"deg", "degrees"},
                                                      {"mrad", "milliradians"},
                                                      {"rev", "revolutions"},
+                                                     {"gon", "gon (1/400 of a turn)"},
                                                      {"rad_s", "radians per second"},
                                                      {"deg_s", "degrees per second"},
                                                      {"rpm", "revolutions per minute"},
+                                                     {"rev_s", "revolutions per second"},
                                                      {"counts", "counts of a converter"},
                                                      {"volts", "volts"},
                                                      {"mv", "millivolts"},
@@ -399,8 +401,9 @@ std::vector<RunFlag> MakeTable() {
        .example = "angle_deg"},
       {.name = "unit",
        .value = &RunFlags::unit,
-       .help = "Unit of the values: rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, g, px, m, cm or "
-               "mm; default the unit in the column's name, or the one that the numbers show.",
+       .help =
+           "Unit of the values: rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, px, "
+           "m, cm or mm; default the unit in the column's name, or the one that the numbers show.",
        .label = "Unit of the values",
        .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",

@@ -235,10 +235,10 @@ TEST(MakeFitPendulumOptions, RefusesFlagsThatContradictEachOther) {
       "--calibration turns counts or volts into an angle, and --unit says that the values are in deg; leave one of "
       "them out");
   flags.unit = "grad";
-  EXPECT_EQ(
-      Refusal(flags),
-      "--unit is 'grad'; it must be one of rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, g, px, m, "
-      "cm, mm");
+  EXPECT_EQ(Refusal(flags),
+            "--unit is 'grad'; it must be one of rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, "
+            "mv, m_s2, g, "
+            "px, m, cm, mm");
 }
 
 TEST(MakeFitPendulumOptions, RequiresAPositiveSampleRate) {

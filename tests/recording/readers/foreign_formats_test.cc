@@ -123,10 +123,10 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
       WrongFlag(text, Unit("volts")),
       "run.csv:1:8: column \"angle_deg\" is in deg, so --unit volts contradicts it; leave the flag out, or choose "
       "another column with --value_column");
-  EXPECT_EQ(
-      WrongFlag(text, Unit("gon")),
-      "run.csv:1:8: --unit is \"gon\"; it must be rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, "
-      "g, px, m, cm or mm");
+  EXPECT_EQ(WrongFlag(text, Unit("brad")),
+            "run.csv:1:8: --unit is \"brad\"; it must be rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, "
+            "volts, mv, "
+            "m_s2, g, px, m, cm or mm");
   EXPECT_EQ(
       WrongFlag(text, Unit("", 50)),
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "

@@ -11,11 +11,23 @@ namespace pendulum::csv {
 
 using Eigen::Index;
 
+namespace {
+
+/// Beside a rate, alpha is the angular acceleration.
+void MarkDerivatives(std::vector<NameMeaning>& meanings) {
+  const auto is_rate = [](const NameMeaning& meaning) { return meaning.kind == Kind::kRate; };
+  if (std::ranges::none_of(meanings, is_rate)) return;
+  for (NameMeaning& meaning : meanings) meaning.is_secondary |= meaning.unit == nullptr && meaning.Has("alpha");
+}
+
+}  // namespace
+
 std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t width) {
   std::vector<NameMeaning> meanings;
   meanings.reserve(std::max(names.size(), width));
   for (const Name& name : names) meanings.push_back(MeaningOf(name.text));
   meanings.resize(std::max(names.size(), width));
+  MarkDerivatives(meanings);
   return meanings;
 }
 
@@ -117,14 +129,16 @@ bool Choice::MayBeTime(std::size_t index) const {
 }
 
 bool Choice::IsIncreasing(std::size_t index) const {
+  constexpr Index kRowsPerStepBack = 100;  // A step back in more rows is an error of the clock.
   double last = -std::numeric_limits<double>::infinity(), first = last;
+  Index back = 0;
   for (const double number : NumbersOf(index)) {
     if (!std::isfinite(number)) continue;
-    if (number < last) return false;
+    back += number < last ? 1 : 0;
     if (!std::isfinite(first)) first = number;
     last = number;
   }
-  return last > first;
+  return last > first && kRowsPerStepBack * back <= NumbersOf(index).size();
 }
 
 bool AreSeparated(const Columns& times) {

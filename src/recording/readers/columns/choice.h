@@ -91,7 +91,7 @@ struct Choice {
   /// Whether the name of a column leaves open that it is the time: it says nothing, or only x.
   bool MayBeTime(std::size_t index) const;
 
-  /// Whether the numbers of a column never decrease, as times do.
+  /// Whether the numbers of a column increase, as times do; at most one in a hundred is smaller than the one before.
   bool IsIncreasing(std::size_t index) const;
 };
 

@@ -55,6 +55,12 @@ constexpr std::array kSpellings = {
     Spelling{"\u03A6", "phi"},
     Spelling{"\u03C8", "psi"},
     Spelling{"\u03C9", "omega"},
+    Spelling{"\u03C0", "pi"},
+    Spelling{"\u0307", " dot"},
+    Spelling{"\u0308", " ddot"},
+    Spelling{"\u2032", " dot"},
+    Spelling{"\u2033", " ddot"},
+    Spelling{"''", " ddot"},
     Spelling{"\u00B0", "deg"},
     Spelling{"\u00BA", "deg"},
     Spelling{"\u00B5", "u"},
@@ -194,6 +200,15 @@ constexpr std::array kUnitWords = {
     UnitWord{"revs", "rev"},
     UnitWord{"revolutions", "rev"},
     UnitWord{"turns", "rev"},
+    UnitWord{"rot", "rev"},
+    UnitWord{"cycles", "rev"},
+    UnitWord{"gons", "gon"},
+    UnitWord{"grads", "gon"},
+    UnitWord{"gradians", "gon"},
+    UnitWord{"millirad", "mrad"},
+    UnitWord{"milliradians", "mrad"},
+    UnitWord{"rev/s", "rev_s"},
+    UnitWord{"rps", "rev_s"},
     UnitWord{"umdrehungen", "rev"},
     UnitWord{"rad/s", "rad_s"},
     UnitWord{"rad/sec", "rad_s"},
@@ -241,6 +256,8 @@ constexpr std::array kUnitWords = {
     UnitWord{"impulse", "counts"},
     UnitWord{"impulses", "counts"},
     UnitWord{"ticks", "counts"},
+    UnitWord{"inc", "counts"},
+    UnitWord{"increments", "counts"},
     UnitWord{"volt", "volts"},
     UnitWord{"v", "volts"},
     UnitWord{"millivolt", "mv"},
@@ -387,6 +404,19 @@ constexpr std::array kWords = {
     Word{"dphi", Sense::kRate},
     Word{"angvel", Sense::kRate},
     Word{"dot", Sense::kRate},
+    Word{"punkt", Sense::kRate},
+    Word{"diff", Sense::kRate},
+    Word{"drehrate", Sense::kRate},
+    Word{"gx", Sense::kRate},
+    Word{"gy", Sense::kRate},
+    Word{"gz", Sense::kRate},
+    Word{"wx", Sense::kRate},
+    Word{"wy", Sense::kRate},
+    Word{"wz", Sense::kRate},
+    Word{"ddot", Sense::kOther},
+    Word{"dotdot", Sense::kOther},
+    Word{"punktpunkt", Sense::kOther},
+    Word{"dd", Sense::kOther},
     Word{"adc", Sense::kRaw},
     Word{"counts", Sense::kRaw},
     Word{"count", Sense::kRaw},
@@ -547,13 +577,18 @@ std::string_view InBrackets(std::string_view name) {
   return close == std::string_view::npos ? "" : Trim(name.substr(open + 1, close - open - 1));
 }
 
-/// `10 ms`, `x0.1 deg`: a multiple of a unit.
+/// `10 ms`, `x0.1 deg`, `1/25 s`, `s x 10`, `pi rad`: a multiple of a unit.
 bool IsMultiple(std::string_view text) {
-  if (text.starts_with('x') || text.starts_with('*')) text.remove_prefix(1);
-  const std::size_t end = text.find_first_not_of("0123456789., ");
-  const bool has_digit =
-      text.substr(0, std::min(end, text.size())).find_first_of("0123456789") != std::string_view::npos;
-  return has_digit && end != std::string_view::npos && text[end] != '/' && text[end] != ':';
+  const std::string letters = UnitLetters(text);
+  if (UnitOfLetters(letters) != nullptr || IsOtherUnit(letters)) return false;
+  bool has_factor = letters.find_first_of("0123456789") != std::string::npos, has_unit = false;
+  const std::string plain = PlainName(text);
+  for (std::string_view word : WordsIn(plain)) {
+    has_factor |= word == "pi";
+    while (!word.empty() && IsDigit(word.front())) word.remove_prefix(1);
+    has_unit |= UnitOfLetters(word) != nullptr;
+  }
+  return has_factor && has_unit;
 }
 
 /// Whether a text in brackets may be a unit: one short word that says nothing else.

@@ -36,10 +36,12 @@ inline constexpr std::array kUnits = {
     Unit{"rad_s", Kind::kRate, "rad/s"},
     Unit{"deg_s", Kind::kRate, "deg/s", kRadFromDeg},
     Unit{"rpm", Kind::kRate, "rad/s", 2 * kPi, 60},
+    Unit{"rev_s", Kind::kRate, "rad/s", 2 * kPi},
     Unit{"rad", Kind::kAngle, "rad"},
     Unit{"deg", Kind::kAngle, "deg", kRadFromDeg},
     Unit{"mrad", Kind::kAngle, "rad", 1, 1e3},
     Unit{"rev", Kind::kAngle, "rad", 2 * kPi},
+    Unit{"gon", Kind::kAngle, "rad", kPi, 200},
     Unit{"s", Kind::kTime, "s"},
     Unit{"ms", Kind::kTime, "ms", 1, 1e3},
     Unit{"us", Kind::kTime, "us", 1, 1e6},
@@ -59,7 +61,7 @@ inline constexpr std::array kUnits = {
 
 /// The units of a quantity, as --unit takes them.
 inline constexpr std::string_view kValueUnits =
-    "rad, deg, mrad, rev, rad_s, deg_s, rpm, counts, volts, mv, m_s2, g, px, m, cm or mm";
+    "rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, px, m, cm or mm";
 
 /// The unit with this suffix, or nullptr.
 inline const Unit* UnitOfSuffix(std::string_view suffix) {

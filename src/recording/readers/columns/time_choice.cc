@@ -49,7 +49,7 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
   if (const std::string& unknown = choice.Meaning(index).unknown_unit; !unknown.empty()) {
     choice.Ask(column + " is in " + Quoted(unknown) + ", which is not a unit known here: convert the column, or give " +
                    "its unit with " + flag + ":s, :ms or :us",
-               {flag + ":s"});
+               {});
     return true;
   }
   if (!IsRowNumber(choice, index)) return false;
@@ -77,8 +77,8 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   if (guess.unit.empty()) {
     const std::string flag = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
     choice.Ask("column " + choice.NameOf(index) + " does not give its unit, and " + guess.reason + ": give it with " +
-                   flag + " or :ms",
-               {"--time_column " + choice.FlagValueOf(index) + ":s"});
+                   flag + " and --gravity linear, or with :ms",
+               {"--time_column " + choice.FlagValueOf(index) + ":s", "--gravity linear"});
     return {};
   }
   choice.layout.is_from_first = guess.has_calendar_origin;

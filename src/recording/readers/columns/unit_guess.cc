@@ -114,10 +114,10 @@ UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude)
 }
 
 /// Whether times may be seconds of a slow torsion pendulum or milliseconds of a fast pendulum: milliseconds are usually
-/// whole numbers. step, period: if the times are seconds.
-bool IsSlowOrInMs(const Eigen::VectorXd& times, double step, double period) {
-  constexpr double kLongestSlowPeriod = 400, kLongestStep = 1;  // s
-  return period > kLongestPeriod && period < kLongestSlowPeriod && step < kLongestStep && !AreWhole(times);
+/// whole numbers. period: if the times are seconds.
+bool IsSlowOrInMs(const Eigen::VectorXd& times, double period) {
+  constexpr double kLongestSlowPeriod = 400;  // s
+  return period > kLongestPeriod && period < kLongestSlowPeriod && !AreWhole(times);
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
   }
   const auto swing = FindSwingSignature(values);
   if (swing) {
-    if (const double period = swing->rows_per_period * step; IsSlowOrInMs(times, step, period)) {
+    if (const double period = swing->rows_per_period * step; IsSlowOrInMs(times, period)) {
       return {"", "the period is " + NumberText(period, 3) + " s if the times are in s, and " +
                       NumberText(period / 1e3, 3) + " s if they are in ms"};
     }

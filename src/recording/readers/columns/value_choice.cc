@@ -189,6 +189,27 @@ Result<void> CheckUnitFlag(Choice& choice, std::size_t index) {
   return {};
 }
 
+/// Half the range of a column.
+double AmplitudeOf(const Choice& choice, std::size_t index) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : choice.NumbersOf(index)) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return (high - low) / 2;
+}
+
+/// Whether the numbers may be an encoder's counts, which the name does not say.
+bool IsEncoderOfWholeNumbers(const Choice& choice, std::size_t index) {
+  constexpr double kMostDegrees = 400;  // Larger whole numbers are counts.
+  const NameMeaning& meaning = choice.Meaning(index);
+  if (!meaning.Has("encoder") && !meaning.Has("enc")) return false;
+  return std::ranges::all_of(choice.NumbersOf(index), [](double value) {
+    return !std::isfinite(value) || (value == std::floor(value) && std::abs(value) < kMostDegrees);
+  });
+}
+
 /// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
 Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   const NameMeaning& meaning = choice.Meaning(index);
@@ -207,7 +228,17 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     choice.Ask("column " + choice.NameOf(index) + " is in " + Quoted(meaning.unknown_unit) +
                    ", which is not a unit known here: convert the column, or give its unit with --unit (" +
                    std::string(kValueUnits) + ")",
-               {"--unit " + (guess.unit.empty() ? guess.example : std::string(guess.unit))});
+               {});
+    return nullptr;
+  }
+  if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {
+    choice.Ask(column + ", and it may be a coordinate or an angle: give it with --unit (deg, rad, px, m, ...)",
+               {"--unit " + std::string(AmplitudeOf(choice, index) > 60 ? "px" : "deg")});
+    return nullptr;
+  }
+  if (IsEncoderOfWholeNumbers(choice, index)) {
+    choice.Ask(column + ", and the whole numbers of an encoder may be counts or degrees: give it with --unit",
+               {"--unit counts"});
     return nullptr;
   }
   if (guess.unit.empty()) {

@@ -9,6 +9,7 @@
 #include <ranges>
 #include <utility>
 
+#include "recording/readers/text/sample_rate_text.h"
 #include "recording/readers/text/tracker.h"
 #include "recording/readers/text/vernier.h"
 
@@ -385,6 +386,7 @@ class HeadParser {
     FindNames();
     ReadPreamble(lines_, std::min(table_.first_row + 3, lines_.size()), head_);
     if (table_.first_row < lines_.size()) head_.first_row = LineOf(table_.first_row);
+    FindRateLine();
     if (layout_.has_header) {
       head_.names = first_.lines[table_.names];
       MakeColumns();
@@ -403,6 +405,29 @@ class HeadParser {
 
   static bool HasName(const std::vector<Name>& names) {
     return std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
+  }
+
+  /// Finds a sampling rate in the lines and comments above the table, if no program's key gives it.
+  void FindRateLine() {
+    if (head_.sample_rate_hz > 0) return;
+    std::vector<TextLine> above = first_.comments;
+    for (std::size_t i = 0; i < std::min(table_.first_row, lines_.size()); ++i) above.push_back(LineOf(i));
+    for (const TextLine& line : above) {
+      std::string_view text = Trim(line.text);
+      if (text.starts_with('#')) text.remove_prefix(1);
+      const double rate = line.number < head_.first_row.number ? SampleRateIn(text) : 0;
+      if (rate == 0) continue;
+      head_.sample_rate_hz = rate;
+      head_.rate_line = line;
+    }
+  }
+
+  /// Whether the last field of the first row holds something.
+  bool HasLastField() const {
+    if (table_.first_row >= lines_.size()) return false;
+    std::string_view field;
+    for (FieldCutter fields(lines_[table_.first_row], table_.separator); !fields.done();) field = fields.Next();
+    return !Unquote(field).empty();
   }
 
   void ChooseTable() {
@@ -426,8 +451,11 @@ class HeadParser {
         --table_.names;
       }
     }
+    // R writes no name above the names of the rows.
+    const bool has_row_names = names_.size() + 1 == table_.width && SaysSomething(names_) && HasLastField();
+    if (has_row_names) names_.insert(names_.begin(), Name{"", names_.front().at});
     // Text above a table without a header says nothing.
-    const bool is_text = table_.names > 0 && names_.size() != table_.width && !SaysSomething(names_);
+    const bool is_text = table_.score > 0 && names_.size() != table_.width && !SaysSomething(names_);
     layout_.has_header = HasName(names_) && !is_text;
     const bool is_first_row_cut_off = !layout_.has_header && table_.first_row == 1 && table_.names == 0;
     if (is_first_row_cut_off && !names_.empty()) table_.first_row = 0;

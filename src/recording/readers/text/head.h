@@ -34,6 +34,7 @@ struct Head {
   bool has_host = false;             // Lines begin with the stamp of a serial monitor.
   bool may_be_short = false;       // Rows may end early: columns of other lengths, and their separators, are left out.
   double sample_rate_hz = 0;       // From the lines above the table, as LabVIEW and oscilloscopes write it; 0: none.
+  TextLine rate_line;              // The line that states this rate in words; its number is 0 if there is none.
   std::string value_unit;          // Suffix of a unit from the lines above the table; empty: none.
   std::size_t fields_of_text = 0;  // Of the first row, if it begins with text.
 };

@@ -180,7 +180,13 @@ Check Reader::ChooseColumns() {
   const auto names = csv::NamesOf(header, head_.columns, options);
   if (!names) return tl::unexpected(names.error());
   const bool has_times = std::ranges::any_of(*names, [](const csv::Name& name) { return csv::IsTime(name.text); });
-  if (!has_times && metadata_.sample_rate_hz == 0) metadata_.sample_rate_hz = head_.sample_rate_hz;
+  const bool needs_rate = !has_times && metadata_.sample_rate_hz == 0 && !(options_.sample_rate_hz > 0);
+  if (needs_rate) metadata_.sample_rate_hz = head_.sample_rate_hz;
+  if (needs_rate && head_.rate_line.number > 0) {
+    Warn("sample_rate_from_text", head_.rate_line.number,
+         "the rows have no times, so the rate of " + NumberText(head_.sample_rate_hz) + " Hz was taken from " +
+             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise");
+  }
   const auto& calibration = csv::ChosenCalibration(options_, metadata_);
   const csv::TableView table{.line = header,
                              .names = *names,

@@ -214,7 +214,7 @@ std::string Table(const std::string& header, double step) {
 }
 
 TEST(ChooseColumns, AsksForAnUnknownUnitInBrackets) {
-  EXPECT_THAT(Refusal(Table("t (s),angle (gon)", 0.01)), HasSubstr("column \"angle (gon)\" is in \"gon\""));
+  EXPECT_THAT(Refusal(Table("t (s),angle (brad)", 0.01)), HasSubstr("column \"angle (brad)\" is in \"brad\""));
   EXPECT_THAT(Refusal(Table("t (s),angle (0.1 deg)", 0.01)), HasSubstr("is in \"0.1 deg\""));
   EXPECT_THAT(Refusal(Table("t (10 ms),angle (deg)", 1)), HasSubstr("column \"t (10 ms)\" is in \"10 ms\""));
   EXPECT_THAT(Refusal(Table("t (cs),angle (deg)", 1)), HasSubstr("is in \"cs\""));
@@ -231,9 +231,10 @@ TEST(ChooseColumns, AsksWhetherATimeCountsRows) {
 
 /// 125 rows a period and 0.4 a row are a period of 50 s, or of 0.05 s in milliseconds.
 TEST(ChooseColumns, AsksWhetherASlowSwingIsInMilliseconds) {
-  EXPECT_THAT(Refusal(Table("time,angle_deg", 0.4)),
-              HasSubstr("column \"time\" does not give its unit, and the period is 50.3 s if the times are in s, and "
-                        "0.0503 s if they are in ms: give it with --time_column time:s or :ms"));
+  EXPECT_THAT(
+      Refusal(Table("time,angle_deg", 0.4)),
+      HasSubstr("column \"time\" does not give its unit, and the period is 50.3 s if the times are in s, and "
+                "0.0503 s if they are in ms: give it with --time_column time:s and --gravity linear, or with :ms"));
   EXPECT_NEAR(RecordingOf(Table("time,angle_deg", 0.4), TimeAndValue("time:s", "")).time[1], 0.4, 1e-12);
 }
 
@@ -262,6 +263,38 @@ TEST(ChooseColumns, AsksWhichOfSeveralSwingsWithoutNames) {
   EXPECT_NEAR(RecordingOf(text, TimeAndValue("", "2")).value[0], 20 * kDegree, 1e-6);
 }
 
+TEST(ChooseColumns, DerivativesAreNoAngles) {
+  for (const std::string header : {"time,theta,omega,alpha", "t,theta,theta_dot,theta_ddot",
+                                   "t,\u03B8,\u03B8\u0307,\u03B8\u0308", "t,phi,phi_punkt,phi_punktpunkt"}) {
+    std::string text = header + "\n";
+    for (int i = 0; i < 1000; ++i) {
+      const double wave = 0.3 * std::cos(0.05 * i);
+      text += std::to_string(0.01 * i) + "," + std::to_string(wave) + "," + std::to_string(-1.5 * std::sin(0.05 * i)) +
+              "," + std::to_string(-25 * wave) + "\n";
+    }
+    EXPECT_NEAR(RecordingOf(text, Unit("rad")).value[0], 0.3, 1e-6) << header;
+  }
+}
+
+TEST(ChooseColumns, AsksForMultiplesOfUnits) {
+  for (const std::string unit : {"[1/25 s]", "(s x 10)", "(10ms)", "(ms*10)"}) {
+    EXPECT_THAT(Refusal(Table("t " + unit + ",angle_deg", 0.01)), HasSubstr("which is not a unit known here")) << unit;
+  }
+  for (const std::string unit : {"[\u03C0 rad]", "(1/10 deg)", "(x0.1 rad)", "[rad/\u03C0]"}) {
+    EXPECT_THAT(Refusal(Table("t (s),angle " + unit, 0.01)), HasSubstr("which is not a unit known here")) << unit;
+  }
+  EXPECT_NEAR(RecordingOf(Table("t (s),angle_gon", 0.01)).value[0], 18 * kDegree, 1e-6);
+  EXPECT_NEAR(RecordingOf(Table("t (s),rate (rev/s)", 0.01)).value[0], 40 * kPi, 1e-6);
+}
+
+TEST(ChooseColumns, AsksWhetherWholeNumbersOfAnEncoderAreDegrees) {
+  std::string text = "t (s),encoder\n";
+  for (int i = 0; i < 1000; ++i) {
+    text += std::to_string(0.01 * i) + "," + std::to_string(std::lround(190 * std::cos(0.05 * i))) + "\n";
+  }
+  EXPECT_THAT(Refusal(text), HasSubstr("the whole numbers of an encoder may be counts or degrees"));
+}
+
 TEST(ChooseColumns, FindsTheOtherCoordinateOfANameWithADot) {
   std::string text = "t (s),bob.x_px,bob.y_px\n";
   for (int i = 0; i < 1000; ++i) {
@@ -273,7 +306,8 @@ TEST(ChooseColumns, FindsTheOtherCoordinateOfANameWithADot) {
 }
 
 TEST(ChooseColumns, TakesTheIncreasingOneOfXAndYForTheTime) {
-  const Recording recording = RecordingOf(Table("x,y", 0.01));
+  EXPECT_THAT(Refusal(Table("x,y", 0.01)), HasSubstr("\"y\" does not give its unit, and it may be a coordinate"));
+  const Recording recording = RecordingOf(Table("x,y", 0.01), Unit("deg"));
   EXPECT_NEAR(recording.time[1], 0.01, 1e-9);
   EXPECT_EQ(recording.warnings.at(0).code, "time_column_assumed");
 }

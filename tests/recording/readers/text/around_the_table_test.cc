@@ -49,6 +49,19 @@ TEST(AroundTheTable, RowsMayBeginWithText) {
   ExpectTheRows(RecordingOf("state,time_ms,angle_deg\n" + Rows("fine,{t},{v}") + "Mean,3.5\n"), kDegree);
 }
 
+TEST(AroundTheTable, OneLineOfTextMayStandAboveRowsWithoutNames) {
+  const Recording recording = RecordingOf("Ready\n" + Rows("{t}\t{v}"), TimeAndValue("1:ms", "2", "deg"));
+  ExpectTheRows(recording, kDegree);
+}
+
+TEST(AroundTheTable, RowsMayHaveNamesThatTheHeaderOmits) {
+  std::string text = "\"time_ms\" \"angle_deg\"\n";
+  for (int i = 0; i < 8; ++i) {
+    text += "\"" + std::to_string(i + 1) + "\" " + std::to_string(10 * i) + " " + std::to_string(100 + i) + "\n";
+  }
+  ExpectTheRows(RecordingOf(text), kDegree);
+}
+
 TEST(AroundTheTable, TextBetweenRowsIsAFault) {
   EXPECT_THAT(FaultOf(kTable + "pause\n80,108\n"),
               StartsWith("run.csv:10:1: the text \"pause\" stands between rows; delete the line"));
