@@ -54,7 +54,8 @@ TEST(RigOfValues, NamesAMissingValue) {
   const auto rig = RigOfValues({{"bob_mass", 0.4}, {"rod_length", 0.5}}, warnings);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(rig.error().message, "the rig given by flags: --rod_mass is missing beside --bob_mass; add it, 0 for a string");
+  EXPECT_EQ(rig.error().message,
+            "the rig given by flags: --rod_mass is missing beside --bob_mass; add it, 0 for a string");
   EXPECT_THAT(rig.error().try_flags, ElementsAre("--rod_mass 0g"));
   EXPECT_THAT(warnings, IsEmpty());
 }
