@@ -18,25 +18,9 @@ using Eigen::Index;
 
 constexpr double kShortestPeriod = 0.1, kLongestPeriod = 20;  // s
 constexpr double kLargestSwing = 3.3;  // rad; a pendulum that does not turn over stays within pi.
-constexpr double kMostDegrees = 400;   // A larger amplitude is not an angle in degrees.
 constexpr double kLeastSwing = 0.02;   // rad
 /// rad; from here on the period shows the amplitude (MODEL.md section 3: 2.3 % at 0.6 rad).
 constexpr double kTellingSwing = 0.6;
-
-double HalfRange(const Eigen::VectorXd& values) {
-  double low = INFINITY, high = -INFINITY;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return high > low ? (high - low) / 2 : 0;
-}
-
-bool AreWhole(const Eigen::VectorXd& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return !std::isfinite(value) || value == std::floor(value); });
-}
 
 double MedianMagnitude(const Eigen::VectorXd& values) {
   std::vector<double> magnitudes;
@@ -121,6 +105,21 @@ bool IsSlowOrInMs(const Eigen::VectorXd& times, double period) {
 }
 
 }  // namespace
+
+double HalfRange(const Eigen::VectorXd& values) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return high > low ? (high - low) / 2 : 0;
+}
+
+bool AreWhole(const Eigen::VectorXd& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return !std::isfinite(value) || value == std::floor(value); });
+}
 
 double MedianStep(const Eigen::VectorXd& numbers) {
   std::vector<double> steps;

@@ -12,6 +12,14 @@
 /// Finds units that a header does not give, from what is plausible for a pendulum.
 namespace pendulum::csv {
 
+inline constexpr double kMostDegrees = 400;  // A larger amplitude is not an angle in degrees.
+
+/// Half the distance between the smallest and the largest finite number; 0 without numbers.
+double HalfRange(const Eigen::VectorXd& values);
+
+/// Whether all finite numbers are whole.
+bool AreWhole(const Eigen::VectorXd& values);
+
 /// The median step between rows, from successive finite numbers; 0 if there is none.
 double MedianStep(const Eigen::VectorXd& numbers);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -189,25 +190,14 @@ Result<void> CheckUnitFlag(Choice& choice, std::size_t index) {
   return {};
 }
 
-/// Half the range of a column.
-double AmplitudeOf(const Choice& choice, std::size_t index) {
-  double low = INFINITY, high = -INFINITY;
-  for (const double value : choice.NumbersOf(index)) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return (high - low) / 2;
-}
-
 /// Whether the numbers may be an encoder's counts, which the name does not say.
 bool IsEncoderOfWholeNumbers(const Choice& choice, std::size_t index) {
-  constexpr double kMostDegrees = 400;  // Larger whole numbers are counts.
   const NameMeaning& meaning = choice.Meaning(index);
   if (!meaning.Has("encoder") && !meaning.Has("enc")) return false;
-  return std::ranges::all_of(choice.NumbersOf(index), [](double value) {
-    return !std::isfinite(value) || (value == std::floor(value) && std::abs(value) < kMostDegrees);
-  });
+  const Eigen::VectorXd& numbers = choice.NumbersOf(index);
+  // NaN, where a cell has no number, is not larger.
+  return AreWhole(numbers) &&
+         std::ranges::none_of(numbers, [](double value) { return std::abs(value) >= kMostDegrees; });
 }
 
 /// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
@@ -233,7 +223,7 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   }
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {
     choice.Ask(column + ", and it may be a coordinate or an angle: give it with --unit (deg, rad, px, m, ...)",
-               {"--unit " + std::string(AmplitudeOf(choice, index) > 60 ? "px" : "deg")});
+               {"--unit " + std::string(HalfRange(choice.NumbersOf(index)) > 60 ? "px" : "deg")});
     return nullptr;
   }
   if (IsEncoderOfWholeNumbers(choice, index)) {
