@@ -12,7 +12,7 @@
 /// Finds units that a header does not give, from what is plausible for a pendulum.
 namespace pendulum::csv {
 
-inline constexpr double kMostDegrees = 400;  // A larger amplitude is not an angle in degrees.
+inline constexpr double kMostDegrees = 400;  ///< A larger amplitude is not an angle in degrees.
 
 /// Half the distance between the smallest and the largest finite number; 0 without numbers.
 double HalfRange(const Eigen::VectorXd& values);
