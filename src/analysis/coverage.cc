@@ -33,29 +33,33 @@ struct RunOutcome {
   bool converged = false;
 };
 
-/// Factor from units of the restoring torque G to the report's unit.
-double ReportUnit(const CoverageScenario& scenario, const ParameterInfo& info) {
-  return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value : 1.0;
+/// Factor from units of the true restoring torque G, or of true time, to the report's unit. A release time is on the
+/// clock of the recording.
+double ReportUnit(const CoverageScenario& scenario, const DrawnErrors& drawn, const ParameterInfo& info) {
+  if (info.name == kReleaseTime.name) return 1 / drawn.clock;
+  return scenario.fit.rig && info.scales_with_gravity() ? scenario.fit.rig->gravity_torque.value * drawn.torque : 1.0;
 }
 
 void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) {
   outcome.unit = parameter.unit;
   outcome.estimate = parameter.estimate;
-  outcome.std_error = parameter.std_error;
+  outcome.std_error = TotalStdError(parameter.std_error, parameter.systematic);
   outcome.has_interval = parameter.lower95.has_value() || parameter.upper95.has_value();
-  outcome.covered = outcome.has_interval && parameter.lower95.value_or(-kUnbounded) <= outcome.truth &&
-                    outcome.truth <= parameter.upper95.value_or(kUnbounded);
+  const auto lower = TotalIntervalEnd(parameter.estimate, parameter.lower95, parameter.systematic);
+  const auto upper = TotalIntervalEnd(parameter.estimate, parameter.upper95, parameter.systematic);
+  outcome.covered = outcome.has_interval && lower.value_or(-kUnbounded) <= outcome.truth &&
+                    outcome.truth <= upper.value_or(kUnbounded);
 }
 
 /// The outcome of one recording, or of a set, for the parameters in `bounds`.
-RunOutcome OutcomeOf(const CoverageScenario& scenario, const std::vector<double>& truth,
+RunOutcome OutcomeOf(const CoverageScenario& scenario, const DrawnErrors& drawn, const std::vector<double>& truth,
                      const std::vector<std::optional<double>>& bounds, const FitReport* report) {
   const std::vector<ParameterInfo> infos = ParametersOf(scenario.run);
   RunOutcome outcome;
   outcome.has_report = report != nullptr;
   outcome.converged = report != nullptr && report->termination == Termination::kConverged;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const double unit = ReportUnit(scenario, infos[i]);
+    const double unit = ReportUnit(scenario, drawn, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
     // The Cramér-Rao bound assumes that no parameter is fixed.
@@ -82,30 +86,34 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
   std::vector<SimulatedRun> simulated;
   std::vector<Recording> recordings;
   std::vector<FitReport> alone;
+  const DrawnErrors drawn = DrawErrors(scenario, seed);  // one rig, clock and calibration for the whole set
   for (int k = 0; k < runs; ++k) {
     SyntheticOptions run = RunOfSet(scenario, seed, k, runs);
     Result<Recording> recording = SimulateRecording(run);
     if (!recording) return tl::unexpected(recording.error());
     simulated.push_back({std::move(run), recording->time});
-    recordings.push_back(WithEdges(*std::move(recording), scenario.fit.noise));
+    recordings.push_back(WithEdges(WithErrors(*std::move(recording), scenario, drawn), scenario.fit.noise));
     if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
   }
   const std::vector<double> truth = TrueParameters(simulated.front().truth);
   const std::vector<std::optional<double>> bounds = SharedCramerRaoBounds(simulated);
-  if (alone.size() < recordings.size()) return OutcomeOf(scenario, truth, bounds, nullptr);
+  if (alone.size() < recordings.size()) return OutcomeOf(scenario, drawn, truth, bounds, nullptr);
   std::vector<JointRun> joint;
   joint.reserve(alone.size());
   for (std::size_t k = 0; k < alone.size(); ++k) joint.push_back({recordings[k], alone[k], scenario.fit});
   const Result<JointFit> fit = FitJointly(joint, PhysicalNames({scenario.fit.model}));
-  return OutcomeOf(scenario, truth, bounds, fit ? &fit->whole : nullptr);
+  return OutcomeOf(scenario, drawn, truth, bounds, fit ? &fit->whole : nullptr);
 }
 
 Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {
   const SyntheticOptions run = ScenarioRun(scenario, seed);
   const Result<Recording> recording = SimulateRecording(run);
   if (!recording) return tl::unexpected(recording.error());
-  const Result<FitReport> report = FitRecording(WithEdges(*recording, scenario.fit.noise), scenario.fit);
-  return OutcomeOf(scenario, TrueParameters(run), CramerRaoBounds(run, recording->time), report ? &*report : nullptr);
+  const DrawnErrors drawn = DrawErrors(scenario, seed);
+  const Recording known = WithEdges(WithErrors(*recording, scenario, drawn), scenario.fit.noise);
+  const Result<FitReport> report = FitRecording(known, scenario.fit);
+  const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording->time);
+  return OutcomeOf(scenario, drawn, TrueParameters(run), bounds, report ? &*report : nullptr);
 }
 
 /// Results of all recordings in the order of their seeds, independent of the thread. Each fit uses one thread, because

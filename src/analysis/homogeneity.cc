@@ -40,12 +40,11 @@ struct SeparateEstimates {
 /// t, which is used because autocorrelated residuals have few effective samples. A parameter at its bound gets the
 /// largest factor of the other parameters.
 VectorXd IntervalFactors(const FitReport& fit, const std::vector<std::string>& names) {
-  constexpr double kNormal = 1.959963984540054;
-  double largest = kNormal;
-  for (const std::string& name : names) largest = std::max(largest, fit.Find(name)->t95.value_or(kNormal));
+  double largest = kNormal95;
+  for (const std::string& name : names) largest = std::max(largest, fit.Find(name)->t95.value_or(kNormal95));
   VectorXd factors(static_cast<Index>(names.size()));
   for (std::size_t j = 0; j < names.size(); ++j) {
-    factors[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal, 1.0);
+    factors[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal95, 1.0);
   }
   return factors;
 }

@@ -49,9 +49,28 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
+/// Adds this error to what is derived from the parameter. The ratios of the parameters to G determine them.
+void AddToDerived(const ParameterEstimate& changing, double std_dev, FitReport& fit) {
+  const auto ratio = std::ranges::find(fit.derived, "gravity_over_inertia", &DerivedQuantity::name);
+  if (ratio == fit.derived.end()) return;
+  const double gravity = ratio->estimate * fit.Find(kInertia.name)->estimate;
+  const auto count = static_cast<Index>(fit.parameters.size());
+  std::vector<ParameterInfo> infos;
+  std::vector<double> ratios;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(i)];
+    const double unit = parameter.info.scales_with_gravity() ? gravity : 1;
+    infos.push_back(parameter.info);
+    ratios.push_back(parameter.estimate / unit);
+    if (&parameter == &changing) covariance(i, i) = std_dev * std_dev / (unit * unit);
+  }
+  AddSystematicErrors(infos, ratios, ErrorSource::kInconstancy, covariance, fit.derived);
+}
+
 /// Adds a systematic error of this parameter that is independent of all other errors.
 void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
-  parameter.systematic_std_error = std::hypot(parameter.systematic_std_error.value_or(0), std_dev);
+  parameter.systematic.Add(ErrorSource::kInconstancy, std_dev);
   const auto place = std::ranges::find(fit.systematic_names, parameter.info.name);
   const Index row = place - fit.systematic_names.begin();
   if (place == fit.systematic_names.end()) {
@@ -59,6 +78,7 @@ void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit)
     fit.systematic_covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, row + 1));
   }
   fit.systematic_covariance(row, row) += std_dev * std_dev;
+  AddToDerived(parameter, std_dev, fit);
 }
 
 }  // namespace

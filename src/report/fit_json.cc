@@ -12,6 +12,16 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+/// The standard errors by source; only the sources that have one.
+Json ErrorBudgetJson(const std::optional<double>& std_error, const SystematicErrors& systematic) {
+  Json budget = Json::object();
+  if (std_error) budget["noise"] = NumberOrNull(std_error);
+  for (const ErrorSource source : kErrorSources) {
+    if (systematic.Of(source) > 0) budget[std::string(ErrorSourceName(source))] = systematic.Of(source);
+  }
+  return budget;
+}
+
 Json ParameterJson(const ParameterEstimate& parameter) {
   NumberObject object;
   if (parameter.open_interval != OpenInterval::kClosed) {
@@ -20,7 +30,9 @@ Json ParameterJson(const ParameterEstimate& parameter) {
   return object.Set("estimate", parameter.estimate)
       .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
       .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
-      .Set("systematic_std_error", NumberOrNull(parameter.systematic_std_error))
+      .Set("systematic_std_error", NumberOrNull(parameter.systematic.Total()))
+      .Set("total_std_error", NumberOrNull(TotalStdError(parameter.std_error, parameter.systematic)))
+      .Set("error_budget", ErrorBudgetJson(parameter.std_error, parameter.systematic))
       .Set("unit", Json(parameter.unit))
       .Set("fixed", Json(parameter.fixed))
       .Set("at_bound", Json(parameter.at_bound))
@@ -65,7 +77,7 @@ Json DerivedJson(const FitReport& fit) {
         .Set("std_error", quantity.std_error, "a parameter on which it depends has no standard error")
         .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
         .Set("unit", Json(quantity.unit));
-    if (quantity.systematic_std_error) json.Set("systematic_std_error", *quantity.systematic_std_error);
+    if (const auto systematic = quantity.systematic.Total()) json.Set("systematic_std_error", *systematic);
     derived[quantity.name] = json.Done();
   }
   return derived;

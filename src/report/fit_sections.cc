@@ -69,7 +69,7 @@ Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversio
 Row FurtherRow(const ParameterEstimate& parameter, const std::optional<double>& closed_form,
                const Conversion& conversion, bool is_first) {
   const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
-  const std::string systematic = numbers.SecondError(parameter.systematic_std_error);
+  const std::string systematic = numbers.SecondError(parameter.systematic.Total());
   const std::string number = closed_form ? numbers.Number(*closed_form) : "";
   const bool says_something = !systematic.empty() || !number.empty();
   return {is_first ? std::string(parameter.info.name) : "", is_first ? std::string(parameter.info.symbol) : "",
@@ -206,7 +206,7 @@ Section DerivedSection(const FitReport& fit) {
     const bool nothing = IsUninformative(quantity);
     ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
     if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
-    const std::optional<double>& systematic = quantity.systematic_std_error;
+    const std::optional<double> systematic = quantity.systematic.Total();
     table.rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
                           DerivedInterval(quantity),
                           systematic ? "± " + NumberText(*systematic, 2) + " systematic" : ""});

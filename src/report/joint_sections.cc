@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/equation.h"
@@ -94,15 +95,14 @@ class Strip {
   double low_, high_;
 };
 
-constexpr double kTwoSided95 = 1.96;
 
 Strip StripOf(const SharedParameter& parameter) {
-  const double reach = kTwoSided95 * parameter.scatter.std_error;
+  const double reach = kNormal95 * parameter.scatter.std_error;
   double low = parameter.scatter.mean - reach, high = parameter.scatter.mean + reach;
   for (const RunEstimate& run : parameter.runs) {
     if (!run.value) continue;
-    low = std::min(low, *run.value - kTwoSided95 * *run.std_error);
-    high = std::max(high, *run.value + kTwoSided95 * *run.std_error);
+    low = std::min(low, *run.value - kNormal95 * *run.std_error);
+    high = std::max(high, *run.value + kNormal95 * *run.std_error);
   }
   return {low, high};
 }
@@ -130,15 +130,15 @@ Table ForestTable(const SharedParameter& parameter, const FitReport& fit) {
       continue;
     }
     AddRow(name, *run.value, run.std_error, run.z ? FixedText(*run.z, 1) : "",
-           strip.Draw(*run.value, kTwoSided95 * *run.std_error, mark), table);
+           strip.Draw(*run.value, kNormal95 * *run.std_error, mark), table);
   }
   if (joint != nullptr) {
     AddRow("joint", joint->estimate, joint->std_error, "",
-           strip.Draw(joint->estimate, kTwoSided95 * joint->std_error.value_or(0), mark), table);
+           strip.Draw(joint->estimate, kNormal95 * joint->std_error.value_or(0), mark), table);
   }
   const RandomEffects& scatter = parameter.scatter;
   AddRow("random effects", scatter.mean, scatter.std_error, "",
-         strip.Draw(scatter.mean, kTwoSided95 * scatter.std_error, mark), table);
+         strip.Draw(scatter.mean, kNormal95 * scatter.std_error, mark), table);
   return table;
 }
 

@@ -40,14 +40,14 @@ FitOfRun FitWithInconstancy(const SyntheticOptions& simulated, const FitOptions&
 }
 
 double SystematicError(const FitReport& fit, std::string_view name) {
-  return fit.Find(name)->systematic_std_error.value_or(0);
+  return fit.Find(name)->systematic.Total().value_or(0);
 }
 
 TEST(Inconstancy, IsZeroForTheRightLaw) {
   const FitOfRun run = FitWithInconstancy(NoisyTextbookRun("coulomb"), ModelOptions("coulomb"));
   EXPECT_FALSE(run.fit.HasWarning("not_constant"));
   EXPECT_THAT(run.fit.systematic_names, IsEmpty());
-  EXPECT_FALSE(run.fit.Find("inertia")->systematic_std_error);
+  EXPECT_FALSE(run.fit.Find("inertia")->systematic.Total());
 }
 
 // Linear gravity gives each window the inertia I_O (1 + A²/8) of its amplitude A.
@@ -80,7 +80,7 @@ TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
     const double difference = std::abs(second.estimate - first.estimate);
     const double std_error = std::hypot(*first.std_error, *second.std_error);
     EXPECT_THAT(difference, Gt(4 * std_error)) << amplitude;
-    EXPECT_THAT(difference, Lt(3 * std::hypot(std_error, *first.systematic_std_error, *second.systematic_std_error)))
+    EXPECT_THAT(difference, Lt(3 * std::hypot(std_error, *first.systematic.Total(), *second.systematic.Total())))
         << amplitude;
   }
 }
@@ -94,7 +94,7 @@ TEST(Inconstancy, IsReportedWithItsSize) {
 // The rig's error is a factor common to all torques; the inconstancy belongs to inertia alone.
 TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", TextbookRig()).fit;
-  const double of_rig = *fit.Find("inertia")->systematic_std_error;
+  const double of_rig = *fit.Find("inertia")->systematic.Total();
   const Eigen::MatrixXd before = fit.systematic_covariance;
   const auto names = fit.systematic_names;
   Constancy constancy;
@@ -107,7 +107,7 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   // Three values with the same error of 1e-5.
   const double expected =
       (std::pow(0.078 - whole, 2) + std::pow(0.079 - whole, 2) + std::pow(0.080 - whole, 2)) / 2 - 1e-10;
-  EXPECT_NEAR(*fit.Find("inertia")->systematic_std_error, std::sqrt(of_rig * of_rig + expected), 1e-9);
+  EXPECT_NEAR(*fit.Find("inertia")->systematic.Total(), std::sqrt(of_rig * of_rig + expected), 1e-9);
   EXPECT_EQ(fit.systematic_names, names);
   EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), expected, 1e-12);
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));

@@ -35,7 +35,7 @@ inline FitReport ExampleFit() {
   fit.parameters = {ExampleParameter(kInertia, "kg m^2", 0.079, 0.00025),
                     ExampleParameter(kViscous, "N m s/rad", 0.003, 0.0005), ExampleParameter(kCoulomb, "N m", 0, 0),
                     ExampleParameter(kReleaseAngle, "rad", 0.423, 0.0002)};
-  fit.parameters[0].systematic_std_error = 0.001;
+  fit.parameters[0].systematic.Add(ErrorSource::kRig, 0.001);
   ParameterEstimate& coulomb = fit.parameters[2];
   coulomb.std_error.reset();
   coulomb.lower95 = 0;

@@ -183,7 +183,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
   Identification report = ExampleIdentification();
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
-  viscous.systematic_std_error = 4e-8;
+  viscous.systematic.Add(ErrorSource::kRig, 4e-8);
   const std::string text = ToText(report);
   EXPECT_THAT(text, HasSubstr("    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]\n"
                               "    viscous           (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]\n"));
@@ -256,12 +256,12 @@ Identification WideReport() {
   Identification report = ExampleComparedIdentification();
   FitReport& fit = report.fits[0];
   for (ParameterEstimate& parameter : fit.parameters) {
-    parameter.systematic_std_error = 1.2e-9;
+    parameter.systematic.Add(ErrorSource::kRig, 1.2e-9);
     parameter.closed_form = 1.1 * parameter.estimate;
   }
   fit.parameters[0] = ExampleParameter(kInertia, "kg m^2", 0.0789996123, 2.8e-9);
   fit.parameters[1] = ExampleParameter(kViscous, "N m s^2/rad^2", -3.2345678e-7, 1.2e-13);
-  fit.parameters[1].systematic_std_error = 3e-9;
+  fit.parameters[1].systematic.Add(ErrorSource::kRig, 3e-9);
   fit.parameters[1].closed_form = 3.1e-7;
   fit.derived.push_back({"gravity_over_inertia", "1/s^2", 22.827012345, 8e-9, 22.8, 22.9});
   fit.noise.why = std::string(300, 'x')

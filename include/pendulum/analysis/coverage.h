@@ -26,13 +26,13 @@ struct CoverageRow {
   std::string parameter;
   std::string unit;
   bool at_bound = false;     ///< The true value is at the parameter's bound.
-  int covered = 0;           ///< Number of recordings whose 95 % interval contains the true value.
+  int covered = 0;           ///< Number of recordings whose total 95 % interval contains the true value.
   int without_interval = 0;  ///< Number of recordings without an interval.
   double coverage = 0, coverage_lower = 0, coverage_upper = 1;  ///< covered / recordings and its BinomialInterval95.
   std::optional<double> rms_error;                              ///< Of the estimates of converged fits, in `unit`.
   /// Root mean square, over converged fits, of error / Cramér-Rao bound of the same recording; absent without a bound.
   std::optional<double> error_over_bound;
-  /// Mean standard error / rms error, over the fits that give a standard error.
+  /// Mean total standard error / rms error, over the fits that give a standard error.
   std::optional<double> std_error_over_error;
   bool covers = false, precise = false;  ///< Coverage and error satisfy the scenario's rule.
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pendulum/base/status.h"
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/recording/recording.h"
+#include "pendulum/recording/sensor.h"
 #include "pendulum/trajectory/synthetic.h"
 
 namespace pendulum {
@@ -28,6 +31,10 @@ struct CoverageScenario {
   SyntheticOptions run;     ///< Torques and inertia divided by G; ScenarioRun varies some values between recordings.
   FitOptions fit;
   CoverageRule rule;
+  // Like the rig in `fit`, these may have errors; DrawErrors draws them for each recording.
+  double clock_std_dev = 0;  ///< Relative, of the clock of time stamps.
+  std::optional<Calibration> calibration =
+      std::nullopt;  ///< Of readings in whole counts; `run` simulates angles without counts.
 };
 
 /// All scenarios. They simulate the rig of datasets/textbook_rig.json. Most have viscous and dry friction and a
@@ -43,5 +50,19 @@ Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& n
 /// half a count and the release by at most half a sampling interval. The parameters of a sensor that has priors are
 /// drawn from the priors.
 SyntheticOptions ScenarioRun(const CoverageScenario& scenario, std::uint64_t seed);
+
+/// True values behind one recording that its user knows only within standard errors.
+struct DrawnErrors {
+  double torque = 1;                ///< The true G over the rig's.
+  double clock = 1;                 ///< True seconds per second of the recording.
+  std::vector<double> calibration;  ///< The true coefficients; empty without a calibration.
+};
+
+/// Draws the errors for this seed from their normal distributions.
+DrawnErrors DrawErrors(const CoverageScenario& scenario, std::uint64_t seed);
+
+/// The recording as its user gets it: in whole counts of the true calibration, converted by the known one, with time
+/// stamps of a clock whose error is unknown.
+Recording WithErrors(Recording recording, const CoverageScenario& scenario, const DrawnErrors& drawn);
 
 }  // namespace pendulum

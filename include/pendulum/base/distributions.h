@@ -8,6 +8,8 @@ namespace pendulum {
 // finite and at least 0, t is not NaN, degrees of freedom are above 0 (not necessarily whole) and probabilities lie
 // strictly between 0 and 1. Otherwise Boost throws std::domain_error or std::overflow_error.
 
+inline constexpr double kNormal95 = 1.959963984540054;  ///< NormalQuantile(0.975): 95 % lie within ± this.
+
 /// The quantile of the standard normal distribution: the x with P(X < x) = `probability`.
 double NormalQuantile(double probability);
 

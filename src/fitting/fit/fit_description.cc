@@ -152,21 +152,29 @@ void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Erro
   report.std_error_method = errors.runs[0].method;
 }
 
-void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covariance, FitReport& report) {
-  const Eigen::Map<const Eigen::VectorXd> units(problem.si_per_internal.data(), covariance.rows());
+void SetSystematicErrors(const FitProblem& problem, const std::vector<SystematicCovariance>& covariances,
+                         FitReport& report) {
+  const auto size = static_cast<Index>(report.parameters.size());
+  const Eigen::Map<const Eigen::VectorXd> units(problem.si_per_internal.data(), size);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
+  for (const SystematicCovariance& covariance : covariances) {
+    sum += covariance.of_estimates;
+    for (Index i = 0; i < size; ++i) {
+      const double error = units[i] * std::sqrt(std::max(covariance.of_estimates(i, i), 0.0));
+      report.parameters[static_cast<std::size_t>(i)].systematic.Add(covariance.kind, error);
+    }
+  }
   std::vector<Index> concerned;
-  for (Index i = 0; i < covariance.rows(); ++i) {
-    if (!(covariance(i, i) > 0)) continue;
-    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
-    parameter.systematic_std_error = units[i] * std::sqrt(covariance(i, i));
-    report.systematic_names.emplace_back(parameter.info.name);
+  for (Index i = 0; i < size; ++i) {
+    if (!(sum(i, i) > 0)) continue;
+    report.systematic_names.emplace_back(report.parameters[static_cast<std::size_t>(i)].info.name);
     concerned.push_back(i);
   }
-  report.systematic_covariance = (units.asDiagonal() * covariance * units.asDiagonal())(concerned, concerned);
+  report.systematic_covariance = (units.asDiagonal() * sum * units.asDiagonal())(concerned, concerned);
 }
 
-void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
-                FitReport& report) {
+void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors,
+                const std::vector<SystematicCovariance>& covariances, const Solution& solution, FitReport& report) {
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   covariance(optimum.free, optimum.free) = errors.covariance;
@@ -181,6 +189,9 @@ void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors&
     intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
   }
   SetDerivedIntervals(problem.infos, solution.parameters, intervals, report.derived);
+  for (const SystematicCovariance& of : covariances) {
+    AddSystematicErrors(problem.infos, solution.parameters, of.kind, of.of_ratios, report.derived);
+  }
 }
 
 Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/uncertainty/bootstrap.h"
@@ -241,9 +242,8 @@ std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, F
   const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed, fitted.options.stop);
   if (!posterior) return std::nullopt;
   UsePosteriorMeans(linear, *posterior, fitted, optimum.free, report);
-  constexpr double kNormal = 1.959963984540054;
   errors.covariance = posterior->covariance;
-  errors.t95 = Eigen::VectorXd::Constant(posterior->covariance.rows(), kNormal);
+  errors.t95 = Eigen::VectorXd::Constant(posterior->covariance.rows(), kNormal95);
   errors.runs[0].sigma = posterior->sigma_std_dev;
   errors.runs[0].method =
       "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";

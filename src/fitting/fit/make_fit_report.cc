@@ -161,7 +161,9 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
                Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
                FitReport& report) {
   // Computed first, because the posterior changes σ, on which the optimum's information depends.
-  SetSystematicErrors(problem, SystematicCovariance(recording, options, problem, cost, solution, optimum), report);
+  const std::vector<SystematicCovariance> systematic =
+      SystematicCovariances(recording, options, problem, cost, solution, optimum);
+  SetSystematicErrors(problem, systematic, report);
   const Autocorrelation autocorrelation = AutocorrelationOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, autocorrelation);
   report.noise.autocorrelation = autocorrelation;
@@ -172,7 +174,7 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
   report.noise.sigma_std_error = errors.runs[0].sigma;
   SetCovariance(problem, sampled.value_or(optimum), errors, report);
   if (!sampled) SetIntervals(fitted, errors, report);
-  SetDerived(problem, sampled.value_or(optimum), errors, solution, report);
+  SetDerived(problem, sampled.value_or(optimum), errors, systematic, solution, report);
 }
 
 }  // namespace

@@ -22,32 +22,11 @@ RigValue Over(const RigValue& x, const RigValue& y) {
   return {quotient, std::hypot(x.std_dev, quotient * y.std_dev) / y.value};
 }
 
-double SystematicCovarianceOf(const FitReport& fit, std::string_view one, std::string_view other) {
-  const auto row = std::ranges::find(fit.systematic_names, one) - fit.systematic_names.begin();
-  const auto column = std::ranges::find(fit.systematic_names, other) - fit.systematic_names.begin();
-  const auto size = static_cast<std::ptrdiff_t>(fit.systematic_names.size());
-  return row < size && column < size ? fit.systematic_covariance(row, column) : 0;
-}
-
 /// A ratio that the recording alone determines: G or a friction parameter over the inertia.
 class Ratio {
  public:
   /// parameter: the name of the friction parameter; empty for G.
-  Ratio(const Rig& rig, const FitReport& fit, std::string_view parameter) : quantity_(FindIn(fit, parameter)) {
-    if (quantity_ == nullptr) return;
-    const ParameterEstimate* inertia = fit.Find(kInertia.name);
-    const double slope = -quantity_->estimate / inertia->estimate;
-    variance_ = slope * slope * SystematicCovarianceOf(fit, kInertia.name, kInertia.name);
-    if (!parameter.empty()) {
-      variance_ += 2 * slope / inertia->estimate * SystematicCovarianceOf(fit, kInertia.name, parameter);
-      variance_ += SystematicCovarianceOf(fit, parameter, parameter) / (inertia->estimate * inertia->estimate);
-    } else if (!inertia->fixed) {
-      // The error of the rig's G belongs to the inertia, not to the ratio.
-      const double relative = rig.gravity_torque.std_dev / rig.gravity_torque.value;
-      variance_ -= std::pow(quantity_->estimate * relative, 2);
-    }
-    variance_ = std::max(variance_, 0.0);
-  }
+  Ratio(const FitReport& fit, std::string_view parameter) : quantity_(FindIn(fit, parameter)) {}
 
   bool exists() const { return quantity_ != nullptr; }
 
@@ -58,7 +37,8 @@ class Ratio {
     product.std_error = times(quantity_->std_error);
     product.lower95 = times(quantity_->lower95);
     product.upper95 = times(quantity_->upper95);
-    SetSystematic(std::hypot(factor.std_dev * quantity_->estimate, factor.value * std::sqrt(variance_)), product);
+    product.systematic = quantity_->systematic.Scaled(factor.value);
+    product.systematic.Add(ErrorSource::kRig, factor.std_dev * quantity_->estimate);
     return product;
   }
 
@@ -69,15 +49,12 @@ class Ratio {
     if (quantity_->std_error) quotient.std_error = quotient.estimate / ratio * *quantity_->std_error;
     if (quantity_->upper95) quotient.lower95 = dividend.value / *quantity_->upper95;
     if (quantity_->lower95 && *quantity_->lower95 > 0) quotient.upper95 = dividend.value / *quantity_->lower95;
-    SetSystematic(std::hypot(dividend.std_dev / ratio, quotient.estimate / ratio * std::sqrt(variance_)), quotient);
+    quotient.systematic = quantity_->systematic.Scaled(quotient.estimate / ratio);
+    quotient.systematic.Add(ErrorSource::kRig, dividend.std_dev / ratio);
     return quotient;
   }
 
  private:
-  static void SetSystematic(double error, DerivedQuantity& quantity) {
-    if (error > 0) quantity.systematic_std_error = error;
-  }
-
   static const DerivedQuantity* FindIn(const FitReport& fit, std::string_view parameter) {
     const std::string name = (parameter.empty() ? "gravity" : std::string(parameter)) + "_over_inertia";
     const auto found = std::ranges::find(fit.derived, name, &DerivedQuantity::name);
@@ -86,7 +63,6 @@ class Ratio {
   }
 
   const DerivedQuantity* quantity_;
-  double variance_ = 0;  ///< Systematic variance of the ratio.
 };
 
 /// What a known inertia makes of the ratios.
@@ -96,7 +72,7 @@ void AddTorques(const Rig& rig, const Ratio& gravity, const FitReport& fit, std:
   derived.push_back(gravity.Times(is_spring ? "stiffness" : "gravity_torque", is_spring ? "N m/rad" : "N m", inertia));
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (!parameter.info.scales_with_gravity() || parameter.info.name == kInertia.name) continue;
-    const Ratio ratio(rig, fit, parameter.info.name);
+    const Ratio ratio(fit, parameter.info.name);
     if (!ratio.exists()) continue;
     derived.push_back(ratio.Times(std::string(parameter.info.name) + "_si", std::string(parameter.info.unit), inertia));
   }
@@ -107,7 +83,7 @@ void AddTorques(const Rig& rig, const Ratio& gravity, const FitReport& fit, std:
 }  // namespace
 
 void AddRigQuantities(const Rig& rig, FitReport& fit) {
-  const Ratio gravity(rig, fit, "");
+  const Ratio gravity(fit, "");
   if (!gravity.exists() || fit.derived.empty()) return;
   std::vector<DerivedQuantity> derived;
   if (rig.gravity && (rig.length || !rig.gives_torque))

@@ -33,7 +33,7 @@ struct JointState {
   std::vector<Description> descriptions;          // K
   std::vector<Autocorrelation> autocorrelations;  // K
   Errors errors;
-  Eigen::MatrixXd systematic;  // P x P, units of the restoring torque G
+  std::vector<SystematicCovariance> systematic;  // P x P, units of the restoring torque G
   bool from_posteriors = false;
 };
 
@@ -181,6 +181,15 @@ void SetSharedProfiles(JointState& state, std::vector<FitReport>& reports) {
 
 // ---- Reports --------------------------------------------------------------------------------------------------------
 
+/// The systematic covariances of one recording's parameters.
+std::vector<SystematicCovariance> SystematicOf(const JointState& state, const JointMember& member) {
+  std::vector<SystematicCovariance> own;
+  for (const SystematicCovariance& all : state.systematic) {
+    own.push_back({all.kind, all.of_estimates(member.at, member.at), all.of_ratios(member.at, member.at)});
+  }
+  return own;
+}
+
 FitReport ReportOf(const JointState& state, std::size_t k) {
   const JointMember& member = state.joint.members[k];
   FitReport report = state.descriptions[k].report;
@@ -191,7 +200,7 @@ FitReport ReportOf(const JointState& state, std::size_t k) {
   report.noise.sigma_std_error = errors.runs[0].sigma;
   SetParameters(*member.recording, member.options, *member.problem, own, member.solution, report);
   SetCovariance(*member.problem, own, errors, report);
-  SetSystematicErrors(*member.problem, state.systematic(member.at, member.at), report);
+  SetSystematicErrors(*member.problem, SystematicOf(state, member), report);
   SetCovarianceIntervals(*member.problem, member.solution, own, errors, report);
   if (state.from_posteriors) report.std_error_method = "posteriors of the separate recordings, combined as parabolas";
   return report;
@@ -203,7 +212,8 @@ void SetReports(JointState& state, JointFit& fit) {
   if (NeedsProfiles(state) && !state.from_posteriors) SetSharedProfiles(state, fit.runs);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     const JointMember& member = state.joint.members[k];
-    SetDerived(*member.problem, state.own_optima[k], OwnErrors(state, k), member.solution, fit.runs[k]);
+    SetDerived(*member.problem, state.own_optima[k], OwnErrors(state, k), SystematicOf(state, member), member.solution,
+               fit.runs[k]);
     SetIdentifiability(*member.problem, state.own_optima[k], fit.runs[k]);
   }
 }
@@ -370,7 +380,7 @@ Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vec
   if (!optimum) return Failed(state.joint, std::move(fit));
   state.optimum = *std::move(optimum);
   // Computed first, because posteriors change σ, on which the optimum's information depends.
-  state.systematic = SystematicErrors(state.joint, state.solution, state.optimum);
+  state.systematic = JointSystematicCovariances(state.joint, state.solution, state.optimum);
   state.from_posteriors = HasPosteriors(state.joint) && UsePosteriors(state.joint, state.solution, state.optimum);
   DescribeAll(state);
   SetEnding(state, fit.whole);

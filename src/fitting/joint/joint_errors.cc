@@ -8,7 +8,6 @@
 
 #include "pendulum/fitting/fit/intervals.h"
 #include "pendulum/fitting/joint/joint_parabolas.h"
-#include "pendulum/fitting/uncertainty/systematic.h"
 
 namespace pendulum {
 namespace {
@@ -50,7 +49,7 @@ std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
          SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
       CommonSource& common = sources[own.identity];
       if (common.count++ == 0) {
-        common.source = {own.identity, Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0),
+        common.source = {own.kind, own.identity, Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0),
                          Eigen::MatrixXd::Zero(size, own.pull.cols()), own.covariance};
       }
       MergePowers(joint, member, own, common);
@@ -62,15 +61,16 @@ std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
 
 }  // namespace
 
-Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum) {
-  const auto size = static_cast<Index>(joint.solve.fixed.size());
+std::vector<SystematicCovariance> JointSystematicCovariances(const JointProblem& joint, const Solution& solution,
+                                                             const Optimum& optimum) {
   const SourceContext context{solution.parameters, joint.solve.fixed, joint.cost->priors(), optimum};
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  if (!optimum.inverse.identifiable) return covariance;
+  std::vector<SystematicCovariance> covariances;
+  if (!optimum.inverse.identifiable) return covariances;
   for (const auto& [identity, common] : SourcesOf(joint)) {
-    covariance += SourceCovariance(common.source, common.count == joint.members.size(), context);
+    const bool of_all = common.count == joint.members.size();
+    AddOfKind(CovarianceOfSource(common.source, of_all, context), covariances);
   }
-  return covariance;
+  return covariances;
 }
 
 bool HasPosteriors(const JointProblem& joint) {

@@ -33,7 +33,7 @@ double StdError(const PowerProduct& product, const std::vector<double>& p, const
     lowered.other_power -= 1;
     gradient[product.other] = ValueOf(lowered, p);
   }
-  return std::sqrt(gradient.dot(covariance * gradient));
+  return std::sqrt(std::max(gradient.dot(covariance * gradient), 0.0));
 }
 
 /// Unit of parameter / inertia: the unit of parameter / G, divided by s^2, the unit of inertia / G.
@@ -96,7 +96,7 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
                                                const std::vector<int>& at_bound) {
   std::vector<DerivedQuantity> derived;
   for (const PowerProduct& product : PowerProducts(infos, parameters)) {
-    derived.push_back({product.name, product.unit, ValueOf(product, parameters), {}, {}, {}});
+    derived.push_back({product.name, product.unit, ValueOf(product, parameters)});
     const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
     if (covariance == nullptr || bounded) continue;
     const double error = StdError(product, parameters, *covariance);
@@ -118,6 +118,14 @@ void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vec
     derived[k].lower95 = distances.Below(derived[k].estimate);
     if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // the quantity is never negative
     derived[k].upper95 = distances.Above(derived[k].estimate);
+  }
+}
+
+void AddSystematicErrors(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
+                         ErrorSource source, const Eigen::MatrixXd& covariance, std::vector<DerivedQuantity>& derived) {
+  const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
+  for (std::size_t k = 0; k < products.size(); ++k) {
+    derived[k].systematic.Add(source, StdError(products[k], parameters, covariance));
   }
 }
 

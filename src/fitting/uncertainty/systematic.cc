@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/uncertainty/systematic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
@@ -97,19 +99,22 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
     if (SiRig(options) && info.scales_with_gravity()) gravity[i] = 1;
   }
   std::vector<SystematicSource> sources;
-  const auto add_scale = [&](const std::string& identity, const Eigen::VectorXd& powers, double relative) {
+  const auto add_scale = [&](ErrorSource kind, const std::string& identity, const Eigen::VectorXd& powers,
+                             double relative) {
     if (!(relative > 0)) return;
-    sources.push_back({identity, powers, ScoresByScale(powers, cost, solution),
+    sources.push_back({kind, identity, powers, ScoresByScale(powers, cost, solution),
                        Eigen::MatrixXd::Constant(1, 1, relative * relative)});
   };
   if (const Rig* rig = SiRig(options)) {
-    add_scale("rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
+    add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
   }
-  add_scale("clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
+  add_scale(ErrorSource::kClock,
+            "clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
             recording.clock_scale_std_dev / recording.clock_scale);
   const std::optional<Calibration>& calibration = recording.calibration;
   if (calibration && calibration->covariance.size() > 0) {
-    sources.push_back({"calibration " + calibration->source.dump(),
+    sources.push_back({ErrorSource::kCalibration,
+                       "calibration " + calibration->source.dump(),
                        {},
                        ScoresByCalibration(*calibration, problem, cost, solution),
                        calibration->covariance});
@@ -117,7 +122,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   return sources;
 }
 
-Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, const SourceContext& context) {
+SystematicCovariance CovarianceOfSource(const SystematicSource& source, bool of_all, const SourceContext& context) {
   const auto size = static_cast<Index>(context.parameters.size());
   const Optimum& optimum = context.optimum;
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(size, source.pull.cols());
@@ -126,19 +131,34 @@ Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, co
   } else if (!optimum.free.empty()) {
     moved(optimum.free, Eigen::all) = optimum.inverse.matrix * source.pull(optimum.free, Eigen::all);
   }
-  return moved * source.covariance * moved.transpose();
+  Eigen::MatrixXd ratios = moved;
+  if (source.kind == ErrorSource::kRig) {
+    const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
+    ratios.col(0) -= source.powers.cwiseProduct(p);
+  }
+  return {source.kind, moved * source.covariance * moved.transpose(), ratios * source.covariance * ratios.transpose()};
 }
 
-Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                                     const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum) {
-  const auto size = static_cast<Index>(problem.infos.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  if (!optimum.inverse.identifiable) return covariance;
+void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& covariances) {
+  const auto known = std::ranges::find(covariances, more.kind, &SystematicCovariance::kind);
+  if (known == covariances.end()) {
+    covariances.push_back(std::move(more));
+    return;
+  }
+  known->of_estimates += more.of_estimates;
+  known->of_ratios += more.of_ratios;
+}
+
+std::vector<SystematicCovariance> SystematicCovariances(const Recording& recording, const FitOptions& options,
+                                                        const FitProblem& problem, const TrajectoryCost& cost,
+                                                        const Solution& solution, const Optimum& optimum) {
+  std::vector<SystematicCovariance> covariances;
+  if (!optimum.inverse.identifiable) return covariances;
   const SourceContext context{solution.parameters, problem.solve.fixed, cost.priors(), optimum};
   for (const SystematicSource& source : SystematicSources(recording, options, problem, cost, solution)) {
-    covariance += SourceCovariance(source, true, context);
+    AddOfKind(CovarianceOfSource(source, true, context), covariances);
   }
-  return covariance;
+  return covariances;
 }
 
 }  // namespace pendulum

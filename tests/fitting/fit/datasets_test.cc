@@ -54,7 +54,7 @@ TEST(RecordedRun, TruthIsRecoveredWithinFourStandardErrors) {
   EXPECT_THAT(recording.clock_scale, testing::DoubleNear(clock_scale, 4 * recording.clock_scale_std_dev));
   truth["release_time"] = truth.at("release_time").get<double>() / clock_scale;  // on the logger's clock
   for (const ParameterEstimate& parameter : report.parameters) {
-    const double error = std::hypot(parameter.std_error.value(), parameter.systematic_std_error.value());
+    const double error = std::hypot(parameter.std_error.value(), parameter.systematic.Total().value());
     const double expected = truth.at(std::string(parameter.info.name)).get<double>();
     EXPECT_THAT(parameter.estimate, testing::DoubleNear(expected, 4 * error)) << parameter.info.name;
   }

@@ -138,11 +138,15 @@ TEST(SetCovariance, ScalesWithTheUnitsOfFreeParameters) {
 
 TEST(SetSystematicErrors, ListsAffectedParametersOnly) {
   ByHand fit;
-  SetSystematicErrors(fit.problem, Eigen::Matrix3d{{4, 0, 1}, {0, 0, 0}, {1, 0, 9}}, fit.report);
+  const Eigen::Matrix3d clock{{1, 0, 1}, {0, 0, 0}, {1, 0, 9}};
+  const Eigen::Matrix3d rig{{3, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  SetSystematicErrors(fit.problem, {{ErrorSource::kClock, clock, {}}, {ErrorSource::kRig, rig, {}}}, fit.report);
   EXPECT_THAT(fit.report.systematic_names, ElementsAre("inertia", "release_time"));
   EXPECT_TRUE(fit.report.systematic_covariance.isApprox(Eigen::Matrix2d{{16, 20}, {20, 900}}, 1e-15));
-  EXPECT_DOUBLE_EQ(fit.report.parameters[0].systematic_std_error.value(), 4);
-  EXPECT_FALSE(fit.report.parameters[1].systematic_std_error);
+  EXPECT_DOUBLE_EQ(fit.report.parameters[0].systematic.Total().value(), 4);
+  EXPECT_DOUBLE_EQ(fit.report.parameters[0].systematic.Of(ErrorSource::kClock), 2);
+  EXPECT_DOUBLE_EQ(fit.report.parameters[0].systematic.Of(ErrorSource::kRig), 2 * std::sqrt(3.0));
+  EXPECT_FALSE(fit.report.parameters[1].systematic.Total());
 }
 
 }  // namespace

@@ -171,9 +171,9 @@ TEST(FitRecording, ScalesOnlyTorquesWithARig) {
     EXPECT_DOUBLE_EQ(*with.std_error, factor * *without.std_error);
     EXPECT_DOUBLE_EQ(*with.upper95, factor * *without.upper95);
     EXPECT_DOUBLE_EQ(*with.closed_form, factor * *without.closed_form);
-    EXPECT_FALSE(without.systematic_std_error);
-    ASSERT_EQ(with.systematic_std_error.has_value(), i < 3);
-    EXPECT_DOUBLE_EQ(with.systematic_std_error.value_or(0), i < 3 ? with.estimate * 0.02 / 2.5 : 0);
+    EXPECT_FALSE(without.systematic.Total());
+    ASSERT_EQ(with.systematic.Total().has_value(), i < 3);
+    EXPECT_DOUBLE_EQ(with.systematic.Total().value_or(0), i < 3 ? with.estimate * 0.02 / 2.5 : 0);
   }
   EXPECT_EQ(si.Find("inertia")->unit, "kg m^2");
   EXPECT_EQ(relative.Find("inertia")->unit, "s^2");
@@ -191,7 +191,7 @@ TEST(FitRecording, GivesNoSystematicErrorWithoutRigErrors) {
   FitOptions options = ModelOptions("coulomb");
   options.rig = Must(ParseRig(R"({"gravity_torque": 2.5})", "rig.json"));
   for (const ParameterEstimate& p : Fit(Must(SimulateRecording(NoisyRun())), options).parameters) {
-    EXPECT_FALSE(p.systematic_std_error) << p.info.name;
+    EXPECT_FALSE(p.systematic.Total()) << p.info.name;
   }
 }
 

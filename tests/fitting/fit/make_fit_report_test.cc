@@ -263,8 +263,8 @@ TEST(MakeFitReport, AFixedInertiaUsesTheRigsUnits) {
   const FitReport report = Fit(Must(SimulateRecording(NoisyRun())), options);
   EXPECT_EQ(report.termination, Termination::kConverged) << report.reason;
   EXPECT_DOUBLE_EQ(report.Find("inertia")->estimate, options.fixed["inertia"]);
-  EXPECT_FALSE(report.Find("inertia")->systematic_std_error);  // a fixed value is taken as exact
-  EXPECT_TRUE(report.Find("viscous")->systematic_std_error);
+  EXPECT_FALSE(report.Find("inertia")->systematic.Total());  // a fixed value is taken as exact
+  EXPECT_TRUE(report.Find("viscous")->systematic.Total());
 }
 
 TEST(MakeFitReport, AllParametersMayBeFixed) {

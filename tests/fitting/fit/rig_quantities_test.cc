@@ -57,7 +57,7 @@ void ExpectQuantity(const FitReport& fit, const std::string& name, double truth,
 TEST(AddRigQuantities, GivesGravityFromALength) {
   const FitReport fit = FitWith(R"({"length": {"value": 0.42, "std_dev": 0.001}})", Swing(kEarth / kLength, Gravity()));
   ExpectQuantity(fit, "gravity", kEarth, "m/s^2");
-  EXPECT_NEAR(*FindQuantity(fit, "gravity")->systematic_std_error, kEarth * 0.001 / 0.42, 1e-4);
+  EXPECT_NEAR(*FindQuantity(fit, "gravity")->systematic.Total(), kEarth * 0.001 / 0.42, 1e-4);
   EXPECT_EQ(FindQuantity(fit, "effective_length"), nullptr);
   EXPECT_EQ(fit.Find("inertia")->unit, "s^2");
 }
@@ -65,7 +65,7 @@ TEST(AddRigQuantities, GivesGravityFromALength) {
 TEST(AddRigQuantities, GivesALengthFromGravity) {
   const FitReport fit = FitWith(R"({"gravity": {"value": 9.81, "std_dev": 0.02}})", Swing(kEarth / kLength, Gravity()));
   ExpectQuantity(fit, "effective_length", kLength, "m");
-  EXPECT_NEAR(*FindQuantity(fit, "effective_length")->systematic_std_error, kLength * 0.02 / 9.81, 1e-5);
+  EXPECT_NEAR(*FindQuantity(fit, "effective_length")->systematic.Total(), kLength * 0.02 / 9.81, 1e-5);
   EXPECT_EQ(FindQuantity(fit, "gravity"), nullptr);
 }
 
@@ -76,7 +76,7 @@ TEST(AddRigQuantities, GivesTheInertiaPerMassOfAPendulumWithLengthAndGravity) {
       FitWith(R"({"length": 0.3, "gravity": 9.81})", Swing(kEarth * rod / 2 / (rod * rod / 3), Gravity()));
   ExpectQuantity(fit, "effective_length", 2 * rod / 3, "m");
   ExpectQuantity(fit, "inertia_per_mass", rod * rod / 3, "m^2");
-  EXPECT_FALSE(FindQuantity(fit, "effective_length")->systematic_std_error);
+  EXPECT_FALSE(FindQuantity(fit, "effective_length")->systematic.Total());
 }
 
 TEST(AddRigQuantities, GivesTorquesFromAKnownInertia) {
@@ -88,7 +88,7 @@ TEST(AddRigQuantities, GivesTorquesFromAKnownInertia) {
   ExpectQuantity(fit, "center_of_mass", 22.8 * kInertiaSi / (0.475 * 9.81), "m");
   ExpectQuantity(fit, "effective_length", 9.81 / 22.8, "m");
   const DerivedQuantity& torque = *FindQuantity(fit, "gravity_torque");
-  EXPECT_NEAR(*torque.systematic_std_error / torque.estimate, 0.001 / 0.079, 1e-9);
+  EXPECT_NEAR(*torque.systematic.Total() / torque.estimate, 0.001 / 0.079, 1e-9);
 }
 
 TEST(AddRigQuantities, GivesTheStiffnessOfASpringFromAKnownInertia) {
@@ -112,15 +112,15 @@ TEST(AddRigQuantities, AddsTheErrorOfTheClock) {
   recording.clock_scale_std_dev = 1e-3;
   const FitReport length = FitWith(R"({"length": 0.43})", recording);
   const DerivedQuantity& gravity = *FindQuantity(length, "gravity");
-  EXPECT_NEAR(*gravity.systematic_std_error / gravity.estimate, 2e-3, 1e-6);
+  EXPECT_NEAR(*gravity.systematic.Total() / gravity.estimate, 2e-3, 1e-6);
   const FitReport inertia = FitWith(R"({"inertia": 0.079})", recording);
   const DerivedQuantity& viscous = *FindQuantity(inertia, "viscous_si");
-  EXPECT_NEAR(*viscous.systematic_std_error / viscous.estimate, 1e-3, 1e-6);
+  EXPECT_NEAR(*viscous.systematic.Total() / viscous.estimate, 1e-3, 1e-6);
   // The torque of a rig with mass is known apart from the clock: its error does not belong to g / (G/I).
   const FitReport torque =
       FitWith(R"({"length": 0.43, "mass": {"value": 0.4, "std_dev": 0.01}, "gravity": 9.81})", recording);
   const DerivedQuantity& effective = *FindQuantity(torque, "effective_length");
-  EXPECT_NEAR(*effective.systematic_std_error / effective.estimate, 2e-3, 1e-6);
+  EXPECT_NEAR(*effective.systematic.Total() / effective.estimate, 2e-3, 1e-6);
   EXPECT_EQ(torque.Find("inertia")->unit, "kg m^2");
 }
 

@@ -74,7 +74,7 @@ TEST(JointProfile, IsTheSameInEveryReport) {
 /// Systematic error of a shared parameter from rig and clock, relative to its estimate.
 double RelativeSystematic(const JointFit& fit, const std::string& name) {
   const ParameterEstimate& parameter = *fit.whole.Find(name);
-  return parameter.systematic_std_error.value_or(0) / parameter.estimate;
+  return parameter.systematic.Total().value_or(0) / parameter.estimate;
 }
 
 // Torques and inertia are in units of the restoring torque G: an error of 1 % in G is an error of 1 % in each of
@@ -153,7 +153,7 @@ TEST(JointSystematic, MatchesFitsWithOtherClocksForAngleAndRate) {
       // Change of the estimate for a relative change of the clock by 1e-3.
       const double moved = std::abs(fast.whole.Find(name)->estimate - slow.whole.Find(name)->estimate);
       const ParameterEstimate& parameter = *fit.whole.Find(name);
-      EXPECT_THAT(parameter.systematic_std_error.value_or(0),
+      EXPECT_THAT(parameter.systematic.Total().value_or(0),
                   DoubleNear(moved, 0.05 * moved + 0.1 * *parameter.std_error))
           << name;
     }

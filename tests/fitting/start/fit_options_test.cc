@@ -306,12 +306,12 @@ TEST(ClockScale, HasASystematicError) {
                                                                         {"drag", {6e-4, 1e-3}}};
   for (const auto& [name, expected] : relative) {
     SCOPED_TRACE(name);
-    EXPECT_THAT(*clock.Find(name)->systematic_std_error / clock.Find(name)->estimate, DoubleNear(expected.first, 1e-9));
-    EXPECT_THAT(*both.Find(name)->systematic_std_error / both.Find(name)->estimate, DoubleNear(expected.second, 1e-9));
+    EXPECT_THAT(*clock.Find(name)->systematic.Total() / clock.Find(name)->estimate, DoubleNear(expected.first, 1e-9));
+    EXPECT_THAT(*both.Find(name)->systematic.Total() / both.Find(name)->estimate, DoubleNear(expected.second, 1e-9));
   }
-  EXPECT_FALSE(clock.Find("coulomb")->systematic_std_error);
-  EXPECT_THAT(*both.Find("coulomb")->systematic_std_error / both.Find("coulomb")->estimate, DoubleNear(8e-4, 1e-9));
-  EXPECT_FALSE(clock.Find("release_angle")->systematic_std_error || clock.Find("zero_angle")->systematic_std_error);
+  EXPECT_FALSE(clock.Find("coulomb")->systematic.Total());
+  EXPECT_THAT(*both.Find("coulomb")->systematic.Total() / both.Find("coulomb")->estimate, DoubleNear(8e-4, 1e-9));
+  EXPECT_FALSE(clock.Find("release_angle")->systematic.Total() || clock.Find("zero_angle")->systematic.Total());
 }
 
 TEST(ClockScale, ContributesItsErrorToRatesOfAnAngle) {
@@ -321,8 +321,8 @@ TEST(ClockScale, ContributesItsErrorToRatesOfAnAngle) {
   options.initial = {{"zero_drift", 0.0}};
   const FitReport fit = Fit(recording, options);
   for (const char* const name : {"initial_rate", "zero_drift"}) {
-    ASSERT_TRUE(fit.Find(name)->systematic_std_error) << name;
-    EXPECT_THAT(*fit.Find(name)->systematic_std_error / fit.Find(name)->estimate, DoubleNear(3e-4, 1e-9)) << name;
+    ASSERT_TRUE(fit.Find(name)->systematic.Total()) << name;
+    EXPECT_THAT(*fit.Find(name)->systematic.Total() / fit.Find(name)->estimate, DoubleNear(3e-4, 1e-9)) << name;
   }
 }
 

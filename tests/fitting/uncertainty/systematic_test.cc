@@ -40,11 +40,11 @@ void ExpectSystematic(const FitReport& report, const Eigen::MatrixXd& expected, 
     const ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
     SCOPED_TRACE(std::string(parameter.info.name));
     if (expected(i, i) == 0) {
-      EXPECT_FALSE(parameter.systematic_std_error);
+      EXPECT_FALSE(parameter.systematic.Total());
       continue;
     }
-    ASSERT_TRUE(parameter.systematic_std_error);
-    EXPECT_NEAR(*parameter.systematic_std_error / std::sqrt(expected(i, i)), 1, allowed);
+    ASSERT_TRUE(parameter.systematic.Total());
+    EXPECT_NEAR(*parameter.systematic.Total() / std::sqrt(expected(i, i)), 1, allowed);
     ASSERT_LT(row, report.systematic_names.size());
     EXPECT_EQ(report.systematic_names[row], parameter.info.name);
     std::size_t column = 0;
@@ -145,7 +145,7 @@ TEST(SystematicCovariance, AffectsOnlyTheZeroForAnOffset) {
     const FitReport report = Fit(Calibrated(calibration, counts, false), options);
     for (const ParameterEstimate& parameter : report.parameters) {
       const double expected = parameter.info.name == "zero_angle" ? 0.5 * kPi / 180 : 0;
-      EXPECT_NEAR(parameter.systematic_std_error.value_or(0), expected, 1e-6 * (expected + *parameter.std_error))
+      EXPECT_NEAR(parameter.systematic.Total().value_or(0), expected, 1e-6 * (expected + *parameter.std_error))
           << parameter.info.name;
     }
   }
@@ -181,9 +181,9 @@ TEST(SystematicCovariance, MatchesFitsWithOtherClocks) {
       const ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
       const double expected = moved[i];
       SCOPED_TRACE(std::string(parameter.info.name));
-      EXPECT_NEAR(parameter.systematic_std_error.value_or(0), std::abs(expected),
+      EXPECT_NEAR(parameter.systematic.Total().value_or(0), std::abs(expected),
                   0.01 * std::abs(expected) + *parameter.std_error);
-      if (!parameter.systematic_std_error) continue;
+      if (!parameter.systematic.Total()) continue;
       // Sign relative to the inertia's error, which grows with the scale.
       EXPECT_EQ(std::signbit(report.systematic_covariance(0, row)), std::signbit(expected));
       ++row;
@@ -246,7 +246,7 @@ TEST(SystematicCovariance, ExcludesFixedParameters) {
   options.rig = TextbookRig(0.02);
   options.fixed["viscous"] = 0.012;
   const FitReport report = Fit(recording, options);
-  EXPECT_FALSE(report.Find("viscous")->systematic_std_error);
+  EXPECT_FALSE(report.Find("viscous")->systematic.Total());
   EXPECT_THAT(report.systematic_names,
               ElementsAre("inertia", "coulomb", "release_angle", "release_time", "zero_angle"));
   EXPECT_EQ(report.systematic_covariance.rows(), 5);

@@ -7,6 +7,7 @@
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/uncertainty/standard_errors.h"
+#include "pendulum/fitting/uncertainty/systematic.h"
 
 namespace pendulum {
 
@@ -43,11 +44,12 @@ void SetParameters(const Recording& recording, const FitOptions& options, const 
 /// Sets covariance and errors of the free parameters of `optimum`, in the units of the report.
 void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report);
 
-/// Sets the systematic errors from their covariance, P x P in the problem's units.
-void SetSystematicErrors(const FitProblem& problem, const Eigen::MatrixXd& covariance, FitReport& report);
+/// Sets the systematic errors of the parameters, and their covariance.
+void SetSystematicErrors(const FitProblem& problem, const std::vector<SystematicCovariance>& covariances,
+                         FitReport& report);
 
 /// Sets natural frequency, damping and so on, with their errors.
-void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors, const Solution& solution,
-                FitReport& report);
+void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors,
+                const std::vector<SystematicCovariance>& covariances, const Solution& solution, FitReport& report);
 
 }  // namespace pendulum

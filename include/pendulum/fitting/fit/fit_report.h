@@ -17,6 +17,7 @@
 #include "pendulum/fitting/uncertainty/derived.h"
 #include "pendulum/fitting/uncertainty/identifiability.h"
 #include "pendulum/fitting/uncertainty/open_interval.h"
+#include "pendulum/fitting/uncertainty/systematic_errors.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/model/sensor_model.h"
@@ -46,7 +47,7 @@ struct ParameterEstimate {
   std::optional<double> lower95, upper95;  ///< 95 % confidence interval; if at_bound, one end is the bound.
   std::optional<double> t95;               ///< Student's t for 95 %: half the interval divided by std_error.
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
-  std::optional<double> systematic_std_error;  ///< From errors of rig, clock, calibration, inconstancy; absent if none.
+  SystematicErrors systematic;
   std::optional<double> closed_form;           ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;

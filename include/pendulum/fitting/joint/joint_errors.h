@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <vector>
 
 #include "pendulum/fitting/joint/joint_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/uncertainty/systematic.h"
 
 namespace pendulum {
 
-/// Covariance of the estimates caused by the errors of rig, clocks and calibrations, P x P in units of the restoring
-/// torque G. A source shared by several recordings affects all of them together. 0 if the optimum is not identifiable.
-Eigen::MatrixXd SystematicErrors(const JointProblem& joint, const Solution& solution, const Optimum& optimum);
+/// The covariances that errors of rig, clocks and calibrations cause, P x P in units of the restoring torque G, one for
+/// each kind of source that has an error. A source shared by several recordings affects all of them together. Empty if
+/// the optimum is not identifiable.
+std::vector<SystematicCovariance> JointSystematicCovariances(const JointProblem& joint, const Solution& solution,
+                                                             const Optimum& optimum);
 
 /// Whether at least one of the separate fits uses a posterior, and all of them have errors.
 bool HasPosteriors(const JointProblem& joint);

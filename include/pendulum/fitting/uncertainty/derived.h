@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/fitting/uncertainty/systematic_errors.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
@@ -18,7 +19,7 @@ struct DerivedQuantity {
   double estimate = 0;
   std::optional<double> std_error = std::nullopt;
   std::optional<double> lower95 = std::nullopt, upper95 = std::nullopt;
-  std::optional<double> systematic_std_error = std::nullopt;  ///< Only of quantities that depend on the rig.
+  SystematicErrors systematic = {};
 };
 
 /// Ends of a parameter's confidence interval; one may be missing.
@@ -43,5 +44,10 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
 /// G; other arguments as above). An end is missing if an end of a parameter that it depends on is missing.
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived);
+
+/// Adds systematic errors of one source. covariance: P x P, of the parameters in units of the restoring torque G; other
+/// arguments as above.
+void AddSystematicErrors(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
+                         ErrorSource source, const Eigen::MatrixXd& covariance, std::vector<DerivedQuantity>& derived);
 
 }  // namespace pendulum

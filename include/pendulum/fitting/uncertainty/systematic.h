@@ -10,11 +10,13 @@
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/start/fit_options.h"
+#include "pendulum/fitting/uncertainty/systematic_errors.h"
 
 namespace pendulum {
 
 /// A source of systematic error, and its effect on the fit of one recording.
 struct SystematicSource {
+  ErrorSource kind;
   std::string identity;        ///< Recordings with the same identity share the source and its error.
   Eigen::VectorXd powers;      ///< P, for a common factor (C = 1): its power in each parameter; otherwise empty.
   Eigen::MatrixXd pull;        ///< P x C, derivatives of the problem's P scores with respect to the source's C numbers.
@@ -34,12 +36,23 @@ struct SourceContext {
   const Optimum& optimum;
 };
 
-/// Covariance of the estimates caused by a source's error, P x P. of_all: every recording of the fit has this source.
-Eigen::MatrixXd SourceCovariance(const SystematicSource& source, bool of_all, const SourceContext& context);
+/// What one kind of source does to the estimates. Both matrices are P x P in products of the problem's units.
+struct SystematicCovariance {
+  ErrorSource kind;
+  Eigen::MatrixXd of_estimates;  ///< Of the reported parameters; zero rows for fixed ones.
+  Eigen::MatrixXd of_ratios;     ///< Of the parameters over the restoring torque: the error of G belongs to no ratio.
+};
 
-/// Covariance of the estimates caused by the errors of rig, clock and calibration (MODEL.md eq. (5.3) and (5.4)). P x P
-/// in products of the problem's units; zero rows for fixed parameters.
-Eigen::MatrixXd SystematicCovariance(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                                     const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
+/// The covariance that a source causes. of_all: every recording of the fit has this source.
+SystematicCovariance CovarianceOfSource(const SystematicSource& source, bool of_all, const SourceContext& context);
+
+/// Adds a covariance to that of its kind.
+void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& covariances);
+
+/// The covariances that errors of rig, clock and calibration cause (MODEL.md eq. (5.3) and (5.4)), one for each kind of
+/// source that has an error.
+std::vector<SystematicCovariance> SystematicCovariances(const Recording& recording, const FitOptions& options,
+                                                        const FitProblem& problem, const TrajectoryCost& cost,
+                                                        const Solution& solution, const Optimum& optimum);
 
 }  // namespace pendulum

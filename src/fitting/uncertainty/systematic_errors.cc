@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/fitting/uncertainty/systematic_errors.h"
+
+#include "pendulum/base/distributions.h"
+
+namespace pendulum {
+
+std::string_view ErrorSourceName(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::kRig: return "rig";
+    case ErrorSource::kCalibration: return "calibration";
+    case ErrorSource::kClock: return "clock";
+    case ErrorSource::kInconstancy: return "inconstancy";
+  }
+  return "";
+}
+
+void SystematicErrors::Add(ErrorSource source, double std_dev) {
+  double& own = std_dev_[static_cast<std::size_t>(source)];
+  own = std::hypot(own, std_dev);
+}
+
+SystematicErrors SystematicErrors::Scaled(double factor) const {
+  SystematicErrors scaled = *this;
+  for (double& std_dev : scaled.std_dev_) std_dev *= std::abs(factor);
+  return scaled;
+}
+
+std::optional<double> SystematicErrors::Total() const {
+  double squares = 0;
+  for (const double std_dev : std_dev_) squares += std_dev * std_dev;
+  return squares > 0 ? std::optional(std::sqrt(squares)) : std::nullopt;
+}
+
+std::optional<double> TotalStdError(const std::optional<double>& std_error, const SystematicErrors& systematic) {
+  if (!std_error) return std::nullopt;
+  return std::hypot(*std_error, systematic.Total().value_or(0));
+}
+
+std::optional<double> TotalIntervalEnd(double estimate, const std::optional<double>& end95,
+                                       const SystematicErrors& systematic) {
+  const std::optional<double> total = systematic.Total();
+  if (!end95 || !total) return end95;
+  const double distance = std::hypot(*end95 - estimate, kNormal95 * *total);
+  return *end95 < estimate ? estimate - distance : estimate + distance;
+}
+
+}  // namespace pendulum
