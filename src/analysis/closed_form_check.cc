@@ -236,8 +236,9 @@ class Checker {
       }
       if (row.agrees == false && !stages) row.why = "the formula cannot be applied to the fitted motion itself";
       if (row.agrees == false && stages) {
-        row.why = DescribeCauses(SplitDifference(*stages, k, fitted->scale, row.closed_form, row.fit), *deviation,
-                                 row.unit, NamesOf(group, formula));
+        const DifferenceCauses causes = SplitDifference(*stages, k, fitted->scale, row.closed_form, row.fit);
+        row.cause = causes.Largest();
+        row.why = DescribeCauses(causes, *deviation, row.unit, NamesOf(group, formula));
       }
       rows.push_back(std::move(row));
     }

@@ -2,6 +2,7 @@
 #include "pendulum/analysis/difference_causes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -81,6 +82,14 @@ DifferenceCauses SplitDifference(const FormulaStages& stages, Index k, double sc
   causes.resolution = scale * (stages.own_levels[k] - stages.own_instants[k]);
   causes.recording = closed_form - scale * stages.own_levels[k];
   return causes;
+}
+
+DifferenceCause DifferenceCauses::Largest() const {
+  using enum DifferenceCause;
+  const std::array parts = {std::pair{formula, kFormula},       std::pair{drift, kDrift},
+                            std::pair{amplitude, kAmplitude},   std::pair{sampling, kSampling},
+                            std::pair{resolution, kResolution}, std::pair{recording, kRecording}};
+  return std::ranges::max_element(parts, {}, [](const auto& part) { return std::abs(part.first); })->second;
 }
 
 std::string DescribeCauses(const DifferenceCauses& causes, double std_dev, const std::string& unit,

@@ -95,7 +95,6 @@ class Strip {
   double low_, high_;
 };
 
-
 Strip StripOf(const SharedParameter& parameter) {
   const double reach = kNormal95 * parameter.scatter.std_error;
   double low = parameter.scatter.mean - reach, high = parameter.scatter.mean + reach;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/text.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <string>
@@ -13,6 +14,7 @@
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/joint_sections.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/summary.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -58,10 +60,12 @@ void Append(Sections more, Sections& sections) {
   sections.insert(sections.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+constexpr const char* kWarningTitle = "Warnings";
+
 Section WarningSection(const Identification& identification) {
   Items items{{}, Emphasis::kCaution};
   for (const Warning& warning : AllWarnings(identification)) items.texts.push_back(Printable(warning.message));
-  return {"Warnings", "", {std::move(items)}};
+  return {kWarningTitle, "", {std::move(items)}};
 }
 
 }  // namespace
@@ -89,7 +93,11 @@ Sections ReportSections(const Identification& identification) {
 }
 
 std::string ToText(const Identification& identification, TextStyle style) {
-  return ToText(ReportSections(identification), style);
+  Sections sections = ReportSections(identification);
+  std::ranges::reverse(sections);
+  std::ranges::stable_partition(sections, [](const Section& section) { return section.title != kWarningTitle; });
+  sections.push_back(SummarySection(Summarize(identification)));
+  return ToText(sections, style);
 }
 
 }  // namespace pendulum

@@ -13,6 +13,7 @@
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/series.h"
+#include "pendulum/report/summary.h"
 #include "pendulum/report/terminal_plot.h"
 #include "pendulum/report/text.h"
 #include "pendulum/report/text_parts.h"
@@ -69,6 +70,9 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"report", &Flags::report,
        "Where to write the result as a page (HTML, one file); - is standard output; default nowhere."},
       {"markdown", &Flags::markdown, "Where to write the result as Markdown; - is standard output; default nowhere."},
+      {"details", &Flags::details, "Prints all of the result, and its summary last; default: the summary alone."},
+      {"quiet", &Flags::quiet,
+       "Prints a line for each parameter and nothing else: name, value, total standard error, unit; default off."},
       {"terminal_plot", &Flags::terminal_plot,
        "Draws recording, fit and residuals in the terminal (needs gnuplot); default off."},
   };
@@ -96,6 +100,8 @@ void RenderFiles(const FitPendulumOptions& options, const Identification& run, i
   }
 }
 
+constexpr const char* kMore = "More: --details (all of it), --report fit.html (plots), --json fit.json.";
+
 /// The result as text, with a plot of each recording if requested.
 Result<std::string> TextOf(const FitPendulumOptions& options, const Identification& run) {
   std::string text;
@@ -105,7 +111,9 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
     if (!drawn) return tl::unexpected(drawn.error());
     text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(*drawn) + "\n";
   }
-  return text + ToText(run, {.colour = WantsColour(STDOUT_FILENO)});
+  const TextStyle style{.colour = WantsColour(STDOUT_FILENO)};
+  if (options.quiet) return text + QuietText(run);
+  return text + (options.details ? ToText(run, style) : SummaryText(Summarize(run), kMore, style));
 }
 
 /// All outputs of all runs. Text tables are joined on standard output unless data go there. Runs that could not be

@@ -71,6 +71,11 @@ Result<void> ParseShared(const FitPendulumFlags& flags, FitPendulumOptions& opti
   return {};
 }
 
+Result<void> CheckText(const FitPendulumFlags& flags) {
+  if (!flags.details || !flags.quiet) return {};
+  return BadFlag("--details and --quiet contradict each other; give one of them");
+}
+
 /// A joint fit has intervals from its covariance or from profiles only.
 Result<void> CheckJoint(const FitPendulumFlags& flags, const FitPendulumOptions& options) {
   const bool joint = options.IsJoint(options.data.size()) || (!flags.data_list.empty() && options.IsJoint(2));
@@ -119,6 +124,7 @@ std::vector<NamedFile> FitPendulumOptions::Inputs() const {
 Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags) {
   FitPendulumOptions options;
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = CheckText(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
   auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());

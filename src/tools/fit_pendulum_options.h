@@ -19,6 +19,8 @@ struct FitOutputs {
   std::string report;          ///< Path of the HTML page with all results.
   std::string markdown;        ///< Path of the result as Markdown.
   bool terminal_plot = false;  ///< Plots the recording on standard output.
+  bool details = false;        ///< Prints all of the result, not only its summary.
+  bool quiet = false;          ///< Prints the parameters alone.
 };
 
 /// The flags of fit_pendulum as given; empty or the default if not given.

@@ -45,7 +45,8 @@ const std::vector<HelpHeading>& Headings() {
          {"max_body_mb", "max_samples", "max_connections", "max_queue", "max_batch_runs", "fit_seconds",
           "request_seconds", "stop_seconds"}},
         {"Output",
-         {"json", "report", "residuals", "series", "markdown", "terminal_plot", "plot", "out", "truth", "threads"}},
+         {"details", "quiet", "json", "report", "residuals", "series", "markdown", "terminal_plot", "plot", "out",
+          "truth", "threads"}},
         {"About", {"help", "version", "completion"}}};
     for (HelpHeading& heading : all) {
       if (heading.title != "Rig") continue;

@@ -18,7 +18,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
-#include "pendulum/report/text.h"
+#include "pendulum/report/summary.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
 #include "tools/record_pendulum_options.h"
@@ -134,7 +134,9 @@ int ExitCodeOf(const RecordPendulumOptions& options, const RecordedRun& recorded
   return has_end && recorded.end == RunEnd::kStopped ? kInterrupted : 0;
 }
 
-/// Fits the recording and prints the table; returns the fit's exit code.
+constexpr const char* kMore = "More: fit_pendulum with the recording and --details or --report.";
+
+/// Fits the recording and prints the summary; returns the fit's exit code.
 Result<int> Fit(FitPendulumOptions options) {
   auto setup = ReadSetup(options);
   if (!setup) return tl::unexpected(setup.error());
@@ -142,7 +144,7 @@ Result<int> Fit(FitPendulumOptions options) {
   if (!runs) return tl::unexpected(runs.error());
   const Result<Identification>& run = runs->front();
   if (!run) return tl::unexpected(run.error());
-  const std::string text = "\n" + ToText(*run, {.colour = WantsColour(STDOUT_FILENO)});
+  const std::string text = "\n" + SummaryText(Summarize(*run), kMore, {.colour = WantsColour(STDOUT_FILENO)});
   return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
 }
 

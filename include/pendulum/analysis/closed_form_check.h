@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/analysis/difference_causes.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/rig.h"
@@ -31,6 +32,7 @@ struct ClosedFormRow {
   std::optional<double> z;
   std::optional<bool> agrees;  ///< |z| < kAgrees
   std::string why;             ///< Cause of a difference, or of a missing z; empty if closed form and fit agree.
+  std::optional<DifferenceCause> cause = std::nullopt;  ///< The largest cause of a difference that was split.
 };
 
 inline constexpr double kAgrees = 3;

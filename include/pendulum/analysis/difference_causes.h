@@ -31,6 +31,9 @@ struct FormulaStages {
 std::optional<FormulaStages> ApplyInStages(const FittedMotion& motion, const Recording& used, Gravity gravity,
                                            const FormulaValues& formulas);
 
+/// The causes of DifferenceCauses.
+enum class DifferenceCause { kFormula, kDrift, kAmplitude, kSampling, kResolution, kRecording };
+
 /// Difference between a formula and the fit, split by cause.
 struct DifferenceCauses {
   double formula = 0;     ///< The difference at small angles: the formula assumes other friction than the model.
@@ -39,6 +42,9 @@ struct DifferenceCauses {
   double sampling = 0;    ///< Samples are missing near the turning points.
   double resolution = 0;  ///< Readings are rounded to levels.
   double recording = 0;   ///< The readings differ from the model: noise, or another law.
+
+  /// The largest part.
+  DifferenceCause Largest() const;
 
   double total() const { return formula + drift + amplitude + sampling + resolution + recording; }
 };

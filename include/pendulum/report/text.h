@@ -14,7 +14,8 @@ namespace pendulum {
 /// (Identification::IsShownInFull), and only the parameters of the others.
 Sections ReportSections(const Identification& identification);
 
-/// ReportSections as UTF-8 text for a terminal of 80 columns, in the usual layout of lmfit's fit_report.
+/// All of the result as UTF-8 text for a terminal of 80 columns, in the layout of lmfit's fit_report. Since a terminal
+/// shows the end of a text, the sections come in reverse order, and the warnings and the summary last.
 std::string ToText(const Identification& identification, TextStyle style = {});
 
 }  // namespace pendulum

@@ -48,7 +48,7 @@ struct ParameterEstimate {
   std::optional<double> t95;               ///< Student's t for 95 %: half the interval divided by std_error.
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
   SystematicErrors systematic;
-  std::optional<double> closed_form;           ///< The start value, if it is a closed-form estimate (same unit).
+  std::optional<double> closed_form;  ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;
   std::string reason;

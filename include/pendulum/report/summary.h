@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/identify/identification.h"
+#include "pendulum/report/section.h"
+#include "pendulum/report/section_text.h"
+
+namespace pendulum {
+
+/// A quantity as one quotes it. Value and error are rounded together (PdgText); the error is the total standard error.
+struct SummaryQuantity {
+  std::string name, symbol;  ///< Name in JSON, symbol in MODEL.md; a derived quantity has no symbol.
+  std::string value, error;  ///< To be printed with " ± " between them; error is empty if there is none.
+  std::string unit;          ///< deg instead of rad; empty for a pure number.
+  std::string source;        ///< What the error comes from, "masses and length"; or why there is none, "fixed".
+};
+
+/// One law of a comparison.
+struct SummaryLaw {
+  std::string name;
+  std::string rms;      ///< Residuals, with unit.
+  std::string delta;    ///< BIC less the smallest; empty if not compared.
+  std::string verdict;  ///< "recommended", "lack of fit", "not compared" or empty.
+};
+
+/// What a reader of a result needs first, in words and rounded numbers. Every front end shows it first.
+struct Summary {
+  std::string title;       ///< The file, or "4 recordings of one rig".
+  std::string data;        ///< Samples and window.
+  std::string comparison;  ///< Which law is recommended, and why; empty for one law.
+  std::vector<SummaryLaw> laws;
+  std::string verdict;  ///< Whether the law describes the readings, or why there is no result.
+  Emphasis emphasis = Emphasis::kNone;
+  std::string agreement;  ///< Whether several recordings agree; empty for one.
+  std::string law;        ///< The law of the parameters; empty without a fit.
+  std::vector<SummaryQuantity> parameters;
+  bool has_systematic = false;           ///< Whether any error is more than statistical.
+  std::vector<SummaryQuantity> derived;  ///< Period, decay time, quality factor; g or lengths if the rig asks for them.
+  std::string equation;                  ///< With numbers.
+  std::string units;                     ///< What gives SI units, if there are none; else empty.
+  std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
+  std::vector<std::string> warnings;     ///< The first clause of each warning that concerns this law.
+};
+
+Summary Summarize(const Identification& identification);
+
+/// The summary as a section, with all its lines.
+Section SummarySection(const Summary& summary);
+
+/// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
+/// more, warnings are counted instead of listed, then the textbook's line and parameters of the sensor are left out.
+/// `more`: a last line that says where to find more.
+std::string SummaryText(const Summary& summary, const std::string& more, TextStyle style = {});
+
+/// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
+/// separated by blanks, in the result's own units and with 10 digits.
+std::string QuietText(const Identification& identification);
+
+/// The summary as JSON, for the pages.
+nlohmann::ordered_json SummaryJson(const Summary& summary);
+
+}  // namespace pendulum

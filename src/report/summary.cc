@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/report/closed_form_quantities.h"
+#include "pendulum/report/equation.h"
+#include "pendulum/report/rounding.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+// ---- Where an error comes from --------------------------------------------------------------------------------------
+
+/// What of the rig is measured.
+std::string RigWords(const std::optional<Rig>& rig) {
+  if (!rig || !rig->source.is_object()) return "rig";
+  const auto has = [&](const char* key) { return rig->source.contains(key); };
+  if (has("bob_mass")) return "masses and length";
+  if (has("center_of_mass")) return "mass and center of mass";
+  if (has("gravity_torque")) return "gravity torque";
+  if (has("stiffness")) return "stiffness";
+  if (has("length")) return "length";
+  return has("inertia") ? "known inertia" : "rig";
+}
+
+std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
+  switch (source) {
+    case ErrorSource::kRig: return RigWords(rig);
+    case ErrorSource::kCalibration: return "calibration";
+    case ErrorSource::kClock: return "clock";
+    case ErrorSource::kInconstancy: return "change during the recording";
+  }
+  return "";
+}
+
+/// The one or two sources that make most of the variance, the larger first.
+std::string MainSources(double std_error, const SystematicErrors& systematic, const std::optional<Rig>& rig) {
+  constexpr double kMost = 0.9;
+  std::vector<std::pair<double, std::string>> parts = {{std_error * std_error, "noise"}};
+  double total = parts.front().first;
+  for (const ErrorSource source : kErrorSources) {
+    const double variance = systematic.Of(source) * systematic.Of(source);
+    parts.emplace_back(variance, SourceWords(source, rig));
+    total += variance;
+  }
+  std::ranges::stable_sort(parts, std::ranges::greater(), &std::pair<double, std::string>::first);
+  if (parts[0].first >= kMost * total) return parts[0].second;
+  return parts[0].second + ", " + parts[1].second;
+}
+
+// ---- Quantities -----------------------------------------------------------------------------------------------------
+
+std::string ShownUnit(const std::string& unit) { return unit == "1" ? "" : unit; }
+
+SummaryQuantity Quantity(std::string name, std::string symbol, double value, const std::optional<double>& error,
+                         const std::string& unit) {
+  const Conversion shown = Degrees(unit).value_or(Conversion{unit});
+  if (!error || !(*error > 0) || !std::isfinite(*error)) {
+    return {std::move(name),
+            std::move(symbol),
+            NumberText(shown.factor * value, kTextDigits),
+            "",
+            ShownUnit(std::string(shown.unit)),
+            ""};
+  }
+  ValueAndError text = PdgText(shown.factor * value, shown.factor * *error);
+  return {std::move(name),
+          std::move(symbol),
+          std::move(text.value),
+          std::move(text.error),
+          ShownUnit(std::string(shown.unit)),
+          ""};
+}
+
+SummaryQuantity QuantityOf(const ParameterEstimate& parameter, const std::optional<Rig>& rig) {
+  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+  SummaryQuantity quantity = Quantity(std::string(parameter.info.name), std::string(parameter.info.symbol),
+                                      parameter.estimate, total, parameter.unit);
+  if (parameter.std_error) {
+    quantity.source = MainSources(*parameter.std_error, parameter.systematic, rig);
+  } else {
+    quantity.source = parameter.fixed ? "fixed" : parameter.at_bound ? "at its bound" : "no error";
+  }
+  return quantity;
+}
+
+/// What people ask for, and the word for it in a sentence.
+struct AskedQuantity {
+  std::string_view name, word;
+};
+
+constexpr std::array kAskedQuantities = {AskedQuantity{"small_angle_period", "period of small swings"},
+                                         AskedQuantity{"decay_time", "decay time 2 I_O/b"},
+                                         AskedQuantity{"quality_factor", "Q"},
+                                         AskedQuantity{"gravity", "g"},
+                                         AskedQuantity{"effective_length", "effective length"},
+                                         AskedQuantity{"stiffness", "stiffness"},
+                                         AskedQuantity{"gravity_torque", "gravity torque"},
+                                         AskedQuantity{"center_of_mass", "center of mass"}};
+
+std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
+  std::vector<SummaryQuantity> derived;
+  for (const auto& [name, word] : kAskedQuantities) {
+    const auto found = std::ranges::find(fit.derived, name, &DerivedQuantity::name);
+    if (found == fit.derived.end()) continue;
+    const auto total = TotalStdError(found->std_error, found->systematic);
+    if (total && *total >= std::abs(found->estimate)) continue;  // its divisor may be 0
+    derived.push_back(Quantity(std::string(word), "", found->estimate, total, found->unit));
+  }
+  return derived;
+}
+
+std::string QuantityText(const SummaryQuantity& quantity) {
+  return quantity.name + " " + quantity.value + (quantity.error.empty() ? "" : " ± " + quantity.error) +
+         (quantity.unit.empty() ? "" : " " + quantity.unit);
+}
+
+// ---- Sentences ------------------------------------------------------------------------------------------------------
+
+std::string DataText(const DataSummary& data) {
+  std::string text = std::to_string(data.used_samples) + " of " + std::to_string(data.samples) + " samples, " +
+                     NumberText(data.from, 4) + " s to " + NumberText(data.to, 4) + " s";
+  if (data.releases.size() > 1 && data.release > 0) {
+    text += ", free swing " + std::to_string(data.release) + " of " + std::to_string(data.releases.size());
+  }
+  if (!data.begins.empty()) text += ". Begins: " + data.begins + ". Ends: " + data.ends;
+  return text + ".";
+}
+
+std::string JointDataText(const Identification& identification) {
+  Eigen::Index used = 0, all = 0;
+  std::string names;
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
+    const DataSummary& data = identification.runs[k].data;
+    used += data.used_samples;
+    all += data.samples;
+    if (data.path.empty()) continue;
+    names += (names.empty() ? "" : ", ") + Printable(data.path);
+    if (IsOneOfSeveral(identification, k)) names += " (free swing " + std::to_string(data.release) + ")";
+  }
+  const std::string samples = std::to_string(used) + " of " + std::to_string(all) + " samples";
+  return names.empty() ? samples + "." : names + ": " + samples + ".";
+}
+
+std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
+
+/// Whether the law describes the readings.
+void SetVerdict(const FitReport& fit, const Constancy* constancy, Summary& summary) {
+  const std::string law = "The law " + std::string(fit.model.name);
+  if (fit.termination != Termination::kConverged) {
+    summary.verdict = "No result with " + std::string(fit.model.name) + " (" +
+                      std::string(TerminationName(fit.termination)) + "): " + WithFullStop(Printable(fit.reason));
+    summary.emphasis = Emphasis::kAlarm;
+    return;
+  }
+  const std::string rms = ReadingText(fit.statistics.rms_residual, fit.reading_unit) + " rms";
+  if (fit.HasWarning("lack_of_fit")) {
+    summary.verdict = law + " does not describe all of the readings: the residuals, " + rms + ", are more than noise.";
+    summary.emphasis = Emphasis::kCaution;
+  } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
+    summary.verdict = law + " describes the readings, but not with constant parameters: " +
+                      WithFullStop(Printable(constancy->verdict));
+    summary.emphasis = Emphasis::kCaution;
+  } else if (fit.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite) {
+    summary.verdict = law + " describes the readings: the residuals, " + rms +
+                      ", are autocorrelated noise, for which the errors allow.";
+  } else {
+    summary.verdict = law + " describes the readings: the residuals, " + rms + ", are noise.";
+  }
+}
+
+/// What the formula assumes, or what disturbs it.
+std::string CauseWords(DifferenceCause cause) {
+  switch (cause) {
+    case DifferenceCause::kFormula: return "it assumes viscous friction alone";
+    case DifferenceCause::kDrift: return "it assumes a constant zero";
+    case DifferenceCause::kAmplitude: return "it assumes small angles";
+    case DifferenceCause::kSampling: return "few samples at turning points";
+    case DifferenceCause::kResolution: return "coarse readings";
+    case DifferenceCause::kRecording: return "noise, or another law";
+  }
+  return "";
+}
+
+/// "I_O 0.0445 (1.6 % more: it assumes small angles)".
+std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
+  const double error = row.std_error.value_or(0);
+  const std::string value = error > 0 ? PdgText(row.closed_form, error).value : NumberText(row.closed_form, 4);
+  std::string text = std::string(symbol) + " " + value;
+  if (row.agrees.value_or(true)) return text + " (agrees)";
+  const double ratio = row.closed_form / row.fit;
+  constexpr double kTimes = 1.5;  // more is said as a factor
+  const std::string size = ratio > kTimes
+                               ? NumberText(ratio, 2) + " times as large"
+                               : NumberText(100 * std::abs(ratio - 1), 2) + (ratio > 1 ? " % more" : " % less");
+  return text + " (" + size + (row.cause ? ": " + CauseWords(*row.cause) : "") + ")";
+}
+
+/// What log decrement and small angles give.
+std::string TextbookText(const ClosedFormCheck* check) {
+  if (check == nullptr) return "";
+  constexpr std::array kFormulas = {std::pair{"inertia_small_angle", "I_O"}, std::pair{"viscous_log_decrement", "b"}};
+  std::string text;
+  for (const auto& [quantity, symbol] : kFormulas) {
+    const auto row = std::ranges::find(check->rows, quantity, &ClosedFormRow::quantity);
+    if (row == check->rows.end()) continue;
+    text += (text.empty() ? "The textbook's log decrement gives " : ", ") + FormulaText(*row, symbol);
+  }
+  return text.empty() ? "" : text + ".";
+}
+
+/// The part of a message before its explanations.
+std::string FirstClause(const std::string& message) {
+  const std::size_t end = std::min(message.find(';'), message.find(". "));
+  std::string clause = Printable(message.substr(0, end));
+  if (clause.ends_with('.')) clause.pop_back();
+  return clause;
+}
+
+/// The warnings without those of other laws.
+std::vector<std::string> WarningsFor(const Identification& identification, std::size_t main) {
+  Identification own = identification;
+  own.fits = {identification.fits[main]};
+  for (Identification& run : own.runs) run.fits = {run.fits[main]};
+  std::vector<std::string> clauses;
+  for (const Warning& warning : AllWarnings(own)) clauses.push_back(FirstClause(warning.message));
+  return clauses;
+}
+
+// ---- Comparison -----------------------------------------------------------------------------------------------------
+
+void SetComparison(const Identification& identification, Summary& summary) {
+  constexpr int kResidualDigits = 3;
+  const Comparison& comparison = *identification.comparison;
+  const bool recommends = !comparison.recommended.empty();
+  summary.comparison = (recommends ? "Recommended: " + comparison.recommended + ". " : "No law is recommended. ") +
+                       WithFullStop(Printable(comparison.reason));
+  const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
+  for (const ComparisonRow& row : comparison.rows) {
+    SummaryLaw law{row.model, NumberText(shown.factor * row.rms, kResidualDigits) + " " + std::string(shown.unit),
+                   row.delta_bic && std::isfinite(*row.delta_bic) ? FixedText(*row.delta_bic, 1) : "",
+                   row.model == comparison.recommended ? "recommended"
+                   : row.lack_of_fit                   ? "lack of fit"
+                   : row.judged                        ? ""
+                                                       : "not compared"};
+    summary.laws.push_back(std::move(law));
+  }
+}
+
+// ---- Without a fit --------------------------------------------------------------------------------------------------
+
+void SetClosedForms(const Identification& identification, Summary& summary) {
+  summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
+  if (!identification.closed_forms || !identification.closed_forms->linear) return;
+  const ClosedForms& forms = *identification.closed_forms;
+  for (const ReportedEstimate& reported : LinearEstimates(*forms.linear, forms.gravity, identification.si_rig())) {
+    summary.parameters.push_back(
+        Quantity(reported.name, reported.symbol, reported.estimate.value, reported.estimate.std_error, reported.unit));
+    summary.parameters.back().source = "noise";
+  }
+}
+
+void SetFit(const Identification& identification, std::size_t main, Summary& summary) {
+  const FitReport& fit = identification.fits[main];
+  summary.law = fit.model.name;
+  SetVerdict(fit, identification.ConstancyOf(main), summary);
+  if (identification.is_joint()) {
+    const Homogeneity& homogeneity = identification.joint[main].homogeneity;
+    summary.agreement = WithFullStop(Printable(homogeneity.verdict));
+    if (!homogeneity.agrees() && summary.emphasis == Emphasis::kNone) summary.emphasis = Emphasis::kCaution;
+  }
+  if (fit.termination == Termination::kFailed) return;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    summary.parameters.push_back(QuantityOf(parameter, identification.rig));
+    summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
+  }
+  summary.derived = DerivedOf(fit);
+  const bool has_all =
+      !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
+  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig());
+  if (!identification.si_rig()) {
+    summary.units = fit.model.gravity.is_linear() ? "Torques are relative to the stiffness; SI: --stiffness."
+                                                  : "Torques are relative to gravity's; SI: --bob_mass, --rod_length.";
+  }
+  summary.textbook = TextbookText(identification.CheckOf(main));
+}
+
+// ---- Text -----------------------------------------------------------------------------------------------------------
+
+/// What a text leaves out to be short.
+struct Folding {
+  std::size_t warnings = 100;  ///< More than these are only counted.
+  bool textbook = true;
+  bool sensor = true;  ///< Parameters that are neither of the equation nor of the start.
+};
+
+bool IsOfSensor(const SummaryQuantity& quantity) {
+  const std::vector<std::string_view> kept = {kReleaseAngle.name, kInitialAngle.name, kInitialRate.name};
+  const bool is_angle_or_time = quantity.unit == "deg" || quantity.unit == "s" || quantity.unit == "deg/s";
+  return is_angle_or_time && std::ranges::find(kept, quantity.name) == kept.end();
+}
+
+Table LawTable(const Summary& summary) {
+  Table table{{{"law"}, {"rms residual", true}, {"ΔBIC", true}, {""}}};
+  table.caution = "lack of fit";
+  for (const SummaryLaw& law : summary.laws) {
+    table.rows.push_back({law.name, law.rms, law.delta.empty() ? "-" : law.delta, law.verdict});
+  }
+  return table;
+}
+
+Table ParameterTable(const Summary& summary, const Folding& folding) {
+  Table table{{{summary.law.empty() ? "formulas" : summary.law},
+               {""},
+               {"value", true},
+               {summary.has_systematic ? "± total error" : "± std error", false, 1},
+               {"unit"},
+               {"error from"}}};
+  for (const SummaryQuantity& quantity : summary.parameters) {
+    if (!folding.sensor && IsOfSensor(quantity)) continue;
+    table.rows.push_back({quantity.name, quantity.symbol, quantity.value,
+                          quantity.error.empty() ? "" : "± " + quantity.error, quantity.unit, quantity.source});
+  }
+  return table;
+}
+
+std::string DerivedText(const Summary& summary) {
+  std::string text;
+  for (const SummaryQuantity& quantity : summary.derived) {
+    text += (text.empty() ? "" : ", ") + QuantityText(quantity);
+  }
+  return text;
+}
+
+void AddWarnings(const Summary& summary, std::size_t most, Section& section) {
+  const std::size_t count = summary.warnings.size();
+  if (count == 0) return;
+  const std::string counted = std::to_string(count) + (count == 1 ? " warning" : " warnings");
+  if (most == 0) {
+    section.AddText(counted + ".", Emphasis::kCaution);
+    return;
+  }
+  for (std::size_t k = 0; k < std::min(most, count); ++k) {
+    section.AddText("Warning: " + summary.warnings[k] + ".", Emphasis::kCaution);
+  }
+  if (count > most) section.AddText("And " + std::to_string(count - most) + " more warnings.", Emphasis::kCaution);
+}
+
+Section FoldedSection(const Summary& summary, const Folding& folding) {
+  Section section{summary.title};
+  section.AddText(summary.data).AddText(summary.comparison);
+  if (!summary.laws.empty()) section.Add(LawTable(summary));
+  section.AddText(summary.verdict, summary.emphasis);
+  section.AddText(summary.agreement, summary.agreement.empty() ? Emphasis::kNone : summary.emphasis);
+  if (!summary.parameters.empty()) section.Add(ParameterTable(summary, folding));
+  section.AddText(DerivedText(summary));
+  if (!summary.equation.empty()) section.Add(Formula{summary.equation});
+  section.AddText(summary.units);
+  if (folding.textbook) section.AddText(summary.textbook);
+  AddWarnings(summary, folding.warnings, section);
+  return section;
+}
+
+}  // namespace
+
+Summary Summarize(const Identification& identification) {
+  Summary summary;
+  const std::string path = Printable(identification.data.path);
+  summary.title = identification.is_joint() ? std::to_string(identification.runs.size()) + " recordings of one rig"
+                  : path.empty()            ? "Recording"
+                                            : path;
+  summary.data = identification.is_joint() ? JointDataText(identification) : DataText(identification.data);
+  if (identification.comparison) SetComparison(identification, summary);
+  if (identification.fits.empty()) {
+    SetClosedForms(identification, summary);
+    for (const Warning& warning : AllWarnings(identification)) summary.warnings.push_back(FirstClause(warning.message));
+    return summary;
+  }
+  const std::size_t main = identification.MainFit();
+  SetFit(identification, main, summary);
+  summary.warnings = WarningsFor(identification, main);
+  return summary;
+}
+
+Section SummarySection(const Summary& summary) { return FoldedSection(summary, {}); }
+
+std::string SummaryText(const Summary& summary, const std::string& more, TextStyle style) {
+  constexpr std::ptrdiff_t kMostLines = 20;
+  constexpr std::array<Folding, 5> kFoldings = {Folding{}, Folding{2, true, true}, Folding{0, true, true},
+                                                Folding{0, false, true}, Folding{0, false, false}};
+  std::string text;
+  for (const Folding& folding : kFoldings) {
+    Section section = FoldedSection(summary, folding);
+    text = ToText(Sections{section.AddText(more)}, style);
+    const auto laws = static_cast<std::ptrdiff_t>(summary.laws.size());
+    if (std::ranges::count(text, '\n') <= kMostLines + laws) break;
+  }
+  return text;
+}
+
+std::string QuietText(const Identification& identification) {
+  constexpr int kDigits = 10, kErrorDigits = 3;
+  if (identification.fits.empty()) return "";
+  std::string text;
+  for (const ParameterEstimate& parameter : identification.fits[identification.MainFit()].parameters) {
+    const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+    text += std::string(parameter.info.name) + " " + NumberText(parameter.estimate, kDigits) + " " +
+            (total ? NumberText(*total, kErrorDigits) : "-") + " " + parameter.unit + "\n";
+  }
+  return text;
+}
+
+namespace {
+
+nlohmann::ordered_json QuantitiesJson(const std::vector<SummaryQuantity>& quantities) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const SummaryQuantity& quantity : quantities) {
+    array.push_back({{"name", quantity.name},
+                     {"symbol", quantity.symbol},
+                     {"value", quantity.value},
+                     {"error", quantity.error},
+                     {"unit", quantity.unit},
+                     {"source", quantity.source}});
+  }
+  return array;
+}
+
+}  // namespace
+
+nlohmann::ordered_json SummaryJson(const Summary& summary) {
+  nlohmann::ordered_json laws = nlohmann::ordered_json::array();
+  for (const SummaryLaw& law : summary.laws) {
+    laws.push_back({{"name", law.name}, {"rms", law.rms}, {"delta_bic", law.delta}, {"verdict", law.verdict}});
+  }
+  const std::string emphasis = summary.emphasis == Emphasis::kAlarm     ? "alarm"
+                               : summary.emphasis == Emphasis::kCaution ? "caution"
+                                                                        : "none";
+  return {{"title", summary.title},
+          {"data", summary.data},
+          {"comparison", summary.comparison},
+          {"laws", std::move(laws)},
+          {"verdict", summary.verdict},
+          {"emphasis", emphasis},
+          {"agreement", summary.agreement},
+          {"law", summary.law},
+          {"parameters", QuantitiesJson(summary.parameters)},
+          {"has_systematic", summary.has_systematic},
+          {"derived", QuantitiesJson(summary.derived)},
+          {"equation", summary.equation},
+          {"units", summary.units},
+          {"textbook", summary.textbook},
+          {"warnings", summary.warnings}};
+}
+
+}  // namespace pendulum
