@@ -22,10 +22,12 @@ bool IsWarningOfAll(const std::vector<FitReport>& fits, const Warning& warning) 
   return std::ranges::all_of(fits, [&](const FitReport& fit) { return ContainsWarning(fit.warnings, warning); });
 }
 
-/// The warnings of a joint fit's recordings. Each names its recording, or says that it applies to all.
-std::vector<Warning> WarningsOfRuns(const Identification& identification) {
+/// The warnings of a joint fit's recordings, as `of_run` lists them. Each names its recording, or says that it applies
+/// to all.
+template <typename OfRun>
+std::vector<Warning> WarningsOfRuns(const Identification& identification, const OfRun& of_run) {
   std::vector<std::vector<Warning>> runs;
-  for (const Identification& run : identification.runs) runs.push_back(AllWarnings(run));
+  for (const Identification& run : identification.runs) runs.push_back(of_run(run));
   std::vector<Warning> all;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     for (Warning warning : runs[k]) {
@@ -92,7 +94,15 @@ std::vector<Warning> AllWarnings(const Identification& identification) {
     }
     AddOnce(named, all);
   }
-  AddOnce(WarningsOfRuns(identification), all);
+  AddOnce(WarningsOfRuns(identification, AllWarnings), all);
+  return all;
+}
+
+std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit) {
+  std::vector<Warning> all;
+  AddOnce(identification.warnings, all);
+  AddOnce(identification.fits[fit].warnings, all);
+  AddOnce(WarningsOfRuns(identification, [&](const Identification& run) { return WarningsOfFit(run, fit); }), all);
   return all;
 }
 

@@ -11,6 +11,7 @@
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_json.h"
 #include "pendulum/report/json_parts.h"
+#include "pendulum/report/result_summary.h"
 
 namespace pendulum {
 namespace {
@@ -152,6 +153,7 @@ Json JointFitJson(const Identification& identification, std::size_t index) {
   json["homogeneity"] = HomogeneityJson(identification.joint[index].homogeneity);
   json["runs"] = std::move(runs);
   json["solver"] = SolverJson(fit.solver);
+  json["summary"] = FitSummaryJson(SummarizeFit(identification, index));
   return json;
 }
 

@@ -13,6 +13,7 @@
 #include "pendulum/report/fit_json.h"
 #include "pendulum/report/joint_json.h"
 #include "pendulum/report/json_parts.h"
+#include "pendulum/report/result_summary.h"
 
 namespace pendulum {
 namespace {
@@ -75,6 +76,7 @@ Json FitJson(const Identification& identification, std::size_t index) {
   json["constancy"] = ConstancyJson(identification.ConstancyOf(index));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, identification.ConstancyOf(index));
   json["solver"] = SolverJson(fit.solver);
+  json["summary"] = FitSummaryJson(SummarizeFit(identification, index));
   return json;
 }
 

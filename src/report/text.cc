@@ -14,7 +14,7 @@
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/joint_sections.h"
 #include "pendulum/report/rounding.h"
-#include "pendulum/report/summary.h"
+#include "pendulum/report/result_summary.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -96,7 +96,7 @@ std::string ToText(const Identification& identification, TextStyle style) {
   Sections sections = ReportSections(identification);
   std::ranges::reverse(sections);
   std::ranges::stable_partition(sections, [](const Section& section) { return section.title != kWarningTitle; });
-  sections.push_back(SummarySection(Summarize(identification)));
+  sections.push_back(SummarySection(SummarizeResult(identification)));
   return ToText(sections, style);
 }
 

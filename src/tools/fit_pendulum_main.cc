@@ -13,7 +13,7 @@
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/series.h"
-#include "pendulum/report/summary.h"
+#include "pendulum/report/result_summary.h"
 #include "pendulum/report/terminal_plot.h"
 #include "pendulum/report/text.h"
 #include "pendulum/report/text_parts.h"
@@ -113,7 +113,7 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   }
   const TextStyle style{.colour = WantsColour(STDOUT_FILENO)};
   if (options.quiet) return text + QuietText(run);
-  return text + (options.details ? ToText(run, style) : SummaryText(Summarize(run), kMore, style));
+  return text + (options.details ? ToText(run, style) : SummaryText(SummarizeResult(run), kMore, style));
 }
 
 /// All outputs of all runs. Text tables are joined on standard output unless data go there. Runs that could not be

@@ -18,7 +18,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
-#include "pendulum/report/summary.h"
+#include "pendulum/report/result_summary.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
 #include "tools/record_pendulum_options.h"
@@ -144,7 +144,7 @@ Result<int> Fit(FitPendulumOptions options) {
   if (!runs) return tl::unexpected(runs.error());
   const Result<Identification>& run = runs->front();
   if (!run) return tl::unexpected(run.error());
-  const std::string text = "\n" + SummaryText(Summarize(*run), kMore, {.colour = WantsColour(STDOUT_FILENO)});
+  const std::string text = "\n" + SummaryText(SummarizeResult(*run), kMore, {.colour = WantsColour(STDOUT_FILENO)});
   return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
 }
 

@@ -101,6 +101,10 @@ int ExitCode(const Identification& identification);
 /// model; with several recordings it names its recording, or says that it applies to each.
 std::vector<Warning> AllWarnings(const Identification& identification);
 
+/// The warnings that concern fit `fit`: those of the recording or the recordings, and of this fit alone. A warning of a
+/// single recording of a joint fit names it.
+std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit);
+
 /// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
 bool IsOneOfSeveral(const Identification& identification, std::size_t run);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,8 @@ struct SummaryLaw {
   std::string verdict;  ///< "recommended", "lack of fit", "not compared" or empty.
 };
 
-/// What a reader of a result needs first, in words and rounded numbers. Every front end shows it first.
-struct Summary {
-  std::string title;       ///< The file, or "4 recordings of one rig".
-  std::string data;        ///< Samples and window.
-  std::string comparison;  ///< Which law is recommended, and why; empty for one law.
-  std::vector<SummaryLaw> laws;
+/// What a reader needs to know of one fit, in words and rounded numbers.
+struct FitSummary {
   std::string verdict;  ///< Whether the law describes the readings, or why there is no result.
   Emphasis emphasis = Emphasis::kNone;
   std::string agreement;  ///< Whether several recordings agree; empty for one.
@@ -47,21 +44,33 @@ struct Summary {
   std::vector<std::string> warnings;     ///< The first clause of each warning that concerns this law.
 };
 
-Summary Summarize(const Identification& identification);
+/// What a reader of a result needs first. Every front end shows it first.
+struct ResultSummary {
+  std::string title;       ///< The file, or "4 recordings of one rig".
+  std::string data;        ///< Samples and window.
+  std::string comparison;  ///< Which law is recommended, and why; empty for one law.
+  std::vector<SummaryLaw> laws;
+  FitSummary fit;  ///< Of the main fit; if there is none, of closed forms.
+};
+
+/// The summary of one fit.
+FitSummary SummarizeFit(const Identification& identification, std::size_t fit);
+
+ResultSummary SummarizeResult(const Identification& identification);
 
 /// The summary as a section, with all its lines.
-Section SummarySection(const Summary& summary);
+Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
 /// more, warnings are counted instead of listed, then the textbook's line and parameters of the sensor are left out.
 /// `more`: a last line that says where to find more.
-std::string SummaryText(const Summary& summary, const std::string& more, TextStyle style = {});
+std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
 /// separated by blanks, in the result's own units and with 10 digits.
 std::string QuietText(const Identification& identification);
 
-/// The summary as JSON, for the pages.
-nlohmann::ordered_json SummaryJson(const Summary& summary);
+/// The summary of a fit as JSON.
+nlohmann::ordered_json FitSummaryJson(const FitSummary& summary);
 
 }  // namespace pendulum

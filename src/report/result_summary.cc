@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/report/summary.h"
+#include "pendulum/report/result_summary.h"
 
 #include <algorithm>
 #include <array>
@@ -154,7 +154,7 @@ std::string JointDataText(const Identification& identification) {
 std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
 
 /// Whether the law describes the readings.
-void SetVerdict(const FitReport& fit, const Constancy* constancy, Summary& summary) {
+void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& summary) {
   const std::string law = "The law " + std::string(fit.model.name);
   if (fit.termination != Termination::kConverged) {
     summary.verdict = "No result with " + std::string(fit.model.name) + " (" +
@@ -226,19 +226,15 @@ std::string FirstClause(const std::string& message) {
   return clause;
 }
 
-/// The warnings without those of other laws.
-std::vector<std::string> WarningsFor(const Identification& identification, std::size_t main) {
-  Identification own = identification;
-  own.fits = {identification.fits[main]};
-  for (Identification& run : own.runs) run.fits = {run.fits[main]};
+std::vector<std::string> Clauses(const std::vector<Warning>& warnings) {
   std::vector<std::string> clauses;
-  for (const Warning& warning : AllWarnings(own)) clauses.push_back(FirstClause(warning.message));
+  for (const Warning& warning : warnings) clauses.push_back(FirstClause(warning.message));
   return clauses;
 }
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
 
-void SetComparison(const Identification& identification, Summary& summary) {
+void SetComparison(const Identification& identification, ResultSummary& summary) {
   constexpr int kResidualDigits = 3;
   const Comparison& comparison = *identification.comparison;
   const bool recommends = !comparison.recommended.empty();
@@ -258,40 +254,19 @@ void SetComparison(const Identification& identification, Summary& summary) {
 
 // ---- Without a fit --------------------------------------------------------------------------------------------------
 
-void SetClosedForms(const Identification& identification, Summary& summary) {
+/// What the linear formulas give.
+FitSummary SummarizeClosedForms(const Identification& identification) {
+  FitSummary summary;
+  summary.warnings = Clauses(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
-  if (!identification.closed_forms || !identification.closed_forms->linear) return;
+  if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
   const ClosedForms& forms = *identification.closed_forms;
   for (const ReportedEstimate& reported : LinearEstimates(*forms.linear, forms.gravity, identification.si_rig())) {
     summary.parameters.push_back(
         Quantity(reported.name, reported.symbol, reported.estimate.value, reported.estimate.std_error, reported.unit));
     summary.parameters.back().source = "noise";
   }
-}
-
-void SetFit(const Identification& identification, std::size_t main, Summary& summary) {
-  const FitReport& fit = identification.fits[main];
-  summary.law = fit.model.name;
-  SetVerdict(fit, identification.ConstancyOf(main), summary);
-  if (identification.is_joint()) {
-    const Homogeneity& homogeneity = identification.joint[main].homogeneity;
-    summary.agreement = WithFullStop(Printable(homogeneity.verdict));
-    if (!homogeneity.agrees() && summary.emphasis == Emphasis::kNone) summary.emphasis = Emphasis::kCaution;
-  }
-  if (fit.termination == Termination::kFailed) return;
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    summary.parameters.push_back(QuantityOf(parameter, identification.rig));
-    summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
-  }
-  summary.derived = DerivedOf(fit);
-  const bool has_all =
-      !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
-  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig());
-  if (!identification.si_rig()) {
-    summary.units = fit.model.gravity.is_linear() ? "Torques are relative to the stiffness; SI: --stiffness."
-                                                  : "Torques are relative to gravity's; SI: --bob_mass, --rod_length.";
-  }
-  summary.textbook = TextbookText(identification.CheckOf(main));
+  return summary;
 }
 
 // ---- Text -----------------------------------------------------------------------------------------------------------
@@ -309,7 +284,7 @@ bool IsOfSensor(const SummaryQuantity& quantity) {
   return is_angle_or_time && std::ranges::find(kept, quantity.name) == kept.end();
 }
 
-Table LawTable(const Summary& summary) {
+Table LawTable(const ResultSummary& summary) {
   Table table{{{"law"}, {"rms residual", true}, {"ΔBIC", true}, {""}}};
   table.caution = "lack of fit";
   for (const SummaryLaw& law : summary.laws) {
@@ -318,7 +293,7 @@ Table LawTable(const Summary& summary) {
   return table;
 }
 
-Table ParameterTable(const Summary& summary, const Folding& folding) {
+Table ParameterTable(const FitSummary& summary, const Folding& folding) {
   Table table{{{summary.law.empty() ? "formulas" : summary.law},
                {""},
                {"value", true},
@@ -333,7 +308,7 @@ Table ParameterTable(const Summary& summary, const Folding& folding) {
   return table;
 }
 
-std::string DerivedText(const Summary& summary) {
+std::string DerivedText(const FitSummary& summary) {
   std::string text;
   for (const SummaryQuantity& quantity : summary.derived) {
     text += (text.empty() ? "" : ", ") + QuantityText(quantity);
@@ -341,7 +316,7 @@ std::string DerivedText(const Summary& summary) {
   return text;
 }
 
-void AddWarnings(const Summary& summary, std::size_t most, Section& section) {
+void AddWarnings(const FitSummary& summary, std::size_t most, Section& section) {
   const std::size_t count = summary.warnings.size();
   if (count == 0) return;
   const std::string counted = std::to_string(count) + (count == 1 ? " warning" : " warnings");
@@ -355,45 +330,67 @@ void AddWarnings(const Summary& summary, std::size_t most, Section& section) {
   if (count > most) section.AddText("And " + std::to_string(count - most) + " more warnings.", Emphasis::kCaution);
 }
 
-Section FoldedSection(const Summary& summary, const Folding& folding) {
+Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
+  const FitSummary& fit = summary.fit;
   Section section{summary.title};
   section.AddText(summary.data).AddText(summary.comparison);
   if (!summary.laws.empty()) section.Add(LawTable(summary));
-  section.AddText(summary.verdict, summary.emphasis);
-  section.AddText(summary.agreement, summary.agreement.empty() ? Emphasis::kNone : summary.emphasis);
-  if (!summary.parameters.empty()) section.Add(ParameterTable(summary, folding));
-  section.AddText(DerivedText(summary));
-  if (!summary.equation.empty()) section.Add(Formula{summary.equation});
-  section.AddText(summary.units);
-  if (folding.textbook) section.AddText(summary.textbook);
-  AddWarnings(summary, folding.warnings, section);
+  section.AddText(fit.verdict, fit.emphasis).AddText(fit.agreement, fit.emphasis);
+  if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
+  section.AddText(DerivedText(fit));
+  if (!fit.equation.empty()) section.Add(Formula{fit.equation});
+  section.AddText(fit.units);
+  if (folding.textbook) section.AddText(fit.textbook);
+  AddWarnings(fit, folding.warnings, section);
   return section;
 }
 
 }  // namespace
 
-Summary Summarize(const Identification& identification) {
-  Summary summary;
+FitSummary SummarizeFit(const Identification& identification, std::size_t main) {
+  FitSummary summary;
+  const FitReport& fit = identification.fits[main];
+  summary.warnings = Clauses(WarningsOfFit(identification, main));
+  summary.law = fit.model.name;
+  SetVerdict(fit, identification.ConstancyOf(main), summary);
+  if (identification.is_joint()) {
+    const Homogeneity& homogeneity = identification.joint[main].homogeneity;
+    summary.agreement = WithFullStop(Printable(homogeneity.verdict));
+    if (!homogeneity.agrees() && summary.emphasis == Emphasis::kNone) summary.emphasis = Emphasis::kCaution;
+  }
+  if (fit.termination == Termination::kFailed) return summary;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    summary.parameters.push_back(QuantityOf(parameter, identification.rig));
+    summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
+  }
+  summary.derived = DerivedOf(fit);
+  const bool has_all =
+      !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
+  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig());
+  if (!identification.si_rig()) {
+    summary.units = fit.model.gravity.is_linear() ? "Torques are relative to the stiffness; SI: --stiffness."
+                                                  : "Torques are relative to gravity's; SI: --bob_mass, --rod_length.";
+  }
+  summary.textbook = TextbookText(identification.CheckOf(main));
+  return summary;
+}
+
+ResultSummary SummarizeResult(const Identification& identification) {
+  ResultSummary summary;
   const std::string path = Printable(identification.data.path);
   summary.title = identification.is_joint() ? std::to_string(identification.runs.size()) + " recordings of one rig"
                   : path.empty()            ? "Recording"
                                             : path;
   summary.data = identification.is_joint() ? JointDataText(identification) : DataText(identification.data);
   if (identification.comparison) SetComparison(identification, summary);
-  if (identification.fits.empty()) {
-    SetClosedForms(identification, summary);
-    for (const Warning& warning : AllWarnings(identification)) summary.warnings.push_back(FirstClause(warning.message));
-    return summary;
-  }
-  const std::size_t main = identification.MainFit();
-  SetFit(identification, main, summary);
-  summary.warnings = WarningsFor(identification, main);
+  summary.fit = identification.fits.empty() ? SummarizeClosedForms(identification)
+                                            : SummarizeFit(identification, identification.MainFit());
   return summary;
 }
 
-Section SummarySection(const Summary& summary) { return FoldedSection(summary, {}); }
+Section SummarySection(const ResultSummary& summary) { return FoldedSection(summary, {}); }
 
-std::string SummaryText(const Summary& summary, const std::string& more, TextStyle style) {
+std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
   constexpr std::array<Folding, 5> kFoldings = {Folding{}, Folding{2, true, true}, Folding{0, true, true},
                                                 Folding{0, false, true}, Folding{0, false, false}};
@@ -436,24 +433,14 @@ nlohmann::ordered_json QuantitiesJson(const std::vector<SummaryQuantity>& quanti
 
 }  // namespace
 
-nlohmann::ordered_json SummaryJson(const Summary& summary) {
-  nlohmann::ordered_json laws = nlohmann::ordered_json::array();
-  for (const SummaryLaw& law : summary.laws) {
-    laws.push_back({{"name", law.name}, {"rms", law.rms}, {"delta_bic", law.delta}, {"verdict", law.verdict}});
-  }
-  const std::string emphasis = summary.emphasis == Emphasis::kAlarm     ? "alarm"
-                               : summary.emphasis == Emphasis::kCaution ? "caution"
-                                                                        : "none";
-  return {{"title", summary.title},
-          {"data", summary.data},
-          {"comparison", summary.comparison},
-          {"laws", std::move(laws)},
-          {"verdict", summary.verdict},
-          {"emphasis", emphasis},
+nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
+  const std::string level = summary.emphasis == Emphasis::kAlarm     ? "bad"
+                            : summary.emphasis == Emphasis::kCaution ? "caution"
+                                                                     : "good";
+  return {{"verdict", summary.verdict},
+          {"level", level},
           {"agreement", summary.agreement},
-          {"law", summary.law},
           {"parameters", QuantitiesJson(summary.parameters)},
-          {"has_systematic", summary.has_systematic},
           {"derived", QuantitiesJson(summary.derived)},
           {"equation", summary.equation},
           {"units", summary.units},

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/result_summary.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pendulum/report/layout.h"
+#include "tests/identify/example_joint_identification.h"
+
+namespace pendulum::result_summary_test {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+const SummaryQuantity& Find(const std::vector<SummaryQuantity>& quantities, const std::string& name) {
+  const auto found = std::ranges::find(quantities, name, &SummaryQuantity::name);
+  EXPECT_NE(found, quantities.end()) << name;
+  return *found;
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// ---- Numbers -------------------------------------------------------------------------------------------------------
+
+// 0.00025 and 0.001 add up to 0.00103 in quadrature; the rule of the PDG keeps two digits of an error that begins with
+// 103.
+TEST(SummarizeFit, QuotesTheTotalErrorAndItsSource) {
+  Identification identification = ExampleIdentification();
+  identification.rig->source = {{"bob_mass", 0.38}, {"rod_mass", 0.095}, {"rod_length", 0.43}, {"gravity", 9.81}};
+  const FitSummary summary = SummarizeFit(identification, 0);
+  const SummaryQuantity& inertia = Find(summary.parameters, "inertia");
+  EXPECT_EQ(inertia.symbol, "I_O");
+  EXPECT_EQ(inertia.value, "0.0790");
+  EXPECT_EQ(inertia.error, "0.0010");
+  EXPECT_EQ(inertia.unit, "kg m^2");
+  EXPECT_EQ(inertia.source, "masses and length");
+  EXPECT_EQ(Find(summary.parameters, "viscous").source, "noise");
+  EXPECT_TRUE(summary.has_systematic);
+}
+
+// Variances of 9 and 16: neither is nine tenths of the whole.
+TEST(SummarizeFit, NamesTwoSourcesIfNeitherIsMost) {
+  Identification identification = ExampleIdentification();
+  ParameterEstimate& viscous = identification.fits[0].parameters[1];
+  viscous.std_error = 3e-5;
+  viscous.systematic.Add(ErrorSource::kClock, 4e-5);
+  EXPECT_EQ(Find(SummarizeFit(identification, 0).parameters, "viscous").source, "clock, noise");
+}
+
+TEST(SummarizeFit, SaysWhyThereIsNoError) {
+  const FitSummary summary = SummarizeFit(ExampleIdentification(), 0);
+  EXPECT_EQ(Find(summary.parameters, "coulomb").source, "at its bound");
+  EXPECT_EQ(Find(summary.parameters, "zero_angle").source, "fixed");
+  EXPECT_EQ(Find(summary.parameters, "zero_angle").error, "");
+}
+
+TEST(SummarizeFit, GivesAnglesInDegrees) {
+  const SummaryQuantity angle = Find(SummarizeFit(ExampleIdentification(), 0).parameters, "release_angle");
+  EXPECT_EQ(angle.unit, "deg");
+  EXPECT_EQ(angle.value, "24.236");  // 0.423 · 180 / π
+  EXPECT_EQ(angle.error, "0.011");   // 0.0002 · 180 / π
+}
+
+// ---- Verdict -------------------------------------------------------------------------------------------------------
+
+TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
+  Identification identification = ExampleIdentification();
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict,
+              StartsWith("The law coulomb does not describe all of the readings"));
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
+  identification.fits[0].warnings.clear();
+  identification.constancy.clear();
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("are autocorrelated noise"));
+  identification.fits[0].noise.autocorrelation = {};
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict,
+              AllOf(StartsWith("The law coulomb describes"), HasSubstr("are noise")));
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
+  identification.fits[0].termination = Termination::kNotConverged;
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, StartsWith("No result with coulomb (not_converged)"));
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kAlarm);
+}
+
+TEST(SummarizeFit, ShowsNoNumbersOfAFailedFit) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].termination = Termination::kFailed;
+  const FitSummary summary = SummarizeFit(identification, 0);
+  EXPECT_THAT(summary.parameters, IsEmpty());
+  EXPECT_EQ(summary.equation, "");
+}
+
+// 0.0802 / 0.079 is 1.52 % more.
+TEST(SummarizeFit, ComparesWithTheTextbook) {
+  Identification identification = ExampleIdentification();
+  identification.checks[0].rows[0].cause = DifferenceCause::kAmplitude;
+  const std::string text = SummarizeFit(identification, 0).textbook;
+  EXPECT_THAT(text, HasSubstr("I_O 0.0802 (1.5 % more: it assumes small angles)"));
+  EXPECT_THAT(text, HasSubstr("(agrees)"));
+}
+
+// ---- Warnings of the law that is shown -----------------------------------------------------------------------------
+
+TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
+  Identification identification = ExampleComparedIdentification();
+  for (FitReport& fit : identification.fits) fit.warnings.clear();
+  identification.warnings = {{"gaps", "the recording has 3 gaps; the longest takes 2 s"}};
+  identification.fits[0].warnings = {{"at_bound", "at the bound 0: coulomb"}};
+  identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
+  EXPECT_THAT(SummarizeFit(identification, 0).warnings,
+              ElementsAre("the recording has 3 gaps", "at the bound 0: coulomb"));
+  EXPECT_THAT(SummarizeFit(identification, 1).warnings,
+              ElementsAre("the recording has 3 gaps", "the residuals are not white"));
+}
+
+// ---- Text ----------------------------------------------------------------------------------------------------------
+
+TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
+  Identification identification = ExampleIdentification();
+  for (int i = 0; i < 30; ++i) {
+    identification.warnings.push_back(
+        {"w", "warning number " + std::to_string(i) + " has a first clause; and a second"});
+  }
+  const std::vector<std::string> lines = Lines(SummaryText(SummarizeResult(identification), "More."));
+  EXPECT_LE(lines.size(), 20);
+  for (const std::string& line : lines) EXPECT_LE(DisplayWidth(line), 80) << line;
+  EXPECT_THAT(lines.back(), HasSubstr("More."));
+}
+
+TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {
+  const ResultSummary summary = SummarizeResult(ExampleComparedIdentification());
+  EXPECT_THAT(summary.laws, SizeIs(ExampleComparedIdentification().comparison->rows.size()));
+  const std::string text = SummaryText(summary, "");
+  EXPECT_LT(text.find("Recommended: "), text.find("inertia"));
+}
+
+TEST(SummaryText, GivesTheVerdictOfAgreementOfSeveralRecordings) {
+  const std::string text = SummaryText(SummarizeResult(ExampleJointIdentification()), "");
+  EXPECT_THAT(text, StartsWith("[[2 recordings of one rig]]"));
+  EXPECT_LT(text.find("recordings agree"), text.find("inertia  "));
+}
+
+TEST(QuietText, HasALinePerParameter) {
+  const std::vector<std::string> lines = Lines(QuietText(ExampleIdentification()));
+  ASSERT_THAT(lines, SizeIs(5));
+  EXPECT_EQ(lines[0], "inertia 0.079 0.00103 kg m^2");
+  EXPECT_EQ(lines[2], "coulomb 0 - N m");
+}
+
+TEST(FitSummaryJson, HasTheLevelOfTheVerdict) {
+  const nlohmann::ordered_json json = FitSummaryJson(SummarizeFit(ExampleIdentification(), 0));
+  EXPECT_EQ(json["level"], "caution");
+  EXPECT_EQ(json["parameters"][0]["error"], "0.0010");
+}
+
+}  // namespace
+}  // namespace pendulum::result_summary_test
