@@ -26,14 +26,15 @@ void Fill(std::string_view name, std::string_view value, std::string& equation) 
   Replace("{" + std::string(name) + "}", value, equation);
 }
 
-Rounding RoundingOf(const ParameterEstimate& parameter) {
-  const double error = parameter.std_error.value_or(0);
+Rounding RoundingOf(const ParameterEstimate& parameter, EquationDigits digits) {
+  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+  const double error = (digits == EquationDigits::kOfTotalError ? total : parameter.std_error).value_or(0);
   return error > 0 ? PdgRounding(parameter.estimate, error)
                    : SignificantRounding(parameter.estimate, kDigitsWithoutError);
 }
 
-std::string NumberOf(const ParameterEstimate& parameter) {
-  return parameter.estimate == 0 ? "0" : RoundedText(parameter.estimate, RoundingOf(parameter));
+std::string NumberOf(const ParameterEstimate& parameter, EquationDigits digits) {
+  return parameter.estimate == 0 ? "0" : RoundedText(parameter.estimate, RoundingOf(parameter, digits));
 }
 
 }  // namespace
@@ -45,16 +46,17 @@ std::string SymbolicEquation(const MotionModel& model) {
   return equation;
 }
 
-std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig) {
+std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig, EquationDigits digits) {
   std::string equation = EquationOf(fit.model);
-  int digits = kDigitsWithoutError;
+  int of_torque = kDigitsWithoutError;
   for (const ParameterEstimate& parameter : fit.parameters) {
-    Fill(parameter.info.name, NumberOf(parameter), equation);
-    if (parameter.info.name == kInertia.name) digits = SignificantDigits(parameter.estimate, RoundingOf(parameter));
+    Fill(parameter.info.name, NumberOf(parameter, digits), equation);
+    if (parameter.info.name == kInertia.name)
+      of_torque = SignificantDigits(parameter.estimate, RoundingOf(parameter, digits));
   }
   if (rig) {
     const double torque = rig->gravity_torque.value;
-    Fill("gravity_torque", RoundedText(torque, SignificantRounding(torque, digits)), equation);
+    Fill("gravity_torque", RoundedText(torque, SignificantRounding(torque, of_torque)), equation);
   } else {
     Replace("{gravity_torque} ", "", equation);
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pendulum/report/fit_sections.h"
+#include "pendulum/report/result_summary.h"
 #include "pendulum/report/text.h"
 #include "pendulum/report/text_parts.h"
 
@@ -132,40 +133,6 @@ struct MarkdownRenderer {
   }
 };
 
-// --- the verdict -----------------------------------------------------------------------------------------------------
-
-/// The most important sentences.
-Items VerdictItems(const Identification& identification, std::size_t main) {
-  const FitReport& fit = identification.fits[main];
-  Items items;
-  items.texts.push_back("Model " + std::string(fit.model.name) + ", " + std::string(TerminationName(fit.termination)) +
-                        ": " + fit.reason);
-  if (identification.comparison) items.texts.push_back(identification.comparison->reason);
-  if (const Constancy* constancy = identification.ConstancyOf(main)) items.texts.push_back(constancy->verdict);
-  if (identification.is_joint()) items.texts.push_back(identification.joint[main].homogeneity.verdict);
-  std::erase(items.texts, "");
-  return items;
-}
-
-/// The verdict for readers who read nothing else.
-Sections VerdictSections(const Identification& identification) {
-  Section verdict{"Verdict"};
-  Sections sections;
-  if (identification.fits.empty()) {
-    verdict.AddText("No fit was asked for: closed forms only.");
-  } else {
-    const std::size_t main = identification.MainFit();
-    if (identification.fits[main].termination != Termination::kConverged) {
-      verdict.AddText("The fit did not converge, so its numbers are not a result.", Emphasis::kAlarm);
-    }
-    verdict.blocks.emplace_back(VerdictItems(identification, main));
-    sections.push_back(ParameterSection(identification.fits[main], identification.fits.size() > 1));
-    sections.back().title = "Result";
-  }
-  sections.insert(sections.begin(), std::move(verdict));
-  return sections;
-}
-
 }  // namespace
 
 std::string MarkdownText(std::string_view text) {
@@ -190,7 +157,10 @@ std::string ToMarkdown(const Sections& sections) {
 }
 
 std::string ToMarkdown(const Identification& identification) {
-  Sections sections = VerdictSections(identification);
+  ResultSummary summary = SummarizeResult(identification);
+  summary.title = "Summary";
+  summary.fit.warnings.clear();  // the next section has them in full
+  Sections sections = {SummarySection(summary)};
   const Sections all = ReportSections(identification);
   const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };
   std::ranges::copy_if(all, std::back_inserter(sections), is_warning);

@@ -42,19 +42,22 @@ std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
   return "";
 }
 
-/// The one or two sources that make most of the variance, the larger first.
+/// The source that makes most of the variance in words, or the two largest sources by their short names.
 std::string MainSources(double std_error, const SystematicErrors& systematic, const std::optional<Rig>& rig) {
-  constexpr double kMost = 0.9;
-  std::vector<std::pair<double, std::string>> parts = {{std_error * std_error, "noise"}};
+  constexpr double kMost = 0.8;
+  using Part = std::pair<double, std::optional<ErrorSource>>;  // variance; no source: noise
+  std::vector<Part> parts = {{std_error * std_error, std::nullopt}};
   double total = parts.front().first;
   for (const ErrorSource source : kErrorSources) {
-    const double variance = systematic.Of(source) * systematic.Of(source);
-    parts.emplace_back(variance, SourceWords(source, rig));
-    total += variance;
+    parts.emplace_back(systematic.Of(source) * systematic.Of(source), source);
+    total += parts.back().first;
   }
-  std::ranges::stable_sort(parts, std::ranges::greater(), &std::pair<double, std::string>::first);
-  if (parts[0].first >= kMost * total) return parts[0].second;
-  return parts[0].second + ", " + parts[1].second;
+  std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
+  const auto short_name = [](const Part& part) {
+    return part.second ? std::string(ErrorSourceName(*part.second)) : std::string("noise");
+  };
+  if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
+  return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
 }
 
 // ---- Quantities -----------------------------------------------------------------------------------------------------
@@ -99,7 +102,7 @@ struct AskedQuantity {
 };
 
 constexpr std::array kAskedQuantities = {AskedQuantity{"small_angle_period", "period of small swings"},
-                                         AskedQuantity{"decay_time", "decay time 2 I_O/b"},
+                                         AskedQuantity{"decay_time", "decay time"},
                                          AskedQuantity{"quality_factor", "Q"},
                                          AskedQuantity{"gravity", "g"},
                                          AskedQuantity{"effective_length", "effective length"},
@@ -120,8 +123,9 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
 }
 
 std::string QuantityText(const SummaryQuantity& quantity) {
-  return quantity.name + " " + quantity.value + (quantity.error.empty() ? "" : " ± " + quantity.error) +
-         (quantity.unit.empty() ? "" : " " + quantity.unit);
+  const std::string blank(kNoBreak);
+  return quantity.name + " " + quantity.value + (quantity.error.empty() ? "" : blank + "±" + blank + quantity.error) +
+         (quantity.unit.empty() ? "" : blank + quantity.unit);
 }
 
 // ---- Sentences ------------------------------------------------------------------------------------------------------
@@ -153,6 +157,13 @@ std::string JointDataText(const Identification& identification) {
 
 std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
 
+constexpr int kRmsDigits = 3;
+
+std::string Capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 /// Whether the law describes the readings.
 void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& summary) {
   const std::string law = "The law " + std::string(fit.model.name);
@@ -162,19 +173,20 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& su
     summary.emphasis = Emphasis::kAlarm;
     return;
   }
-  const std::string rms = ReadingText(fit.statistics.rms_residual, fit.reading_unit) + " rms";
+  const Conversion shown = Degrees(fit.reading_unit).value_or(Conversion{fit.reading_unit});
+  const std::string rms = "residuals of " + NumberText(shown.factor * fit.statistics.rms_residual, kRmsDigits) + " " +
+                          std::string(shown.unit) + " (rms)";
   if (fit.HasWarning("lack_of_fit")) {
-    summary.verdict = law + " does not describe all of the readings: the residuals, " + rms + ", are more than noise.";
+    summary.verdict = law + " does not describe all of the readings: " + rms + " are more than noise.";
     summary.emphasis = Emphasis::kCaution;
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
     summary.verdict = law + " describes the readings, but not with constant parameters: " +
                       WithFullStop(Printable(constancy->verdict));
     summary.emphasis = Emphasis::kCaution;
   } else if (fit.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite) {
-    summary.verdict = law + " describes the readings: the residuals, " + rms +
-                      ", are autocorrelated noise, for which the errors allow.";
+    summary.verdict = law + " describes the readings: " + rms + " are autocorrelated noise; the errors allow for that.";
   } else {
-    summary.verdict = law + " describes the readings: the residuals, " + rms + ", are noise.";
+    summary.verdict = law + " describes the readings: " + rms + " are noise.";
   }
 }
 
@@ -193,9 +205,8 @@ std::string CauseWords(DifferenceCause cause) {
 
 /// "I_O 0.0445 (1.6 % more: it assumes small angles)".
 std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
-  const double error = row.std_error.value_or(0);
-  const std::string value = error > 0 ? PdgText(row.closed_form, error).value : NumberText(row.closed_form, 4);
-  std::string text = std::string(symbol) + " " + value;
+  constexpr int kDigits = 4;
+  std::string text = std::string(symbol) + " " + NumberText(row.closed_form, kDigits);
   if (row.agrees.value_or(true)) return text + " (agrees)";
   const double ratio = row.closed_form / row.fit;
   constexpr double kTimes = 1.5;  // more is said as a factor
@@ -235,14 +246,16 @@ std::vector<std::string> Clauses(const std::vector<Warning>& warnings) {
 // ---- Comparison -----------------------------------------------------------------------------------------------------
 
 void SetComparison(const Identification& identification, ResultSummary& summary) {
-  constexpr int kResidualDigits = 3;
   const Comparison& comparison = *identification.comparison;
   const bool recommends = !comparison.recommended.empty();
-  summary.comparison = (recommends ? "Recommended: " + comparison.recommended + ". " : "No law is recommended. ") +
-                       WithFullStop(Printable(comparison.reason));
+  const std::string reason = WithFullStop(Printable(comparison.reason));
+  const bool names_law = reason.starts_with(comparison.recommended + ":");
+  summary.comparison = !recommends ? "No law is recommended: " + reason
+                       : names_law ? "Recommended: " + reason
+                                   : "Recommended: " + comparison.recommended + ". " + reason;
   const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
   for (const ComparisonRow& row : comparison.rows) {
-    SummaryLaw law{row.model, NumberText(shown.factor * row.rms, kResidualDigits) + " " + std::string(shown.unit),
+    SummaryLaw law{row.model, NumberText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
                    row.delta_bic && std::isfinite(*row.delta_bic) ? FixedText(*row.delta_bic, 1) : "",
                    row.model == comparison.recommended ? "recommended"
                    : row.lack_of_fit                   ? "lack of fit"
@@ -295,15 +308,14 @@ Table LawTable(const ResultSummary& summary) {
 
 Table ParameterTable(const FitSummary& summary, const Folding& folding) {
   Table table{{{summary.law.empty() ? "formulas" : summary.law},
-               {""},
                {"value", true},
                {summary.has_systematic ? "± total error" : "± std error", false, 1},
                {"unit"},
                {"error from"}}};
   for (const SummaryQuantity& quantity : summary.parameters) {
     if (!folding.sensor && IsOfSensor(quantity)) continue;
-    table.rows.push_back({quantity.name, quantity.symbol, quantity.value,
-                          quantity.error.empty() ? "" : "± " + quantity.error, quantity.unit, quantity.source});
+    table.rows.push_back({quantity.name, quantity.value, quantity.error.empty() ? "" : "± " + quantity.error,
+                          quantity.unit, quantity.source});
   }
   return table;
 }
@@ -335,7 +347,7 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
   Section section{summary.title};
   section.AddText(summary.data).AddText(summary.comparison);
   if (!summary.laws.empty()) section.Add(LawTable(summary));
-  section.AddText(fit.verdict, fit.emphasis).AddText(fit.agreement, fit.emphasis);
+  section.AddText(fit.agreement, fit.emphasis).AddText(fit.verdict, fit.emphasis);
   if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
   section.AddText(DerivedText(fit));
   if (!fit.equation.empty()) section.Add(Formula{fit.equation});
@@ -355,8 +367,11 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t main) 
   SetVerdict(fit, identification.ConstancyOf(main), summary);
   if (identification.is_joint()) {
     const Homogeneity& homogeneity = identification.joint[main].homogeneity;
-    summary.agreement = WithFullStop(Printable(homogeneity.verdict));
-    if (!homogeneity.agrees() && summary.emphasis == Emphasis::kNone) summary.emphasis = Emphasis::kCaution;
+    summary.agreement = WithFullStop(Capitalized(Printable(homogeneity.verdict)));
+    if (!homogeneity.agrees() && summary.emphasis != Emphasis::kAlarm) {
+      summary.verdict = "The errors below assume that the recordings agree: do not quote them.";
+      summary.emphasis = Emphasis::kCaution;
+    }
   }
   if (fit.termination == Termination::kFailed) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
@@ -366,7 +381,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t main) 
   summary.derived = DerivedOf(fit);
   const bool has_all =
       !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
-  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig());
+  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError);
   if (!identification.si_rig()) {
     summary.units = fit.model.gravity.is_linear() ? "Torques are relative to the stiffness; SI: --stiffness."
                                                   : "Torques are relative to gravity's; SI: --bob_mass, --rod_length.";

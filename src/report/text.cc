@@ -13,8 +13,8 @@
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/joint_sections.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/result_summary.h"
+#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -96,7 +96,9 @@ std::string ToText(const Identification& identification, TextStyle style) {
   Sections sections = ReportSections(identification);
   std::ranges::reverse(sections);
   std::ranges::stable_partition(sections, [](const Section& section) { return section.title != kWarningTitle; });
-  sections.push_back(SummarySection(SummarizeResult(identification)));
+  ResultSummary summary = SummarizeResult(identification);
+  summary.fit.warnings.clear();  // the section above has them in full
+  sections.push_back(SummarySection(summary));
   return ToText(sections, style);
 }
 

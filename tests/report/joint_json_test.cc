@@ -69,7 +69,7 @@ TEST(JointFitJson, KeepsTheOrderOfKeys) {
   EXPECT_THAT(Keys(fit),
               ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
                           "correlation", "systematic_covariance", "std_error_method", "interval_method",
-                          "identifiability", "statistics", "homogeneity", "runs", "solver"));
+                          "identifiability", "statistics", "homogeneity", "runs", "solver", "summary"));
   EXPECT_THAT(Keys(fit["parameters"]), ElementsAre("inertia", "viscous", "coulomb"));
   EXPECT_EQ(fit["shared"].dump(), R"(["inertia","viscous","coulomb"])");
   EXPECT_EQ(fit["correlation"].dump(), R"({"names":["inertia","viscous"],"matrix":[[1.0,0.5],[0.5,1.0]]})");

@@ -46,7 +46,7 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
   EXPECT_THAT(Keys(json["fits"][0]),
               ElementsAre("model", "status", "reason", "equation", "parameters", "derived", "covariance", "correlation",
                           "noise", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
-                          "statistics", "closed_form", "constancy", "solver"));
+                          "statistics", "closed_form", "constancy", "solver", "summary"));
   EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
               ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
   EXPECT_EQ(json["tool"]["version"], kVersion);

@@ -54,7 +54,7 @@ TEST(SummarizeFit, QuotesTheTotalErrorAndItsSource) {
   EXPECT_TRUE(summary.has_systematic);
 }
 
-// Variances of 9 and 16: neither is nine tenths of the whole.
+// Variances of 9 and 16: neither is four fifths of the whole.
 TEST(SummarizeFit, NamesTwoSourcesIfNeitherIsMost) {
   Identification identification = ExampleIdentification();
   ParameterEstimate& viscous = identification.fits[0].parameters[1];

@@ -28,6 +28,9 @@ std::string OneLine(const std::string& text) {
   return line;
 }
 
+/// The sections in the order of a document.
+std::string AllSections(const Identification& identification) { return ToText(ReportSections(identification)); }
+
 // Degrees: 0.423 rad = 24.2361 deg, 0.0002 rad = 0.01146 deg. The other values are rounded by hand; closed forms are in
 // closed_form_text_test.cc.
 constexpr const char* kWholeFit = R"([[Data]]
@@ -95,11 +98,11 @@ TEST(ToText, ShowsTheWholeFit) {
   Identification report = ExampleIdentification();
   report.sampling.reset();
   report.closed_forms.reset();
-  EXPECT_EQ(ToText(report), kWholeFit);
+  EXPECT_EQ(AllSections(report), kWholeFit);
 }
 
 TEST(ToText, ShowsClosedFormsAfterTheFit) {
-  const std::string text = ToText(ExampleIdentification());
+  const std::string text = AllSections(ExampleIdentification());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
@@ -110,7 +113,7 @@ TEST(ToText, ShowsClosedFormsAfterTheFit) {
 }
 
 TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
-  const std::string text = ToText(ExampleRateIdentification());
+  const std::string text = AllSections(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    0.04390 th'' + 0.001700 th' + 0.0005000 sgn(th') + sin th = 0\n"));
   EXPECT_THAT(OneLine(text), HasSubstr("torques are in units of the gravity torque G"));
   EXPECT_THAT(OneLine(text), HasSubstr("give --rig."));
@@ -119,7 +122,7 @@ TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
 }
 
 TEST(ToText, ShowsARateInDegreesPerSecondToo) {
-  const std::string text = ToText(ExampleRateIdentification());
+  const std::string text = AllSections(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    rate_bias     0.25  rad/s\n               14.3239  deg/s\n"));
   EXPECT_THAT(text, HasSubstr("sigma 0.0035 rad/s (0.201 deg/s)"));
 }
@@ -129,7 +132,7 @@ TEST(ToText, NamesTheOpenInterval) {
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous.lower95.reset();
   viscous.open_interval = OpenInterval::kNothingExcluded;
-  const std::string text = ToText(report);
+  const std::string text = AllSections(report);
   EXPECT_THAT(
       OneLine(text),
       HasSubstr("Intervals: profile likelihood. The interval of viscous is open: the data exclude none of its possible "
@@ -140,21 +143,21 @@ TEST(ToText, NamesTheOpenInterval) {
 TEST(ToText, ReportsTheSourceOfTheResolution) {
   Identification report = ExampleIdentification();
   report.data.resolution_source = "file";
-  EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
+  EXPECT_THAT(AllSections(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
   report.data.resolution_source = "given";
-  EXPECT_THAT(ToText(report), HasSubstr("0.00436 rad (0.25 deg), as given\n"));
+  EXPECT_THAT(AllSections(report), HasSubstr("0.00436 rad (0.25 deg), as given\n"));
 }
 
 TEST(ToText, OmitsADerivedErrorLargerThanTheValue) {
   Identification report = ExampleIdentification();
   report.fits[0].derived = {{"quality_factor", "1", 123.456, 200, 40, std::nullopt},
                             {"natural_frequency", "rad/s", 4.7781234}};
-  EXPECT_THAT(ToText(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
-                                        "    natural_frequency  4.77812  rad/s\n"));
+  EXPECT_THAT(AllSections(report), HasSubstr("    quality_factor       123.5  1      [40, ?]\n"
+                                             "    natural_frequency  4.77812  rad/s\n"));
 }
 
 TEST(ToText, GivesACommonReasonOnce) {
-  const std::string text = ToText(ExampleRateIdentification());
+  const std::string text = AllSections(ExampleRateIdentification());
   EXPECT_THAT(text, HasSubstr("    status  not_converged: 100 iterations were not enough\n"));
   EXPECT_THAT(OneLine(text),
               HasSubstr("No standard error of inertia, viscous, coulomb, rate_bias: the fit did not converge. "));
@@ -164,7 +167,7 @@ TEST(ToText, GivesACommonReasonOnce) {
 TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
   Identification report = ExampleRateIdentification();
   report.fits[0].termination = Termination::kFailed;
-  const std::string text = ToText(report);
+  const std::string text = AllSections(report);
   EXPECT_THAT(text, HasSubstr("These values are not estimates, because nothing was fitted."));
   EXPECT_THAT(text, Not(HasSubstr("[[Noise")));
   EXPECT_THAT(text, Not(HasSubstr("[[Equation")));
@@ -173,10 +176,10 @@ TEST(ToText, OmitsStatisticsAndEquationOfAFailedFit) {
 TEST(ToText, SortsCorrelationsAndOmitsSmallOnes) {
   Identification report = ExampleIdentification();
   report.fits[0].covariance = Eigen::Matrix3d{{1, 0.25, -0.75}, {0.25, 1, 0.0625}, {-0.75, 0.0625, 1}};
-  EXPECT_THAT(ToText(report), HasSubstr("[[Correlations]] (those below 0.1 in size are not listed)\n"
-                                        "    inertia, release_angle  -0.750\n"
-                                        "    inertia, viscous         0.250\n"
-                                        "[[Noise"));
+  EXPECT_THAT(AllSections(report), HasSubstr("[[Correlations]] (those below 0.1 in size are not listed)\n"
+                                             "    inertia, release_angle  -0.750\n"
+                                             "    inertia, viscous         0.250\n"
+                                             "[[Noise"));
 }
 
 TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
@@ -184,7 +187,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
   ParameterEstimate& viscous = report.fits[0].parameters[1];
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
   viscous.systematic.Add(ErrorSource::kRig, 4e-8);
-  const std::string text = ToText(report);
+  const std::string text = AllSections(report);
   EXPECT_THAT(text, HasSubstr("    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]\n"
                               "    viscous           (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]\n"));
   EXPECT_THAT(text, HasSubstr("    inertia        I_O     ± 0.0010      kg m^2\n"
@@ -194,22 +197,22 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
 TEST(ToText, ComparesTheInertiaWithTheRigFileIfThereIsNoCheck) {
   Identification report = ExampleIdentification();
-  EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
+  EXPECT_THAT(AllSections(report), Not(HasSubstr("The rig file")));
   report.checks.clear();
-  EXPECT_THAT(OneLine(ToText(report)),
+  EXPECT_THAT(OneLine(AllSections(report)),
               HasSubstr("The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger. "));
   report.rig->inertia = RigValue{0.088, 0};
-  EXPECT_THAT(OneLine(ToText(report)),
+  EXPECT_THAT(OneLine(AllSections(report)),
               HasSubstr("The rig file gives I_O = 0.088 kg m^2; the fitted I_O is 10 % smaller. "));
   report.rig->inertia.reset();
-  EXPECT_THAT(ToText(report), Not(HasSubstr("The rig file")));
+  EXPECT_THAT(AllSections(report), Not(HasSubstr("The rig file")));
 }
 
 TEST(ToText, WorksWithoutAFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
   report.checks.clear();
-  const std::string text = ToText(report);
+  const std::string text = AllSections(report);
   for (const char* section : {"[[Data]]", "[[Sampling]]", "[[Closed forms]]", "[[Turning points]]", "[[Warnings]]"}) {
     EXPECT_THAT(text, HasSubstr(section));
   }
@@ -222,11 +225,11 @@ TEST(ToText, HasNoWarningsSectionWithoutWarnings) {
   Identification report = ExampleIdentification();
   report.warnings.clear();
   report.fits[0].warnings.clear();
-  EXPECT_THAT(ToText(report), Not(HasSubstr("[[Warnings]]")));
+  EXPECT_THAT(AllSections(report), Not(HasSubstr("[[Warnings]]")));
 }
 
 TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
-  const std::string text = ToText(ExampleComparedIdentification());
+  const std::string text = AllSections(ExampleComparedIdentification());
   std::vector<std::string> sections;
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
@@ -240,7 +243,7 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
 TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {
   Identification report = ExampleIdentification();
   report.data.path = "a\x1B[2J\n[[Fit]].csv";
-  EXPECT_THAT(ToText(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
+  EXPECT_THAT(AllSections(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
 }
 
 /// The widest line of a text.
@@ -285,18 +288,29 @@ Identification WideReport() {
 }
 
 TEST(ToText, FitsInEightyColumns) {
-  EXPECT_LE(WidestOf(ToText(ExampleIdentification())), 80);
-  EXPECT_LE(WidestOf(ToText(ExampleRateIdentification())), 80);
-  EXPECT_LE(WidestOf(ToText(ExampleComparedIdentification())), 80);
+  EXPECT_LE(WidestOf(AllSections(ExampleIdentification())), 80);
+  EXPECT_LE(WidestOf(AllSections(ExampleRateIdentification())), 80);
+  EXPECT_LE(WidestOf(AllSections(ExampleComparedIdentification())), 80);
   Identification report = WideReport();
-  EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
+  EXPECT_LE(WidestOf(AllSections(report)), 80) << AllSections(report);
   EXPECT_LE(WidestOf(ToText(report, {.colour = true})), 80);
   report.rig.reset();
   report.comparison.reset();
-  EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
+  EXPECT_LE(WidestOf(AllSections(report)), 80) << AllSections(report);
   report.fits.clear();
   report.checks.clear();
-  EXPECT_LE(WidestOf(ToText(report)), 80);
+  EXPECT_LE(WidestOf(AllSections(report)), 80);
+}
+
+// A terminal shows the end of a text.
+TEST(ToText, EndsWithTheSummary) {
+  const std::string text = ToText(ExampleIdentification());
+  EXPECT_LT(text.find("[[Turning points]]"), text.find("[[Parameters]]"));
+  EXPECT_LT(text.find("[[Parameters]]"), text.find("[[Warnings]]"));
+  EXPECT_LT(text.find("[[Warnings]]"), text.find("[[swing.csv]]"));
+  for (const Section& section : ReportSections(ExampleIdentification())) {
+    EXPECT_THAT(text, HasSubstr("[[" + section.title + "]]"));
+  }
 }
 
 }  // namespace

@@ -14,9 +14,14 @@ namespace pendulum {
 /// G sin th = 0". th is the angle from hanging straight down.
 std::string SymbolicEquation(const MotionModel& model);
 
+/// Which error rounds the numbers of an equation: with kOfTotalError the digits are those that one may quote, with
+/// kOfStdError those that simulate the fitted swing.
+enum class EquationDigits { kOfStdError, kOfTotalError };
+
 /// The equation with the fitted numbers: "0.0790 th'' + 0.0030 th' + 0.0010 sgn(th') + 1.80 sin th = 0" in N m with a
-/// rig, in units of the restoring torque G without one. Each number is rounded by its standard error (PdgRounding), to
+/// rig, in units of the restoring torque G without one. Each number is rounded by its error (PdgRounding), to
 /// four significant digits if it has none. G has as many digits as the inertia: a swing determines only their ratio.
-std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig);
+std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig,
+                           EquationDigits digits = EquationDigits::kOfStdError);
 
 }  // namespace pendulum

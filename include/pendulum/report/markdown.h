@@ -9,8 +9,8 @@
 
 namespace pendulum {
 
-/// The report for a laboratory notebook, as GitHub-flavoured Markdown: the verdict and the parameters first, then the
-/// sections of ToText in order. A value and its error share a cell, "0.0790 ± 0.0003".
+/// The report for a laboratory notebook, as GitHub-flavoured Markdown: the summary first, then the warnings and the
+/// other sections of ReportSections. A value and its error share a cell, "0.0790 ± 0.0003".
 std::string ToMarkdown(const Identification& identification);
 
 /// Sections as Markdown: a heading of level 2 for each, tables with pipes.
