@@ -90,6 +90,28 @@ TEST(StudyCoverage, PassesForWhiteNoise) {
   }
 }
 
+// Rig, clock and calibration are drawn from their errors; the total intervals cover, and the total errors are right.
+TEST(StudyCoverage, CountsTotalIntervals) {
+  constexpr int kCount = 200;
+  const CoverageStudy study = Study(Scenario("all_errors"), Options(kCount));
+  ASSERT_EQ(study.converged, kCount);
+  for (const CoverageRow& row : study.rows) {
+    SCOPED_TRACE(row.parameter);
+    EXPECT_THAT(row.coverage, DoubleNear(0.95, 4 * std::sqrt(0.95 * 0.05 / kCount)));
+    EXPECT_THAT(row.std_error_over_error.value(), DoubleNear(1, 4 / std::sqrt(2.0 * kCount)));
+  }
+}
+
+// The intervals of noise alone would contain the true inertia in few recordings.
+TEST(WithErrors, MakesErrorsThatNoiseDoesNotExplain) {
+  CoverageScenario scenario = Scenario("all_errors");
+  const CoverageRow with = Row(Study(scenario, Options(50)), "inertia");
+  scenario.fit.rig->gravity_torque.std_dev = 0;
+  scenario.clock_std_dev = 0;
+  const CoverageRow without = Row(Study(scenario, Options(50)), "inertia");
+  EXPECT_GT(*with.rms_error, 50 * *without.rms_error);
+}
+
 TEST(StudyCoverage, ReportsErrorsInTheUnitsOfTheRig) {
   CoverageScenario scenario = Scenario("white_2.5");
   const CoverageStudy with_rig = Study(scenario, Options(10));

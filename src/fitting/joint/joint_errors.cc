@@ -22,13 +22,13 @@ struct CommonSource {
   std::size_t count = 0;
 };
 
-/// Adds a recording's powers to the powers of the common source. Dry friction from an angle recording and from a rate
-/// recording depends on the clock's scale with different powers. No single power then describes the shared parameter,
-/// so the powers are removed and only the pulls are used.
+/// Adds a recording's powers to the powers of the common source. If recordings disagree on a power, or if the estimates
+/// of one are no powers, the powers are removed and only the pulls are used.
 void MergePowers(const JointProblem& joint, const JointMember& member, const SystematicSource& own,
                  CommonSource& common) {
   Eigen::VectorXd& powers = common.source.powers;
-  if (powers.size() == 0 || own.powers.size() == 0) return;
+  if (own.powers.size() == 0) powers.resize(0);
+  if (powers.size() == 0) return;
   const bool first = common.count == 1;
   for (std::size_t i = 0; i < member.at.size(); ++i) {
     const double power = own.powers[static_cast<Index>(i)];

@@ -16,18 +16,11 @@ namespace {
 
 using Eigen::Index;
 
-/// The power of the clock's scale in a parameter's estimate. A rate sensor's rate does not depend on the recording's
-/// clock, so estimates that follow from its readings alone do not scale. Angles scale, because such a sensor measures
-/// an angle as rate times time.
-int PowerOfTime(const ParameterInfo& info, Quantity quantity) {
+/// The power of the clock's scale in a parameter's estimate, if the readings do not depend on a clock.
+int PowerOfTime(const ParameterInfo& info) {
   const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
-  const bool rate = quantity == Quantity::kRate;
-  if (is_one_of(kZeroDrift, kBiasDrift)) return -1;
-  if (is_one_of(kInitialRate)) return rate ? 0 : -1;
-  if (is_one_of(kReleaseAngle, kInitialAngle)) return rate ? 1 : 0;
+  if (is_one_of(kZeroDrift, kBiasDrift, kInitialRate)) return -1;
   if (!info.scales_with_gravity()) return 0;
-  if (is_one_of(kInertia)) return 2;
-  if (rate) return 1;
   return info.relative_unit == "s^2" ? 2 : info.relative_unit == "s" ? 1 : 0;
 }
 
@@ -45,6 +38,34 @@ Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitPro
     input = calibration.Reading(value, input);
     double power = solution.noise.ForSample(i).DevianceAt(value, readings[i]).weight * calibration.RadFromUnit();
     for (Index k = 0; k < size; ++k, power *= input) pull.col(k) += power * jacobian.row(i).transpose();
+  }
+  return pull;
+}
+
+/// Derivatives of the scores (P) with respect to the relative scale of the clock, for readings that are rates or
+/// accelerations: -Σ w ∇m dm/dε, with the times and a release time multiplied by 1 + ε. The sensor has its own clock,
+/// so the estimates are no powers of the scale.
+Eigen::VectorXd ScoresByClock(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+  constexpr double kStep = 1e-5;
+  const auto size = static_cast<Index>(problem.infos.size());
+  const auto readings_at = [&](double scale, Eigen::VectorXd* readings) {
+    TrajectoryData data = problem.data;
+    for (double& time : data.time) time *= scale;
+    for (double& factor : data.zero_motion_factors) factor *= scale;  // the times of a drift
+    data.latest_release *= scale;
+    std::vector<double> parameters = solution.parameters;
+    if (const auto release = problem.Find(kReleaseTime.name)) parameters[*release] *= scale;
+    return MakeTrajectoryCost(problem.model, problem.start.start, data)->Readings(parameters, readings, nullptr);
+  };
+  Eigen::VectorXd readings, later, earlier;
+  Eigen::MatrixXd jacobian;
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
+  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
+  if (!readings_at(1 + kStep, &later) || !readings_at(1 - kStep, &earlier)) return pull;
+  for (Index i = 0; i < readings.size(); ++i) {
+    const double value = problem.data.value[static_cast<std::size_t>(i)];
+    const double weight = solution.noise.ForSample(i).DevianceAt(value, readings[i]).weight;
+    pull -= weight * (later[i] - earlier[i]) / (2 * kStep) * jacobian.row(i).transpose();
   }
   return pull;
 }
@@ -95,7 +116,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   Eigen::VectorXd time(size);
   for (Index i = 0; i < size; ++i) {
     const ParameterInfo& info = problem.infos[static_cast<std::size_t>(i)];
-    time[i] = PowerOfTime(info, recording.quantity);
+    time[i] = PowerOfTime(info);
     if (SiRig(options) && info.scales_with_gravity()) gravity[i] = 1;
   }
   std::vector<SystematicSource> sources;
@@ -108,9 +129,19 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   if (const Rig* rig = SiRig(options)) {
     add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
   }
-  add_scale(ErrorSource::kClock,
-            "clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev), time,
-            recording.clock_scale_std_dev / recording.clock_scale);
+  const double clock_error = recording.clock_scale_std_dev / recording.clock_scale;
+  const std::string clock =
+      "clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev);
+  const bool has_own_clock = recording.quantity == Quantity::kRate || recording.quantity == Quantity::kAcceleration;
+  if (!has_own_clock) {
+    add_scale(ErrorSource::kClock, clock, time, clock_error);
+  } else if (clock_error > 0) {
+    sources.push_back({ErrorSource::kClock,
+                       clock,
+                       {},
+                       ScoresByClock(problem, cost, solution),
+                       Eigen::MatrixXd::Constant(1, 1, clock_error * clock_error)});
+  }
   const std::optional<Calibration>& calibration = recording.calibration;
   if (calibration && calibration->covariance.size() > 0) {
     sources.push_back({ErrorSource::kCalibration,

@@ -2,6 +2,7 @@
 // Compares systematic errors with fits of the readings for another calibration, clock or rig.
 #include "pendulum/fitting/uncertainty/systematic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -163,6 +164,7 @@ Recording WithClock(Recording recording, double scale) {
 SyntheticOptions MovingDrag(Quantity quantity) {
   SyntheticOptions run = MovingRun("drag");
   run.quantity = quantity;
+  run.initial_angle = 0.8;  // large, because estimates from rates are nearly powers of the scale in small swings
   run.noise = 1e-5;
   for (std::size_t i = 1; i < run.parameters.size(); ++i) run.parameters[i] *= 4;
   return run;
@@ -218,6 +220,33 @@ TEST(SystematicCovariance, AddsTheSharesOfRigAndClock) {
   }
   ExpectSystematic(report, expected, 1e-12);
   EXPECT_THAT(report.systematic_names, ElementsAre("inertia", "viscous", "coulomb"));
+}
+
+double SystematicOf(const FitReport& report, const std::string& name) {
+  const auto found = std::ranges::find(report.derived, name, &DerivedQuantity::name);
+  return found->systematic.Total().value_or(0) / found->estimate;
+}
+
+// Periods have the relative error of the clock and do not depend on G; a decay time likewise, and Q on neither.
+TEST(SystematicCovariance, ReachesDerivedQuantities) {
+  Recording recording = Must(SimulateRecording(ShortSwing()));
+  recording.clock_scale_std_dev = 0.01;
+  FitOptions options = ModelOptions("coulomb");
+  options.rig = TextbookRig(0.02 * kTextbookTorque);
+  const FitReport report = Fit(recording, options);
+  EXPECT_NEAR(SystematicOf(report, "small_angle_period"), 0.01, 1e-9);
+  EXPECT_NEAR(SystematicOf(report, "decay_time"), 0.01, 1e-9);
+  EXPECT_NEAR(SystematicOf(report, "gravity_over_inertia"), 0.02, 1e-9);
+  EXPECT_NEAR(SystematicOf(report, "quality_factor"), 0, 1e-9);
+}
+
+// A fixed moment of inertia leaves the error of G in the ratio.
+TEST(SystematicCovariance, PassesTheErrorOfGToRatiosWithAFixedInertia) {
+  FitOptions options = ModelOptions("coulomb");
+  options.rig = TextbookRig(0.02 * kTextbookTorque);
+  options.fixed["inertia"] = 0.079;
+  const FitReport report = Fit(Must(SimulateRecording(ShortSwing())), options);
+  EXPECT_NEAR(SystematicOf(report, "gravity_over_inertia"), 0.02, 1e-9);
 }
 
 TEST(SystematicCovariance, IsTheSumOfSeveralSources) {
