@@ -62,8 +62,9 @@ RunOutcome OutcomeOf(const CoverageScenario& scenario, const DrawnErrors& drawn,
     const double unit = ReportUnit(scenario, drawn, infos[i]);
     ParameterOutcome parameter;
     parameter.truth = unit * truth[i];
-    // The Cramér-Rao bound assumes that no parameter is fixed.
-    if (bounds[i] && scenario.fit.fixed.empty()) parameter.bound = unit * *bounds[i];
+    // The Cramér-Rao bound assumes that no parameter is fixed, and that noise is the only error.
+    const bool has_bound = scenario.fit.fixed.empty() && std::isfinite(scenario.rule.largest_error);
+    if (bounds[i] && has_bound) parameter.bound = unit * *bounds[i];
     const ParameterEstimate* found = outcome.converged ? report->Find(infos[i].name) : nullptr;
     if (found != nullptr) AddEstimate(*found, parameter);
     outcome.parameters.push_back(parameter);

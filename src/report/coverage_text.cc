@@ -105,11 +105,12 @@ std::string RuleText(const CoverageRule& rule) {
 }
 
 constexpr std::string_view kColumns =
-    "Coverage is the share of recordings whose 95 % interval contains the true value; [95 %] is the confidence "
+    "Coverage is the share of recordings whose total 95 % interval contains the true value; [95 %] is the confidence "
     "interval of this share (Clopper and Pearson). A recording counts as not covered if the fit did not converge, or "
     "if it found the other kind of start and so lacks the parameter. `rms error` is the rms error of the estimates. "
     "`error/bound` is the rms of each error over the Cramér-Rao bound of its recording for the simulated noise. `std "
-    "error/error` is the mean standard error over the rms error. The zero angle varies between recordings within a "
+    "error/error` is the mean total standard error over the rms error. Where rig, clock and calibration have errors, "
+    "their true values are drawn, and there is no bound. The zero angle varies between recordings within a "
     "count, and the release within a sampling interval.";
 
 /// Explains the differences for sets of recordings.

@@ -124,7 +124,7 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
 
 std::string QuantityText(const SummaryQuantity& quantity) {
   const std::string blank(kNoBreak);
-  return quantity.name + " " + quantity.value + (quantity.error.empty() ? "" : blank + "±" + blank + quantity.error) +
+  return quantity.name + blank + quantity.value + (quantity.error.empty() ? "" : blank + "±" + blank + quantity.error) +
          (quantity.unit.empty() ? "" : blank + quantity.unit);
 }
 

@@ -66,7 +66,7 @@ TEST(CoverageScenarios, ReachStandstillOnlyInTheScenarioToRest) {
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     const Eigen::VectorXd motion = Motion(scenario.run);
     const bool rests = motion.tail(50).maxCoeff() - motion.tail(50).minCoeff() < 1e-9;  // half a second
-    EXPECT_EQ(rests, scenario.name == "to_rest") << scenario.name;
+    EXPECT_EQ(rests, scenario.name.ends_with("to_rest")) << scenario.name;
   }
 }
 
@@ -99,7 +99,8 @@ TEST(CoverageScenarios, HaveLaxerRulesOnlyWhereIntended) {
     const bool quiet =
         scenario.name == "no_noise" || scenario.name == "white_0.05" || scenario.name == "white_0.02" || compared;
     EXPECT_EQ(scenario.rule.highest, quiet ? 1 : 0.97) << scenario.name;
-    EXPECT_EQ(scenario.rule.largest_error, 1.1) << scenario.name;
+    const bool systematic = scenario.name.find("_error") != std::string::npos;  // the bound knows only noise
+    EXPECT_EQ(scenario.rule.largest_error, systematic ? kUnbounded : 1.1) << scenario.name;
   }
 }
 
