@@ -222,7 +222,13 @@ std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit
 
 }  // namespace
 
-std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit) {
+std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit, TextExtent extent) {
+  if (extent == TextExtent::kSummary) {
+    const bool has_errors = fit.LeaveOneOutRms().has_value();
+    return DataText(table, fit) + CoefficientsText(table, fit) + "[[Fit]]\n" +
+           (has_errors ? LackOfFitText(table, fit) : ErrorsText(table, fit)) + OrdersText(fit) +
+           Prose("More: --details (points and residuals), --plot curve.svg, --json calibration.json.");
+  }
   return DataText(table, fit) + CoefficientsText(table, fit) + CorrelationText(fit) + PointsText(table, fit) +
          "[[Fit]]\n" + ErrorsText(table, fit) + LackOfFitText(table, fit) + OrdersText(fit) + OutsideText(table, fit);
 }

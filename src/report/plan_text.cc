@@ -181,9 +181,13 @@ std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
 
 }  // namespace
 
-std::string PlanText(const Plan& plan, const std::optional<Rig>& rig) {
+std::string PlanText(const Plan& plan, const std::optional<Rig>& rig, TextExtent extent) {
   const Units units(plan, rig);
   const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
+  if (extent == TextExtent::kSummary) {
+    return BaseText(plan, units, *base) + Prose(BiasText(plan, base->std_errors.front().has_value())) +
+           Prose("More: --details (what another amplitude, duration, rate or resolution would give).");
+  }
   const std::string missing = MissingText(plan);
   return BaseText(plan, units, *base) + FactorTable(plan, units) + (missing.empty() ? "" : "\n" + missing) +
          "\n[[How to read it]]\n" + Prose(BiasText(plan, base->std_errors.front().has_value())) +

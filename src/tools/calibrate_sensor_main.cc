@@ -43,6 +43,7 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Range of the sensor, low,high, in the unit of the readings; default unknown."},
       {"json", &Flags::json, "Where to write the calibration for fit_pendulum; - is standard output; default nowhere."},
       {"plot", &Flags::plot, "Where to write an SVG plot of curve and residuals (needs gnuplot); default nowhere."},
+      {"details", &Flags::details, "Prints points, residuals and correlations, too; default: the summary alone."},
       {"plan", &Flags::plan,
        "Instead of calibrating, plans a potentiometer and a converter and prints their resolution. Default off."},
       {"bits", &Flags::bits,
@@ -76,7 +77,7 @@ Result<std::vector<Output>> MakeOutputs(const CalibrateSensorOptions& options) {
     outputs.push_back({options.plot, *std::move(plot)});
   }
   if (!IsStandardOutput(options.json) && !IsStandardOutput(options.plot)) {
-    outputs.push_back({"-", CalibrationText(*table, *fit)});
+    outputs.push_back({"-", CalibrationText(*table, *fit, options.details ? TextExtent::kAll : TextExtent::kSummary)});
   }
   return outputs;
 }

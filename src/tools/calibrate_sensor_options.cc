@@ -41,11 +41,12 @@ Result<void> CheckTask(const CalibrateSensorFlags& flags) {
         "standard input; --plan needs none");
   }
   const CalibrateSensorFlags unset;
-  const std::array<std::pair<bool, const char*>, 5> of_a_table = {{{!flags.data.empty(), "--data"},
+  const std::array<std::pair<bool, const char*>, 6> of_a_table = {{{!flags.data.empty(), "--data"},
                                                                    {flags.order != unset.order, "--order"},
                                                                    {!flags.input_range.empty(), "--input_range"},
                                                                    {!flags.json.empty(), "--json"},
-                                                                   {!flags.plot.empty(), "--plot"}}};
+                                                                   {!flags.plot.empty(), "--plot"},
+                                                                   {flags.details, "--details"}}};
   const std::array<std::pair<bool, const char*>, 4> of_a_plan = {
       {{!flags.reference_voltage.empty(), "--reference_voltage"},
        {flags.supply_voltage != unset.supply_voltage, "--supply_voltage"},
@@ -101,6 +102,7 @@ std::vector<NamedFile> CalibrateSensorOptions::Inputs() const {
 Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorFlags& flags) {
   if (auto checked = CheckTask(flags); !checked) return tl::unexpected(checked.error());
   CalibrateSensorOptions options;
+  options.details = flags.details;
   if (flags.plan) {
     Result<std::vector<AdcSensor>> plan = MakePlan(flags);
     if (!plan) return tl::unexpected(plan.error());

@@ -13,9 +13,10 @@ namespace pendulum {
 
 /// The flags of calibrate_sensor as given.
 struct CalibrateSensorFlags : CalibrationFlags {
-  std::string data;  ///< Path, "-" for stdin; empty: none.
-  std::string json;  ///< Path, "-" for stdout; empty: none.
-  std::string plot;  ///< Path as for json.
+  std::string data;      ///< Path, "-" for stdin; empty: none.
+  std::string json;      ///< Path, "-" for stdout; empty: none.
+  std::string plot;      ///< Path as for json.
+  bool details = false;  ///< Prints points and residuals, too.
   bool plan = false;
   std::string reference_voltage;  ///< "volts,..."; empty: none.
   double supply_voltage = 5;      ///< V
@@ -29,6 +30,7 @@ struct CalibrateSensorOptions : CalibrationOptions {
   std::string data;  ///< As in the flags.
   std::string json;  ///< As in the flags.
   std::string plot;
+  bool details = false;
   std::vector<AdcSensor> plan;
 
   /// The output files, with their flags.

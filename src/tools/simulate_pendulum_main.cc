@@ -65,6 +65,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"plan", &Flags::plan,
        "Instead of simulating, predicts the standard error of each parameter (Cramér-Rao) and how amplitude, duration, "
        "rate and resolution change it; default off."},
+      {"details", &Flags::details,
+       "In a plan: prints what other amplitudes, durations, rates and resolutions would give; default off."},
       {"count", &Flags::count,
        "Number of recordings, with the seeds --seed, --seed + 1, ...; with --out run.csv they are run_001.csv, "
        "run_002.csv, ...; default 1."},
@@ -107,7 +109,8 @@ Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>&
   planned.lost_counts.clear();
   const Result<Plan> plan = MakePlan(planned);
   if (!plan) return tl::unexpected(plan.error());
-  return WriteOutputs(std::vector<Output>{{"-", PlanText(*plan, rig)}});
+  return WriteOutputs(
+      std::vector<Output>{{"-", PlanText(*plan, rig, options.details ? TextExtent::kAll : TextExtent::kSummary)}});
 }
 
 Result<void> Simulate(const SimulateFlags& flags) {

@@ -23,6 +23,7 @@ Result<void> CheckPlan(const SimulateFlags& flags) {
 Result<void> CheckFiles(const SimulateFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (flags.plan) return CheckPlan(flags);
+  if (flags.details) return BadFlag("--details belongs to a plan; add --plan, or leave it out");
   if (flags.out.empty()) return BadFlag("--out is missing: the file for the recording, or - for standard output");
   if (flags.count < 1) return BadFlag("--count is " + std::to_string(flags.count) + "; it must be at least 1");
   if (flags.count > 1 && (IsStandardOutput(flags.out) || IsStandardOutput(flags.truth))) {
@@ -43,6 +44,7 @@ Result<void> CheckThreads(const SimulateFlags& flags) {
 
 void CopyFiles(const SimulateFlags& flags, SimulateOptions& options) {
   options.plan = flags.plan;
+  options.details = flags.details;
   options.count = flags.count;
   options.threads = flags.threads;
   options.rig_path = flags.rig;

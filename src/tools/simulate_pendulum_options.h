@@ -17,6 +17,7 @@ struct SimulateFlags : SimulationFlags {
   int count = 1;
   int threads = 0;                      ///< 0: one per core.
   bool plan = false;                    ///< Predict standard errors instead of making recordings.
+  bool details = false;                 ///< The plan with all its rows.
   std::string rig;                      ///< Path; empty: none.
   std::string out;                      ///< Path, or "-" for stdout.
   std::string truth;                    ///< Path, "-" for stdout; empty: none.
@@ -27,6 +28,7 @@ struct SimulateFlags : SimulationFlags {
 /// The task of simulate_pendulum.
 struct SimulateOptions : Simulation {
   bool plan = false;         ///< A plan on standard output instead of recordings.
+  bool details = false;      ///< As in the flags.
   int count = 1;             ///< Number of recordings.
   int threads = 0;           ///< As in the flags.
   std::string rig_path;      ///< As in the flags; empty: none.

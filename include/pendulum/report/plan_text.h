@@ -6,6 +6,7 @@
 
 #include "pendulum/analysis/plan.h"
 #include "pendulum/model/rig.h"
+#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 
@@ -13,6 +14,7 @@ namespace pendulum {
 /// standard errors and bias to two digits, the amplitude of equal bias, and an explanation. With a rig, units of the
 /// restoring torque G are converted to SI. In the table inertia and friction are in percent of their values (in their
 /// own units if the value is 0), start and zero in their own units. "-" marks a missing value, with an explanation.
-std::string PlanText(const Plan& plan, const std::optional<Rig>& rig);
+/// kSummary: without the rows of the plan.
+std::string PlanText(const Plan& plan, const std::optional<Rig>& rig, TextExtent extent = TextExtent::kAll);
 
 }  // namespace pendulum

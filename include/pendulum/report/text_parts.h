@@ -12,6 +12,9 @@ namespace pendulum {
 
 inline constexpr int kTextIndent = 4;  ///< Columns; indents everything below a heading.
 inline constexpr int kTextWidth = 80;  ///< Columns of a terminal; the maximal width of a line.
+/// How much a text for a terminal says: what a reader needs first, in about 20 lines, or all.
+enum class TextExtent { kSummary, kAll };
+
 inline constexpr int kTextDigits = 6;  ///< Significant digits of a number without an error.
 
 /// "[[title]]" as a line.
