@@ -229,18 +229,34 @@ std::string TextbookText(const ClosedFormCheck* check) {
   return text.empty() ? "" : text + ".";
 }
 
-/// The part of a message before its explanations.
-std::string FirstClause(const std::string& message) {
-  const std::size_t end = std::min(message.find(';'), message.find(". "));
-  std::string clause = Printable(message.substr(0, end));
-  if (clause.ends_with('.')) clause.pop_back();
-  return clause;
+/// The clauses of a message: the parts between semicolons and full stops.
+std::vector<std::string> ClausesOf(const std::string& message) {
+  std::vector<std::string> clauses;
+  for (std::size_t begin = 0; begin < message.size();) {
+    const std::size_t end = std::min({message.find("; ", begin), message.find(". ", begin), message.size()});
+    clauses.push_back(message.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  return clauses;
 }
 
-std::vector<std::string> Clauses(const std::vector<Warning>& warnings) {
-  std::vector<std::string> clauses;
-  for (const Warning& warning : warnings) clauses.push_back(FirstClause(warning.message));
-  return clauses;
+/// A message without its explanations: its first clause, and the one that names a flag.
+std::string ShortMessage(const std::string& message) {
+  const std::vector<std::string> clauses = ClausesOf(message);
+  if (clauses.empty()) return "";
+  const auto has_flag = [](const std::string& clause) { return clause.find("--") != std::string::npos; };
+  std::string text = clauses.front();
+  const auto with_flag = std::ranges::find_if(clauses, has_flag);
+  if (with_flag != clauses.end() && with_flag != clauses.begin()) text += "; " + *with_flag;
+  text = Printable(text);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+std::vector<std::string> ShortMessages(const std::vector<Warning>& warnings) {
+  std::vector<std::string> messages;
+  for (const Warning& warning : warnings) messages.push_back(ShortMessage(warning.message));
+  return messages;
 }
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
@@ -270,7 +286,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 /// What the linear formulas give.
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
-  summary.warnings = Clauses(AllWarnings(identification));
+  summary.warnings = ShortMessages(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
   if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
   const ClosedForms& forms = *identification.closed_forms;
@@ -362,7 +378,7 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
 FitSummary SummarizeFit(const Identification& identification, std::size_t main) {
   FitSummary summary;
   const FitReport& fit = identification.fits[main];
-  summary.warnings = Clauses(WarningsOfFit(identification, main));
+  summary.warnings = ShortMessages(WarningsOfFit(identification, main));
   summary.law = fit.model.name;
   SetVerdict(fit, identification.ConstancyOf(main), summary);
   if (identification.is_joint()) {

@@ -127,6 +127,14 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
               ElementsAre("the recording has 3 gaps", "the residuals are not white"));
 }
 
+// The flag that says otherwise belongs to an assumption.
+TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].warnings.clear();
+  identification.warnings = {{"unit_assumed", "deg is assumed; its period shows that. Or give --unit rad; and more."}};
+  EXPECT_THAT(SummarizeFit(identification, 0).warnings, ElementsAre("deg is assumed; Or give --unit rad"));
+}
+
 // ---- Text ----------------------------------------------------------------------------------------------------------
 
 TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {

@@ -80,7 +80,7 @@ class Calibrations(Curl):
     def test_calibrations_equal_those_of_calibrate_sensor(self):
         for options in ({}, {"order": "1", "bits": "10"}, {"order": "2", "input_range": "0,1000"}, {"order": "3"}):
             with self.subTest(**options):
-                code, text, said = run_tool("calibrate_sensor", "--data", "textbook_calibration.csv", *flags_of(options),
+                code, text, said = run_tool("calibrate_sensor", "--details", "--data", "textbook_calibration.csv", *flags_of(options),
                                             "--json",
                                             "calibration.json", folder=self.folder)
                 self.assertEqual(code, 0, said)
@@ -120,7 +120,7 @@ class Calibrations(Curl):
         for options in ({"order": "0"}, {"order": "9"}, {"order": "x"}, {"bits": "77"}, {"input_range": "3,1"},
                         {"bits": "8", "input_range": "0,255"}):
             with self.subTest(**options):
-                code, _, sentence = run_tool("calibrate_sensor", "--data", "textbook_calibration.csv", *flags_of(options),
+                code, _, sentence = run_tool("calibrate_sensor", "--details", "--data", "textbook_calibration.csv", *flags_of(options),
                                              folder=self.folder)
                 self.check_same_problem(self.post_file("/v1/calibrations?" + query_of(options), "textbook_calibration.csv"), code,
                                         sentence)

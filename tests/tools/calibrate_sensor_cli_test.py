@@ -171,7 +171,7 @@ class CalibrateSensorTest(unittest.TestCase):
 
     def test_the_longest_table_is_calibrated_in_time(self):
         table = "volts,angle_rad\n" + "".join(f"{i / 1000},{math.sin(i / 1e4)}\n" for i in range(10_000))
-        done = self.check_done("--data", "-", "--order", "5", "--plot", "cal.svg", input=table)
+        done = self.check_done("--data", "-", "--order", "5", "--details", "--plot", "cal.svg", input=table)
         self.assertIn("(the 50 with the largest residuals)", done.stdout)
 
     def test_missing_files_exit_3_and_outputs_73(self):

@@ -128,7 +128,7 @@ class JointFit(JointTest):
                 self.assertAlmostEqual(float(rows[i]["residual_rad"]), residual, delta=1e-12)
 
     def test_text_markdown_and_page_show_all_recordings(self):
-        run = self.fit("--data", "a.csv,b.csv", "--rig", "rig.json", "--report", "page.html", "--markdown", "fit.md")
+        run = self.fit("--data", "a.csv,b.csv", "--rig", "rig.json", "--report", "page.html", "--markdown", "fit.md", "--details")
         for text in (run.stdout, self.read("fit.md")):
             for words in ("a.csv", "b.csv", "Do the recordings agree?", "Each recording's own"):
                 self.assertIn(words, text)
@@ -142,7 +142,7 @@ class JointFit(JointTest):
         first = run.stdout.index("recording 1 (a.csv)\n")
         second = run.stdout.index("recording 2 (b.csv)\n")
         self.assertLess(first, second)
-        self.assertLess(second, run.stdout.index("[[Recordings]]"))
+        self.assertLess(second, run.stdout.index("[[2 recordings of one rig]]"))
 
     def test_recordings_of_a_list_are_fitted_together(self):
         self.write("list.txt", "# two\na.csv\n\nb.csv\n")

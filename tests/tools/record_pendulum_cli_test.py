@@ -138,7 +138,7 @@ class GoodRuns(Lab):
         with PythonLogger(speed=2, is_calibrated=1, calibration=single(LINE + [0, 0, 0])) as logger:
             out, _ = self.record(logger, "--seconds", 4, "--fit", "--model", "linear")
         self.check_rows(logger, logger.taken[:800])
-        self.assertIn("natural_frequency", out.split("after the time asked for")[1])
+        self.assertIn("period of small swings", out.split("after the time asked for")[1])
         self.check_fit("--model", "linear", "--json", "fit.json")
         fit = json.loads((self.folder / "fit.json").read_text())["fits"][0]
         # A swing with a period of 1 s whose amplitude falls to 1 / e in 20 s.

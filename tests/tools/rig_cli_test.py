@@ -154,7 +154,7 @@ class Springs(RigTest):
         self.assert_near(parameters["coulomb"], COULOMB * 0.02 / STIFFNESS, "N m")
         self.assertAlmostEqual(parameters["inertia"]["systematic_std_error"] / parameters["inertia"]["estimate"], 0.01,
                                delta=1e-4)
-        self.assertIn("stiffness k of a spring", " ".join(text.split()))
+        self.assertIn("kg m^2     stiffness", text)
         run = self.run_tool("--data", "wheel.csv", "--gravity", "sin", rig={"stiffness": 0.02})
         self.assertEqual(run.returncode, 2, run.stderr)
 
@@ -207,7 +207,7 @@ class Units(RigTest):
             self.assertRegex(run.stderr, question)
 
     def test_a_rig_without_errors_is_called_exact(self):
-        result, text = self.fit("--data", "run.csv", rig=swing.RIG)
+        result, text = self.fit("--data", "run.csv", "--details", rig=swing.RIG)
         self.assertIn("rig_taken_as_exact", self.codes(result))
         self.assertIn("±1 g in each mass and ±1 mm in each length would add", " ".join(text.split()))
 

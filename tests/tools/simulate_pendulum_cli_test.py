@@ -201,7 +201,7 @@ class SimulatePendulumTest(unittest.TestCase):
 
     def test_plan_predicts_on_stdout_and_makes_no_file(self):
         self.write_rig('{"gravity_torque": 2}')
-        with_rig = self.check_made(*NOISY, "--plan", "--rig", "rig.json")
+        with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json")
         self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.0000\d+ kg m\^2 +0\.\d+ %\n")
         self.assertRegex(with_rig, r"\n    duration +80 s +\d")
         without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan")

@@ -41,7 +41,7 @@ struct FitSummary {
   std::string equation;                  ///< With numbers.
   std::string units;                     ///< What gives SI units, if there are none; else empty.
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
-  std::vector<std::string> warnings;     ///< The first clause of each warning that concerns this law.
+  std::vector<std::string> warnings;     ///< Each that concerns this law, without its explanations.
 };
 
 /// What a reader of a result needs first. Every front end shows it first.
