@@ -423,8 +423,8 @@ Section SummarySection(const ResultSummary& summary) { return FoldedSection(summ
 
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
-  constexpr std::array<Folding, 5> kFoldings = {Folding{}, Folding{2, true, true}, Folding{0, true, true},
-                                                Folding{0, false, true}, Folding{0, false, false}};
+  constexpr std::array<Folding, 5> kFoldings = {Folding{}, Folding{2, true, true}, Folding{2, false, true},
+                                                Folding{2, false, false}, Folding{0, false, false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

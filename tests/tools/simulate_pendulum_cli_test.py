@@ -204,7 +204,7 @@ class SimulatePendulumTest(unittest.TestCase):
         with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json")
         self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.0000\d+ kg m\^2 +0\.\d+ %\n")
         self.assertRegex(with_rig, r"\n    duration +80 s +\d")
-        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan")
+        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan", "--details")
         self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.0000\d+ s\^2 +0\.\d+ %\n")
         rows = [[line for line in text.splitlines() if line.startswith("    resolution")] for text in (with_rig, without)]
         self.assertEqual(len(rows[0]), 3)

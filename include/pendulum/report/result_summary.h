@@ -62,7 +62,8 @@ ResultSummary SummarizeResult(const Identification& identification);
 Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
-/// more, warnings are counted instead of listed, then the textbook's line and parameters of the sensor are left out.
+/// more, all but two warnings are only counted, then the textbook's line and parameters of the sensor are left out, and
+/// at last all warnings are only counted.
 /// `more`: a last line that says where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
