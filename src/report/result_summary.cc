@@ -155,14 +155,14 @@ std::string JointDataText(const Identification& identification) {
   return names.empty() ? samples + "." : names + ": " + samples + ".";
 }
 
-std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
-
-constexpr int kRmsDigits = 3;
-
 std::string Capitalized(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
 }
+
+std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
+
+constexpr int kRmsDigits = 3;
 
 /// Whether the law describes the readings.
 void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& summary) {
@@ -229,13 +229,19 @@ std::string TextbookText(const ClosedFormCheck* check) {
   return text.empty() ? "" : text + ".";
 }
 
-/// The clauses of a message: the parts between semicolons and full stops.
+/// The clauses of a message: the parts between semicolons and full stops outside parentheses.
 std::vector<std::string> ClausesOf(const std::string& message) {
-  std::vector<std::string> clauses;
-  for (std::size_t begin = 0; begin < message.size();) {
-    const std::size_t end = std::min({message.find("; ", begin), message.find(". ", begin), message.size()});
-    clauses.push_back(message.substr(begin, end - begin));
-    begin = end + 2;
+  std::vector<std::string> clauses(1);
+  int depth = 0;
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    depth += message[i] == '(' ? 1 : message[i] == ')' ? -1 : 0;
+    const bool ends = depth == 0 && (message[i] == ';' || message[i] == '.') && message.substr(i + 1, 1) == " ";
+    if (ends) {
+      clauses.emplace_back();
+      ++i;
+    } else {
+      clauses.back() += message[i];
+    }
   }
   return clauses;
 }
@@ -243,11 +249,10 @@ std::vector<std::string> ClausesOf(const std::string& message) {
 /// A message without its explanations: its first clause, and the one that names a flag.
 std::string ShortMessage(const std::string& message) {
   const std::vector<std::string> clauses = ClausesOf(message);
-  if (clauses.empty()) return "";
   const auto has_flag = [](const std::string& clause) { return clause.find("--") != std::string::npos; };
   std::string text = clauses.front();
   const auto with_flag = std::ranges::find_if(clauses, has_flag);
-  if (with_flag != clauses.end() && with_flag != clauses.begin()) text += "; " + *with_flag;
+  if (with_flag != clauses.end() && with_flag != clauses.begin()) text += ". " + Capitalized(*with_flag);
   text = Printable(text);
   if (text.ends_with('.')) text.pop_back();
   return text;

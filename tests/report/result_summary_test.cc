@@ -131,8 +131,10 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
 TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {{"unit_assumed", "deg is assumed; its period shows that. Or give --unit rad; and more."}};
-  EXPECT_THAT(SummarizeFit(identification, 0).warnings, ElementsAre("deg is assumed; Or give --unit rad"));
+  identification.warnings = {
+      {"unit_assumed", "deg is assumed (its period; its size); others are not. Or give --unit rad; and more."}};
+  EXPECT_THAT(SummarizeFit(identification, 0).warnings,
+              ElementsAre("deg is assumed (its period; its size). Or give --unit rad"));
 }
 
 // ---- Text ----------------------------------------------------------------------------------------------------------

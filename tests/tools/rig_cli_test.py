@@ -105,7 +105,9 @@ class Springs(RigTest):
         result, text = self.fit("--data", "wheel.csv")
         self.assert_wheel(result)
         self.assertEqual(self.codes(result).count("linear_restoring_torque"), 1)
-        self.assertRegex(" ".join(text.split()), "their levels are 1/578 of a turn.*give --gravity sin")
+        self.assertRegex(" ".join(text.split()), "proportional to the angle is assumed.*give --gravity sin")
+        message = next(warning["message"] for warning in result["warnings"] if warning["code"] == "linear_restoring_torque")
+        self.assertIn("their levels are 1/578 of a turn", message)
 
     def test_degrees_need_no_flag(self):
         self.write("wheel.csv", wheel_csv("deg"))
