@@ -63,6 +63,13 @@ void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
   WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
+/// Reports that the fit of a model begins. A model that is fitted again has no place in the count.
+void ReportFit(const FitOptions& options, const std::vector<std::string>& models, std::size_t model, std::size_t done) {
+  const bool is_counted = done < models.size();
+  ReportProgress(options.progress, "fitting " + models[model], is_counted ? static_cast<int>(done) : 0,
+                 is_counted ? static_cast<int>(models.size()) : 0);
+}
+
 /// The fits of one call of FitModels.
 class SharedFits {
  public:
@@ -84,6 +91,7 @@ class SharedFits {
 
  private:
   void Fit(std::size_t i, const FitReport& richest_fit) {
+    ReportFit(options_, models_, i, done_++);
     auto [options, ignored] = ForModel(options_, models_[i], models_);
     Result<FitReport> fit = FitRecording(result_.used, options);
     result_.fits[i] = fit ? *std::move(fit) : FailedFit(models_[i], richest_fit, fit.error());
@@ -118,6 +126,7 @@ class SharedFits {
   FitOptions options_;
   const std::vector<std::string>& models_;
   FittedModels result_;
+  std::size_t done_ = 1;
 };
 
 /// For an undersampled swing: each model searches aliased frequencies itself. A model that chose another noise family
@@ -126,8 +135,9 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
                              const std::vector<std::string>& models) {
   std::vector<Result<SwingFit>> fits;
   fits.reserve(models.size());
-  for (const std::string& model : models) {
-    fits.push_back(FitSwing(recording, swing, ForModel(options, model, models).options));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    ReportFit(options, models, i, i);
+    fits.push_back(FitSwing(recording, swing, ForModel(options, models[i], models).options));
   }
   const auto best = std::ranges::min_element(fits, {}, [](const Result<SwingFit>& fit) {
     const bool is_fitted = fit && fit->fit.termination != Termination::kFailed;
@@ -151,6 +161,7 @@ Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, cons
                                const std::vector<std::string>& models) {
   const std::size_t richest_index = Richest(models);
   const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
+  ReportFit(options, models, richest_index, 0);
   Result<SwingFit> richest_fit = FitSwing(std::move(recording), swing, richest_options);
   if (!richest_fit) return tl::unexpected(richest_fit.error());
   return SharedFits(*std::move(richest_fit), richest_index, options, models).Take();

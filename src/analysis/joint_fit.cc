@@ -61,6 +61,8 @@ JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, 
                         const std::vector<std::string>& shared) {
   JointModels result{models, std::move(runs), {}, {}};
   for (std::size_t m = 0; m < models.size(); ++m) {
+    ReportProgress(options.progress, "fitting all recordings together with " + models[m], static_cast<int>(m),
+                   static_cast<int>(models.size()));
     const FitOptions own = ForModel(options, models[m], models).options;
     result.joint.push_back(FitModel(result.runs, m, own, shared));
     result.homogeneity.push_back(CompareRuns(result.runs, m, own, shared));

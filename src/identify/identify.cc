@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -241,11 +242,15 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
   if (!run) return tl::unexpected(run.error());
   Identification identification = std::move(swing.known);
   WarnOfSpring(asked, options, identification);
-  if (run->alone.fits.size() > 1) identification.comparison = CompareModels(run->alone, fit_options);
+  if (run->alone.fits.size() > 1) {
+    ReportProgress(options.fit.progress, "comparing the laws");
+    identification.comparison = CompareModels(run->alone, fit_options);
+  }
   identification.fits = std::move(run->alone.fits);
   const std::size_t main = identification.MainFit();
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
+    if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
     run->constancy.push_back(TestFit(options, fit_options, run->alone.used, identification.fits[m], is_checked));
     AddInconstancyError(run->constancy.back(), identification.fits[m]);
   }
@@ -343,7 +348,11 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   std::vector<Result<RunModels>> fitted(swings.size());
   FitOptions each = fit_options;
   each.threads = 1;
-  ParallelFor(static_cast<int>(swings.size()), fit_options.threads, [&](int i) {
+  each.progress = nullptr;
+  const auto count = static_cast<int>(swings.size());
+  std::atomic<int> done = 0;
+  ReportProgress(fit_options.progress, "fitting each recording", 0, count);
+  ParallelFor(count, fit_options.threads, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     fitted[k] = FitAlone(options, each, swings[k]);
     if (!fitted[k]) return;
@@ -353,6 +362,7 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
       const bool is_checked = options.checks != Checks::kNone;
       fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->alone.used, fit, is_checked));
     }
+    ReportProgress(fit_options.progress, "fitting each recording", ++done, count);
   });
   std::vector<RunModels> runs;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
@@ -398,7 +408,10 @@ Identification CombineRecordings(const JointModels& joint, const std::optional<R
     whole.fits.push_back(joint.joint[m].whole);
     whole.joint.push_back(PartOf(joint, m));
   }
-  if (joint.models.size() > 1) whole.comparison = CompareJointModels(joint, options);
+  if (joint.models.size() > 1) {
+    ReportProgress(options.progress, "comparing the laws");
+    whole.comparison = CompareJointModels(joint, options);
+  }
   return whole;
 }
 

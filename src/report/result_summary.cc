@@ -130,9 +130,23 @@ std::string QuantityText(const SummaryQuantity& quantity) {
 
 // ---- Sentences ------------------------------------------------------------------------------------------------------
 
+/// "50490.1 s to 50510.1 s": as many decimals as the duration needs for four digits, however large the times are.
+std::string WindowText(double from, double to) {
+  constexpr int kDigits = 4;
+  const Rounding rounding = SignificantRounding(to - from, kDigits);
+  const int decimals = std::max(0, rounding.decimals - rounding.exponent);
+  const auto text = [&](double time) {
+    std::string number = FixedText(time, decimals);
+    if (decimals > 0) number.erase(number.find_last_not_of('0') + 1);
+    if (number.ends_with('.')) number.pop_back();
+    return number;
+  };
+  return text(from) + " s to " + text(to) + " s";
+}
+
 std::string DataText(const DataSummary& data) {
   std::string text = std::to_string(data.used_samples) + " of " + std::to_string(data.samples) + " samples, " +
-                     NumberText(data.from, 4) + " s to " + NumberText(data.to, 4) + " s";
+                     WindowText(data.from, data.to);
   if (data.releases.size() > 1 && data.release > 0) {
     text += ", free swing " + std::to_string(data.release) + " of " + std::to_string(data.releases.size());
   }
@@ -309,13 +323,15 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 struct Folding {
   std::size_t warnings = 100;  ///< More than these are only counted.
   bool textbook = true;
-  bool sensor = true;  ///< Parameters that are neither of the equation nor of the start.
+  bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
 };
 
 bool IsOfSensor(const SummaryQuantity& quantity) {
-  const std::vector<std::string_view> kept = {kReleaseAngle.name, kInitialAngle.name, kInitialRate.name};
-  const bool is_angle_or_time = quantity.unit == "deg" || quantity.unit == "s" || quantity.unit == "deg/s";
-  return is_angle_or_time && std::ranges::find(kept, quantity.name) == kept.end();
+  constexpr std::array kOfSensor = {
+      kZeroAngle.name, kRateBias.name,  kRateScale.name, kAccelerationBias.name, kAccelerationScale.name,
+      kAxis.name,      kRadius.name,    kPivotX.name,    kPivotY.name,           kZeroDrift.name,
+      kBiasDrift.name, kHysteresis.name};
+  return std::ranges::find(kOfSensor, quantity.name) != kOfSensor.end();
 }
 
 Table LawTable(const ResultSummary& summary) {
@@ -360,7 +376,9 @@ void AddWarnings(const FitSummary& summary, std::size_t most, Section& section) 
   for (std::size_t k = 0; k < std::min(most, count); ++k) {
     section.AddText("Warning: " + summary.warnings[k] + ".", Emphasis::kCaution);
   }
-  if (count > most) section.AddText("And " + std::to_string(count - most) + " more warnings.", Emphasis::kCaution);
+  if (count > most)
+    section.AddText("And " + std::to_string(count - most) + (count - most == 1 ? " more warning." : " more warnings."),
+                    Emphasis::kCaution);
 }
 
 Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
@@ -428,8 +446,12 @@ Section SummarySection(const ResultSummary& summary) { return FoldedSection(summ
 
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
-  constexpr std::array<Folding, 5> kFoldings = {Folding{}, Folding{2, true, true}, Folding{2, false, true},
-                                                Folding{2, false, false}, Folding{0, false, false}};
+  constexpr std::array<Folding, 6> kFoldings = {Folding{},
+                                                Folding{2, true, true},
+                                                Folding{2, false, true},
+                                                Folding{2, false, false},
+                                                Folding{1, false, false},
+                                                Folding{0, false, false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

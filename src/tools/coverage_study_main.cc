@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulates and fits recordings of many kinds and reports how often the 95 % intervals contain the true values: flags,
 // progress, files and exit codes.
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 #include "pendulum/analysis/coverage.h"
 #include "pendulum/report/coverage_text.h"
-#include "pendulum/report/rounding.h"
 #include "tools/coverage_study_options.h"
 #include "tools/output.h"
+#include "tools/progress_line.h"
 #include "tools/run_tool.h"
 
 namespace pendulum {
@@ -45,34 +46,15 @@ std::vector<ToolFlag<Flags>> FlagTable() {
   };
 }
 
-/// Reports the progress of a study on standard error at each tenth, and the total time.
-class Progress {
- public:
-  Progress(std::string scenario, int count, int runs)
-      : scenario_(std::move(scenario)), count_(count), what_(runs > 1 ? "sets" : "recordings") {}
-
-  void operator()(int done) const {
-    constexpr std::int64_t kParts = 10;
-    const bool at_part = done * kParts / count_ != (done - 1) * kParts / count_;
-    if (!at_part) return;
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    PrintMessage(kName, scenario_ + ": " + std::to_string(done) + " of " + std::to_string(count_) + " " + what_ + ", " +
-                            FixedText(elapsed.count(), 1) + " s");
-  }
-
- private:
-  std::string scenario_;
-  int count_;
-  std::string what_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
   if (options.list) return std::vector<Output>{{"-", CoverageScenarioList(options.scenarios)}};
+  ProgressLine line(STDERR_FILENO);
   std::vector<CoverageStudy> studies;
   for (const CoverageScenario& scenario : options.scenarios) {
     CoverageOptions study_options = options.study;
-    study_options.progress = Progress(scenario.name, study_options.count, study_options.runs);
+    study_options.progress = [&](int done) {
+      line.Show({"simulating and fitting " + scenario.name, done, study_options.count});
+    };
     auto study = StudyCoverage(scenario, study_options);
     if (!study) return tl::unexpected(study.error());
     studies.push_back(*std::move(study));

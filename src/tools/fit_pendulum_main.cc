@@ -22,6 +22,7 @@
 #include "tools/fit_runs.h"
 #include "tools/gnuplot.h"
 #include "tools/output.h"
+#include "tools/progress_line.h"
 #include "tools/run_tool.h"
 #include "tools/shell_command.h"
 
@@ -147,15 +148,16 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   return outputs;
 }
 
-/// Reports the progress of the bootstrap from time to time.
-void ShowProgress(int done, int total) {
-  PrintMessage(kName, "bootstrap: " + std::to_string(done) + " of " + std::to_string(total) + " fits");
+/// Fits with a line of progress.
+Result<std::vector<Result<Identification>>> FitWithProgress(FitPendulumOptions options, const Setup& setup) {
+  ProgressLine line(STDERR_FILENO);
+  options.fit.progress = line.Sink();
+  return FitAll(options, setup);
 }
 
 Result<int> Work(const Flags& flags) {
   auto options = MakeFitPendulumOptions(flags);
   if (!options) return tl::unexpected(options.error());
-  options->fit.progress = ShowProgress;
   const auto setup = ReadSetup(*options);
   if (!setup) return tl::unexpected(setup.error());
   if (const auto plots = options->terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
@@ -164,7 +166,7 @@ Result<int> Work(const Flags& flags) {
   auto checked = CheckOutputs(options->Outputs(), setup->inputs);
   if (checked) checked = CheckNumberedOutputs(*options, *setup, setup->paths.size());
   if (!checked) return tl::unexpected(checked.error());
-  const auto runs = FitAll(*options, *setup);
+  const auto runs = FitWithProgress(*options, *setup);
   if (!runs) return tl::unexpected(runs.error());
   const auto outputs = Render(*options, *runs);
   if (!outputs) return tl::unexpected(outputs.error());

@@ -2,7 +2,6 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "pendulum/batch/overview.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
+#include "tools/progress_line.h"
 
 namespace pendulum {
 namespace {
@@ -121,15 +121,6 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
             Prose(after + ": " + NameList(comparison.cpus_after));
   }
   return text + MovedText(comparison) + ChangedText(comparison) + RemovedFitsText(comparison);
-}
-
-std::string DurationText(double seconds) {
-  constexpr long kMinute = 60, kHour = 3600;
-  const long whole = std::lround(seconds);
-  const auto two = [](long number) { return (number < 10 ? "0" : "") + std::to_string(number); };
-  if (whole < kMinute) return std::to_string(whole) + " s";
-  if (whole < kHour) return std::to_string(whole / kMinute) + " min " + two(whole % kMinute) + " s";
-  return std::to_string(whole / kHour) + " h " + two(whole % kHour / kMinute) + " min";
 }
 
 std::string ProgressText(const RefitCounts& counts, double seconds) {

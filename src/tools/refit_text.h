@@ -19,9 +19,6 @@ Result<std::string> StatusText(Store& store);
 /// The differences between two stores as text.
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after);
 
-/// A duration as text: "42 s", "3 min 05 s", "2 h 10 min".
-std::string DurationText(double seconds);
-
 /// "1200 of 2000 runs (60 %), 1850 a second, 1 s left, 3 could not be fitted".
 std::string ProgressText(const RefitCounts& counts, double seconds);
 

@@ -126,11 +126,11 @@ TEST(StoppedFitRuns, AreErrorsIfStoppedDuringABootstrap) {
   IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   options.fit.interval = IntervalMethod::kBootstrap;
   const PreparedRecording swings = Read("datasets/coulomb.csv", options);
-  for (const int number : {1, 5, 12}) {  // progress reports, nine per model
+  for (const int number : {1, 5, 1500}) {  // of the steps: a fit and 999 fits of its bootstrap for each model
     std::stop_source stop;
     int reports = 0;
     options.fit.stop = stop.get_token();
-    options.fit.progress = [&](int, int) {
+    options.fit.progress = [&](const ProgressStep&) {
       if (++reports == number) stop.request_stop();
     };
     ExpectStopped(FitFirst(options, swings));

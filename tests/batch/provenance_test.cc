@@ -140,7 +140,7 @@ TEST(OptionsJson, CoversEveryMember) {
 TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {
   const std::string json = JsonAfter({"nothing", [](IdentifyOptions&) {}});
   EXPECT_EQ(json, JsonAfter({"threads", [](IdentifyOptions& o) { o.fit.threads = 7; }}));
-  EXPECT_EQ(json, JsonAfter({"progress", [](IdentifyOptions& o) { o.fit.progress = [](int, int) {}; }}));
+  EXPECT_EQ(json, JsonAfter({"progress", [](IdentifyOptions& o) { o.fit.progress = [](const ProgressStep&) {}; }}));
   EXPECT_EQ(json, JsonAfter({"most_unpacked_bytes", [](IdentifyOptions& o) { o.read.most_unpacked_bytes = 1; }}));
 }
 

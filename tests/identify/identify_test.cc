@@ -17,6 +17,7 @@
 namespace pendulum::identify_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -49,6 +50,18 @@ TEST(IdentifyEach, RefusesARigThatContradictsTheSwing) {
     EXPECT_EQ(runs[0].error().code, StatusCode::kDataLoss);
     EXPECT_THAT(runs[0].error().message, HasSubstr("correct the unit of the times"));
   }
+}
+
+TEST(IdentifyEach, ReportsEachStep) {
+  IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
+  std::vector<std::string> steps;
+  options.fit.progress = [&](const ProgressStep& step) {
+    const std::string count = " (" + std::to_string(step.done) + " of " + std::to_string(step.total) + ")";
+    steps.push_back(step.what + (step.total > 0 ? count : ""));
+  };
+  ASSERT_TRUE(FitTextbook(options).at(0));
+  EXPECT_THAT(steps, ElementsAre("fitting coulomb (0 of 2)", "fitting viscous (1 of 2)", "comparing the laws",
+                                 "testing whether the parameters are constant"));
 }
 
 Result<Identification> FitWithRig(const std::string& rig, IdentifyOptions options) {

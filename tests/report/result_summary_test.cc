@@ -119,10 +119,10 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   Identification identification = ExampleComparedIdentification();
   for (FitReport& fit : identification.fits) fit.warnings.clear();
   identification.warnings = {{"gaps", "the recording has 3 gaps; the longest takes 2 s"}};
-  identification.fits[0].warnings = {{"at_bound", "at the bound 0: coulomb"}};
+  identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
   EXPECT_THAT(SummarizeFit(identification, 0).warnings,
-              ElementsAre("the recording has 3 gaps", "at the bound 0: coulomb"));
+              ElementsAre("the recording has 3 gaps", "coulomb is at its bound 0"));
   EXPECT_THAT(SummarizeFit(identification, 1).warnings,
               ElementsAre("the recording has 3 gaps", "the residuals are not white"));
 }

@@ -53,12 +53,9 @@ class CoverageStudyTest(unittest.TestCase):
         other = self.check_done("--scenario", "white_2.5", "--count", "5", "--seed", "100")
         self.assertNotEqual(one.stdout, other.stdout)
 
-    def test_progress_goes_to_standard_error(self):
+    def test_progress_is_only_for_terminals(self):
         done = self.check_done("--scenario", "white_2.5,moving", "--count", "10")
-        lines = done.stderr.splitlines()
-        self.assertEqual(len(lines), 20)
-        self.assertRegex(lines[0], r"^coverage_study: white_2\.5: 1 of 10 recordings, \d+\.\d s$")
-        self.assertRegex(lines[19], r"^coverage_study: moving: 10 of 10 recordings, \d+\.\d s$")
+        self.assertEqual(done.stderr, "")
 
     def test_exits_0_even_if_parameters_fail(self):
         done = self.check_done("--scenario", "ar_0.9", "--count", "1")

@@ -105,6 +105,22 @@ class AcceptedFiles(ReadTest):
                                             "--unit", "counts", "--calibration", "cal.json")
         self.assertNotIn("time_repeated", codes)
 
+    def test_a_paste_a_calibration_table_and_masses_in_grams_are_one_command(self):
+        stamp = lambda t: f"14:03:{22 + t:06.3f} -> " if t < 38 else ""
+        self.write("paste.txt", table("", lambda t, a: f"{stamp(t)}{round(1000 * t) + 7},{counts(a)}")[9:-2])
+        points = "".join(f"{counts(angle)},{angle}\n" for angle in range(-45, 50, 15))
+        self.write("points.csv", "counts,angle_deg\n" + points)
+        run = self.run_tool("paste.txt", "--calibration", "points.csv", "--bob_mass", "380g", "--rod_mass", "95 g",
+                            "--rod_length", "43cm", "--g", "9.81", "--json", "fit.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        inertia = json.loads((self.folder / "fit.json").read_text())["fits"][0]["parameters"]["inertia"]
+        self.assertEqual(inertia["unit"], "kg m^2")
+        self.assertLess(abs(inertia["estimate"] - swing.TRUTH["inertia"]), 4 * inertia["total_std_error"])
+        self.assertLess(inertia["total_std_error"], 0.01 * swing.TRUTH["inertia"])
+        lines = run.stdout.splitlines()
+        self.assertLessEqual(len(lines), 20)
+        self.assertLessEqual(max(map(len, lines)), 80)
+
     def test_columns_by_number(self):
         self.write("plain.txt", table("", lambda t, a: f"x {t} {a}".replace("x", "7")))
         self.assert_finds_the_truth("--data", "plain.txt", "--time_column", "2:s", "--value_column", "3", "--unit", "deg")

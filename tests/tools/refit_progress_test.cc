@@ -19,15 +19,6 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-TEST(DurationText, UsesCommonUnits) {
-  EXPECT_EQ(DurationText(0.2), "0 s");
-  EXPECT_EQ(DurationText(59.4), "59 s");
-  EXPECT_EQ(DurationText(60), "1 min 00 s");
-  EXPECT_EQ(DurationText(185), "3 min 05 s");
-  EXPECT_EQ(DurationText(3600), "1 h 00 min");
-  EXPECT_EQ(DurationText(7800), "2 h 10 min");
-}
-
 // 500 of 2000 in 10 s: 50 per second, and the other 1500 take 30 s.
 TEST(ProgressText, ShowsRateAndRemainingTime) {
   RefitCounts counts;

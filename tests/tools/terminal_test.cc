@@ -1,40 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
-#include <optional>
 #include <string>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/tools/with_variable.h"
 #include "tools/output.h"
 
 namespace pendulum::terminal_test {
 namespace {
-
-/// Sets an environment variable during its lifetime, then restores it; nullptr: not set.
-class WithVariable {
- public:
-  WithVariable(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    Set(value);
-  }
-  WithVariable(const WithVariable&) = delete;
-  WithVariable& operator=(const WithVariable&) = delete;
-  ~WithVariable() { Set(old_ ? old_->c_str() : nullptr); }
-
- private:
-  void Set(const char* value) const {
-    if (value == nullptr) {
-      ::unsetenv(name_);
-    } else {
-      ::setenv(name_, value, 1);
-    }
-  }
-
-  const char* name_;
-  std::optional<std::string> old_;
-};
 
 /// Closes a descriptor at the end.
 class Descriptor {

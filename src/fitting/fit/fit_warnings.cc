@@ -141,6 +141,11 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
   }
 }
 
+/// "viscous is at its bound 0".
+std::string AreAt(const std::vector<ParameterInfo>& parameters, const std::string& bound) {
+  return NameList(parameters) + (parameters.size() == 1 ? " is at its " : " are each at their ") + bound;
+}
+
 /// If one parameter is at its bound, the errors of the others are valid only if the true value lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr std::string_view kConsequence =
@@ -155,20 +160,19 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
       continue;
     }
     warnings.push_back(
-        {"at_bound", "release_time is at an end of the hold: the data ask for a release outside it" +
+        {"at_bound", "release_time is at an end of the hold: the readings suggest a release outside it" +
                          std::string(kConsequence) +
                          "; choose a window with all of the hold, or --start moving with a window after the release"});
   }
   if (!extreme.empty()) {
-    warnings.push_back({"at_bound", "at the limit of its possible values: " + NameList(extreme) +
-                                        std::string(kConsequence) + "; the recording hardly determines it"});
+    warnings.push_back({"at_bound", AreAt(extreme, "limit") + std::string(kConsequence) +
+                                        "; the recording hardly determines its value"});
   }
   if (!bounded.empty()) {
-    warnings.push_back(
-        {"at_bound", "at a given bound: " + NameList(bounded) + std::string(kConsequence) + "; widen --bounds"});
+    warnings.push_back({"at_bound", AreAt(bounded, "given bound") + std::string(kConsequence) + "; widen --bounds"});
   }
   if (friction.empty()) return;
-  warnings.push_back({"at_bound", "at the bound 0: " + NameList(friction) + std::string(kConsequence) +
+  warnings.push_back({"at_bound", AreAt(friction, "bound 0") + std::string(kConsequence) +
                                       "; a simpler model or a longer recording gives smaller errors"});
 }
 

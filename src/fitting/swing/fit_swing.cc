@@ -363,10 +363,10 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
       {"linear_restoring_torque",
-       "a restoring torque proportional to the angle is assumed, as of a spring or wire (model " + linear.model +
-           "; G is its stiffness k), because " + result->linear_reason + ". The readings are in " + result->used.unit +
-           ": " + *unit +
-           ". For a pendulum give --gravity sin, and correct the unit (--unit, or in the column's name)"});
+       "a restoring torque proportional to the angle is assumed, as of a spring or wire (law " + linear.model +
+           ", where G is the stiffness k); for a pendulum, give --gravity sin and correct the unit (--unit, or in the "
+           "column's name). The reason: " +
+           result->linear_reason + ". The readings are in " + result->used.unit + ": " + *unit});
   result = std::move(other);
 }
 

@@ -175,13 +175,11 @@ Bootstrap RunBootstrap(const FitProblem& problem, const FitOptions& options, con
   std::vector<std::vector<double>> estimates(kBootstrapFits);
   std::mutex reporting;
   int done = 0;
-  constexpr int kReports = 10;
   ParallelFor(kBootstrapFits, options.threads, [&](int i) {
     estimates[static_cast<std::size_t>(i)] = replicas.Estimate(static_cast<std::uint64_t>(i));
     const std::lock_guard lock(reporting);
     ++done;
-    const bool at_part = done * kReports / kBootstrapFits != (done - 1) * kReports / kBootstrapFits;
-    if (options.progress && at_part && done < kBootstrapFits) options.progress(done, kBootstrapFits);
+    ReportProgress(options.progress, "bootstrap of " + options.model, done, kBootstrapFits);
   });
   std::erase_if(estimates, [](const std::vector<double>& estimate) { return estimate.empty(); });
   Bootstrap bootstrap;

@@ -123,7 +123,7 @@ TEST(FitWarnings, ReportAFrictionAtItsBound) {
       continue;
     }
     EXPECT_THAT(Codes(report), ElementsAre("at_bound")) << seed;
-    EXPECT_THAT(report.warnings[0].message, HasSubstr("at the bound 0: coulomb;"));
+    EXPECT_THAT(report.warnings[0].message, HasSubstr("coulomb is at its bound 0;"));
   }
 }
 
@@ -140,7 +140,7 @@ TEST(FitWarnings, ReportAReleaseAtAnEndOfTheHold) {
       FitWarnings(recording, problem, solution, TraceSummary{}, report.residual, false, report);
   ASSERT_EQ(warnings.size(), 2);
   EXPECT_THAT(warnings[0].message, HasSubstr("release_time is at an end of the hold"));
-  EXPECT_THAT(warnings[1].message, HasSubstr("at the bound 0: viscous;"));
+  EXPECT_THAT(warnings[1].message, HasSubstr("viscous is at its bound 0;"));
 }
 
 TEST(FitWarnings, ReportAnotherMinimumAndAStopOnAKink) {

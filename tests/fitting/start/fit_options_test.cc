@@ -132,7 +132,7 @@ TEST(Bounds, AreNamedInTheWarningAboutAParameterAtABound) {
   for (const Warning& warning : fit.warnings) {
     if (warning.code != "at_bound") continue;
     EXPECT_EQ(warning.message,
-              "at a given bound: viscous; the standard errors of the others assume that this value is exact, the "
+              "viscous is at its given bound; the standard errors of the others assume that this value is exact, the "
               "intervals by "
               "profile likelihood do not; widen --bounds");
   }

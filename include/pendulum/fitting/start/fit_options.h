@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "pendulum/base/progress.h"
 #include "pendulum/base/status.h"
 #include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/fitting/start/start_values.h"
@@ -59,7 +59,7 @@ struct FitOptions {
   IntervalMethod interval = IntervalMethod::kAuto;
   std::uint64_t seed = 1;  ///< For the bootstrap and posterior sampling.
   int threads = 0;         ///< For the bootstrap and long recordings; 0: all cores. The result does not depend on it.
-  std::function<void(int done, int total)> progress;  ///< Called occasionally by the bootstrap, from one thread.
+  ProgressSink progress;   ///< Told of each fit, comparison and test, and how far a bootstrap is.
   SearchOptions search;
   /// Once a stop is requested, the fit ends soon with kTryAgain and its results are discarded. Default: never.
   std::stop_token stop;
