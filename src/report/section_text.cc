@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "pendulum/report/layout.h"
-#include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
@@ -51,7 +50,7 @@ class TextRenderer {
         if (!table.caution.empty() && cell == table.caution) cell = Painted(cell, kYellow);
       }
     }
-    if (table.left_out.empty()) return TableWithin(table.columns, rows, kTextIndent, kTextWidth);
+    if (table.left_out.empty()) return TableWithin(table.columns, rows, kTextIndent, style_.width);
     const std::string text = AlignedTable(table.columns, rows, kTextIndent);
     return WithLineAfter(1 + table.rows_before, IndentOf(kTextIndent) + table.left_out + "\n", text);
   }
@@ -79,8 +78,8 @@ class TextRenderer {
   /// Words after `first`, wrapped to lines; only the text is coloured. A text that fits on a line stays unchanged.
   std::string Filled(const std::string& text, const std::string& first, Emphasis emphasis) const {
     const int indent = DisplayWidth(first);
-    const bool fits = indent + DisplayWidth(text) <= kTextWidth;
-    const std::string lines = fits ? IndentOf(indent) + text + "\n" : Paragraph(text, IndentOf(indent), kTextWidth);
+    const bool fits = indent + DisplayWidth(text) <= style_.width;
+    const std::string lines = fits ? IndentOf(indent) + text + "\n" : Paragraph(text, IndentOf(indent), style_.width);
     std::string filled;
     for (std::size_t begin = 0; begin < lines.size();) {
       const std::size_t end = lines.find('\n', begin);

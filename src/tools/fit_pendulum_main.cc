@@ -112,7 +112,7 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
     if (!drawn) return tl::unexpected(drawn.error());
     text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(*drawn) + "\n";
   }
-  const TextStyle style{.colour = WantsColour(STDOUT_FILENO)};
+  const TextStyle style = TextStyleFor(STDOUT_FILENO);
   if (options.quiet) return text + QuietText(run);
   return text + (options.details ? ToText(run, style) : SummaryText(SummarizeResult(run), kMore, style));
 }

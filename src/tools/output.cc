@@ -301,4 +301,10 @@ TerminalSize SizeOfTerminal(int descriptor) {
 
 bool WantsColour(int descriptor) { return CanRedraw(descriptor) && Environment("NO_COLOR").empty(); }
 
+TextStyle TextStyleFor(int descriptor) {
+  constexpr std::size_t kLeast = 40, kMost = 100;  // longer lines are hard to read
+  const std::size_t columns = std::clamp(SizeOfTerminal(descriptor).columns, kLeast, kMost);
+  return {.colour = WantsColour(descriptor), .width = static_cast<int>(columns)};
+}
+
 }  // namespace pendulum

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/staged_file.h"
 #include "pendulum/base/status.h"
+#include "pendulum/report/section_text.h"
 
 namespace pendulum {
 
@@ -106,5 +107,9 @@ struct TerminalSize {
 
 /// Current size of the terminal; a usual size if it is unknown.
 TerminalSize SizeOfTerminal(int descriptor);
+
+/// Colour and width of a text for a file descriptor: those of its terminal, with 40 to 100 columns; elsewhere plain,
+/// with 80 columns.
+TextStyle TextStyleFor(int descriptor);
 
 }  // namespace pendulum

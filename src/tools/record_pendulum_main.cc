@@ -144,7 +144,7 @@ Result<int> Fit(FitPendulumOptions options) {
   if (!runs) return tl::unexpected(runs.error());
   const Result<Identification>& run = runs->front();
   if (!run) return tl::unexpected(run.error());
-  const std::string text = "\n" + SummaryText(SummarizeResult(*run), kMore, {.colour = WantsColour(STDOUT_FILENO)});
+  const std::string text = "\n" + SummaryText(SummarizeResult(*run), kMore, TextStyleFor(STDOUT_FILENO));
   return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
 }
 

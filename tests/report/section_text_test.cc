@@ -44,6 +44,11 @@ TEST(SectionText, BreaksEquationsOnlyBeforeSigns) {
             "    + aaaaaaaaaaaaaaaaaa b\n");
 }
 
+TEST(SectionText, FillsLinesToItsWidth) {
+  EXPECT_EQ(TextOf(Words{"word word word word word"}, {.width = 24}), "[[T]]\n    word word word word\n    word\n");
+  EXPECT_EQ(TextOf(Words{"word word word word word"}), "[[T]]\n    word word word word word\n");
+}
+
 TEST(SectionText, ListsItems) { EXPECT_EQ(TextOf(Items{{"one", "two"}}), "[[T]]\n  - one\n  - two\n"); }
 
 // SGR sequences of ECMA-48: 1 bold, 31 red, 33 yellow, 0 plain.

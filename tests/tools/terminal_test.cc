@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "tests/tools/with_variable.h"
@@ -63,6 +65,16 @@ TEST_F(TerminalTest, HasNoColourWithoutATerminal) {
   const Descriptor null(::open("/dev/null", O_WRONLY));
   EXPECT_FALSE(WantsColour(null.value()));
   EXPECT_FALSE(WantsColour(-1));
+}
+
+TEST_F(TerminalTest, GivesItsWidthToTexts) {
+  for (const auto& [columns, width] : {std::pair(132, 100), std::pair(60, 60), std::pair(20, 40)}) {
+    const winsize size{.ws_row = 24, .ws_col = static_cast<unsigned short>(columns), .ws_xpixel = 0, .ws_ypixel = 0};
+    ASSERT_EQ(::ioctl(end_.value(), TIOCSWINSZ, &size), 0);
+    EXPECT_EQ(TextStyleFor(end_.value()).width, width);
+  }
+  const Descriptor null(::open("/dev/null", O_WRONLY));
+  EXPECT_EQ(TextStyleFor(null.value()).width, 80);
 }
 
 }  // namespace
