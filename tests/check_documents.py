@@ -13,7 +13,8 @@ Comments in front of a block change how it is handled:
     <!-- not run: REASON -->       The block is not run. Every ```sh block needs this comment.
     <!-- output: COMMAND -->       The lines up to <!-- end --> are the output of COMMAND, such as a table.
 
-Relative links must lead to a file of the project.
+In README.md and the lab guide, commands have no filter, and the result of a fit with one law has at most 20 lines of 80
+columns. Relative links must lead to a file of the project.
 """
 import concurrent.futures
 import difflib
@@ -33,6 +34,8 @@ ITEM = re.compile(
     r"(?P<head><!-- output: (?P<made_by>[^\n]*) -->\n)(?P<made>.*?)(?P<tail><!-- end -->)"
     r"|(?:<!-- (?P<note>shown|not run): (?P<words>[^\n]*) -->\n)?^```(?P<language>\w*)[^\n]*\n(?P<block>.*?)^```$",
     re.DOTALL | re.MULTILINE)
+SHORT = [TOP / "README.md", TOP / "datasets/ACTIVITY.md"]
+MOST_LINES, MOST_COLUMNS = 20, 80
 COMMAND = re.compile(r"^\$ .*(?:\n> .*)*", re.MULTILINE)
 END = "\x1e"  # between the outputs of two commands
 PORT = "8080"  # of the service in the guide; here any free port stands for it
@@ -116,11 +119,30 @@ def broken_links(document, text):
             yield f"the link to {target} leads nowhere"
 
 
+def long_results(text):
+    """What a reader of a short document would need a filter for."""
+    for item in ITEM.finditer(text):
+        if item["note"] == "shown":
+            yield f"the output is filtered by {item['words']}"
+        if item["language"] != "console":
+            continue
+        commands, outputs = COMMAND.findall(item["block"]), COMMAND.split(item["block"])[1:]
+        for command, output in zip(commands, outputs):
+            if re.search(r"\|\s*(sed|awk|head|tail|grep|cut)\b", command):
+                yield f"a filter: {command}"
+            fit = output.split("[[")[-1] if "fit_pendulum" in command or "--fit" in command else ""
+            if len(fit.splitlines()) > MOST_LINES and not re.search(r"--models?[ =](all|\w+,)", command):
+                yield f"the result has {len(fit.splitlines())} lines, more than {MOST_LINES}: {command}"
+            if max(map(len, output.splitlines()), default=0) > MOST_COLUMNS:
+                yield f"an output is wider than {MOST_COLUMNS} columns: {command}"
+
+
 def check(document, bin_dir, update):
     """The errors in a document, as text; empty if there are none."""
     text = document.read_text()
     name = str(document.relative_to(TOP))
     faults = [f"{name}: {fault}\n" for fault in broken_links(document, text)]
+    faults += [f"{name}: {fault}\n" for fault in (long_results(text) if document in SHORT else ())]
     try:
         now = executed(text, bin_dir) if document in RUN else text
     except Broken as broken:
@@ -153,6 +175,13 @@ def self_test():
         raise AssertionError(broken)
     assert list(broken_links(TOP / "README.md", "[a](MODEL.md) [b](none.md) [c](https://none.example) `[d](none)`")) == [
         "the link to none.md leads nowhere"]
+    line = "x" * MOST_COLUMNS + "\n"
+    fits = "```console\n$ fit_pendulum run.csv{}\n[[run.csv]]\n{}```\n"
+    for short in (fits.format("", (MOST_LINES - 1) * line), fits.format(" --model all", MOST_LINES * line), "```csv\nx" + line + "```\n"):
+        assert not list(long_results(short)), short
+    for long in (fits.format("", MOST_LINES * line), fits.format(" | head -n 3", ""), fits.format("", "x" + line),
+                 "<!-- shown: cat -->\n" + fits.format("", "")):
+        assert len(list(long_results(long))) == 1, long
 
 
 def main():
