@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "batch/results_view.h"
+
 #include <algorithm>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "batch/store_schema.h"
 #include "pendulum/model/motion_model.h"
 
 namespace pendulum {

@@ -9,6 +9,7 @@
 #include "batch/entry_row.h"
 #include "batch/former_results.h"
 #include "batch/result_rows.h"
+#include "batch/results_view.h"
 #include "batch/sqlite.h"
 #include "batch/store_queries.h"
 #include "batch/store_schema.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <string_view>
 
 namespace pendulum {
@@ -101,9 +100,5 @@ CREATE VIEW all_fits AS  -- the fits with the id of their run
 
 /// The last version that stored results in schema version 1 of the result JSON.
 inline constexpr int kLastFormerResults = 2;
-
-/// SQL of the view `results`: one row for each refitted run, with the parameters of its recommended law, or of its only
-/// law. It is not a migration, because it has a column for every parameter that the program knows.
-std::string ResultsView();
 
 }  // namespace pendulum
