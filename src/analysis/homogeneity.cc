@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
+#include "pendulum/analysis/agreement.h"
 #include "pendulum/analysis/amplitude_dependence.h"
 #include "pendulum/analysis/homogeneity_text.h"
 #include "pendulum/analysis/linear_fit.h"
@@ -27,14 +27,6 @@ double Tail(double statistic, double dof) {
 }
 
 // ---- Estimates of each recording alone ------------------------------------------------------------------------------
-
-/// Estimates of S parameters from one recording.
-struct SeparateEstimates {
-  std::size_t run = 0;
-  std::vector<std::string> names;  // S
-  VectorXd value;                  // S
-  MatrixXd covariance;             // S x S
-};
 
 /// Width of each parameter's 95 % interval over the width for a normal distribution. It is larger than 1 for Student's
 /// t, which is used because autocorrelated residuals have few effective samples. A parameter at its bound gets the
@@ -163,119 +155,6 @@ std::vector<SeparateEstimates> EstimateSeparately(const std::vector<RunAlone>& r
   return estimates;
 }
 
-// ---- Agreement ------------------------------------------------------------------------------------------------------
-
-/// Weighted mean of several recordings, scaled by typical errors.
-struct Pool {
-  MatrixXd precision;  // S x S
-  VectorXd mean;       // S
-  double statistic = 0;
-};
-
-Pool PoolOf(const std::vector<SeparateEstimates>& estimates, const std::vector<std::size_t>& members,
-            const VectorXd& scale) {
-  const Index size = scale.size();
-  Pool pool{MatrixXd::Zero(size, size), VectorXd::Zero(size), 0};
-  std::vector<MatrixXd> precisions;
-  VectorXd sum = VectorXd::Zero(size);
-  for (const std::size_t k : members) {
-    const MatrixXd scaled =
-        scale.cwiseInverse().asDiagonal() * estimates[k].covariance * scale.cwiseInverse().asDiagonal();
-    precisions.emplace_back(scaled.ldlt().solve(MatrixXd::Identity(size, size)));
-    pool.precision += precisions.back();
-    sum += precisions.back() * estimates[k].value.cwiseQuotient(scale);
-  }
-  pool.mean = pool.precision.ldlt().solve(sum);
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const VectorXd distance = estimates[members[i]].value.cwiseQuotient(scale) - pool.mean;
-    pool.statistic += distance.dot(precisions[i] * distance);
-  }
-  return pool;
-}
-
-/// The mean standard error of each parameter.
-VectorXd ScaleOf(const std::vector<SeparateEstimates>& estimates) {
-  VectorXd scale = VectorXd::Zero(estimates.front().value.size());
-  for (const SeparateEstimates& one : estimates)
-    scale += one.covariance.diagonal().cwiseSqrt() / static_cast<double>(estimates.size());
-  return scale;
-}
-
-/// Removes recordings one by one until the remaining recordings agree; each time it removes the recording whose removal
-/// leaves the smallest statistic. A majority must remain; without a majority no recording can be called wrong.
-std::vector<std::size_t> FindDeviatingRecordings(const std::vector<SeparateEstimates>& estimates,
-                                                 const VectorXd& scale) {
-  std::vector<std::size_t> members(estimates.size());
-  std::iota(members.begin(), members.end(), 0);
-  std::vector<std::size_t> out;
-  const auto dof = [&](std::size_t count) {
-    return static_cast<double>(scale.size()) * static_cast<double>(count - 1);
-  };
-  while (2 * (out.size() + 1) < estimates.size()) {
-    std::size_t best = 0;
-    double least = kUnbounded;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      std::vector<std::size_t> rest = members;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      const double statistic = PoolOf(estimates, rest, scale).statistic;
-      if (statistic >= least) continue;
-      least = statistic;
-      best = i;
-    }
-    out.push_back(members[best]);
-    members.erase(members.begin() + static_cast<std::ptrdiff_t>(best));
-    if (members.size() > 1 && Tail(least, dof(members.size())) >= Homogeneity::kDisagree) return out;
-  }
-  return {};
-}
-
-/// p of the distance between parameter j of recording k and the other recordings, judged by the scatter of the other
-/// recordings.
-double DistanceFromScatter(const std::vector<SeparateEstimates>& estimates, std::size_t k, Index j) {
-  VectorXd value(static_cast<Index>(estimates.size()) - 1), error(value.size());
-  for (Index i = 0; i < value.size(); ++i) {
-    const SeparateEstimates& other =
-        estimates[static_cast<std::size_t>(i) + (static_cast<std::size_t>(i) >= k ? 1 : 0)];
-    value[i] = other.value[j];
-    error[i] = std::sqrt(other.covariance(j, j));
-  }
-  const RandomEffects others = SummarizeScatter(value, error);
-  const double variance =
-      estimates[k].covariance(j, j) + others.between * others.between + others.std_error * others.std_error;
-  const double t = std::abs(estimates[k].value[j] - others.mean) / std::sqrt(variance);
-  return 2 * StudentTail(t, static_cast<double>(value.size() - 1));
-}
-
-/// If no majority agrees: recordings whose distance from the others is large compared with the scatter of the others.
-/// Needs at least kMinRecordings.
-std::vector<std::size_t> FarFromScatter(const std::vector<SeparateEstimates>& estimates) {
-  constexpr std::size_t kMinRecordings = 4;
-  std::vector<std::size_t> far;
-  if (estimates.size() < kMinRecordings) return far;
-  const Index size = estimates.front().value.size();
-  const double trials = static_cast<double>(estimates.size()) * static_cast<double>(size);
-  for (std::size_t k = 0; k < estimates.size(); ++k) {
-    for (Index j = 0; j < size; ++j) {
-      if (DistanceFromScatter(estimates, k, j) * trials >= Homogeneity::kDisagree) continue;
-      far.push_back(k);
-      break;
-    }
-  }
-  return far;
-}
-
-/// The recordings that disagree with an agreeing majority, or are far outside the scatter of the other recordings, in
-/// order; often none.
-std::vector<int> Disagreeing(const std::vector<SeparateEstimates>& estimates, const VectorXd& scale) {
-  std::vector<std::size_t> out = FindDeviatingRecordings(estimates, scale);
-  if (out.empty()) out = FarFromScatter(estimates);
-  std::vector<int> runs;
-  runs.reserve(out.size());
-  for (const std::size_t k : out) runs.push_back(static_cast<int>(estimates[k].run));
-  std::ranges::sort(runs);
-  return runs;
-}
-
 // ---- Each parameter -------------------------------------------------------------------------------------------------
 
 void SetDistances(SharedParameter& parameter) {
@@ -338,19 +217,6 @@ std::string NotTestedReason(const FitReport& example, const std::vector<std::str
   return "fewer than two recordings determine all shared parameters on their own";
 }
 
-/// Tests all shared parameters together.
-void TestTogether(const std::vector<SeparateEstimates>& estimates, const VectorXd& scale, Homogeneity& result) {
-  std::vector<std::size_t> all(estimates.size());
-  std::iota(all.begin(), all.end(), 0);
-  result.statistic = PoolOf(estimates, all, scale).statistic;
-  result.dof = static_cast<int>(scale.size()) * static_cast<int>(estimates.size() - 1);
-  if (std::isfinite(result.statistic)) {
-    result.p = Tail(result.statistic, result.dof);
-  } else {
-    result.reason = "the recordings' covariances cannot be inverted";
-  }
-}
-
 }  // namespace
 
 bool AmplitudeDependence::explains() const { return p < Homogeneity::kDisagree && rest_p >= Homogeneity::kDisagree; }
@@ -377,8 +243,11 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
     result.verdict = "not tested: " + result.reason;
     return result;
   }
-  const VectorXd scale = ScaleOf(estimates);
-  TestTogether(estimates, scale, result);
+  const Agreement agreement = TestAgreement(estimates);
+  result.statistic = agreement.statistic;
+  result.dof = agreement.dof;
+  result.p = agreement.p;
+  if (!result.p) result.reason = "the recordings' covariances cannot be inverted";
   for (std::size_t j = 0; j < names.size(); ++j) {
     result.parameters.push_back(
         DescribeParameter(*example.Find(names[j]), estimates, static_cast<Index>(j), runs.size()));
@@ -386,7 +255,11 @@ Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector
       result.amplitude_dependence.push_back(*std::move(dependence));
     }
   }
-  if (!result.agrees() && !result.is_amplitude()) result.disagreeing = Disagreeing(estimates, scale);
+  if (!result.agrees() && !result.is_amplitude()) {
+    for (const std::size_t k : FindDisagreeing(estimates))
+      result.disagreeing.push_back(static_cast<int>(estimates[k].run));
+    std::ranges::sort(result.disagreeing);
+  }
   result.verdict = result.p ? DescribeHomogeneity(result, runs) : "not tested: " + result.reason;
   return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,7 +21,7 @@ namespace pendulum {
 struct QuantityRow {
   std::string name;
   bool derived = false;
-  std::optional<double> estimate, std_error, lower95, upper95, systematic_std_error;
+  std::optional<double> estimate, std_error, lower95, upper95, systematic_std_error, total_std_error;
   std::string unit;
   bool fixed = false, at_bound = false;
 };
@@ -35,6 +36,7 @@ struct FitRow {
   std::optional<std::string> noise_model;
   std::optional<double> lag1_correlation, log_likelihood, aic, aicc, bic, durbin_watson, ljung_box_p, runs_p;
   std::optional<std::int64_t> iterations, evaluations;
+  std::optional<std::string> verdict;
   std::vector<QuantityRow> quantities;
 };
 
@@ -69,6 +71,10 @@ inline QuantityRow Quantity(const std::string& name, const Json& json, bool deri
   row.estimate = Get<double>(json, "estimate");
   row.std_error = Get<double>(json, "std_error");
   row.systematic_std_error = Get<double>(json, "systematic_std_error");
+  row.total_std_error = Get<double>(json, "total_std_error");
+  if (row.std_error && !row.total_std_error) {
+    row.total_std_error = std::hypot(*row.std_error, row.systematic_std_error.value_or(0));
+  }
   row.unit = Get<std::string>(json, "unit").value_or("");
   row.fixed = Get<bool>(json, "fixed").value_or(false);
   row.at_bound = Get<bool>(json, "at_bound").value_or(false);
@@ -104,6 +110,9 @@ inline FitRow Fit(const Json& result, const Json& fit) {
   row.status = fit["status"].get<std::string>();
   row.reason = fit["reason"].get<std::string>();
   row.used_samples = Get<std::int64_t>(result["data"], "used_samples");
+  if (const auto summary = fit.find("summary"); summary != fit.end()) {
+    row.verdict = Get<std::string>(*summary, "verdict");
+  }
   SetStatistics(fit, row);
   for (const auto& [name, json] : fit["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
   for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));

@@ -107,6 +107,13 @@ double UpperP(double chi2, std::size_t dof) {
 
 }  // namespace
 
+bool IsOfTheRig(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kOfTheRun = {"release_angle", "release_time", "initial_angle",
+                                                         "initial_rate",  "zero_angle",   "rate_bias",
+                                                         "zero_drift",    "bias_drift"};
+  return std::ranges::find(kOfTheRun, name) == kOfTheRun.end();
+}
+
 Distribution Describe(const std::vector<double>& values) {
   std::vector<double> sorted = values;
   std::ranges::sort(sorted);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/batch/store.h"
 
+#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "batch/entry_row.h"
 #include "batch/former_results.h"
 #include "batch/result_rows.h"
+#include "batch/results_view.h"
 #include "batch/sqlite.h"
 #include "batch/store_queries.h"
 #include "batch/store_schema.h"
@@ -55,13 +57,39 @@ void RenameInResults(SQLite::Database& database) {
   }
 }
 
+/// Gives fits and quantities of earlier versions the columns that their results imply.
+void FillNewColumns(SQLite::Database& database) {
+  database.exec(R"sql(
+UPDATE quantities SET total_std_error = std_error WHERE systematic_std_error IS NULL)sql");
+  SQLite::Statement both(database, R"sql(
+SELECT run, model, name, std_error, systematic_std_error FROM quantities
+  WHERE std_error IS NOT NULL AND systematic_std_error IS NOT NULL)sql");
+  SQLite::Statement set(database, "UPDATE quantities SET total_std_error = ? WHERE run = ? AND model = ? AND name = ?");
+  while (both.executeStep()) {
+    const double total = std::hypot(both.getColumn(3).getDouble(), both.getColumn(4).getDouble());
+    sqlite::Bind(set, total, both.getColumn(0).getInt64(), sqlite::Text(both, 1), sqlite::Text(both, 2)).exec();
+  }
+}
+
+/// Replaces the view `results` unless it is that of this program.
+void UpdateResultsView(SQLite::Database& database) {
+  const std::string sql = ResultsView();
+  SQLite::Statement present(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'results'");
+  if (present.executeStep() && sqlite::Text(present, 0) == sql) return;
+  present.reset();
+  database.exec("DROP VIEW IF EXISTS results");
+  database.exec(sql);
+}
+
 /// Updates the tables in one transaction; creates them in a new file.
 void Migrate(SQLite::Database& database, int version) {
   SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
   for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
-  if (version > 0) RenameInResults(database);
+  if (version > 0 && version <= kLastFormerResults) RenameInResults(database);
+  if (version > 0) FillNewColumns(database);
+  UpdateResultsView(database);
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
   database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
   transaction.commit();
@@ -215,19 +243,19 @@ void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
   sqlite::Bind(Prepared(drop_quantities, "DELETE FROM quantities WHERE run = ?"), run).exec();
   sqlite::Bind(Prepared(drop_fits, "DELETE FROM fits WHERE run = ?"), run).exec();
   SQLite::Statement& fit =
-      Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SQLite::Statement& quantity =
-      Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const FitRow& row : FitRows(outcome)) {
     sqlite::Bind(fit, run, row.model, row.status, row.reason, row.used_samples, row.effective_samples,
                  row.residual_unit, row.rms_residual, row.sigma, row.noise_model, row.lag1_correlation,
                  row.log_likelihood, row.aic, row.aicc, row.bic, row.durbin_watson, row.ljung_box_p, row.runs_p,
-                 row.iterations, row.evaluations)
+                 row.iterations, row.evaluations, row.verdict)
         .exec();
     for (const QuantityRow& value : row.quantities) {
       sqlite::Bind(quantity, run, row.model, value.name, static_cast<int>(value.derived), value.estimate,
                    value.std_error, value.lower95, value.upper95, value.systematic_std_error, value.unit,
-                   static_cast<int>(value.fixed), static_cast<int>(value.at_bound))
+                   static_cast<int>(value.fixed), static_cast<int>(value.at_bound), value.total_std_error)
           .exec();
     }
   }
@@ -264,7 +292,10 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
               : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA cache_size = -32768");
     }
     const int version = state->database.execAndGet("PRAGMA user_version").getInt();
-    if (version < static_cast<int>(kStoreMigrations.size())) Migrate(state->database, version);
+    const bool is_current = version == static_cast<int>(kStoreMigrations.size());
+    const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
+    if (!is_current && !(can_read && sqlite::IsReadOnly(name))) Migrate(state->database, version);
+    if (is_current && mode != Mode::kRead) UpdateResultsView(state->database);
     return Store(std::move(state));
   });
 }

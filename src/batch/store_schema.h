@@ -10,9 +10,9 @@ namespace pendulum {
 inline constexpr int kStoreId = 0x50656e64;
 
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
-/// released migration is never changed; a new one is appended. SQLite keeps the comments, so .schema explains the
-/// tables.
-inline constexpr std::array<std::string_view, 3> kStoreMigrations = {R"sql(
+/// released migration is never changed; a new one is appended. The view `results` is replaced after them (ResultsView).
+/// SQLite keeps the comments, so .schema explains the tables.
+inline constexpr std::array<std::string_view, 4> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -89,6 +89,16 @@ CREATE INDEX answers_by_place ON answers(location);
 )sql",
                                                                      R"sql(
 UPDATE quantities SET name = 'hysteresis' WHERE name = 'edge_lag';  -- renamed in schema version 2 of the result JSON
+)sql",
+                                                                     R"sql(
+ALTER TABLE fits ADD COLUMN verdict TEXT;  -- whether the law describes the readings, in a sentence; NULL: not known
+ALTER TABLE quantities ADD COLUMN total_std_error REAL;  -- of std_error and systematic_std_error together
+DROP VIEW results;
+CREATE VIEW all_fits AS  -- the fits with the id of their run
+  SELECT id, position, path, runs.recommended = model AS recommended, fits.* FROM runs JOIN fits USING(run);
 )sql"};
+
+/// The last version that stored results in schema version 1 of the result JSON.
+inline constexpr int kLastFormerResults = 2;
 
 }  // namespace pendulum

@@ -7,10 +7,14 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "batch/run_agreement.h"
+#include "batch/run_groups.h"
 #include "batch/sqlite.h"
+#include "batch/summary_verdict.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/overview.h"
@@ -42,6 +46,14 @@ Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
 /// One parameter or derived quantity of one model, in one unit.
 struct Quantity {
   std::string model, name, unit;
+  bool derived = false;
+};
+
+/// What a summary needs to know of the runs.
+struct Context {
+  const RunGroups& groups;
+  const std::set<std::string>& outliers;  ///< Ids of runs that disagree in all parameters together.
+  std::string trend_by;
 };
 
 /// The values of a quantity, and the names of its runs.
@@ -51,39 +63,33 @@ struct QuantityRuns {
   bool dates = false;
 };
 
-/// Manifest columns that have their own column in table runs.
-constexpr std::array<std::string_view, 7> kOwnColumns = {"id",     "path", "rig",   "calibration",
-                                                         "from_s", "to_s", "models"};
-
-/// SQL for a run's value in a manifest column. The next parameter of the statement must be the column's name.
-std::string ValueOf(const std::string& column) {
-  const bool own = std::ranges::find(kOwnColumns, column) != kOwnColumns.end();
-  return own ? "iif(? = '', NULL, runs." + column + ")" : "(SELECT value FROM json_each(columns) WHERE key = ?)";
-}
-
-QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const SummaryOptions& options) {
-  SQLite::Statement rows(database, "SELECT id, position, estimate, std_error, " + ValueOf(options.group_by) + ", " +
-                                       ValueOf(options.trend_by) + R"sql(
+QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const Context& context) {
+  const std::string trend = context.trend_by.empty() ? "NULL" : ColumnSql(context.trend_by);
+  SQLite::Statement rows(database,
+                         "SELECT id, position, estimate, std_error, " + context.groups.sql + ", " + trend + R"sql(
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL
   ORDER BY position, id)sql");
-  sqlite::Bind(rows, options.group_by, options.trend_by, quantity.model, quantity.name, quantity.unit);
+  sqlite::Bind(rows, quantity.model, quantity.name, quantity.unit);
   QuantityRuns runs;
   std::map<std::string, std::size_t> groups;
+  const std::vector<std::string>& unlike = context.groups.unlike;
   while (rows.executeStep()) {
     runs.ids.push_back(sqlite::Text(rows, 0));
     runs.values.estimate.push_back(rows.getColumn(2).getDouble());
     const bool has_error = !rows.getColumn(3).isNull();
     runs.values.std_error.push_back(has_error ? rows.getColumn(3).getDouble()
                                               : std::numeric_limits<double>::quiet_NaN());
-    const std::string group = options.group_by.empty() ? "" : sqlite::Text(rows, 4);
-    const auto [known, is_new] = groups.emplace(group, groups.size());
+    const std::string group = sqlite::Text(rows, 4);
+    // A run that is not compared is a group of its own.
+    const bool is_unlike = std::ranges::find(unlike, group) != unlike.end();
+    const auto [known, is_new] = groups.emplace(is_unlike ? '\0' + runs.ids.back() : group, groups.size());
     if (is_new) runs.groups.push_back(group);
     runs.values.group.push_back(known->second);
     std::optional<double> order;
     if (const double position = rows.getColumn(1).getDouble(); position >= 0) order = position;
     bool is_date = false;
-    if (!options.trend_by.empty()) order = ParseOrderValue(sqlite::Text(rows, 5), is_date);
+    if (!context.trend_by.empty()) order = ParseOrderValue(sqlite::Text(rows, 5), is_date);
     runs.dates = runs.dates || is_date;
     runs.values.order.push_back(order.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
@@ -110,16 +116,16 @@ std::string VerdictText(const Repeatability& all, const std::string& unit, std::
   return text;
 }
 
-Json GroupName(const QuantityRuns& runs, const SummaryOptions& options, std::size_t group) {
-  return options.group_by.empty() ? Json(nullptr) : Json(runs.groups[group]);
+Json GroupName(const QuantityRuns& runs, const Context& context, std::size_t group) {
+  return context.groups.name.empty() ? Json(nullptr) : Json(runs.groups[group]);
 }
 
-Json RepeatabilityJson(const QuantityRuns& runs, const SummaryOptions& options, const Repeatability& all,
+Json RepeatabilityJson(const QuantityRuns& runs, const Context& context, const Repeatability& all,
                        const std::string& unit, std::size_t outliers) {
   constexpr std::array<const char*, 3> kVerdicts = {"agrees", "scatter_larger", "scatter_smaller"};
   Json rows = Json::array();
   for (const GroupRepeatability& group : all.groups) {
-    rows.push_back({{"group", options.group_by.empty() ? "all runs" : runs.groups[group.group]},
+    rows.push_back({{"group", context.groups.name.empty() ? "all runs" : runs.groups[group.group]},
                     {"runs", group.runs},
                     {"weighted_mean", group.mean},
                     {"std_error", group.std_error},
@@ -138,12 +144,12 @@ Json RepeatabilityJson(const QuantityRuns& runs, const SummaryOptions& options, 
           {"rows", rows}};
 }
 
-Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const std::vector<Outlier>& outliers) {
+Json OutliersJson(const QuantityRuns& runs, const Context& context, const std::vector<Outlier>& outliers) {
   Json list = Json::array();
   for (const Outlier& outlier : outliers) {
     if (list.size() == kMaxOutliers) break;
     list.push_back({{"id", runs.ids[outlier.run]},
-                    {"group", GroupName(runs, options, runs.values.group[outlier.run])},
+                    {"group", GroupName(runs, context, runs.values.group[outlier.run])},
                     {"estimate", runs.values.estimate[outlier.run]},
                     {"std_error", NumberOrNull(runs.values.std_error[outlier.run])},
                     {"z", outlier.z}});
@@ -152,7 +158,7 @@ Json OutliersJson(const QuantityRuns& runs, const SummaryOptions& options, const
 }
 
 /// Every n-th point, so that at most kMaxPoints remain.
-Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
+Json PointsJson(const QuantityRuns& runs, const Context& context) {
   Json points = Json::array();
   const std::size_t step = (runs.values.size() + kMaxPoints - 1) / kMaxPoints;
   for (std::size_t i = 0; i < runs.values.size(); i += step) {
@@ -161,7 +167,7 @@ Json PointsJson(const QuantityRuns& runs, const SummaryOptions& options) {
                       {"y", runs.values.estimate[i]},
                       {"std_error", NumberOrNull(runs.values.std_error[i])},
                       {"id", runs.ids[i]},
-                      {"group", GroupName(runs, options, runs.values.group[i])}});
+                      {"group", GroupName(runs, context, runs.values.group[i])}});
   }
   return points;
 }
@@ -173,19 +179,19 @@ std::string TrendText(const Trend& trend, const std::string& unit, const std::st
   return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 
-Json TrendJson(const QuantityRuns& runs, const SummaryOptions& options, const std::string& unit,
+Json TrendJson(const QuantityRuns& runs, const Context& context, const std::string& unit,
                const std::vector<Outlier>& outliers) {
   const auto trend = FitTrend(runs.values, outliers);
   if (!trend) return nullptr;
-  const std::string column = options.trend_by.empty() ? "position" : options.trend_by;
-  const std::string per = runs.dates ? "per day" : options.trend_by.empty() ? "per run" : "per unit of " + column;
+  const std::string column = context.trend_by.empty() ? "position" : context.trend_by;
+  const std::string per = runs.dates ? "per day" : context.trend_by.empty() ? "per run" : "per unit of " + column;
   return {{"column", column},
           {"unit", runs.dates ? Json("days since 1970-01-01") : Json(nullptr)},
           {"slope", trend->slope},
           {"std_error", trend->std_error},
           {"p", trend->p},
           {"text", TrendText(*trend, unit, per)},
-          {"points", PointsJson(runs, options)},
+          {"points", PointsJson(runs, context)},
           {"points_total", runs.values.size()}};
 }
 
@@ -196,6 +202,7 @@ Json DistributionJson(const Quantity& quantity, const RunValues& values) {
   return {{"model", quantity.model},
           {"name", quantity.name},
           {"unit", quantity.unit},
+          {"derived", quantity.derived},
           {"runs", values.size()},
           {"median", distribution.median},
           {"mean", distribution.mean},
@@ -213,61 +220,97 @@ Json DistributionJson(const Quantity& quantity, const RunValues& values) {
             {"above", distribution.above}}}};
 }
 
-/// Whether a quantity belongs to the rig; start and zero differ between runs.
-bool IsOfTheRig(const Quantity& quantity) {
-  constexpr std::array<std::string_view, 8> kOfTheRun = {"release_angle", "release_time", "initial_angle",
-                                                         "initial_rate",  "zero_angle",   "rate_bias",
-                                                         "zero_drift",    "bias_drift"};
-  return std::ranges::find(kOfTheRun, quantity.name) == kOfTheRun.end();
+/// Outliers of this quantity, and runs that disagree in all parameters together.
+std::vector<Outlier> LeftOut(const QuantityRuns& runs, const Context& context, const std::vector<Outlier>& outliers) {
+  std::vector<Outlier> all = outliers;
+  for (std::size_t i = 0; i < runs.ids.size() && !context.outliers.empty(); ++i) {
+    if (context.outliers.contains(runs.ids[i]) && std::ranges::find(outliers, i, &Outlier::run) == outliers.end()) {
+      all.push_back({i, 0});
+    }
+  }
+  return all;
 }
 
-Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const SummaryOptions& options) {
-  const QuantityRuns runs = RunsOf(database, quantity, options);
+/// Why the runs of a quantity of the rig are not compared.
+const char* NotComparedReason(const RunGroups& groups) {
+  if (groups.compares()) return "no group has two runs with an error";
+  return groups.unlike.empty() ? "no pendulum has two recordings"
+                               : "the recordings differ too much to be repeats of one pendulum";
+}
+
+Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const Context& context) {
+  const QuantityRuns runs = RunsOf(database, quantity, context);
   if (runs.values.size() == 0) return nullptr;
-  const bool of_the_rig = IsOfTheRig(quantity);
+  const bool of_the_rig = IsOfTheRig(quantity.name);
   const std::vector<Outlier> outliers = of_the_rig ? FindOutliers(runs.values) : std::vector<Outlier>();
-  const auto repeatability = of_the_rig ? AnalyzeRepeatability(runs.values, outliers) : std::nullopt;
+  const std::vector<Outlier> left_out = of_the_rig ? LeftOut(runs, context, outliers) : std::vector<Outlier>();
+  const auto repeatability = of_the_rig ? AnalyzeRepeatability(runs.values, left_out) : std::nullopt;
   Json json = DistributionJson(quantity, runs.values);
   json["repeatability"] =
-      repeatability ? RepeatabilityJson(runs, options, *repeatability, quantity.unit, outliers.size()) : Json(nullptr);
-  const char* reason = of_the_rig ? "no group has two runs with an error"
+      repeatability ? RepeatabilityJson(runs, context, *repeatability, quantity.unit, left_out.size()) : Json(nullptr);
+  const char* reason = of_the_rig ? NotComparedReason(context.groups)
                                   : "it depends on how each run begins, so it is not a constant of the rig";
   json["repeatability_reason"] = repeatability ? Json(nullptr) : Json(reason);
-  json["outliers"] = OutliersJson(runs, options, outliers);
+  json["outliers"] = OutliersJson(runs, context, outliers);
   json["outliers_total"] = outliers.size();
-  json["trend"] = TrendJson(runs, options, quantity.unit, outliers);
+  json["trend"] = TrendJson(runs, context, quantity.unit, left_out);
   return json;
 }
 
-Json QuantitiesJson(SQLite::Database& database, const SummaryOptions& options) {
+/// The quantities of all models, or the parameters of one model.
+Json QuantitiesJson(SQLite::Database& database, const Context& context, const std::string& only) {
   SQLite::Statement rows(database, R"sql(
-SELECT model, name, unit FROM quantities GROUP BY model, name, unit ORDER BY model, min(derived), name, unit)sql");
+SELECT model, name, unit, min(derived) FROM quantities WHERE ?1 = '' OR (model = ?1 AND derived = 0)
+  GROUP BY model, name, unit ORDER BY model, min(derived), name, unit)sql");
+  sqlite::Bind(rows, only);
   Json list = Json::array();
   while (rows.executeStep()) {
-    Json json = QuantityJson(database, {sqlite::Text(rows, 0), sqlite::Text(rows, 1), sqlite::Text(rows, 2)}, options);
+    Json json = QuantityJson(
+        database,
+        {sqlite::Text(rows, 0), sqlite::Text(rows, 1), sqlite::Text(rows, 2), rows.getColumn(3).getInt() == 1},
+        context);
     if (!json.is_null()) list.push_back(std::move(json));
   }
   return list;
 }
 
+Json GroupingJson(const RunGroups& groups) {
+  constexpr std::array<const char*, 5> kBy = {"column", "true_values", "rig", "folder", "all"};
+  return {{"by", kBy.at(static_cast<std::size_t>(groups.by))},
+          {"name", TextOrNull(groups.name)},
+          {"is_stated", groups.is_stated},
+          {"pendulums", groups.groups},
+          {"smallest", groups.smallest},
+          {"largest", groups.largest},
+          {"unlike", groups.unlike.size()},
+          {"is_compared", groups.compares()},
+          {"text", GroupsText(groups)},
+          {"otherwise", TextOrNull(OtherGroupsText(groups))}};
+}
+
+Json VerdictsJson(const Json& overview, const Json& parameters, const RunGroups& groups, bool left_out,
+                  const std::string& only) {
+  Json list = Json::array();
+  for (const Json& row : overview["models"]) {
+    const auto model = row["model"].get<std::string>();
+    if (only.empty() || only == model) list.push_back(VerdictJson(model, parameters, groups, left_out));
+  }
+  return list;
+}
+
 Result<void> CheckColumn(SQLite::Database& database, const char* flag, const std::string& column) {
-  if (column.empty() || std::ranges::find(kOwnColumns, column) != kOwnColumns.end()) return {};
+  if (column.empty() || ColumnSql(column).starts_with("runs.")) return {};
   const std::vector<std::string> known = sqlite::Texts(database, sqlite::kManifestColumns);
   if (std::ranges::find(known, column) != known.end()) return {};
   return Error(StatusCode::kInvalidArgument, std::string(flag) + ": the manifest has no column '" + column + "'" +
                                                  (known.empty() ? ", nor any other" : "; it has " + NameList(known)));
 }
 
-bool NamesSeveralRigs(SQLite::Database& database) {
-  return database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> ''").getInt() > 1;
-}
-
 /// Number of runs whose value in the column is neither a number nor a date, and one such value.
 std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, const std::string& column) {
   std::pair<std::int64_t, std::string> found;
   if (column.empty()) return found;
-  SQLite::Statement rows(database, "SELECT " + ValueOf(column) + " FROM runs");
-  sqlite::Bind(rows, column);
+  SQLite::Statement rows(database, "SELECT " + ColumnSql(column) + " FROM runs");
   while (rows.executeStep()) {
     bool is_date = false;
     const std::string value = sqlite::Text(rows, 0);
@@ -321,22 +364,34 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();
-    SummaryOptions chosen = options;
-    if (chosen.group_by.empty() && NamesSeveralRigs(database)) chosen.group_by = "rig";
-    for (const auto& [flag, column] :
-         {std::pair{"--group_by", chosen.group_by}, std::pair{"--trend_by", chosen.trend_by}}) {
-      if (auto checked = CheckColumn(database, flag, column); !checked) return tl::unexpected(checked.error());
+    if (!IsWayToGroup(options.group_by)) {
+      if (auto checked = CheckColumn(database, "--group_by", options.group_by); !checked) {
+        return tl::unexpected(checked.error());
+      }
     }
+    if (auto checked = CheckColumn(database, "--trend_by", options.trend_by); !checked) {
+      return tl::unexpected(checked.error());
+    }
+    auto overview = Overview(store);
+    if (!overview) return tl::unexpected(overview.error());
+    const std::string main = MainModel(*overview), only = options.main_model_only ? main : "";
+    RunGroups groups = GroupRuns(database, options.group_by);
+    FindUnlikeGroups(database, main, groups);
+    RunAgreement agreement = TestRunAgreement(database, main, groups);
+    const Json parameters = QuantitiesJson(database, {groups, agreement.outliers, options.trend_by}, only);
     Json json = {{"schema_version", kSchemaVersion},
                  {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},
+                 {"headline", CountsJson(CountRuns(database))},
+                 {"grouping", GroupingJson(groups)},
+                 {"main_model", TextOrNull(main)},
+                 {"verdicts", VerdictsJson(*overview, parameters, groups, !agreement.outliers.empty(), only)},
+                 {"agreement", std::move(agreement.json)},
                  {"store", StoreJson(store, *meta, *counts)},
-                 {"group_by", TextOrNull(chosen.group_by)},
-                 {"trend_by", TextOrNull(chosen.trend_by)}};
-    const auto overview = Overview(store);
-    if (!overview) return tl::unexpected(overview.error());
+                 {"group_by", TextOrNull(groups.name)},
+                 {"trend_by", TextOrNull(options.trend_by)}};
     json.update(*overview);
-    json["parameters"] = QuantitiesJson(database, chosen);
-    json["warnings"] = WarningsJson(database, *counts, json["store"], chosen);
+    json["parameters"] = parameters;
+    json["warnings"] = WarningsJson(database, *counts, json["store"], options);
     return json;
   });
 }

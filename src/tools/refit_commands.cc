@@ -102,24 +102,39 @@ Result<int> WriteText(const std::string& text) {
   return 0;
 }
 
-Result<int> ShowStatus(const std::string& path) {
+/// Prints the summary of a store, preceded by its details if they are asked for. A store without fits has details only.
+Result<int> ShowStatus(const RefitPendulumsOptions& options) {
+  const std::string& path = options.stores.front();
   auto store = Store::Open(path, Store::Mode::kRead);
   if (!store) return tl::unexpected(store.error());
-  const auto text = StatusText(*store);
-  if (!text) return tl::unexpected(text.error());
-  return WriteText(*text);
+  const auto counts = store->Count();
+  if (!counts) return tl::unexpected(counts.error());
+  const bool has_fits = counts->fits > 0;
+  std::string text;
+  if (options.details || !has_fits) {
+    const auto details = StatusText(*store);
+    if (!details) return tl::unexpected(details.error());
+    text = *details;
+  }
+  if (!has_fits) return WriteText(options.quiet ? "" : text);
+  SummaryOptions how = options.summary;
+  how.main_model_only = true;
+  const auto summary = Summarize(*store, how);
+  if (!summary) return tl::unexpected(summary.error());
+  return WriteText(options.quiet ? QuietText(*summary) : text + SummaryText(*summary, path));
 }
 
 /// Prints the summary of a refit and returns its exit code.
-Result<int> FinishRefit(const RefitCounts& counts, const std::string& store, bool force) {
+Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& options) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
   if (!counts.stopped) {
     PrintMessage(kRefitToolName, text);
-    return ShowStatus(store);
+    return ShowStatus(options);
   }
   PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
-                                   " are left; run the same command to continue" + (force ? ", without --force" : ""));
+                                   " are left; run the same command to continue" +
+                                   (options.refit.force ? ", without --force" : ""));
   return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
 }
 
@@ -138,7 +153,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   const auto counts = refit.shard ? RefitShard(*source, shard, refit) : RefitInPlace(*source, store, refit);
   progress.Finish();
   if (!counts) return tl::unexpected(counts.error());
-  return FinishRefit(*counts, store, refit.force);
+  return FinishRefit(*counts, options);
 }
 
 /// Opens the store for reading, after a check that --out can be written and is not the store.
@@ -235,7 +250,7 @@ Result<int> RunMerge(const RefitPendulumsOptions& options) {
 Result<int> RunRefitCommand(const RefitPendulumsOptions& options) {
   switch (options.command) {
     case RefitCommand::kRefit: return RunRefit(options);
-    case RefitCommand::kStatus: return ShowStatus(options.stores.front());
+    case RefitCommand::kStatus: return ShowStatus(options);
     case RefitCommand::kExport: return RunExport(options);
     case RefitCommand::kCompare: return RunCompare(options);
     case RefitCommand::kReport: return MakeReport(options);

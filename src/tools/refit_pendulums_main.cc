@@ -19,7 +19,7 @@ constexpr const char* kUsage =
     "  refit_pendulums runs.csv --models viscous,coulomb --store results.sqlite\n"
     "  refit_pendulums recordings/ --models all --store results.sqlite\n"
     "\n"
-    "  refit_pendulums status  --store results.sqlite\n"
+    "  refit_pendulums status  --store results.sqlite [--details]\n"
     "  refit_pendulums report  --store results.sqlite --out summary.html [--group_by rig] [--trend_by date]\n"
     "  refit_pendulums export  --store results.sqlite --out results.csv|results.jsonl\n"
     "  refit_pendulums compare before.sqlite after.sqlite\n"
@@ -29,12 +29,10 @@ constexpr const char* kUsage =
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
     "A run that cannot be read or fitted gets a row that says why. After an interruption, repeat the same command.\n"
-    "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another "
-    "status or\n"
-    "is missing, 2 wrong flags, 3 file or\n"
-    "shards not found, 4 unreadable manifest or store, 5 no run, 70 a bug, 73 the store or an output cannot be "
-    "written,\n"
-    "75 terminated or the store is in use: try again, 130 interrupted.\n"
+    "Exit codes: 0 every run has its rows; 1 compare found a result that moved by more than its error, has another\n"
+    "status or is missing; 2 wrong flags; 3 a file or shard does not exist; 4 the manifest or store cannot be read;\n"
+    "5 there is no run; 70 a bug; 73 the store or an output cannot be written; 75 terminated, or the store is in use:\n"
+    "try again; 130 interrupted.\n"
     "\n";
 
 /// Names of the tool's flags on the command line; the tool sets libraries' flags itself.
@@ -64,6 +62,10 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},
       {"retry_failed", &Flags::retry_failed,
        "Also refits runs that could not be fitted; default off, because the same files fail again."},
+      {"details", &Flags::details,
+       "Prints counts of fits, recommendations and failures, and the summary last; default: the summary alone."},
+      {"quiet", &Flags::quiet,
+       "Prints the parameters alone, a line each: name, median, standard deviation over the recordings, unit."},
       {"shard", &Flags::shard,
        "k/N: refits only part k (from 0) of N, each into its own store out/shard-k.sqlite; default all."},
       {"scratch", &Flags::scratch,
@@ -76,8 +78,10 @@ std::vector<ToolFlag<Flags>> FlagTable() {
       {"shard_count", &Flags::shard_count, "For missing and merge: number of shards, N of --shard."},
       {"out", &Flags::out, "Output file of export (.csv or .jsonl), report (.html or .json) or pack."},
       {"group_by", &Flags::group_by,
-       "For report: manifest column in which runs of one rig have the same value; default rig, if the manifest names "
-       "several rigs; otherwise all runs are of one rig."},
+       "What tells the pendulums apart: a manifest column (recordings with the same value are repeats of one "
+       "pendulum), "
+       "folder, or all (all are of one); default the columns pendulum, group or rig_id, the true values of simulated "
+       "recordings, or the rig files; without these, folders or all."},
       {"trend_by", &Flags::trend_by,
        "For report: manifest column of numbers or dates along which trends are computed; default the position in the "
        "manifest."},

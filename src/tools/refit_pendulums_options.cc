@@ -27,7 +27,7 @@ struct CommandFlags {
 
 const std::vector<CommandFlags>& Commands() {
   static const std::vector<CommandFlags> commands = {
-      {"status", RefitCommand::kStatus, {"store"}, {}},
+      {"status", RefitCommand::kStatus, {"store"}, {"group_by", "details", "quiet"}},
       {"export", RefitCommand::kExport, {"store", "out"}, {}},
       {"compare", RefitCommand::kCompare, {}, {}},
       {"report", RefitCommand::kReport, {"store", "out"}, {"group_by", "trend_by"}},
@@ -41,7 +41,7 @@ const std::vector<CommandFlags>& Commands() {
 bool Contains(const auto& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
 /// Flags that a refit does not have.
-constexpr std::array<std::string_view, 5> kNotForRefit = {"out", "shard_dir", "shard_count", "group_by", "trend_by"};
+constexpr std::array<std::string_view, 4> kNotForRefit = {"out", "shard_dir", "shard_count", "trend_by"};
 
 Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) {
   for (const std::string_view name : command.needed) {
@@ -149,6 +149,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   options.refit.run.fit.may_be_spring = options.refit.run.rig_chooses_gravity = false;
   options.refit.force = flags.force;
   options.refit.retry_failed = flags.retry_failed;
+  options.summary.group_by = flags.group_by;
   options.rig = flags.rig;
   options.calibration = flags.calibration;
   return ParseShardFlags(flags, options);
@@ -160,7 +161,7 @@ Result<void> ParseOther(const CommandFlags& command, const RefitFlags& flags, Re
   options.out = flags.out;
   options.shard_dir = flags.shard_dir;
   options.shard_count = flags.shard_count;
-  options.summary = {flags.group_by, flags.trend_by};
+  options.summary = {flags.group_by, flags.trend_by, false};
   if (Contains(command.needed, "shard_count") && flags.shard_count < 1) {
     return BadFlag("--shard_count is " + std::to_string(flags.shard_count) + "; it must be at least 1");
   }
@@ -180,6 +181,11 @@ Result<void> ParseOther(const CommandFlags& command, const RefitFlags& flags, Re
 Result<RefitPendulumsOptions> MakeRefitPendulumsOptions(const RefitFlags& flags) {
   RefitPendulumsOptions options;
   if (!flags.store.empty()) options.stores = {flags.store};
+  if (flags.details && flags.quiet) {
+    return BadFlag("--details and --quiet contradict each other; give one of them");
+  }
+  options.details = flags.details;
+  options.quiet = flags.quiet;
   const auto& commands = Commands();
   const auto found =
       flags.positional.empty() ? commands.end() : std::ranges::find(commands, flags.positional[0], &CommandFlags::name);

@@ -28,6 +28,8 @@ struct RefitFlags : RunFlags {
   std::int64_t shard_count = 0;
   bool force = false;
   bool retry_failed = false;
+  bool details = false;
+  bool quiet = false;
   std::vector<std::string> positional;  ///< The command and its arguments, or the runs of a refit.
   std::vector<std::string> given;       ///< Names of the given flags.
 };
@@ -48,6 +50,8 @@ struct RefitPendulumsOptions {
   RefitOptions refit;  ///< The caller reads rig and calibration.
   ShardOptions shard;  ///< Options of a shard; the caller names its attempt.
   SummaryOptions summary;
+  bool details = false;  ///< Also prints counts of fits, recommendations and failures.
+  bool quiet = false;    ///< Prints the parameters alone.
 };
 
 /// Converts flags to options. kInvalidArgument: an unknown command, a missing required flag, a flag of another command,

@@ -10,7 +10,9 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/overview.h"
+#include "pendulum/batch/run_statistics.h"
 #include "pendulum/report/layout.h"
+#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 #include "tools/progress_line.h"
 
@@ -18,6 +20,7 @@ namespace pendulum {
 namespace {
 
 using Cells = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 std::string ModelsText(const nlohmann::ordered_json& models) {
   const std::vector<Column> columns = {
@@ -90,9 +93,179 @@ std::string RemovedFitsText(const StoreComparison& comparison) {
   return Heading("Missing in the second store") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
 }
 
+// ---- The summary ----------------------------------------------------------------------------------------------------
+
+constexpr std::size_t kSummaryLines = 20;
+
+std::size_t LineCount(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
+
+/// A standard error or a spread; "-" if there is none.
+std::string SpreadText(const Json& number) {
+  constexpr int kDigits = 2;
+  return number.is_number() ? NumberText(number.get<double>(), kDigits) : "-";
+}
+
+/// A value with the decimals of its spread.
+std::string ValueText(const Json& value, const Json& spread) {
+  if (!value.is_number()) return "-";
+  if (!spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value.get<double>(), kTextDigits);
+  return RoundedText(value.get<double>(), {PdgRounding(value.get<double>(), spread.get<double>()).decimals, 0});
+}
+
+/// The law of the table, and how often it was recommended.
+std::string LawText(const Json& summary) {
+  if (!summary["main_model"].is_string()) return "";
+  const auto law = summary["main_model"].get<std::string>();
+  std::int64_t compared = 0, recommended = 0;
+  for (const Json& row : summary["recommendations"]) {
+    compared += row["runs"].get<std::int64_t>();
+    if (row["model"] == law) recommended += row["runs"].get<std::int64_t>();
+  }
+  if (compared == 0) return "";
+  return "Law " + law + ": recommended for " + std::to_string(recommended) + " of " + std::to_string(compared) +
+         " recordings.";
+}
+
+std::string VerdictText(const Json& summary) {
+  for (const Json& verdict : summary["verdicts"]) {
+    if (verdict["model"] == summary["main_model"]) return verdict["text"].get<std::string>();
+  }
+  return "";
+}
+
+/// The parameters of the main model: typical value, scatter between recordings, typical error.
+std::string ParametersText(const Json& summary, bool of_the_rig_only) {
+  std::vector<Cells> rows;
+  for (const Json& parameter : summary["parameters"]) {
+    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
+    if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
+    const Json& found = parameter["repeatability"];
+    rows.push_back({parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
+                    parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]),
+                    SpreadText(parameter["median_std_error"]),
+                    found.is_object() && found["scatter_ratio"].is_number()
+                        ? NumberText(found["scatter_ratio"].get<double>(), 3)
+                        : "",
+                    parameter["unit"] == "1" ? "" : parameter["unit"].get<std::string>()});
+  }
+  if (rows.empty()) return "";
+  return AlignedTable({{summary["main_model"].get<std::string>()},
+                       {"median", true},
+                       {"spread", true},
+                       {"typical error", true},
+                       {"scatter/error", true},
+                       {"unit"}},
+                      rows, kTextIndent);
+}
+
+/// Names the recordings that disagree with the others of their pendulum.
+std::string OutliersText(const Json& summary) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> texts;
+  std::size_t total = 0;
+  const auto take = [&](const std::string& id, const std::string& text) {
+    if (std::ranges::any_of(texts, [&](const std::string& known) { return known.starts_with(id + " ("); })) return;
+    ++total;
+    texts.push_back(id + " (" + text + ")");
+  };
+  if (summary["agreement"].is_object()) {
+    for (const Json& row : summary["agreement"]["rows"]) {
+      for (const Json& outlier : row["outliers"]) {
+        take(Printable(outlier["id"].get<std::string>()),
+             outlier["parameter"].get<std::string>() + " " + NumberText(outlier["estimate"].get<double>(), 5) +
+                 ", the others " + NumberText(outlier["others"].get<double>(), 5));
+      }
+    }
+  }
+  for (const Json& parameter : summary["parameters"]) {
+    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
+    for (const Json& outlier : parameter["outliers"]) {
+      take(Printable(outlier["id"].get<std::string>()),
+           parameter["name"].get<std::string>() + " " + NumberText(outlier["estimate"].get<double>(), 5) + ", median " +
+               NumberText(parameter["median"].get<double>(), 5));
+    }
+  }
+  if (texts.empty()) return "";
+  const std::string count = total == 1 ? "One recording disagrees" : std::to_string(total) + " recordings disagree";
+  if (texts.size() > kNamed) texts.resize(kNamed);
+  std::string text;
+  for (const std::string& one : texts) text += (text.empty() ? "" : "; ") + one;
+  return count + " with the others of the same pendulum: " + text +
+         (total > texts.size() ? "; and " + std::to_string(total - texts.size()) + " more" : "") + ".";
+}
+
+/// The beginning of a reason; --details shows all of it.
+std::string Beginning(const std::string& reason) {
+  constexpr std::size_t kLongest = 90;  // bytes, of about two lines
+  const std::string text = Printable(reason.substr(0, reason.find("; ")));
+  if (text.size() <= kLongest) return text;
+  return text.substr(0, text.rfind(' ', kLongest)) + " ...";
+}
+
+/// "Missing: a.csv, b.csv and 3 more."
+std::string ExamplesText(const char* heading, const Json& runs, std::int64_t total, bool with_reason) {
+  constexpr std::size_t kNamed = 3;
+  if (runs.empty()) return "";
+  std::string text;
+  const std::size_t named = std::min(runs.size(), with_reason ? std::size_t{1} : kNamed);
+  for (std::size_t i = 0; i < named; ++i) {
+    text += (i == 0 ? "" : ", ") + Printable(runs[i]["id"].get<std::string>());
+    if (with_reason) text += " (" + Beginning(runs[i]["reason"].get<std::string>()) + ")";
+  }
+  const std::int64_t more = total - static_cast<std::int64_t>(named);
+  return std::string(heading) + ": " + text + (more > 0 ? " and " + std::to_string(more) + " more" : "") + ".";
+}
+
+/// `folding` 1: without the law and the parameters of the start; 2: also without examples of missing and refused files.
+std::string SummaryText(const Json& summary, const std::string& store, int folding) {
+  const Json& headline = summary["headline"];
+  const Json& grouping = summary["grouping"];
+  std::string groups = Printable(grouping["text"].get<std::string>());
+  if (grouping["otherwise"].is_string()) groups += " " + grouping["otherwise"].get<std::string>();
+  std::string text = Heading(Printable(store)) + Prose(headline["text"].get<std::string>() + ".") + Prose(groups);
+  const std::string missing =
+      ExamplesText("Missing", headline["missing_runs"], headline["missing"].get<std::int64_t>(), false);
+  const std::string refused =
+      ExamplesText("Refused", headline["refused_runs"], headline["refused"].get<std::int64_t>(), true);
+  for (const std::string& line :
+       {OutliersText(summary), grouping["is_compared"].get<bool>() ? VerdictText(summary) : std::string(),
+        folding < 2 ? missing : "", folding < 2 ? refused : "", folding < 1 ? LawText(summary) : ""}) {
+    if (!line.empty()) text += Prose(line);
+  }
+  text += ParametersText(summary, folding > 0);
+  const std::string name = ShellWord(store);
+  return text + Prose("More: status --details --store " + name +
+                      " (fits and failures), report --out page.html "
+                      "(plots), sqlite3 " +
+                      name + " 'select file, inertia from results'.");
+}
+
 constexpr std::chrono::milliseconds kRedraw{200};
 
 }  // namespace
+
+std::string SummaryText(const Json& summary, const std::string& store) {
+  constexpr int kMaxFolding = 2;
+  std::string text = SummaryText(summary, store, 0);
+  for (int folding = 1; folding <= kMaxFolding && LineCount(text) > kSummaryLines; ++folding) {
+    text = SummaryText(summary, store, folding);
+  }
+  return text;
+}
+
+std::string QuietText(const Json& summary) {
+  constexpr int kDigits = 10;
+  std::string text;
+  for (const Json& parameter : summary["parameters"]) {
+    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
+    const Json& spread = parameter["std_dev"];
+    text += parameter["name"].get<std::string>() + " " + NumberText(parameter["median"].get<double>(), kDigits) + " " +
+            (spread.is_number() && parameter["runs"].get<std::int64_t>() > 1 ? NumberText(spread.get<double>(), kDigits)
+                                                                             : "-") +
+            " " + parameter["unit"].get<std::string>() + "\n";
+  }
+  return text;
+}
 
 Result<std::string> StatusText(Store& store) {
   const auto counts = store.Count();

@@ -13,6 +13,15 @@
 
 namespace pendulum {
 
+/// What a reader of a batch needs first, in at most 20 lines of 80 columns: how many recordings were fitted, which were
+/// taken for repeats of one pendulum, whether these agree, and the parameters of the main model. `summary`: of
+/// Summarize. `store`: its path.
+std::string SummaryText(const nlohmann::ordered_json& summary, const std::string& store);
+
+/// The parameters of the main model, a line each: name, median, standard deviation over the recordings ("-" if there is
+/// none) and unit, separated by blanks.
+std::string QuietText(const nlohmann::ordered_json& summary);
+
 /// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);
 

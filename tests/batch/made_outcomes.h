@@ -49,6 +49,22 @@ inline RunOutcome OutcomeOf(const std::vector<Json>& fits, const char* recommend
   return outcome;
 }
 
+/// A fit of the law viscous with these estimates of inertia and viscous friction, and independent standard errors.
+inline Json FitWithCovariance(double inertia, double inertia_error, double viscous, double viscous_error) {
+  Json fit = FitOf("viscous", inertia);
+  const auto set = [&](const char* name, double value, double error) {
+    Json& parameter = fit["parameters"][name];
+    parameter["estimate"] = value;
+    parameter["std_error"] = error;
+    parameter["fixed"] = false;
+  };
+  set("inertia", inertia, inertia_error);
+  set("viscous", viscous, viscous_error);
+  fit["covariance"] = {{"names", {"inertia", "viscous"}},
+                       {"matrix", {{inertia_error * inertia_error, 0}, {0, viscous_error * viscous_error}}}};
+  return fit;
+}
+
 inline RunOutcome FailureOf(const std::string& reason, int exit_code) {
   RunOutcome outcome = OutcomeOf({});
   outcome.models = {"viscous"};

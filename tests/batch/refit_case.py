@@ -37,7 +37,7 @@ def rows(store):
 def pairs(store):
     """(run, model) of every result, sorted."""
     with contextlib.closing(sqlite3.connect(f"{store.as_uri()}?mode=ro", uri=True)) as connection:
-        return sorted(connection.execute("SELECT id, model FROM results"))
+        return sorted(connection.execute("SELECT id, model FROM all_fits"))
 
 
 def work_on(store):

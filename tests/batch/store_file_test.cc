@@ -116,10 +116,10 @@ TEST_F(StoreFileTest, ChecksAllPages) {
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("b", RefittedOutcome()) && store.Commit());
   EXPECT_TRUE(Reopen().Check());
   {
-    const std::size_t half = fs::file_size(path_) / kPage / 2 * kPage;
+    const std::size_t late = fs::file_size(path_) / kPage * 3 / 4 * kPage;  // the schema is before it
     std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(static_cast<std::streamoff>(half));
-    file << std::string(fs::file_size(path_) - half, '\x5a');
+    file.seekp(static_cast<std::streamoff>(late));
+    file << std::string(fs::file_size(path_) - late, '\x5a');
   }
   const auto checked = Reopen().Check();
   ASSERT_FALSE(checked);
@@ -167,7 +167,7 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 3);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 4);
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
@@ -199,7 +199,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message, path_ +
                                          ": the store has version 99 of a newer program, but this program reads "
-                                         "versions up to 3; use the newer program");
+                                         "versions up to 4; use the newer program");
   }
 }
 

@@ -86,11 +86,11 @@ std::int64_t NumberOf(Store& store, const std::string& query) { return store.dat
 
 TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
-  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 3);
+  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 4);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
   EXPECT_THAT(TextsOf(store, "SELECT name FROM sqlite_schema WHERE sql LIKE '%--%' ORDER BY name"),
-              ElementsAre("answers", "batches", "files", "fits", "meta", "options", "quantities", "requests", "results",
-                          "runs"));
+              ElementsAre("all_fits", "answers", "batches", "files", "fits", "meta", "options", "quantities",
+                          "requests", "results", "runs"));
   EXPECT_THAT(TextsOf(store, "PRAGMA integrity_check"), ElementsAre("ok"));
 }
 
@@ -235,7 +235,7 @@ TEST_F(StoreTest, StoresEachFitAndTheResult) {
   const auto& fit = outcome.result["fits"][1];
   SQLite::Statement row(store.database(),
                         "SELECT status, residual_unit, rms_residual, sigma, aicc, used_samples, evaluations, "
-                        "recommended FROM results WHERE model = 'coulomb'");
+                        "recommended FROM all_fits WHERE model = 'coulomb'");
   ASSERT_TRUE(row.executeStep());
   EXPECT_EQ(fit["status"], row.getColumn(0).getString());
   EXPECT_EQ(row.getColumn(1).getString(), "rad");
@@ -254,13 +254,13 @@ TEST_F(StoreTest, ReplacesAllRowsOfARun) {
   RunOutcome unfitted = UnfittedOutcome();
   unfitted.models = {"drag"};
   ASSERT_TRUE(store.Put("a", unfitted) && store.Commit());
-  EXPECT_THAT(TextsOf(store, "SELECT model || ' ' || status || ' ' || reason FROM results WHERE id = 'a'"),
+  EXPECT_THAT(TextsOf(store, "SELECT model || ' ' || status || ' ' || reason FROM all_fits WHERE id = 'a'"),
               ElementsAre("drag failed " + unfitted.reason));
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM quantities JOIN runs USING(run) WHERE id = 'a'"), 0);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM runs WHERE id = 'a' AND result IS NULL AND exit_code = 3"), 1);
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
   EXPECT_EQ(NumberOf(store, "SELECT count(DISTINCT result) FROM runs WHERE reason IS NULL"), 1);
-  EXPECT_THAT(TextsOf(store, "SELECT model FROM results WHERE id = 'a' ORDER BY model"),
+  EXPECT_THAT(TextsOf(store, "SELECT model FROM all_fits WHERE id = 'a' ORDER BY model"),
               ElementsAre("coulomb", "viscous"));
   EXPECT_EQ(2 * NumberOf(store, "SELECT count(*) FROM quantities JOIN runs USING(run) WHERE id = 'a'"),
             NumberOf(store, "SELECT count(*) FROM quantities"));

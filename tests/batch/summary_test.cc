@@ -25,6 +25,7 @@ namespace {
 
 using made_outcomes::FailureOf;
 using made_outcomes::FitOf;
+using made_outcomes::FitWithCovariance;
 using made_outcomes::OutcomeOf;
 using made_store::ManifestOf;
 using made_store::PlainManifest;
@@ -192,7 +193,8 @@ TEST_F(SummaryTest, GroupsRunsByAColumnOfTheManifest) {
   Store store = StoreOf(manifest, [](std::size_t i) {  // rigs with means 10 and 90, runs ± 1
     return OutcomeOf({FitOf("viscous", (i % 2 == 0 ? 10 : 90) + (i % 4 < 2 ? 1 : -1))});
   });
-  EXPECT_EQ(ParameterOf(SummaryOf(store), "viscous", "inertia")["repeatability"]["verdict"], "scatter_larger");
+  EXPECT_EQ(ParameterOf(SummaryOf(store, {"all", ""}), "viscous", "inertia")["repeatability"]["verdict"],
+            "scatter_larger");
   const Json summary = SummaryOf(store, {"rig no", ""});
   EXPECT_EQ(summary["group_by"], "rig no");
   const Json& repeatability = ParameterOf(summary, "viscous", "inertia")["repeatability"];
@@ -302,6 +304,93 @@ TEST_F(SummaryTest, WarnsOfEarlierManifestsAndDuplicateSwings) {
   EXPECT_THAT(WarningsOf(SummaryOf(store)), ElementsAre("same_data"));
   Store shorter = StoreOf(PlainManifest(3), make);  // the same file with fewer runs
   EXPECT_THAT(WarningsOf(SummaryOf(shorter)), ElementsAre("not_in_the_manifest", "same_data"));
+}
+
+// ---- What is taken for one pendulum --------------------------------------------------------------------------------
+
+TEST_F(SummaryTest, CountsMissingAndRefusedRecordingsFirst) {
+  Store store = StoreOf(PlainManifest(6), [](std::size_t i) -> std::optional<RunOutcome> {
+    if (i == 0) return FailureOf("run0.csv: there is no such file; check the path", 3);
+    if (i == 1) return FailureOf("rig.json: there is no such file; check the path", 3);  // the recording exists
+    if (i == 2) return FailureOf("run2.csv: no swing", 5);
+    if (i == 3) return std::nullopt;
+    RunOutcome outcome = OutcomeOf({FitOf("viscous", 10, i == 4 ? "not_converged" : "converged")});
+    outcome.exit_code = i == 4 ? 1 : 0;
+    return outcome;
+  });
+  const Json headline = SummaryOf(store)["headline"];
+  EXPECT_EQ(headline["text"], "1 of 6 recordings fitted; 1 missing, 2 refused, 1 not converged, 1 not fitted yet");
+  EXPECT_EQ(headline["missing_runs"][0]["id"], "run0.csv");
+  EXPECT_EQ(headline["refused_runs"][1]["reason"], "no swing");
+}
+
+TEST_F(SummaryTest, DoesNotCompareSimulatedPendulumsWithDifferentTruth) {
+  const std::string manifest = ManifestOf(200, ",true_inertia,true_release_angle",
+                                          [](std::size_t i) { return "," + std::to_string(10 + i) + ",0.4"; });
+  Store store =
+      StoreOf(manifest, [](std::size_t i) { return OutcomeOf({FitOf("viscous", 10 + static_cast<double>(i))}); });
+  const Json summary = SummaryOf(store);
+  EXPECT_EQ(summary["grouping"]["text"],
+            "200 different pendulums (each has its own true values); repeatability needs several recordings of one.");
+  EXPECT_EQ(summary["grouping"]["is_compared"], false);
+  EXPECT_EQ(summary["verdicts"][0]["verdict"], "not_compared");
+  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["repeatability"], nullptr);
+  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["repeatability_reason"], "no pendulum has two recordings");
+  EXPECT_EQ(SummaryOf(store, {"all", ""})["verdicts"][0]["verdict"], "too_small");  // the user says so
+}
+
+TEST_F(SummaryTest, EqualTruthIsOnePendulum) {
+  Store store = StoreOf(ManifestOf(6, ",true_inertia", [](std::size_t) { return ",10"; }),
+                        [](std::size_t i) { return OutcomeOf({FitOf("viscous", 10 + static_cast<double>(i % 2))}); });
+  EXPECT_EQ(SummaryOf(store)["grouping"]["by"], "all");
+}
+
+// Inertias of 1, 2, 3, 4, 5 with errors of 0.001: median distance 1, so 1.48 / 3 = 49 %.
+TEST_F(SummaryTest, ConcludesNothingIfRecordingsDifferGrosslyAndNothingSaysThatTheyAreOfOneRig) {
+  const auto fit = [](std::size_t i) {
+    return OutcomeOf({FitWithCovariance(static_cast<double>(i + 1), 0.001, 0.5, 0.1)});
+  };
+  Store store = StoreOf(PlainManifest(5), fit);
+  const Json summary = SummaryOf(store);
+  EXPECT_EQ(
+      summary["grouping"]["text"],
+      "The 5 recordings are not taken for one pendulum: their inertia scatters by 49 %, repeats of one pendulum by "
+      "at most 2 %. So they are not compared, and nothing is concluded about their errors.");
+  EXPECT_THAT(summary["grouping"]["otherwise"].get<std::string>(), HasSubstr("--group_by all"));
+  EXPECT_EQ(summary["verdicts"][0]["verdict"], "not_compared");
+  EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["repeatability"], nullptr);
+  EXPECT_EQ(SummaryOf(store, {"all", ""})["verdicts"][0]["verdict"], "too_small");
+}
+
+TEST_F(SummaryTest, GroupsByColumnsThatNamePendulumsAndByFolders) {
+  const auto fit = [](std::size_t i) { return OutcomeOf({FitOf("viscous", i % 2 == 0 ? 10 : 90)}); };
+  Store named = StoreOf(ManifestOf(8, ",pendulum", [](std::size_t i) { return i % 2 == 0 ? ",A" : ",B"; }), fit);
+  EXPECT_EQ(
+      SummaryOf(named)["grouping"]["text"],
+      "Recordings with the same value in the column pendulum are taken for repeats of one pendulum: 2 pendulums, 4 "
+      "recordings each.");
+  EXPECT_EQ(SummaryOf(named, {"all", ""})["grouping"]["pendulums"], 1);
+  fs::remove(folder_ / "store.sqlite");
+  std::string text = "path\n";
+  for (std::size_t i = 0; i < 8; ++i) text += std::string(i % 2 == 0 ? "a" : "b") + "/" + std::to_string(i) + ".csv\n";
+  Store folders = StoreOf(text, fit);
+  EXPECT_EQ(SummaryOf(folders)["grouping"]["by"], "folder");
+  EXPECT_EQ(SummaryOf(folders)["grouping"]["pendulums"], 2);
+}
+
+// χ² by hand: inertia 10, 10, 10, 10.3: the mean is 10.075. The friction is equal, so its χ² is 0.
+TEST_F(SummaryTest, NamesTheRecordingThatAJointFitNames) {
+  Store store = StoreOf(PlainManifest(4),
+                        [](std::size_t i) { return OutcomeOf({FitWithCovariance(i == 3 ? 10.3 : 10, 0.05, 5, 0.1)}); });
+  const Json agreement = SummaryOf(store)["agreement"];
+  ASSERT_TRUE(agreement.is_object());
+  const Json& row = agreement["rows"][0];
+  EXPECT_EQ(row["dof"], 6);
+  EXPECT_NEAR(row["statistic"].get<double>(), (3 * 0.075 * 0.075 + 0.225 * 0.225) / (0.05 * 0.05), 1e-6);
+  ASSERT_THAT(row["outliers"], SizeIs(1));
+  EXPECT_EQ(row["outliers"][0]["id"], "run3.csv");
+  EXPECT_EQ(row["outliers"][0]["parameter"], "inertia");
+  EXPECT_NEAR(row["outliers"][0]["z"].get<double>(), 0.3 / (0.05 * std::sqrt(1 + 1 / 3.0)), 1e-9);
 }
 
 // ---- Refusals ------------------------------------------------------------------------------------------------------

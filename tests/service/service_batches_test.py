@@ -286,7 +286,7 @@ class Survival(Batched):
         with sqlite3.connect(self.folder / "fits.sqlite") as database:
             self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
         code, out, said = run_tool("refit_pendulums", "status", "--store", "fits.sqlite", folder=self.folder)
-        self.assertEqual((code, b"in the store" in out), (0, True), said)
+        self.assertEqual((code, b"recordings fitted" in out), (0, True), said)
         code, _, said = run_tool("refit_pendulums", "export", "--store", "fits.sqlite", "--out", "fits_table.csv",
                                  folder=self.folder)
         self.assertEqual(code, 0, said)

@@ -68,9 +68,13 @@ class RefitCommandsTest : public testing::Test {
 TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunIsStored) {
   EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   EXPECT_THAT(stderr_text_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
-  EXPECT_THAT(stdout_text_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
-  EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
+  EXPECT_THAT(stdout_text_, HasSubstr("    1 of 2 recordings fitted; 1 "));
+  RefitPendulumsOptions details = Options(RefitCommand::kStatus);
+  details.details = true;
+  EXPECT_EQ(Run(details), 0);
   EXPECT_THAT(stdout_text_, HasSubstr("in the store                    2\n"));
+  EXPECT_THAT(stdout_text_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
+  EXPECT_THAT(stdout_text_, HasSubstr("    1 of 2 recordings fitted; 1 "));
 }
 
 TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {

@@ -15,11 +15,12 @@ import subprocess
 import time
 import unittest
 
-from refit_lab import DATASETS, Lab, RIG, TIMEOUT_S, TOOL, TOOLS, as_nobody, sound
+from refit_lab import DATASETS, Lab, RIG, SIMULATED, TIMEOUT_S, TOOL, TOOLS, as_nobody, sound
 from sanitizers import is_sanitized, memory_limit
 
 # Number of runs, enough that some are in progress for seconds; and how often a tool is killed.
 MANY, KILLS = (24, 5) if is_sanitized(TOOL) else (120, 20)
+PENDULUMS = 24 if is_sanitized(TOOL) else 200
 
 
 def exact(text):
@@ -192,7 +193,7 @@ class Interruptions(Lab):
         self.assertIn("cannot write a.sqlite", said)
         self.assertEqual((self.folder / "a.sqlite").read_bytes(), before)
         out, _ = self.run_tool("status", "--store", "a.sqlite", preexec_fn=as_nobody)
-        self.assertIn("in the store                    2", out)
+        self.assertIn("2 of 2 recordings fitted.", out)
 
     def test_a_store_in_use_exits_75(self):
         manifest = self.manifest(self.simulate(MANY))
@@ -200,7 +201,7 @@ class Interruptions(Lab):
         self.wait_for("a.sqlite.lock")
         _, said = self.refit(manifest, "a.sqlite", code=75)
         self.assertIn("another process writes to this file", said)
-        self.assertIn("[[Runs]]", self.run_tool("status", "--store", "a.sqlite")[0])
+        self.assertIn("[[Runs]]", self.run_tool("status", "--details", "--store", "a.sqlite")[0])
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 0)
         self.assertFalse((self.folder / "a.sqlite.lock").exists())
@@ -326,6 +327,88 @@ class Reports(Lab):
         self.assertTrue('id="summary"' in (self.folder / "a.html").read_text())
         self.assertIn("the manifest has no column 'day'; it has date",
                       self.run_tool("report", "--store", "a.sqlite", "--out", "a.html", "--group_by", "day", code=2)[1])
+
+    def test_different_pendulums_are_not_taken_for_repeats(self):
+        (self.folder / "many").mkdir()
+        subprocess.run([TOOLS / "simulate_pendulum", *SIMULATED, "--spread", "inertia=0.01,viscous=0.001", "--count", str(PENDULUMS),
+                        "--out", "many/run.csv", "--manifest", "many/runs.csv"], cwd=self.folder, check=True, timeout=TIMEOUT_S)
+        out, _ = self.run_tool("many/runs.csv", "--model", "coulomb", "--store", "a.sqlite")
+        self.assertRegex(out, rf"(?s){PENDULUMS} of {PENDULUMS} recordings fitted\.\n    {PENDULUMS} different pendulums")
+        self.assertNotIn("too small", out)
+        # The same recordings without the truth: nothing says that they differ, but no repeats differ so much.
+        out, _ = self.run_tool("--data", "many", "--rig", RIG, "--model", "coulomb", "--store", "b.sqlite")
+        self.assertIn("are not taken for one pendulum", out)
+        self.assertNotIn("too small", out)
+        out, _ = self.run_tool("status", "--group_by", "all", "--store", "b.sqlite")
+        self.assertIn("too small", out)
+
+    def test_the_summary_fits_a_screen_and_names_missing_refused_and_outlying_recordings(self):
+        for name in ("runs_1.csv", "runs_2.csv", "runs_3.csv", "runs_4.csv"):
+            shutil.copy(DATASETS / name, self.folder)
+        (self.folder / "text.csv").write_text("notes\n")
+        paths = ["runs_1.csv", "runs_2.csv", "runs_3.csv", "runs_4.csv", "runs_5.csv", "text.csv"]
+        out, _ = self.refit(self.manifest(paths), "a.sqlite")
+        lines = out.splitlines()
+        self.assertLessEqual(len(lines), 20, out)
+        self.assertLessEqual(max(map(len, lines)), 80, out)
+        self.assertEqual(lines[1], "    4 of 6 recordings fitted; 1 missing, 1 refused.")
+        self.assertIn("taken for repeats of one pendulum", lines[2])
+        self.assertIn("Missing: runs_5.csv.", out)
+        self.assertIn("Refused: text.csv (", out)
+        self.run_tool("report", "--store", "a.sqlite", "--out", "a.json")
+        row = json.loads((self.folder / "a.json").read_text())["agreement"]["rows"][0]
+        # fit_pendulum fits these recordings jointly with the same test.
+        subprocess.run([TOOLS / "fit_pendulum", *paths[:4], "--rig", RIG, "--model", "coulomb", "--json", "joint.json"],
+                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=TIMEOUT_S)
+        joint = json.loads((self.folder / "joint.json").read_text())["fits"][0]["homogeneity"]
+        self.assertAlmostEqual(row["statistic"] / joint["statistic"], 1, delta=1e-6)
+        self.assertEqual([outlier["id"] for outlier in row["outliers"]], [paths[k - 1] for k in joint["outliers"]])
+        self.assertIn("runs_4.csv (inertia", " ".join(out.split()))
+
+    def test_quiet_prints_parameters_and_details_the_tables(self):
+        manifest = self.manifest(self.simulate(3))
+        out, _ = self.refit(manifest, "a.sqlite", "--quiet")
+        self.assertRegex(out.splitlines()[0], r"^\w+ \S+ \S+ \S+")
+        out, _ = self.run_tool("status", "--store", "a.sqlite", "--details")
+        self.assertLess(out.index("[[Fits]]"), out.index("[[a.sqlite]]"))
+        self.assertIn("contradict", self.run_tool("status", "--store", "a.sqlite", "--details", "--quiet", code=2)[1])
+
+    def test_inertia_can_be_selected_from_results(self):
+        paths = self.simulate(2) + ["missing.csv"]
+        self.refit(self.manifest(paths), "a.sqlite")
+        stored = self.rows("a.sqlite")
+        with sqlite3.connect(self.folder / "a.sqlite") as database:
+            found = database.execute("SELECT id, law, inertia, inertia_std_error, inertia_total_std_error, inertia_unit, status, "
+                                     "verdict FROM results ORDER BY position").fetchall()
+        self.assertEqual([row[0] for row in found], paths)
+        for run, law, *values, status, verdict in found[:2]:
+            result = json.loads(stored["runs", run, None, None]["result"])
+            fit = next(fit for fit in result["fits"] if fit["model"] == result["comparison"]["recommended"])
+            inertia = fit["parameters"]["inertia"]
+            self.assertEqual((law, status, verdict), (fit["model"], "converged", fit["summary"]["verdict"]))
+            self.assertEqual(values, [inertia[key] for key in ("estimate", "std_error", "total_std_error", "unit")])
+        self.assertEqual(found[2][1:7], (None, None, None, None, None, "failed"))
+        self.assertIn("there is no such file", found[2][7])
+
+    def test_an_older_store_is_read_unchanged_and_gets_the_view_when_it_is_written(self):
+        manifest = self.manifest(self.simulate(2))
+        self.refit(manifest, "a.sqlite")
+        with sqlite3.connect(self.folder / "a.sqlite") as database:
+            database.executescript("DROP VIEW results; DROP VIEW all_fits; ALTER TABLE fits DROP COLUMN verdict; "
+                                   "ALTER TABLE quantities DROP COLUMN total_std_error; PRAGMA user_version = 3; "
+                                   "CREATE VIEW results AS SELECT id, fits.* FROM runs JOIN fits USING(run)")
+        (self.folder / "a.sqlite").chmod(0o444)
+        self.folder.chmod(0o555)
+        before = (self.folder / "a.sqlite").read_bytes()
+        out, _ = self.run_tool("status", "--store", "a.sqlite", preexec_fn=as_nobody)
+        self.assertIn("2 of 2 recordings fitted", out)
+        self.assertEqual((self.folder / "a.sqlite").read_bytes(), before)
+        self.folder.chmod(0o755)
+        (self.folder / "a.sqlite").chmod(0o644)
+        self.refit(manifest, "a.sqlite")
+        with sqlite3.connect(self.folder / "a.sqlite") as database:
+            for error, total in database.execute("SELECT inertia_std_error, inertia_total_std_error FROM results"):
+                self.assertLessEqual(error, total)
 
     def test_comparison_reports_changed_values(self):
         manifest = self.manifest(self.simulate(3))

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/analysis/agreement.h"
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/random_effects.h"
 #include "pendulum/fitting/fit/fit.h"
@@ -74,7 +75,7 @@ struct Homogeneity {
   /// Whether some parameters differ, and all of these only through their dependence on amplitude.
   bool is_amplitude() const;
 
-  static constexpr double kDisagree = 0.01;  ///< Probability that recordings of one rig are reported as disagreeing.
+  static constexpr double kDisagree = Agreement::kDisagree;
 };
 
 /// Compares the estimates of the shared parameters from each recording alone. Priors are removed, and systematic errors

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pendulum {
@@ -17,6 +18,9 @@ struct RunValues {
 
   std::size_t size() const { return estimate.size(); }
 };
+
+/// Whether a parameter or derived quantity belongs to the rig; start and zero differ between runs.
+bool IsOfTheRig(std::string_view name);
 
 /// Distribution of K values: quartiles, and counts in bins between `from` and `to`. These two limits are at most three
 /// interquartile ranges outside the quartiles, so that an outlier does not reduce the histogram to one bar. Bin width:

@@ -12,16 +12,20 @@ namespace pendulum {
 
 /// Options for the summary of a store.
 struct SummaryOptions {
-  std::string group_by;  ///< A manifest column: runs with equal values are of one rig. Empty: the column `rig` if it
-                         ///< names several rigs, otherwise all runs are of one rig.
+  std::string group_by;  ///< A manifest column: runs with equal values are repeats of one pendulum; or folder, or all.
+                         ///< Empty: what the manifest says (columns pendulum, group and rig_id, true values of
+                         ///< simulated recordings, rig files), else folders or all runs.
   std::string trend_by;  ///< A manifest column of numbers or ISO 8601 dates; empty: the position in the manifest.
+  bool main_model_only = false;  ///< Only the parameters of the main model.
 };
 
-/// Statistics of all refitted runs as JSON (summary.schema.json). It counts fits by model and status, recommendations
-/// and failures. For each parameter of the converged fits it has the distribution, the outliers, the repeatability
-/// within groups compared with the errors, and the trend. Only one parameter of one model is in memory.
-/// kInvalidArgument: the manifest has no such column. kFailedPrecondition: no run was refitted. Other errors: of the
-/// store.
+/// Statistics of all refitted runs as JSON (summary.schema.json). First it says how many recordings were fitted, which
+/// of them were taken for repeats of one pendulum, and whether these agree. Runs of different pendulums, and runs that
+/// differ grossly although nothing says that they are of one pendulum, are not compared. It counts fits by model and
+/// status, recommendations and failures. For each parameter of the converged fits it has the distribution, the
+/// outliers, the repeatability within groups compared with the errors, and the trend. Only one parameter of one model
+/// is in memory. kInvalidArgument: the manifest has no such column. kFailedPrecondition: no run was refitted. Other
+/// errors: of the store.
 Result<nlohmann::ordered_json> Summarize(Store& store, const SummaryOptions& options);
 
 }  // namespace pendulum

@@ -134,6 +134,7 @@ function parameterOf(model, name, typical, options) {
     model,
     name,
     unit: typical.unit,
+    derived: false,
     runs: runs.length,
     median: quantile(sorted, 0.5),
     mean: middle,
@@ -167,6 +168,73 @@ const storeOf = (runs, refitted, fits, path = 'results/results.sqlite') => ({
 });
 
 const tool = { name: 'refit_pendulums', version: '0.1.0' };
+
+/** What a summary says first: counts, the pendulums, whether the errors of each model are right. */
+function answerOf({ runs, fitted, missing = 0, refused = 0, pendulums = 1, group = null, verdicts = [], outlier = null }) {
+  const example = (id, reason) => ({ id, reason });
+  const pending = runs - fitted - missing - refused;
+  const rest = [
+    [missing, 'missing'],
+    [refused, 'refused'],
+    [pending, 'not fitted yet'],
+  ].filter(([count]) => count > 0);
+  const each = Math.ceil(fitted / pendulums);
+  return {
+    headline: {
+      text: `${fitted} of ${runs} recordings fitted${rest.length > 0 ? '; ' : ''}${rest.map(([count, words]) => `${count} ${words}`).join(', ')}`,
+      runs,
+      fitted,
+      not_converged: 0,
+      missing,
+      refused,
+      pending,
+      missing_runs: missing > 0 ? [example('run_17', 'there is no such file; check the path')] : [],
+      refused_runs: refused > 0 ? [example('run_3', 'it has no swing')] : [],
+    },
+    grouping: {
+      by: pendulums > 1 ? 'rig' : 'all',
+      name: group,
+      is_stated: false,
+      pendulums,
+      smallest: each,
+      largest: each,
+      unlike: 0,
+      is_compared: fitted > 1,
+      text:
+        pendulums > 1
+          ? `Recordings with the same rig file are taken for repeats of one pendulum: ${pendulums} pendulums, ${each} recordings each.`
+          : `The ${fitted} recordings are taken for repeats of one pendulum: nothing says otherwise.`,
+      otherwise: 'If another column tells the pendulums apart: --group_by COLUMN. If all are of one: --group_by all.',
+    },
+    main_model: verdicts.at(-1)?.model ?? null,
+    verdicts,
+    agreement: outlier && {
+      model: 'coulomb',
+      groups: pendulums,
+      disagreeing: 1,
+      rows: [
+        {
+          group,
+          runs: each,
+          statistic: 2 * each + 400,
+          dof: 2 * each - 2,
+          p: 1e-9,
+          outliers: [{ id: outlier, parameter: 'inertia', estimate: 0.0814, others: 0.079, z: 25.2 }],
+        },
+      ],
+    },
+  };
+}
+
+const verdictOf = (model, verdict = 'agrees') => ({
+  model,
+  verdict,
+  level: verdict === 'too_small' || verdict === 'not_compared' ? 'caution' : 'good',
+  text:
+    verdict === 'too_small'
+      ? 'Repeats differ by more than their errors, 1.4 times in inertia. Either the pendulum changed or the errors are too small.'
+      : 'Repeats differ as much as their errors say, in all 4 parameters. The errors are right.',
+});
 const ended = (model, fits, not_converged = 0, not_identifiable = 0, failed = 0) => ({
   model,
   fits,
@@ -232,6 +300,16 @@ export function makeSummary({ runs = 2000, rigs = 3, scatter = 1, names, drift =
   return {
     schema_version: 2,
     tool,
+    ...answerOf({
+      runs,
+      fitted: runs - 14,
+      missing: 10,
+      refused: 2,
+      pendulums: rigs,
+      group: rigs > 1 ? 'rig' : null,
+      verdicts: ['viscous', 'coulomb'].map((model) => verdictOf(model, scatter > 1.1 ? 'too_small' : 'agrees')),
+      outlier: names ? names(1) : 'run_1050',
+    }),
     store: storeOf(runs, runs - 2, 2 * runs - 4),
     group_by: rigs > 1 ? 'rig' : null,
     trend_by: 'date',
@@ -253,6 +331,7 @@ export function makeTiny() {
   return {
     schema_version: 2,
     tool,
+    ...answerOf({ runs: 3, fitted: 3, verdicts: [verdictOf('coulomb', 'few')] }),
     store: storeOf(3, 3, 3, 'tiny.sqlite'),
     group_by: null,
     trend_by: null,
@@ -271,6 +350,7 @@ export function makeFailures() {
   return {
     schema_version: 2,
     tool,
+    ...answerOf({ runs: 40, fitted: 0, missing: 38, refused: 2, verdicts: [verdictOf('coulomb', 'not_compared')] }),
     store: storeOf(40, 40, 40, 'failures.sqlite'),
     group_by: 'rig',
     trend_by: null,
@@ -298,6 +378,7 @@ export function makeLarge() {
   return {
     schema_version: 2,
     tool,
+    ...answerOf({ runs: 100_000, fitted: 100_000, pendulums: 40, group: 'rig', verdicts: [verdictOf('coulomb')] }),
     store: storeOf(100_000, 100_000, 100_000, 'large.sqlite'),
     group_by: 'rig',
     trend_by: null,

@@ -43,7 +43,7 @@ test('values on the page equal the values in the JSON', async (t) => {
   const page = await openSummary(t, summary);
   assert.match(
     await page.locator('.banner').textContent(),
-    /1978 of 1998 fits of coulomb converged, and their error bars are true/,
+    /^.1986 of 2000 recordings fitted; 10 missing, 2 refused, 2 not fitted yetRecordings with the same rig file are taken for repeats of one pendulum: .* The errors are right\.$/,
   );
   const row = await page.locator('#parameters tr', { hasText: 'inertia' }).first().textContent();
   const inertia = summary.parameters.find(({ model, name }) => model === 'coulomb' && name === 'inertia');
@@ -55,6 +55,10 @@ test('values on the page equal the values in the JSON', async (t) => {
   assert.match(await page.locator('#failures').textContent(), /24 fits failed: there is no such file/);
   assert.equal(await page.locator('#outliers tbody tr').count(), 3);
   assert.match(await page.locator('#outliers').textContent(), /run_350/);
+  assert.match(
+    await page.locator('#verdict').textContent(),
+    /1 recording disagrees .* under coulomb: run_1050 \(moment of inertia, 25\.2 standard errors\)\./,
+  );
   assert.match(await page.locator('#provenance').textContent(), /(3f){32}/);
   assert.match(await page.locator('#verdict .warnings').textContent(), /2 runs have not been fitted yet/);
 });
@@ -71,7 +75,7 @@ test('another parameter and another model are shown, each by name', async (t) =>
   assert.match(await page.locator('#repeatability').textContent(), /Each run has a release angle of its own\./);
   assert.match(await page.locator('#trend').textContent(), /no trend to show/);
   await page.locator('.models label', { hasText: 'viscous' }).click();
-  assert.match(await page.locator('.banner').textContent(), /1986 of 1998 fits of viscous converged/);
+  assert.match(await page.locator('.banner').textContent(), /1986 of 2000 recordings fitted/);
   assert.match(await heading(page, 'distribution'), /moment of inertia/);
 });
 
@@ -79,7 +83,7 @@ test('the page begins with the verdict that the error bars are too small', async
   const page = await openSummary(t, makeSummary({ scatter: 1.4 }));
   assert.match(
     await page.locator('.banner.caution').textContent(),
-    /scatter up to 1\.[34]\d times as much as their error bars say.*moment of inertia \(1 of 4/,
+    /Repeats differ by more than their errors, 1\.4 times in inertia/,
   );
   assert.equal(await page.locator('#parameters .no').count(), 1);
   assert.match(await page.locator('#repeatability').textContent(), /Error bars are too small\./);
@@ -151,7 +155,7 @@ test('three runs', async (t) => {
   const page = await openSummary(t, makeTiny());
   assert.match(
     await page.locator('.banner').textContent(),
-    /3 of 3 fits of coulomb converged; the runs agree with their error bars/,
+    /3 of 3 recordings fittedThe 3 recordings are taken for repeats of one pendulum/,
   );
   assert.match(await page.locator('#models').textContent(), /No run compared models/);
   assert.match(await page.locator('#failures').textContent(), /Every fit gave a result/);
@@ -164,7 +168,7 @@ test('failures only', async (t) => {
   assert.deepEqual(await ids(page), ['verdict', 'models', 'parameters', 'failures', 'provenance']);
   assert.match(
     await page.locator('.banner.bad').textContent(),
-    /None of 40 fits converged.*Most often \(38 fits\): there is no such file/,
+    /0 of 40 recordings fitted; 38 missing, 2 refused: no fit converged.*Most often \(38 fits\): there is no such file/,
   );
   await page.locator('#failures summary').click();
   await page.waitForSelector('#failures details .id');

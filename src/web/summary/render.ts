@@ -26,7 +26,7 @@ function detailSections(view: View): HTMLElement[] {
   const made = [
     distributionSection(one),
     repeatabilitySection(one, group),
-    outliersSection(one, group),
+    outliersSection(one, view.summary),
     trendSection(one),
   ];
   for (const part of made) part.querySelector('h2')?.append(el('span', { class: 'which' }, ` · ${wordsOf(one.name)}`));

@@ -4,6 +4,7 @@ import { describe, expect, test } from 'vitest';
 import { elided, visible } from '../shared/names';
 import { barsOf, rangeOf } from './distribution_section';
 import { headline, worst, judgedOf } from './headline';
+import { disagreementText } from './outliers_section';
 import { chiSquare95, disagrees, meanRows, rowsToDraw, scatterInterval, scatterRows } from './repeatability';
 import { groupCount, median, middle, nearest, trendGroups, within, xRange } from './trend';
 import { columnLabel } from './trend_plot';
@@ -81,6 +82,32 @@ function summary(models: ModelCounts[], parameters: ParameterSummary[], more: Pa
   return {
     schema_version: 2,
     tool: { name: 'refit_pendulums', version: '0.1.0' },
+    headline: {
+      text: '98 of 100 recordings fitted; 1 missing, 1 refused',
+      runs: 100,
+      fitted: 98,
+      not_converged: 0,
+      missing: 1,
+      refused: 1,
+      pending: 0,
+      missing_runs: [],
+      refused_runs: [],
+    },
+    grouping: {
+      by: 'all',
+      name: null,
+      is_stated: false,
+      pendulums: 1,
+      smallest: 98,
+      largest: 98,
+      unlike: 0,
+      is_compared: true,
+      text: 'The 98 recordings are taken for one pendulum.',
+      otherwise: 'If they are not: --group_by COLUMN.',
+    },
+    main_model: models[0]?.model ?? null,
+    verdicts: models.map(({ model }) => ({ model, verdict: 'agrees', level: 'good', text: `Errors of ${model} are right.` })),
+    agreement: null,
     store,
     group_by: null,
     trend_by: null,
@@ -165,33 +192,44 @@ describe('the headline', () => {
   const of = (parameters: ParameterSummary[], converged = 99, more: Partial<Summary> = {}) =>
     headline(view(summary([ended('coulomb', 100, converged)], parameters, more)));
 
-  test('error bars that agree with the scatter, are too small, too large, or unknown', () => {
-    expect(of([parameter('inertia', repeats('agrees', 1.01))])).toMatchObject({
-      level: 'good',
-      title: '99 of 100 fits of coulomb converged, and their error bars are true',
-    });
-    const larger = of([
-      parameter('inertia', repeats('scatter_larger', 1.2)),
-      parameter('drag', repeats('scatter_larger', 2)),
-    ]);
-    expect(larger.level).toBe('caution');
-    expect(larger.title).toContain('up to 2.00 times');
-    expect(larger.sentence).toContain('moment of inertia and air drag (2 of 2 parameters');
-    expect(of([parameter('inertia', repeats('scatter_smaller', 0.7))])).toMatchObject({ level: 'good' });
-    expect(of([parameter('inertia')])).toMatchObject({ level: 'caution', sentence: 'No rig has two runs to compare.' });
+  const verdictOf = (level: 'good' | 'caution', text: string): Partial<Summary> => ({
+    verdicts: [{ model: 'coulomb', verdict: level === 'good' ? 'agrees' : 'too_small', level, text }],
   });
 
-  test('few runs are weak evidence', () => {
-    expect(of([parameter('inertia', repeats('agrees', 1, 2))]).title).toContain('the runs agree with their error bars');
+  test('counts every recording first, then says what was taken for one pendulum, then the verdict', () => {
+    expect(of([], 99, verdictOf('caution', 'Repeats differ by more than their errors.'))).toEqual({
+      level: 'caution',
+      title: '98 of 100 recordings fitted; 1 missing, 1 refused',
+      sentence:
+        'The 98 recordings are taken for one pendulum. If they are not: --group_by COLUMN. ' +
+        'Repeats differ by more than their errors.',
+    });
+    expect(of([]).level).toBe('good');
+  });
+
+  test('different pendulums get no verdict', () => {
+    const text = '100 different pendulums (each has its own rig); repeatability needs several recordings of one.';
+    const made = summary([], []);
+    const grouping = { ...made.grouping, is_compared: false, text, otherwise: null };
+    const said = of([], 99, { ...verdictOf('caution', 'Whether the errors are right is not known.'), grouping });
+    expect(said).toMatchObject({ level: 'caution', sentence: text });
+  });
+
+  test('names the recordings that disagree in all parameters together', () => {
+    const row = { group: null, runs: 4, statistic: 600, dof: 9, p: 0 };
+    const outlier = { id: 'd.csv', parameter: 'inertia', estimate: 0.0814, others: 0.079, z: -25.24 };
+    const agreement = { model: 'coulomb', groups: 1, disagreeing: 1, rows: [{ ...row, outliers: [outlier] }] };
+    expect(disagreementText(summary([], [], { agreement }))).toBe(
+      '1 recording disagrees with the others of the same pendulum in all parameters together, under coulomb: ' +
+        'd.csv (moment of inertia, 25.2 standard errors).',
+    );
+    expect(disagreementText(summary([], []))).toBe('');
   });
 
   test('a model that few runs converged with does not represent them', () => {
     const fine = [parameter('inertia', repeats('agrees', 1))];
     expect(of(fine, 80).level).toBe('caution');
     expect(of(fine, 40).level).toBe('bad');
-    expect(of(fine, 80, { store: { ...summary([], []).store, fits: 100, pending: 1 } }).sentence).toMatch(
-      /1 run has not been fitted yet\.$/,
-    );
   });
 
   test('no fit, and no converged fit', () => {
@@ -199,7 +237,7 @@ describe('the headline', () => {
     const failure = { status: 'failed', exit_code: 3, reason: 'no file', fits: 7, models: [], examples: [] };
     expect(of([], 0, { failures: [{ ...failure, fits: 2, reason: 'other' }, failure] })).toMatchObject({
       level: 'bad',
-      title: 'None of 100 fits converged: there is nothing to summarise',
+      title: '98 of 100 recordings fitted; 1 missing, 1 refused: no fit converged',
       sentence: 'Most often (7 fits): no file.',
     });
     expect(of([], 0).sentence).toBe('');

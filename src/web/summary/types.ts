@@ -6,8 +6,14 @@ import type { Num, Result } from '../shared/result_types';
 export interface Summary {
   schema_version: number;
   tool: { name: string; version: string };
+  headline: RunCounts;
+  grouping: Grouping;
+  /** The model that was recommended most often. */
+  main_model: string | null;
+  verdicts: ModelVerdict[];
+  agreement: Agreement | null;
   store: Store;
-  /** Column of the manifest: runs with the same value are of one rig. */
+  /** What tells the pendulums apart, such as a column of the manifest; null: all runs are of one. */
   group_by: string | null;
   /** Column of the manifest over which trends are fitted; null for the position of the run. */
   trend_by: string | null;
@@ -17,6 +23,58 @@ export interface Summary {
   failures: Failure[];
   parameters: ParameterSummary[];
   warnings: Result['warnings'];
+}
+
+/** How many recordings were fitted. text: "198 of 200 recordings fitted; 1 missing, 1 refused". */
+export interface RunCounts {
+  text: string;
+  runs: number;
+  fitted: number;
+  not_converged: number;
+  missing: number;
+  refused: number;
+  pending: number;
+  missing_runs: { id: string; reason: string }[];
+  refused_runs: { id: string; reason: string }[];
+}
+
+/** Which runs are taken for repeats of one pendulum. text: why; otherwise: how to say otherwise. */
+export interface Grouping {
+  by: 'column' | 'true_values' | 'rig' | 'folder' | 'all';
+  name: string | null;
+  is_stated: boolean;
+  pendulums: number;
+  smallest: number;
+  largest: number;
+  unlike: number;
+  is_compared: boolean;
+  text: string;
+  otherwise: string | null;
+}
+
+/** Whether the errors of a model agree with the scatter between recordings. */
+export interface ModelVerdict {
+  model: string;
+  verdict: 'not_compared' | 'too_small' | 'too_large' | 'few' | 'agrees';
+  level: 'good' | 'caution' | 'bad';
+  text: string;
+}
+
+/** The test of a joint fit, pendulum by pendulum, with the recordings that disagree. */
+export interface Agreement {
+  model: string;
+  groups: number;
+  disagreeing: number;
+  rows: AgreementRow[];
+}
+
+export interface AgreementRow {
+  group: string | null;
+  runs: number;
+  statistic: Num;
+  dof: number;
+  p: Num;
+  outliers: { id: string; parameter: string; estimate: Num; others: Num; z: Num }[];
 }
 
 export interface Store {
@@ -54,6 +112,7 @@ export interface ParameterSummary {
   model: string;
   name: string;
   unit: string;
+  derived: boolean;
   runs: number;
   median: Num;
   mean: Num;

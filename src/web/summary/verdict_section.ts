@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The verdict: number of runs, share of converged fits, and whether the error bars agree with the scatter. */
+/** The verdict: number of recordings, what was taken for one pendulum, and whether the errors agree with the scatter. */
 
 import { banner, warnings } from '../shared/banner';
-import { el } from '../shared/dom';
+import { el, text } from '../shared/dom';
 import { keyFigure } from '../shared/key_figure';
 import { section } from '../shared/section';
 import { wordsOf } from '../shared/units';
 import { headline, judgedOf, worst } from './headline';
+import { disagreementText } from './outliers_section';
 import { parametersOf, shownModel, type View } from './view';
 import { countText, ratioText, shareText } from './words';
 
@@ -24,7 +25,8 @@ function figures(view: View): HTMLElement {
   const outliers = parametersOf(view).reduce((sum, one) => sum + one.outliers_total, 0);
   const box = el('div', { class: 'figures' });
   const pending = store.pending === 0 ? 'none is pending' : `${countText(store.pending)} pending`;
-  box.append(keyFigure(['runs fitted'], `${countText(store.refitted)} of ${countText(store.runs)}`, [pending]));
+  const { headline: counts } = view.summary;
+  box.append(keyFigure(['recordings fitted'], `${countText(counts.fitted)} of ${countText(counts.runs)}`, [pending]));
   if (model) {
     const share = `${shareText(model.converged, model.fits)} of its fits`;
     box.append(
@@ -34,11 +36,21 @@ function figures(view: View): HTMLElement {
   const scatter = scatterFigure(view);
   if (scatter) box.append(scatter);
   if (model && model.converged > 0) {
-    box.append(keyFigure(['outlying values'], countText(outliers), ['over all parameters']));
+    const joint = (view.summary.agreement?.rows ?? []).reduce((sum, row) => sum + row.outliers.length, 0);
+    const values = [`outlying values of single parameters: ${countText(outliers)}`];
+    box.append(keyFigure(['recordings that disagree'], countText(joint), values));
   }
   return box;
 }
 
 export function verdictSection(view: View): HTMLElement {
-  return section('verdict', 'Verdict', banner(headline(view)), figures(view), warnings(view.summary));
+  const disagreement = disagreementText(view.summary);
+  return section(
+    'verdict',
+    'Verdict',
+    banner(headline(view)),
+    disagreement !== '' && text(disagreement),
+    figures(view),
+    warnings(view.summary),
+  );
 }

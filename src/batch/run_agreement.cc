@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/run_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "pendulum/analysis/agreement.h"
+#include "pendulum/base/distributions.h"
+#include "pendulum/base/format.h"
+#include "pendulum/model/motion_model.h"
+#include "pendulum/report/json_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Eigen::Index;
+
+constexpr std::size_t kMaxRuns = 500;      // of a group
+constexpr std::int64_t kMaxBatch = 20000;  // runs
+constexpr std::size_t kMaxRows = 50;
+
+/// A run of a group.
+struct Member {
+  std::string id;
+  SeparateEstimates estimates;  ///< Without systematic errors; no names if the run cannot be compared.
+  Eigen::MatrixXd systematic;   ///< Without the rig's part, which all runs of a pendulum share.
+  Json sources;                 ///< Clock and calibration.
+};
+
+/// The free parameters of the pendulum in a fit, in the order of the model.
+std::vector<std::string> FreeNames(const Json& fit) {
+  std::vector<std::string> names;
+  const auto model = FindMotionModel(fit["model"].get<std::string>());
+  if (!model) return names;
+  for (const ParameterInfo& parameter : PhysicalParameters(*model)) {
+    const auto found = fit["parameters"].find(parameter.name);
+    if (found != fit["parameters"].end() && !(*found)["fixed"].get<bool>()) names.emplace_back(parameter.name);
+  }
+  return names;
+}
+
+/// The rows and columns of a matrix of the result JSON for these names; 0 where it has none.
+std::optional<Eigen::MatrixXd> MatrixOf(const Json& json, const std::vector<std::string>& names) {
+  const auto size = static_cast<Index>(names.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  if (!json.is_object()) return std::nullopt;
+  const auto known = json["names"].get<std::vector<std::string>>();
+  std::vector<std::ptrdiff_t> rows;
+  for (const std::string& name : names) rows.push_back(std::ranges::find(known, name) - known.begin());
+  const auto count = static_cast<std::ptrdiff_t>(known.size());
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const auto row = rows[static_cast<std::size_t>(i)], column = rows[static_cast<std::size_t>(j)];
+      if (row == count || column == count) continue;
+      const Json& value = json["matrix"][static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+      if (!value.is_number()) return std::nullopt;
+      matrix(i, j) = value.get<double>();
+    }
+  }
+  return matrix;
+}
+
+/// Width of the 95 % interval over the width for a normal distribution, at least 1; larger for Student's t.
+double IntervalFactor(const Json& parameter) {
+  const Json& interval = parameter["interval95"];
+  if (!interval.is_array() || !interval[0].is_number() || !interval[1].is_number()) return 1;
+  const double half = 0.5 * (interval[1].get<double>() - interval[0].get<double>());
+  return std::max(half / (kNormal95 * parameter["std_error"].get<double>()), 1.0);
+}
+
+bool IsComparable(const Json& result, const Json& fit, const std::vector<std::string>& names) {
+  const auto is_free = [](const Json& parameter) { return !parameter["at_bound"].get<bool>(); };
+  for (const auto& [name, parameter] : fit["parameters"].items()) {
+    if (!is_free(parameter)) return false;
+  }
+  for (const std::string& name : names) {
+    if (!fit["parameters"][name]["std_error"].is_number()) return false;
+  }
+  const auto is_another_minimum = [](const Json& warning) { return warning["code"] == "another_minimum"; };
+  return !result.contains("warnings") || std::ranges::none_of(result["warnings"], is_another_minimum);
+}
+
+/// The systematic covariance without the part of the rig.
+Eigen::MatrixXd SystematicOf(const Json& fit, const std::vector<std::string>& names) {
+  const auto size = static_cast<Index>(names.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  if (const auto found = fit.find("systematic_covariance"); found != fit.end()) {
+    covariance = MatrixOf(*found, names).value_or(covariance);
+  }
+  Eigen::VectorXd by_rig = Eigen::VectorXd::Zero(size);
+  for (Index i = 0; i < size; ++i) {
+    const Json& parameter = fit["parameters"][names[static_cast<std::size_t>(i)]];
+    const auto budget = parameter.find("error_budget");
+    if (budget != parameter.end() && budget->is_object()) by_rig[i] = budget->value("rig", 0.0);
+  }
+  covariance -= by_rig * by_rig.transpose();
+  covariance.diagonal() = covariance.diagonal().cwiseMax(0.0);
+  return covariance;
+}
+
+Member MemberOf(std::string id, const std::string& text, const std::string& model) {
+  Member member{std::move(id), {}, {}, nullptr};
+  const Json result = Json::parse(text);
+  const auto fit = std::ranges::find_if(result["fits"], [&](const Json& one) { return one["model"] == model; });
+  if (fit == result["fits"].end() || !fit->contains("covariance")) return member;
+  const std::vector<std::string> names = FreeNames(*fit);
+  if (names.empty() || !IsComparable(result, *fit, names)) return member;
+  const auto covariance = MatrixOf((*fit)["covariance"], names);
+  if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
+  Eigen::VectorXd value(static_cast<Index>(names.size())), wider(value.size());
+  for (Index i = 0; i < value.size(); ++i) {
+    const Json& parameter = (*fit)["parameters"][names[static_cast<std::size_t>(i)]];
+    value[i] = parameter["estimate"].get<double>();
+    wider[i] = IntervalFactor(parameter);
+  }
+  member.estimates = {0, names, value, Eigen::MatrixXd(wider.asDiagonal() * *covariance * wider.asDiagonal())};
+  member.systematic = SystematicOf(*fit, names);
+  const Json& data = result["data"];
+  member.sources = {data.value("clock_scale", Json()), data.value("clock_scale_std_dev", Json()),
+                    result.value("calibration", Json())};
+  return member;
+}
+
+/// A disagreeing run, and the parameter in which it differs most.
+Json OutlierJson(const std::vector<SeparateEstimates>& estimates, std::size_t run,
+                 const std::vector<std::size_t>& outliers, const std::string& id) {
+  const SeparateEstimates& own = estimates[run];
+  Json json;
+  double largest = -1;
+  for (Index j = 0; j < own.value.size(); ++j) {
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < estimates.size(); ++k) {
+      if (std::ranges::find(outliers, k) != outliers.end()) continue;
+      const double weight = 1 / estimates[k].covariance(j, j);
+      sum += weight * estimates[k].value[j];
+      weights += weight;
+    }
+    const double others = sum / weights;
+    const double z = (own.value[j] - others) / std::sqrt(own.covariance(j, j) + 1 / weights);
+    if (!(std::abs(z) > largest)) continue;
+    largest = std::abs(z);
+    json = {{"id", id},
+            {"parameter", own.names[static_cast<std::size_t>(j)]},
+            {"estimate", own.value[j]},
+            {"others", others},
+            {"z", z}};
+  }
+  return json;
+}
+
+/// One pendulum: its runs, and the test.
+class Group {
+ public:
+  explicit Group(std::string name) : name_(std::move(name)) {}
+
+  const std::string& name() const { return name_; }
+
+  void Add(std::string id, const std::string& result, const std::string& model) {
+    if (++runs_ <= kMaxRuns) members_.push_back(MemberOf(std::move(id), result, model));
+  }
+
+  /// The row of the group; null if it cannot be tested. Adds the ids of the outliers if they are few.
+  Json Test(std::set<std::string>& named) const {
+    const std::vector<const Member*> members = Comparable();
+    if (members.size() < 2 || runs_ > kMaxRuns) return nullptr;
+    const bool own_sources =
+        std::ranges::any_of(members, [&](const Member* one) { return one->sources != members.front()->sources; });
+    std::vector<SeparateEstimates> estimates;
+    for (const Member* member : members) {
+      estimates.push_back(member->estimates);
+      estimates.back().run = estimates.size() - 1;
+      if (own_sources) estimates.back().covariance += member->systematic;
+    }
+    const Agreement agreement = TestAgreement(estimates);
+    if (!agreement.p) return nullptr;
+    std::vector<std::size_t> outliers;
+    if (*agreement.p < Agreement::kDisagree) outliers = FindDisagreeing(estimates);
+    Json list = Json::array();
+    for (const std::size_t k : outliers) {
+      list.push_back(OutlierJson(estimates, k, outliers, members[k]->id));
+      constexpr std::size_t kShare = 10;  // more than one in ten are no exceptions
+      if (outliers.size() == 1 || kShare * outliers.size() <= members.size()) named.insert(members[k]->id);
+    }
+    return {{"group", name_},       {"runs", members.size()}, {"statistic", agreement.statistic},
+            {"dof", agreement.dof}, {"p", *agreement.p},      {"outliers", std::move(list)}};
+  }
+
+ private:
+  /// The runs with the parameters of the first comparable one.
+  std::vector<const Member*> Comparable() const {
+    std::vector<const Member*> members;
+    for (const Member& member : members_) {
+      if (member.estimates.names.empty()) continue;
+      if (members.empty() || members.front()->estimates.names == member.estimates.names) members.push_back(&member);
+    }
+    return members;
+  }
+
+  std::string name_;
+  std::size_t runs_ = 0;
+  std::vector<Member> members_;
+};
+
+}  // namespace
+
+RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& model, const RunGroups& groups) {
+  RunAgreement agreement;
+  if (!groups.compares() || groups.runs > kMaxBatch) return agreement;
+  SQLite::Statement rows(database,
+                         "SELECT " + groups.sql + R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
+  WHERE model = ? AND status = 'converged' AND result IS NOT NULL ORDER BY pendulum, position, id)sql");
+  sqlite::Bind(rows, model);
+  std::vector<Json> tested;
+  std::optional<Group> group;
+  const auto test = [&] {
+    if (!group || std::ranges::find(groups.unlike, group->name()) != groups.unlike.end()) return;
+    if (Json row = group->Test(agreement.outliers); !row.is_null()) tested.push_back(std::move(row));
+  };
+  while (rows.executeStep()) {
+    const std::string name = sqlite::Text(rows, 0);
+    if (!group || group->name() != name) {
+      test();
+      group.emplace(name);
+    }
+    group->Add(sqlite::Text(rows, 1), sqlite::Text(rows, 2), model);
+  }
+  test();
+  if (tested.empty()) return agreement;
+  std::ranges::stable_sort(tested, {}, [](const Json& row) { return row["p"].get<double>(); });
+  std::size_t disagreeing = 0;
+  for (Json& row : tested) {
+    if (groups.name.empty()) row["group"] = nullptr;
+    if (row["p"].get<double>() < Agreement::kDisagree) ++disagreeing;
+  }
+  const std::size_t count = tested.size();
+  if (tested.size() > kMaxRows) tested.resize(kMaxRows);
+  agreement.json = {{"model", model}, {"groups", count}, {"disagreeing", disagreeing}, {"rows", tested}};
+  return agreement;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <set>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "batch/run_groups.h"
+#include "batch/sqlite.h"
+
+namespace pendulum {
+
+/// Runs that disagree with the other runs of their pendulum, by the test of a joint fit (FindDisagreeing).
+struct RunAgreement {
+  nlohmann::ordered_json json;     ///< `agreement` of summary.schema.json; null if there is nothing to compare.
+  std::set<std::string> outliers;  ///< Ids of the runs that are named; few.
+};
+
+/// Tests the runs of each pendulum under a model, with their stored estimates and covariances. As in a joint fit,
+/// systematic errors are added if clocks or calibrations differ. Unlike there, runs with a parameter at a bound are
+/// left out, because their estimates without bounds are not stored, and a dependence on the amplitude is not examined.
+/// Groups of more than 500 runs and batches of more than 20 000 are not tested.
+RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& model, const RunGroups& groups);
+
+}  // namespace pendulum

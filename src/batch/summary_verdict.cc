@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/summary_verdict.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pendulum/base/format.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kExamples = 10;
+
+/// A run whose reason begins with its own path is about the recording; otherwise it is about the rig or calibration.
+constexpr const char* kIsMissing = "exit_code = 3 AND substr(reason, 1, length(path) + 1) = path || ':'";
+
+std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
+  SQLite::Statement rows(database, "SELECT id, reason, path FROM runs WHERE " + condition +
+                                       " ORDER BY position, id LIMIT " + std::to_string(kExamples));
+  std::vector<RunCounts::Run> runs;
+  while (rows.executeStep()) {
+    std::string reason = sqlite::Text(rows, 1);
+    const std::string path = sqlite::Text(rows, 2);
+    if (reason.starts_with(path + ": ")) reason.erase(0, path.size() + 2);
+    runs.push_back({sqlite::Text(rows, 0), std::move(reason)});
+  }
+  return runs;
+}
+
+Json ExamplesJson(const std::vector<RunCounts::Run>& runs) {
+  Json list = Json::array();
+  for (const RunCounts::Run& run : runs) list.push_back({{"id", run.id}, {"reason", run.reason}});
+  return list;
+}
+
+/// "inertia, viscous and 3 more".
+std::string NamesText(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 3;
+  if (names.size() <= kNamed) return NameList(names);
+  return NameList(std::vector<std::string>(names.begin(), names.begin() + kNamed - 1)) + " and " +
+         std::to_string(names.size() - kNamed + 1) + " more";
+}
+
+Json Verdict(const std::string& model, const char* verdict, const char* level, const std::string& text) {
+  return {{"model", model}, {"verdict", verdict}, {"level", level}, {"text", text}};
+}
+
+}  // namespace
+
+RunCounts CountRuns(SQLite::Database& database) {
+  const std::string missing = kIsMissing;
+  const std::string refused = "exit_code > 1 AND NOT (" + missing + ")";
+  SQLite::Statement row(
+      database,
+      "SELECT count(*), count(*) FILTER (WHERE exit_code = 0), count(*) FILTER (WHERE exit_code = 1), "
+      "count(*) FILTER (WHERE " +
+          missing + "), count(*) FILTER (WHERE " + refused + "), count(*) - count(exit_code) FROM runs");
+  row.executeStep();
+  RunCounts counts{row.getColumn(0).getInt64(),
+                   row.getColumn(1).getInt64(),
+                   row.getColumn(2).getInt64(),
+                   row.getColumn(3).getInt64(),
+                   row.getColumn(4).getInt64(),
+                   row.getColumn(5).getInt64(),
+                   {},
+                   {}};
+  counts.missing_runs = ExamplesOf(database, missing);
+  counts.refused_runs = ExamplesOf(database, refused);
+  return counts;
+}
+
+std::string CountsText(const RunCounts& counts) {
+  std::string text = std::to_string(counts.fitted) + " of " + std::to_string(counts.runs) +
+                     (counts.runs == 1 ? " recording fitted" : " recordings fitted");
+  std::string rest;
+  for (const auto& [count, words] :
+       {std::pair{counts.missing, "missing"}, std::pair{counts.refused, "refused"},
+        std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"}}) {
+    if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
+  }
+  return text + rest;
+}
+
+Json CountsJson(const RunCounts& counts) {
+  return {{"text", CountsText(counts)},
+          {"runs", counts.runs},
+          {"fitted", counts.fitted},
+          {"not_converged", counts.not_converged},
+          {"missing", counts.missing},
+          {"refused", counts.refused},
+          {"pending", counts.pending},
+          {"missing_runs", ExamplesJson(counts.missing_runs)},
+          {"refused_runs", ExamplesJson(counts.refused_runs)}};
+}
+
+std::string MainModel(const Json& overview) {
+  for (const Json& row : overview["recommendations"]) {
+    if (row["model"].is_string()) return row["model"].get<std::string>();
+  }
+  for (const Json& model : overview["models"]) {
+    if (model["converged"].get<std::int64_t>() > 0) return model["model"].get<std::string>();
+  }
+  return overview["models"].empty() ? "" : overview["models"][0]["model"].get<std::string>();
+}
+
+Json VerdictJson(const std::string& model, const Json& parameters, const RunGroups& groups, bool left_out) {
+  constexpr int kEnoughDof = 20;  // with fewer degrees of freedom, the scatter may be wrong by a third by chance
+  if (!groups.compares())
+    return Verdict(model, "not_compared", "caution", "Whether the errors are right is not known.");
+  std::vector<std::string> all, larger, smaller;
+  double largest = 0;
+  std::string worst;
+  bool enough = false;
+  for (const Json& parameter : parameters) {
+    if (parameter["model"] != model || parameter["derived"].get<bool>()) continue;
+    const Json& found = parameter["repeatability"];
+    if (found.is_null()) continue;
+    const auto name = parameter["name"].get<std::string>();
+    all.push_back(name);
+    enough = enough || found["dof"].get<int>() >= kEnoughDof;
+    if (found["verdict"] == "scatter_smaller") smaller.push_back(name);
+    if (found["verdict"] != "scatter_larger") continue;
+    larger.push_back(name);
+    const double ratio = found["scatter_ratio"].get<double>();
+    if (ratio <= largest) continue;
+    largest = ratio;
+    worst = name;
+  }
+  const std::string count = std::to_string(all.size()) + (all.size() == 1 ? " parameter" : " parameters");
+  const std::string repeats = left_out ? "Without the outliers, repeats differ" : "Repeats differ";
+  if (all.empty()) {
+    return Verdict(
+        model, "not_compared", "caution",
+        "Whether the errors are right is not known: no two recordings of one pendulum have a fit with errors.");
+  }
+  if (!larger.empty()) {
+    return Verdict(model, "too_small", "caution",
+                   repeats + " by more than their errors, " + NumberText(largest, 3) + " times in " + worst + " (" +
+                       NamesText(larger) + "; " + std::to_string(larger.size()) + " of " + count +
+                       "). Either the pendulum changed or the errors are too small.");
+  }
+  if (!smaller.empty()) {
+    return Verdict(model, "too_large", "good",
+                   repeats + " by less than their errors in " + NamesText(smaller) + ". The errors are not too small.");
+  }
+  if (!enough) {
+    return Verdict(model, "few", "good",
+                   repeats + " as much as their errors say, but they are too few to prove the errors right.");
+  }
+  return Verdict(model, "agrees", "good",
+                 repeats + " as much as their errors say, in " +
+                     (all.size() == 1 ? "the " + all.front() : "all " + count) + ". The errors are right.");
+}
+
+}  // namespace pendulum
