@@ -181,7 +181,7 @@ TEST(StoppedFit, IsAnErrorInABootstrapToo) {
     options.interval = IntervalMethod::kBootstrap;
     options.threads = threads;
     std::atomic<int> reports = 0;
-    options.progress = [&](int, int) {
+    options.progress = [&](const ProgressStep&) {
       ++reports;
       stop.request_stop();
     };
