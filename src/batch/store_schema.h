@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended. SQLite keeps the comments, so .schema explains the
 /// tables.
-inline constexpr std::array<std::string_view, 3> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 4> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -89,6 +89,9 @@ CREATE INDEX answers_by_place ON answers(location);
 )sql",
                                                                      R"sql(
 UPDATE quantities SET name = 'hysteresis' WHERE name = 'edge_lag';  -- renamed in schema version 2 of the result JSON
+)sql",
+                                                                     R"sql(
+ALTER TABLE requests ADD COLUMN name TEXT NOT NULL DEFAULT '';  -- given by the client; '' for none
 )sql"};
 
 }  // namespace pendulum
