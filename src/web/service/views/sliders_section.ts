@@ -122,7 +122,7 @@ class SlidersSection {
     this.resets.push(reset);
     reset();
     const label = el('label', { for: id }, wordsOf(name), symbol !== null && ' ', symbol !== null && symbolElement(symbol));
-    return el('div', { class: 'slider' }, label, input, shown);
+    return el('div', { class: 'slider' }, label, shown, input);
   }
 
   make(): HTMLElement {
@@ -142,13 +142,13 @@ class SlidersSection {
       'feel',
       'Feel the parameters',
       text('Move a slider and watch what the parameter does. The fit itself does not change.', 'quiet'),
-      sliders,
-      el('div', { class: 'actions' }, reset, this.rms),
       figure(
         'Drag to zoom; a double click shows all. The curve is computed in this page from the equation of the fit.',
         box,
         el('div', { class: 'bar' }, legend, navigationButtons(this.view)),
       ),
+      el('div', { class: 'actions' }, reset, this.rms),
+      sliders,
     );
   }
 }
