@@ -167,7 +167,7 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 3);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 4);
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
@@ -199,7 +199,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message, path_ +
                                          ": the store has version 99 of a newer program, but this program reads "
-                                         "versions up to 3; use the newer program");
+                                         "versions up to 4; use the newer program");
   }
 }
 

@@ -101,7 +101,7 @@ class SlidersSection {
     const { least, most } = sliderRange(name, estimate, this.motion.scales(this.samples.measured));
     const id = `slider-${name}`;
     const symbol = symbolOf(name, unit);
-    const input = el('input', { type: 'range', id, min: '0', max: String(kSteps), step: '1', 'data-parameter': name });
+    const input = el('input', { type: 'range', id, min: '0', max: String(kSteps), step: '1', 'data-slider': name });
     const shown = el('output', { for: id });
     const stepOf = (value: number): string => String(Math.round((kSteps * (value - least)) / (most - least)));
     const set = (value: number): void => {
