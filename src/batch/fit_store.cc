@@ -154,10 +154,12 @@ Result<void> FitStore::State::AddRun(const FitOrder& order, const FileHashes& ha
   const auto store = [&](const SharedFile& file, const std::string& sha256) {
     return file ? std::optional(fit_store::StoreFile(database, file->bytes, sha256)) : std::nullopt;
   };
-  SQLite::Statement add(database, "INSERT INTO requests VALUES(?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement add(database,
+                        "INSERT INTO requests(run, batch, created, flags, data, rig, calibration, name) "
+                        "VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   sqlite::Bind(add, *run, batch, order.created, order.flags,
                fit_store::StoreFile(database, order.files.data.bytes, hashes.data), store(order.files.rig, hashes.rig),
-               store(order.files.calibration, hashes.calibration))
+               store(order.files.calibration, hashes.calibration), order.name)
       .exec();
   return {};
 }
@@ -234,6 +236,14 @@ Result<void> FitStore::Put(const std::string& id, const RunOutcome& outcome) {
   });
 }
 
+Result<void> FitStore::Rename(const std::string& id, const std::string& name) {
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement rename(database, "UPDATE requests SET name = ? WHERE run = (SELECT run FROM runs WHERE id = ?)");
+    if (sqlite::Bind(rename, name, id).exec() == 0) return Unknown("fit", id);
+    return {};
+  });
+}
+
 Result<void> FitStore::DeleteFit(const std::string& id) {
   return state_->Write([&](SQLite::Database& database) -> Result<void> {
     SQLite::Statement find(database, "SELECT run FROM requests JOIN runs USING(run) WHERE id = ?");
@@ -261,6 +271,17 @@ Result<void> FitStore::DeleteBatch(const std::string& id) {
   });
 }
 
+Result<void> FitStore::DeleteWaiting(const std::string& batch) {
+  return state_->Write([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement find(database, "SELECT batch FROM batches WHERE id = ?");
+    if (!sqlite::Bind(find, batch).executeStep()) return Unknown("batch", batch);
+    const std::string number = std::to_string(find.getColumn(0).getInt64());
+    find.reset();
+    fit_store::DeleteRuns(database, "batch = " + number + " AND run IN (SELECT run FROM runs WHERE exit_code IS NULL)");
+    return {};
+  });
+}
+
 Result<KeptFit> FitStore::Find(const std::string& id) {
   return state_->Read([&](SQLite::Database& database) -> Result<KeptFit> {
     SQLite::Statement row(database, std::string(kListedColumns) + "WHERE runs.id = ?");
@@ -278,7 +299,8 @@ Result<KeptFit> FitStore::Find(const std::string& id) {
       return more.getColumn(column).isNull() ? nullptr : Share(file(column, name));
     };
     kept.order = {id, kept.fit.created, sqlite::Text(more, 0),
-                  RunFiles{file(1, kept.fit.name), shared(2, sqlite::Text(more, 4)), shared(3, sqlite::Text(more, 5))}};
+                  RunFiles{file(1, kept.fit.file), shared(2, sqlite::Text(more, 4)), shared(3, sqlite::Text(more, 5))},
+                  kept.fit.name};
     if (!more.getColumn(6).isNull()) kept.result = nlohmann::ordered_json::parse(sqlite::Text(more, 6));
     return kept;
   });
@@ -294,6 +316,7 @@ Result<std::vector<ListedFit>> FitStore::List(const FitFilter& filter) {
     std::vector<ListedFit> fits;
     while (rows.executeStep()) {
       fits.push_back(FitOf(rows));
+      fits.back().window = fit_store::WindowOf(database, fits.back().run);
       fits.back().models = fit_store::ModelsOf(database, fits.back().run);
     }
     return fits;

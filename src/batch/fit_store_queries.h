@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,11 +16,12 @@
 namespace pendulum::fit_store {
 
 inline constexpr const char* kListedColumns =
-    "SELECT run, runs.id, path, requests.created, batches.id, exit_code, runs.reason, recommended "
+    "SELECT run, runs.id, requests.name, path, requests.created, batches.id, exit_code, runs.reason, recommended "
     "FROM requests JOIN runs USING(run) LEFT JOIN batches USING(batch) ";
 
 inline constexpr const char* kModels = R"sql(
-SELECT fits.model, status, reason, residual_unit, rms_residual, name, unit, estimate, std_error
+SELECT fits.model, status, reason, residual_unit, rms_residual, name, unit, estimate, std_error,
+       systematic_std_error
   FROM fits LEFT JOIN quantities ON quantities.run = fits.run AND quantities.model = fits.model AND derived = 0
   WHERE fits.run = ? ORDER BY fits.model, name)sql";
 
@@ -45,7 +48,7 @@ inline std::string ConditionsOf(const FitFilter& filter) {
   if (!filter.batch.empty()) {
     conditions += " AND requests.batch = (SELECT batch FROM batches WHERE id = :batch)";
   }
-  if (!filter.name.empty()) conditions += " AND instr(lower(path), lower(:name)) > 0";
+  if (!filter.name.empty()) conditions += " AND instr(lower(requests.name || char(10) || path), lower(:name)) > 0";
   if (!filter.since.empty()) conditions += " AND datetime(requests.created) >= datetime(:since)";
   if (filter.model.empty() && filter.status.empty()) return conditions;
   conditions += " AND EXISTS (SELECT 1 FROM fits WHERE fits.run = requests.run";
@@ -68,18 +71,34 @@ inline ListedFit FitOf(const SQLite::Statement& row) {
   fit.run = row.getColumn(0).getInt64();
   fit.id = sqlite::Text(row, 1);
   fit.name = sqlite::Text(row, 2);
-  fit.created = sqlite::Text(row, 3);
-  fit.batch = TextOrNone(row, 4);
-  if (!row.getColumn(5).isNull()) fit.exit_code = row.getColumn(5).getInt();
-  fit.reason = sqlite::Text(row, 6);
-  fit.recommended = TextOrNone(row, 7);
+  fit.file = sqlite::Text(row, 3);
+  fit.created = sqlite::Text(row, 4);
+  fit.batch = TextOrNone(row, 5);
+  if (!row.getColumn(6).isNull()) fit.exit_code = row.getColumn(6).getInt();
+  fit.reason = sqlite::Text(row, 7);
+  fit.recommended = TextOrNone(row, 8);
   return fit;
+}
+
+/// The window in the result of a run, if it has one.
+inline std::optional<std::array<double, 2>> WindowOf(SQLite::Database& database, std::int64_t run) {
+  SQLite::Statement ends(database,
+                         "SELECT json_extract(result, '$.data.window_s[0]'), json_extract(result, "
+                         "'$.data.window_s[1]') FROM runs WHERE run = ? AND json_valid(result)");
+  if (!sqlite::Bind(ends, run).executeStep()) return std::nullopt;
+  const auto begin = Number(ends, 0), end = Number(ends, 1);
+  return begin && end ? std::optional(std::array{*begin, *end}) : std::nullopt;
 }
 
 /// The batch of a row of kBatches.
 inline ListedBatch BatchOf(const SQLite::Statement& row) {
   const auto number = [&](int column) { return row.getColumn(column).getInt64(); };
   return {number(0), sqlite::Text(row, 1), sqlite::Text(row, 2), number(3), number(4), number(5)};
+}
+
+/// Statistical and systematic standard error, in squares; std::nullopt without a statistical one.
+inline std::optional<double> TotalOf(std::optional<double> statistical, std::optional<double> systematic) {
+  return statistical ? std::optional(std::hypot(*statistical, systematic.value_or(0))) : std::nullopt;
 }
 
 inline std::vector<ListedModel> ModelsOf(SQLite::Database& database, std::int64_t run) {
@@ -93,8 +112,8 @@ inline std::vector<ListedModel> ModelsOf(SQLite::Database& database, std::int64_
           {name, sqlite::Text(rows, 1), sqlite::Text(rows, 2), sqlite::Text(rows, 3), Number(rows, 4), {}});
     }
     if (rows.getColumn(5).isNull()) continue;
-    models.back().parameters.push_back(
-        {sqlite::Text(rows, 5), sqlite::Text(rows, 6), Number(rows, 7), Number(rows, 8)});
+    models.back().parameters.push_back({sqlite::Text(rows, 5), sqlite::Text(rows, 6), Number(rows, 7), Number(rows, 8),
+                                        TotalOf(Number(rows, 8), Number(rows, 9))});
   }
   return models;
 }

@@ -96,6 +96,7 @@ ALTER TABLE quantities ADD COLUMN total_std_error REAL;  -- of std_error and sys
 DROP VIEW results;
 CREATE VIEW all_fits AS  -- the fits with the id of their run
   SELECT id, position, path, runs.recommended = model AS recommended, fits.* FROM runs JOIN fits USING(run);
+ALTER TABLE requests ADD COLUMN name TEXT NOT NULL DEFAULT '';  -- given by the client; '' for none
 )sql"};
 
 /// The last version that stored results in schema version 1 of the result JSON.

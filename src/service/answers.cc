@@ -35,8 +35,10 @@ std::string Escaped(std::string_view text) {
 
 Json ParameterItem(const ListedParameter& parameter) {
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
-  return {
-      {"estimate", number(parameter.estimate)}, {"std_error", number(parameter.std_error)}, {"unit", parameter.unit}};
+  return {{"estimate", number(parameter.estimate)},
+          {"std_error", number(parameter.std_error)},
+          {"total_std_error", number(parameter.total_std_error)},
+          {"unit", parameter.unit}};
 }
 
 Json ModelItem(const ListedModel& model) {
@@ -124,12 +126,14 @@ Json ItemOf(const ListedFit& fit) {
   Json models = Json::array();
   for (const ListedModel& model : fit.models) models.push_back(ModelItem(model));
   return {{"id", fit.id},
-          {"name", fit.name},
+          {"name", fit.ShownName()},
+          {"file", fit.file},
           {"created", fit.created},
           {"batch", fit.batch ? Json(*fit.batch) : Json(nullptr)},
           {"state", fit.exit_code ? "done" : "waiting"},
           {"exit_code", fit.exit_code ? Json(*fit.exit_code) : Json(nullptr)},
           {"reason", fit.reason},
+          {"window_s", fit.window ? Json(*fit.window) : Json(nullptr)},
           {"recommended", fit.recommended ? Json(*fit.recommended) : Json(nullptr)},
           {"models", std::move(models)}};
 }

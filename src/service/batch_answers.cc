@@ -30,7 +30,7 @@ HttpResponse BatchAnswer(ServiceState& state, const std::string& id, int status)
   Json fits = Json::array();
   for (const ListedFit& fit : *runs) {
     Json item = ItemOf(fit);
-    for (const char* key : {"created", "batch", "recommended", "models"}) item.erase(key);
+    for (const char* key : {"file", "created", "batch", "window_s", "recommended", "models"}) item.erase(key);
     fits.push_back(std::move(item));
   }
   Json json = ItemOf(*batch);
@@ -160,8 +160,18 @@ HttpResponse GetBatchEvents(ServiceState& state, const Call& call) {
 }
 
 HttpResponse DeleteBatch(ServiceState& state, const Call& call) {
-  if (const auto deleted = state.store->DeleteBatch(call.id); !deleted) return ProblemAnswer(deleted.error());
-  state.queue.Delete(call.id);
+  if (auto checked = CheckQuery(call.target, {"keep"}); !checked) return ProblemAnswer(checked.error());
+  const std::string keep = QueryValue(call.target, "keep");
+  if (!keep.empty() && keep != "done") {
+    return ProblemAnswer({StatusCode::kInvalidArgument, "keep is '" + keep + "'; it must be done"});
+  }
+  const auto deleted = keep.empty() ? state.store->DeleteBatch(call.id) : state.store->DeleteWaiting(call.id);
+  if (!deleted) return ProblemAnswer(deleted.error());
+  if (keep.empty()) {
+    state.queue.Delete(call.id);
+  } else {
+    state.queue.Cancel(call.id);
+  }
   return {204, {}, "", {}};
 }
 

@@ -25,7 +25,7 @@ std::vector<BatchProgress::Run> RunsOf(std::vector<ListedFit> fits) {
   std::vector<BatchProgress::Run> runs;
   runs.reserve(fits.size());
   for (ListedFit& fit : fits) {
-    runs.push_back({std::move(fit.id), std::move(fit.name), fit.exit_code, std::move(fit.reason), false});
+    runs.push_back({std::move(fit.id), fit.ShownName(), fit.exit_code, std::move(fit.reason), false});
   }
   return runs;
 }
@@ -139,10 +139,37 @@ void BatchQueue::Add(const std::string& batch, const std::vector<FitOrder>& orde
 void BatchQueue::Delete(const std::string& batch) {
   const std::scoped_lock lock(mutex_);
   std::erase_if(waiting_, [&](const FitStore::Waiting& run) { return run.batch == batch; });
+  StopFitsOf(batch);
   const auto found = batches_.find(batch);
   if (found == batches_.end()) return;
   found->second.progress->Delete();
   batches_.erase(found);
+}
+
+void BatchQueue::Cancel(const std::string& batch) {
+  const std::scoped_lock lock(mutex_);
+  StopFitsOf(batch);
+  const auto found = batches_.find(batch);
+  if (found == batches_.end()) return;
+  for (const FitStore::Waiting& run : waiting_) {
+    if (run.batch != batch) continue;
+    found->second.progress->MarkRemoved(run.id);
+    --found->second.left;
+  }
+  std::erase_if(waiting_, [&](const FitStore::Waiting& run) { return run.batch == batch; });
+  if (found->second.left == 0) batches_.erase(found);
+}
+
+void BatchQueue::StopFit(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto found = in_progress_.find(id); found != in_progress_.end()) found->second.stop.request_stop();
+}
+
+/// Call it with the mutex held.
+void BatchQueue::StopFitsOf(const std::string& batch) {
+  for (auto& [id, fit] : in_progress_) {
+    if (fit.batch == batch) fit.stop.request_stop();
+  }
 }
 
 std::shared_ptr<BatchProgress> BatchQueue::ProgressOf(const std::string& batch) const {
@@ -168,6 +195,7 @@ void BatchQueue::Work() {
   std::chrono::seconds pause = kShortest;
   while (const auto run = NextRun()) {
     const auto settled = TryOne(*run);
+    EndFit(*run);
     if (!settled) PutBack(*run, settled.error(), pause);
     pause = settled ? kShortest : std::min(2 * pause, kLongest);
   }
@@ -179,7 +207,18 @@ std::optional<FitStore::Waiting> BatchQueue::NextRun() {
   if (is_stopping_) return std::nullopt;
   FitStore::Waiting run = std::move(waiting_.front());
   waiting_.pop_front();
+  in_progress_.emplace(run.id, Fit{run.batch, {}});
   return run;
+}
+
+std::stop_token BatchQueue::TokenOf(const FitStore::Waiting& run) const {
+  const std::scoped_lock lock(mutex_);
+  return in_progress_.at(run.id).stop.get_token();
+}
+
+void BatchQueue::EndFit(const FitStore::Waiting& run) {
+  const std::scoped_lock lock(mutex_);
+  in_progress_.erase(run.id);
 }
 
 /// Returns the error of a store that is not available now. An exception is a bug or lack of memory and fails only this
@@ -201,6 +240,7 @@ Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
 
 /// The run is settled if it was stored, deleted meanwhile, or left for the next start.
 Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
+  const std::stop_token unwanted = TokenOf(run);
   auto kept = store_.Find(run.id);
   if (!kept) {
     if (kept.error().code != StatusCode::kNotFound) return tl::unexpected(kept.error());
@@ -210,7 +250,7 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
   FinishedRun fitted;
   const auto begin = std::chrono::steady_clock::now();
   if (const auto options = OptionsOf(kept->order); options) {
-    fitted = fitter_.Fit(*options, std::move(kept->order.files));
+    fitted = fitter_.Fit(*options, std::move(kept->order.files), unwanted);
   } else {
     fitted.outcome.exit_code = ExitCode(options.error().code);
     fitted.outcome.reason = options.error().message;

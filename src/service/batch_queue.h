@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -84,8 +85,15 @@ class BatchQueue {
   /// Queues a stored batch, in the room reserved for it.
   void Add(const std::string& batch, const std::vector<FitOrder>& orders);
 
-  /// Removes the waiting runs of a batch.
+  /// Removes a batch: its waiting runs are not fitted, and fits in progress are stopped. It must have been deleted from
+  /// the store.
   void Delete(const std::string& batch);
+
+  /// As Delete, but the batch remains, with the runs that are done. The others must have been deleted from the store.
+  void Cancel(const std::string& batch);
+
+  /// Stops the fit of a run, if it is in progress. The run must have been deleted from the store.
+  void StopFit(const std::string& id);
 
   /// Progress of a running batch; nullptr for other batches.
   std::shared_ptr<BatchProgress> ProgressOf(const std::string& batch) const;
@@ -104,6 +112,9 @@ class BatchQueue {
   Result<void> StoreOutcome(const FitStore::Waiting& run, const RunOutcome& outcome);
   void ReportReason(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
   void PutBack(const FitStore::Waiting& run, const Status& why, std::chrono::seconds pause);
+  std::stop_token TokenOf(const FitStore::Waiting& run) const;
+  void EndFit(const FitStore::Waiting& run);
+  void StopFitsOf(const std::string& batch);
   template <typename Notify>
   void FinishRun(const FitStore::Waiting& run, const Notify& notify);
 
@@ -119,7 +130,12 @@ class BatchQueue {
     std::size_t left = 0;  // runs that are not done
   };
   std::map<std::string, Batch, std::less<>> batches_;
-  std::size_t reserved_ = 0;  // runs that are not in the store yet
+  struct Fit {
+    std::string batch;
+    std::stop_source stop;
+  };
+  std::map<std::string, Fit, std::less<>> in_progress_;  // by the id of the run
+  std::size_t reserved_ = 0;                             // runs that are not in the store yet
   bool is_stopping_ = false;
   std::vector<std::jthread> threads_;  // last member, so they are joined before the others are destroyed
 };

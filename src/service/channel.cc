@@ -2,6 +2,7 @@
 #include "service/channel.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <boost/asio/error.hpp>
@@ -117,6 +118,17 @@ void Channel::DiscardInput(std::function<void()> done) {
          Close();
          done();
        });
+}
+
+bool Channel::IsClosedByPeer(bool understands_interim) {
+  constexpr std::string_view kProbe = "HTTP/1.1 102 Processing\r\n\r\n";
+  tcp_info info = {};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
+  if (info.tcpi_state == TCP_CLOSE_WAIT && understands_interim && !std::exchange(has_probed_, true)) {
+    (void)::send(socket_.native_handle(), kProbe.data(), kProbe.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  return info.tcpi_state == TCP_CLOSE;
 }
 
 void Channel::Close() {

@@ -47,6 +47,11 @@ class Channel : public std::enable_shared_from_this<Channel> {
   /// Ends running operations with an error.
   void Close();
 
+  /// Whether the other side has closed the connection. A side that has only ended its sending looks the same until it
+  /// is sent something; so such a side is sent an interim answer (RFC 9110, section 15.2), if it `understands_interim`
+  /// ones. A closed side rejects it, which a later call sees.
+  bool IsClosedByPeer(bool understands_interim);
+
   bool is_open() const { return socket_.is_open(); }
   asio::ip::tcp::socket::executor_type executor() { return socket_.get_executor(); }
 
@@ -64,7 +69,7 @@ class Channel : public std::enable_shared_from_this<Channel> {
   asio::ip::tcp::socket socket_;
   asio::steady_timer limit_;
   asio::steady_timer::time_point end_ = asio::steady_timer::time_point::max();
-  bool is_late_ = false;
+  bool is_late_ = false, has_probed_ = false;
   std::string peer_;
   std::string head_, body_;         ///< Data being sent.
   std::size_t sent_of_answer_ = 0;  ///< Sent bytes of head_ and body_.

@@ -33,7 +33,8 @@ auto Guarded(const Call& call, const Failed& failed) -> decltype(call()) {
 Connection::Connection(asio::ip::tcp::socket socket, Serving& serving)
     : channel_(std::make_shared<Channel>(std::move(socket), serving.options.request_time)),
       serving_(serving),
-      held_(serving.budget) {}
+      held_(serving.budget),
+      watch_(serving.io) {}
 
 void Connection::Start() { NextRequest(); }
 
@@ -175,6 +176,9 @@ void Connection::Dispatch() {
   stage_ = Stage::kHandling;
   channel_->Unlimit();
   bytes_.shrink_to_fit();
+  client_gone_ = {};
+  parser_->request().client_gone = client_gone_.get_token();
+  is_http11_ = parser_->head().is_http11;
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
   WorkQueue& queue = lane == Lane::kFit ? serving_.fits : serving_.quick;
@@ -182,11 +186,25 @@ void Connection::Dispatch() {
     auto response = std::make_shared<HttpResponse>(self->Handle(offered));
     asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
   });
-  if (!is_queued) Refuse({429, "too many requests are waiting; try again later"});
+  if (!is_queued) return Refuse({429, "too many requests are waiting; try again later"});
+  if (lane == Lane::kFit) WatchClient();
+}
+
+/// Looks from time to time whether the client is still there, so that nobody fits for a client that has gone.
+void Connection::WatchClient() {
+  constexpr std::chrono::milliseconds kInterval{250};
+  watch_.expires_after(kInterval);
+  watch_.async_wait([self = shared_from_this()](const Code& code) {
+    if (code || self->stage_ != Stage::kHandling) return;
+    if (!self->channel_->IsClosedByPeer(self->is_http11_)) return self->WatchClient();
+    self->client_gone_.request_stop();
+  });
 }
 
 /// Runs on a thread of a lane, which owns the request meanwhile.
 HttpResponse Connection::Handle(std::chrono::steady_clock::time_point offered) {
+  if (parser_->request().client_gone.stop_requested())
+    return MakeRefusal({408, "the client has closed the connection"});
   if (std::chrono::steady_clock::now() - offered > serving_.options.wait_time) {
     return MakeRefusal({408, "the request waited too long; try again later"});
   }
@@ -216,6 +234,7 @@ void Connection::Refuse(const Refused& refused) {
 void Connection::Answer(HttpResponse response, bool may_keep_alive) {
   if (stage_ == Stage::kClosed) return;
   stage_ = Stage::kAnswering;
+  watch_.cancel();
   if (parser_) parser_->Forget();
   const bool is_whole = parser_ && parser_->is_done();
   keeps_alive_ = may_keep_alive && is_whole && parser_->head().keeps_alive && !serving_.is_stopping;

@@ -7,8 +7,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
+
+#include <boost/asio/steady_timer.hpp>
 
 #include "pendulum/service/http.h"
 #include "pendulum/service/server.h"
@@ -66,6 +69,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void AskForBody();
   void ParseBody();
   void Dispatch();
+  void WatchClient();
   HttpResponse Handle(std::chrono::steady_clock::time_point offered);
 
   HttpResponse MakeRefusal(const Refused& refused) const;
@@ -87,6 +91,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::chrono::steady_clock::time_point began_;  ///< Start of the request, or of waiting for it.
   HeldBytes held_;                               ///< Bytes of an answer.
   std::weak_ptr<EventStream> stream_;
+  asio::steady_timer watch_;
+  std::stop_source client_gone_;  ///< Of the request in progress.
+  bool is_http11_ = true;
   bool keeps_alive_ = false;
   std::optional<Answered> answered_;  ///< The request that is being answered.
   std::size_t sent_before_ = 0;

@@ -64,13 +64,15 @@ HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
 }
 
 /// Fits the request and stores the fit.
-HttpResponse FitAndStore(ServiceState& state, FitRequest request, const std::optional<RequestKey>& key) {
+HttpResponse FitAndStore(ServiceState& state, const Call& call, FitRequest request,
+                         const std::optional<RequestKey>& key) {
   const auto begin = std::chrono::steady_clock::now();
   FitOrder order{MakeId(),
                  UtcTimeText(),
                  JsonText(JsonOf(request.flags)),
-                 {std::move(request.data.front()), std::move(request.rig), std::move(request.calibration)}};
-  FinishedRun fitted = state.fitter.Fit(request.options, order.files);
+                 {std::move(request.data.front()), std::move(request.rig), std::move(request.calibration)},
+                 std::move(request.name)};
+  FinishedRun fitted = state.fitter.Fit(request.options, order.files, call.http.client_gone);
   state.metrics.CountFit("request", fitted.outcome.exit_code, std::chrono::steady_clock::now() - begin);
   if (fitted.is_stopped) return StoppedAnswer(state, *fitted.error);
   if (fitted.error) return ProblemAnswer(*fitted.error);
@@ -87,8 +89,8 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   if (auto without = WithoutResult(*kept)) return *std::move(without);
   const auto options = OptionsOf(kept->order);
   if (!options) return ProblemAnswer(options.error());
-  const auto run = state.fitter.FitOf(call.id, *options, std::move(kept->order.files));
-  if (run) return make(**run, kept->fit.name);
+  const auto run = state.fitter.FitOf(call.id, *options, std::move(kept->order.files), call.http.client_gone);
+  if (run) return make(**run, kept->fit.ShownName());
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
 }
 
@@ -168,7 +170,7 @@ HttpResponse PostFit(ServiceState& state, const Call& call) {
   return AnswerOnce(state, call, [&](const std::optional<RequestKey>& key) {
     auto request = ParseFitRequest(call.http, call.target, state.options.limits);
     if (!request) return ProblemResponse(request.error());
-    return FitAndStore(state, *std::move(request), key);
+    return FitAndStore(state, call, *std::move(request), key);
   });
 }
 
@@ -180,7 +182,8 @@ HttpResponse PostRefit(ServiceState& state, const Call& call) {
     if (!flags) return ProblemAnswer(flags.error());
     auto request = ParseRefitRequest(call.http, call.target, *std::move(flags), std::move(kept->order.files));
     if (!request) return ProblemResponse(request.error());
-    return FitAndStore(state, *std::move(request), key);
+    if (request->name.empty()) request->name = kept->fit.name;
+    return FitAndStore(state, call, *std::move(request), key);
   });
 }
 
@@ -203,8 +206,18 @@ HttpResponse GetFit(ServiceState& state, const Call& call) {
   return JsonAnswer(kept->result);
 }
 
+HttpResponse RenameFit(ServiceState& state, const Call& call) {
+  const auto name = ParseNameRequest(call.http);
+  if (!name) return ProblemResponse(name.error());
+  if (const auto renamed = state.store->Rename(call.id, *name); !renamed) return ProblemAnswer(renamed.error());
+  const auto kept = state.store->Find(call.id);
+  if (!kept) return ProblemAnswer(kept.error());
+  return JsonAnswer({{"id", call.id}, {"name", kept->fit.ShownName()}, {"file", kept->fit.file}});
+}
+
 HttpResponse DeleteFit(ServiceState& state, const Call& call) {
   if (const auto deleted = state.store->DeleteFit(call.id); !deleted) return ProblemAnswer(deleted.error());
+  state.queue.StopFit(call.id);
   return {204, {}, "", {}};
 }
 
@@ -216,7 +229,8 @@ HttpResponse GetFitRequest(ServiceState& state, const Call& call) {
   const auto sha256 = Sha256(kept->order.files.data.bytes);
   if (!sha256) return ProblemAnswer(sha256.error());
   return JsonAnswer({{"id", call.id},
-                     {"name", kept->fit.name},
+                     {"name", kept->fit.ShownName()},
+                     {"file", kept->fit.file},
                      {"created", kept->fit.created},
                      {"batch", kept->fit.batch ? Json(*kept->fit.batch) : Json(nullptr)},
                      {"options", JsonOf(*flags)},
@@ -228,7 +242,7 @@ HttpResponse GetFitRequest(ServiceState& state, const Call& call) {
 HttpResponse GetRecording(ServiceState& state, const Call& call) {
   auto kept = state.store->Find(call.id);
   if (!kept) return ProblemAnswer(kept.error());
-  return FileAnswer("text/csv; charset=utf-8", std::move(kept->order.files.data.bytes), kept->fit.name);
+  return FileAnswer("text/csv; charset=utf-8", std::move(kept->order.files.data.bytes), kept->fit.file);
 }
 
 HttpResponse GetSamples(ServiceState& state, const Call& call) {

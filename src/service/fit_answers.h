@@ -10,6 +10,7 @@ HttpResponse PostFit(ServiceState& state, const Call& call);
 HttpResponse PostRefit(ServiceState& state, const Call& call);
 HttpResponse ListFits(ServiceState& state, const Call& call);
 HttpResponse GetFit(ServiceState& state, const Call& call);
+HttpResponse RenameFit(ServiceState& state, const Call& call);
 HttpResponse DeleteFit(ServiceState& state, const Call& call);
 HttpResponse GetFitRequest(ServiceState& state, const Call& call);
 HttpResponse GetRecording(ServiceState& state, const Call& call);

@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestName = 200, kMaxOptionBytes = 8192;
+constexpr std::size_t kMaxFileNameBytes = 200, kMaxNameCharacters = 200, kMaxOptionBytes = 8192;
 constexpr std::size_t kMaxUnpackedBytes = std::size_t{1}
                                           << 27;  // Limit for a body that is a zip, a workbook or a MAT-file.
 constexpr std::string_view kFormOfJson = R"({"data": "time_s,angle_deg\n...", "rig": {...}, "options": {...}})";
@@ -38,7 +38,7 @@ std::string NameOf(std::string_view filename) {
     const std::size_t length = std::max<std::size_t>(Utf8Length(filename), 1);
     const std::string_view character = filename.substr(0, length);
     filename.remove_prefix(length);
-    if (name.size() + length > kLongestName) break;
+    if (name.size() + length > kMaxFileNameBytes) break;
     name += Utf8Length(character) == 0 || IsControl(character) ? "_" : character;
   }
   return name.empty() ? kUnnamed : name;
@@ -53,13 +53,22 @@ bool HasControl(std::string_view text) {
   return false;
 }
 
+/// The number of code points of a valid text in UTF-8: all bytes that do not continue one.
+std::size_t CharactersOf(std::string_view text) {
+  constexpr unsigned kKind = 0xC0, kContinuation = 0x80;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & kKind) != kContinuation; }));
+}
+
 Result<void> CheckName(const std::string& name) {
   if (HasControl(name)) {
     return Error(StatusCode::kInvalidArgument, "name " + Quoted(name) + " has control characters; leave them out");
   }
-  if (!name.empty() && name.size() <= kLongestName) return {};
-  return Error(StatusCode::kInvalidArgument,
-               "name has " + std::to_string(name.size()) + " bytes; it must have 1 to " + std::to_string(kLongestName));
+  const std::size_t characters = CharactersOf(name);
+  if (characters > 0 && characters <= kMaxNameCharacters) return {};
+  return Error(StatusCode::kInvalidArgument, "name has " + std::to_string(characters) +
+                                                 " characters; it must have 1 to " +
+                                                 std::to_string(kMaxNameCharacters));
 }
 
 /// Adds a flag unless query or body already gave it.
@@ -352,8 +361,25 @@ ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const Reque
                    "the request has " + std::to_string(request->data.size()) +
                        " recordings (parts data), but a fit has one; use POST /v1/batches for several");
   }
-  if (!name.empty()) request->data.front().name = name;
+  NamedBytes& data = request->data.front();
+  if (!name.empty() && data.name == kUnnamed) data.name = NameOf(name);
+  request->name = std::move(name);
   return Finish(*std::move(request), limits);
+}
+
+ResultOrProblem<std::string> ParseNameRequest(const HttpRequest& http) {
+  constexpr std::array<std::string_view, 2> kTypes = {"application/json", "application/merge-patch+json"};
+  if (auto checked = CheckKind(http, kTypes); !checked) return tl::unexpected(checked.error());
+  auto json = ParseJsonObject(http.body, "the body", "change", R"({"name": "Heavy bob"})", http.body.size());
+  if (!json) return Refused(ProblemKind::kWrongRequest, json.error().message);
+  if (json->size() != 1 || !json->contains("name") || !(*json)["name"].is_string()) {
+    return Refused(ProblemKind::kWrongRequest,
+                   "the body is " + JsonForMessage(*json) + "; it must have one member, name, a text");
+  }
+  auto name = (*json)["name"].get<std::string>();
+  if (name.empty()) return name;
+  if (auto checked = CheckName(name); !checked) return Refused(checked.error());
+  return name;
 }
 
 ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
@@ -400,7 +426,7 @@ ResultOrProblem<FitRequest> ParseRefitRequest(const HttpRequest& http, const Req
   std::erase_if(flags, [](const auto& flag) { return flag.second.empty(); });
   request.flags = std::move(flags);
   request.data.push_back(std::move(files.data));
-  if (!name.empty()) request.data.front().name = name;
+  request.name = std::move(name);
   constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
   return Finish(std::move(request), {.max_samples = kAny, .max_runs = kAny});
 }

@@ -30,15 +30,17 @@ Status TookTooLong(std::chrono::milliseconds limit) {
               "covariance, or use fit_pendulum"};
 }
 
+Status Cancelled() { return {StatusCode::kTryAgain, "the fit was cancelled; send it again if it is still wanted"}; }
+
 }  // namespace
 
 /// An exception is a bug or lack of memory and fails only this run.
-FinishedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
+FinishedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted) {
   FinishedRun fitted;
   try {
     fitted.outcome.provenance = ProvenanceOf(asked, files);
     fitted.outcome.models = asked.models;
-    FitInto(asked, std::move(files), fitted);
+    FitInto(asked, std::move(files), unwanted, fitted);
   } catch (const std::exception& error) {
     fitted.error = {StatusCode::kInternal, std::string("internal error: ") + error.what()};
   }
@@ -50,14 +52,19 @@ FinishedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files) {
   return fitted;
 }
 
-void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FinishedRun& fitted) {
-  const TimeLimit::Watch watch(limit_);
+void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted,
+                     FinishedRun& fitted) {
+  const TimeLimit::Watch watch(limit_, unwanted);
   IdentifyOptions options = asked;
   options.fit.stop = watch.token();
   Result<Identification> run = IdentifyBytes(options, std::move(files));
   fitted.is_stopped = watch.token().stop_requested() && !run;
   if (!run) {
-    fitted.error = fitted.is_stopped ? TookTooLong(limit()) : run.error();
+    if (!fitted.is_stopped) {
+      fitted.error = run.error();
+    } else {
+      fitted.error = unwanted.stop_requested() ? Cancelled() : TookTooLong(limit());
+    }
     return;
   }
   run->data.path.clear();
@@ -67,9 +74,9 @@ void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, FinishedRun& 
 }
 
 Result<std::shared_ptr<const Identification>> Fitter::FitOf(const std::string& id, const IdentifyOptions& options,
-                                                            RunFiles files) {
+                                                            RunFiles files, const std::stop_token& unwanted) {
   if (auto run = Find(id)) return run;
-  FinishedRun fitted = Fit(options, std::move(files));
+  FinishedRun fitted = Fit(options, std::move(files), unwanted);
   if (fitted.error) return tl::unexpected(*fitted.error);
   Remember(id, fitted.run);
   return fitted.run;

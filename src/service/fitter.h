@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "pendulum/base/status.h"
@@ -21,7 +22,7 @@ struct FinishedRun {
   RunOutcome outcome;
   std::shared_ptr<const Identification> run;
   std::optional<Status> error;  ///< Why it could not be fitted.
-  bool is_stopped = false;      ///< It exceeded the time limit, or all fits were stopped.
+  bool is_stopped = false;      ///< It exceeded the time limit, or was stopped.
 };
 
 /// Fits within a time limit and keeps the most recent fits with their samples. For any thread.
@@ -29,12 +30,12 @@ class Fitter {
  public:
   explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
 
-  /// Fits one run. The result is the same as from fit_pendulum, but has no path.
-  FinishedRun Fit(const IdentifyOptions& asked, RunFiles files);
+  /// Fits one run. The result is the same as from fit_pendulum, but has no path. `unwanted`: nobody waits for it.
+  FinishedRun Fit(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted = {});
 
   /// The fit of run `id`, made from these options and files: the remembered one, or a new one.
   Result<std::shared_ptr<const Identification>> FitOf(const std::string& id, const IdentifyOptions& options,
-                                                      RunFiles files);
+                                                      RunFiles files, const std::stop_token& unwanted = {});
 
   /// Remembers the fit of a run.
   void Remember(const std::string& id, std::shared_ptr<const Identification> run);
@@ -54,7 +55,7 @@ class Fitter {
     Eigen::Index samples;
   };
 
-  void FitInto(const IdentifyOptions& asked, RunFiles files, FinishedRun& fitted);
+  void FitInto(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted, FinishedRun& fitted);
   std::shared_ptr<const Identification> Find(const std::string& id);
 
   TimeLimit limit_;

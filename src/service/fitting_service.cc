@@ -107,7 +107,7 @@ HttpResponse FittingService::Refusal(int status, const std::string& detail) cons
 }
 
 void FittingService::Count(const Answered& answered) {
-  constexpr std::array<std::string_view, 4> kMethods = {"GET", "HEAD", "POST", "DELETE"};
+  constexpr std::array<std::string_view, 5> kMethods = {"GET", "HEAD", "POST", "PATCH", "DELETE"};
   const bool is_known = std::ranges::find(kMethods, answered.method) != kMethods.end();
   const auto target = TargetOf(answered.target);
   state_->metrics.CountAnswer(is_known ? answered.method : "other",

@@ -6,7 +6,8 @@ namespace pendulum {
 TimeLimit::TimeLimit(std::chrono::milliseconds limit)
     : limit_(limit), thread_([this](const std::stop_token& stop) { Work(stop); }) {}
 
-TimeLimit::Watch::Watch(TimeLimit& limit) : limit_(limit), number_(limit.Begin(*this)) {}
+TimeLimit::Watch::Watch(TimeLimit& limit, const std::stop_token& other)
+    : limit_(limit), number_(limit.Begin(*this)), other_(other, [this] { source_.request_stop(); }) {}
 
 TimeLimit::Watch::~Watch() {
   const std::scoped_lock lock(limit_.mutex_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of FitStore: durability, other processes, older stores and a full disk.
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstddef>
@@ -212,6 +213,29 @@ TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the old run was not requested from a service
   EXPECT_EQ(Store().Find("old").error().code, StatusCode::kNotFound);
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);
+}
+
+TEST_F(FitStoreFileTest, UpdatesAStoreOfAServiceWithoutNames) {
+  {
+    SQLite::Database database(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    for (int version = 0; version < 3; ++version) database.exec(std::string(kStoreMigrations.at(version)));
+    database.exec("PRAGMA application_id = " + std::to_string(kStoreId) + "; PRAGMA user_version = 3");
+    database.exec(
+        "INSERT INTO runs(id, position, path, rig, calibration, models, columns, exit_code, result) "
+        "VALUES('old', -1, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":2,\"data\":{\"window_s\":[1,2.5]}}');"
+        "INSERT INTO files(sha256, bytes) VALUES('x', 'time_s');"
+        "INSERT INTO requests VALUES(1, NULL, '2026-11-23T21:40:05Z', '{}', 1, NULL, NULL)");
+  }
+  const auto fits = Store().List({});
+  ASSERT_TRUE(fits) << fits.error().message;
+  ASSERT_THAT(IdsOf(*fits), ElementsAre("old"));
+  EXPECT_EQ(fits->at(0).name, "");
+  EXPECT_EQ(fits->at(0).ShownName(), "old.csv");
+  EXPECT_EQ(fits->at(0).window, (std::array{1.0, 2.5}));
+  ASSERT_TRUE(Store().Rename("old", "Heavy bob"));
+  Add("new");
+  EXPECT_EQ(Store().Find("old")->fit.name, "Heavy bob");
+  EXPECT_EQ(Store().Find("new")->fit.name, "");
 }
 
 TEST_F(FitStoreFileTest, KeepsItsRunsIfAManifestIsRefittedIntoTheSameFile) {

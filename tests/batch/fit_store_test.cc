@@ -86,7 +86,8 @@ TEST_F(FitStoreTest, KeepsARunWithAllItsInputs) {
   const auto kept = Store().Find("a");
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->fit.id, "a");
-  EXPECT_EQ(kept->fit.name, "swing, the first.csv");
+  EXPECT_EQ(kept->fit.file, "swing, the first.csv");
+  EXPECT_EQ(kept->fit.ShownName(), "swing, the first.csv");
   EXPECT_EQ(kept->fit.created, kCreated);
   EXPECT_EQ(kept->fit.exit_code, 0);
   EXPECT_EQ(kept->fit.reason, "");
@@ -140,7 +141,8 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
   ASSERT_TRUE(fits) << fits.error().message;
   ASSERT_THAT(IdsOf(*fits), ElementsAre("b", "a"));
   const ListedFit& fit = fits->back();
-  EXPECT_EQ(fit.name, "a.csv");
+  EXPECT_EQ(fit.name, "");
+  EXPECT_EQ(fit.file, "a.csv");
   EXPECT_EQ(fit.recommended, "coulomb");
   ASSERT_THAT(fit.models, SizeIs(2));
   EXPECT_EQ(fit.models[0].model, "coulomb");
@@ -155,6 +157,62 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
   EXPECT_EQ(fit.models[0].parameters[0].std_error, 1.0);
   EXPECT_EQ(fit.models[0].parameters[0].unit, "kg m^2");
   EXPECT_EQ(fit.models[0].parameters[2].std_error, std::nullopt);
+  EXPECT_EQ(fit.models[0].parameters[2].total_std_error, std::nullopt);
+}
+
+TEST_F(FitStoreTest, ListsTheWindowAndTheTotalError) {
+  RunOutcome outcome = OutcomeOf({FitOf("coulomb", 0.5)});
+  outcome.result["data"]["window_s"] = {1.25, 46.5};
+  Add(OrderOf("a"), outcome);
+  Add("without a window");
+  SQLite::Database(path_, SQLite::OPEN_READWRITE)
+      .exec("UPDATE quantities SET std_error = 0.3, systematic_std_error = 0.4 WHERE name = 'inertia'");
+  const auto fits = Store().List({});
+  ASSERT_TRUE(fits) << fits.error().message;
+  EXPECT_EQ(fits->at(1).window, (std::array{1.25, 46.5}));
+  EXPECT_EQ(fits->at(0).window, std::nullopt);
+  EXPECT_DOUBLE_EQ(fits->at(1).models.at(0).parameters.at(0).total_std_error.value(), 0.5);  // 3, 4, 5
+}
+
+// ---- Names ---------------------------------------------------------------------------------------------------------
+
+TEST_F(FitStoreTest, KeepsTheNameOfARunBesideThatOfItsFile) {
+  FitOrder order = OrderOf("a");
+  order.name = "Heavy böb";
+  Add(order, OutcomeOf({}));
+  EXPECT_EQ(Store().Find("a")->fit.ShownName(), "Heavy böb");
+  EXPECT_EQ(Store().Find("a")->order.name, "Heavy böb");
+  EXPECT_EQ(Store().Find("a")->order.files.data.name, "a.csv");
+  ASSERT_TRUE(Store().Rename("a", "Light bob"));
+  EXPECT_EQ(Store().List({})->at(0).name, "Light bob");
+  Close();
+  EXPECT_EQ(Store().Find("a")->fit.name, "Light bob");  // on the disk
+  ASSERT_TRUE(Store().Rename("a", ""));
+  EXPECT_EQ(Store().Find("a")->fit.ShownName(), "a.csv");
+  ExpectUnknown(Store().Rename("b", "x"), "fit b");
+}
+
+TEST_F(FitStoreTest, FindsARunByItsNameAndByThatOfItsFile) {
+  Add("a");
+  Add("b");
+  ASSERT_TRUE(Store().Rename("a", "Heavy bob"));
+  FitFilter filter;
+  filter.name = "heavy B";
+  EXPECT_THAT(Listed(filter), ElementsAre("a"));
+  filter.name = "A.CSV";
+  EXPECT_THAT(Listed(filter), ElementsAre("a"));
+  filter.name = "b";
+  EXPECT_THAT(Listed(filter), ElementsAre("b", "a"));
+}
+
+TEST_F(FitStoreTest, DeletesTheWaitingRunsOfABatch) {
+  ASSERT_TRUE(Store().AddBatch("batch", kCreated, OrdersOf({"a", "b", "c"}), std::nullopt));
+  ASSERT_TRUE(Store().AddBatch("other", kCreated, OrdersOf({"d"}), std::nullopt));
+  ASSERT_TRUE(Store().Put("b", OutcomeOf({})));
+  ASSERT_TRUE(Store().DeleteWaiting("batch"));
+  EXPECT_THAT(IdsOf(Store().RunsOf("batch").value()), ElementsAre("b"));
+  EXPECT_EQ(Store().RunsOf("other")->size(), 1);
+  ExpectUnknown(Store().DeleteWaiting("none"), "batch none");
 }
 
 TEST_F(FitStoreTest, ListsAdjacentPages) {

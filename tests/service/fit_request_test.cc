@@ -15,6 +15,7 @@ namespace pendulum::fit_request_test {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -129,10 +130,29 @@ TEST(ParseFitRequest, ShortensFileNamesBetweenCharacters) {
   EXPECT_EQ(request->data[0].name, name.substr(0, 199));
 }
 
-TEST(ParseFitRequest, PrefersTheNameInTheQuery) {
+TEST(ParseFitRequest, KeepsTheNameInTheQueryBesideThatOfTheFile) {
   const auto form = Fit(Post("/v1/fits?name=mine", kForm, Form(Part("data", kCsv, "run.csv"))));
   ASSERT_TRUE(form) << form.error().detail;
-  EXPECT_EQ(form->data[0].name, "mine");
+  EXPECT_EQ(form->name, "mine");
+  EXPECT_EQ(form->data[0].name, "run.csv");
+}
+
+TEST(ParseNameRequest, CountsCharactersInsteadOfBytes) {
+  std::string name;
+  for (int i = 0; i < 200; ++i) name += "ü";
+  const auto parse = [](const std::string& body, const std::string& type = "application/json") {
+    const auto read = ParseNameRequest({"PATCH", "/v1/fits/1", {{"Content-Type", type}}, body});
+    return read ? *read : std::to_string(read.error().status()) + " " + read.error().detail;
+  };
+  EXPECT_EQ(parse(Json{{"name", name}}.dump()), name);
+  EXPECT_EQ(parse(R"({"name": "a"})", "application/merge-patch+json"), "a");
+  EXPECT_EQ(parse(R"({"name": ""})"), "");
+  EXPECT_EQ(parse(Json{{"name", name + "x"}}.dump()), "400 name has 201 characters; it must have 1 to 200");
+  EXPECT_EQ(parse(R"({"name": "a\nb"})"), "400 name \"a\\x0ab\" has control characters; leave them out");
+  for (const char* body : {"{}", R"({"name": 3})", R"({"name": "a", "rig": null})"}) {
+    EXPECT_THAT(parse(body), EndsWith("it must have one member, name, a text")) << body;
+  }
+  EXPECT_THAT(parse("a", "text/plain"), StartsWith("415 "));
 }
 
 // ---- Refused requests ----------------------------------------------------------------------------------------------
@@ -169,8 +189,9 @@ TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
        "text/csv", kCsv},
       {"400 --release all gives several results for a recording, but a request has one; give the number of a release",
        "/v1/fits?release=all", "text/csv", kCsv},
-      {"400 name has 0 bytes; it must have 1 to 200", "/v1/fits?name=", "text/csv", kCsv},
-      {"400 name has 201 bytes; it must have 1 to 200", "/v1/fits?name=" + std::string(201, 'n'), "text/csv", kCsv},
+      {"400 name has 0 characters; it must have 1 to 200", "/v1/fits?name=", "text/csv", kCsv},
+      {"400 name has 201 characters; it must have 1 to 200", "/v1/fits?name=" + std::string(201, 'n'), "text/csv",
+       kCsv},
       {"400 --model is given in the query and in options; leave one of them out", "/v1/fits?model=drag", kForm,
        Form(data + Part("options", R"({"model": "drag"})"))},
       {"400 --model is given in the query and in options; leave one of them out", "/v1/fits?model=drag",
@@ -195,7 +216,8 @@ TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
        "/v1/fits", "application/json", R"({"data": "", "options": null})"},
       {"400 rig is \"mine\"; it must be an object or null", "/v1/fits", "application/json",
        R"({"data": "", "rig": "mine"})"},
-      {"400 name has 0 bytes; it must have 1 to 200", "/v1/fits", "application/json", R"({"data": "", "name": ""})"},
+      {"400 name has 0 characters; it must have 1 to 200", "/v1/fits", "application/json",
+       R"({"data": "", "name": ""})"},
       {"400 --from is an array; it must be a text, a number, true or false", "/v1/fits", "application/json",
        R"({"data": "", "options": {"from": [1]}})"},
       {"400 --to is null; it must be a text, a number, true or false", "/v1/fits", kForm,
@@ -301,7 +323,7 @@ TEST(ParseRefitRequest, ChangesAddsAndRemovesFlags) {
   const auto query = Refit("?models=viscous,coulomb&to=3&from=&name=again");
   ASSERT_TRUE(query) << query.error().detail;
   EXPECT_THAT(query->flags, UnorderedElementsAre(Pair("models", "viscous,coulomb"), Pair("to", "3")));
-  EXPECT_EQ(query->data.at(0).name, "again");
+  EXPECT_EQ(query->name, "again");
   const auto body = Refit("", R"({"options": {"from": 0.75, "model": ""}})");
   ASSERT_TRUE(body) << body.error().detail;
   EXPECT_THAT(body->flags, ElementsAre(Pair("from", "0.75")));
@@ -332,7 +354,7 @@ TEST(ParseRefitRequest, RefusesAndExplainsInvalidRequests) {
 TEST(ParseRefitRequest, IgnoresNothingSilently) {
   EXPECT_EQ(Answer(Refit("?modle=")), "400 --modle is not a flag of this request; did you mean --model?");
   const auto named = Refit("", R"({"name": "again"})");
-  EXPECT_TRUE(!named || named->data.at(0).name == "again");
+  EXPECT_TRUE(!named || named->name == "again");
 }
 
 // ---- Flags as JSON -------------------------------------------------------------------------------------------------

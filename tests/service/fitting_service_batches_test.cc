@@ -255,6 +255,38 @@ TEST_F(FittingServiceBatchesTest, SkipsARunDeletedSeparately) {
   EXPECT_EQ(batch["failed"], 0);
 }
 
+TEST_F(FittingServiceBatchesTest, CancelsTheWaitingRunsAndKeepsTheOthers) {
+  const std::string location = Sent(ThreeRecordings());
+  Done(location);
+  Service().Stop();
+  const std::string other = Sent(ThreeRecordings());
+  const HttpResponse events = Get(other + "/events");
+  ASSERT_EQ(Ask("DELETE", other + "?keep=done").status, 204);
+  EXPECT_EQ(JsonAt(other)["runs"], 0);
+  EXPECT_EQ(JsonAt(other)["state"], "done");
+  EXPECT_TRUE(events.events().is_last);
+  ASSERT_EQ(Ask("DELETE", location + "?keep=done").status, 204);
+  EXPECT_EQ(JsonAt(location)["done"], 3);
+  EXPECT_EQ(AnswerOf(Ask("DELETE", location + "?keep=all")), "400 keep is 'all'; it must be done");
+  EXPECT_EQ(AnswerOf(Ask("DELETE", "/v1/batches/none?keep=done")),
+            "404 there is no batch none; it may have been deleted");
+}
+
+/// A bootstrap of all models with 60,000 samples that is not stopped takes minutes.
+TEST_F(FittingServiceBatchesTest, StopsTheFitInProgressOfWhatIsDeleted) {
+  SyntheticOptions minutes = small_batch::Truth(1);
+  minutes.duration = 300;
+  minutes.sample_rate = 200;
+  const std::string part = PartOf("data", small_batch::RecordingText(minutes), "a.csv");
+  for (const bool cancels : {false, true}) {
+    const HttpResponse sent = Post("/v1/batches?model=all&interval=bootstrap", kForm, FormOf(part));
+    ASSERT_EQ(sent.status, 202) << sent.body;
+    ASSERT_EQ(Ask("DELETE", FieldOf(sent, "Location") + (cancels ? "?keep=done" : "")).status, 204);
+    const std::string next = Sent(PartOf("data", Recording(), "b.csv"));  // there is only one thread
+    EXPECT_EQ(Done(next)["done"], 1);
+  }
+}
+
 // ---- Events --------------------------------------------------------------------------------------------------------
 
 void ExpectAllEvents(const std::vector<Event>& events, const Json& batch) {

@@ -92,7 +92,7 @@ TEST_F(FittingServiceRefusalsTest, ListsTheAllowedMethods) {
     return FieldOf(response, "Allow");
   };
   EXPECT_EQ(allowed("PUT", "/v1/fits"), "POST, GET, HEAD");
-  EXPECT_EQ(allowed("POST", "/v1/fits/abc"), "GET, HEAD, DELETE");
+  EXPECT_EQ(allowed("POST", "/v1/fits/abc"), "GET, HEAD, PATCH, DELETE");
   EXPECT_EQ(allowed("HEAD", "/v1/simulations"), "POST");
   EXPECT_EQ(allowed("DELETE", "/"), "GET, HEAD");
   EXPECT_EQ(allowed("get", "/v1/models"), "GET, HEAD");  // method names are case-sensitive (RFC 9110, section 9.1)

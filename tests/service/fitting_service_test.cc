@@ -3,6 +3,7 @@
 #include "pendulum/service/fitting_service.h"
 
 #include <set>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -331,6 +332,7 @@ TEST_F(FittingServiceTest, ListsItsFits) {
   const Json& item = list["fits"][1];
   EXPECT_EQ(item["id"], IdOf(first));
   EXPECT_EQ(item["name"], "first.csv");
+  EXPECT_EQ(item["file"], "first.csv");
   EXPECT_EQ(item["state"], "done");
   EXPECT_EQ(item["exit_code"], 0);
   EXPECT_EQ(item["reason"], "");
@@ -340,6 +342,9 @@ TEST_F(FittingServiceTest, ListsItsFits) {
   EXPECT_EQ(item["models"][0]["status"], "converged");
   EXPECT_EQ(item["models"][0]["parameters"]["inertia"]["estimate"],
             result["fits"][0]["parameters"]["inertia"]["estimate"]);
+  EXPECT_EQ(item["models"][0]["parameters"]["inertia"]["total_std_error"],
+            result["fits"][0]["parameters"]["inertia"]["total_std_error"]);
+  EXPECT_EQ(item["window_s"], result["data"]["window_s"]);
   EXPECT_EQ(item["models"][0]["rms_residual"], result["fits"][0]["statistics"]["rms_residual_rad"]);
   EXPECT_EQ(list["fits"][0]["recommended"], JsonAt(second)["comparison"]["recommended"]);
   EXPECT_THAT(IdsAt("/v1/fits?model=coulomb"), ElementsAre(IdOf(second)));
@@ -357,6 +362,38 @@ TEST_F(FittingServiceTest, ListsInPages) {
   EXPECT_THAT(IdsAt("/v1/fits?limit=2"), ElementsAre(expected[0], expected[1]));
   EXPECT_THAT(IdsAt("/v1/fits?limit=2&before=" + first["next"].dump()), ElementsAre(expected[2]));
   EXPECT_THAT(IdsAt("/v1/fits?limit=99999"), SizeIs(3));
+}
+
+TEST_F(FittingServiceTest, RenamesAFit) {
+  const HttpResponse sent =
+      Post("/v1/fits?model=viscous&name=Heavy%20bob", kForm, FormOf(PartOf("data", Recording(), "run.csv")));
+  const std::string location = FieldOf(sent, "Location");
+  EXPECT_EQ(JsonAt(location + "/request")["name"], "Heavy bob");
+  EXPECT_EQ(JsonAt(location + "/request")["file"], "run.csv");
+  const auto rename = [&](const std::string& name) {
+    const HttpResponse renamed =
+        Ask("PATCH", location, {{"Content-Type", "application/json"}}, Json{{"name", name}}.dump());
+    EXPECT_EQ(renamed.status, 200) << renamed.body;
+    return Json::parse(renamed.body);
+  };
+  EXPECT_EQ(rename("Lïght bob"), (Json{{"id", IdOf(location)}, {"name", "Lïght bob"}, {"file", "run.csv"}}));
+  EXPECT_EQ(JsonAt("/v1/fits?name=light")["fits"].size(), 0U);  // only ASCII letters match in both cases
+  EXPECT_EQ(JsonAt("/v1/fits?name=GHT%20BOB")["fits"][0]["name"], "Lïght bob");
+  const std::string refit = FieldOf(Ask("POST", location + "/refits?model=coulomb"), "Location");
+  EXPECT_EQ(JsonAt(refit + "/request")["name"], "Lïght bob");
+  EXPECT_EQ(FieldOf(Get(location + "/recording"), "Content-Disposition"), "attachment; filename*=UTF-8''run.csv");
+  EXPECT_EQ(rename("")["name"], "run.csv");
+  EXPECT_EQ(AnswerOf(Ask("PATCH", "/v1/fits/none", {{"Content-Type", "application/json"}}, R"({"name": "a"})")),
+            "404 there is no fit none; it may have been deleted");
+}
+
+TEST_F(FittingServiceTest, StopsTheFitOfAClientThatHasGone) {
+  std::stop_source gone;
+  gone.request_stop();
+  const HttpResponse response = Service().Handle(
+      {"POST", "/v1/fits", {{"Host", "localhost"}, {"Content-Type", "text/csv"}}, Recording(), gone.get_token()});
+  EXPECT_EQ(AnswerOf(response), "408 the fit was cancelled; send it again if it is still wanted");
+  EXPECT_THAT(IdsAt("/v1/fits"), IsEmpty());
 }
 
 TEST_F(FittingServiceTest, DeletesAFitWithItsFiles) {

@@ -186,6 +186,36 @@ TEST_F(ServerTest, AnswersAClientThatHasEndedSending) {
   EXPECT_TRUE(client.IsEnded());
 }
 
+TEST_F(ServerTest, TellsTheHandlerOfAFitThatTheClientHasGone) {
+  Start();
+  std::atomic<int> gone = 0;
+  handler_.gate.count_down();
+  handler_.answer = [&](const HttpRequest& request) {
+    if (Eventually([&] { return request.client_gone.stop_requested(); })) ++gone;
+    return HttpResponse{200, {}, "", nullptr};
+  };
+  RawClient closed = Connect(), reset = Connect();
+  closed.Send(Post("/fit/closed", "body"));
+  reset.Send(Post("/fit/reset", "body"));
+  EXPECT_TRUE(Eventually([&] { return handler_.waiting == 2; }));
+  closed.Close();
+  reset.Reset();
+  EXPECT_TRUE(Eventually([&] { return gone == 2; }));
+}
+
+TEST_F(ServerTest, KeepsTheFitOfAClientThatHasOnlyEndedSending) {
+  Start();
+  RawClient client = Connect();
+  client.Send(Post("/fit", "body"));
+  client.EndSending();
+  EXPECT_EQ(client.Read().status, 102);  // asks whether the client is there
+  handler_.answer = [](const HttpRequest& request) {
+    return HttpResponse{200, {}, request.client_gone.stop_requested() ? "gone" : "there", nullptr};
+  };
+  handler_.gate.count_down();
+  EXPECT_EQ(client.Read().body, "there");
+}
+
 TEST_F(ServerTest, ReportsAClientThatEndsWithinItsRequest) {
   Start();
   for (const std::string begun : {"GET / HT", "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\nfour"}) {

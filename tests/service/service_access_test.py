@@ -87,7 +87,7 @@ class Headers(SecurityFields, Served):
             self.assertEqual(head.headers["content-type"], got.headers["content-type"], target)
 
     def test_methods_that_a_path_does_not_allow_are_405(self):
-        cases = {"/v1/fits": ("PUT", {"GET", "POST"}), "/v1/fits/1": ("POST", {"GET", "DELETE"}), "/healthz": ("POST", {"GET"}),
+        cases = {"/v1/fits": ("PUT", {"GET", "POST"}), "/v1/fits/1": ("POST", {"GET", "PATCH", "DELETE"}), "/healthz": ("POST", {"GET"}),
                  "/v1/batches": ("DELETE", {"GET", "POST"}), "/v1/simulations": ("GET", {"POST"}),
                  "/v1/calibrations": ("GET", {"POST"}),
                  "/v1/fits/1/series": ("PATCH", {"GET"}), "/": ("POST", {"GET"}), "/v1/fits/1/refits": ("GET", {"POST"}),

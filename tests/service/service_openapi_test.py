@@ -17,7 +17,7 @@ METHODS = {"get", "put", "post", "delete", "patch", "options", "trace"}
 
 # Every path of the service except the page's, which are not an interface for programs.
 ROUTES = {
-    "/v1/fits": {"get", "post"}, "/v1/fits/{}": {"get", "delete"}, "/v1/fits/{}/request": {"get"},
+    "/v1/fits": {"get", "post"}, "/v1/fits/{}": {"get", "patch", "delete"}, "/v1/fits/{}/request": {"get"},
           "/v1/fits/{}/recording": {"get"},
     "/v1/fits/{}/samples": {"get"}, "/v1/fits/{}/series": {"get"}, "/v1/fits/{}/residuals": {"get"},
           "/v1/fits/{}/report": {"get"},
@@ -155,6 +155,13 @@ class Answers(Served):
         self.check("post", f"{fit}/refits", f"{place}/refits?model=linear")
         self.post(f"{fit}/refits", f"{place}/refits", json.dumps({"rig": json.loads(RIG.read_text())}), "application/json")
         self.check("post", f"{fit}/refits", "/v1/fits/none/refits", status=404)
+        name = json.dumps({"name": "Heavy bob"})
+        for content_type in ("application/json", "application/merge-patch+json"):
+            self.check("patch", fit, place, name, Content_Type=content_type)
+        self.check("patch", fit, place, "{}", 400, Content_Type="application/json")
+        self.check("patch", fit, "/v1/fits/none", name, 404, Content_Type="application/json")
+        self.check("patch", fit, place, name, 415, Content_Type="text/csv")
+        self.check("get", fits, "/v1/fits?name=heavy")
         self.check("delete", fit, place, status=204)
         self.check("delete", fit, place, status=404)
 
@@ -172,6 +179,9 @@ class Answers(Served):
         self.check("get", "/v1/fits/{}", f"/v1/fits/{done['fits'][0]['id']}", status=422)
         for target, method in ((batch, "get"), (f"{batch}/events", "get"), (batch, "delete")):
             self.check(method, target, target.format("none"), status=404)
+        self.check("delete", batch, place + "?keep=all", status=400)
+        self.check("delete", batch, place + "?keep=done", status=204)
+        self.assertEqual(self.check("get", batch, place).json()["done"], 3)
         self.check("delete", batch, place, status=204)
 
     def check_others(self):

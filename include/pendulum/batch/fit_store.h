@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,7 @@ struct FitOrder {
   std::string created;  ///< RFC 3339, UTC.
   std::string flags;    ///< The options: a JSON object with the names and values of flags, all as texts.
   RunFiles files;
+  std::string name = {};  ///< Given by the client; may be empty.
 };
 
 /// The key of a request and the SHA-256 of its content. They identify a repetition, which is not processed again.
@@ -39,6 +41,7 @@ struct KnownAnswer {
 struct ListedParameter {
   std::string name, unit;
   std::optional<double> estimate, std_error;
+  std::optional<double> total_std_error;  ///< Statistical and systematic, in squares.
 };
 
 /// The fit of one model to a run, as a list shows it.
@@ -51,15 +54,22 @@ struct ListedModel {
 /// One run, as a list shows it.
 struct ListedFit {
   std::int64_t run = 0;  ///< Its number; later runs have larger numbers.
-  std::string id, name, created;
+  std::string id;
+  std::string name;  ///< Given by the client; may be empty.
+  std::string file;  ///< Name of the recording.
+  std::string created;
   std::optional<std::string> batch;  ///< The id of its batch.
   std::optional<int> exit_code;      ///< std::nullopt: the run waits.
   std::string reason;                ///< Why it could not be fitted.
   std::optional<std::string> recommended;
+  std::optional<std::array<double, 2>> window;  ///< Begin and end of the fitted samples, s.
   std::vector<ListedModel> models;
+
+  /// The given name, or that of the recording.
+  const std::string& ShownName() const { return name.empty() ? file : name; }
 };
 
-/// Selects the runs of a list; an empty field matches any run.
+/// Selects the runs of a list; an empty field matches any run. `name`: a part of the given name or of the file's.
 struct FitFilter {
   int limit = 50;
   std::optional<std::int64_t> before;  ///< Only smaller run numbers.
@@ -68,7 +78,7 @@ struct FitFilter {
 
 /// A run with all its inputs.
 struct KeptFit {
-  ListedFit fit;  ///< Without models.
+  ListedFit fit;  ///< Without models and window.
   FitOrder order;
   nlohmann::ordered_json result;  ///< Null if there is none.
 };
@@ -108,16 +118,20 @@ class FitStore {
   /// Stores the outcome of a waiting run. kNotFound: it was deleted meanwhile.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);
 
-  /// Deletes a run with its files, or a batch with all of its runs.
+  /// Gives a run another name; an empty one removes it.
+  Result<void> Rename(const std::string& id, const std::string& name);
+
+  /// Deletes a run with its files, a batch with all of its runs, or the runs of a batch that wait.
   Result<void> DeleteFit(const std::string& id);
   Result<void> DeleteBatch(const std::string& id);
+  Result<void> DeleteWaiting(const std::string& batch);
 
   Result<KeptFit> Find(const std::string& id);
   Result<std::vector<ListedFit>> List(const FitFilter& filter);
   Result<ListedBatch> FindBatch(const std::string& id);
   Result<std::vector<ListedBatch>> ListBatches(int limit, const std::optional<std::int64_t>& before);
 
-  /// The runs of a batch in the order in which they were sent, without models.
+  /// The runs of a batch in the order in which they were sent, without models and windows.
   Result<std::vector<ListedFit>> RunsOf(const std::string& batch);
 
   /// A waiting run: its id and the id of its batch.

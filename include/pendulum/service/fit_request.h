@@ -43,21 +43,26 @@ struct FitRequest {
   IdentifyOptions options;  ///< The options that the flags set.
   std::vector<NamedBytes> data;
   SharedFile rig, calibration;
+  std::string name;  ///< Of a single fit; empty if not given.
 };
 
 /// Name of recordings sent without a name.
 inline constexpr const char* kUnnamed = "data";
 
 /// Reads the request for one fit. The body is the recording (text/csv), a form (multipart/form-data) with the parts
-/// data, rig, calibration and options, or a JSON object with these members. The query has flags and the recording's
-/// `name`. Problems: as RunFlagsOf and MakeIdentifyOptions; an unknown or repeated part, another content type, too many
-/// lines.
+/// data, rig, calibration and options, or a JSON object with these members. The query has flags and the `name` of
+/// the fit, which is also the name of a recording without a file name. Problems: as RunFlagsOf and MakeIdentifyOptions;
+/// an unknown or repeated part, another content type, too many lines.
 ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                             const RequestLimits& limits);
 
 /// Reads the request for a batch: as ParseFitRequest, but the body is a form with one or more parts named data.
 ResultOrProblem<FitRequest> ParseBatchRequest(const HttpRequest& http, const RequestTarget& target,
                                               const RequestLimits& limits);
+
+/// Reads the body {"name": "..."} of a request that names a fit. An empty name removes it. Problems: another content
+/// type or member; control characters; more than 200 characters.
+ResultOrProblem<std::string> ParseNameRequest(const HttpRequest& http);
 
 /// Reads the changes of a refit from the query and, if there is a body, from a JSON object. A flag with an empty value
 /// removes the previous flag. A new rig or calibration replaces the previous one; null removes it.

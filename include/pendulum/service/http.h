@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,8 @@ struct HttpRequest {
   std::string method;  ///< "GET"
   std::string target;  ///< Path and query as on the request line: "/v1/fits?model=drag".
   std::vector<HttpField> fields;
-  std::string body;  ///< Complete, without its transfer coding.
+  std::string body;                  ///< Complete, without its transfer coding.
+  std::stop_token client_gone = {};  ///< Requested when the client has closed the connection (Lane::kFit).
 
   /// The value of the first field of that name; std::nullopt if there is none.
   std::optional<std::string_view> Field(std::string_view name) const;

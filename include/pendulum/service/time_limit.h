@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <stop_token>
@@ -24,14 +25,15 @@ class TimeLimit {
   /// Limits one piece of work, from construction to destruction.
   class Watch {
    public:
-    explicit Watch(TimeLimit& limit);
+    /// `other`: a further reason to stop.
+    explicit Watch(TimeLimit& limit, const std::stop_token& other = {});
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;
     Watch(Watch&&) = delete;
     Watch& operator=(Watch&&) = delete;
     ~Watch();
 
-    /// A stop is requested at the time limit, or by StopAll.
+    /// A stop is requested at the time limit, by StopAll, or by the other reason.
     std::stop_token token() const { return source_.get_token(); }
 
    private:
@@ -39,6 +41,7 @@ class TimeLimit {
     TimeLimit& limit_;
     std::stop_source source_;
     std::uint64_t number_;
+    std::stop_callback<std::function<void()>> other_;  // last member: it uses source_
   };
 
   /// Stops all current and future work.

@@ -152,7 +152,8 @@ test('past fits are filtered, chosen and compared', async (t) => {
   assert.match(await rows.first().textContent(), /textbook_rig\.csv.*viscous.*converged/);
   const { fits } = await service.json('/v1/fits?name=textbook');
   const { inertia } = fits[0].models.find((model) => model.model === fits[0].recommended).parameters;
-  assertShown(await rows.first().locator('[data-label=Inertia] span').textContent(), inertia);
+  const { estimate, total_std_error: std_error } = inertia;
+  assertShown(await rows.first().locator('[data-label=Inertia] span').textContent(), { estimate, std_error });
   await page.getByRole('checkbox', { name: 'Select textbook_rig.csv' }).check();
   await page.getByLabel('Name contains').fill('');
   await page.getByRole('checkbox', { name: 'Select coulomb.csv' }).check();

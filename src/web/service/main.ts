@@ -3,6 +3,7 @@
 
 import '../shared/style.css';
 import './service.css';
+import './views.css';
 import 'uplot/dist/uPlot.min.css';
 
 import { embedded, start } from '../shared/embedded';

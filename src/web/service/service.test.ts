@@ -21,9 +21,9 @@ import {
   wholeRange,
   type Compared,
 } from './views/compare';
-import { mainModel, parameterWords, stateOf } from './views/fit_rows';
+import { mainModel, parameterWords, stateOf, windowWords } from './views/fit_rows';
 import { LiveSamples } from './views/live_plot';
-import { draggedWindow } from './views/window_plot';
+import { movedEnd } from './views/window_plot';
 
 describe('routes', () => {
   test('each address has one view', () => {
@@ -238,6 +238,18 @@ describe('lists of fits', () => {
     expect(parameterWords(null, 'inertia').value).toBe('–');
   });
 
+  test('the error is the total one where the service knows it', () => {
+    const total = model('x', 'converged');
+    total.parameters.inertia.total_std_error = 0.03;
+    expect(parameterWords(total, 'inertia').value).toBe('0.079 ± 0.030');
+  });
+
+  test('windows are in seconds', () => {
+    expect(windowWords([0, 46.35])).toBe('0 to 46.35\u00a0s');
+    expect(windowWords(null)).toBe('–');
+    expect(windowWords(undefined)).toBe('–');
+  });
+
   test('say how a fit ended', () => {
     const item = { state: 'done' as const, exit_code: 0, recommended: null, models: [model('x', 'not_converged')] };
     expect(stateOf(item)).toEqual({ words: 'not converged', level: 'caution' });
@@ -303,15 +315,16 @@ describe('comparisons', () => {
 });
 
 describe('windows', () => {
-  test('a drag in either direction selects a window', () => {
-    expect(draggedWindow([0, 20], 5, 9, 0.2)).toEqual([5, 9]);
-    expect(draggedWindow([0, 20], 9, 5, 0.2)).toEqual([5, 9]);
+  test('a handle moves its own end, within the recording', () => {
+    expect(movedEnd([2, 20], 0, 4, [0, 30], 0.1)).toEqual([4, 20]);
+    expect(movedEnd([2, 20], 1, 12, [0, 30], 0.1)).toEqual([2, 12]);
+    expect(movedEnd([2, 20], 0, -5, [0, 30], 0.1)).toEqual([0, 20]);
+    expect(movedEnd([2, 20], 1, 99, [0, 30], 0.1)).toEqual([2, 30]);
   });
 
-  test('a drag that begins near an end moves this end, even past the other one', () => {
-    expect(draggedWindow([2, 20], 2.1, 4, 0.2)).toEqual([4, 20]);
-    expect(draggedWindow([2, 20], 19.9, 12, 0.2)).toEqual([2, 12]);
-    expect(draggedWindow([2, 6], 6, 1, 0.2)).toEqual([1, 2]);
+  test('a handle does not pass the other one', () => {
+    expect(movedEnd([2, 20], 0, 25, [0, 30], 0.5)).toEqual([19.5, 20]);
+    expect(movedEnd([2, 20], 1, 1, [0, 30], 0.5)).toEqual([2, 2.5]);
   });
 });
 

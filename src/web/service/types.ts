@@ -6,6 +6,8 @@ import type { Loose, Num, Status } from '../shared/result_types';
 export interface ItemParameter {
   estimate: Num;
   std_error: Num;
+  /** Statistical and systematic, in squares. */
+  total_std_error?: Num;
   unit: string;
 }
 
@@ -21,12 +23,16 @@ export interface ItemModel {
 /** A fit in the list of fits. */
 export interface FitItem {
   id: string;
+  /** Given by the user, or that of the file. */
   name: string;
+  file?: string;
   created: string;
   batch: string | null;
   state: 'done' | 'waiting';
   exit_code: number | null;
   reason: string;
+  /** Begin and end of the fitted samples, s. */
+  window_s?: [number, number] | null;
   recommended: string | null;
   models: ItemModel[];
 }
@@ -42,6 +48,7 @@ export type Flags = Record<string, string>;
 export interface FitRequest {
   id: string;
   name: string;
+  file: string;
   created: string;
   batch: string | null;
   options: Flags;

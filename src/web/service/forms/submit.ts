@@ -53,7 +53,7 @@ export async function submission(recordings: Recording[], { flags, rig, calibrat
 }
 
 async function sentFit({ path, body, headers }: Submission, signal?: AbortSignal): Promise<string> {
-  const answer = await ask(path, { method: 'POST', body, headers, signal });
+  const answer = await ask(path, { method: 'POST', body, headers, signal, busy: 'Fitting' });
   const id = idOfLocation(answer.headers.get('Location'));
   if (id === null) {
     throw new ProblemError({
@@ -70,7 +70,7 @@ async function sentFit({ path, body, headers }: Submission, signal?: AbortSignal
 /** Sends the request. Returns the page address of the new fit or batch. */
 export async function sent(what: Submission, signal?: AbortSignal): Promise<string> {
   if (!what.path.startsWith('/v1/batches')) return sentFit(what, signal);
-  const answer = await ask(what.path, { method: 'POST', body: what.body, headers: what.headers, signal });
+  const answer = await ask(what.path, { method: 'POST', body: what.body, headers: what.headers, signal, busy: 'Sending the recordings' });
   const id = idOfLocation(answer.headers.get('Location')) ?? ((await answer.json()) as { id: string }).id;
   return batchPath(id);
 }

@@ -4,15 +4,17 @@
  * ProblemError.
  */
 
-import { waitFor } from '../waiting';
+import { waitFor, whileBusy } from '../waiting';
 import { problemFrom, ProblemError, retryAfter, unreachable, type Problem } from './problem';
 import { askToken, token } from './token';
 
 export interface Ask {
-  method?: 'GET' | 'POST' | 'DELETE';
+  method?: 'GET' | 'POST' | 'PATCH' | 'DELETE';
   body?: Blob | string;
   headers?: Record<string, string>;
   signal?: AbortSignal;
+  /** What the service does, if it may take long: "Fitting". The page shows it, with a button that cancels it. */
+  busy?: string;
 }
 
 const kMostRepeats = 5;
@@ -52,7 +54,9 @@ function secondsToWait(answer: Response, problem: Problem, repeats: number): num
 export async function ask(path: string, options: Ask = {}): Promise<Response> {
   for (let repeats = 0; ;) {
     const used = token();
-    const answer = await send(path, options, used);
+    const answer = await (options.busy === undefined
+      ? send(path, options, used)
+      : whileBusy(options.busy, (signal) => send(path, { ...options, signal }, used), options.signal));
     if (answer.ok) return answer;
     const problem = problemFrom(answer.status, await answer.text());
     if (answer.status === 401) {

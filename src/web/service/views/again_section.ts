@@ -141,13 +141,13 @@ export class AgainSection {
     const fit = button(words, () => this.fitAgain(fit, 'chosen'), { class: 'primary' });
     const found = button('Find the window again', () => this.fitAgain(found, 'found'));
     const caption =
-      'Drag to choose the part to fit, or to move its ends; by the keyboard, type them below.' +
-      (this.result ? ' Dashed: what this fit used.' : '');
+      'Move the two handles to choose the part to fit, or type its ends. Drag in the plot to zoom; a double click ' +
+      `shows all.${this.result ? ' Dashed: what this fit used.' : ''}`;
     const kept = this.result ? ' beside this one' : '';
     return section(
       'again',
       'Fit it once more',
-      this.plot && figure(caption, this.plot.chart.host),
+      this.plot && figure(caption, this.plot.element),
       el('div', { class: 'window-fields' }, this.from.element, this.to.element),
       folded('Another kind of friction', this.models.element),
       folded('Another description of the pendulum', this.rig.element),

@@ -5,18 +5,20 @@ import { button, el, text } from '../../shared/dom';
 import { confirmed } from '../dialog';
 import { follow } from '../follow';
 import { go } from '../router';
-import { comparePath, kMostCompared } from '../routes';
+import { batchPath, comparePath, kMostCompared } from '../routes';
 import { selectionBar } from '../selection';
 import { ask, askJson } from '../server/api';
 import type { ServerEvent } from '../server/sse';
 import type { Place, View } from '../shell';
 import type { Batch, BatchProgress, BatchRun, FitItem, FitList } from '../types';
-import { pause } from '../waiting';
+import { durationWords, pause } from '../waiting';
 import { fitRow, fitTable } from './fit_rows';
 import { alertPlace, attempt, showProblem } from './problem_view';
 
 const kMostRows = 500;
 const kPage = 100;
+const kQuiet = 2; // s before the time is shown
+const kTick = 0.5; // s
 const kLeastPause = 0.4; // s between two requests for the numbers of finished runs
 
 /** A run that is not finished yet. */
@@ -36,6 +38,13 @@ export function progressWords({ runs, done, failed }: Pick<Batch, 'runs' | 'done
   return failed === 0 ? `${fitted}.` : `${fitted}, ${failed} could not be fitted.`;
 }
 
+/** "; 12 s so far, about 30 s left" for a batch that takes longer than two seconds. */
+export function timeWords(seconds: number, doneSince: number, left: number): string {
+  if (seconds < kQuiet || left === 0) return '';
+  const rest = doneSince > 0 ? `, about ${durationWords((seconds * left) / doneSince)} left` : '';
+  return `${durationWords(seconds)} so far${rest}.`;
+}
+
 class BatchView {
   private readonly table = fitTable('Recordings in the order they were sent', false);
   private readonly chosen = selectionBar();
@@ -45,7 +54,11 @@ class BatchView {
   private readonly connection = text('', 'quiet');
   private readonly rows = new Map<string, HTMLElement>();
   private readonly full = new Set<string>();
+  private readonly time = text('', 'quiet');
+  private readonly cancel = button('Cancel', () => void this.stop());
+  private readonly began = performance.now();
   private done = 0;
+  private left = 0;
   private changed = false;
   private over = false;
 
@@ -71,9 +84,29 @@ class BatchView {
   private tell(state: Pick<Batch, 'runs' | 'done' | 'failed'>): void {
     if (state.done < this.done) return;
     this.done = state.done;
+    this.left = state.runs - state.done;
+    this.cancel.hidden = this.left === 0;
     this.bar.max = Math.max(1, state.runs);
     this.bar.value = state.done;
     this.words.textContent = progressWords(state);
+  }
+
+  /** Shows how long the batch has taken since the page was opened, until it is done. */
+  private async tellTime(): Promise<void> {
+    const before = this.done;
+    for (; !this.over; await pause(kTick, this.place.signal)) {
+      const seconds = (performance.now() - this.began) / 1000;
+      this.time.textContent = timeWords(seconds, this.done - before, this.left);
+    }
+    this.time.textContent = '';
+  }
+
+  /** Ends the work: recordings that are not fitted yet leave the batch. */
+  private async stop(): Promise<void> {
+    await attempt(this.cancel, this.problems, async () => {
+      await ask(`${this.path}?keep=done`, { method: 'DELETE', signal: this.place.signal });
+      go(batchPath(this.batch.id), true);
+    });
   }
 
   private take = ({ event, data }: ServerEvent): boolean => {
@@ -120,7 +153,7 @@ class BatchView {
     const remove = button('Delete all', () => void this.remove(remove), { class: 'danger' });
     const all = button('Compare all', () => go(comparePath([...this.rows.keys()])));
     all.hidden = batch.runs < 2 || batch.runs > kMostCompared;
-    return el('div', { class: 'actions' }, all, remove);
+    return el('div', { class: 'actions' }, this.cancel, all, remove);
   }
 
   private async remove(control: HTMLButtonElement): Promise<void> {
@@ -141,6 +174,7 @@ class BatchView {
     main.append(
       this.words,
       this.bar,
+      this.time,
       this.connection,
       this.problems,
       this.actions(),
@@ -153,7 +187,7 @@ class BatchView {
     const lost = (s: number): void =>
       void (this.connection.textContent = `The connection broke off; next attempt in ${Math.ceil(s)} s.`);
     const following = follow(`${this.path}/events`, { take: this.take, connected, lost }, signal);
-    await Promise.all([following, this.fillNumbers()]).catch((error: unknown) => {
+    await Promise.all([following, this.fillNumbers(), this.tellTime()]).catch((error: unknown) => {
       if (!signal.aborted) showProblem(this.problems, error);
     });
   }

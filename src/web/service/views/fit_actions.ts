@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Buttons of a fit: download, copy a link, compare, delete. */
+/** Buttons of a fit: download, rename, copy a link, compare, delete. */
 
 import { button, details, el } from '../../shared/dom';
 import { confirmed, showText } from '../dialog';
@@ -9,7 +9,9 @@ import { fitApi } from '../routes';
 import { select, unselect } from '../selection';
 import { ask } from '../server/api';
 import type { Place } from '../shell';
+import type { FitRequest } from '../types';
 import { attempt } from './problem_view';
+import { askName } from './rename';
 
 /** Label, part of the fit in the service, file extension. */
 const kParts: [string, string, string][] = [
@@ -21,12 +23,13 @@ const kParts: [string, string, string][] = [
   ['Recording as sent', 'recording', '.csv'],
 ];
 
-function downloads(id: string, name: string, fitted: boolean, problems: HTMLElement, { signal }: Place): HTMLElement {
+function downloads(request: FitRequest, fitted: boolean, problems: HTMLElement, { signal }: Place): HTMLElement {
+  const { id } = request;
   const list = el('ul', { class: 'downloads' });
   for (const [words, part, ending] of fitted ? kParts : kParts.slice(-1)) {
-    const file = stem(name) + ending;
     const press = button(words, () => {
       close();
+      const file = stem(request.name) + ending;
       void attempt(press, problems, () => download(fitApi(id, part), file, signal));
     });
     list.append(el('li', {}, press));
@@ -55,9 +58,27 @@ async function copyLink(say: (words: string) => void): Promise<void> {
   }
 }
 
+/** Asks for a name and gives it to the fit. An empty one brings that of the file back. */
+async function rename(
+  request: FitRequest,
+  control: HTMLButtonElement,
+  problems: HTMLElement,
+  place: Place,
+): Promise<void> {
+  const name = await askName(request.name === request.file ? '' : request.name, request.file);
+  if (name === null) return;
+  await attempt(control, problems, async () => {
+    const headers = { 'Content-Type': 'application/json' };
+    const body = JSON.stringify({ name });
+    const answer = await ask(fitApi(request.id), { method: 'PATCH', body, headers, signal: place.signal });
+    request.name = ((await answer.json()) as { name: string }).name;
+    place.name(request.name);
+    place.say(`Renamed: ${request.name}.`);
+  });
+}
+
 async function remove(
-  id: string,
-  name: string,
+  { id, name }: FitRequest,
   control: HTMLButtonElement,
   problems: HTMLElement,
   place: Place,
@@ -72,20 +93,27 @@ async function remove(
 }
 
 /** The row of buttons below the heading of a fit. `fitted`: the fit has a result. */
-export function fitActions(id: string, name: string, fitted: boolean, problems: HTMLElement, place: Place): HTMLElement {
+export function fitActions(
+  request: FitRequest,
+  fitted: boolean,
+  problems: HTMLElement,
+  place: Place,
+): HTMLElement {
   const copy = button('Copy link', () => void copyLink(say));
   const said = el('span', { role: 'status', class: 'quiet' });
   const say = (words: string): void => void (said.textContent = words);
   const compare = button('Compare with …', () => {
-    select(id, name);
+    select(request.id, request.name);
     go('/fits');
   });
-  const press = button('Delete', () => void remove(id, name, press, problems, place), { class: 'danger' });
+  const press = button('Delete', () => void remove(request, press, problems, place), { class: 'danger' });
+  const another = button('Rename', () => void rename(request, another, problems, place));
   compare.hidden = !fitted;
   return el(
     'div',
     { class: 'actions fit-actions' },
-    downloads(id, name, fitted, problems, place),
+    downloads(request, fitted, problems, place),
+    another,
     copy,
     compare,
     press,

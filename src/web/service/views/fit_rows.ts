@@ -3,7 +3,7 @@
 
 import { append, el, symbolElement, type Child } from '../../shared/dom';
 import { typeset } from '../../shared/prose';
-import { plusMinus } from '../../shared/rounding';
+import { plusMinus, significant } from '../../shared/rounding';
 import { symbolOf, unitText } from '../../shared/units';
 import { fitPath } from '../routes';
 import type { FitItem, ItemModel } from '../types';
@@ -29,7 +29,7 @@ export function parameterWords(model: ItemModel | null, name: string): { value: 
   if (!parameter || parameter.estimate === null) return { value: '–', unit: '' };
   const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'G' : '';
   const unit = [overG, unitText(parameter.unit)].filter((part) => part !== '').join('\u00a0');
-  return { value: plusMinus(parameter.estimate, parameter.std_error), unit };
+  return { value: plusMinus(parameter.estimate, parameter.total_std_error ?? parameter.std_error), unit };
 }
 
 function parameterCell(model: ItemModel | null, name: string, label: string): HTMLElement {
@@ -77,8 +77,9 @@ function nameCell(item: FitItem): HTMLElement {
   const name = item.name || 'recording without a name';
   const shown = el('bdi', {}, name);
   const linked = item.state === 'waiting' ? shown : el('a', { href: fitPath(item.id) }, shown);
+  const file = item.file !== undefined && item.file !== name && el('small', {}, el('bdi', {}, item.file));
   const why = isUnfitted(item) && item.reason !== '' && el('small', {}, typeset(item.reason));
-  return el('th', { scope: 'row', role: 'rowheader' }, linked, why);
+  return el('th', { scope: 'row', role: 'rowheader' }, linked, file, why);
 }
 
 /** Ids and names of the selected fits. `changed` is called after a change. */
@@ -99,26 +100,39 @@ function selectCell(item: FitItem, { ids, changed }: Selection): HTMLElement {
   return el('td', { role: 'cell', class: 'select-cell' }, el('label', { class: 'box' }, input));
 }
 
-export function fitRow(item: FitItem, selection: Selection, withDate = true): HTMLTableRowElement {
+/** "0 to 46.35 s" */
+export function windowWords(window: readonly [number, number] | null | undefined): string {
+  return window ? `${significant(window[0], 5)} to ${significant(window[1], 5)}\u00a0s` : '–';
+}
+
+/** The parameters of a list: past fits show their windows and dates instead of friction. */
+const parametersOf = (isPast: boolean): readonly (readonly [string, string])[] =>
+  isPast ? kParameters.slice(0, 1) : kParameters;
+
+/** isPast: a row of the list of past fits, else of a batch. */
+export function fitRow(item: FitItem, selection: Selection, isPast = true): HTMLTableRowElement {
   const model = mainModel(item);
   const { words, level } = stateOf(item);
   const row = el('tr', { role: 'row', 'data-id': item.id }, selectCell(item, selection), nameCell(item));
-  const values = kParameters.map(([name, label]) => parameterCell(model, name, label));
-  append(row, [withDate && cell('Date', localTime(item.created)), cell('Model', model?.model ?? '–'), ...values]);
-  row.append(cell('Status', badge(words, level)));
+  const values = parametersOf(isPast).map(([name, label]) => parameterCell(model, name, label));
+  append(row, [cell('Law', model?.model ?? '–'), isPast && cell('Window', windowWords(item.window_s)), ...values]);
+  append(row, [cell('Status', badge(words, level)), isPast && cell('When', localTime(item.created))]);
   return row;
 }
 
 /** An empty table for rows of fits. */
-export function fitTable(caption: string, withDate = true): { element: HTMLElement; body: HTMLElement } {
+export function fitTable(caption: string, isPast = true): { element: HTMLElement; body: HTMLElement } {
   const head = el('tr', { role: 'row' }, el('td', { role: 'cell' }));
   const heading = (...words: Child[]): void =>
     void head.append(el('th', { scope: 'col', role: 'columnheader' }, ...words));
-  heading('Recording');
-  if (withDate) heading('Date');
-  heading('Model');
-  for (const [name, label] of kParameters) heading(`${label} `, symbolElement(symbolOf(name) ?? name));
+  heading(isPast ? 'Name or file' : 'Recording');
+  heading('Law');
+  if (isPast) heading('Window');
+  for (const [name, label] of parametersOf(isPast)) {
+    heading(`${label} `, symbolElement(symbolOf(name) ?? name), isPast && ', total error');
+  }
   heading('Status');
+  if (isPast) heading('When');
   const body = el('tbody', { role: 'rowgroup' });
   const table = el(
     'table',

@@ -18,6 +18,7 @@ import { againSection } from './again_section';
 import { fitActions } from './fit_actions';
 import { localTime } from './fit_rows';
 import { alertPlace, tellProblem } from './problem_view';
+import { slidersSection } from './sliders_section';
 
 /** The result, or the reason why there is none: a run of a batch may have failed. */
 async function resultOf(id: string, signal: AbortSignal): Promise<Result | ProblemError> {
@@ -40,6 +41,7 @@ function factsOf(request: FitRequest, facts: string): HTMLElement {
     facts === '' ? 'sent ' : 'fitted ',
     localTime(request.created),
   );
+  if (request.file !== request.name) parts.append(' · file ', el('bdi', {}, request.file));
   if (request.batch) parts.append(' · ', el('a', { href: batchPath(request.batch) }, 'its batch'));
   return parts;
 }
@@ -60,15 +62,16 @@ function showReport(
   const problems = alertPlace();
   const content = reportContent(result, series, { command: commandOf(request) }, request.name);
   const { sections } = content;
+  const feel = slidersSection(result, series);
   const withAgain = (changed: () => void): HTMLElement[] => {
     const made = sections(changed);
     const next = made.findIndex((part) => part.id === 'fit') + 1;
-    return [...made.slice(0, next), again, ...made.slice(next)];
+    return [...made.slice(0, next), ...(feel ? [feel] : []), again, ...made.slice(next)];
   };
   const columns = reportColumns({ ...content, sections: withAgain }, el('div', { class: 'report' }));
   place.main.append(
     factsOf(request, content.facts),
-    fitActions(request.id, request.name, true, problems, place),
+    fitActions(request, true, problems, place),
     problems,
     columns,
   );
@@ -78,7 +81,7 @@ function showReport(
 /** For a recording that could not be fitted: the reason, and a form to try again. */
 function showFailure(place: Place, request: FitRequest, error: ProblemError, again: HTMLElement): void {
   const problems = alertPlace();
-  place.main.append(factsOf(request, ''), fitActions(request.id, request.name, false, problems, place), problems, again);
+  place.main.append(factsOf(request, ''), fitActions(request, false, problems, place), problems, again);
   tellProblem(problems, error);
 }
 
@@ -101,7 +104,7 @@ export const fitView =
         showFailure(place, request, result, await againSection(place, request, null));
         return;
       }
-      const series = askJson<Series>(fitApi(id, 'series'), { signal }).catch(() => null);
+      const series = askJson<Series>(fitApi(id, 'series'), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
       const again = againSection(place, request, result);
       showReport(place, request, result, await series, await again);
     } finally {

@@ -26,7 +26,7 @@ const kStatuses: [string, string][] = [
 
 class FitsView {
   private readonly name = textField('Name contains');
-  private readonly model = selectField('Model', [['', 'any']]);
+  private readonly model = selectField('Law', [['', 'any']]);
   private readonly status = selectField('Status', kStatuses);
   private readonly problems = alertPlace();
   private readonly table = fitTable('Past fits, newest first');

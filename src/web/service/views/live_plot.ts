@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Plot of a recording in progress: its last seconds, or all of it. */
+/** Plot of a recording in progress: its last seconds, all of it, or a part that stays while more arrives. */
 
 import { Chart, padded, type Range } from '../../shared/chart';
 import { decimate } from '../../shared/decimate';
@@ -59,6 +59,7 @@ export class LivePlot {
   /** Visible seconds; null for all. */
   span: number | null = 20;
   private waiting = false;
+  private zoomed: Range | null = null;
 
   constructor(private readonly samples: LiveSamples) {
     this.chart = new Chart({
@@ -73,10 +74,19 @@ export class LivePlot {
         painter.line(x, y, { ...kMeasured, colour: 'curve-1', width: 1.5 });
       },
       height: 330,
+      onSelect: (from, to) => this.zoom([from, to]),
     });
+    this.chart.host.addEventListener('dblclick', () => this.zoom(null));
+  }
+
+  /** Shows a part that does not move on; null for the range of `span` again. */
+  zoom(range: Range | null): void {
+    this.zoomed = range;
+    this.chart.update();
   }
 
   private range(): Range {
+    if (this.zoomed) return this.zoomed;
     const { last, time, count } = this.samples;
     if (last === null) return [0, this.span ?? 1];
     const first = this.span === null ? time[0] : Math.max(time[0], last - this.span);
@@ -84,7 +94,9 @@ export class LivePlot {
   }
 
   private seen(): Float64Array {
-    return this.samples.values.subarray(lowerBound(this.samples.time, this.range()[0]));
+    const [from, to] = this.range();
+    const { time, values } = this.samples;
+    return values.subarray(lowerBound(time, from), this.zoomed ? lowerBound(time, to) : undefined);
   }
 
   /** Draws at the next frame, only once for several calls. */

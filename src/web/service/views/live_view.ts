@@ -97,7 +97,7 @@ class LiveView {
     ];
     const chooser = choice('Shown', spans, '20', (value) => {
       this.plot.span = value === '' ? null : Number(value);
-      this.plot.update();
+      this.plot.zoom(null);
     });
     const words = text('Once the recording has ended it can be fitted, with the choices of ', 'quiet');
     words.append(el('a', { href: '/' }, 'New fit'), '; until then the pendulum is best left alone.');
@@ -105,6 +105,7 @@ class LiveView {
       this.state,
       this.connection,
       figure(this.numbers, this.plot.chart.host, chooser),
+      text('Drag to zoom; a double click follows the recording again.', 'quiet'),
       this.fit,
       words,
       this.problems,

@@ -1,34 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Plot of the whole recording and its fitted window. Dragging selects another window. */
+/**
+ * Plot of the whole recording and of a window in it. Two handles move the ends of the window. Dragging elsewhere zooms,
+ * as in all plots.
+ */
 
 import { Chart, padded, type Range } from '../../shared/chart';
 import { decimate } from '../../shared/decimate';
+import { button, el } from '../../shared/dom';
 import { kMeasured } from '../../shared/marks';
+import { followPointer, navigationButtons } from '../../shared/navigation';
 import type { Painter } from '../../shared/painter';
 import { fixed, significant } from '../../shared/rounding';
 import { extent, medianInterval, toArray } from '../../shared/samples';
+import { TimeView } from '../../shared/time_view';
 import { quantityOf, unitText } from '../../shared/units';
 import type { WholeRecording } from '../types';
 
 export type Window = [number, number];
 
-const kReach = 14; // px; a drag that begins this close to an end of the window moves the end
 const kGap = 5; // median intervals
+const kLeastShare = 1e-3; // of the recording: the narrowest window and the narrowest zoom
+const kKeyShare = 0.01; // of the visible range, for an arrow key; ten times that with Shift
+const kEnds = ['Begin of the window', 'End of the window'];
 
-/** The window after a drag from `held` to `at`: one end moves, or the drag selects a new window. */
-export function draggedWindow(chosen: Window, held: number, at: number, reach: number): Window {
-  const [from, to] = chosen;
-  const other = Math.abs(held - from) <= reach ? to : Math.abs(held - to) <= reach ? from : held;
-  return at < other ? [at, other] : [other, at];
+/** The window after its end 0 or 1 has moved to `at`. It stays in [first, last] and at least `least` wide. */
+export function movedEnd(window: Window, end: 0 | 1, at: number, [first, last]: Window, least: number): Window {
+  const [from, to] = window;
+  return end === 0
+    ? [Math.min(Math.max(at, first), to - least), to]
+    : [from, Math.max(Math.min(at, last), from + least)];
 }
 
 export class WindowPlot {
   readonly chart: Chart;
+  /** The plot with its handles and buttons. */
+  readonly element: HTMLElement;
   private readonly time: Float64Array;
   private readonly values: Float64Array;
   private readonly gap: number;
+  private readonly view: TimeView;
+  private readonly handles: HTMLElement[];
 
-  /** used: the fitted window, if there is one. `change` is called with each window during a drag. */
+  /** used: the fitted window, if there is one. `change` is called with each window that the user chooses. */
   constructor(
     recording: WholeRecording,
     private readonly used: Window | null,
@@ -39,17 +52,29 @@ export class WindowPlot {
     this.values = toArray(recording.measured, this.time.length) ?? new Float64Array(0);
     this.gap = kGap * medianInterval(this.time);
     const [first, last] = this.ends;
+    const margin = 0.01 * (last - first);
+    this.view = new TimeView(first - margin, last + margin, kLeastShare * (last - first));
     const unit = unitText(recording.unit);
     this.chart = new Chart({
       sentence: () => this.sentence(),
       xLabel: 'time [s]',
       yLabel: () => `${quantityOf(recording.unit)} [${unit}]`,
-      xRange: () => padded([first, last], 0.01),
+      xRange: () => this.view.current,
       yRange: () => this.vertical,
       draw: (painter) => this.draw(painter),
       height: 210,
+      onSelect: (from, to) => this.view.set(from, to),
     });
-    this.followPointer();
+    followPointer(this.chart, this.view);
+    this.view.onChange(() => this.chart.update());
+    this.handles = ([0, 1] as const).map((end) => this.handle(end));
+    const shown = button('Choose what is shown', () => this.chooseShown());
+    this.element = el(
+      'div',
+      {},
+      el('div', { class: 'window-box' }, this.chart.host, ...this.handles),
+      el('div', { class: 'bar' }, shown, navigationButtons(this.view)),
+    );
   }
 
   private get vertical(): Range {
@@ -58,6 +83,10 @@ export class WindowPlot {
 
   get ends(): Window {
     return [this.time[0] ?? 0, this.time[this.time.length - 1] ?? 1];
+  }
+
+  private get least(): number {
+    return kLeastShare * (this.ends[1] - this.ends[0]);
   }
 
   private sentence(): string {
@@ -72,51 +101,85 @@ export class WindowPlot {
     this.chart.update();
   }
 
+  /** Shows a window that the user has chosen, to the millisecond. */
+  private take([from, to]: Window): void {
+    const rounded = (time: number): number => Number(fixed(time, 3).replace('−', '-'));
+    this.choose([rounded(from), rounded(to)]);
+    this.change(this.chosen);
+  }
+
+  private chooseShown(): void {
+    const [first, last] = this.ends;
+    const [from, to] = this.view.current;
+    this.take([Math.max(first, from), Math.min(last, to)]);
+  }
+
   private draw(painter: Painter): void {
     const [from, to] = this.chosen;
     painter.span(from, to, 'band');
-    const [first, last] = this.ends;
+    const [first, last] = this.view.current;
     const { x, y, dense } = decimate(this.time, this.values, first, last, this.chart.columns, this.gap);
     if (dense || x.length > this.chart.columns / 3) painter.line(x, y, { ...kMeasured, width: 1.25 });
     else painter.dots(x, y, kMeasured.colour, 2);
     for (const end of this.used ?? []) painter.vertical(end, 'rule', [4, 4]);
-    const [low, high] = this.vertical;
-    for (const end of [from, to]) painter.line([end, end], [low, high], { colour: 'curve-1', dash: [], width: 2.5 });
-    painter.dots([from, to], [0.5 * (low + high), 0.5 * (low + high)], 'curve-1', 6);
+    this.placeHandles();
   }
 
-  private timeAt(clientX: number): number {
-    const left = this.chart.over?.getBoundingClientRect().left ?? 0;
+  private placeHandles(): void {
+    const { over } = this.chart;
+    if (!over) return;
+    const [box, host] = [over.getBoundingClientRect(), this.chart.host.getBoundingClientRect()];
+    const [low, high] = this.view.current;
+    this.handles.forEach((handle, end) => {
+      const share = (this.chosen[end] - low) / (high - low);
+      handle.hidden = share < 0 || share > 1;
+      handle.style.left = `${box.left - host.left + share * box.width}px`;
+      handle.style.top = `${box.top - host.top}px`;
+      handle.style.height = `${box.height}px`;
+      handle.setAttribute('aria-valuenow', String(this.chosen[end]));
+      handle.setAttribute('aria-valuetext', `${significant(this.chosen[end], 5)} s`);
+    });
+  }
+
+  private handle(end: 0 | 1): HTMLElement {
     const [first, last] = this.ends;
-    return Math.min(last, Math.max(first, this.chart.xAt(clientX - left)));
-  }
-
-  private drag(held: number, before: Window, clientX: number): void {
-    const [first, last] = this.ends;
-    const reach = (kReach * (last - first)) / this.chart.columns;
-    const [from, to] = draggedWindow(before, held, this.timeAt(clientX), reach);
-    this.choose([Number(fixed(from, 3).replace('−', '-')), Number(fixed(to, 3).replace('−', '-'))]);
-    this.change(this.chosen);
-  }
-
-  private followPointer(): void {
-    const { host } = this.chart;
-    let held: { time: number; before: Window; x: number } | null = null;
-    host.classList.add('window-plot');
-    host.addEventListener('pointerdown', (event) => {
+    const element = el('div', {
+      class: 'window-handle',
+      role: 'slider',
+      tabindex: '0',
+      'aria-label': kEnds[end],
+      'aria-orientation': 'horizontal',
+      'aria-valuemin': String(first),
+      'aria-valuemax': String(last),
+      'aria-valuenow': String(this.chosen[end]),
+    });
+    const moveTo = (at: number): void => this.take(movedEnd(this.chosen, end, at, this.ends, this.least));
+    let isHeld = false;
+    element.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
-      held = { time: this.timeAt(event.clientX), before: this.chosen, x: event.clientX };
-      host.setPointerCapture(event.pointerId);
+      isHeld = true;
+      element.setPointerCapture(event.pointerId);
     });
-    host.addEventListener('pointermove', (event) => {
-      if (held && Math.abs(event.clientX - held.x) > 3) this.drag(held.time, held.before, event.clientX);
+    element.addEventListener('pointermove', (event) => {
+      const left = this.chart.over?.getBoundingClientRect().left ?? 0;
+      if (isHeld) moveTo(this.chart.xAt(event.clientX - left));
     });
-    host.addEventListener('pointerup', () => (held = null));
-    host.addEventListener('pointercancel', () => {
-      if (!held) return;
-      this.choose(held.before); // the finger scrolls the page instead
-      this.change(held.before);
-      held = null;
+    for (const over of ['pointerup', 'pointercancel'] as const) element.addEventListener(over, () => (isHeld = false));
+    element.addEventListener('keydown', (event) => {
+      const [low, high] = this.view.current;
+      const step = kKeyShare * (high - low) * (event.shiftKey ? 10 : 1);
+      const targets: Record<string, number> = {
+        ArrowLeft: this.chosen[end] - step,
+        ArrowDown: this.chosen[end] - step,
+        ArrowRight: this.chosen[end] + step,
+        ArrowUp: this.chosen[end] + step,
+        Home: first,
+        End: last,
+      };
+      if (!Object.hasOwn(targets, event.key)) return;
+      event.preventDefault();
+      moveTo(targets[event.key]);
     });
+    return element;
   }
 }
