@@ -74,12 +74,12 @@ function recordingTable(report: JointReport, fit: JointFit | null): HTMLElement 
 function ownCell(run: JointRun, name: string): Cell {
   const parameter = run.parameters?.[name];
   if (!parameter) return '–';
-  const { estimate, std_error: error, interval95: interval } = parameter;
+  const { std_error: error, interval95: interval } = parameter;
   const note = noteOf(parameter);
   const value = valueCell(parameter);
   return [
     ...(Array.isArray(value) ? value : [value]),
-    interval !== null && el('small', {}, `95 %: ${intervalText(interval, estimate, error)}`),
+    interval !== null && el('small', {}, `95 %: ${intervalText(interval, error)}`),
     note !== '' && el('small', { class: 'why' }, typeset(note)),
   ];
 }

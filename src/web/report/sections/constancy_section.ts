@@ -57,6 +57,7 @@ function windowChart(
   const [low, high] = [y.map((v, i) => v - error[i]), y.map((v, i) => v + error[i])];
   const words = `${wordsOf(name)} in ${used.length} windows, against the amplitude there, with standard errors; the line is the whole fit's`;
   const chart = new Chart({
+    name: `${name}_by_amplitude`,
     sentence: () =>
       `${words}. From ${significant(y[0], 4)} at ${significant(x[0], 3)} rad to ${significant(y[y.length - 1], 4)} at ${significant(x[x.length - 1], 3)} rad.`,
     xLabel: 'amplitude [rad]',
@@ -70,7 +71,7 @@ function windowChart(
     },
     height: 230,
   });
-  return figure(sentence(words), chart.host);
+  return figure(sentence(words), chart.withButtons());
 }
 
 /** Inertia and the fitted friction parameter against the amplitude. */

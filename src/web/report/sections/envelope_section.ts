@@ -104,6 +104,7 @@ class EnvelopePlot {
   ) {
     const spans = extent([turns.map((turn) => turn.time), ...curves.map((curve) => curve.time)]);
     this.chart = new Chart({
+      name: 'amplitudes',
       sentence: () =>
         `Amplitudes of ${turns.length} turning points from ${significant(turns[0].amplitude, 3)} to ` +
         `${significant(turns[turns.length - 1].amplitude, 3)} ${unitText(unit)} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
@@ -160,7 +161,7 @@ class EnvelopePlot {
     );
     const caption =
       'Viscous friction alone is a straight line on the logarithmic axis, dry friction alone on the linear one.';
-    return figure(caption, this.chart.host, bar);
+    return figure(caption, this.chart.withButtons(), bar);
   }
 }
 

@@ -127,6 +127,7 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
   const view = firstView(traces[0].time, report);
   const degrees = inDegrees(samples.unit);
   const plot = new TimePlot(traces, view, {
+    name: 'textbook',
     sentence: () => sentence,
     xLabel: words,
     yLabel: () => `${quantityOf(samples.unit)} [${unitText(samples.unit)}]`,
@@ -141,7 +142,7 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
   const bar = el('div', { class: 'bar' }, legend, navigationButtons(view));
   const rest = ' The first swings are shown; Show all has the rest.';
   const caption = el('span', {}, sentence, !view.whole && el('span', { class: 'hint' }, rest));
-  return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.host), bar);
+  return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.withButtons()), bar);
 }
 
 function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | null {
