@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The input of every section of a report. */
 
-import type { Command, ComparisonRow, Fit, Result, Series } from '../shared/result_types';
+import type { Command, Fit, Result, Series } from '../shared/result_types';
 import { medianInterval, toSamples, type Samples } from '../shared/samples';
 import { TimeView } from '../shared/time_view';
 
@@ -42,11 +42,7 @@ export function isAliased({ result }: Report): boolean {
   return hasWarning(result, 'aliased') || (typeof margin === 'number' && margin < 1);
 }
 
-export function comparisonRow(result: Result, model: string): ComparisonRow | null {
-  return result.comparison?.rows.find((row) => row.model === model) ?? null;
-}
-
-export const hasWarning = (result: Result, code: string): boolean =>
+const hasWarning = (result: Result, code: string): boolean =>
   result.warnings.some((warning) => warning.code === code);
 
 /** The time range that the plots of the readings share. */

@@ -8,7 +8,8 @@ import { significant } from './rounding';
 import { SvgContext } from './svg_context';
 import { colour } from './theme';
 
-const kLeft = 76; // px, for tick labels and the title of the axis
+const kTitle = 38; // px, for the title of the left axis
+const kDigit = 7.6; // px
 const kRight = 16;
 const kRightAxis = 64;
 const kTop = 12;
@@ -80,9 +81,11 @@ function rightAxis(ctx: SvgContext, { box, y }: Frame, ticks: Tick[], label: str
 export function chartSvg(options: ChartOptions, width: number, height: number): string {
   const log = options.yLog?.() ?? false;
   const [xRange, yRange] = [options.xRange(), options.yRange()];
+  const yTicks = ticksOf(yRange, log);
+  const left = kTitle + kDigit * Math.max(3, ...yTicks.map(({ label }) => label.length));
   const right = options.right ? kRightAxis : kRight;
-  const box = { left: kLeft, top: kTop, width: width - kLeft - right, height: height - kTop - kBottom };
-  const ctx = new SvgContext();
+  const box = { left, top: kTop, width: width - left - right, height: height - kTop - kBottom };
+  const ctx = new SvgContext(options.name ?? 'plot');
   const frame: Frame = {
     ctx,
     box,
@@ -93,7 +96,7 @@ export function chartSvg(options: ChartOptions, width: number, height: number): 
     yRange,
   };
   xAxis(ctx, frame, ticksOf(xRange, false), options.xLabel || 'time [s]');
-  yAxis(ctx, frame, ticksOf(yRange, log), options.yLabel());
+  yAxis(ctx, frame, yTicks, options.yLabel());
   if (options.right) rightAxis(ctx, frame, ticksOf(yRange, log, options.right.factor), options.right.label);
   const painter = new Painter(frame);
   painter.inside(() => options.draw(painter));

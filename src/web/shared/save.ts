@@ -90,7 +90,7 @@ export function standalone(picture: SVGElement, sentence: string, labels: [strin
   title.textContent = sentence;
   file.append(title, svg('rect', { width: '100%', height: '100%', fill: colour('paper') }));
   for (const [words, y] of labels) {
-    const text = svg('text', { x: '8', y: String(y + 4), fill: colour('ink') });
+    const text = svg('text', { x: '8', y: String(y + 8), fill: colour('ink') });
     text.textContent = words;
     file.append(text);
   }

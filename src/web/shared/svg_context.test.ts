@@ -4,7 +4,7 @@ import { expect, test } from 'vitest';
 import { SvgContext } from './svg_context';
 
 const drawn = (draw: (context: SvgContext) => void): string => {
-  const context = new SvgContext();
+  const context = new SvgContext('plot');
   draw(context);
   return context.text(40, 30, '#fff', 'Arial', 'a < b').replace(/^.*?fill="#fff"\/>|<\/svg>\n$/g, '');
 };
@@ -49,7 +49,7 @@ test('clipping ends with restore, and text is escaped', () => {
     context.fillText('a & b', 1, 2);
     context.upwards('up', 3, 4);
   });
-  const clip = '<clipPath id="clip-1"><path d="M0 0h9v8h-9Z"/></clipPath><g clip-path="url(#clip-1)"></g>';
+  const clip = '<clipPath id="plot-clip-1"><path d="M0 0h9v8h-9Z"/></clipPath><g clip-path="url(#plot-clip-1)"></g>';
   const words = '<text x="1" y="2" text-anchor="end" fill="red">a &amp; b</text>';
   const upwards = '<text x="3" y="4" text-anchor="end" fill="red" transform="rotate(-90 3 4)">up</text>';
   expect(svg).toBe(clip + words + upwards);

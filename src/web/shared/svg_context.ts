@@ -24,6 +24,9 @@ export class SvgContext implements Context {
   private readonly saved: number[] = [];
   private readonly parts: string[] = [];
 
+  /** `name` begins the ids, so that several drawings can be part of one document. */
+  constructor(private readonly name: string) {}
+
   save(): void {
     this.saved.push(this.open);
     this.open = 0;
@@ -36,7 +39,7 @@ export class SvgContext implements Context {
 
   /** Restricts what follows to the current path, until restore(). */
   clip(): void {
-    const id = `clip-${++this.clips}`;
+    const id = `${this.name}-clip-${++this.clips}`;
     this.parts.push(`<clipPath id="${id}"><path d="${this.path}"/></clipPath><g clip-path="url(#${id})">`);
     ++this.open;
   }

@@ -97,7 +97,7 @@ function ownTable(fit: JointFit): HTMLElement | null {
     recordingName(k, outliers),
     ...names.map((name) => ownCell(run, name)),
   ]);
-  return table('Each recording’s own parameters, by the joint fit', columns, rows);
+  return table('Own parameters of each recording, from the joint fit', columns, rows);
 }
 
 export function recordingsSection(report: JointReport): HTMLElement {

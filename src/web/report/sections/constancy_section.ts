@@ -55,7 +55,7 @@ function windowChart(
   const y = used.map((w) => value(w)[0] as number);
   const error = used.map((w) => value(w)[1] ?? 0);
   const [low, high] = [y.map((v, i) => v - error[i]), y.map((v, i) => v + error[i])];
-  const words = `${wordsOf(name)} in ${used.length} windows, against the amplitude there, with standard errors; the line is the whole fit's`;
+  const words = `${wordsOf(name)} in ${used.length} windows against the amplitude, with standard errors; the dashed line is the fit of the whole recording`;
   const chart = new Chart({
     name: `${name}_by_amplitude`,
     sentence: () =>

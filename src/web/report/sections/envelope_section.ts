@@ -160,7 +160,7 @@ class EnvelopePlot {
       }),
     );
     const caption =
-      'Viscous friction alone is a straight line on the logarithmic axis, dry friction alone on the linear one.';
+      'Viscous friction alone gives a straight line on the logarithmic axis, dry friction alone on the linear axis.';
     return figure(caption, this.chart.withButtons(), bar);
   }
 }
@@ -174,7 +174,7 @@ export function envelopeSection(report: Report): HTMLElement {
   const title = 'Amplitudes';
   if (!series) return section('envelope', title, absent('The samples are not part of this report.'), shapes(forms));
   if (turns.length < 2) {
-    const why = 'No turning points could be located: the samples are too few a swing, or nothing swings.';
+    const why = 'No turning points were found. The recording has too few samples in a period, or nothing swings.';
     return section('envelope', title, absent(why), shapes(forms));
   }
   const plot = new EnvelopePlot(turns, curvesOf(report, fit, turns), series.unit);

@@ -51,6 +51,6 @@ export function profileSection(report: Report): HTMLElement | null {
   const grid = el('div', { class: 'pair' });
   for (const [name, curve] of entries)
     grid.append(profileChart(name, curve, fit.parameters[name], rankOf(report.result, report.shown)));
-  const words = 'The dashed line is where 95 % end; a curve that is no parabola has no symmetric error.';
+  const words = 'The dashed line is the limit of the 95 % interval. If a curve is not a parabola, the error is not symmetric.';
   return section('profiles', 'Profile likelihoods', el('p', {}, words), grid);
 }

@@ -22,7 +22,7 @@ function autocorrelationPart(residual: Float64Array): HTMLElement {
   const lags = r.map((_value, k) => k);
   const beyond = r.slice(1).filter((value) => Math.abs(value) > limit).length;
   const low = Math.min(-2 * limit, ...r) * 1.15;
-  const share = `${beyond} of ${r.length - 1} lags lie beyond ±${significant(limit, 2)}, where 95 % of those of white noise lie within`;
+  const share = `${beyond} of ${r.length - 1} lags are outside ±${significant(limit, 2)}; white noise has 95 % inside`;
   const chart = new Chart({
     name: 'autocorrelation',
     sentence: () => `Autocorrelation of the residuals: ${share}.`,
@@ -65,7 +65,7 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
   const curve = normalCurve(bars);
   const sentence =
     `Residuals from ${significant(left[0], 2)} to ${significant(right[right.length - 1], 2)} ${unitText(unit)}, ` +
-    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, beside the normal curve of that width`;
+    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, with the normal curve of that width`;
   const chart = new Chart({
     name: 'histogram',
     sentence: () => `Histogram. ${sentence}.`,
