@@ -10,7 +10,7 @@ import { TimePlot } from './time_plot';
 
 const kNarrow = 560; // px
 const kHeight = 340; // px
-const kNarrowHeight = 200;
+const kNarrowHeight = 190;
 
 export const swingHeight = (): number => (window.innerWidth < kNarrow ? kNarrowHeight : kHeight);
 
