@@ -5,6 +5,7 @@ import { banner, warningList } from '../shared/banner';
 import { details, el, symbolElement, text, type Child } from '../shared/dom';
 import { sentence, typeset } from '../shared/prose';
 import type { Comparison, Fit, FitSummary, Result, SummaryQuantity } from '../shared/result_types';
+import { section } from '../shared/section';
 import { symbolOf, unitText, wordsOf } from '../shared/units';
 import { budgetBar, budgetLegend, sourcesOf } from './budget';
 import { equationText } from './equation';
@@ -90,6 +91,14 @@ function warningPart(summary: FitSummary, result: Pick<Result, 'fits' | 'warning
   const count = summary.warnings.length;
   const full = (): HTMLElement => warningList(warningsOf(result, model));
   return el('div', {}, el('h3', {}, count === 1 ? 'Warning' : `${count} warnings`), list, details('Explanations', full));
+}
+
+/** The first section of a report. Its heading is only for screen readers and the table of contents. */
+export function answerSection(parts: Child[]): HTMLElement {
+  const element = section('verdict', 'Result', ...parts);
+  element.classList.add('answer-section');
+  element.querySelector('h2')?.classList.add('unseen');
+  return element;
 }
 
 export interface Answer {

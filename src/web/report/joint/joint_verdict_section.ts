@@ -3,8 +3,7 @@
 
 import { banner, warnings } from '../../shared/banner';
 import { plusMinus } from '../../shared/rounding';
-import { section } from '../../shared/section';
-import { answerPart } from '../answer';
+import { answerPart, answerSection } from '../answer';
 import { shownFit } from '../report';
 import { kNoFit } from '../sections/verdict_section';
 import { shownJointFit, type JointReport } from './joint';
@@ -30,7 +29,5 @@ export function jointVerdictSection(report: JointReport): HTMLElement {
     joint && fit
       ? answerPart({ fit, result, swing, remark: remarkOf(joint) })
       : [banner(kNoFit), swing, warnings(result)];
-  const element = section('verdict', 'Result', ...parts);
-  element.querySelector('h2')?.classList.add('unseen');
-  return element;
+  return answerSection(parts);
 }

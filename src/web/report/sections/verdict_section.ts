@@ -2,8 +2,7 @@
 /** The answer: verdict, parameters with total errors, and the swing with the fit. */
 
 import { banner, warnings } from '../../shared/banner';
-import { section } from '../../shared/section';
-import { answerPart } from '../answer';
+import { answerPart, answerSection } from '../answer';
 import { shownFit, type Report } from '../report';
 import { swingFigure } from '../swing';
 
@@ -19,7 +18,5 @@ export function verdictSection(report: Report): HTMLElement {
   const parts = fit
     ? answerPart({ fit, result: report.result, swing })
     : [banner(kNoFit), swing, warnings(report.result)];
-  const element = section('verdict', 'Result', ...parts);
-  element.querySelector('h2')?.classList.add('unseen');
-  return element;
+  return answerSection(parts);
 }
