@@ -42,10 +42,10 @@ LeadingDigits LeadingDigitsOf(double x) {
   return leading;
 }
 
-/// The power of ten of an error's last decimal, and the rounded error. Decimal digits are rounded half up, so 0.0075
-/// becomes 0.008 although the nearest double is below it.
+/// The powers of ten of an error's first digit and last decimal, and the rounded error. Decimal digits are rounded half
+/// up, so 0.0075 becomes 0.008 although the nearest double is below it.
 struct RoundedError {
-  int last = 0;
+  int first = 0, last = 0;
   double error = 0;
 };
 
@@ -53,9 +53,9 @@ RoundedError RoundError(double error) {
   const auto [digits, exponent] = LeadingDigitsOf(error);
   const int tens = (digits + 5) / 10;
   const int hundreds = (digits + 50) / 100;
-  if (digits <= 354) return {exponent - 1, tens * std::pow(10.0, exponent - 1)};
-  if (digits <= 949) return {exponent, hundreds * std::pow(10.0, exponent)};
-  return {exponent, std::pow(10.0, exponent + 1)};
+  if (digits <= 354) return {exponent, exponent - 1, tens * std::pow(10.0, exponent - 1)};
+  if (digits <= 949) return {exponent, exponent, hundreds * std::pow(10.0, exponent)};
+  return {exponent + 1, exponent, std::pow(10.0, exponent + 1)};
 }
 
 /// The format of numbers with the first digit at 10^first and the last at 10^last.
@@ -65,9 +65,13 @@ Rounding RoundingTo(int first, int last) {
   return {-last, 0};
 }
 
-int FirstDigit(double value, double error) {
-  const int of_error = LeadingDigitsOf(error).exponent;
-  return value == 0 ? of_error : std::max(of_error, LeadingDigitsOf(value).exponent);
+/// The power of ten of the first digit of value ± error, both rounded to the last decimal of the error.
+int FirstDigit(double value, const RoundedError& error) {
+  if (value == 0) return error.first;
+  const int first = LeadingDigitsOf(value).exponent;
+  const bool is_carried =
+      std::round(std::abs(value) / std::pow(10.0, error.last)) >= std::pow(10.0, first - error.last + 1);
+  return std::max(error.first, is_carried ? first + 1 : first);
 }
 
 std::string ExponentText(int exponent) {
@@ -85,7 +89,8 @@ std::string Mantissa(double x, const Rounding& rounding) {
 }  // namespace
 
 Rounding PdgRounding(double value, double error) {
-  return RoundingTo(FirstDigit(value, error), RoundError(error).last);
+  const RoundedError rounded = RoundError(error);
+  return RoundingTo(FirstDigit(value, rounded), rounded.last);
 }
 
 Rounding SignificantRounding(double x, int digits) {
@@ -100,7 +105,7 @@ int SignificantDigits(double x, const Rounding& rounding) {
 ValueAndError PdgText(double value, double error) {
   if (!(error > 0)) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const RoundedError rounded = RoundError(error);
-  const int first = FirstDigit(value, error);
+  const int first = FirstDigit(value, rounded);
   if (first - rounded.last >= kMaxDigits) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const Rounding rounding = RoundingTo(first, rounded.last);
   const std::string exponent = ExponentText(rounding.exponent);

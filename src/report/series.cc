@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -89,9 +90,35 @@ Json PeaksJson(const Identification& identification, const std::string& unit) {
   return json;
 }
 
-Json ModelJson(const FitReport& fit, const TextbookOverlay& overlay, Eigen::Index samples, SeriesDetail detail) {
+/// Standard errors of the N fitted readings, from the covariance C of the estimates: sqrt(diag(J C J')), J the
+/// readings' derivatives. Empty if there is no covariance, or if the trajectory cannot be computed.
+Eigen::VectorXd FittedStdErrors(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig) {
+  if (fit.covariance.rows() == 0 || fit.fitted.size() != used.size()) return {};
+  const FittedMotion motion(used, fit, rig);
+  Eigen::MatrixXd jacobian;
+  if (!motion.Readings(motion.instants(), &jacobian)) return {};
+  Eigen::MatrixXd estimated(jacobian.rows(), fit.covariance.cols());
+  for (Eigen::Index k = 0; k < estimated.cols(); ++k) {
+    const std::string& name = fit.covariance_names[static_cast<std::size_t>(k)];
+    estimated.col(k) = jacobian.col(std::distance(fit.parameters.data(), fit.Find(name)));
+  }
+  return (estimated * fit.covariance).cwiseProduct(estimated).rowwise().sum().cwiseMax(0).cwiseSqrt();
+}
+
+/// Whether a band of two standard errors would be seen in a plot of the readings.
+bool IsVisible(const Eigen::VectorXd& std_errors, const Eigen::VectorXd& readings) {
+  constexpr double kLeastShare = 1e-3;  // of the range of the readings: a third of a pixel of 300
+  const double range = readings.maxCoeff() - readings.minCoeff();
+  return std_errors.size() > 0 && 2 * std_errors.maxCoeff() > kLeastShare * range;
+}
+
+Json ModelJson(const Recording& used, const FitReport& fit, const TextbookOverlay& overlay,
+               const Eigen::VectorXd& std_errors, SeriesDetail detail) {
+  const Eigen::Index samples = used.size();
+  const bool has_band = detail == SeriesDetail::kAll || IsVisible(std_errors, used.value);
   Json json;
   json["fitted"] = SamplesJson(fit.fitted, samples, detail);
+  json["fitted_std_error"] = has_band ? SamplesJson(std_errors, samples, detail) : Json(nullptr);
   json["residual"] = detail == SeriesDetail::kAll ? SamplesJson(fit.residual, samples, detail) : Json(nullptr);
   json["linear_closed_form"] = SamplesJson(overlay.linear, samples, detail);
   json["nonlinear_closed_form"] = SamplesJson(overlay.nonlinear, samples, detail);
@@ -211,7 +238,8 @@ Json PartJson(const Identification& identification, SeriesDetail detail) {
     const ClosedFormCheck* const check = identification.CheckOf(i);
     const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || i == identification.MainFit());
     json["models"][std::string(fit.model.name)] =
-        ModelJson(fit, has_overlay ? check->overlay : TextbookOverlay(), used.size(), detail);
+        ModelJson(used, fit, has_overlay ? check->overlay : TextbookOverlay(),
+                  FittedStdErrors(used, fit, identification.si_rig()), detail);
   }
   json["motions"] = MotionsJson(used, identification, detail);
   return json;

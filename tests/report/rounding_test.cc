@@ -41,6 +41,14 @@ TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndLargeErrors) {
   EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
 }
 
+TEST(PdgText, WritesOneDigitBeforeThePointAlsoAfterRoundingUp) {
+  EXPECT_EQ(Pdg(9.97e-6, 5e-7), "(1.00 ± 0.05)e-05");
+  EXPECT_EQ(Pdg(3e-6, 9.6e-6), "(0.3 ± 1.0)e-05");
+  EXPECT_EQ(Pdg(6e-8, 5e-7), "(1 ± 5)e-07");
+  EXPECT_EQ(Pdg(4e-8, 5e-7), "(0 ± 5)e-07");
+  EXPECT_EQ(Pdg(-99970, 500), "(-1.000 ± 0.005)e+05");
+}
+
 TEST(PdgText, RoundsTheValueToTheDecimalOfALargeError) {
   EXPECT_EQ(Pdg(0.02, 12), "0 ± 12");
   EXPECT_EQ(Pdg(0, 0.0012), "0.0000 ± 0.0012");

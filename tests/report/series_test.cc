@@ -93,7 +93,7 @@ TEST(SeriesJson, HasSamplesAndModelsByName) {
   EXPECT_TRUE(series["profiles"].is_null());
   EXPECT_TRUE(series["motions"].is_null());
   EXPECT_EQ(series["models"].dump(),
-            R"({"coulomb":{"fitted":[0.25,0.0,0.5],"residual":[0.25,-1e-07,-0.125],)"
+            R"({"coulomb":{"fitted":[0.25,0.0,0.5],"fitted_std_error":null,"residual":[0.25,-1e-07,-0.125],)"
             R"("linear_closed_form":[0.5,0.25,0.125],"nonlinear_closed_form":[1.0,2.0,3.0]}})");
 }
 
@@ -133,8 +133,8 @@ TEST(SeriesJson, IsNullForMissingParts) {
   const Json series = SeriesJson(report);
   EXPECT_EQ(series["extrema"], Json::array());
   EXPECT_EQ(series["peaks"], Json::array());
-  EXPECT_EQ(series["models"]["coulomb"].dump(),
-            R"({"fitted":[0.25,null,0.5],"residual":null,"linear_closed_form":null,"nonlinear_closed_form":null})");
+  EXPECT_EQ(series["models"]["coulomb"].dump(), R"({"fitted":[0.25,null,0.5],"fitted_std_error":null,"residual":null,)"
+                                                R"("linear_closed_form":null,"nonlinear_closed_form":null})");
   report.fits.clear();
   EXPECT_EQ(SeriesJson(report)["models"], Json::object());
 }
@@ -237,6 +237,37 @@ TEST(SeriesJson, HasTheMotionIfReadingsAreMissingOrNotAngles) {
   run.fits[0].parameters[4] = ExampleParameter(kRateBias, "rad/s", 0.2, 0);
   const Json motion = SeriesJson(run)["motions"]["linear"];
   EXPECT_NEAR(motion["reading"][200].get<double>(), motion["rate"][200].get<double>() + 0.2, 1e-7);
+}
+
+// The reading of a linear pendulum is z + A m(t), m(t) = LinearMotion(t) / 0.3 after the release at 1 s and 1 before
+// it. With errors of A and z and their covariance its variance is m² 0.004² + 0.003² + 2 m 0.5 0.004 0.003.
+TEST(SeriesJson, HasStandardErrorsOfTheFittedReadings) {
+  Identification run = TwoSamplesASecond();
+  FitReport& fit = run.fits[0];
+  fit.fitted = Eigen::VectorXd::Zero(40);
+  fit.covariance_names = {"release_angle", "zero_angle"};
+  fit.covariance = Eigen::Matrix2d({{1.6e-5, 6e-6}, {6e-6, 9e-6}});
+  const Json errors = SeriesJson(run)["models"]["linear"]["fitted_std_error"];
+  ASSERT_EQ(errors.size(), 40);
+  for (std::size_t i = 0; i < 40; ++i) {
+    const double time = 0.5 * static_cast<double>(i);
+    const double share = time < 1 ? 1 : LinearMotion(time - 1)[0] / 0.3;
+    EXPECT_NEAR(errors[i].get<double>(), std::sqrt(share * share * 1.6e-5 + 9e-6 + share * 1.2e-5), 1e-8) << i;
+  }
+}
+
+// Two standard errors of at most 0.004 rad: 0.008 rad is seen beside a swing of 0.6 rad, not beside 60 rad.
+TEST(SeriesJson, HasStandardErrorsForThePageOnlyIfTheyAreVisible) {
+  Identification run = TwoSamplesASecond();
+  run.fits[0].fitted = Eigen::VectorXd::Zero(40);
+  run.fits[0].covariance_names = {"release_angle"};
+  run.fits[0].covariance = Eigen::MatrixXd::Constant(1, 1, 1.6e-5);
+  const auto errors = [&](double range) {
+    run.used.value[0] = range;
+    return SeriesJson(run, SeriesDetail::kPage)["models"]["linear"]["fitted_std_error"];
+  };
+  EXPECT_EQ(errors(0.6).size(), 40);
+  EXPECT_TRUE(errors(60).is_null());
 }
 
 TEST(SeriesJson, IsNullIfThereIsNoMotion) {

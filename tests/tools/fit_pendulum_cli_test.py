@@ -267,7 +267,7 @@ class GoodRun(CliTest):
         self.assertEqual((len(series["time_s"]), len(series["measured"]), series["unit"]), (samples, samples, "rad"))
         self.assertEqual({name: {key: len(values) for key, values in model.items()}
                           for name, model in series["models"].items()},
-                         {"coulomb": dict.fromkeys(("fitted", "residual", "linear_closed_form",
+                         {"coulomb": dict.fromkeys(("fitted", "fitted_std_error", "residual", "linear_closed_form",
                                                     "nonlinear_closed_form"), samples)})
         peaks = series["peaks"]
         self.assertEqual([peak["number"] for peak in peaks], list(range(1, len(peaks) + 1)))

@@ -15,21 +15,87 @@ test('the page contains each placeholder once', () => {
   );
 });
 
-test('values on the page equal the values in the JSON', async (t) => {
+test('the first section has the words and numbers of the summary in the JSON', async (t) => {
+  const result = makeResult();
+  const page = await open(t, result, makeSeries());
+  const { summary } = result.fits[1];
+  assert.equal(await page.locator('.banner .title').textContent(), summary.verdict);
+  for (const { name, value, error, source } of summary.parameters) {
+    const row = page.locator(`[data-parameter=${name}]`);
+    const shown = await row.locator('.value > span').textContent();
+    assert.equal(shown, (error === '' ? value : `${value} ± ${error}`).replace(/\)e\+02$/, ') × 10²'));
+    assert.ok((await row.textContent()).includes(source), source);
+  }
+  assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.07900 ± 0.00004 kg\u00a0m²');
+  assert.match(await page.locator('.derived').textContent(), /period of small swings 1\.3150 ± 0\.0003 s.*Q \(1\.250 ± 0\.031\) × 10²/);
+  assert.equal(await page.locator('.equation').textContent(), '0.07900 θ″ + 0.00300 θ′ + 1.803 sin θ = 0');
+  assert.match(await page.locator('.answer-more').textContent(), /log decrement gives IO 0\.0798 \(1 % more/);
+  assert.match(await page.locator('.banner .recommendation').textContent(), /^Recommended law: coulomb\. The simplest law/);
+});
+
+test('the error budget of a parameter is a bar with words', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
-  // 0.0790000 ± 0.0000028: two digits of the error, by hand from 2.7734679e-6.
-  assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
-  assert.equal(await page.locator('[data-parameter=viscous] .value').textContent(), '0.00300 ± 0.00010');
-  assert.equal(await page.locator('[data-parameter=coulomb] .value').textContent(), '0.00399 ± 0.00011');
-  const row = page.locator('#verdict tr', { hasText: 'release_angle' });
-  assert.match(await row.textContent(), /0\.40000 ± 0\.00020.rad\(22\.918 ± 0\.011\)°/);
-  assert.match(await page.locator('#verdict tr', { hasText: 'zero_angle' }).textContent(), /held fixed: held by --fix/);
-  assert.match(await page.locator('#verdict tr', { hasText: 'inertia' }).first().textContent(), /kg.m².*0\.00004/);
-  assert.match(await page.locator('.banner').textContent(), /Converged: coulomb/);
-  assert.match(await page.locator('.recommendation').textContent(), /Recommended model: coulomb\. It is the simplest/);
+  const bar = (name) => page.locator(`[data-parameter=${name}] .budget`);
+  // (2.77e-6 / 4.11e-5)² = 0.45 %
+  assert.equal(await bar('inertia').getAttribute('aria-label'), 'Variance: 100 % rig and less than 1 % noise.');
+  assert.equal(await bar('viscous').getAttribute('aria-label'), 'Variance: 100 % noise.');
+  assert.equal(await bar('zero_angle').count(), 0);
+  assert.deepEqual(await page.locator('.budget-legend li').allTextContents(), ['noise', 'rig']);
+  const row = page.locator('#parameters table').nth(1).locator('tr', { hasText: 'inertia' });
+  assert.deepEqual(await row.locator('td').allTextContents(), ['0.0000028', '0.00004', '0.00004']);
+});
+
+test('the full table has intervals and notes', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  const row = (name) => page.locator('#parameters tr', { hasText: name }).first();
+  assert.match(await row('release_angle').textContent(), /0\.40000 ± 0\.00020.rad\(22\.918 ± 0\.011\)°/);
+  assert.match(await row('zero_angle').textContent(), /held fixed: held by --fix/);
+  assert.match(await row('inertia').textContent(), /0\.07900 ± 0\.00004.kg.m²0\.0789942 to 0\.0790051/);
   assert.match(await page.locator('#provenance').textContent(), /(ab){32}/);
   assert.match(await page.locator('#provenance pre').textContent(), /^fit_pendulum --data run\.csv$/);
   assert.equal(await page.title(), 'run.csv – pendulum report');
+});
+
+test('warnings are with the law that they concern', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  assert.deepEqual(await page.locator('#verdict .warnings li').allTextContents(), ['Viscous is weakly identifiable.']);
+  assert.doesNotMatch(await page.locator('.banner').textContent(), /warning/);
+  await page.locator('#verdict summary').click();
+  await page.waitForSelector('#verdict details .warnings');
+  assert.match(await page.locator('#verdict details').textContent(), /record for longer/);
+  assert.doesNotMatch(await page.locator('#verdict').textContent(), /more than noise; try|at the bound/);
+  const others = page.locator('.other-warnings');
+  assert.match(await others.textContent(), /viscous.*lack of fit The residuals are more than noise; try another law\..*drag.*At the bound 0/);
+  await page.locator('.models label', { hasText: 'drag' }).click();
+  assert.match(await page.locator('#verdict .warnings').first().textContent(), /At the bound 0: drag\./);
+  assert.doesNotMatch(await others.textContent(), /At the bound/);
+  assert.match(await page.locator('.recommendation').first().textContent(), /not the recommended law\. Recommended: coulomb/);
+});
+
+test('nothing on the first screen is about the solver', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  assert.doesNotMatch(await page.locator('#verdict').innerText(), /[Cc]onverged|minimum|iterations|tolerance/);
+  const facts = page.locator('#provenance details');
+  await facts.locator('summary').click();
+  await page.waitForSelector('#provenance details dd');
+  assert.match(await facts.textContent(), /within 0\.1 standard errors of the minimum.*5 iterations, 30 evaluations/);
+});
+
+test('the 95 % band of the fitted curve and the noise of the residuals are drawn', async (t) => {
+  const [plain, page] = [await open(t, makeResult(), makeSeries()), await open(t, makeResult(), makeSeries({ band: true }))];
+  assert.match(await page.locator('#verdict .legend').last().textContent(), /95 % confidence interval of the curve/);
+  assert.match(await page.locator('#fit figcaption').textContent(), /Band of the residuals: ±σ, the noise of a sample, σ = 0\.003.rad\. Band: 95 %/);
+  assert.doesNotMatch(await plain.locator('#verdict').textContent(), /95 %/);
+  assert.ok((await ink(page, '#verdict .plot')) > 1.2 * (await ink(plain, '#verdict .plot')));
+});
+
+test('a pair of parameters has its confidence regions', async (t) => {
+  const page = await open(t, makeResult(), makeSeries());
+  assert.match(await page.locator('#correlation > p').textContent(), /between dry friction and viscous friction: −0\.99|−1\.00|−0\.995/);
+  const plot = page.locator('#correlation .plot');
+  assert.match(await plot.getAttribute('aria-label'), /^68 % and 95 % regions of viscous friction and dry friction/);
+  await page.locator('#correlation label', { hasText: 'moment of inertia, dry friction' }).click();
+  assert.match(await page.locator('#correlation .plot').getAttribute('aria-label'), /regions of moment of inertia and dry friction/);
 });
 
 test('the page has all sections in order', async (t) => {
@@ -38,6 +104,7 @@ test('the page has all sections in order', async (t) => {
   assert.deepEqual(ids, [
     'verdict',
     'fit',
+    'parameters',
     'validation',
     'envelope',
     'phase',
@@ -52,6 +119,7 @@ test('the page has all sections in order', async (t) => {
   ]);
   assert.equal(await page.locator('nav a').count(), ids.length);
   for (const plot of [
+    '#verdict .plot',
     '#fit .plot >> nth=0',
     '#fit .plot >> nth=1',
     '#validation .plot',
@@ -59,6 +127,7 @@ test('the page has all sections in order', async (t) => {
     '#phase .plot',
     '#residuals .plot >> nth=0',
     '#residuals .plot >> nth=1',
+    '#correlation .plot',
     '#profiles .plot',
     '#constancy .plot >> nth=0',
   ]) {
@@ -76,30 +145,35 @@ test('the page begins with the failure of a fit and has its other sections', asy
   });
   assert.match(
     await page.locator('main').innerText(),
-    /^Verdict\s+✕\s+The fit failed, so there is no result\s+The pendulum never moves\./,
+    /^Result\s+✕\s+No result with coulomb \(failed\): the pendulum never moves\./,
   );
   assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|null/);
 });
 
-for (const [status, words] of [
-  ['not_converged', /Not converged/],
-  ['not_identifiable', /Not identifiable/],
-]) {
-  test(`the page begins with the status ${status}`, async (t) => {
-    const result = makeResult({ models: ['coulomb'] });
-    result.fits[0].status = status;
-    for (const parameter of Object.values(result.fits[0].parameters))
-      Object.assign(parameter, { std_error: null, interval95: null, reason: 'it did not converge' });
-    const page = await open(t, result, makeSeries({ models: ['coulomb'] }));
-    assert.match(await page.locator('.banner.bad').textContent(), words);
-    assert.match(await page.locator('#verdict table').first().textContent(), /it did not converge/);
-  });
-}
+test('a parameter without an error has the reason', async (t) => {
+  const result = makeResult({ models: ['coulomb'] });
+  const [fit] = result.fits;
+  fit.status = 'not_converged';
+  Object.assign(fit.summary, { verdict: 'No result with coulomb (not_converged): it did not converge.', level: 'bad' });
+  for (const parameter of Object.values(fit.parameters))
+    Object.assign(parameter, { std_error: null, total_std_error: null, error_budget: null, interval95: null, reason: 'it did not converge' });
+  const page = await open(t, result, makeSeries({ models: ['coulomb'] }));
+  assert.match(await page.locator('.banner.bad').textContent(), /No result with coulomb/);
+  assert.match(await page.locator('#parameters table').first().textContent(), /it did not converge/);
+});
+
+test('a result of an earlier version, without a summary, has its tables', async (t) => {
+  const result = makeResult({ models: ['coulomb'] });
+  delete result.fits[0].summary;
+  const page = await open(t, result, makeSeries({ models: ['coulomb'] }));
+  assert.match(await page.locator('.banner').textContent(), /no summary/);
+  assert.ok((await page.locator('#parameters tbody tr').count()) > 5);
+});
 
 test('without samples the tables remain', async (t) => {
   const page = await open(t, makeResult(), null, { command: null });
   assert.match(await page.locator('#fit').textContent(), /samples are not part of this report/);
-  assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
+  assert.equal(await page.locator('[data-parameter=inertia] .value > span').textContent(), '0.07900 ± 0.00004');
   assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|null/);
 });
 
@@ -136,7 +210,7 @@ test('an undersampled swing is drawn together with its slow apparent swing', asy
 test('closed forms alone, without a fit', async (t) => {
   const result = { ...makeResult({ models: ['viscous'] }), fits: [], comparison: null };
   const page = await open(t, result, { ...makeSeries({ models: [] }), profiles: null });
-  assert.match(await page.locator('.banner').textContent(), /No fit was made/);
+  assert.match(await page.locator('.banner').textContent(), /Nothing was fitted/);
   assert.match(await page.locator('#closed-forms tr', { hasText: 'log_decrement' }).textContent(), /0\.0394 ± 0\.0005/); // 0.03 1.315
   assert.ok((await ink(page, '#envelope .plot')) > 3000);
   assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|\bnull\b/);

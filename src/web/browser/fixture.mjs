@@ -26,7 +26,7 @@ function comparisonOf(fits, recommended) {
   }));
   return {
     recommended,
-    reason: 'it is the simplest of the good ones',
+    reason: `${recommended}: the simplest law whose residuals are noise`,
     criterion: 'bic',
     criterion_reason: 'residuals are independent',
     likelihood: 'independent',
@@ -120,12 +120,16 @@ export function makeResult({
       noise_rad: kSigma,
     },
     comparison: models.length > 1 ? comparisonOf(fits, models[1]) : null,
-    warnings: [{ code: 'at_bound', message: 'at the bound 0: drag; a simpler model has smaller errors' }],
+    warnings: [
+      ...(models.length > 1 ? [{ code: 'lack_of_fit', message: 'viscous: the residuals are more than noise; try another law' }] : []),
+      { code: 'weakly_identifiable', message: 'viscous is weakly identifiable; record for longer' },
+      ...(models.includes('drag') ? [{ code: 'at_bound', message: 'drag: at the bound 0: drag; a simpler law has smaller errors' }] : []),
+    ],
   };
 }
 
-/** The series of makeResult() with the same options. */
-export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 2000, rate = 100 } = {}) {
+/** The series of makeResult() with the same options. `band`: with standard errors of the fitted readings. */
+export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 2000, rate = 100, band = null } = {}) {
   const random = seeded(1);
   const noise = () => kSigma * (random() + random() + random() + random() + random() + random() - 3) * Math.SQRT2;
   const round = (x) => Math.round(x * 1e7) / 1e7;
@@ -161,6 +165,7 @@ export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 
         model,
         {
           fitted,
+          fitted_std_error: band && fitted.map(() => 0.04),
           residual,
           linear_closed_form: fitted.map((value, i) => round(value + 1e-3 * Math.sin(time[i]))),
           nonlinear_closed_form: fitted,
@@ -190,6 +195,16 @@ export function makeFailed() {
   Object.assign(result.fits[0], {
     status: 'failed',
     reason: 'the pendulum never moves',
+    summary: {
+      ...result.fits[0].summary,
+      verdict: 'No result with coulomb (failed): the pendulum never moves.',
+      level: 'bad',
+      parameters: [],
+      derived: [],
+      equation: '',
+      textbook: '',
+      warnings: [],
+    },
     parameters: {},
     derived: {},
     covariance: empty,

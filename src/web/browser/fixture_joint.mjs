@@ -54,6 +54,18 @@ function homogeneityOf(parameters, count, odd) {
   };
 }
 
+/** The summary of a joint fit: only shared parameters, and whether the recordings agree. */
+function jointSummary(summary, count, odd) {
+  const own = verdictOf(count, odd);
+  return {
+    ...summary,
+    agreement: `${own.slice(0, 1).toUpperCase()}${own.slice(1)}.`,
+    ...(odd ? { level: 'caution', verdict: 'The errors below assume that the recordings agree: do not quote them.' } : {}),
+    parameters: summary.parameters.filter(({ name }) => kShared.includes(name)),
+    warnings: ['recording 2 (folder/run2.csv): readings are missing in 1 place'],
+  };
+}
+
 /** Makes a joint fit of `count` recordings from the fit of one. */
 function jointFit(fit, count, odd) {
   const { noise, closed_form, constancy, statistics, parameters, ...rest } = fit;
@@ -63,6 +75,7 @@ function jointFit(fit, count, odd) {
     ...rest,
     equation: "0.079 th'' + 0.003 th' + 1.803 sin th = 0",
     shared,
+    summary: jointSummary(fit.summary, count, odd),
     parameters: own,
     statistics: { rms_residual_rad: 0.003, log_likelihood: -1, aic: 2, aicc: 2, bic: 3, effective_samples: 2000 * count },
     homogeneity: homogeneityOf(own, count, odd),
@@ -124,6 +137,16 @@ export function makeJointFailed() {
   Object.assign(fit, nothing, {
     status: 'failed',
     reason: 'recording 2: the pendulum never moves',
+    summary: {
+      ...fit.summary,
+      verdict: 'No result with coulomb (failed): recording 2: the pendulum never moves.',
+      level: 'bad',
+      agreement: 'Not tested: fewer than two recordings tell them.',
+      parameters: [],
+      derived: [],
+      equation: '',
+      textbook: '',
+    },
     equation: null,
     derived: {},
     statistics: null,

@@ -44,7 +44,7 @@ test('the keyboard zooms, moves and resets', async (t) => {
 test('every control is reached by the Tab key and shows its focus', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   const reached = new Set();
-  for (let i = 0; i < 60; ++i) {
+  for (let i = 0; i < 110; ++i) {
     await page.keyboard.press('Tab');
     reached.add(
       await page.evaluate(
@@ -56,7 +56,7 @@ test('every control is reached by the Tab key and shows its focus', async (t) =>
       ),
     );
   }
-  for (const name of ['Dark', 'measured', 'Zoom in', 'Later', 'Samples as a table', 'Command'])
+  for (const name of ['Dark', 'measured', 'Zoom in', 'Later', 'Save the plot fit as SVG', 'Samples as a table', 'Command'])
     assert.ok(reached.has(name), name);
 });
 
@@ -68,7 +68,7 @@ test('another model can be shown in detail, or drawn over the first model', asyn
   assert.match(await page.locator(kPlot).getAttribute('aria-label'), /^measured and coulomb and drag:/);
   await page.locator('#fit').getByRole('button', { name: 'Zoom in' }).click();
   await page.locator('.models label', { hasText: 'viscous' }).click();
-  assert.match(await page.locator('.banner').textContent(), /Lack of fit: viscous/);
+  assert.match(await page.locator('.banner').textContent(), /The law viscous does not describe all of the readings/);
   assert.equal(await page.locator('[data-parameter=coulomb]').count(), 0);
   assertRange(await shownRange(page), [4.9975, 14.9925]);
   await page.locator('.models label', { hasText: 'drag' }).click();

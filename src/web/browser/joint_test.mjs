@@ -19,7 +19,7 @@ test('the page has all sections in order', async (t) => {
   const ids = await page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
   const one = ['fit', 'validation', 'envelope', 'phase', 'residuals', 'constancy', 'closed-forms'];
   const rest = ['correlation', 'profiles', 'comparison', 'rig', 'provenance'];
-  assert.deepEqual(ids, ['verdict', 'agreement', 'recordings', 'overlay', 'one', ...one, ...rest]);
+  assert.deepEqual(ids, ['verdict', 'agreement', 'parameters', 'recordings', 'overlay', 'one', ...one, ...rest]);
   assert.equal(await page.locator('nav a').count(), ids.length);
   assert.equal(await page.locator('h1').textContent(), '3 recordings, fitted together');
   for (const plot of ['#overlay .plot >> nth=0', '#overlay .plot >> nth=1', '#fit .plot >> nth=0'])
@@ -28,11 +28,14 @@ test('the page has all sections in order', async (t) => {
 
 test('the page begins with the agreement and the shared parameters', async (t) => {
   const page = await openJoint(t);
-  assert.match(await page.locator('.banner.good').textContent(), /The 3 recordings agree: coulomb describes them together/);
-  assert.equal(await page.locator('[data-parameter=inertia] .value').textContent(), '0.0789996 ± 0.0000028');
+  const banner = page.locator('.banner.good');
+  assert.match(await banner.locator('.title').textContent(), /^The recordings agree on inertia, viscous/);
+  assert.match(await banner.textContent(), /The law coulomb describes the readings/);
+  assert.equal(await page.locator('[data-parameter=inertia] .value > span').textContent(), '0.07900 ± 0.00004');
   assert.equal(await page.locator('[data-parameter=release_angle]').count(), 0);
-  assert.doesNotMatch(await page.locator('#verdict table').first().textContent(), /release_angle/);
-  assert.doesNotMatch(await page.locator('.figures').textContent(), /random effects/);
+  assert.doesNotMatch(await page.locator('#parameters table').first().textContent(), /release_angle/);
+  assert.doesNotMatch(await page.locator('.answer-table').textContent(), /random effects/);
+  assert.ok((await ink(page, '#verdict .plot')) > 3000);
 });
 
 test('plot and table have the separate fits, the joint fit and the random effects', async (t) => {
@@ -44,7 +47,7 @@ test('plot and table have the separate fits, the joint fit and the random effect
   assert.equal(await forestRow(page, 'inertia', 4), 'random effects|0.079002 ± 0.000006|–|0.078986 to 0.079019');
   assert.equal(await forestRow(page, 'coulomb', 1), 'recording 2|not determined|–|–');
   const words = await page.locator('[data-forest=inertia] figcaption').textContent();
-  assert.match(words, /χ² = 1\.75 with 2 degrees of freedom, p = 0\.42\. Between recordings a standard deviation of 1\.4 × 10⁻⁶/);
+  assert.match(words, /χ² = 1\.75 with 2 degrees of freedom, p = 0\.42\. The standard deviation between recordings is 1\.4 × 10⁻⁶/);
   const told = await page.locator('[data-forest=inertia] .forest').getAttribute('aria-label');
   assert.match(told, /recording 1 0\.078997 ± 0\.000006, .*, joint fit 0\.0789996 ± 0\.0000028 and random effects/);
   assert.equal(await page.locator('[data-forest=inertia] line.joint').count(), 1);
@@ -57,7 +60,7 @@ test('plot and table have the separate fits, the joint fit and the random effect
 
 test('a recording that disagrees is marked in words everywhere', async (t) => {
   const page = await openJoint(t, { odd: true });
-  assert.match(await page.locator('.banner.bad').textContent(), /Recording 3 disagrees with the others/);
+  assert.match(await page.locator('.banner.caution').textContent(), /recording 3 disagrees with the others.*do not quote them/);
   assert.match(await page.locator('.agreement strong').textContent(), /Recording 3 disagrees with the others\./);
   assert.match(await forestRow(page, 'inertia', 2), /^recording 3disagrees\|/);
   assert.match(await page.locator('[data-forest=inertia] .labels').textContent(), /recording 3disagrees/);
@@ -68,10 +71,13 @@ test('a recording that disagrees is marked in words everywhere', async (t) => {
 
 test('recordings that scatter have the random-effects mean next to the joint estimate', async (t) => {
   const result = makeJointResult();
-  for (const fit of result.fits) Object.assign(fit.homogeneity, { agrees: false, verdict: 'they scatter' });
+  for (const fit of result.fits) {
+    Object.assign(fit.homogeneity, { agrees: false, verdict: 'they scatter' });
+    Object.assign(fit.summary, { level: 'caution', agreement: 'They scatter.' });
+  }
   const page = await open(t, result, makeJointSeries());
-  assert.match(await page.locator('.banner.caution').textContent(), /do not agree within their errors\s*They scatter\./);
-  assert.match(await page.locator('[data-parameter=inertia] small').textContent(), /random effects: 0\.079002 ± 0\.000006/);
+  assert.match(await page.locator('.banner.caution').textContent(), /^!They scatter\./);
+  assert.match(await page.locator('[data-parameter=inertia] small').first().textContent(), /random effects: 0\.079002 ± 0\.000006/);
 });
 
 test('the table of recordings has their noise and their separate parameters', async (t) => {
@@ -141,7 +147,7 @@ test('the page reports that a joint fit failed and that the agreement is unknown
   const failed = makeJointFailed();
   const series = makeJointSeries({ models: [] }).map((one) => ({ ...one, profiles: null, peaks: [], extrema: [] }));
   const page = await open(t, failed, series);
-  assert.match(await page.locator('.banner.bad').textContent(), /The joint fit failed.*the pendulum never moves/s);
+  assert.match(await page.locator('.banner.bad').textContent(), /No result with coulomb.*the pendulum never moves.*Not tested/s);
   assert.match(await page.locator('#agreement').textContent(), /Not known\./);
   assert.match(await page.locator('#recordings').textContent(), /failed: the pendulum never moves/);
   assert.ok((await ink(page, '#overlay .plot')) > 3000);

@@ -226,6 +226,7 @@ test('the printed page is light and without controls, and no plot is wider than 
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
   await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');
   assert.equal(await page.locator('.buttons').first().isVisible(), false);
+  for (const part of await page.locator('main section').all()) assert.equal(await part.isVisible(), true);
   const widths = await page
     .locator('.plot canvas')
     .evaluateAll((all) => all.map((canvas) => canvas.getBoundingClientRect().width));

@@ -2,12 +2,13 @@
 /** Tables of parameters with their errors and units. */
 
 import { el, symbolElement, text, type Child } from '../shared/dom';
-import { keyFigure } from '../shared/key_figure';
 import { typeset } from '../shared/prose';
 import type { Fit, Parameter } from '../shared/result_types';
 import { errorText, intervalText, plusMinus } from '../shared/rounding';
+import { section } from '../shared/section';
 import { table, type Cell, type Column } from '../shared/table';
-import { inDegrees, spacedUnit, symbolOf, wordsOf } from '../shared/units';
+import { inDegrees, spacedUnit, symbolOf, unitText, wordsOf } from '../shared/units';
+import { sourcesOf } from './budget';
 
 /** Parameters of the start and of the sensor. All others are properties of the pendulum. */
 export const kCircumstances = new Set([
@@ -57,22 +58,27 @@ function degreesText(value: number | null, error: number | null, unit: string): 
     : `(${both}${degrees.unit})`;
 }
 
-export function valueCell({ estimate, std_error: error, unit }: Parameter): Cell {
+/** Statistical and systematic error together; the statistical error alone where nothing systematic is known. */
+export const totalError = (parameter: Parameter): number | null => parameter.total_std_error ?? parameter.std_error;
+
+/** Value and total error. */
+export function valueCell(parameter: Parameter): Cell {
+  const { estimate, unit } = parameter;
+  const error = totalError(parameter);
   const degrees = degreesText(estimate, error, unit);
   return [valueText(estimate, error, unit), degrees !== null && el('small', {}, degrees)];
 }
 
-function intervalCell({ estimate, std_error: error, interval95: interval, unit }: Parameter): Cell {
+function intervalCell({ std_error: error, interval95: interval, unit }: Parameter): Cell {
   const degrees = inDegrees(unit);
   const inOther =
     degrees && interval
       ? `(${intervalText(
           [scale(interval[0], degrees.factor), scale(interval[1], degrees.factor)],
-          scale(estimate, degrees.factor),
           scale(error, degrees.factor),
         )}${degrees.unit})`
       : null;
-  return [intervalText(interval, estimate, error), inOther !== null && el('small', {}, inOther)];
+  return [intervalText(interval, error), inOther !== null && el('small', {}, inOther)];
 }
 
 /** Why an error or interval is missing, in words; empty if nothing is missing. */
@@ -89,42 +95,55 @@ function parameterTable(fit: Fit): HTMLElement {
   const notes = rows.some(([, parameter]) => noteOf(parameter) !== '');
   const columns: Column[] = [
     { head: 'Parameter' },
-    { head: 'Value ± standard error', kind: 'number' },
-    { head: '95 % interval', kind: 'number' },
+    { head: systematic ? 'Value ± total error' : 'Value ± standard error', kind: 'number' },
+    { head: systematic ? '95 % interval, noise alone' : '95 % interval', kind: 'number' },
   ];
-  if (systematic) columns.push({ head: '± systematic', kind: 'number' });
   if (notes) columns.push({ head: 'Note' });
   const cells = rows.map(([name, parameter]) => {
     const row: Cell[] = [quantityName(name, parameter.unit), valueCell(parameter), intervalCell(parameter)];
-    if (systematic) row.push(errorText(parameter.systematic_std_error, parameter.estimate, parameter.std_error));
     if (notes) row.push(typeset(noteOf(parameter)));
     return row;
   });
   return table(`Parameters of ${fit.model}`, columns, cells);
 }
 
+/** Standard errors by source; null if all errors come from noise. */
+function budgetTable(fit: Fit): HTMLElement | null {
+  const sources = sourcesOf(fit);
+  if (sources.every(({ key }) => key === 'noise')) return null;
+  const number = 'number' as const;
+  const columns: Column[] = [
+    { head: 'Error budget' },
+    ...sources.map(({ words }) => ({ head: `± ${words}`, kind: number })),
+    { head: '± total', kind: number },
+  ];
+  const rows = Object.entries(fit.parameters).map(([name, parameter]): Cell[] => {
+    const { estimate, unit, error_budget: budget } = parameter;
+    const total = totalError(parameter);
+    const cell = (error: number | null | undefined): Cell => (error ? errorText(error, estimate, total) : '–');
+    const inUnit = unitText(unit) === '' ? '' : ` [${unitText(unit)}]`;
+    return [`${wordsOf(name)}${inUnit}`, ...sources.map(({ key }) => cell(budget?.[key])), cell(total)];
+  });
+  return table('Standard errors by source, added in squares to the total', columns, rows);
+}
+
 function derivedTable(fit: Fit): HTMLElement | null {
   const rows = Object.entries(fit.derived ?? {});
   if (rows.length === 0) return null;
+  const systematic = rows.some(([, derived]) => derived.systematic_std_error !== undefined);
+  const number = 'number' as const;
   const columns: Column[] = [
     { head: 'Derived quantity' },
-    { head: 'Value ± standard error', kind: 'number' },
-    { head: '95 % interval', kind: 'number' },
+    { head: systematic ? 'Value ± total error' : 'Value ± standard error', kind: number },
+    { head: systematic ? '95 % interval, noise alone' : '95 % interval', kind: number },
   ];
-  const systematic = rows.some(([, derived]) => derived.systematic_std_error !== undefined);
-  if (systematic) columns.push({ head: '± systematic', kind: 'number' });
   return table(
     'Computed from the parameters',
     columns,
     rows.map(([name, derived]) => {
-      const error = derived.systematic_std_error ?? null;
-      const cells: Cell[] = [
-        quantityName(name),
-        valueText(derived.estimate, derived.std_error, derived.unit),
-        intervalText(derived.interval95, derived.estimate, derived.std_error),
-      ];
-      if (systematic) cells.push(errorText(error, derived.estimate, derived.std_error));
-      return cells;
+      const { estimate, std_error: error, systematic_std_error: more = 0, interval95: interval, unit } = derived;
+      const total = error === null ? null : Math.hypot(error, more);
+      return [quantityName(name), valueText(estimate, total, unit), intervalText(interval, error)];
     }),
   );
 }
@@ -151,8 +170,8 @@ function methods(fit: Fit): HTMLElement | null {
   if (overG)
     parts.push(
       fit.model.startsWith('linear')
-        ? 'A free swing determines only ratios to the stiffness k of the spring (for a pendulum at small angles, to the gravity torque G): inertia and torques are in units of it, unless a rig gives it.'
-        : 'A free swing determines only ratios to the gravity torque G: inertia and torques are in units of G, unless a rig gives it.',
+        ? 'A free swing determines only ratios to the stiffness k of the spring (for a pendulum at small angles: to the gravity torque G). Inertia and torques are therefore in units of k. A rig with a known stiffness gives SI units.'
+        : 'A free swing determines only ratios to the gravity torque G. Inertia and torques are therefore in units of G. A rig with known masses and length gives SI units.',
     );
   return text(typeset(parts.join(' ')), 'quiet');
 }
@@ -161,30 +180,20 @@ function methods(fit: Fit): HTMLElement | null {
  * Tables of the parameters and of the derived quantities. `adviceHeading` stands above the list of parameters that are
  * not identifiable.
  */
-export function parameterPart(fit: Fit, adviceHeading = 'What the recording does not determine'): HTMLElement {
-  const part = el('div', {}, parameterTable(fit));
-  for (const more of [methods(fit), advice(fit, adviceHeading), derivedTable(fit)]) if (more) part.append(more);
-  return part;
+function parameterPart(fit: Fit, adviceHeading = 'What the recording does not determine'): HTMLElement {
+  return el(
+    'div',
+    {},
+    parameterTable(fit),
+    budgetTable(fit),
+    derivedTable(fit),
+    advice(fit, adviceHeading),
+    methods(fit),
+  );
 }
 
-const smallText = (words: string | null): Child => words !== null && el('small', {}, words);
-
-/** The parameters of the pendulum in large figures. `remark` returns an additional line for a parameter. */
-export function keyFigures(fit: Fit, remark: (name: string) => string | null = () => null): HTMLElement {
-  const box = el('div', { class: 'figures' });
-  for (const [name, parameter] of Object.entries(fit.parameters)) {
-    if (kCircumstances.has(name)) continue;
-    const symbol = symbolOf(name, parameter.unit);
-    const note =
-      noteOf(parameter) === '' ? null : parameter.fixed ? 'held fixed' : parameter.at_bound ? 'at its bound' : null;
-    const figure = keyFigure(
-      [wordsOf(name), symbol !== null && ' ', symbol !== null && symbolElement(symbol)],
-      plusMinus(parameter.estimate, parameter.std_error),
-      [spacedUnit(parameter.unit).trim() || 'a pure number', note !== null && ` · ${note}`],
-      smallText(remark(name)),
-    );
-    figure.dataset.parameter = name;
-    box.append(figure);
-  }
-  return box;
+/** All parameters, their errors by source, and derived quantities; null without a fit. */
+export function parameterSection(fit: Fit | null, adviceHeading?: string): HTMLElement | null {
+  if (!fit || Object.keys(fit.parameters ?? {}).length === 0) return null;
+  return section('parameters', 'Parameters and their errors', parameterPart(fit, adviceHeading));
 }

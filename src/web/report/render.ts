@@ -8,7 +8,8 @@ import { significant } from '../shared/rounding';
 import { isJoint } from './joint/joint';
 import { jointContent } from './joint/joint_content';
 import type { JointResult } from './joint/joint_types';
-import { makeReport, type Report } from './report';
+import { parameterSection } from './parameters';
+import { makeReport, shownFit, type Report } from './report';
 import { closedFormSection } from './sections/closed_form_section';
 import { comparisonSection } from './sections/comparison_section';
 import { constancySection } from './sections/constancy_section';
@@ -25,6 +26,7 @@ import { verdictSection } from './sections/verdict_section';
 const kSections: ((report: Report) => HTMLElement | null)[] = [
   verdictSection,
   fitSection,
+  (report) => parameterSection(shownFit(report)),
   validationSection,
   envelopeSection,
   phaseSection,

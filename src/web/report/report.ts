@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The input of every section of a report. */
 
-import type { Command, ComparisonRow, Fit, Result, Series } from '../shared/result_types';
-import { toSamples, type Samples } from '../shared/samples';
+import type { Command, Fit, Result, Series } from '../shared/result_types';
+import { medianInterval, toSamples, type Samples } from '../shared/samples';
+import { TimeView } from '../shared/time_view';
 
 export interface Report {
   result: Result;
@@ -11,8 +12,8 @@ export interface Report {
   command: Command | null;
   /** Index of the fit that is shown in detail; -1 without a fit. */
   shown: number;
-  /** Time range of the plots, s. It stays the same when another model is shown. */
-  range?: [number, number];
+  /** Time range of the plots. It stays the same when another model is shown. */
+  view?: TimeView;
 }
 
 /** Index of the recommended fit, else of the first that converged, else 0; -1 without a fit. */
@@ -41,18 +42,38 @@ export function isAliased({ result }: Report): boolean {
   return hasWarning(result, 'aliased') || (typeof margin === 'number' && margin < 1);
 }
 
-export function comparisonRow(result: Result, model: string): ComparisonRow | null {
-  return result.comparison?.rows.find((row) => row.model === model) ?? null;
-}
-
-export const hasWarning = (result: Result, code: string): boolean =>
+const hasWarning = (result: Result, code: string): boolean =>
   result.warnings.some((warning) => warning.code === code);
 
-/**
- * Whether the residuals of this fit are more than noise. Without a comparison the warning does not name one of several
- * fits, so this is false.
- */
-export function lacksFit(result: Result, fit: Fit): boolean {
-  const row = comparisonRow(result, fit.model);
-  return row ? row.lack_of_fit : result.fits.length === 1 && hasWarning(result, 'lack_of_fit');
+/** The time range that the plots of the readings share. */
+export function sharedView(report: Report, { time }: Samples): TimeView {
+  report.view ??= new TimeView(time[0], time[time.length - 1], 8 * medianInterval(time));
+  return report.view;
+}
+
+type Warnings = Result['warnings'];
+
+/** Warnings that name this model, without its name. */
+function warningsWith(model: string, warnings: Warnings): Warnings {
+  const name = `${model}: `;
+  return warnings.flatMap(({ code, message }) =>
+    message.startsWith(name) ? [{ code, message: message.slice(name.length) }] : [],
+  );
+}
+
+/** Warnings of this model, and those that name no model. */
+export function warningsOf({ fits, warnings }: Pick<Result, 'fits' | 'warnings'>, model: string | null): Warnings {
+  const general = warnings.filter(({ message }) => !fits.some((fit) => message.startsWith(`${fit.model}: `)));
+  return [...general, ...(model === null ? [] : warningsWith(model, warnings))];
+}
+
+/** Warnings of each other model that has any. */
+export function otherWarnings(
+  { fits, warnings }: Pick<Result, 'fits' | 'warnings'>,
+  model: string | null,
+): { model: string; warnings: Warnings }[] {
+  return fits
+    .filter((fit) => fit.model !== model)
+    .map((fit) => ({ model: fit.model, warnings: warningsWith(fit.model, warnings) }))
+    .filter((other) => other.warnings.length > 0);
 }

@@ -5,7 +5,7 @@
  */
 
 import { Chart, padded, type Range } from '../shared/chart';
-import { decimate, type Shown } from '../shared/decimate';
+import { decimate, decimateArea, type Shown } from '../shared/decimate';
 import type { Mark } from '../shared/marks';
 import { followPointer } from '../shared/navigation';
 import type { Painter } from '../shared/painter';
@@ -19,9 +19,13 @@ export interface Trace {
   values: Float64Array;
   mark: Mark;
   shown: boolean;
+  /** Standard errors of the values; a band of 95 % is drawn where they are visible. */
+  errors?: Float64Array | null;
 }
 
 export interface TimePlotOptions {
+  /** Name of the files in which the plot is saved. */
+  name: string;
   sentence: () => string;
   xLabel: string;
   yLabel: () => string;
@@ -32,17 +36,24 @@ export interface TimePlotOptions {
   factor?: () => number;
   /** Draws the background, before all traces. */
   behind?: (painter: Painter) => void;
+  /** Draws after all traces. */
+  inFront?: (painter: Painter) => void;
+  /** Draws all samples as points, up to many in a column of pixels. */
+  every?: boolean;
   /** Keeps zero in the middle of the vertical axis. */
   symmetric?: boolean;
   onCursor?: (time: number | null) => void;
 }
 
+const kMany = 30; // samples in a column of pixels
+const kNormal95 = 1.96;
 const kGap = 5; // median intervals; lines are broken at longer gaps
 
 export class TimePlot {
   readonly chart: Chart;
   private shown: (Shown | null)[] = [];
   private readonly gaps: number[];
+  private readonly bands = new Map<Trace, { low: Float64Array; high: Float64Array }>();
 
   constructor(
     readonly traces: Trace[],
@@ -50,6 +61,12 @@ export class TimePlot {
     private readonly options: TimePlotOptions,
   ) {
     this.gaps = traces.map((trace) => kGap * medianInterval(trace.time));
+    for (const trace of traces) {
+      const { values, errors } = trace;
+      if (!errors) continue;
+      const end = (sign: number): Float64Array => values.map((value, i) => value + sign * kNormal95 * errors[i]);
+      this.bands.set(trace, { low: end(-1), high: end(1) });
+    }
     this.chart = new Chart({
       ...options,
       xRange: () => view.current,
@@ -58,7 +75,7 @@ export class TimePlot {
       onSelect: (from, to) => view.set(from, to),
     });
     followPointer(this.chart, view);
-    view.onChange(() => this.chart.update());
+    const stop = view.onChange(() => (this.chart.removed ? stop() : this.chart.update()));
   }
 
   setShown(trace: Trace, shown: boolean): void {
@@ -70,8 +87,9 @@ export class TimePlot {
   private decimateAll(): void {
     const { columns } = this.chart;
     const [from, to] = this.view.current;
+    const few = this.options.every ? kMany : undefined;
     this.shown = this.traces.map((trace, i) =>
-      trace.shown ? decimate(trace.time, trace.values, from, to, columns, this.gaps[i]) : null,
+      trace.shown ? decimate(trace.time, trace.values, from, to, columns, this.gaps[i], few) : null,
     );
     const factor = this.options.factor?.() ?? 1;
     if (factor === 1) return;
@@ -86,21 +104,32 @@ export class TimePlot {
     return padded([-most, most]);
   }
 
+  /** Bands first, then lines, then points: a curve does not cover the points near it. */
   private draw(painter: Painter): void {
     this.options.behind?.(painter);
-    this.shown.forEach((shown, i) => shown && this.drawTrace(painter, shown, this.traces[i].mark));
+    for (const trace of this.traces) if (trace.shown) this.drawErrors(painter, trace);
+    for (const points of [false, true]) {
+      this.shown.forEach((shown, i) => {
+        const { mark } = this.traces[i];
+        if (shown && Boolean(mark.points) === points) this.drawTrace(painter, shown, mark);
+      });
+    }
+    this.options.inFront?.(painter);
+  }
+
+  private drawErrors(painter: Painter, trace: Trace): void {
+    const band = this.bands.get(trace);
+    if (!band) return;
+    const { x, low, high } = decimateArea(trace.time, band.low, band.high, ...this.view.current, this.chart.columns);
+    painter.area(x, low, high, 'band-curve');
   }
 
   private drawTrace(painter: Painter, shown: Shown, mark: Mark): void {
     const lineOfDense = { ...mark, dash: shown.dense ? [] : mark.dash };
-    if (!mark.points) return painter.line(shown.x, shown.y, shown.dense ? lineOfDense : mark);
-    if (shown.dense) return painter.line(shown.x, shown.y, { ...lineOfDense, width: 1 });
+    if (!mark.points) return painter.line(shown.x, shown.y, lineOfDense);
+    if (shown.dense && this.options.every) return painter.line(shown.x, shown.y, { ...lineOfDense, width: 1 });
     const room = this.chart.columns / Math.max(1, shown.x.length); // px per sample
-    return painter.dots(
-      shown.x,
-      shown.y,
-      mark.colour,
-      room > 12 ? 3.2 : room > 2 ? 2.4 : mark.colour === 'measured' ? 2 : 1.3,
-    );
+    const radius = room > 12 ? 3.2 : room > 2 ? 2 : room > 0.7 ? 1.4 : room > 0.2 ? 1 : 0.7;
+    return painter.dots(shown.x, shown.y, mark.colour, radius);
   }
 }

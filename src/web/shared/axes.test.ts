@@ -7,7 +7,7 @@ describe('ticks', () => {
   test('have enough decimals, all the same number', () => {
     expect(tickTexts([0, 0.05, 0.1], 0.05)).toEqual(['0.00', '0.05', '0.10']);
     expect(tickTexts([-1, 0, 1], 1)).toEqual(['−1', '0', '1']);
-    expect(tickTexts([0, 2e-6], 2e-6)).toEqual(['0', '2 × 10⁻⁶']);
+    expect(tickTexts([0, 2e-6], 2e-6)).toEqual(['0', '2×10⁻⁶']);
   });
 
   test('of a logarithmic axis are 1, 2 and 5 times powers of ten', () => {

@@ -8,12 +8,13 @@ import { fixed, significant } from './rounding';
 import { colour } from './theme';
 
 const kFont = `12px ${kPlotFont}`;
+const kTitleFont = `13px ${kPlotFont}`;
 const kCharacter = 6.9; // px, width of a digit of 12 px text
 
 /** Labels of ticks at intervals of `step`, all with the same number of decimals. */
 export function tickTexts(ticks: readonly number[], step: number): string[] {
   const largest = Math.max(...ticks.map(Math.abs));
-  if (largest !== 0 && (largest < 1e-4 || largest >= 1e6)) return ticks.map((tick) => significant(tick, 4));
+  if (largest !== 0 && (largest < 1e-4 || largest >= 1e6)) return ticks.map((tick) => significant(tick, 4).replace(' × ', '×'));
   const decimals = Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9)));
   return ticks.map((tick) => fixed(tick, decimals));
 }
@@ -35,24 +36,30 @@ const kSteps = Array.from({ length: 40 }, (_unused, i) => i - 20).flatMap((power
 
 const common = (): Partial<uPlot.Axis> => ({
   font: kFont,
-  labelFont: kFont,
-  labelSize: 18,
+  labelFont: kTitleFont,
+  labelSize: 20,
   labelGap: 2,
   incrs: kSteps,
-  stroke: () => colour('muted'),
+  stroke: () => colour('ink'),
   grid: { stroke: () => colour('grid'), width: 1 },
   ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
 });
+
+const widest = (texts: readonly string[] | null): number => Math.max(3, ...(texts ?? []).map((text) => text.length));
+
+/** Width of the widest tick label on an axis, px. */
+function widestTick(low: number, high: number): number {
+  const ticks = roundTicks(low, high);
+  return ticks.length < 2 ? 0 : kCharacter * widest(tickTexts(ticks, ticks[1] - ticks[0]));
+}
 
 export const xAxis = (label: string): uPlot.Axis => ({
   ...common(),
   ...(label === '' ? { labelSize: 0 } : { label }),
   size: 30,
-  space: (plot) => (plot.width < 480 ? 52 : 70),
+  space: (plot, _axis, low, high) => Math.max(plot.width < 480 ? 52 : 70, widestTick(low, high) + 16),
   values: (_plot, ticks, _axis, _space, step) => tickTexts(ticks, step),
 });
-
-const widest = (texts: readonly string[] | null): number => Math.max(3, ...(texts ?? []).map((text) => text.length));
 
 export interface YAxisOptions {
   log?: boolean;

@@ -15,8 +15,9 @@ export interface Headline {
 
 const kSigns: Record<Level, string> = { good: '✓', caution: '!', bad: '✕' };
 
-export function banner({ level, title, sentence: words }: Headline): HTMLElement {
-  const box = el('div', {}, el('p', { class: 'title' }, title), el('p', {}, words));
+/** `more`: a further line. */
+export function banner({ level, title, sentence: words }: Headline, more: HTMLElement | null = null): HTMLElement {
+  const box = el('div', {}, el('p', { class: 'title' }, title), words !== '' && el('p', {}, words), more);
   return el(
     'div',
     { class: `banner ${level}` },
@@ -25,11 +26,15 @@ export function banner({ level, title, sentence: words }: Headline): HTMLElement
   );
 }
 
-export function warnings({ warnings: list }: Pick<Result, 'warnings'>): HTMLElement | null {
-  if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
+export function warningList(list: Result['warnings']): HTMLElement {
   const items = el('ul', { class: 'warnings' });
   for (const { code, message } of list) {
     items.append(el('li', {}, el('span', { class: 'code' }, code.replace(/_/g, ' ')), ' ', sentence(message)));
   }
-  return el('div', {}, el('h3', {}, list.length === 1 ? 'Warning' : `Warnings (${list.length})`), items);
+  return items;
+}
+
+export function warnings({ warnings: list }: Pick<Result, 'warnings'>): HTMLElement | null {
+  if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
+  return el('div', {}, el('h3', {}, list.length === 1 ? 'Warning' : `Warnings (${list.length})`), warningList(list));
 }

@@ -6,13 +6,17 @@ import './pixel_ratio';
 import uPlot from 'uplot';
 
 import { xAxis, yAxis } from './axes';
+import { chartSvg } from './chart_svg';
 import { el } from './dom';
-import { Painter } from './painter';
+import { Painter, type Frame } from './painter';
+import { saveButtons } from './save';
 import { onThemeChange, printing } from './theme';
 
 export type Range = readonly [number, number];
 
 export interface ChartOptions {
+  /** Name of the files in which the plot is saved; default: "plot". */
+  name?: string;
   /** Description of the plot in a sentence, for screen readers. */
   sentence: () => string;
   xLabel: string;
@@ -36,7 +40,8 @@ const kHalfPaper = 316;
 const kNarrow = 520; // px; narrower plots have no space for a second axis
 const kLeftRoom = 56; // px, for tick labels of aligned plots
 const kRightRoom = 44;
-const kLabelRoom = 18;
+const kLabelRoom = 20;
+const kRoomOfLabel = 24; // px
 const kMargin = 28; // px, for half a tick label
 
 export class Chart {
@@ -55,6 +60,16 @@ export class Chart {
     this.forget = onThemeChange(() => this.rebuild());
   }
 
+  /** The plot with the buttons that save it. */
+  withButtons(): HTMLElement {
+    const { name = 'plot', height } = this.options;
+    const canvas = (): HTMLCanvasElement | null => this.plot?.ctx.canvas ?? null;
+    const kLeast = 320; // px
+    const svgText = (): string =>
+      chartSvg(this.options, Math.max(kLeast, this.width), Math.max(kLeast / 2, height) + kRoomOfLabel);
+    return el('div', { class: 'chart' }, this.host, saveButtons(name, svgText, canvas));
+  }
+
   /** The element inside the axes. */
   get over(): HTMLElement | null {
     return this.plot?.over ?? null;
@@ -68,6 +83,11 @@ export class Chart {
   /** The x value at a distance of `px` from the left end of the axes. */
   xAt(px: number): number {
     return this.plot?.posToVal(px, 'x') ?? NaN;
+  }
+
+  /** Whether the plot was removed from the page. It does not draw any more. */
+  get removed(): boolean {
+    return this.wasThere && !this.host.isConnected;
   }
 
   /** Draws again after the data or ranges have changed. */
@@ -171,7 +191,7 @@ export class Chart {
     return {
       draw: [
         (plot) => {
-          const painter = new Painter(plot);
+          const painter = new Painter(frameOf(plot));
           painter.inside(() => draw(painter));
         },
       ],
@@ -191,6 +211,20 @@ export class Chart {
       ],
     };
   }
+}
+
+/** The area of a plot on its canvas. */
+function frameOf(plot: uPlot): Frame {
+  const end = ({ min, max }: uPlot.Scale): Range => [min ?? 0, max ?? 1];
+  return {
+    ctx: plot.ctx,
+    box: plot.bbox,
+    ratio: window.devicePixelRatio,
+    x: (value) => plot.valToPos(value, 'x', true),
+    y: (value) => plot.valToPos(value, 'y', true),
+    xRange: end(plot.scales.x),
+    yRange: end(plot.scales.y),
+  };
 }
 
 /** The range plus a share of its width at both ends; a range of nonzero width for a constant. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, test } from 'vitest';
 
-import { decimate } from './decimate';
+import { decimate, decimateArea } from './decimate';
 import { extent } from './samples';
 
 const times = (size: number, step = 0.001): Float64Array =>
@@ -73,4 +73,15 @@ test('a gap breaks the line, and NaN does not hide the neighbouring samples', ()
 
 test('an empty range is empty', () => {
   expect(decimate(new Float64Array(0), new Float64Array(0), 0, 1, 10).x.length).toBe(0);
+});
+
+test('the area between two curves keeps the extremes of both in each column', () => {
+  const time = Float64Array.from({ length: 8 }, (_unused, i) => i);
+  const low = Float64Array.from([0, -1, 0, 0, 0, 0, -3, 0]);
+  const high = Float64Array.from([1, 1, 2, 1, 1, 5, 1, 1]);
+  const area = decimateArea(time, low, high, 0, 7, 4);
+  expect([...area.x]).toEqual([0.5, 2.5, 4.5, 6.5]);
+  expect([...area.low]).toEqual([-1, 0, 0, -3]);
+  expect([...area.high]).toEqual([1, 2, 5, 1]);
+  expect([...decimateArea(time, low, high, 2, 3, 100).x]).toEqual([1, 2, 3]);
 });

@@ -72,9 +72,9 @@ function extremesOfColumns(
 const kFewPerColumn = 4; // samples; up to this number all are drawn
 
 /**
- * Points to draw for the samples in [from, to], and for one sample beyond each end, on this number of pixel columns.
- * All extremes of the range are among them. time: N, s, increasing. values: N. gap: s; the line is broken at longer
- * intervals. Takes O(N).
+ * Points to draw for the samples in [from, to], and for one sample beyond each end, on this number of pixel columns:
+ * all samples, or the extremes of each column if there are more than `few` samples in a column. time: N, s, increasing.
+ * values: N. gap: s; the line is broken at longer intervals. Takes O(N).
  */
 export function decimate(
   time: Float64Array,
@@ -83,10 +83,45 @@ export function decimate(
   to: number,
   columns: number,
   gap = Infinity,
+  few = kFewPerColumn,
 ): Shown {
   const first = Math.max(0, lowerBound(time, from) - 1);
   const end = Math.min(time.length, lowerBound(time, to) + 1);
   if (end <= first) return { x: new Float64Array(0), y: new Float64Array(0), dense: false };
-  if (end - first <= kFewPerColumn * columns) return everySample(time, values, first, end, gap);
+  if (end - first <= few * columns) return everySample(time, values, first, end, gap);
   return extremesOfColumns(time, values, first, end, columns, gap);
+}
+
+/** The area between two curves: at each x from `low` to `high`. */
+export interface ShownArea {
+  x: Float64Array;
+  low: Float64Array;
+  high: Float64Array;
+}
+
+/**
+ * The area between the curves `low` and `high` in [from, to], on this number of pixel columns. If there are more samples
+ * than columns, each column has the least of `low` and the largest of `high`.
+ */
+export function decimateArea(
+  time: Float64Array,
+  low: Float64Array,
+  high: Float64Array,
+  from: number,
+  to: number,
+  columns: number,
+): ShownArea {
+  const first = Math.max(0, lowerBound(time, from) - 1);
+  const end = Math.min(time.length, lowerBound(time, to) + 1);
+  const stride = Math.max(1, Math.floor((end - first) / columns));
+  const size = Math.max(0, Math.ceil((end - first) / stride));
+  const area = { x: new Float64Array(size), low: new Float64Array(size), high: new Float64Array(size) };
+  for (let k = 0; k < size; ++k) {
+    const start = first + k * stride;
+    const last = Math.min(end, start + stride);
+    area.x[k] = 0.5 * (time[start] + time[last - 1]);
+    area.low[k] = low.subarray(start, last).reduce((least, y) => Math.min(least, y));
+    area.high[k] = high.subarray(start, last).reduce((most, y) => Math.max(most, y));
+  }
+  return area;
 }

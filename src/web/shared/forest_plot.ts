@@ -7,6 +7,7 @@ import { clipped, forestRange, placeOf, type ForestRow, type Place } from './for
 import { svg } from './marks';
 import { inList } from './prose';
 import { plusMinus } from './rounding';
+import { saveButtons, standalone } from './save';
 
 const kRow = 34; // px
 const kAxis = 30; // px, for ticks and tick labels
@@ -114,6 +115,16 @@ export function clippedWords(rows: ForestRow[]): string {
   return cut.length === 1
     ? `The interval of ${cut[0]} is longer than drawn (arrow); the table has it.`
     : `The intervals of ${inList(cut)} are longer than drawn (arrows); the table has them.`;
+}
+
+/** The plot with buttons that save it, with the names of its rows. `name`: of the files. */
+export function savedForest(plot: HTMLElement, name: string, sentence: string, rows: ForestRow[]): HTMLElement {
+  const labels = rows.map((row, i): [string, number] => [row.label, (i + 0.5) * kRow]);
+  const text = (): string => {
+    const drawing = plot.querySelector<SVGElement>('.strip > svg');
+    return drawing ? standalone(drawing, sentence, labels) : '';
+  };
+  return el('div', { class: 'chart' }, plot, saveButtons(name, text));
 }
 
 /** Null if no estimate is known. range: of the axis. */

@@ -13,13 +13,13 @@ export interface Mark {
   points?: boolean;
 }
 
-export const kMeasured: Mark = { colour: 'measured', dash: [], width: 1, points: true };
+export const kMeasured: Mark = { colour: 'dot', dash: [], width: 1, points: true };
 export const kLinear: Mark = { colour: 'curve-2', dash: [7, 4], width: 1.75 };
 export const kNonlinear: Mark = { colour: 'curve-3', dash: [7, 3, 1.5, 3], width: 1.75 };
 export const kApparent: Mark = { colour: 'curve-2', dash: [7, 4], width: 1.75 };
 
 const kModels: Mark[] = [
-  { colour: 'curve-1', dash: [], width: 1.75 },
+  { colour: 'curve-1', dash: [], width: 2.5 },
   { colour: 'curve-4', dash: [10, 3], width: 1.75 },
   { colour: 'curve-5', dash: [2, 3], width: 1.75 },
   { colour: 'curve-6', dash: [10, 3, 2, 3], width: 1.75 },

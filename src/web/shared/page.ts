@@ -22,14 +22,8 @@ export interface Content {
 }
 
 function header({ kind, heading, facts }: Content): HTMLElement {
-  const words = el(
-    'div',
-    {},
-    el('p', { class: 'kind' }, kind),
-    el('h1', {}, heading),
-    el('p', { class: 'quiet' }, facts),
-  );
-  return el('header', {}, words, themeButton());
+  const title = el('div', { class: 'title-line' }, el('h1', {}, heading), el('p', { class: 'quiet' }, facts));
+  return el('header', {}, el('div', {}, el('p', { class: 'kind' }, kind), title), themeButton());
 }
 
 /** Table of contents, made from the headings in `parts`. */
@@ -53,7 +47,7 @@ function modelChooser({ models, recommended, shown }: Content, change: (index: n
           : ` (${fit.status.replace(/_/g, ' ')})`;
     return { value: String(i), label: fit.model + remark };
   });
-  const group = choice('Model shown', options, String(shown), (value) => change(Number(value)));
+  const group = choice('Law shown', options, String(shown), (value) => change(Number(value)));
   group.classList.add('models');
   return group;
 }
@@ -65,19 +59,27 @@ export function refill(element: HTMLElement, children: HTMLElement[]): void {
   window.scrollTo({ top });
 }
 
-/** Appends the model chooser and the sections to `main`. Returns `main` with the table of contents beside it. */
+/**
+ * Appends the sections to `main`, with the model chooser after the first one. Returns `main` with the table of contents
+ * beside it.
+ */
 export function reportColumns(content: Content, main: HTMLElement): HTMLElement {
-  const parts = el('div');
+  const [first, others] = [el('div'), el('div')];
   const navigation = el('div', { class: 'side' });
-  const changed = (): void => navigation.replaceChildren(contents(parts));
-  parts.append(...content.sections(changed));
-  changed();
+  const changed = (): void => navigation.replaceChildren(contents(main));
+  const fill = (): void => {
+    const [answer, ...rest] = content.sections(changed);
+    refill(first, [answer]);
+    refill(others, rest);
+  };
   const chooser = modelChooser(content, (index) => {
     content.show(index);
-    refill(parts, content.sections(changed));
+    fill();
     changed();
   });
-  append(main, [chooser, parts]);
+  append(main, [first, chooser, others]);
+  fill();
+  changed();
   return el('div', { class: 'columns' }, navigation, main);
 }
 

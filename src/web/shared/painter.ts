@@ -1,28 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Draws in the coordinates of the axes of a plot. */
 
-import type uPlot from 'uplot';
-
 import type { Mark } from './marks';
 import { colour } from './theme';
 
 type Numbers = ArrayLike<number>;
 
+/** The part of a canvas context that a Painter uses. */
+export type Context = Pick<
+  CanvasRenderingContext2D,
+  | 'arc'
+  | 'beginPath'
+  | 'clip'
+  | 'closePath'
+  | 'fill'
+  | 'fillRect'
+  | 'fillStyle'
+  | 'fillText'
+  | 'font'
+  | 'lineJoin'
+  | 'lineTo'
+  | 'lineWidth'
+  | 'moveTo'
+  | 'rect'
+  | 'restore'
+  | 'save'
+  | 'setLineDash'
+  | 'stroke'
+  | 'strokeStyle'
+  | 'textAlign'
+  | 'textBaseline'
+>;
+
+/** Where a Painter draws: the area inside the axes, and the positions of values. Lengths in units of the context. */
+export interface Frame {
+  ctx: Context;
+  box: { left: number; top: number; width: number; height: number };
+  /** Units of the context in a px. */
+  ratio: number;
+  x: (value: number) => number;
+  y: (value: number) => number;
+  /** Values at the left and right end of the axes, and at the bottom and the top. */
+  xRange: readonly [number, number];
+  yRange: readonly [number, number];
+}
+
 export class Painter {
-  private readonly ctx: CanvasRenderingContext2D;
+  private readonly ctx: Context;
   private readonly ratio: number;
+  private readonly x: (value: number) => number;
+  private readonly y: (value: number) => number;
 
-  constructor(private readonly plot: uPlot) {
-    this.ctx = plot.ctx;
-    this.ratio = window.devicePixelRatio;
+  constructor(private readonly frame: Frame) {
+    ({ ctx: this.ctx, ratio: this.ratio, x: this.x, y: this.y } = frame);
   }
-
-  private x = (value: number): number => this.plot.valToPos(value, 'x', true);
-  private y = (value: number): number => this.plot.valToPos(value, 'y', true);
 
   /** Calls `draw` with drawing restricted to the area inside the axes. */
   inside(draw: () => void): void {
-    const { left, top, width, height } = this.plot.bbox;
+    const { left, top, width, height } = this.frame.box;
     this.ctx.save();
     this.ctx.beginPath();
     this.ctx.rect(left, top, width, height);
@@ -87,6 +122,20 @@ export class Painter {
     this.stroke({ colour: name, dash: [], width: 1.25 });
   }
 
+  /** The area between two curves, broken at NaN. */
+  area(xs: Numbers, low: Numbers, high: Numbers, name: string): void {
+    this.ctx.fillStyle = colour(name);
+    this.ctx.beginPath();
+    for (let i = 0; i < xs.length; ++i) {
+      const first = i;
+      while (i < xs.length && Number.isFinite(low[i]) && Number.isFinite(high[i])) ++i;
+      for (let k = first; k < i; ++k) this.ctx[k === first ? 'moveTo' : 'lineTo'](this.x(xs[k]), this.y(low[k]));
+      for (let k = i - 1; k >= first; --k) this.ctx.lineTo(this.x(xs[k]), this.y(high[k]));
+      if (i > first) this.ctx.closePath();
+    }
+    this.ctx.fill();
+  }
+
   /** Bars from 0 to `heights`, horizontally from `left` to `right`. */
   bars(left: Numbers, right: Numbers, heights: Numbers, name: string): void {
     this.ctx.fillStyle = colour(name);
@@ -100,26 +149,24 @@ export class Painter {
 
   /** A band from `low` to `high` over the whole width. */
   band(low: number, high: number, name: string): void {
-    const { left, width } = this.plot.bbox;
+    const { left, width } = this.frame.box;
     this.ctx.fillStyle = colour(name);
     this.ctx.fillRect(left, this.y(high), width, this.y(low) - this.y(high));
   }
 
   /** A band from `from` to `to` over the whole height. */
   span(from: number, to: number, name: string): void {
-    const { top, height } = this.plot.bbox;
+    const { top, height } = this.frame.box;
     this.ctx.fillStyle = colour(name);
     this.ctx.fillRect(this.x(from), top, this.x(to) - this.x(from), height);
   }
 
   horizontal(y: number, name: string, dash: number[] = []): void {
-    const { min = 0, max = 1 } = this.plot.scales.x;
-    this.line([min, max], [y, y], { colour: name, dash, width: 1.25 });
+    this.line(this.frame.xRange, [y, y], { colour: name, dash, width: 1.25 });
   }
 
   vertical(x: number, name: string, dash: number[] = []): void {
-    const { min = 0, max = 1 } = this.plot.scales.y;
-    this.line([x, x], [min, max], { colour: name, dash, width: 1.25 });
+    this.line([x, x], this.frame.yRange, { colour: name, dash, width: 1.25 });
   }
 
   /** Short text at a point, shifted vertically by dy px. align: as of a canvas. */

@@ -4,6 +4,7 @@ import { expect, test } from 'vitest';
 import { inList, sentence, typeset } from './prose';
 
 test('sentences are typeset', () => {
+  expect(typeset('(3.00 ± 0.12)e-06')).toBe('(3.00 ± 0.12) × 10⁻⁶');
   expect(typeset('p 4.1e-26, 0.00126 kg m^2, 1e+06 and e2e')).toBe('p 4.1 × 10⁻²⁶, 0.00126 kg m², 1 × 10⁶ and e2e');
   expect(sentence('the fit failed')).toBe('The fit failed.');
   expect(sentence('')).toBe('');

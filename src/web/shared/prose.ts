@@ -26,7 +26,7 @@ export const wordWith = (change: (words: string) => string): void => void (worde
 export function typeset(words: string): string {
   return worded(words)
     .replace(
-      /(\d)e([-+]?)0*(\d+)\b/g,
+      /([\d)])e([-+]?)0*(\d+)\b/g,
       (_all, digit: string, sign: string, power: string) =>
         `${digit} × 10${raised(sign === '-' ? `-${power}` : power)}`,
     )

@@ -13,6 +13,10 @@ export interface Parameter {
   std_error: Num;
   interval95: [Num, Num] | null;
   systematic_std_error: Num;
+  /** Statistical and systematic error together. */
+  total_std_error?: Num;
+  /** Standard error by source: noise, rig, calibration, clock, inconstancy. */
+  error_budget?: Record<string, Num> | null;
   unit: string;
   fixed: boolean;
   at_bound: boolean;
@@ -104,6 +108,30 @@ export interface Constancy {
   reason?: string;
 }
 
+/** A quantity as one quotes it: value and total error as texts, rounded together; empty if there is none. */
+export interface SummaryQuantity {
+  name: string;
+  symbol: string;
+  value: string;
+  error: string;
+  unit: string;
+  source: string;
+}
+
+/** What a reader needs to know of a fit first, in words and rounded numbers. */
+export interface FitSummary {
+  verdict: string;
+  level: 'good' | 'caution' | 'bad';
+  /** Whether several recordings agree; empty for one. */
+  agreement: string;
+  parameters: SummaryQuantity[];
+  derived: SummaryQuantity[];
+  equation: string;
+  units: string;
+  textbook: string;
+  warnings: string[];
+}
+
 export type Status = 'converged' | 'not_converged' | 'not_identifiable' | 'failed';
 
 export interface Fit {
@@ -111,6 +139,8 @@ export interface Fit {
   status: Status;
   equation?: string | null;
   reason: string;
+  /** Missing in results of earlier versions. */
+  summary?: FitSummary;
   parameters: Record<string, Parameter>;
   derived: Record<string, Derived>;
   covariance: NamedMatrix;

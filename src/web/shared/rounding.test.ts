@@ -27,6 +27,18 @@ describe('value ± error', () => {
     expect(plusMinus(0, 2e-6)).toBe('(0.0 ± 2.0) × 10⁻⁶');
   });
 
+  test('a mantissa stays below ten when value or error is rounded up', () => {
+    expect(plusMinus(9.97e-6, 5e-7)).toBe('(1.00 ± 0.05) × 10⁻⁵');
+    expect(plusMinus(3e-6, 9.6e-6)).toBe('(0.3 ± 1.0) × 10⁻⁵');
+    expect(plusMinus(9.4e-6, 9.6e-6)).toBe('(0.9 ± 1.0) × 10⁻⁵');
+    expect(plusMinus(-9.6e-6, 2e-6)).toBe('(−9.6 ± 2.0) × 10⁻⁶');
+    expect(plusMinus(6e-8, 5e-7)).toBe('(1 ± 5) × 10⁻⁷');
+    expect(plusMinus(4e-8, 5e-7)).toBe('(0 ± 5) × 10⁻⁷');
+    expect(errorText(9.6e-6, null, null)).toBe('1.0 × 10⁻⁵');
+    expect(errorText(1e-5, 4e-6, 1e-7)).toBe('1.0 × 10⁻⁵');
+    expect(significant(9.9999e-6, 3)).toBe('1 × 10⁻⁵');
+  });
+
   test('large numbers do, too, if the error has no decimals', () => {
     expect(plusMinus(12345678, 120000)).toBe('(1.235 ± 0.012) × 10⁷');
   });
@@ -34,7 +46,7 @@ describe('value ± error', () => {
   test('values are rounded to tens and hundreds', () => {
     expect(plusMinus(0, 74.5)).toBe('0 ± 70');
     expect(plusMinus(123456, 1200)).toBe('123500 ± 1200');
-    expect(intervalText([-946, 946], 0, 74.5)).toBe('−950 to 950');
+    expect(intervalText([-946, 946], 74.5)).toBe('−950 to 950');
   });
 
   test('null is a dash, and without an error only the value is written', () => {
@@ -48,15 +60,22 @@ describe('value ± error', () => {
     expect(errorText(4.1e-5, 0.079, 2.8e-6)).toBe('0.00004');
     expect(errorText(1.2e-5, 0.079, 2.8e-6)).toBe('0.000012');
     expect(errorText(1.2e-5, 4.44e-5, 2e-7)).toBe('1.2 × 10⁻⁵');
+    expect(errorText(3.4e-8, 0.00111, 4.1e-6)).toBe('3.4 × 10⁻⁸');
     expect(errorText(null, 1, 1)).toBe('–');
   });
 });
 
 test('intervals have the decimals of the error, and missing ends a question mark', () => {
-  expect(intervalText([0.0789942, 0.0790051], 0.0789996, 2.8e-6)).toBe('0.0789942 to 0.0790051');
-  expect(intervalText([0, null], 0.5, 0.1)).toBe('0.00 to ?');
-  expect(intervalText([0, 0.00123], 0, null)).toBe('0 to 0.00123');
-  expect(intervalText(null, 1, 0.1)).toBe('–');
+  expect(intervalText([0.0789942, 0.0790051], 2.8e-6)).toBe('0.0789942 to 0.0790051');
+  expect(intervalText([0, null], 0.1)).toBe('0.00 to ?');
+  expect(intervalText([0, 0.00123], null)).toBe('0 to 0.00123');
+  expect(intervalText(null, 0.1)).toBe('–');
+});
+
+test('the ends of an interval share a power of ten', () => {
+  expect(intervalText([0, 9.6e-6], 4e-6)).toBe('(0.0 to 1.0) × 10⁻⁵');
+  expect(intervalText([8.1e-6, 1.02e-5], 5e-7)).toBe('(0.81 to 1.02) × 10⁻⁵');
+  expect(intervalText([null, 1.02e-5], 5e-7)).toBe('? to 1.02 × 10⁻⁵');
 });
 
 test('significant digits have no trailing zeros', () => {

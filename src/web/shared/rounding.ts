@@ -3,6 +3,7 @@
 
 const kMostDigits = 12; // of a value, even if its error is smaller
 const kLeastExponent = -4; // smaller numbers are written with a power of ten
+const kLeastOfSecond = -7; // the same for a second error of a value
 const kLargestExponent = 5; // so are larger numbers that are rounded to tens or more
 const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
@@ -21,12 +22,22 @@ function leadingDigits(x: number): { digits: number; exponent: number } {
   return { digits: Number(digits), exponent: Number(exponent) };
 }
 
-/** The rounded error and the power of ten of its last digit. Halves are rounded up. */
-function roundError(error: number): { last: number; error: number } {
+/** The rounded error, the power of ten of its first digit, and that of its last digit. Halves are rounded up. */
+function roundError(error: number): { first: number; last: number; error: number } {
   const { digits, exponent } = leadingDigits(error);
-  if (digits <= 354) return { last: exponent - 1, error: Math.floor((digits + 5) / 10) * 10 ** (exponent - 1) };
-  if (digits <= 949) return { last: exponent, error: Math.floor((digits + 50) / 100) * 10 ** exponent };
-  return { last: exponent, error: 10 ** (exponent + 1) };
+  if (digits <= 354)
+    return { first: exponent, last: exponent - 1, error: Math.floor((digits + 5) / 10) * 10 ** (exponent - 1) };
+  if (digits <= 949) return { first: exponent, last: exponent, error: Math.floor((digits + 50) / 100) * 10 ** exponent };
+  return { first: exponent + 1, last: exponent, error: 10 ** (exponent + 1) };
+}
+
+/** The power of ten of the first digit of x after rounding to the digit 10^last; -Infinity if x is rounded to zero. */
+function firstDigit(x: number, last: number): number {
+  if (x === 0) return -Infinity;
+  const { exponent } = leadingDigits(x);
+  const units = Math.round(Math.abs(x) / 10 ** last);
+  if (units === 0) return -Infinity;
+  return units >= 10 ** (Math.max(exponent, last - 1) - last + 1) ? Math.max(exponent, last - 1) + 1 : exponent;
 }
 
 function roundingTo(first: number, last: number): Rounding {
@@ -41,9 +52,8 @@ function roundingTo(first: number, last: number): Rounding {
  * digit (Particle Data Group, "Rounding").
  */
 export function pdgRounding(value: number, error: number): Rounding {
-  const ofError = leadingDigits(error).exponent;
-  const first = value === 0 ? ofError : Math.max(ofError, leadingDigits(value).exponent);
-  return roundingTo(first, roundError(error).last);
+  const { first, last } = roundError(error);
+  return roundingTo(Math.max(first, firstDigit(value, last)), last);
 }
 
 /** Rounding of x to this number of significant digits. */
@@ -96,7 +106,7 @@ export function plusMinus(value: number | null, error: number | null | undefined
   return rounding.exponent === 0 ? both : `(${both}) × ${powerOfTen(rounding.exponent)}`;
 }
 
-/** A second error of a value, rounded by itself and written with the power of ten of the value: "0.0028". */
+/** A second error of a value, rounded by itself: "0.0028". It has a power of ten if the value ± its first error has one. */
 export function errorText(
   error: number | null | undefined,
   value: number | null,
@@ -105,23 +115,28 @@ export function errorText(
   if (error === null || error === undefined || !Number.isFinite(error)) return '–';
   if (!(error > 0)) return '0';
   const own = pdgRounding(error, error);
-  const { exponent } = value !== null && first ? pdgRounding(value, first) : own;
-  return rounded(roundError(error).error, { exponent, decimals: Math.max(0, own.decimals + exponent - own.exponent) });
+  const near = own.exponent < 0 && own.exponent >= kLeastOfSecond && value !== null && first;
+  const plain = near ? pdgRounding(value, first).exponent === 0 : false;
+  const shown = plain ? { exponent: 0, decimals: own.decimals - own.exponent } : own;
+  return rounded(roundError(error).error, shown);
 }
 
-/** "0.0762 to 0.0818", with the decimals of the error; a missing end is "?". */
+/**
+ * "0.0762 to 0.0818", "(0.8 to 1.2) × 10⁻⁵", with the last digit of the error and one power of ten; a missing end is "?".
+ */
 export function intervalText(
   interval: readonly (number | null)[] | null | undefined,
-  value: number | null,
   error: number | null | undefined,
 ): string {
-  if (!interval || (interval[0] === null && interval[1] === null)) return '–';
-  const known = error !== null && error !== undefined && error > 0;
-  const text = (x: number | null): string => {
-    if (x === null) return '?';
-    return known ? rounded(x, pdgRounding(value ?? x, error)) : significant(x, 4);
-  };
-  return `${text(interval[0])} to ${text(interval[1])}`;
+  const ends = (interval ?? []).filter((end) => end !== null);
+  if (!interval || ends.length === 0) return '–';
+  if (error === null || error === undefined || !(error > 0))
+    return interval.map((end) => (end === null ? '?' : significant(end, 4))).join(' to ');
+  const { first, last } = roundError(error);
+  const rounding = roundingTo(Math.max(first, ...ends.map((end) => firstDigit(end, last))), last);
+  if (rounding.exponent === 0 || ends.length === 1)
+    return interval.map((end) => (end === null ? '?' : rounded(end, rounding))).join(' to ');
+  return `(${ends.map((end) => scaled(end, rounding)).join(' to ')}) × ${powerOfTen(rounding.exponent)}`;
 }
 
 /** A probability: "0.43", "2 × 10⁻⁹", "< 10⁻⁹⁹". */

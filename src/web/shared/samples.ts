@@ -24,6 +24,7 @@ export interface Motion {
 
 export interface ModelSamples {
   fitted: Float64Array | null;
+  fittedError: Float64Array | null;
   residual: Float64Array | null;
   linear: Float64Array | null;
   nonlinear: Float64Array | null;
@@ -47,6 +48,7 @@ function modelSamples(model: ModelSeries, measured: Float64Array): ModelSamples 
   const fitted = toArray(model.fitted, size);
   return {
     fitted,
+    fittedError: toArray(model.fitted_std_error, size),
     residual: toArray(model.residual, size) ?? differences(measured, fitted),
     linear: toArray(model.linear_closed_form, size),
     nonlinear: toArray(model.nonlinear_closed_form, size),

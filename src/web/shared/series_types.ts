@@ -20,6 +20,8 @@ export interface ProfileCurve {
 
 export interface ModelSeries {
   fitted: Num[] | null;
+  /** Standard errors of `fitted`. */
+  fitted_std_error?: Num[] | null;
   residual: Num[] | null;
   linear_closed_form: Num[] | null;
   nonlinear_closed_form: Num[] | null;

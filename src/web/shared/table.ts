@@ -11,29 +11,41 @@ export type Cell = Child | Child[];
 
 const children = (cell: Cell): Child[] => (Array.isArray(cell) ? cell : [cell]);
 
-/** A row. Its first cell is a heading. */
+/** The heading of a column as text. */
+const headText = ({ head }: Column): string =>
+  (typeof head === 'string' ? head : head instanceof Node ? head.textContent : null) ?? '';
+
+/** A row. Its first cell is a heading. The other cells have the heading of their column for a narrow page. */
 function row(cells: Cell[], columns: Column[]): HTMLTableRowElement {
-  const element = el('tr');
+  const element = el('tr', { role: 'row' });
   cells.forEach((cell, i) => {
     const style: Record<string, string> = columns[i].kind === 'number' ? { class: 'number' } : {};
-    element.append(i === 0 ? el('th', { scope: 'row' }, ...children(cell)) : el('td', style, ...children(cell)));
+    Object.assign(style, { role: 'cell', 'data-head': headText(columns[i]) });
+    element.append(i === 0 ? el('th', { scope: 'row', role: 'rowheader' }, ...children(cell)) : el('td', style, ...children(cell)));
   });
   return element;
 }
 
-/** A table with caption and headings, in a box that scrolls horizontally on a narrow page. */
+const kFewColumns = 2;
+
+/**
+ * A table with caption and headings. On a narrow page each row of a table of more than two columns becomes a list of its
+ * cells; a table of two columns, or of many rows in a fold, scrolls. The roles keep it a table for screen readers.
+ */
 export function table(caption: string, columns: Column[], rows: Cell[][], marked: number[] = []): HTMLElement {
-  const head = el('tr');
+  const head = el('tr', { role: 'row' });
   for (const column of columns) {
-    head.append(el('th', { scope: 'col', ...(column.kind === 'number' ? { class: 'number' } : {}) }, column.head));
+    head.append(el('th', { scope: 'col', role: 'columnheader', ...(column.kind === 'number' ? { class: 'number' } : {}) }, column.head));
   }
-  const body = el('tbody');
+  const body = el('tbody', { role: 'rowgroup' });
   rows.forEach((cells, i) => {
     const element = row(cells, columns);
     if (marked.includes(i)) element.classList.add('marked');
     body.append(element);
   });
-  return scrollBox(caption, el('table', {}, el('caption', {}, caption), el('thead', {}, head), body));
+  const kind: Record<string, string> = columns.length > kFewColumns ? { class: 'rows' } : {};
+  const heads = el('thead', { role: 'rowgroup' }, head);
+  return scrollBox(caption, el('table', { role: 'table', ...kind }, el('caption', {}, caption), heads, body));
 }
 
 /** A box that scrolls horizontally, also by keyboard. */

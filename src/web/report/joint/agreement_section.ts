@@ -3,7 +3,7 @@
 
 import { el, symbolElement, text } from '../../shared/dom';
 import { type ForestRow } from '../../shared/forest';
-import { clippedWords, forestPlot, forestSentence } from '../../shared/forest_plot';
+import { clippedWords, forestPlot, forestSentence, savedForest } from '../../shared/forest_plot';
 import { capital, sentence } from '../../shared/prose';
 import { fixed, intervalText, plusMinus, probabilityText, significant } from '../../shared/rounding';
 import { absent, figure, section } from '../../shared/section';
@@ -11,7 +11,7 @@ import { table, type Cell, type Column } from '../../shared/table';
 import { spacedUnit, symbolOf, unitText, wordsOf } from '../../shared/units';
 import { forestRows } from './forest_rows';
 import { shownJointFit, type JointReport } from './joint';
-import { disagreement } from './joint_headline';
+import { disagreement } from './disagreement';
 import type { Homogeneity, JointFit, SharedAgreement } from './joint_types';
 
 const number = 'number' as const;
@@ -26,7 +26,7 @@ function testText({ statistic, dof, p }: SharedAgreement): string {
 function scatterText({ random_effects: scatter, unit }: SharedAgreement): string {
   const [low, high] = (scatter.between_interval95 ?? [null, null]).map((end) => significant(end, 2));
   const between = `${significant(scatter.between_std_dev, 2)}${spacedUnit(unit)}`;
-  return `Between recordings a standard deviation of ${between} (95 %: ${low} to ${high}).`;
+  return `The standard deviation between recordings is ${between} (95 %: ${low} to ${high}).`;
 }
 
 function rowCells(row: ForestRow): Cell[] {
@@ -36,14 +36,14 @@ function rowCells(row: ForestRow): Cell[] {
     [label, odd],
     estimate === null ? 'not determined' : plusMinus(estimate, error),
     z === null ? '–' : fixed(z, 1),
-    intervalText(interval95, estimate, error),
+    intervalText(interval95, error),
   ];
 }
 
 function numbers(name: string, unit: string, rows: ForestRow[]): HTMLElement {
   const written = unitText(unit);
   const columns: Column[] = [
-    { head: 'Told by' },
+    { head: 'From' },
     { head: 'Value ± standard error', kind: number },
     { head: 'z', kind: number },
     { head: '95 % interval', kind: number },
@@ -60,7 +60,7 @@ function parameterPart(fit: JointFit, name: string): HTMLElement {
   const words = [testText(agreement), scatterText(agreement), clippedWords(rows)].filter((part) => part !== '');
   const part = el('div', { class: 'pair agree', 'data-forest': name });
   part.append(
-    plot ? figure(words.join(' '), plot) : absent('No recording determines this parameter on its own.'),
+    plot ? figure(words.join(' '), savedForest(plot, `${name}_by_recording`, told, rows)) : absent('No recording determines this parameter on its own.'),
     numbers(name, agreement.unit, rows),
   );
   const symbol = symbolOf(name, agreement.unit);
@@ -74,9 +74,9 @@ function amplitudeTable({ amplitude_dependence: list }: Homogeneity): HTMLElemen
   const columns: Column[] = [
     { head: 'Parameter' },
     { head: 'Slope on amplitude²', kind: number },
-    { head: 'From smallest to largest swings', kind: number },
+    { head: 'Change from smallest to largest swings', kind: number },
     { head: 'p of no slope', kind: number },
-    { head: 'p of agreement beside it', kind: number },
+    { head: 'p of agreement after that', kind: number },
   ];
   const rows = list.map((one): Cell[] => [
     wordsOf(one.parameter),
@@ -97,8 +97,9 @@ function summary(homogeneity: Homogeneity): HTMLElement {
 }
 
 const kMeaning =
-  'Each recording alone with its 95 % interval, the joint fit (the dashed line), and the mean of random effects, whose ' +
-  'error has the scatter between recordings in it. z: how many standard errors a recording is from the others.';
+  'The plots show each recording alone with its 95 % interval, the joint fit (dashed line), and the random-effects mean. ' +
+  'The error of that mean includes the scatter between recordings. z is the difference between a recording and the ' +
+  'others in standard errors.';
 
 export function agreementSection(report: JointReport): HTMLElement {
   const title = 'Do the recordings agree?';

@@ -6,7 +6,7 @@ import { clippedWords, forestSentence } from '../../shared/forest_plot';
 import type { Num, Parameter, Result, Series } from '../../shared/result_types';
 import { forestRows } from './forest_rows';
 import { isJoint, makeJointReport, ownNames, recordingFile, recordingView, showModel, wholeView } from './joint';
-import { disagreement, jointHeadline } from './joint_headline';
+import { disagreement } from './disagreement';
 import type { Homogeneity, JointFit, JointResult, JointRun, SharedAgreement } from './joint_types';
 import { beginning, elapsed, originWords, overlay } from './overlay';
 
@@ -119,40 +119,10 @@ describe('views of a joint fit', () => {
   });
 });
 
-describe('the verdict of a joint fit', () => {
-  const of = (fit: Partial<JointFit>, more: Partial<JointResult> = {}) => {
-    const made = jointFit(fit);
-    return jointHeadline(joint([made], more), made);
-  };
-
-  test('agreement is reported with the number of recordings', () => {
-    expect(of({})).toEqual({
-      level: 'good',
-      title: 'The 3 recordings agree: viscous describes them together',
-      sentence: 'The recordings agree on inertia.',
-    });
-    expect(of({ homogeneity: homogeneity({ agrees: null }) }).level).toBe('caution');
-  });
-
-  test('disagreement is reported before all problems except a refusal', () => {
-    const lack = { warnings: [{ code: 'lack_of_fit', message: 'm' }] };
-    const odd = homogeneity({ agrees: false, outliers: [2], verdict: 'they do not' });
-    expect(of({ homogeneity: odd }, lack)).toMatchObject({ level: 'bad', title: 'Recording 2 disagrees with the others' });
-    expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
-    const scattered = homogeneity({ agrees: false, verdict: 'they scatter' });
-    expect(of({ homogeneity: scattered })).toMatchObject({ level: 'caution', sentence: 'They scatter.' });
-    expect(of({ homogeneity: scattered, status: 'not_converged', reason: 'no; they scatter' })).toEqual({
-      level: 'bad',
-      title: 'Refused: the recordings are not of one pendulum; these numbers are not a result',
-      sentence: 'No; they scatter.',
-    });
-    expect(of({}, lack).title).toMatch(/^Lack of fit: viscous/);
-  });
-
-  test('a fit without a result is reported, with or without agreement', () => {
-    for (const status of ['failed', 'not_converged', 'not_identifiable'] as const)
-      expect(of({ status })).toMatchObject({ level: 'bad', sentence: 'A small step. The recordings agree on inertia.' });
-  });
+test('recordings that disagree are named', () => {
+  expect(disagreement(homogeneity({ outliers: [] }))).toBe(null);
+  expect(disagreement(homogeneity({ outliers: [2] }))).toBe('Recording 2 disagrees with the others');
+  expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
 });
 
 const rowsOf = (runs: [Num, Num][], more: Partial<JointFit> = {}): ForestRow[] =>

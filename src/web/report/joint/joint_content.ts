@@ -4,6 +4,8 @@
 import type { Content } from '../../shared/page';
 import { inList } from '../../shared/prose';
 import type { Command, Series } from '../../shared/result_types';
+import { parameterSection } from '../parameters';
+import { shownFit } from '../report';
 import { comparisonSection } from '../sections/comparison_section';
 import { correlationSection } from '../sections/correlation_section';
 import { profileSection } from '../sections/profile_section';
@@ -31,6 +33,7 @@ function sections(report: JointReport, changed: () => void): HTMLElement[] {
   const made = [
     jointVerdictSection(report),
     agreementSection(report),
+    parameterSection(shownFit(whole), 'What the recordings do not determine'),
     recordingsSection(report),
     overlaySection(report),
     oneRecordingPart(report, changed),

@@ -5,7 +5,15 @@ import { el } from '../../shared/dom';
 import { section } from '../../shared/section';
 import { facts } from '../../shared/table';
 import { shownFit } from '../report';
-import { calibrationPart, commandPart, dataRows, makingRows, rigTable } from '../sections/provenance_section';
+import {
+  calibrationPart,
+  commandPart,
+  dataRows,
+  kProvenanceTitle,
+  makingRows,
+  rigTable,
+  solverDetails,
+} from '../sections/provenance_section';
 import { recordingFile, type JointReport } from './joint';
 
 const heading = ({ result }: JointReport, k: number): HTMLElement =>
@@ -25,10 +33,11 @@ export function jointProvenanceSection(report: JointReport): HTMLElement {
   const { whole, recordings } = report;
   return section(
     'provenance',
-    'Where it comes from',
+    kProvenanceTitle,
     ...recordings.flatMap((one, k) => [heading(report, k), facts(dataRows(one.result.data, shownFit(one)))]),
     el('h3', {}, 'The joint fit'),
-    facts(makingRows(whole.result, shownFit(whole))),
+    facts(makingRows(whole.result)),
     ...commandPart(whole.command),
+    solverDetails(shownFit(whole)),
   );
 }

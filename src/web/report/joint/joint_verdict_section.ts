@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The verdict of a joint fit: its parameters, and whether the recordings agree. */
+/** The answer of a joint fit: whether the recordings agree, and the shared parameters. */
 
 import { banner, warnings } from '../../shared/banner';
-import { el, text } from '../../shared/dom';
 import { plusMinus } from '../../shared/rounding';
-import { section } from '../../shared/section';
-import { equationText } from '../equation';
-import { keyFigures, parameterPart } from '../parameters';
+import { answerPart, answerSection } from '../answer';
 import { shownFit } from '../report';
-import { recommendation } from '../sections/verdict_section';
+import { kNoFit } from '../sections/verdict_section';
 import { shownJointFit, type JointReport } from './joint';
-import { jointHeadline } from './joint_headline';
 import type { JointFit } from './joint_types';
+import { jointSwing } from './overlay_section';
 
 /** If the recordings scatter and no single one disagrees: the random-effects mean, whose error includes the scatter. */
 function remarkOf({ homogeneity, status }: JointFit): (name: string) => string | null {
@@ -25,19 +22,12 @@ function remarkOf({ homogeneity, status }: JointFit): (name: string) => string |
 
 export function jointVerdictSection(report: JointReport): HTMLElement {
   const joint = shownJointFit(report);
+  const { result } = report.whole;
   const fit = shownFit(report.whole);
-  const equation = fit && equationText(fit);
-  const usable = joint && fit && Object.keys(fit.parameters ?? {}).length > 0;
-  return section(
-    'verdict',
-    'Verdict',
-    banner(jointHeadline(report.result, joint)),
-    recommendation(report.whole),
-    usable && keyFigures(fit, remarkOf(joint)),
-    equation && el('p', { class: 'equation' }, equation),
-    usable
-      ? parameterPart(fit, 'What the recordings do not determine')
-      : fit && text('There are no parameters to show.', 'absent'),
-    warnings(report.whole.result),
-  );
+  const swing = jointSwing(report);
+  const parts =
+    joint && fit
+      ? answerPart({ fit, result, swing, remark: remarkOf(joint) })
+      : [banner(kNoFit), swing, warnings(result)];
+  return answerSection(parts);
 }

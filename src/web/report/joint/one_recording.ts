@@ -50,6 +50,6 @@ export function oneRecordingPart(report: JointReport, changed: () => void): HTML
     changed();
   });
   chooser.classList.add('recordings');
-  const words = 'The sections below show one recording with its own start and zero, the shared parameters by the joint fit.';
+  const words = 'The sections below show one recording: its own start and zero, and the shared parameters of the joint fit.';
   return el('div', {}, section('one', 'One recording in detail', text(words), chooser, name), sections);
 }

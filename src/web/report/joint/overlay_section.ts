@@ -11,6 +11,7 @@ import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
 import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, unitText } from '../../shared/units';
+import { swingHeight } from '../swing';
 import { TimePlot, type Trace } from '../time_plot';
 import { originWords, overlay, type Overlaid, type Overlayable, type OverlaidKind } from './overlay';
 
@@ -39,6 +40,12 @@ function viewOf(curves: Overlaid[], report: Overlayable): TimeView {
   if (frequency && (to - from) * frequency > kManySwings && start < end)
     view.set(Math.max(from, start - 1 / frequency), Math.min(to, start + kFirstSwings / frequency));
   return view;
+}
+
+/** A second axis in degrees for an angle or a rate. */
+function rightAxis(unit: string): { label: string; factor: number } | null {
+  const degrees = inDegrees(unit);
+  return degrees && { label: `[${degrees.unit}]`, factor: degrees.factor };
 }
 
 class OverlayPlots {
@@ -74,16 +81,17 @@ class OverlayPlots {
   }
 
   private mainPlot(xLabel: string): TimePlot {
-    const degrees = inDegrees(this.unit);
+    const right = rightAxis(this.unit);
     const kinds = (): string => (['measured', 'fitted'] as const).filter((kind) => this.on[kind]).join(' and ');
     const traces = this.curves.flatMap(({ measured, fitted }) => (fitted ? [measured, fitted] : [measured]));
     return new TimePlot(traces, this.view, {
+      name: 'recordings',
       sentence: () =>
         `${capital(this.names())}, ${kinds() || 'nothing of them'}: ${quantityOf(this.unit)} over time ${this.range()}.`,
       xLabel,
       yLabel: () => `${quantityOf(this.unit)} [${unitText(this.unit)}]`,
-      right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
-      aligned: degrees ? 'with right axis' : 'without',
+      right,
+      aligned: right ? 'with right axis' : 'without',
       height: 330,
     });
   }
@@ -95,6 +103,8 @@ class OverlayPlots {
         .map((trace) => `${trace.name} ${significant(rootMeanSquare(trace.values), 3)} ${unitText(this.unit)}`)
         .join(', ');
     return new TimePlot(residuals, this.view, {
+      name: 'residuals_of_recordings',
+      every: true,
       sentence: () =>
         `Residuals (measured minus fitted) of ${this.names()} over time ${this.range()}; root mean squares: ${size() || 'none'}.`,
       xLabel,
@@ -169,18 +179,18 @@ class OverlayPlots {
   }
 
   element(): HTMLElement {
-    const box = keyboardBox(`All ${this.kind}s, and their residuals`, this.view, this.main.chart.host);
+    const box = keyboardBox(`All ${this.kind}s, and their residuals`, this.view, this.main.chart.withButtons());
     if (this.below)
       box.append(
         el('div', { class: 'bar residual' }, el('h3', {}, 'Residuals: measured − fitted')),
-        this.below.chart.host,
+        this.below.chart.withButtons(),
       );
     const bars = [
       this.legend(),
       el('div', { class: 'bar' }, this.kinds() ?? el('span'), navigationButtons(this.view)),
     ];
-    const hint = 'Drag to zoom, double click to show all; Shift and drag, or a finger, moves.';
-    const first = !this.view.whole && ' The first swings are shown; Show all has the rest.';
+    const hint = 'Drag to zoom. Double-click to show all. Shift and drag, or drag with a finger, to move.';
+    const first = !this.view.whole && ' The plot begins with the first swings. Show all shows the rest.';
     const caption = el('span', { class: 'hint' }, hint, first);
     return el(
       'div',
@@ -191,11 +201,30 @@ class OverlayPlots {
   }
 }
 
+/** All recordings with the joint fit, small enough for the first screen; null without samples. */
+export function jointSwing(report: Overlayable): HTMLElement | null {
+  const { curves, unit } = overlay(report);
+  if (curves.length === 0) return null;
+  const traces = curves.flatMap(({ measured, fitted }) => (fitted ? [fitted, measured] : [measured]));
+  const numbers = inList(curves.map(({ k }) => k + 1));
+  const plot = new TimePlot(traces, viewOf(curves, report), {
+    name: 'swings',
+    sentence: () => `The swings of recordings ${numbers} with the joint fit: ${quantityOf(unit)} over time.`,
+    xLabel: originWords(curves.map(({ k }) => report.recordings[k])),
+    yLabel: () => `${quantityOf(unit)} [${unitText(unit)}]`,
+    right: rightAxis(unit),
+    height: swingHeight(),
+  });
+  const legend = el('ul', { class: 'legend', 'aria-label': 'Recordings' }, el('li', {}, 'recordings'));
+  for (const { measured, k } of curves) legend.append(el('li', {}, swatch(measured.mark), String(k + 1)));
+  return el('figure', { class: 'swing' }, legend, plot.chart.withButtons());
+}
+
 export function overlaySection(report: Overlayable, kind: OverlaidKind = 'recording'): HTMLElement {
   const title = `All ${kind}s over each other`;
   const { curves, unit, others } = overlay(report, kind);
   if (curves.length === 0)
     return section('overlay', title, absent('The samples are not part of this report, so there is nothing to draw.'));
-  const left = `Not drawn, for want of samples or for another unit: ${kind}${others.length === 1 ? '' : 's'} ${inList(others)}.`;
+  const left = `Not drawn, because samples are missing or have another unit: ${kind}${others.length === 1 ? '' : 's'} ${inList(others)}.`;
   return section('overlay', title, new OverlayPlots(curves, unit, kind, report).element(), others.length > 0 && absent(left));
 }

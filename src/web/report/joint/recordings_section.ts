@@ -74,12 +74,12 @@ function recordingTable(report: JointReport, fit: JointFit | null): HTMLElement 
 function ownCell(run: JointRun, name: string): Cell {
   const parameter = run.parameters?.[name];
   if (!parameter) return '–';
-  const { estimate, std_error: error, interval95: interval } = parameter;
+  const { std_error: error, interval95: interval } = parameter;
   const note = noteOf(parameter);
   const value = valueCell(parameter);
   return [
     ...(Array.isArray(value) ? value : [value]),
-    interval !== null && el('small', {}, `95 %: ${intervalText(interval, estimate, error)}`),
+    interval !== null && el('small', {}, `95 %: ${intervalText(interval, error)}`),
     note !== '' && el('small', { class: 'why' }, typeset(note)),
   ];
 }
@@ -97,7 +97,7 @@ function ownTable(fit: JointFit): HTMLElement | null {
     recordingName(k, outliers),
     ...names.map((name) => ownCell(run, name)),
   ]);
-  return table('Each recording’s own parameters, by the joint fit', columns, rows);
+  return table('Own parameters of each recording, from the joint fit', columns, rows);
 }
 
 export function recordingsSection(report: JointReport): HTMLElement {

@@ -65,7 +65,7 @@ export function closedFormSection(report: Report): HTMLElement {
   const title = 'Checked against closed forms';
   const checks = shownFit(report)?.closed_form ?? [];
   if (checks.length === 0) {
-    const why = report.result.reason ?? 'there is no fit that they could be compared with';
+    const why = report.result.reason ?? 'there is no fit to compare with';
     return section('closed-forms', 'Closed forms', absent(sentence(why)), alone(report.result.closed_forms));
   }
   const judged = checks.filter((check) => check.agrees !== null);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Comparison of the models. */
 
+import { warningList } from '../../shared/banner';
 import { el, text } from '../../shared/dom';
 import { modelMark, swatch } from '../../shared/marks';
 import { sentence, typeset } from '../../shared/prose';
@@ -9,7 +10,8 @@ import { fixed, probabilityText, significant } from '../../shared/rounding';
 import { section } from '../../shared/section';
 import { table, type Cell, type Column } from '../../shared/table';
 import { withUnit, unitText } from '../../shared/units';
-import { rankOf, type Report } from '../report';
+import { recommendation } from '../answer';
+import { otherWarnings, rankOf, shownFit, type Report } from '../report';
 
 const difference = (value: Num): string => (value === null ? '–' : fixed(value, 1));
 
@@ -24,7 +26,7 @@ function predictionText(prediction: Prediction | null): Cell {
 function modelRow(report: Report, row: ComparisonRow): Cell[] {
   const i = report.result.fits.findIndex((fit) => fit.model === row.model);
   const rms = withUnit(row, 'rms_residual');
-  const fits = row.lack_of_fit ? 'lack of fit' : row.is_compared ? 'yes' : 'not compared';
+  const fits = row.lack_of_fit ? 'no' : row.is_compared ? 'yes' : 'not compared';
   return [
     [i >= 0 && swatch(modelMark(rankOf(report.result, i))), row.model],
     row.is_compared ? String(row.parameters) : '–',
@@ -42,19 +44,19 @@ function modelTable(report: Report, comparison: Comparison): HTMLElement {
   const unit = withUnit(comparison.rows[0], 'rms_residual')?.unit ?? 'rad';
   const number = 'number' as const;
   const columns: Column[] = [
-    { head: 'Model' },
+    { head: 'Law' },
     { head: 'Parameters', kind: number },
     { head: `rms [${unitText(unit)}]`, kind: number },
     { head: 'ΔBIC', kind: number },
     { head: 'AICc weight', kind: number },
     { head: `Left-out samples [${unitText(unit)}]`, kind: number },
     { head: `Later motion [${unitText(unit)}]`, kind: number },
-    { head: 'Lag-1', kind: number },
-    { head: 'Only noise left' },
+    { head: 'Lag-1 correlation', kind: number },
+    { head: 'Residuals are noise' },
   ];
   const marked = comparison.rows.findIndex((row) => row.model === comparison.recommended);
   return table(
-    'Models, the recommended one marked',
+    'Laws; the recommended one is marked',
     columns,
     comparison.rows.map((row) => modelRow(report, row)),
     [marked],
@@ -68,7 +70,7 @@ function testTable({ tests }: Comparison): HTMLElement | null {
     { head: 'p', kind: 'number' },
     { head: 'Adds' },
     { head: 'Likelihood ratio', kind: 'number' },
-    { head: 'Its distribution if the simpler holds' },
+    { head: 'Distribution if the simpler law holds' },
   ];
   const rows = tests.map((test): Cell[] => [
     `${test.simpler} → ${test.richer}`,
@@ -77,7 +79,7 @@ function testTable({ tests }: Comparison): HTMLElement | null {
     significant(test.statistic, 4),
     test.null,
   ]);
-  return table('Likelihood-ratio tests of nested models', columns, rows);
+  return el('div', { class: 'tests' }, table('Likelihood-ratio tests of nested laws', columns, rows));
 }
 
 /** Why a model has no information criteria. */
@@ -87,22 +89,29 @@ const unjudged = ({ rows }: Comparison): HTMLElement[] =>
     .map((row) => text(sentence(`${row.model} is not compared: ${row.reason?.replace(/_/g, ' ')}`), 'quiet'));
 
 const kMeaning =
-  'Left-out samples: blocks predicted by a fit to the others. Later motion: the end predicted from the beginning. ' +
-  'In brackets the same in units of its expected size, about 1 for a model that holds.';
+  'Left-out samples: a fit to the other samples predicts them. Later motion: a fit to the beginning predicts the end. ' +
+  'Both columns are root mean square errors. In brackets: the same divided by the expected error; it is about 1 for a law that holds.';
+
+/** Warnings of the laws that are not shown. */
+function warningsOfOthers(report: Report): HTMLElement | null {
+  const others = otherWarnings(report.result, shownFit(report)?.model ?? null);
+  if (others.length === 0) return null;
+  const parts = others.map(({ model, warnings }) => el('div', {}, el('h4', {}, model), warningList(warnings)));
+  return el('div', { class: 'other-warnings' }, el('h3', {}, 'Warnings of the other laws'), ...parts);
+}
 
 /** Null if only one model was fitted. */
 export function comparisonSection(report: Report): HTMLElement | null {
   const { comparison } = report.result;
   if (!comparison) return null;
-  const verdict =
-    comparison.recommended === null ? 'No model is recommended' : `Recommended: ${comparison.recommended}`;
   return section(
     'comparison',
-    'Models compared',
-    el('p', {}, el('strong', {}, `${verdict}. `), sentence(comparison.reason)),
+    'Laws compared',
+    recommendation(comparison, comparison.recommended),
     modelTable(report, comparison),
     ...unjudged(comparison),
     text(kMeaning, 'quiet'),
+    warningsOfOthers(report),
     testTable(comparison),
     text(sentence(comparison.criterion_reason), 'quiet'),
   );

@@ -55,8 +55,9 @@ function windowChart(
   const y = used.map((w) => value(w)[0] as number);
   const error = used.map((w) => value(w)[1] ?? 0);
   const [low, high] = [y.map((v, i) => v - error[i]), y.map((v, i) => v + error[i])];
-  const words = `${wordsOf(name)} in ${used.length} windows, against the amplitude there, with standard errors; the line is the whole fit's`;
+  const words = `${wordsOf(name)} in ${used.length} windows against the amplitude, with standard errors; the dashed line is the fit of the whole recording`;
   const chart = new Chart({
+    name: `${name}_by_amplitude`,
     sentence: () =>
       `${words}. From ${significant(y[0], 4)} at ${significant(x[0], 3)} rad to ${significant(y[y.length - 1], 4)} at ${significant(x[x.length - 1], 3)} rad.`,
     xLabel: 'amplitude [rad]',
@@ -70,7 +71,7 @@ function windowChart(
     },
     height: 230,
   });
-  return figure(sentence(words), chart.host);
+  return figure(sentence(words), chart.withButtons());
 }
 
 /** Inertia and the fitted friction parameter against the amplitude. */

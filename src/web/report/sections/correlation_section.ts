@@ -5,6 +5,7 @@ import { fixed } from '../../shared/rounding';
 import { absent, section } from '../../shared/section';
 import { scrollBox } from '../../shared/table';
 import { symbolOf, wordsOf } from '../../shared/units';
+import { contourPart } from '../contours';
 import { shownFit, type Report } from '../report';
 
 const kDeepest = 55; // % of colour at a correlation of ±1; text on it stays readable
@@ -37,29 +38,50 @@ function matrixTable({ names, matrix }: NamedMatrix): HTMLElement {
   return scrollBox(caption, el('table', { class: 'matrix' }, el('caption', {}, caption), el('thead', {}, head), body));
 }
 
-/** The two parameters with the largest correlation, in words. */
-function strongest({ names, matrix }: NamedMatrix): string {
-  let [row, column, most] = [0, 0, 0];
+/** Rows of the two parameters with the largest correlation. */
+function strongest({ names, matrix }: NamedMatrix): [number, number] {
+  let [row, column, most] = [1, 0, 0];
   names.forEach((_name, i) =>
     names.forEach((_other, j) => {
       const size = Math.abs(matrix[i]?.[j] ?? 0);
       if (j < i && size > most) [row, column, most] = [i, j, size];
     }),
   );
-  const pair = `${wordsOf(names[row])} and ${wordsOf(names[column])}, ${fixed(matrix[row]?.[column] ?? 0, 2)}`;
-  const meaning = most > 0.95 ? ': the recording determines their combination far better than each of them' : '';
-  return `The strongest is that of ${pair}${meaning}.`;
+  return [row, column];
+}
+
+const kAlmostOne = 0.95;
+
+function strongestText({ names, matrix }: NamedMatrix, [row, column]: [number, number]): string {
+  const value = matrix[row]?.[column] ?? 0;
+  const meaning =
+    Math.abs(value) > kAlmostOne ? ' The recording determines their combination much better than each of them.' : '';
+  const pair = `${wordsOf(names[row])} and ${wordsOf(names[column])}`;
+  return `The strongest correlation is between ${pair}: ${fixed(value, 2)}.${meaning}`;
 }
 
 export function correlationSection(report: Report): HTMLElement {
-  const correlation = shownFit(report)?.correlation;
+  const fit = shownFit(report);
   const title = 'Correlations';
-  if (!correlation || correlation.names.length < 2) {
+  if (!fit || fit.correlation.names.length < 2) {
     return section(
       'correlation',
       title,
       absent('Fewer than two parameters have standard errors, so there are no correlations.'),
     );
   }
-  return section('correlation', title, el('p', {}, strongest(correlation)), matrixTable(correlation));
+  const { correlation } = fit;
+  const pair = strongest(correlation);
+  const [row, column] = pair;
+  return section(
+    'correlation',
+    title,
+    el('p', {}, strongestText(correlation, pair)),
+    el(
+      'div',
+      { class: 'pair' },
+      matrixTable(correlation),
+      contourPart(fit, correlation.names, [correlation.names[column], correlation.names[row]]),
+    ),
+  );
 }

@@ -104,6 +104,7 @@ class EnvelopePlot {
   ) {
     const spans = extent([turns.map((turn) => turn.time), ...curves.map((curve) => curve.time)]);
     this.chart = new Chart({
+      name: 'amplitudes',
       sentence: () =>
         `Amplitudes of ${turns.length} turning points from ${significant(turns[0].amplitude, 3)} to ` +
         `${significant(turns[turns.length - 1].amplitude, 3)} ${unitText(unit)} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
@@ -159,8 +160,8 @@ class EnvelopePlot {
       }),
     );
     const caption =
-      'Viscous friction alone is a straight line on the logarithmic axis, dry friction alone on the linear one.';
-    return figure(caption, this.chart.host, bar);
+      'Viscous friction alone gives a straight line on the logarithmic axis, dry friction alone on the linear axis.';
+    return figure(caption, this.chart.withButtons(), bar);
   }
 }
 
@@ -173,7 +174,7 @@ export function envelopeSection(report: Report): HTMLElement {
   const title = 'Amplitudes';
   if (!series) return section('envelope', title, absent('The samples are not part of this report.'), shapes(forms));
   if (turns.length < 2) {
-    const why = 'No turning points could be located: the samples are too few a swing, or nothing swings.';
+    const why = 'No turning points were found. The recording has too few samples in a period, or nothing swings.';
     return section('envelope', title, absent(why), shapes(forms));
   }
   const plot = new EnvelopePlot(turns, curvesOf(report, fit, turns), series.unit);

@@ -5,14 +5,15 @@ import { choice, details, el, text, toggle } from '../../shared/dom';
 import { kMeasured, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
 import type { Painter } from '../../shared/painter';
+import { capital } from '../../shared/prose';
 import type { Fit } from '../../shared/result_types';
 import { fixed, significant } from '../../shared/rounding';
-import { lowerBound, medianInterval, rootMeanSquare, type Samples } from '../../shared/samples';
+import { extent, lowerBound, rootMeanSquare, type Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
-import { TimeView } from '../../shared/time_view';
+import type { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, unitText, withUnit } from '../../shared/units';
-import { rankOf, shownFit, type Report } from '../report';
+import { rankOf, sharedView, shownFit, type Report } from '../report';
 import { TimePlot, type Trace } from '../time_plot';
 
 /** A unit for residuals, and its label. */
@@ -37,11 +38,12 @@ export function fittedTrace(report: Report, samples: Samples, fit: Fit, i: numbe
     values: fitted,
     mark: modelMark(rankOf(report.result, i)),
     shown: i === report.shown,
+    errors: samples.models.get(fit.model)?.fittedError,
   };
   const perPeriod = report.result.data.sampling?.samples_per_period ?? Infinity;
   if (perPeriod === null || perPeriod >= kFewPerPeriod) return trace;
   const motion = samples.motions.get(fit.model);
-  return motion ? { ...trace, time: motion.time, values: motion.reading } : trace;
+  return motion ? { ...trace, time: motion.time, values: motion.reading, errors: null } : trace;
 }
 
 function residualUnits(report: Report, samples: Samples): ResidualUnit[] {
@@ -94,7 +96,19 @@ function sampleTable(samples: Samples, traces: Trace[], view: TimeView): HTMLEle
   return table(`Every ${stride === 1 ? '' : `${stride}th `}sample of the range shown`, columns, rows);
 }
 
-function makeTraces(report: Report, samples: Samples): { fitted: Trace[]; residual: Trace[] } {
+const kVisible = 1 / 300; // of the height of a plot: a pixel
+const kNormal95 = 1.96;
+
+/** What the band around the fitted curve is; empty if none can be seen. */
+export function bandWords(traces: Trace[]): string {
+  const range = extent(traces.filter((trace) => trace.shown).map((trace) => trace.values));
+  const widest = Math.max(0, ...traces.map(({ shown, errors }) => (shown && errors ? (extent([errors])?.[1] ?? 0) : 0)));
+  return range && 2 * kNormal95 * widest > kVisible * (range[1] - range[0])
+    ? 'band: 95 % confidence interval of the curve'
+    : '';
+}
+
+export function makeTraces(report: Report, samples: Samples): { fitted: Trace[]; residual: Trace[] } {
   const fitted: Trace[] = [
     { name: 'measured', time: samples.time, values: samples.measured, mark: kMeasured, shown: true },
   ];
@@ -126,16 +140,16 @@ class FitPlots {
   private unit: ResidualUnit;
   private readonly main: TimePlot;
   private readonly below: TimePlot | null;
+  /** Noise of a sample in the unit of the readings. */
+  private readonly sigma: number | null;
   private readonly line = el('p', { class: 'readout', 'aria-hidden': 'true' }, '\u00a0');
 
   constructor(
     report: Report,
     private readonly samples: Samples,
   ) {
-    const { time } = samples;
-    this.view = new TimeView(time[0], time[time.length - 1], 8 * medianInterval(time));
-    if (report.range) this.view.set(...report.range);
-    this.view.onChange(() => (report.range = [...this.view.current]));
+    this.view = sharedView(report, samples);
+    this.sigma = withUnit(shownFit(report)?.noise, 'sigma')?.value ?? null;
     this.traces = makeTraces(report, samples);
     this.units = residualUnits(report, samples);
     this.unit = this.units[0];
@@ -150,6 +164,7 @@ class FitPlots {
   private mainPlot(): TimePlot {
     const degrees = inDegrees(this.samples.unit);
     return new TimePlot(this.traces.fitted, this.view, {
+      name: 'fit',
       sentence: () =>
         `${names(this.traces.fitted)}: ${quantityOf(this.samples.unit)} over time ${inWords(this.view.current)}.`,
       xLabel: '',
@@ -170,6 +185,8 @@ class FitPlots {
     };
     const wide = inDegrees(this.samples.unit) !== null;
     return new TimePlot(this.traces.residual, this.view, {
+      name: 'residuals',
+      every: true,
       sentence: () =>
         `Residuals (measured minus fitted) of ${names(this.traces.residual)} over time ${inWords(this.view.current)}${size()}.`,
       xLabel: 'time [s]',
@@ -178,9 +195,18 @@ class FitPlots {
       height: 190,
       symmetric: true,
       factor: () => this.unit.factor,
-      behind: (painter: Painter) => painter.horizontal(0, 'rule'),
+      behind: (painter: Painter) => this.noise((reach) => painter.band(-reach, reach, 'band')),
+      inFront: (painter: Painter) => {
+        this.noise((reach) => [-reach, reach].forEach((end) => painter.horizontal(end, 'ink', [4, 3])));
+        painter.horizontal(0, 'rule');
+      },
       onCursor: this.onCursor,
     });
+  }
+
+  /** Calls `draw` with the noise σ in the unit of the residuals, if it is known. */
+  private noise(draw: (reach: number) => void): void {
+    if (this.sigma !== null) draw(this.unit.factor * this.sigma);
   }
 
   /** Shows or hides a model and its residuals. */
@@ -197,7 +223,7 @@ class FitPlots {
 
   element(): HTMLElement {
     const bar = el('div', { class: 'bar' }, legend(this.traces.fitted, this.change), navigationButtons(this.view));
-    const box = keyboardBox('Measured and fitted, and residuals', this.view, this.main.chart.host);
+    const box = keyboardBox('Measured and fitted, and residuals', this.view, this.main.chart.withButtons());
     if (this.below)
       box.append(
         el(
@@ -206,13 +232,18 @@ class FitPlots {
           el('h3', {}, 'Residuals: measured − fitted'),
           choice('in', this.units, this.unit.value, this.setUnit),
         ),
-        this.below.chart.host,
+        this.below.chart.withButtons(),
       );
     box.append(this.line);
-    const hint = 'Drag to zoom, double click to show all; Shift and drag, or a finger, moves.';
-    const dense = 'Where samples lie closer than pixels, each column shows the least and the largest.';
-    const many = this.samples.time.length > 2000 && ` ${dense}`;
-    const caption = el('span', {}, el('span', { class: 'hint' }, hint), many);
+    const hint = 'Drag to zoom. Double-click to show all. Shift and drag, or drag with a finger, to move.';
+    const many = this.samples.time.length > 2000 && 'If a column of pixels has many samples, its smallest and largest are drawn.';
+    const band = bandWords(this.traces.fitted);
+    const words = [
+      this.sigma !== null && `Band of the residuals: ±σ, the noise of a sample, σ = ${significant(this.sigma, 3)} ${unitText(this.samples.unit)}.`,
+      band !== '' && `${capital(band)}.`,
+      many,
+    ].flatMap((part) => (part ? [` ${part}`] : []));
+    const caption = el('span', {}, el('span', { class: 'hint' }, hint), ...words);
     return el(
       'div',
       {},

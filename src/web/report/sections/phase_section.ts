@@ -43,6 +43,7 @@ export function phaseSection(report: Report): HTMLElement {
   const unit = unitText(start?.unit ?? 'rad');
   const most = (range: readonly [number, number]): number => Math.max(-range[0], range[1]);
   const chart = new Chart({
+    name: 'phase_portrait',
     sentence: () =>
       `Rate against angle of the fitted motion: a spiral from angles up to ${significant(most(angles), 3)} ${unit} ` +
       `and rates up to ${significant(most(rates), 3)} ${unit}/s towards rest at the origin.`,
@@ -57,7 +58,7 @@ export function phaseSection(report: Report): HTMLElement {
     },
     height: 340,
   });
-  const element = section('phase', 'Phase portrait', figure(`Fitted ${fit.model}, angle against rate.`, chart.host));
+  const element = section('phase', 'Phase portrait', figure(`Fitted ${fit.model}, angle against rate.`, chart.withButtons()));
   element.classList.add('half');
   return element;
 }

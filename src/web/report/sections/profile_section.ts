@@ -16,9 +16,10 @@ function profileChart(name: string, curve: ProfileCurve, parameter: Parameter | 
   const unit = parameter ? unitText(parameter.unit) : '';
   const label = `${wordsOf(name)}${unit ? ` [${unit}]` : ''}`;
   const top = Math.min(Math.max(...curve.statistic), 3 * curve.threshold);
-  const ends = intervalText(parameter?.interval95, parameter?.estimate ?? null, parameter?.std_error);
+  const ends = intervalText(parameter?.interval95, parameter?.std_error);
   const sentence = `Profile of the ${wordsOf(name)}; 95 % interval ${ends} ${unit}.`;
   const chart = new Chart({
+    name: `profile_${name}`,
     sentence: () => sentence,
     xLabel: label,
     yLabel: () => '−2 log likelihood ratio',
@@ -38,7 +39,7 @@ function profileChart(name: string, curve: ProfileCurve, parameter: Parameter | 
       [{ head: label }, { head: '−2 log likelihood ratio', kind: 'number' }],
       curve.value.map((value, i) => [significant(value, 6), significant(curve.statistic[i], 3)]),
     );
-  return el('div', {}, figure(sentence, chart.host), details('Points as a table', rows));
+  return el('div', {}, figure(sentence, chart.withButtons()), details('Points as a table', rows));
 }
 
 /** Null if no profile was computed. */
@@ -50,6 +51,6 @@ export function profileSection(report: Report): HTMLElement | null {
   const grid = el('div', { class: 'pair' });
   for (const [name, curve] of entries)
     grid.append(profileChart(name, curve, fit.parameters[name], rankOf(report.result, report.shown)));
-  const words = 'The dashed line is where 95 % end; a curve that is no parabola has no symmetric error.';
+  const words = 'The dashed line is the limit of the 95 % interval. If a curve is not a parabola, the error is not symmetric.';
   return section('profiles', 'Profile likelihoods', el('p', {}, words), grid);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Rig, calibration, source of the recording, and how the numbers were computed. */
 
-import { el, text } from '../../shared/dom';
-import { typeset } from '../../shared/prose';
+import { details, el, text } from '../../shared/dom';
+import { sentence, typeset } from '../../shared/prose';
 import type { Command, Data, Fit, Loose, Result, Sampling } from '../../shared/result_types';
 import { plusMinus, significant } from '../../shared/rounding';
 import { absent, section } from '../../shared/section';
@@ -11,7 +11,7 @@ import { rigWords, spacedUnit, unitText, withUnit } from '../../shared/units';
 import { shownFit, type Report } from '../report';
 
 export function rigTable({ rig }: Pick<Result, 'rig'>): HTMLElement {
-  if (!rig) return text('No rig file: torques and inertia are in units of the gravity torque G.');
+  if (!rig) return text('No rig was given: torques and inertia are in units of the gravity torque G.');
   const rows = Object.entries(rig).map(([name, given]): Cell[] => {
     const [words, unit] = rigWords(name);
     const { value, std_dev: error } = typeof given === 'number' ? { value: given, std_dev: undefined } : given;
@@ -42,7 +42,7 @@ export function curveText(calibration: Loose): string | null {
 }
 
 export function calibrationPart({ calibration }: Pick<Result, 'calibration'>): HTMLElement {
-  if (!calibration) return text('No calibration was applied: the readings are in the file’s unit.');
+  if (!calibration) return text('No calibration was applied. The readings have the unit of the file.');
   const curve = curveText(calibration);
   const rest = Object.entries(calibration).filter(([, value]) => value !== null);
   return el(
@@ -57,15 +57,20 @@ export function rigSection({ result }: Report): HTMLElement {
   return section('rig', 'Calibration and rig', calibrationPart(result), rigTable(result));
 }
 
-function samplingText(sampling: Sampling | null): string {
+const kLeastJitter = 1e-6; // of an interval; less is rounding of the time stamps
+
+/** "200 Hz, no gaps, 264 samples in a period" */
+export function samplingText(sampling: Sampling | null): string {
   if (!sampling) return '–';
   const parts = [`${significant(sampling.rate_hz, 5)} Hz`];
-  if (sampling.jitter_s) parts.push(`scatter ${significant(1e3 * sampling.jitter_s, 2)} ms`);
+  const { jitter_s: jitter } = sampling;
+  if (jitter !== null && jitter * sampling.rate_hz > kLeastJitter)
+    parts.push(`intervals vary by ${significant(1e3 * jitter, 2)} ms`);
   parts.push(
-    sampling.gaps === 0 ? 'no gaps' : `${sampling.gaps} gaps of up to ${significant(sampling.longest_gap_s, 3)} s`,
+    sampling.gaps === 0 ? 'no gaps' : `${sampling.gaps} ${sampling.gaps === 1 ? 'gap' : 'gaps'} of up to ${significant(sampling.longest_gap_s, 3)} s`,
   );
-  if (sampling.samples_per_period) parts.push(`${significant(sampling.samples_per_period, 3)} samples a swing`);
-  if (sampling.saturated_samples) parts.push(`${sampling.saturated_samples} at an end of the sensor’s range`);
+  if (sampling.samples_per_period) parts.push(`${significant(sampling.samples_per_period, 3)} samples in a period`);
+  if (sampling.saturated_samples) parts.push(`${sampling.saturated_samples} samples at an end of the sensor’s range`);
   return parts.join(', ');
 }
 
@@ -84,7 +89,7 @@ function windowText({ window_s: [from, to], window_reason: why, used_samples: us
 function clockText({ clock_scale: scale, clock_scale_std_dev: error }: Data): string {
   return scale === 1 && !error
     ? 'true seconds'
-    : `${plusMinus(scale, error)} true seconds in a second of the file’s clock`;
+    : `a second of the file’s clock is ${plusMinus(scale, error)} true seconds`;
 }
 
 /** Source of the samples of a recording. */
@@ -101,17 +106,21 @@ export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
   ];
 }
 
-/** Program and command that made the report. */
-export function makingRows({ tool, schema_version: schema }: Result, fit: Fit | null): [string, Cell][] {
-  return [
-    [
-      'solver',
-      fit
-        ? `${fit.solver.iterations} iterations, ${fit.solver.evaluations} evaluations; ${fit.solver.termination}`
-        : '–',
-    ],
-    ['made by', `${tool.name} ${tool.version}, result schema ${schema}`],
+/** Program that made the report. */
+export const makingRows = ({ tool, schema_version: schema }: Pick<Result, 'tool' | 'schema_version'>): [string, Cell][] => [
+  ['made by', `${tool.name} ${tool.version}, result schema ${schema}`],
+];
+
+/** How the search for the parameters ended, for those who develop the program; null without a fit. */
+export function solverDetails(fit: Pick<Fit, 'solver' | 'reason'> | null): HTMLElement | null {
+  if (!fit) return null;
+  const { iterations, evaluations, termination } = fit.solver;
+  const rows: [string, Cell][] = [
+    ['end of the search', sentence(fit.reason)],
+    ['steps', `${iterations} iterations, ${evaluations} evaluations of the motion`],
+    ['message of the solver', termination],
   ];
+  return details('Facts on the numerical search', () => facts(rows));
 }
 
 export function commandPart(command: Command | null): HTMLElement[] {
@@ -121,8 +130,10 @@ export function commandPart(command: Command | null): HTMLElement[] {
   return [el('h3', {}, 'Command'), words];
 }
 
+export const kProvenanceTitle = 'Data and program';
+
 export function provenanceSection(report: Report): HTMLElement {
   const fit = shownFit(report);
-  const rows = [...dataRows(report.result.data, fit), ...makingRows(report.result, fit)];
-  return section('provenance', 'Where it comes from', facts(rows), ...commandPart(report.command));
+  const rows = [...dataRows(report.result.data, fit), ...makingRows(report.result)];
+  return section('provenance', kProvenanceTitle, facts(rows), ...commandPart(report.command), solverDetails(fit));
 }

@@ -22,8 +22,9 @@ function autocorrelationPart(residual: Float64Array): HTMLElement {
   const lags = r.map((_value, k) => k);
   const beyond = r.slice(1).filter((value) => Math.abs(value) > limit).length;
   const low = Math.min(-2 * limit, ...r) * 1.15;
-  const share = `${beyond} of ${r.length - 1} lags lie beyond ±${significant(limit, 2)}, where 95 % of those of white noise lie within`;
+  const share = `${beyond} of ${r.length - 1} lags are outside ±${significant(limit, 2)}; white noise has 95 % inside`;
   const chart = new Chart({
+    name: 'autocorrelation',
     sentence: () => `Autocorrelation of the residuals: ${share}.`,
     xLabel: 'lag [samples]',
     yLabel: () => 'autocorrelation',
@@ -47,7 +48,7 @@ function autocorrelationPart(residual: Float64Array): HTMLElement {
       [{ head: 'Lag' }, { head: 'r', kind: 'number' }],
       r.slice(1, 21).map((value, i) => [String(i + 1), significant(value, 3)]),
     );
-  return el('div', {}, figure(`Autocorrelation: ${share}.`, chart.host), details('First lags as a table', rows));
+  return el('div', {}, figure(`Autocorrelation: ${share}.`, chart.withButtons()), details('First lags as a table', rows));
 }
 
 function normalCurve(bars: Histogram): { x: number[]; y: number[] } {
@@ -64,8 +65,9 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
   const curve = normalCurve(bars);
   const sentence =
     `Residuals from ${significant(left[0], 2)} to ${significant(right[right.length - 1], 2)} ${unitText(unit)}, ` +
-    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, beside the normal curve of that width`;
+    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, with the normal curve of that width`;
   const chart = new Chart({
+    name: 'histogram',
     sentence: () => `Histogram. ${sentence}.`,
     xLabel: `residual [${unitText(unit)}]`,
     yLabel: () => `density [1/${unitText(unit)}]`,
@@ -83,7 +85,7 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
       [{ head: `From [${unitText(unit)}]` }, { head: 'To', kind: 'number' }, { head: 'Samples', kind: 'number' }],
       bars.counts.map((count, i) => [significant(left[i], 3), significant(right[i], 3), String(count)]),
     );
-  return el('div', {}, figure(`${sentence} (dashed).`, chart.host), details('Bars as a table', rows));
+  return el('div', {}, figure(`${sentence} (dashed).`, chart.withButtons()), details('Bars as a table', rows));
 }
 
 /** Root mean square and tests of the residuals. */

@@ -85,7 +85,7 @@ function slowTraces(report: Report, samples: Samples, fit: Fit): Slow | null {
   ];
   const words =
     `The pendulum swings at f = ${significant(frequency, 4)} Hz and was sampled at fₛ = ${significant(rate, 4)} Hz. ` +
-    `The samples lie just as well on a swing of |f − ${cycles === 1 ? '' : `${cycles} `}fₛ| = ${significant(apparent, 4)} Hz, which is what a plot of them seems to show.`;
+    `The samples also lie on a slower swing of |f − ${cycles === 1 ? '' : `${cycles} `}fₛ| = ${significant(apparent, 4)} Hz. A plot of the samples seems to show that swing.`;
   return { traces, words };
 }
 
@@ -127,6 +127,7 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
   const view = firstView(traces[0].time, report);
   const degrees = inDegrees(samples.unit);
   const plot = new TimePlot(traces, view, {
+    name: 'textbook',
     sentence: () => sentence,
     xLabel: words,
     yLabel: () => `${quantityOf(samples.unit)} [${unitText(samples.unit)}]`,
@@ -139,9 +140,9 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
     legend.append(toggle([swatch(trace.mark), trace.name], true, (on) => plot.setShown(trace, on)));
   }
   const bar = el('div', { class: 'bar' }, legend, navigationButtons(view));
-  const rest = ' The first swings are shown; Show all has the rest.';
+  const rest = ' The plot begins with the first swings. Show all shows the rest.';
   const caption = el('span', {}, sentence, !view.whole && el('span', { class: 'hint' }, rest));
-  return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.host), bar);
+  return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.withButtons()), bar);
 }
 
 function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | null {
@@ -156,7 +157,7 @@ function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | nul
       samples,
       fit,
       slow.traces,
-      'Samples, the swing that was fitted to them, and the slower one that they seem to show.',
+      'The plot shows the samples, the fitted swing, and the slower swing that the samples seem to show.',
     ),
   );
 }
@@ -169,19 +170,19 @@ export function validationSection(report: Report): HTMLElement {
     return section(
       'validation',
       title,
-      absent('Without a fit and its samples there is nothing to lay over each other.'),
+      absent('Without a fit and its samples there is nothing to compare.'),
     );
   if (isAliased(report)) {
     const part = slowPart(report, samples, fit);
     const why =
-      'The swing is sampled less than twice a period; for this model the motion between the samples cannot be drawn here.';
+      'The recording has fewer than two samples in a period. The motion of this law between the samples cannot be drawn.';
     return section('validation', 'Sampled too slowly: true and apparent swing', part ?? absent(why));
   }
   const curves = closedFormTraces(report, samples, fit);
   if (curves.length < 2)
-    return section('validation', title, absent('There are no closed forms of this recording to lay over it.'));
+    return section('validation', title, absent('This recording has no closed forms to compare with.'));
   const sentence =
-    'Measured motion, the linear closed form, the nonlinear equation with the same textbook numbers, and the fit, from the release on.'.replace(
+    'The plot shows the readings, the linear closed form, the nonlinear equation with the same textbook numbers, and the fit, from the release on.'.replace(
       'release',
       fit.parameters.release_time ? 'release' : 'start of the window',
     );

@@ -1,36 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The verdict: the parameters, and whether they are a result. */
+/** The answer: verdict, parameters with total errors, and the swing with the fit. */
 
 import { banner, warnings } from '../../shared/banner';
-import { el, text } from '../../shared/dom';
-import { sentence } from '../../shared/prose';
-import { section } from '../../shared/section';
-import { equationText } from '../equation';
-import { headline } from '../headline';
-import { keyFigures, parameterPart } from '../parameters';
+import { answerPart, answerSection } from '../answer';
 import { shownFit, type Report } from '../report';
+import { swingFigure } from '../swing';
 
-/** The recommended model and the reason; null if only one model was fitted. */
-export function recommendation({ result }: Report): HTMLElement | null {
-  const { comparison } = result;
-  if (!comparison) return null;
-  const label =
-    comparison.recommended === null ? 'No model is recommended.' : `Recommended model: ${comparison.recommended}.`;
-  return el('p', { class: 'recommendation' }, el('strong', {}, label), ` ${sentence(comparison.reason ?? '')}`);
-}
+export const kNoFit = {
+  level: 'caution',
+  title: 'Nothing was fitted',
+  sentence: 'Only the formulas of the linear pendulum were asked for.',
+} as const;
 
 export function verdictSection(report: Report): HTMLElement {
   const fit = shownFit(report);
-  const equation = fit && equationText(fit);
-  const usable = fit && Object.keys(fit.parameters ?? {}).length > 0;
-  return section(
-    'verdict',
-    'Verdict',
-    banner(headline(report.result, fit)),
-    recommendation(report),
-    usable && keyFigures(fit),
-    equation && el('p', { class: 'equation' }, equation),
-    warnings(report.result),
-    usable ? parameterPart(fit) : fit && text('There are no parameters to show.', 'absent'),
-  );
+  const swing = swingFigure(report);
+  const parts = fit
+    ? answerPart({ fit, result: report.result, swing })
+    : [banner(kNoFit), swing, warnings(report.result)];
+  return answerSection(parts);
 }
