@@ -60,6 +60,7 @@ class SlidersSection {
     const { unit } = samples;
     const degrees = inDegrees(unit);
     this.plot = new TimePlot([measured, this.simulated], this.view, {
+      name: 'simulated',
       sentence: () => `Measured and simulated ${quantityOf(unit)}; ${this.rmsWords()}.`,
       xLabel: 'time [s]',
       yLabel: () => `${quantityOf(unit)} [${unitText(degrees?.unit ?? unit)}]`,
