@@ -153,7 +153,7 @@ test('the recording and all choices survive a reload and the way back from a fit
 
 test('a recording that is too large for the memory of the browser is shown, and the page says so', async (t) => {
   const page = await openView(t, service, '/');
-  const content = `${'# a comment of forty characters, again and\n'.repeat(100_000)}${renamed('t,reading')}`;
+  const content = `${renamed('t,reading')}\n${'# a comment of forty characters, again and\n'.repeat(100_000)}`;
   await page.locator('input[type=file][multiple]').setInputFiles({
     name: 'long.csv',
     mimeType: 'text/csv',

@@ -2,6 +2,7 @@
 /// What a reader shows of a table, also if it cannot read all of it.
 #include "pendulum/recording/readers/columns/table_preview.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,9 @@ TEST(TablePreview, HasTheUnitsThatWereChosen) {
 }
 
 TEST(TablePreview, HasAllQuestionsWithTheirFlagsIfReadingFails) {
-  const TablePreview preview = PreviewOf("n,encoder\n" + Rows("{t},{v}", 20));
+  std::string text = "n,encoder\n";
+  for (int i = 1; i < 60; ++i) text += std::to_string(i) + "," + std::to_string(20 - i % 7) + "\n";
+  const TablePreview preview = PreviewOf(text);
   ASSERT_THAT(preview.questions, SizeIs(2));
   EXPECT_THAT(preview.questions[0].options, ElementsAre("sample_rate_hz"));
   EXPECT_THAT(preview.questions[0].try_flags, ElementsAre("--sample_rate_hz 100"));
@@ -84,8 +87,9 @@ TEST(TablePreview, NamesTheMemberThatWasRead) {
 }
 
 TEST(TablePreview, ShowsTheOnlyReadableMemberWithoutAHeader) {
-  const TablePreview preview =
-      PreviewOf(ZipOf({{"a.txt", "no numbers\n"}, {"b.txt", Rows("0.0{t},{v}")}}), TimeAndValue("1:s", "2"));
+  std::string swing;
+  for (int i = 0; i < 200; ++i) swing += std::to_string(0.01 * i) + "," + std::to_string(30 * std::cos(0.1 * i)) + "\n";
+  const TablePreview preview = PreviewOf(ZipOf({{"a.txt", "hello\n"}, {"b.txt", swing}}));
   EXPECT_EQ(preview.member, "b.txt");
   EXPECT_THAT(preview.names, ElementsAre("1", "2"));
 }
