@@ -188,12 +188,14 @@ class StartView {
     this.reading.abort();
     this.reading = new AbortController();
     const { signal } = this.reading;
-    clearProblems(this.problems);
+    // With a look, problems stay until the answer: their removal would move the Fit button under the pointer.
+    if (!this.look.isShown) clearProblems(this.problems);
     this.held.replaceChildren();
     if (!this.look.isShown) this.progress.textContent = `Reading ${recording.name} …`;
     try {
       const preview = await previewed(recording, await readChoices(this.all), signal);
       if (signal.aborted) return null;
+      clearProblems(this.problems);
       this.showPreview(preview, isKept ? '' : kTooLarge);
       return preview;
     } catch (error) {
