@@ -471,12 +471,12 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
   return whole;
 }
 
-Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
-  std::optional<Rig> rig;
+Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, RunFiles files) {
+  ReadRun run;
   if (files.rig) {
     auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name);
     if (!parsed) return tl::unexpected(parsed.error());
-    rig = *std::move(parsed);
+    run.rig = *std::move(parsed);
   }
   if (files.calibration) {
     auto parsed = CalibrationFromText(files.calibration->bytes, files.calibration->name);
@@ -485,8 +485,14 @@ Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
   }
   auto read = ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(options));
   if (!read) return tl::unexpected(read.error());
-  files.data.bytes = {};  // a long recording takes much memory
-  auto prepared = PrepareRecording(*std::move(read), options, std::move(rig));
+  run.recording = *std::move(read);
+  return run;
+}
+
+Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
+  auto read = ReadBytesOfRun(options, std::move(files));  // frees the bytes: a long recording takes much memory
+  if (!read) return tl::unexpected(read.error());
+  auto prepared = PrepareRecording(std::move(read->recording), options, std::move(read->rig));
   if (!prepared) return tl::unexpected(prepared.error());
   return std::move(IdentifyEach(options, *std::move(prepared)).front());
 }

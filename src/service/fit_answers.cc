@@ -14,15 +14,14 @@
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
-#include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/series.h"
 #include "pendulum/service/fit_request.h"
-#include "pendulum/service/thinning.h"
 #include "pendulum/web/report_page.h"
 #include "service/answers.h"
 #include "service/repeated_request.h"
+#include "service/samples_json.h"
 
 namespace pendulum {
 namespace {
@@ -107,20 +106,11 @@ Json FileJson(const SharedFile& file) {
   return json ? *std::move(json) : Json(nullptr);
 }
 
-/// The samples of a recording as read, thinned for a plot.
-Json SamplesJson(const Recording& recording) {
-  constexpr Eigen::Index kMaxShown = 4000;
-  const auto size = static_cast<std::size_t>(recording.size());
-  const auto shown = Thin({recording.time.data(), size}, {recording.value.data(), size}, kMaxShown);
-  Json time = Json::array(), measured = Json::array();
-  for (const Eigen::Index i : shown) {
-    time.push_back(recording.time[i]);
-    measured.push_back(NumberOrNull(recording.value[i]));
-  }
-  return {{"time_s", std::move(time)},
-          {"measured", std::move(measured)},
-          {"unit", recording.value_unit()},
-          {"samples", recording.size()}};
+/// A calibration as JSON, also if a table was sent.
+Json CalibrationJson(const SharedFile& file) {
+  if (!file) return nullptr;
+  const auto calibration = CalibrationFromText(file->bytes, file->name);
+  return calibration ? calibration->source : Json(nullptr);
 }
 
 /// A query parameter that must be one of `words`; empty if it is missing.
@@ -235,7 +225,7 @@ HttpResponse GetFitRequest(ServiceState& state, const Call& call) {
                      {"batch", kept->fit.batch ? Json(*kept->fit.batch) : Json(nullptr)},
                      {"options", JsonOf(*flags)},
                      {"rig", FileJson(kept->order.files.rig)},
-                     {"calibration", FileJson(kept->order.files.calibration)},
+                     {"calibration", CalibrationJson(kept->order.files.calibration)},
                      {"data_sha256", *sha256}});
 }
 
@@ -250,15 +240,10 @@ HttpResponse GetSamples(ServiceState& state, const Call& call) {
   if (!kept) return ProblemAnswer(kept.error());
   auto options = OptionsOf(kept->order);
   if (!options) return ProblemAnswer(options.error());
-  const RunFiles& files = kept->order.files;
-  if (files.calibration) {
-    auto calibration = CalibrationFromText(files.calibration->bytes, files.calibration->name);
-    if (!calibration) return ProblemAnswer(calibration.error());
-    options->read.calibration = *std::move(calibration);
-  }
-  const auto recording = ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(*options));
-  if (!recording) return ProblemAnswer(recording.error());
-  return JsonAnswer(SamplesJson(*recording));
+  constexpr Eigen::Index kMaxShown = 4000;
+  const auto read = ReadBytesOfRun(*options, kept->order.files);
+  if (!read) return ProblemAnswer(read.error());
+  return JsonAnswer(SamplesJson(read->recording, kMaxShown));
 }
 
 HttpResponse GetSeries(ServiceState& state, const Call& call) {

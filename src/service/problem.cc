@@ -72,7 +72,12 @@ bool MaySucceedLater(ProblemKind kind) {
   return kind == ProblemKind::kTimedOut || kind == ProblemKind::kTooManyRequests || kind == ProblemKind::kStopping;
 }
 
-/// The flags "--name value" as parameters of a request: {"name": "value"}; a flag without a value is true.
+Problem ProblemOfKind(ProblemKind kind, std::string detail) {
+  return MaySucceedLater(kind) ? RetryLater(kind, std::move(detail)) : Problem{kind, std::move(detail), {}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json TryParameters(const std::vector<std::string>& flags) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
   for (const std::string& flag : flags) {
@@ -82,12 +87,6 @@ nlohmann::ordered_json TryParameters(const std::vector<std::string>& flags) {
   }
   return parameters;
 }
-
-Problem ProblemOfKind(ProblemKind kind, std::string detail) {
-  return MaySucceedLater(kind) ? RetryLater(kind, std::move(detail)) : Problem{kind, std::move(detail), {}};
-}
-
-}  // namespace
 
 int Problem::status() const { return KindOf(kind).status; }
 

@@ -6,6 +6,7 @@
 #include "service/batch_answers.h"
 #include "service/fit_answers.h"
 #include "service/other_answers.h"
+#include "service/preview_answers.h"
 
 namespace pendulum {
 namespace {
@@ -27,6 +28,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/v1/fits/{id}/report", Lane::kFit, kHolders, QueryKind::kNone, GetReport},
     Route{"GET", "/v1/fits/{id}/markdown", Lane::kFit, kHolders, QueryKind::kNone, GetMarkdown},
     Route{"POST", "/v1/fits/{id}/refits", Lane::kFit, kHolders, QueryKind::kOwn, PostRefit},
+    Route{"POST", "/v1/previews", Lane::kFit, kHolders, QueryKind::kOwn, PostPreview},
     Route{"POST", "/v1/batches", Lane::kFit, kHolders, QueryKind::kOwn, PostBatch},
     Route{"GET", "/v1/batches", Lane::kQuick, kHolders, QueryKind::kOwn, ListBatches},
     Route{"GET", "/v1/batches/{id}", Lane::kQuick, kHolders, QueryKind::kNone, GetBatch},

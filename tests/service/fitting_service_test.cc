@@ -227,6 +227,18 @@ TEST_F(FittingServiceTest, FitsOncePerKeyForConcurrentRequests) {
 
 // ---- Stored data ---------------------------------------------------------------------------------------------------
 
+TEST_F(FittingServiceTest, ReportsACalibrationTableAsTheCalibrationOfTheResult) {
+  const std::string text = "time_s,reading_volts" + Recording().substr(Recording().find('\n'));
+  const std::string table = "volts,angle_deg\n-2,-120\n-1,-60\n0,0\n1,60\n2,120\n";
+  const HttpResponse response =
+      Post("/v1/fits?model=viscous", kForm,
+           FormOf(PartOf("data", text, "run.csv") + PartOf("calibration", table, "table.csv")));
+  ASSERT_EQ(response.status, 200) << response.body;
+  const Json request = JsonAt(FieldOf(response, "Location") + "/request");
+  EXPECT_EQ(request["calibration"], Json::parse(response.body)["calibration"]);
+  EXPECT_FALSE(request["calibration"].is_null());
+}
+
 TEST_F(FittingServiceTest, ReportsTheInputsOfAFit) {
   const std::string rig = small_batch::kRigText;
   const HttpResponse response = Post("/v1/fits?from=0", kForm,

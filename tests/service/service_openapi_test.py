@@ -23,7 +23,7 @@ ROUTES = {
           "/v1/fits/{}/report": {"get"},
     "/v1/fits/{}/markdown": {"get"}, "/v1/fits/{}/refits": {"post"}, "/v1/batches": {"get", "post"},
           "/v1/batches/{}": {"get", "delete"},
-    "/v1/batches/{}/events": {"get"}, "/v1/simulations": {"post"}, "/v1/calibrations": {"post"}, "/v1/models": {"get"},
+    "/v1/batches/{}/events": {"get"}, "/v1/previews": {"post"}, "/v1/simulations": {"post"}, "/v1/calibrations": {"post"}, "/v1/models": {"get"},
     "/v1/examples": {"get"}, "/v1/examples/{}": {"get"}, "/v1/live": {"get"}, "/v1/live/events": {"get"},
           "/v1/live/recording": {"get"},
     "/healthz": {"get"}, "/metrics": {"get"}, "/openapi.json": {"get"}}
@@ -144,6 +144,10 @@ class Answers(Served):
         self.post(fits, "/v1/fits", b"time_s,angle_deg\n0,x\n", "text/csv", 422)
         self.post(fits, "/v1/fits", b"<a/>", "application/pdf", 415)
         self.post(fits, "/v1/fits", b"time_s,angle_deg\n" + b"".join(b"%d,1\n" % i for i in range(6000)), "text/csv", 413)
+        for body, status in ((SHORT, 200), (b"n,encoder\n" + b"".join(b"%d,%d\n" % (i, i % 7) for i in range(50)), 200),
+                             (b"time_s,angle_deg\n" + b"".join(b"%d,1\n" % i for i in range(50)), 200),
+                             (b"time_s,angle_deg\n0,x\n", 422)):
+            self.post("/v1/previews", "/v1/previews?bob_mass=380g", body, "text/csv", status)
         self.check("get", fits, "/v1/fits?limit=1")
         self.check("get", fits, "/v1/fits?limit=100&model=coulomb&status=converged")
         self.check("get", fits, "/v1/fits?limit=none", status=400)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,16 @@ struct RunFiles {
   NamedBytes data;              ///< The recording; its name becomes DataSummary::path.
   SharedFile rig, calibration;  ///< JSON.
 };
+
+/// A recording that was read from bytes, and the rig of its run.
+struct ReadRun {
+  Recording recording;
+  std::optional<Rig> rig;  ///< std::nullopt: the run has no rig file.
+};
+
+/// Reads the files of a run. options.read receives the calibration. Errors as ParseRig, ParseCalibration and
+/// ParseRecording.
+Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, RunFiles files);
 
 /// Reads and identifies a recording from bytes in memory. If several swings are chosen, the first is used. Errors as
 /// ParseRig, ParseCalibration, ParseRecording, PrepareRecording and IdentifyEach.

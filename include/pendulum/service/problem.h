@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "pendulum/base/status.h"
 #include "pendulum/service/http.h"
 
@@ -64,6 +66,9 @@ Problem MethodNotAllowed(std::string_view method, std::string_view allowed);
 /// A problem with Retry-After, in whole seconds, at least 1: kTimedOut, kTooManyRequests, kStopping; kConflict while
 /// another request with the same key runs.
 Problem RetryLater(ProblemKind kind, std::string detail, std::chrono::seconds after = kRetryAfter);
+
+/// The flags "--name value" as parameters of a request: {"name": "value"}; a flag without a value is true.
+nlohmann::ordered_json TryParameters(const std::vector<std::string>& flags);
 
 /// application/problem+json: {"type": "urn:pendulum:problem:CODE", "title", "status", "detail", "code", "exit_code"},
 /// on one line; if there are flags to try, also "try": {"unit": "deg"}. Bytes of the detail that are not valid UTF-8

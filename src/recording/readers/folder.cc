@@ -142,6 +142,16 @@ tl::unexpected<Status> NoMember(const Folder& folder) {
                                 FlagExample(folder) + ", or name another recording");
 }
 
+/// The values of --value_column that choose a candidate.
+std::vector<std::string> ValuesOf(const Folder& folder, const std::vector<MemberSummary>& summaries) {
+  std::vector<std::string> values;
+  for (const MemberSummary& summary : summaries) {
+    const std::string& path = folder.paths[summary.index];
+    for (const std::string& column : summary.candidates) values.push_back(column.empty() ? path : path + "/" + column);
+  }
+  return values;
+}
+
 /// Chooses the member by the names of columns. std::nullopt: no header tells.
 Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const ReadOptions& options,
                                                  std::vector<Warning>& warnings) {
@@ -170,8 +180,12 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   }
   if (!raw) {
     const MemberSummary& first = summaries.front();
-    return WithTry(Fault(folder.name, "columns " + SeveralQuantities(candidates)),
-                   {FlagOf(folder.paths[first.index], first.candidates.front())});
+    const std::string flag = FlagOf(folder.paths[first.index], first.candidates.front());
+    auto several = WithTry(Fault(folder.name, "columns " + SeveralQuantities(candidates)), {flag});
+    if (options.preview != nullptr) {
+      options.preview->questions = {{several.value().message, {"value_column"}, {flag}, ValuesOf(folder, summaries)}};
+    }
+    return several;
   }
   warnings.push_back({"member_assumed", folder.name + ": " + folder.member +
                                             " \"Raw Data\" was read, although others have columns of a swing too; "
@@ -183,6 +197,7 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
 Result<Recording> ReadWhole(const Folder& folder, std::size_t index, const ReadOptions& options,
                             const MemberReader& read) {
   const std::size_t max_bytes = options.most_unpacked_bytes;
+  if (options.preview != nullptr && folder.paths.size() > 1) options.preview->member = folder.paths[index];
   const Result<std::string> bytes = folder.read(index, max_bytes + 1);
   if (!bytes) return tl::unexpected(bytes.error());
   if (bytes->size() <= max_bytes) return read(*bytes, folder.name_of(index), options);
@@ -219,7 +234,14 @@ Result<Recording> ReadOnlyReadable(const Folder& folder, const ReadOptions& opti
   std::optional<Status> fault;  // Of the first member.
   Result<Recording> only;
   for (std::size_t i = 0; i < folder.paths.size(); ++i) {
-    Result<Recording> recording = ReadWhole(folder, i, options, read);
+    ReadOptions alone = options;
+    TablePreview tried;
+    if (options.preview != nullptr) {
+      tried.format = options.preview->format;
+      alone.preview = &tried;
+    }
+    Result<Recording> recording = ReadWhole(folder, i, alone, read);
+    if (options.preview != nullptr && (recording || i == 0)) *options.preview = std::move(tried);
     if (!recording && i == 0) fault = recording.error();
     if (!recording) continue;
     readable.push_back(i);

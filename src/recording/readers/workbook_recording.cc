@@ -125,6 +125,7 @@ Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::stri
   if (workbook.sheets.empty()) {
     return Fault(name, "this " + std::string(words.kind) + " has no cells with numbers; give another file");
   }
+  if (options.preview != nullptr) options.preview->format = words.kind;
   const auto read = [](const std::string& text, const std::string& member, const ReadOptions& rest) {
     return ReadRows(LineReader(text, member), rest);
   };

@@ -83,6 +83,7 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   if (nesting == Nesting::kMember) {
     return Fault(name, "this is a zip file in a zip file; unpack it and give the unpacked file");
   }
+  if (options.preview != nullptr) options.preview->format = "zip file";
   const auto read = [](const std::string& member, const std::string& member_name, const ReadOptions& rest) {
     return ReadBytes(member, member_name, rest, Nesting::kMember);
   };

@@ -93,35 +93,38 @@ test('an impossible mass marks its field, for a new fit and for a repeated fit',
   const page = await openView(t, service, '/', { refused });
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   for (const [label, value] of [
-    ['Mass of the bob [kg]', '0.5'],
-    ['Mass of the rod [kg]', '0.1'],
-    ['Length of the rod [m]', '-0.43'],
+    ['How heavy is the bob?', '500'],
+    ['How heavy is the rod?', '100'],
+    ['How long is the rod?', '-43'],
   ])
     await field(page, label).fill(value);
   await pasteNumbers(page, kPasted);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
   const words = '“Length of the rod” is -0.43; it must be positive';
-  await assertMarked(page, await problemLike(page, words), ['Length of the rod [m]']);
-  await field(page, 'Length of the rod [m]').fill('0.43');
-  await page.getByRole('button', { name: 'Fit these numbers' }).click();
+  await problemLike(page, words); // beside the sketch
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
+  await page.locator('.alert-place .problem .detail', { hasText: words }).waitFor();
+  await assertMarked(page, page.locator('.alert-place .problem .detail'), ['How long is the rod?']);
+  await field(page, 'How long is the rod?').fill('43');
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
   await shownFit(page);
   await page.getByText('Another description of the pendulum').click();
-  await field(page, 'Length of the rod [m]').fill('-0.43');
+  await field(page, 'How long is the rod?').fill('-43');
   await page.getByRole('button', { name: 'Fit this window' }).click();
-  await assertMarked(page, await problemLike(page, words), ['Length of the rod [m]']);
+  await assertMarked(page, await problemLike(page, words), ['How long is the rod?']);
 });
 
-test('two columns without names are fitted once their unit is chosen', async (t) => {
+test('two columns without names are shown with the units that their numbers suggest', async (t) => {
   const page = await openView(t, service, '/');
-  await pasteNumbers(page, kPasted);
-  assert.equal(await page.locator('.paste select').isVisible(), false);
-  await field(page, 'Numbers').fill(kBare);
+  await pasteNumbers(page, kBare);
   await page.getByRole('button', { name: 'Fit these numbers' }).click();
-  await problemLike(page, 'Unit of the values: choose what the second column is in.');
-  await page.locator('.paste select').selectOption({ label: 'degrees' });
-  await page.getByRole('button', { name: 'Fit these numbers' }).click();
+  await page.locator('.look h3', { hasText: 'pasted numbers' }).waitFor();
+  assert.equal(await field(page, 'Unit of the times').inputValue(), 's');
+  assert.equal(await field(page, 'Column of the angle').inputValue(), '2');
+  assert.equal(await field(page, 'Unit of the values').inputValue(), 'deg');
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
   const { options } = await service.json(`/v1/fits/${await shownFit(page)}/request`);
-  assert.deepEqual([options.time_column, options.value_column, options.unit], ['1:s', '2', 'deg']);
+  assert.deepEqual(options, { model: 'viscous,coulomb,drag' });
 });
 
 test('pasted numbers are kept after another view and after a reload', async (t) => {

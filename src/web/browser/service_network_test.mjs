@@ -103,7 +103,7 @@ test('waiting for a busy service can be ended', async (t) => {
   await drop(page, [kCoulomb]);
   await page.locator('.notice').getByRole('button', { name: 'Cancel' }).click();
   await page.getByText('Cancelled.').waitFor();
-  await page.getByRole('button', { name: 'Fit again' }).waitFor();
+  await page.getByRole('button', { name: 'Fit', exact: true }).waitFor();
   assert.equal(keys.length, 1);
   assert.equal(new URL(page.url()).pathname, '/');
   await service.stop();
@@ -121,7 +121,7 @@ test('a network failure is reported, and the dropped file is not lost', async (t
   await page.locator('.problem').waitFor();
   assert.match(await page.locator('.problem').textContent(), /The service does not answer.*127\.0\.0\.1/);
   await page.context().setOffline(false);
-  await page.getByRole('button', { name: 'Fit again' }).click();
+  await page.getByRole('button', { name: 'Read again' }).click();
   await shownFit(page);
   await service.stop();
 });

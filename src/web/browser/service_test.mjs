@@ -65,16 +65,18 @@ test('with masses and length the inertia is in kg m², and only the chosen model
   const page = await openView(t, service, '/');
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   const rig = JSON.parse(readDataset('textbook_rig.json'));
-  await page.getByLabel('Mass of the bob [kg]', { exact: true }).fill(String(rig.bob_mass).replace('.', ','));
-  await page.getByLabel('Mass of the rod [kg]', { exact: true }).fill(String(rig.rod_mass));
-  await page.getByLabel('Length of the rod [m]', { exact: true }).fill(String(rig.rod_length));
-  await page.getByLabel('Gravity [m/s²]', { exact: true }).fill(String(rig.gravity));
+  await page.getByLabel('How heavy is the bob?', { exact: true }).fill(String(1000 * rig.bob_mass).replace('.', ','));
+  await page.getByLabel('How heavy is the rod?', { exact: true }).fill(String(1000 * rig.rod_mass));
+  await page.getByLabel('How long is the rod?', { exact: true }).fill(String(rig.rod_length));
+  await page.getByLabel('Unit of: Length of the rod').selectOption('m');
+  await page.getByLabel('How large is g where you are?', { exact: true }).fill(String(rig.gravity));
   await page.locator('.choice label', { hasText: 'I choose' }).click();
   for (const label of await page.locator('.checks label').all()) {
     const box = label.locator('input');
     await box.setChecked((await box.getAttribute('value')) === 'viscous');
   }
   await page.locator('input[type=file][multiple]').setInputFiles(dataset('textbook_rig.csv'));
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
   const id = await shownFit(page);
   const result = await assertParameters(page, id, 'viscous');
   assert.deepEqual(result.rig, rig);
@@ -106,18 +108,22 @@ test('the reason for an unusable file is shown in the words of the service and g
   assert.equal(await alert.locator('.detail').textContent(), told.detail);
   assert.equal(await alert.locator('.title').textContent(), told.title);
   assert.ok(await page.evaluate(() => document.activeElement.classList.contains('problem')));
-  await page.getByRole('button', { name: 'Fit again' }).waitFor();
+  await page.getByRole('button', { name: 'Read again' }).waitFor();
 });
 
 test('a field that is empty or not a number is named and gets the focus', async (t) => {
   const page = await openView(t, service, '/');
   await page.locator('.choice label', { hasText: 'masses and length' }).click();
   await drop(page, [{ name: 'coulomb.csv', content: readDataset('coulomb.csv') }]);
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
   await page.locator('.problem').waitFor();
-  assert.match(await page.locator('.problem .detail').textContent(), /^Mass of the bob is missing\.$/);
+  assert.equal(
+    await page.locator('.problem .detail').textContent(),
+    'Please answer: How heavy is the bob? How heavy is the rod? How long is the rod?',
+  );
   assert.ok(
     await page
-      .getByLabel('Mass of the bob [kg]', { exact: true })
+      .getByLabel('How heavy is the bob?', { exact: true })
       .evaluate((input) => input === document.activeElement),
   );
 });

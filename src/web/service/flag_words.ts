@@ -18,8 +18,23 @@ export interface FormFlag {
   words: Options;
 }
 
-/** Labels of names that are not flags of a fit: flags of a calibration, and a section of the report. */
+/** Names of the quantities of a rig, by their flags. */
+const kRig: Record<string, string> = {
+  bob_mass: 'Mass of the bob',
+  rod_mass: 'Mass of the rod',
+  rod_length: 'Length of the rod',
+  g: 'Gravity',
+  gravity_torque: 'Gravity torque G',
+  mass: 'Mass of the pendulum',
+  center_of_mass: 'Distance of the centre of mass',
+  length: 'Length of the string',
+  stiffness: 'Stiffness of the spring',
+  inertia: 'Moment of inertia',
+};
+
+/** Labels of names that have no field of their own: flags of a calibration and of a rig, and a section of the report. */
 const kOthers: Record<string, string> = {
+  ...kRig,
   order: 'Order of the curve',
   bits: 'Bits of the converter',
   residuals: kResidualsTitle,
@@ -43,6 +58,9 @@ const knownLabel = (name: string): string | undefined =>
 
 /** Label of the field for a flag. */
 export const labelOf = (name: string): string => knownLabel(name) ?? name;
+
+/** The flags of a rig. */
+export const rigFlags = (): string[] => Object.keys(kRig);
 
 /** The label with the unit: "From [s]". */
 export function labelWithUnit(name: string): string {

@@ -65,6 +65,37 @@ export interface WholeRecording {
   samples: number;
 }
 
+/** A column that the reader chose; the unit is null if it is unknown. */
+export interface PreviewColumn {
+  column: number;
+  unit: string | null;
+}
+
+/** Something that a fit needs and that neither the file nor the request says. */
+export interface Question {
+  options: string[];
+  question: string;
+  values: string[];
+  try: Flags;
+}
+
+/** How a recording is read: the answer of POST /v1/previews. */
+export interface Preview {
+  name: string;
+  format: string | null;
+  member: string | null;
+  columns: { name: string; value_column: string }[];
+  rows: string[][];
+  time: PreviewColumn | null;
+  value: PreviewColumn | null;
+  calibration: Loose | null;
+  assumptions: { code: string; message: string; options: string[] }[];
+  missing: Question[];
+  problem: { title: string; status: number; detail: string; code: string } | null;
+  samples: WholeRecording | null;
+  window: { window_s: [number, number]; begins: string | null; ends: string | null; release: number; releases: [number, number][] } | null;
+}
+
 export interface BatchRun {
   id: string;
   name: string;

@@ -86,9 +86,11 @@ void Choice::Assume(const std::string& code, const std::string& sentence) {
   warnings.push_back({code, std::string(table.line.file) + ": " + sentence});
 }
 
-void Choice::Ask(const std::string& sentence, const std::vector<std::string>& flags) {
-  questions.push_back(sentence);
-  try_flags.insert(try_flags.end(), flags.begin(), flags.end());
+void Choice::Ask(const std::string& sentence, const std::vector<std::string>& flags, std::string_view option) {
+  ReadQuestion question{sentence, {}, flags, {}};
+  if (!option.empty()) question.options.emplace_back(option);
+  for (const std::string& flag : flags) question.options.push_back(flag.substr(2, flag.find(' ') - 2));
+  questions.push_back(std::move(question));
 }
 
 void Choice::AskForColumn(const std::string& sentence, std::size_t best) {
@@ -99,7 +101,11 @@ void Choice::AskForColumn(const std::string& sentence, std::size_t best) {
 Result<void> Choice::Answer(std::size_t place) const {
   if (questions.empty()) return {};
   std::string sentence;
-  for (const std::string& question : questions) sentence += (sentence.empty() ? "" : "; ") + question;
+  std::vector<std::string> try_flags;
+  for (const ReadQuestion& question : questions) {
+    sentence += (sentence.empty() ? "" : "; ") + question.sentence;
+    try_flags.insert(try_flags.end(), question.try_flags.begin(), question.try_flags.end());
+  }
   return WithTry(table.line.Fault(PlaceOf(place), sentence), try_flags);
 }
 

@@ -33,8 +33,8 @@ struct Choice {
   std::optional<std::size_t> value = {};  // The column of the quantity.
   Columns axes = {};                      // The other axes of a rotation.
   std::optional<TableNumbers> numbers = {};
-  std::optional<std::size_t> example = {};                  // Of a column that the user may choose.
-  std::vector<std::string> questions = {}, try_flags = {};  // What the user must tell, and flags that tell it.
+  std::optional<std::size_t> example = {};   // Of a column that the user may choose.
+  std::vector<ReadQuestion> questions = {};  // What the user must tell.
 
   // ---- Names
 
@@ -63,8 +63,9 @@ struct Choice {
   /// Warns of an assumption.
   void Assume(const std::string& code, const std::string& sentence);
 
-  /// Notes what the user must tell, and an example of the flags that tell it.
-  void Ask(const std::string& sentence, const std::vector<std::string>& flags);
+  /// Notes what the user must tell, and an example of the flags that tell it. Without an example, `option` is the name
+  /// of the flag.
+  void Ask(const std::string& sentence, const std::vector<std::string>& flags, std::string_view option = "");
 
   /// Asks which column the quantity is; `best` is the example. The sentence says why.
   void AskForColumn(const std::string& sentence, std::size_t best);

@@ -36,6 +36,8 @@ struct TableView {
   std::string value_unit;          // Suffix of the unit that the file gives outside its header; empty: none.
   /// Reads the numbers. Called at most once, and only if the names and options do not decide.
   std::function<Result<TableNumbers>()> numbers;
+  /// The first rows as text, for ReadOptions::preview.
+  std::function<std::vector<std::vector<std::string>>()> first_rows;
 };
 
 /// Chooses the columns. Everything that was assumed is added to `warnings`, with the flag that says otherwise. Errors

@@ -49,7 +49,7 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
   if (const std::string& unknown = choice.Meaning(index).unknown_unit; !unknown.empty()) {
     choice.Ask(column + " is in " + Quoted(unknown) + ", which is not a unit known here: convert the column, or give " +
                    "its unit with " + flag + ":s, :ms or :us",
-               {});
+               {}, "time_column");
     return true;
   }
   if (!IsRowNumber(choice, index)) return false;

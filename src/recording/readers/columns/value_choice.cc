@@ -218,7 +218,7 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     choice.Ask("column " + choice.NameOf(index) + " is in " + Quoted(meaning.unknown_unit) +
                    ", which is not a unit known here: convert the column, or give its unit with --unit (" +
                    std::string(kValueUnits) + ")",
-               {});
+               {}, "unit");
     return nullptr;
   }
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {

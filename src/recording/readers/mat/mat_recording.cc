@@ -296,6 +296,16 @@ csv::TableNumbers NumbersOf(const MatTable& table) {
   return numbers;
 }
 
+std::vector<std::vector<std::string>> FirstRowsOf(const MatTable& table) {
+  std::vector<std::vector<std::string>> rows(TablePreview::kRows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const MatColumn& column : table.columns) {
+      rows[i].push_back(i < column.values.size() ? NumberText(column.values[i]) : "");
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 Result<Recording> ReadMat(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -323,7 +333,9 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
                             .has_host = false,
                             .raw_input = options.calibration ? options.calibration->input : "",
                             .value_unit = "",
-                            .numbers = [&table]() -> Result<csv::TableNumbers> { return NumbersOf(table); }};
+                            .numbers = [&table]() -> Result<csv::TableNumbers> { return NumbersOf(table); },
+                            .first_rows = [&table] { return FirstRowsOf(table); }};
+  if (options.preview != nullptr) options.preview->format = "MAT-file";
   std::vector<Warning> assumptions;
   if (auto chosen = csv::ChooseColumns(view, options, read.layout, assumptions); !chosen) {
     return tl::unexpected(chosen.error());

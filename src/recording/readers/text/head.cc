@@ -564,4 +564,21 @@ TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& 
   return found;
 }
 
+std::vector<std::vector<std::string>> FirstRows(std::string_view text, std::size_t most, const Head& head,
+                                                const Layout& layout) {
+  std::vector<std::vector<std::string>> rows;
+  if (head.first_row.number == 0) return rows;
+  ForEachTextLine(text, 1, [&](std::string_view line, std::size_t at) {
+    if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
+    if (rows.size() == most || IsHeaderAgain(line, head, layout)) return false;
+    std::vector<std::string>& cells = rows.emplace_back();
+    for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator);
+         !fields.done() && cells.size() < layout.width;) {
+      cells.emplace_back(Unquote(fields.Next()));
+    }
+    return true;
+  });
+  return rows;
+}
+
 }  // namespace pendulum::csv

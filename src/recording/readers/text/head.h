@@ -61,4 +61,9 @@ Head ParseHead(std::string_view begin, Layout& layout);
 /// text's first line.
 TableNumbers ReadNumbers(std::string_view text, std::size_t number, const Head& head, const Layout& layout);
 
+/// The cells of the first rows of a text, at most `most` rows, as they are written, without quotes. `text` begins with
+/// line 1.
+std::vector<std::vector<std::string>> FirstRows(std::string_view text, std::size_t most, const Head& head,
+                                                const Layout& layout);
+
 }  // namespace pendulum::csv

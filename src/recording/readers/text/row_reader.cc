@@ -34,6 +34,15 @@ using Check = Result<void>;
 /// The bytes in which the structure of a text is looked for, and those whose numbers may decide on the columns.
 constexpr std::size_t kHeadBytes = std::size_t{1} << 16, kNumbersBytes = std::size_t{1} << 24;
 
+std::string SeparatorWords(char separator) {
+  switch (separator) {
+    case ';': return "semicolons";
+    case '\t': return "tabs";
+    case ' ': return "blanks";
+    default: return separator == ',' ? "commas" : std::string("\"") + separator + "\"";
+  }
+}
+
 /// The bytes for the numbers without a last line that is cut off at their end.
 std::string WholeLines(const std::string& bytes) {
   return bytes.size() < kNumbersBytes ? bytes : bytes.substr(0, bytes.rfind('\n') + 1);  // npos + 1 is 0
@@ -188,17 +197,22 @@ Check Reader::ChooseColumns() {
              Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise");
   }
   const auto& calibration = csv::ChosenCalibration(options_, metadata_);
-  const csv::TableView table{.line = header,
-                             .names = *names,
-                             .has_rate = metadata_.sample_rate_hz > 0,
-                             .has_host = head_.has_host,
-                             .raw_input = calibration ? calibration->input : "",
-                             .value_unit = head_.value_unit,
-                             .numbers = [&]() -> Result<csv::TableNumbers> {
-                               const Result<std::string> rest = lines_.Peek(kNumbersBytes);
-                               if (!rest) return tl::unexpected(rest.error());
-                               return csv::ReadNumbers(row + "\n" + WholeLines(*rest), next_line, head_, layout_);
-                             }};
+  const csv::TableView table{
+      .line = header,
+      .names = *names,
+      .has_rate = metadata_.sample_rate_hz > 0,
+      .has_host = head_.has_host,
+      .raw_input = calibration ? calibration->input : "",
+      .value_unit = head_.value_unit,
+      .numbers = [&]() -> Result<csv::TableNumbers> {
+        const Result<std::string> rest = lines_.Peek(kNumbersBytes);
+        if (!rest) return tl::unexpected(rest.error());
+        return csv::ReadNumbers(row + "\n" + WholeLines(*rest), next_line, head_, layout_);
+      },
+      .first_rows = [this] { return csv::FirstRows(first_bytes_, TablePreview::kRows, head_, layout_); }};
+  if (options.preview != nullptr && options.preview->format.empty()) {
+    options.preview->format = "text with columns separated by " + SeparatorWords(layout_.separator);
+  }
   if (Check chosen = csv::ChooseColumns(table, options, layout_, samples_.warnings); !chosen) return chosen;
   if (Check checked = ros_ ? ros_->CheckSecond(header) : Check(); !checked) return checked;
   if (Check checked = CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings); !checked) {

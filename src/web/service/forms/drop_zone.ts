@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** A button to choose files, onto which files can also be dropped. */
+/** A button to choose files. Files can also be dropped or pasted anywhere on the page. */
 
 import { el } from '../../shared/dom';
 
@@ -8,7 +8,14 @@ export interface DropZone {
   button: HTMLButtonElement;
 }
 
-/** Calls `take` with chosen files, and with files dropped anywhere on the page while the view is shown. */
+/** The file of a pasted text, unless it was pasted into a field. */
+function pastedFile(event: ClipboardEvent): File | null {
+  const isField = event.target instanceof Element && event.target.closest('input, textarea, select') !== null;
+  const words = event.clipboardData?.getData('text/plain') ?? '';
+  return isField || words.trim() === '' ? null : new File([words], 'pasted numbers', { type: 'text/csv' });
+}
+
+/** Calls `take` with chosen files, and with files dropped or pasted on the page while the view is shown. */
 export function dropZone(words: string, hint: string, take: (files: File[]) => void, signal: AbortSignal): DropZone {
   const input = el('input', { type: 'file', multiple: '', hidden: '', accept: '.csv,.txt,.tsv,.dat,.log,.zip,.mat,.xlsx,.xls,.ods,.json,.npz,.npy,.phyphox,text/*' });
   const zone = el(
@@ -36,6 +43,16 @@ export function dropZone(words: string, hint: string, take: (files: File[]) => v
       over(false)(event);
       const files = [...(event.dataTransfer?.files ?? [])];
       if (files.length > 0) take(files);
+    },
+    { signal },
+  );
+  document.addEventListener(
+    'paste',
+    (event) => {
+      const pasted = [...(event.clipboardData?.files ?? [])];
+      const file = pastedFile(event);
+      if (pasted.length > 0) take(pasted);
+      else if (file) take([file]);
     },
     { signal },
   );

@@ -4,8 +4,7 @@ import { describe, expect, test, vi } from 'vitest';
 import { kept, keep } from '../../shared/kept';
 import { flagsIn, helpOf, inFields, labelOf, labelWithUnit, nameModels, optionsOf, setFlags, type Options } from '../flag_words';
 import { FieldError, ProblemError, problemOf, titleOf } from '../server/problem';
-import { isHeadless } from './numbers';
-import { headlessFlags } from './paste_form';
+import { forgetRecording, heldRecording, holdRecording, kMostKept } from './held_recording';
 import { asFieldError } from './problem_fields';
 
 const flag = (name: string, label: string, unit = '', words: Options = []) => {
@@ -109,29 +108,39 @@ describe('problems of fields', () => {
   });
 });
 
+describe('recordings of the start page', () => {
+  const storeWith = (): void => {
+    const stored = new Map<string, string>();
+    vi.stubGlobal('sessionStorage', {
+      getItem: (name: string) => stored.get(name) ?? null,
+      setItem: (name: string, words: string) => stored.set(name, words),
+      removeItem: (name: string) => stored.delete(name),
+    });
+  };
+
+  test('are kept byte for byte, whether they are text or not', async () => {
+    storeWith();
+    for (const bytes of [new TextEncoder().encode('\ufefft,Winkel °\r\n0,1'), Uint8Array.of(80, 75, 3, 4, 0, 255, 254)]) {
+      expect(await holdRecording({ name: 'a.csv', content: new Blob([bytes]) })).toBe(true);
+      const held = heldRecording();
+      expect(held?.name).toBe('a.csv');
+      expect(new Uint8Array(await held!.content.arrayBuffer())).toEqual(bytes);
+    }
+    forgetRecording();
+    expect(heldRecording()).toBeNull();
+    vi.unstubAllGlobals();
+  });
+
+  test('are not kept if they are too large, and the one before is forgotten', async () => {
+    storeWith();
+    await holdRecording({ name: 'a.csv', content: new Blob(['0,1']) });
+    expect(await holdRecording({ name: 'b.csv', content: new Blob(['1'.repeat(kMostKept + 1)]) })).toBe(false);
+    expect(heldRecording()).toBeNull();
+    vi.unstubAllGlobals();
+  });
+});
+
 describe('pasted recordings', () => {
-  test('may have a line of names', () => {
-    for (const bare of ['0,24.2\n0.01,24.8', '# a note\n\n0;24,2', '0\t24', '"0","24.2"'])
-      expect(isHeadless(bare), bare).toBe(true);
-    for (const named of ['time_s,angle_deg\n0,24.2', '', '24.2\n24.8', '# only a note'])
-      expect(isHeadless(named), named).toBe(false);
-  });
-
-  test('without names are in seconds and the chosen unit, unless the options say otherwise', () => {
-    expect(headlessFlags('deg', { model: 'drag' })).toEqual({
-      model: 'drag',
-      time_column: '1:s',
-      value_column: '2',
-      unit: 'deg',
-    });
-    expect(headlessFlags('', { unit: 'rad', value_column: '3' })).toEqual({
-      time_column: '1:s',
-      value_column: '3',
-      unit: 'rad',
-    });
-    expect(headlessFlags('deg', { sample_rate_hz: '100' }).time_column).toBeUndefined();
-  });
-
   test('are kept if the browser allows it, and no error occurs if not', () => {
     const refuse = (): never => {
       throw new DOMException('no', 'SecurityError');

@@ -48,6 +48,17 @@ export class ModelForm {
     this.draw();
   }
 
+  /** Whether the user chooses, and which laws. */
+  get state(): { own: boolean; chosen: string[] } {
+    return { own: this.own, chosen: [...this.chosen] };
+  }
+
+  restore({ own, chosen }: ModelForm['state']): void {
+    this.own = own;
+    this.chosen = new Set(chosen);
+    this.draw();
+  }
+
   private draw(): void {
     const options = [
       { value: 'auto', label: 'find out for me' },

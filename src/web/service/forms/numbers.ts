@@ -19,13 +19,6 @@ function cells(line: string): string[] {
   return spaced ? words : line.split(',');
 }
 
-/** Whether the text has at least two columns and no line with their names. */
-export function isHeadless(pasted: string): boolean {
-  const first = pasted.split(/\r\n|\n|\r/).find((line) => line.trim() !== '' && !line.startsWith('#')) ?? '';
-  const [time, value] = cells(first).map((cell) => numberFrom(cell.trim().replace(/^"(.*)"$/, '$1')));
-  return Number.isFinite(time) && Number.isFinite(value);
-}
-
 /** The first two columns of pasted text. A line whose first two cells are not numbers is a heading and is skipped. */
 export function pastedRows(pasted: string): [string, string][] {
   const rows: [string, string][] = [];

@@ -6,7 +6,7 @@ import { FieldError, ProblemError } from '../server/problem';
 
 type Find = (selector: string) => HTMLElement | null;
 
-const kFile = /^(rig|calibration)(?:\.json)?: /;
+const kFile = /^(?:the )?(rig|calibration)(?:\.json|\.csv| given by flags)?: /;
 const kMember = /(?:"(std_dev|value)" of )?"([a-z_]+)"/g; // "rod_length", "std_dev" of "rod_length"
 
 /** Assigns a problem of a rig or a calibration to the fields of the quantities it names, else to the chosen file. */

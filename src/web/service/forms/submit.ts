@@ -3,9 +3,9 @@
 
 import type { Loose, Result } from '../../shared/result_types';
 import { batchPath, fitApi, fitPath, idOfLocation } from '../routes';
-import { ask, formBody, newKey } from '../server/api';
+import { ask, askJson, formBody, newKey } from '../server/api';
 import { ProblemError } from '../server/problem';
-import type { Flags } from '../types';
+import type { Flags, Preview } from '../types';
 
 /** Options of a fit: flags, and JSON text of rig and calibration. */
 export interface Choices {
@@ -40,14 +40,28 @@ const withFlags = (path: string, flags: Flags): string => {
   return query === '' ? path : `${path}?${query}`;
 };
 
-/** The request for one recording, or for a batch of several recordings. */
-export async function submission(recordings: Recording[], { flags, rig, calibration }: Choices): Promise<Submission> {
+/** The recordings and files of a request as one body. */
+async function bodyOf(recordings: Recording[], { rig, calibration }: Choices): Promise<{ body: Blob; type: string }> {
   const form = new FormData();
   for (const { name, content } of recordings) form.append('data', content, name);
   const json = (text: string): Blob => new Blob([text], { type: 'application/json' });
   if (rig !== null) form.append('rig', json(rig), 'rig.json');
-  if (calibration !== null) form.append('calibration', json(calibration), 'calibration.json');
-  const { body, type } = await formBody(form);
+  const isTable = calibration !== null && !calibration.trimStart().startsWith('{');
+  if (calibration !== null) form.append('calibration', json(calibration), isTable ? 'calibration.csv' : 'calibration.json');
+  return formBody(form);
+}
+
+/** How the service would read a recording. */
+export async function previewed(recording: Recording, choices: Choices, signal?: AbortSignal): Promise<Preview> {
+  const { body, type } = await bodyOf([recording], choices);
+  const path = withFlags('/v1/previews', choices.flags);
+  return askJson<Preview>(path, { method: 'POST', body, headers: { 'Content-Type': type }, signal });
+}
+
+/** The request for one recording, or for a batch of several recordings. */
+export async function submission(recordings: Recording[], choices: Choices): Promise<Submission> {
+  const { flags } = choices;
+  const { body, type } = await bodyOf(recordings, choices);
   const path = withFlags(recordings.length === 1 ? '/v1/fits' : '/v1/batches', flags);
   return { path, body, headers: { 'Content-Type': type, 'Idempotency-Key': newKey() } };
 }

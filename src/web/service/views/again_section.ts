@@ -4,7 +4,7 @@
 import { button, el, text } from '../../shared/dom';
 import type { Loose, Result } from '../../shared/result_types';
 import { figure, section } from '../../shared/section';
-import { labelOf, labelWithUnit } from '../flag_words';
+import { labelOf, labelWithUnit, rigFlags } from '../flag_words';
 import { numberField, numberIn, type Field } from '../forms/forms';
 import { knownModels, ModelForm } from '../forms/model_form';
 import { OptionsForm } from '../forms/options_form';
@@ -41,6 +41,7 @@ export class AgainSection {
   private readonly problems = alertPlace();
   private readonly plot: WindowPlot | null;
   private moved = false;
+  private readonly filledRig: string; // the state of the rig form for the rig of the fit
 
   /** result: null if the recording could not be fitted. recording: null if it cannot be drawn. */
   constructor(
@@ -51,7 +52,8 @@ export class AgainSection {
   ) {
     this.plot = recording && this.plotOf(recording);
     this.models.fill(request.options.model ?? request.options.models ?? kFlagModel);
-    this.rig.fill(request.rig);
+    this.rig.fill(request.rig, request.options);
+    this.filledRig = JSON.stringify(this.rig.state);
     this.options.fill(request.options, request.calibration);
     this.options.element.open = result === null; // one of the options may solve the problem
     this.moved = result === null && this.plot !== null; // the plot shows the whole recording as the window
@@ -116,8 +118,18 @@ export class AgainSection {
     return flags;
   }
 
-  private async replaced(): Promise<Replaced> {
-    const parts = { rig: await this.rig.value(), calibration: await this.options.calibrationText() };
+  /** Flags of the rig that replace those of the fit, and its file. */
+  private async rigChoice(): Promise<{ flags: Flags; file: string | null }> {
+    const own = this.request.rig;
+    if (JSON.stringify(this.rig.state) === this.filledRig)
+      return { flags: {}, file: own && JSON.stringify(own) };
+    const { flags, file } = await this.rig.value();
+    const gone = rigFlags().filter((flag) => this.request.options[flag] !== undefined && flags[flag] === undefined);
+    return { flags: { ...Object.fromEntries(gone.map((flag) => [flag, ''])), ...flags }, file };
+  }
+
+  private async replaced(rig: string | null): Promise<Replaced> {
+    const parts = { rig, calibration: await this.options.calibrationText() };
     const replaced: Replaced = {};
     for (const name of ['rig', 'calibration'] as const) {
       const own = this.request[name];
@@ -132,7 +144,9 @@ export class AgainSection {
     const { signal, say } = this.place;
     void attempt(control, this.problems, async () => {
       say('Fitting …');
-      go(await refitted(this.request.id, this.flags(window), await this.replaced(), signal));
+      const rig = await this.rigChoice();
+      const flags = { ...this.flags(window), ...rig.flags };
+      go(await refitted(this.request.id, flags, await this.replaced(rig.file), signal));
     });
   }
 

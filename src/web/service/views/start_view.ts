@@ -2,59 +2,251 @@
 /** The form for a new fit: recordings, rig, friction laws and options. */
 
 import { button, el, text } from '../../shared/dom';
+import { keep, kept } from '../../shared/kept';
+import { kColumnFlags } from '../forms/column_form';
 import { dropZone, type DropZone } from '../forms/drop_zone';
+import { forgetRecording, heldRecording, holdRecording } from '../forms/held_recording';
 import { kCompared, knownModels, ModelForm } from '../forms/model_form';
-import { OptionsForm } from '../forms/options_form';
+import { OptionsForm, type OptionsState } from '../forms/options_form';
 import { PasteForm } from '../forms/paste_form';
-import { RigForm } from '../forms/rig_form';
-import { sent, submission, type Choices, type Recording } from '../forms/submit';
+import { RigForm, type RigState } from '../forms/rig_form';
+import { previewed, sent, submission, type Choices, type Recording } from '../forms/submit';
 import { go } from '../router';
 import { askJson } from '../server/api';
 import type { Place, View } from '../shell';
-import type { Example, ExampleData } from '../types';
+import type { Example, ExampleData, Preview } from '../types';
+import { LookSection } from './look_section';
 import { alertPlace, attempt, clearProblems, showProblem } from './problem_view';
 
-/** The forms keep their values while the page is open. */
+/** The forms keep their values until the tab is closed. */
 interface Forms {
   rig: RigForm;
   models: ModelForm;
   options: OptionsForm;
 }
 
+const kChoices = 'pendulum_choices';
+
 let forms: Forms | null = null;
-const theForms = (): Forms => (forms ??= { rig: new RigForm(), models: new ModelForm(), options: new OptionsForm() });
+
+function keepForms({ rig, models, options }: Forms): void {
+  keep('closed', kChoices, JSON.stringify({ rig: rig.state, models: models.state, options: options.state }));
+}
+
+function restoreForms({ rig, models, options }: Forms): void {
+  const words = kept('closed', kChoices);
+  if (words === null) return;
+  try {
+    const state = JSON.parse(words) as { rig: RigState; models: ModelForm['state']; options: OptionsState };
+    rig.restore(state.rig);
+    models.restore(state.models);
+    options.restore(state.options);
+  } catch {
+    keep('closed', kChoices, ''); // of another version of the page
+  }
+}
+
+function theForms(): Forms {
+  if (forms) return forms;
+  forms = { rig: new RigForm(), models: new ModelForm(), options: new OptionsForm() };
+  restoreForms(forms);
+  return forms;
+}
 
 /** Sets the calibration for the next fit. */
-export const useCalibration = (name: string, json: string): void => theForms().options.use({ name, json });
+export function useCalibration(name: string, json: string): void {
+  theForms().options.use({ name, json });
+  keepForms(theForms());
+}
 
 async function choices({ rig, models, options }: Forms): Promise<Choices> {
-  const flags = { model: models.value(), ...options.flags() };
-  return { flags, rig: await rig.value(), calibration: await options.calibrationText() };
+  const { flags, file } = await rig.value();
+  return {
+    flags: { model: models.value(), ...options.flags(), ...flags },
+    rig: file,
+    calibration: await options.calibrationText(),
+  };
+}
+
+/** The choices for a preview: as for a fit, but the form of the rig need not be complete. */
+async function readChoices({ rig, options }: Forms): Promise<Choices> {
+  return { flags: { ...options.flags(), ...rig.entered }, rig: null, calibration: await options.calibrationText() };
 }
 
 /** Options of the next fit, for any source of its recording. */
 export const chosenForNext = (): Promise<Choices> => choices(theForms());
+
+/** The recording of this view, and whether the browser keeps it over a reload. */
+interface Current {
+  recording: Recording;
+  isKept: boolean;
+}
+
+let current: Current | null = null;
 
 const asRecording = (file: File): Recording => ({ name: file.name, content: file });
 
 const inWords = (recordings: Recording[]): string =>
   recordings.length === 1 ? recordings[0].name : `${recordings.length} recordings`;
 
+const kTooLarge =
+  'This recording is too large for the memory of the browser: after a reload of the page, choose it again.';
+
+/** Of two files, the one whose name says that it is a calibration. */
+function calibrationOf(files: File[]): File | null {
+  const named = files.filter(({ name }) => /calib/i.test(name));
+  return files.length === 2 && named.length === 1 ? named[0] : null;
+}
+
+/** Whether the reader guessed a column or a unit. */
+const isGuessed = ({ assumptions }: Preview): boolean =>
+  assumptions.some(({ options }) => options.some((option) => kColumnFlags.includes(option)));
+
+function restored(): Current | null {
+  const recording = heldRecording();
+  return recording && { recording, isKept: true };
+}
+
 class StartView {
   private readonly problems = alertPlace();
   private readonly progress = el('p', { class: 'progress', role: 'status' });
   private readonly held = el('div', { class: 'held' });
   private readonly zone: DropZone;
+  private readonly look: LookSection;
+  private readonly fitBar = el('div', { class: 'fit-bar', hidden: '' });
+  private readonly fitWords = text('', 'quiet');
+  private readonly examples = el('ul', { class: 'examples' });
   private busy = false;
+  private reading = new AbortController();
+  private read: Promise<Preview | null> = Promise.resolve(null); // the last reading
 
   constructor(
     private readonly place: Place,
     private readonly all: Forms,
   ) {
     const hint =
-      'CSV or text: times and angles. One file, or several; they are fitted at once, with the choices further down.';
-    const take = (files: File[]): void => void this.fit(() => files.map(asRecording), () => choices(this.all));
-    this.zone = dropZone('Drop recordings here, or press to choose', hint, take, place.signal);
+      'Read are: CSV and other text of loggers and serial monitors; exports of phyphox, Tracker, Logger Pro, Capstone ' +
+      'and ROS; workbooks (.xlsx, .xls, .ods); MAT-files; NumPy; JSON; zip files of these. Several files are fitted as ' +
+      'a batch.';
+    this.zone = dropZone('Drop a recording here, paste it, or press to choose', hint, (files) => void this.take(files), place.signal);
+    this.look = new LookSection(all.options, () => this.changed(), () => this.remove());
+    const fit = button('Fit', () => void this.fitCurrent(), { class: 'primary' });
+    this.fitBar.append(fit, this.fitWords);
+    place.signal.addEventListener('abort', () => this.reading.abort());
+    for (const event of ['input', 'change']) place.main.addEventListener(event, () => keepForms(all), { signal: place.signal });
+    for (const element of [all.rig.element, all.options.element])
+      element.addEventListener('change', () => this.changed(), { signal: place.signal });
+  }
+
+  /** Takes new files: one recording, a recording with its calibration, or a batch. */
+  private async take(files: File[]): Promise<void> {
+    if (this.busy) return;
+    const calibration = calibrationOf(files);
+    if (calibration) this.all.options.use({ name: calibration.name, json: await calibration.text() });
+    const recordings = files.filter((file) => file !== calibration).map(asRecording);
+    if (recordings.length > 1) await this.fit(() => recordings, () => choices(this.all));
+    else await this.lookAt(recordings[0], true);
+  }
+
+  /** Shows a new recording. Fits it at once if `mayFit` and there is nothing to decide. */
+  private async lookAt(recording: Recording, mayFit: boolean): Promise<void> {
+    if (mayFit) {
+      this.forgetColumns();
+      this.look.hide();
+      this.showParts();
+    }
+    current = { recording, isKept: await holdRecording(recording) };
+    keepForms(this.all);
+    this.read = this.readCurrent();
+    const preview = await this.read;
+    if (!preview) {
+      const again = (): void => void this.lookAt(recording, mayFit);
+      if (current?.recording === recording && !this.look.isShown) this.hold([recording], 'Read again', again);
+      return;
+    }
+    const isReady = preview.missing.length === 0 && !preview.problem && !isGuessed(preview);
+    if (mayFit && isReady && this.all.rig.isEmpty) return this.fitCurrent();
+    this.look.element.querySelector('h3')?.focus({ preventScroll: true });
+    this.look.element.scrollIntoView({ block: 'start' });
+  }
+
+  /** Columns and units that the user chose in the menus belong to the recording before. */
+  private forgetColumns(): void {
+    if (!this.look.isShown) return;
+    this.all.options.put(Object.fromEntries(kColumnFlags.map((flag) => [flag, ''])));
+  }
+
+  private changed(): void {
+    keepForms(this.all);
+    if (this.look.isShown) this.read = this.readCurrent();
+  }
+
+  /** Reads the current recording and shows what was read. Returns null if it is not readable. */
+  private async readCurrent(): Promise<Preview | null> {
+    if (!current) return null;
+    const { recording, isKept } = current;
+    this.reading.abort();
+    this.reading = new AbortController();
+    const { signal } = this.reading;
+    // With a look, problems stay until the answer: their removal would move the Fit button under the pointer.
+    if (!this.look.isShown) clearProblems(this.problems);
+    this.held.replaceChildren();
+    if (!this.look.isShown) this.progress.textContent = `Reading ${recording.name} …`;
+    try {
+      const preview = await previewed(recording, await readChoices(this.all), signal);
+      if (signal.aborted) return null;
+      clearProblems(this.problems);
+      this.showPreview(preview, isKept ? '' : kTooLarge);
+      return preview;
+    } catch (error) {
+      if (signal.aborted) return null;
+      showProblem(this.problems, error);
+      return null;
+    } finally {
+      if (!signal.aborted) this.progress.textContent = '';
+    }
+  }
+
+  private showPreview(preview: Preview, note: string): void {
+    const active = document.activeElement as HTMLElement | null;
+    const flag = active?.closest('.look') ? active.dataset.flag : undefined;
+    this.look.show(preview, note);
+    this.look.markMissing();
+    if (flag) this.look.element.querySelector<HTMLElement>(`[data-flag="${flag}"]`)?.focus({ preventScroll: true });
+    this.showParts();
+    const open = preview.missing.length;
+    this.fitWords.textContent =
+      open > 0 ? 'Answer what is missing first.' : 'Fits the shaded window with the choices above.';
+    this.place.say(open > 0 ? `${preview.name}: ${open} things are missing` : `${preview.name} can be fitted`);
+  }
+
+  private showParts(): void {
+    const isShown = this.look.isShown;
+    this.zone.button.classList.toggle('small', isShown);
+    this.fitBar.hidden = !isShown;
+    if (isShown) this.fitBar.before(this.problems, this.held);
+    else this.progress.after(this.problems, this.held);
+    const examples = this.examples.closest('section');
+    if (examples) examples.hidden = isShown;
+  }
+
+  private remove(): void {
+    this.reading.abort();
+    this.forgetColumns();
+    keepForms(this.all);
+    current = null;
+    forgetRecording();
+    this.look.hide();
+    this.showParts();
+    this.zone.button.focus();
+  }
+
+  private async fitCurrent(): Promise<void> {
+    await this.read; // a choice that was just made may answer what was missing
+    if (!current) return;
+    const { recording } = current;
+    if (this.look.focusMissing()) return this.place.say('Something is missing');
+    await this.fit(() => [recording], () => choices(this.all));
   }
 
   /** Fits the recordings and then shows the fit. */
@@ -72,7 +264,7 @@ class StartView {
       if (this.place.signal.aborted) return;
       const again = (): void => void this.fit(which, what);
       showProblem(this.problems, error);
-      this.hold(recordings, again);
+      if (!this.look.isShown) this.hold(recordings, 'Fit again', again);
     } finally {
       this.busy = false;
       this.progress.textContent = '';
@@ -81,16 +273,18 @@ class StartView {
   }
 
   /** Keeps the request that failed, to repeat it. */
-  private hold(recordings: Recording[], again: () => void): void {
-    const words = `${inWords(recordings)} can be fitted again, with other choices further down.`;
-    this.held.replaceChildren(text(words, 'quiet'), button('Fit again', again));
+  private hold(recordings: Recording[], label: string, again: () => void): void {
+    const words = `${inWords(recordings)} can be sent again, with other choices further down.`;
+    this.held.replaceChildren(text(words, 'quiet'), button(label, again));
   }
 
-  private fitPasted(form: PasteForm): void {
-    void this.fit(() => [form.recording], async () => {
-      const made = await choices(this.all);
-      return { ...made, flags: form.flags(made.flags) };
-    });
+  private takePasted(form: PasteForm): void {
+    clearProblems(this.problems);
+    try {
+      void this.lookAt(form.recording, true);
+    } catch (error) {
+      showProblem(this.problems, error);
+    }
   }
 
   private example(example: Example): HTMLElement {
@@ -133,18 +327,22 @@ class StartView {
 
   show(): void {
     const { rig, models, options } = this.all;
-    const list = el('ul', { class: 'examples' });
     const part = (id: string, title: string, ...children: Node[]): HTMLElement =>
       el('section', { 'aria-labelledby': id }, el('h2', { id }, title), ...children);
-    const paste = new PasteForm((form) => this.fitPasted(form));
+    const paste = new PasteForm((form) => this.takePasted(form));
     this.place.main.append(
       text('From a recording of a free swing: how hard the pendulum is to turn, and what slows it down.', 'lead'),
-      part('recording', 'The recording', this.zone.element, this.progress, this.problems, this.held, paste.element),
-      part('example', 'No recording at hand', text('Try one of these.', 'quiet'), list),
+      part('recording', 'The recording', this.zone.element, this.progress, paste.element, this.look.element),
+      part('example', 'No recording at hand', text('Try one of these.', 'quiet'), this.examples),
       part('rig-known', 'The pendulum', rig.element),
       part('friction', 'What slows it down', models.element, options.element),
+      this.fitBar,
     );
-    void this.fillExamples(list);
+    options.hideColumns(false);
+    this.showParts();
+    current ??= restored();
+    if (current) void this.lookAt(current.recording, false);
+    void this.fillExamples(this.examples);
     void this.fillModels();
   }
 }

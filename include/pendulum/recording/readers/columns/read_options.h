@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pendulum/recording/clock.h"
+#include "pendulum/recording/readers/columns/table_preview.h"
 #include "pendulum/recording/sensor.h"
 
 namespace pendulum {
@@ -24,6 +25,7 @@ struct ReadOptions {
   /// Limit for a member of a zip file, for all columns of a MAT-file and for all sheets of a workbook as text, which
   /// may be a thousand times larger than the file.
   std::size_t most_unpacked_bytes = std::size_t{1} << 29;
+  TablePreview* preview = nullptr;  ///< Receives the table, also if reading fails; nullptr: not wanted.
 };
 
 }  // namespace pendulum
