@@ -21,11 +21,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double Tail(double statistic, double dof) {
-  if (!(dof > 0)) return 1;
-  return ChiSquareTail(std::max(statistic, 0.0), dof);
-}
-
 // ---- Estimates of each recording alone ------------------------------------------------------------------------------
 
 /// Width of each parameter's 95 % interval over the width for a normal distribution. It is larger than 1 for Student's
@@ -188,7 +183,7 @@ SharedParameter DescribeParameter(const ParameterEstimate& info, const std::vect
   parameter.std_error = 1 / std::sqrt(weight.sum());
   parameter.statistic = weight.dot((value.array() - parameter.mean).square().matrix());
   parameter.dof = static_cast<int>(count) - 1;
-  parameter.p = Tail(parameter.statistic, parameter.dof);
+  parameter.p = ChiSquareTail(parameter.statistic, parameter.dof);
   parameter.scatter = SummarizeScatter(value, error);
   SetDistances(parameter);
   return parameter;

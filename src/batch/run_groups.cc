@@ -35,7 +35,6 @@ constexpr std::array<Limit, 4> kLimits = {{{"small_angle_period", "period", 0.01
                                            {"viscous", "viscous friction", 0.5},
                                            {"coulomb", "dry friction", 0.5}}};
 constexpr double kClearly = 10;  // standard errors
-constexpr double kSigmaFromMedianDistance = 1.4826;
 
 std::string SqlText(const std::string& text) {
   std::string quoted = "'";
@@ -114,19 +113,8 @@ RunGroups Choose(SQLite::Database& database, const std::string& group_by) {
   return groups;
 }
 
-double MedianOf(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 /// The robust standard deviation of values over their median.
-double RelativeScatter(const std::vector<double>& values) {
-  const double median = MedianOf(values);
-  std::vector<double> distances;
-  for (const double value : values) distances.push_back(std::abs(value - median));
-  return kSigmaFromMedianDistance * MedianOf(distances) / std::abs(median);
-}
+double RelativeScatter(const std::vector<double>& values) { return RobustStdDev(values) / std::abs(MedianOf(values)); }
 
 const Limit* LimitOf(std::string_view parameter) {
   const auto* const found = std::ranges::find(kLimits, parameter, &Limit::name);

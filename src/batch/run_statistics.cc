@@ -28,11 +28,6 @@ double Quantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-double MedianOf(std::vector<double> values) {
-  std::ranges::sort(values);
-  return Quantile(values, 0.5);
-}
-
 void Count(const std::vector<double>& sorted, Distribution& distribution) {
   constexpr double kMaxBins = 60;
   const double range = distribution.upper_quartile - distribution.lower_quartile;
@@ -69,12 +64,11 @@ std::vector<bool> IsOutlier(std::size_t runs, const std::vector<Outlier>& outlie
 
 void AddOutliersOf(const RunValues& values, const std::vector<std::size_t>& runs, double limit,
                    std::vector<Outlier>& outliers) {
-  constexpr double kSigmaFromMedianDistance = 1.4826;
   std::vector<double> estimates, distances;
   for (const std::size_t run : runs) estimates.push_back(values.estimate[run]);
   const double median = MedianOf(estimates);
   for (const double estimate : estimates) distances.push_back(std::abs(estimate - median));
-  const double scale = kSigmaFromMedianDistance * MedianOf(distances);
+  const double scale = RobustStdDev(estimates);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const double own = values.std_error[runs[i]];
     const double sigma = std::isfinite(own) ? std::max(scale, own) : scale;
@@ -106,6 +100,19 @@ double UpperP(double chi2, std::size_t dof) {
 }
 
 }  // namespace
+
+double MedianOf(std::vector<double> values) {
+  std::ranges::sort(values);
+  return Quantile(values, 0.5);
+}
+
+double RobustStdDev(const std::vector<double>& values) {
+  constexpr double kSigmaFromMedianDistance = 1.4826;  // of a normal distribution
+  const double median = MedianOf(values);
+  std::vector<double> distances;
+  for (const double value : values) distances.push_back(std::abs(value - median));
+  return kSigmaFromMedianDistance * MedianOf(distances);
+}
 
 bool IsOfTheRig(std::string_view name) {
   constexpr std::array<std::string_view, 8> kOfTheRun = {"release_angle", "release_time", "initial_angle",

@@ -14,6 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/base/distributions.h"
 #include "tests/batch/run_values.h"
 
 namespace pendulum::run_statistics_test {
@@ -100,6 +101,13 @@ TEST(Describe, CountsEveryValueOnce) {
 
 // False alarm rate of this rule in an independent simulation (NumPy, 4000 batches per size): 3.3 to 4.4 % for 5 to 200
 // runs. 1 % is four standard deviations of the rate.
+// Median 3; distances 2, 1, 0, 1 and 97 from it have the median 1. Φ⁻¹(3/4) = 1/1.4826.
+TEST(RobustStdDev, IgnoresAnOutlier) {
+  EXPECT_DOUBLE_EQ(MedianOf({4, 1, 3, 2}), 2.5);
+  EXPECT_DOUBLE_EQ(MedianOf({1, 2, 3, 4, 100}), 3);
+  EXPECT_NEAR(RobustStdDev({1, 2, 3, 4, 100}), 1 / NormalQuantile(0.75), 1e-4);
+}
+
 TEST(FindOutliers, HasAFalseAlarmOnceInTwentyBatches) {
   constexpr int kBatches = 3000;
   for (const std::size_t runs : {5U, 20U, 100U}) {

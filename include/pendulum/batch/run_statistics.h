@@ -35,6 +35,13 @@ struct Distribution {
 
 Distribution Describe(const std::vector<double>& values);
 
+/// The median of one value or more; of an even number the mean of the two in the middle.
+double MedianOf(std::vector<double> values);
+
+/// A standard deviation that outliers do not change: 1.4826 times the median distance from the median, which is σ for a
+/// normal distribution.
+double RobustStdDev(const std::vector<double>& values);
+
 /// A run whose value does not fit its group. `z`: the distance of the value from the group's median, divided by the
 /// larger of the run's standard error and the group's robust scale (1.4826 times the median distance).
 struct Outlier {

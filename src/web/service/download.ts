@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { el } from '../shared/dom';
+import { save } from '../shared/save';
 import { ask } from './server/api';
-
-/** Saves text that the page has made as a file. */
-export function save(content: Blob, name: string): void {
-  const href = URL.createObjectURL(content);
-  const anchor = el('a', { href, download: name, hidden: '' });
-  document.body.append(anchor);
-  anchor.click();
-  anchor.remove();
-  setTimeout(() => URL.revokeObjectURL(href), 60_000);
-}
 
 /** Saves an answer of the service. A plain link cannot send the token. */
 export async function download(path: string, name: string, signal: AbortSignal): Promise<void> {

@@ -4,10 +4,10 @@
 import { curveText } from '../../report/sections/provenance_section';
 import { button, details, el, text } from '../../shared/dom';
 import { fixed, plusMinus, significant } from '../../shared/rounding';
+import { save } from '../../shared/save';
 import { section } from '../../shared/section';
 import { scrollBox, table } from '../../shared/table';
 import { unitText } from '../../shared/units';
-import { save } from '../download';
 import { labelOf } from '../flag_words';
 import { numberField, numberIn, selectField } from '../forms/forms';
 import { go } from '../router';
