@@ -122,14 +122,14 @@ TEST(OptionsJson, DependsOnEveryOption) {
 // A new member causes a compile error here: add it to the changes above or to the options without effect below. Some
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
 // the reader is that of the swing; `notes` are warnings; a rig chooses the gravity, and `is_spring` is set, only by
-// what `gravity` and the models say;
+// what `gravity` and the models say; `preview` receives what the reader sees;
 // users cannot set `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, rig_values, notes,
                           shared] = options;
   [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, window,
-                          most_unpacked_bytes] = read;
+                          most_unpacked_bytes, preview] = read;
   [[maybe_unused]] auto& [from, to, release, is_spring] = swing;
   [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
                           seed, threads, progress, search, stop] = fit;
