@@ -456,8 +456,9 @@ std::string SummaryText(const ResultSummary& summary, const std::string& more, T
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);
     text = ToText(Sections{section.AddText(more)}, style);
+    constexpr std::ptrdiff_t kRecommendation = 2;  // lines of a comparison besides one for each law
     const auto laws = static_cast<std::ptrdiff_t>(summary.laws.size());
-    if (std::ranges::count(text, '\n') <= kMostLines + laws) break;
+    if (std::ranges::count(text, '\n') <= kMostLines + (laws > 0 ? laws + kRecommendation : 0)) break;
   }
   return text;
 }
