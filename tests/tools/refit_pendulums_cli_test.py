@@ -395,7 +395,8 @@ class Reports(Lab):
         self.refit(manifest, "a.sqlite")
         with sqlite3.connect(self.folder / "a.sqlite") as database:
             database.executescript("DROP VIEW results; DROP VIEW all_fits; ALTER TABLE fits DROP COLUMN verdict; "
-                                   "ALTER TABLE quantities DROP COLUMN total_std_error; PRAGMA user_version = 3; "
+                                   "ALTER TABLE quantities DROP COLUMN total_std_error; "
+                                   "ALTER TABLE requests DROP COLUMN name; PRAGMA user_version = 3; "
                                    "CREATE VIEW results AS SELECT id, fits.* FROM runs JOIN fits USING(run)")
         (self.folder / "a.sqlite").chmod(0o444)
         self.folder.chmod(0o555)
