@@ -178,7 +178,7 @@ test('another law, rig and window are chosen by keyboard, and the window can be 
   await page.locator('#again .choice label', { hasText: 'find out for me' }).click();
   await page.getByText('Another description of the pendulum').click();
   await page.locator('#again .choice label', { hasText: 'its gravity torque' }).click();
-  await page.getByLabel('Gravity torque G [N m]', { exact: true }).fill('1.8');
+  await page.getByLabel('How large is the gravity torque G?', { exact: true }).fill('1.8');
   await page.getByLabel('To [s]', { exact: true }).focus();
   while (!(await page.evaluate(() => document.activeElement.textContent === 'Fit this window')))
     await page.keyboard.press('Tab');

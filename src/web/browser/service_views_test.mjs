@@ -68,7 +68,7 @@ const views = () => [
     'a problem',
     '/',
     async (page) => {
-      await drop(page, [{ name: 'letter.txt', content: 'no numbers at all\n' }]);
+      await drop(page, [{ name: 'letter.pdf', content: '%PDF-1.4\n' }]);
       await page.locator('.problem').waitFor();
     },
   ],

@@ -130,9 +130,6 @@ Result<Recording> Reader::Read() {
   if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
     return tl::unexpected(std::move(read).error());
   }
-  if (!has_layout_ && head_.names.number > 0) {
-    if (Check chosen = ChooseColumns(); !chosen) return tl::unexpected(std::move(chosen).error());
-  }
   return Finish();
 }
 
