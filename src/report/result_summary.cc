@@ -323,6 +323,7 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 struct Folding {
   std::size_t warnings = 100;  ///< More than these are only counted.
   bool textbook = true;
+  bool clips = false;  ///< Cuts each warning to one line.
   bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
 };
 
@@ -365,16 +366,20 @@ std::string DerivedText(const FitSummary& summary) {
   return text;
 }
 
-void AddWarnings(const FitSummary& summary, std::size_t most, Section& section) {
+/// A text cut between words to at most `columns` columns, with an ellipsis.
+std::string Clipped(const std::string& text, std::size_t columns) {
+  if (text.size() <= columns) return text + ".";
+  const std::size_t end = text.rfind(' ', columns - 4);
+  return text.substr(0, end == std::string::npos ? columns - 4 : end) + " ...";
+}
+
+void AddWarnings(const FitSummary& summary, const Folding& folding, Section& section) {
+  constexpr std::size_t kOneLine = 66;
   const std::size_t count = summary.warnings.size();
-  if (count == 0) return;
-  const std::string counted = std::to_string(count) + (count == 1 ? " warning" : " warnings");
-  if (most == 0) {
-    section.AddText(counted + ".", Emphasis::kCaution);
-    return;
-  }
+  const std::size_t most = folding.warnings;
   for (std::size_t k = 0; k < std::min(most, count); ++k) {
-    section.AddText("Warning: " + summary.warnings[k] + ".", Emphasis::kCaution);
+    const std::string& warning = summary.warnings[k];
+    section.AddText("Warning: " + (folding.clips ? Clipped(warning, kOneLine) : warning + "."), Emphasis::kCaution);
   }
   if (count > most)
     section.AddText("And " + std::to_string(count - most) + (count - most == 1 ? " more warning." : " more warnings."),
@@ -392,7 +397,7 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
   if (!fit.equation.empty()) section.Add(Formula{fit.equation});
   section.AddText(fit.units);
   if (folding.textbook) section.AddText(fit.textbook);
-  AddWarnings(fit, folding.warnings, section);
+  AddWarnings(fit, folding, section);
   return section;
 }
 
@@ -422,8 +427,9 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t main) 
       !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
   if (has_all) summary.equation = FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError);
   if (!identification.si_rig()) {
-    summary.units = fit.model.gravity.is_linear() ? "Torques are relative to the stiffness; SI: --stiffness."
-                                                  : "Torques are relative to gravity's; SI: --bob_mass, --rod_length.";
+    summary.units = fit.model.gravity.is_linear()
+                        ? "In units of the stiffness k. A known stiffness (--stiffness) gives SI units."
+                        : "In units of the gravity torque G. Masses and length (--rig) give SI units.";
   }
   summary.textbook = TextbookText(identification.CheckOf(main));
   return summary;
@@ -447,11 +453,11 @@ Section SummarySection(const ResultSummary& summary) { return FoldedSection(summ
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
   constexpr std::array<Folding, 6> kFoldings = {Folding{},
-                                                Folding{2, true, true},
-                                                Folding{2, false, true},
-                                                Folding{2, false, false},
-                                                Folding{1, false, false},
-                                                Folding{0, false, false}};
+                                                Folding{.warnings = 2},
+                                                Folding{.warnings = 2, .textbook = false},
+                                                Folding{.warnings = 2, .textbook = false, .sensor = false},
+                                                Folding{.warnings = 1, .textbook = false, .sensor = false},
+                                                Folding{1, false, true, false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

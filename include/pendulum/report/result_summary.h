@@ -63,7 +63,7 @@ Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
 /// more, all but two warnings are only counted, then the textbook's line and parameters of the sensor are left out, then
-/// all but one warning are only counted, and at last all are.
+/// all but one warning are only counted, and at last this one is cut to a line.
 /// `more`: a last line that says where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 

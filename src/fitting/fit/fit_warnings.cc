@@ -52,11 +52,11 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
   const std::string times = ratio > kLargestShown ? "more than 99" : NumberText(ratio, 2);
   const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
   warnings.push_back(
-      {"lack_of_fit", "the residuals are autocorrelated and " + times +
-                          " times as large as the noise between neighbouring samples; the misfit is " +
-                          MisfitSize(recording, misfit) +
-                          ". The model does not describe the whole recording, or its noise is slow. The error bars may "
-                          "be wrong; look at --residuals and try another model or window"});
+      {"lack_of_fit",
+       "the residuals are autocorrelated and " + times +
+           " times as large as the noise between neighbouring samples; the misfit is " + MisfitSize(recording, misfit) +
+           ". The model does not describe the whole recording, or its noise is slow. The error bars may "
+           "be wrong; look at the residuals (--report), and try other laws (--models all) or another window"});
 }
 
 /// A line through the mean residuals of whole periods. The swing itself does not affect these means.

@@ -273,7 +273,7 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
   if (!jumps && can_detect && MayHaveOffsetJump(fit)) {
     fit.warnings.push_back({"offset_unsteady",
                             "the mean of the residuals changes within the window by more than chance explains: the "
-                            "zero may have jumped or drifted by a small amount; look at --residuals"});
+                            "zero may have jumped or drifted by a small amount; look at the residuals (--report)"});
   }
   if (!jumps) return;
   if (!jumps->AreCorrected()) return RejectForOffsetJumps(jumps->message, fit);
