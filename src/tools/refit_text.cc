@@ -140,13 +140,12 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
     if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
     if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
     const Json& found = parameter["repeatability"];
-    rows.push_back({parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
-                    parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]),
-                    SpreadText(parameter["median_std_error"]),
-                    found.is_object() && found["scatter_ratio"].is_number()
-                        ? NumberText(found["scatter_ratio"].get<double>(), 3)
-                        : "",
-                    parameter["unit"] == "1" ? "" : parameter["unit"].get<std::string>()});
+    rows.push_back(
+        {parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
+         parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_std_error"]),
+         found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
+                                                                 : "",
+         parameter["unit"] == "1" ? "" : parameter["unit"].get<std::string>()});
   }
   if (rows.empty()) return "";
   return AlignedTable({{summary["main_model"].get<std::string>()},

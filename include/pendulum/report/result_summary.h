@@ -62,9 +62,9 @@ ResultSummary SummarizeResult(const Identification& identification);
 Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
-/// more, all but two warnings are only counted, then the textbook's line and parameters of the sensor are left out, then
-/// all but one warning are only counted, and at last this one is cut to a line.
-/// `more`: a last line that says where to find more.
+/// more, all but two warnings are only counted, then the textbook's line and parameters of the sensor are left out,
+/// then all but one warning are only counted, and at last this one is cut to a line. `more`: a last line that says
+/// where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
