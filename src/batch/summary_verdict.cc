@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kExamples = 10;
 
 /// A run whose reason begins with its own path is about the recording; otherwise it is about the rig or calibration.
-constexpr const char* kIsMissing = "exit_code = 3 AND substr(reason, 1, length(path) + 1) = path || ':'";
+constexpr const char* kIsMissing = "exit_code = 3 AND substr(coalesce(reason, ''), 1, length(path) + 1) = path || ':'";
 
 std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
   SQLite::Statement rows(database, "SELECT id, reason, path FROM runs WHERE " + condition +

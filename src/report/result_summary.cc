@@ -223,8 +223,9 @@ std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
   std::string text = std::string(symbol) + " " + NumberText(row.closed_form, kDigits);
   if (row.agrees.value_or(true)) return text + " (agrees)";
   const double ratio = row.closed_form / row.fit;
-  constexpr double kTimes = 1.5;  // more is said as a factor
-  const std::string size = ratio > kTimes
+  constexpr double kTimes = 1.5, kMost = 100;  // more is said as a factor, far more only as "far more"
+  const std::string size = !(ratio > 0 && ratio < kMost) ? "far from the fit's value"
+                           : ratio > kTimes
                                ? NumberText(ratio, 2) + " times as large"
                                : NumberText(100 * std::abs(ratio - 1), 2) + (ratio > 1 ? " % more" : " % less");
   return text + " (" + size + (row.cause ? ": " + CauseWords(*row.cause) : "") + ")";

@@ -62,11 +62,12 @@ void ProgressLine::Redraw(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     const auto now = Clock::now();
     const std::size_t columns = SizeOfTerminal(descriptor_).columns;
-    WriteAll(descriptor_,
-             "\r" +
-                 ProgressLineText(step_, SecondsBetween(begin_, now), SecondsBetween(step_begin_, now), columns - 1) +
-                 "\x1b[K");
+    const std::string text =
+        ProgressLineText(step_, SecondsBetween(begin_, now), SecondsBetween(step_begin_, now), columns - 1);
     has_drawn_ = true;
+    lock.unlock();  // a terminal that takes no text must not stop the computation
+    WriteAll(descriptor_, "\r" + text + "\x1b[K");
+    lock.lock();
   }
 }
 

@@ -26,7 +26,7 @@ export class CalibrationForm {
       if (area.input.value.trim() !== '') use({ name: 'the pasted table', json: area.input.value });
     });
     this.element.append(
-      text('These readings are no angles yet. A table of readings and angles turns them into degrees.', 'quiet'),
+      text('These readings are not angles yet. A table of readings and angles turns them into degrees.', 'quiet'),
       file.element,
       area.element,
       press,

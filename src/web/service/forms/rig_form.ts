@@ -86,7 +86,7 @@ export class RigForm {
 
   private parts(): Node[] {
     if (this.kind === 'none')
-      return [text('Inertia and friction are then told in units of the gravity torque G, not in kg m² and N m.', 'quiet')];
+      return [text('Inertia and friction are then given in units of the gravity torque G, not in kg m² and N m.', 'quiet')];
     if (this.kind !== 'file') return [this.fields[this.kind].element, text(kNotes[this.kind], 'quiet')];
     const asGiven = text('The rig file is in use. Choose another file to replace it.', 'quiet');
     return this.given ? [asGiven, this.file.element] : [this.file.element];

@@ -183,6 +183,6 @@ export class LookSection {
   private assumptions({ assumptions, name }: Preview): HTMLElement | null {
     if (assumptions.length === 0) return null;
     const lines = assumptions.map(({ message }) => el('li', {}, `${capital(withoutName(inFields(message), name))}.`));
-    return el('div', { class: 'assumptions' }, el('p', {}, 'Assumed, or worth a look:'), el('ul', {}, ...lines));
+    return el('div', { class: 'assumptions' }, el('p', {}, 'Assumptions and warnings:'), el('ul', {}, ...lines));
   }
 }
