@@ -74,10 +74,11 @@ bool HasFoldersOfSeveral(SQLite::Database& database) {
              .getInt64() > 1;
 }
 
+/// A run without a value in the column is a group by itself: nothing says which pendulum it is of.
 RunGroups ByColumn(const std::string& column) {
   return {.by = column == "rig" ? RunGroups::By::kRig : RunGroups::By::kColumn,
           .name = column,
-          .sql = "coalesce(" + ColumnSql(column) + ", '')"};
+          .sql = "coalesce(nullif(" + ColumnSql(column) + ", ''), " + SqlText("no " + column + ": ") + " || runs.id)"};
 }
 
 RunGroups Choose(SQLite::Database& database, const std::string& group_by) {

@@ -112,14 +112,14 @@ Json VerdictJson(const std::string& model, const Json& parameters, const RunGrou
   std::vector<std::string> all, larger, smaller;
   double largest = 0;
   std::string worst;
-  bool enough = false;
+  bool enough = true;
   for (const Json& parameter : parameters) {
     if (parameter["model"] != model || parameter["derived"].get<bool>()) continue;
     const Json& found = parameter["repeatability"];
     if (found.is_null()) continue;
     const auto name = parameter["name"].get<std::string>();
     all.push_back(name);
-    enough = enough || found["dof"].get<int>() >= kEnoughDof;
+    enough = enough && found["dof"].get<int>() >= kEnoughDof;
     if (found["verdict"] == "scatter_smaller") smaller.push_back(name);
     if (found["verdict"] != "scatter_larger") continue;
     larger.push_back(name);
@@ -147,11 +147,12 @@ Json VerdictJson(const std::string& model, const Json& parameters, const RunGrou
   }
   if (!enough) {
     return Verdict(model, "few", "good",
-                   repeats + " as much as their errors say, but they are too few to prove the errors right.");
+                   repeats + " as much as their errors say, but they are too few to find a difference below a third.");
   }
   return Verdict(model, "agrees", "good",
                  repeats + " as much as their errors say, in " +
-                     (all.size() == 1 ? "the " + all.front() : "all " + count) + ". The errors are right.");
+                     (all.size() == 1 ? "the " + all.front() : "all " + count) +
+                     ". No difference from the errors was found.");
 }
 
 }  // namespace pendulum

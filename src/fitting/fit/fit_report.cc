@@ -32,9 +32,13 @@ bool FitReport::HasWarning(std::string_view code) const {
 void WithdrawErrors(std::string_view why, FitReport& fit) {
   for (ParameterEstimate& parameter : fit.parameters) {
     parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+    parameter.systematic = {};
     if (!parameter.fixed) parameter.reason = why;
   }
-  for (DerivedQuantity& quantity : fit.derived) quantity.std_error = std::nullopt;
+  for (DerivedQuantity& quantity : fit.derived) {
+    quantity.std_error = std::nullopt;
+    quantity.systematic = {};
+  }
   fit.profiles.clear();
   fit.covariance_names.clear();
   fit.covariance.resize(0, 0);

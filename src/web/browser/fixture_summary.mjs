@@ -233,7 +233,7 @@ const verdictOf = (model, verdict = 'agrees') => ({
   text:
     verdict === 'too_small'
       ? 'Repeats differ by more than their errors, 1.4 times in inertia. Either the pendulum changed or the errors are too small.'
-      : 'Repeats differ as much as their errors say, in all 4 parameters. The errors are right.',
+      : 'Repeats differ as much as their errors say, in all 4 parameters. No difference from the errors was found.',
 });
 const ended = (model, fits, not_converged = 0, not_identifiable = 0, failed = 0) => ({
   model,
