@@ -71,7 +71,8 @@ SELECT run, model, name, std_error, systematic_std_error FROM quantities
   }
 }
 
-/// Replaces the view `results` unless it is that of this program.
+/// Replaces the view `results` unless it is that of this program. To be called within a transaction, because a store
+/// has no such view between the two statements.
 void UpdateResultsView(SQLite::Database& database) {
   const std::string sql = ResultsView();
   SQLite::Statement present(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'results'");
@@ -295,7 +296,11 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
     const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
     if (!is_current && !(can_read && sqlite::IsReadOnly(name))) Migrate(state->database, version);
-    if (is_current && mode != Mode::kRead) UpdateResultsView(state->database);
+    if (is_current && mode != Mode::kRead) {
+      SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
+      UpdateResultsView(state->database);
+      transaction.commit();
+    }
     return Store(std::move(state));
   });
 }

@@ -155,7 +155,10 @@ class StartView {
       this.look.hide();
       this.showParts();
     }
-    current = { recording, isKept: await holdRecording(recording) };
+    current = { recording, isKept: false };
+    const isKept = await holdRecording(recording);
+    if (current?.recording !== recording) return; // another was dropped meanwhile
+    current = { recording, isKept };
     keepForms(this.all);
     this.read = this.readCurrent();
     const preview = await this.read;
