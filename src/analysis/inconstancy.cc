@@ -49,6 +49,8 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   return all;
 }
 
+std::string_view NameOf(const ParameterEstimate& parameter) { return parameter.info.name; }
+
 /// Adds this error to what is derived from the parameter. The ratios of the parameters to G determine them.
 void AddToDerived(const ParameterEstimate& changing, double std_dev, FitReport& fit) {
   const auto ratio = std::ranges::find(fit.derived, "gravity_over_inertia", &DerivedQuantity::name);
@@ -81,27 +83,80 @@ void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit)
   AddToDerived(parameter, std_dev, fit);
 }
 
+/// How much a parameter changes during a recording.
+struct Change {
+  std::string_view name;
+  double std_dev = 0;  // of its parts about the estimate, beyond their errors
+  std::string_view parts;
+};
+
+/// The parameters of `fit` that change by more than their errors.
+std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
+  std::vector<Change> changes;
+  for (const Estimates& estimates : EstimatesOfParts(constancy)) {
+    const ParameterEstimate* const parameter = fit.Find(estimates.name);
+    const bool differs =
+        ScatterP(estimates.value, estimates.std_error) < kNotConstant || estimates.p_of_trend < kNotConstant;
+    if (!differs || parameter == nullptr) continue;
+    const double about = ScatterAbout(parameter->estimate, estimates.value, estimates.std_error);
+    if (about > 0 && std::isfinite(about)) changes.push_back({parameter->info.name, about, estimates.parts});
+  }
+  return changes;
+}
+
+std::string ChangeText(const ParameterEstimate& parameter, double std_dev) {
+  return std::string(parameter.info.name) + " by " + NumberText(std_dev, 2) +
+         (parameter.unit == "1" ? "" : " " + parameter.unit);
+}
+
+void Warn(const std::string& changes, FitReport& fit) {
+  if (changes.empty()) return;
+  fit.warnings.push_back(
+      {"not_constant", "parameters change during a recording by more than their errors: " + changes +
+                           ". Another run may differ by about as much; the systematic errors include this, standard "
+                           "errors and intervals do not"});
+}
+
+/// Root mean square of a parameter's changes in all recordings, weighted with 1 / std_error²; 0 if it is constant, or
+/// if no recording has an error.
+double CommonChange(std::string_view name, const std::vector<ChangingRun>& runs) {
+  double squares = 0, weights = 0;
+  for (const ChangingRun& run : runs) {
+    const ParameterEstimate* const alone = run.alone.Find(name);
+    if (alone == nullptr || !(alone->std_error.value_or(0) > 0)) continue;
+    const double weight = 1 / (*alone->std_error * *alone->std_error);
+    const std::vector<Change> changes = Changes(run.constancy, run.alone);
+    const auto change = std::ranges::find(changes, name, &Change::name);
+    weights += weight;
+    if (change != changes.end()) squares += weight * change->std_dev * change->std_dev;
+  }
+  return squares > 0 ? std::sqrt(squares / weights) : 0;
+}
+
 }  // namespace
 
 void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
-  std::string scatter;
-  for (const Estimates& estimates : EstimatesOfParts(constancy)) {
-    const auto parameter = std::ranges::find(fit.parameters, estimates.name,
-                                             [](const ParameterEstimate& candidate) { return candidate.info.name; });
-    const bool differs =
-        ScatterP(estimates.value, estimates.std_error) < kNotConstant || estimates.p_of_trend < kNotConstant;
-    if (!differs || parameter == fit.parameters.end()) continue;
-    const double about = ScatterAbout(parameter->estimate, estimates.value, estimates.std_error);
-    if (!(about > 0) || !std::isfinite(about)) continue;
-    AddSystematic(*parameter, about, fit);
-    scatter += (scatter.empty() ? "" : ", ") + std::string(parameter->info.name) + " by " + NumberText(about, 2) +
-               (parameter->unit == "1" ? "" : " " + parameter->unit) + " between " + std::string(estimates.parts);
+  std::string text;
+  for (const Change& change : Changes(constancy, fit)) {
+    const auto parameter = std::ranges::find(fit.parameters, change.name, NameOf);
+    AddSystematic(*parameter, change.std_dev, fit);
+    text +=
+        (text.empty() ? "" : ", ") + ChangeText(*parameter, change.std_dev) + " between " + std::string(change.parts);
   }
-  if (scatter.empty()) return;
-  fit.warnings.push_back(
-      {"not_constant", "parameters change during this recording by more than their errors: " + scatter +
-                           ". Another run may differ by about as much; the systematic errors include this, standard "
-                           "errors and intervals do not"});
+  Warn(text, fit);
+}
+
+void AddInconstancyError(const std::vector<ChangingRun>& runs, JointFit& joint) {
+  std::string text;
+  for (ParameterEstimate& shared : joint.whole.parameters) {
+    const double change = shared.std_error ? CommonChange(shared.info.name, runs) : 0;
+    if (!(change > 0)) continue;
+    AddSystematic(shared, change, joint.whole);
+    for (FitReport& run : joint.runs)
+      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), change, run);
+    text += (text.empty() ? "" : ", ") + ChangeText(shared, change);
+  }
+  Warn(text, joint.whole);
 }
 
 }  // namespace pendulum

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "pendulum/analysis/inconstancy.h"
+
 namespace pendulum {
 namespace {
 
@@ -42,6 +44,15 @@ Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const
   return TestHomogeneity(alone, shared);
 }
 
+/// Recordings whose constancy was not tested count as constant.
+void AddChanges(const std::vector<RunModels>& runs, std::size_t m, JointFit& fit) {
+  std::vector<ChangingRun> changing;
+  for (const RunModels& run : runs) {
+    if (m < run.constancy.size()) changing.push_back({run.alone.fits[m], run.constancy[m]});
+  }
+  AddInconstancyError(changing, fit);
+}
+
 /// If the recordings disagree, adds a warning with the verdict, and the verdict to the reason if the joint fit did not
 /// converge.
 void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
@@ -67,6 +78,7 @@ JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, 
     result.joint.push_back(FitModel(result.runs, m, own, shared));
     result.homogeneity.push_back(CompareRuns(result.runs, m, own, shared));
     SetVerdict(result.homogeneity.back(), result.joint.back().whole);
+    AddChanges(result.runs, m, result.joint.back());
   }
   return result;
 }

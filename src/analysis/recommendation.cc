@@ -106,6 +106,15 @@ class RankedRows {
     return names;
   }
 
+  /// The other models whose added terms are estimated as 0.
+  std::vector<std::string> SameModels(std::size_t chosen) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (i != chosen && rows_[i].bic && IsSame(i, chosen)) names.push_back(rows_[i].model);
+    }
+    return names;
+  }
+
  private:
   const std::vector<FitReport>& fits_;
   const std::vector<ComparisonRow>& rows_;
@@ -130,8 +139,8 @@ std::string PredictionText(const ComparisonRow& chosen, const ComparisonRow& oth
 /// Says whether the residuals show a lack of fit or are autocorrelated.
 std::string DescribeDoubts(const ComparisonRow& row, const FitReport& fit) {
   if (row.lack_of_fit) {
-    return "; but the residuals are more than noise (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
-           "), so the model still lacks something";
+    return "; its residuals are still more than noise (lag-1 correlation " + NumberText(row.lag1_correlation, 2) +
+           "), so the model lacks something";
   }
   if (fit.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) return "";
   return "; its residuals are autocorrelated (" + fit.noise.autocorrelation.Name() +
@@ -163,6 +172,11 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   } else if (undecided.empty()) {
     const auto judged = std::ranges::count_if(comparison.rows, &ComparisonRow::judged);
     comparison.reason += judged == 1 ? "the only one that converged" : "no other is better";
+  }
+  if (const std::vector<std::string> same = ranked.SameModels(chosen); !same.empty()) {
+    comparison.reason += "; " + NameList(same) +
+                         (same.size() == 1 ? " gives the same fit: its added terms are 0"
+                                           : " give the same fit: their added terms are 0");
   }
   if (const std::vector<std::string> refuted = ranked.RefutedModels(chosen); !refuted.empty()) {
     comparison.reason += "; " + NameList(refuted) + (refuted.size() == 1 ? " has" : " have") +

@@ -390,11 +390,12 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identificati
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {
-  JointPart part{joint.joint[m].shared, joint.homogeneity[m], {}};
+  JointPart part{joint.joint[m].shared, joint.homogeneity[m], {}, false};
   for (const RunModels& run : joint.runs) {
     const FitReport& fit = run.alone.fits[m];
     const std::string status(TerminationName(fit.termination));
     part.alone.push_back(fit.termination == Termination::kConverged ? status : status + ": " + fit.reason);
+    part.lacks_fit = part.lacks_fit || fit.HasWarning("lack_of_fit");
   }
   return part;
 }

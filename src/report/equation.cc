@@ -64,4 +64,20 @@ std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig, 
   return equation;
 }
 
+std::string WithoutZeroTerms(std::string equation) {
+  constexpr std::string_view kZero = " + 0 ";
+  for (std::size_t at = equation.find(kZero); at != std::string::npos; at = equation.find(kZero, at)) {
+    int depth = 0;  // of brackets: a sum within them belongs to the term
+    std::size_t end = at + kZero.size();
+    const auto ends = [&] {
+      return depth <= 0 && equation[end] == ' ' && std::string_view("+-=").find(equation[end + 1]) < 3;
+    };
+    for (; end + 1 < equation.size() && !ends(); ++end) {
+      depth += equation[end] == '(' || equation[end] == '[' ? 1 : equation[end] == ')' || equation[end] == ']' ? -1 : 0;
+    }
+    equation.erase(at, end - at);
+  }
+  return equation;
+}
+
 }  // namespace pendulum

@@ -9,9 +9,11 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
+#include "pendulum/report/fit_sections.h"
 #include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
@@ -116,7 +118,8 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
     const auto found = std::ranges::find(fit.derived, name, &DerivedQuantity::name);
     if (found == fit.derived.end()) continue;
     const auto total = TotalStdError(found->std_error, found->systematic);
-    if (total && *total >= std::abs(found->estimate)) continue;  // its divisor may be 0
+    const bool is_open = found->lower95.has_value() != found->upper95.has_value();
+    if (is_open || (total && *total >= std::abs(found->estimate))) continue;  // its divisor may be 0
     derived.push_back(Quantity(std::string(word), "", found->estimate, total, found->unit));
   }
   return derived;
@@ -126,6 +129,63 @@ std::string QuantityText(const SummaryQuantity& quantity) {
   const std::string blank(kNoBreak);
   return quantity.name + blank + quantity.value + (quantity.error.empty() ? "" : blank + "±" + blank + quantity.error) +
          (quantity.unit.empty() ? "" : blank + quantity.unit);
+}
+
+// ---- Remarks on parameters ------------------------------------------------------------------------------------------
+
+bool IsPhysical(const FitReport& fit, const ParameterEstimate& parameter) {
+  const std::vector<ParameterInfo> physical = PhysicalParameters(fit.model);
+  return std::ranges::find(physical, parameter.info.name, &ParameterInfo::name) != physical.end();
+}
+
+/// "coulomb 0.0016 to 0.0201" if the total 95 % interval is much wider than ± 2 total errors, which few independent
+/// samples or a likelihood that is no parabola make; otherwise empty.
+std::string WideIntervalText(const ParameterEstimate& parameter) {
+  constexpr double kMuchWider = 1.5;
+  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return TotalIntervalEnd(which, parameter.estimate, end95, parameter.systematic);
+  };
+  const auto lower = end(IntervalEnd::kLower, parameter.lower95), upper = end(IntervalEnd::kUpper, parameter.upper95);
+  if (!total || !lower || !upper) return "";
+  const double reach = std::max(parameter.estimate - *lower, *upper - parameter.estimate);
+  if (!(reach > kMuchWider * kNormal95 * *total)) return "";
+  const Conversion shown = Degrees(parameter.unit).value_or(Conversion{parameter.unit});
+  const Rounding rounding = PdgRounding(shown.factor * parameter.estimate, shown.factor * *total);
+  const auto text = [&](double x) { return RoundedText(shown.factor * x, rounding); };
+  return std::string(parameter.info.name) + " " + text(std::max(*lower, parameter.info.lower)) + " to " + text(*upper);
+}
+
+/// Whether a term of friction may be 0: its 95 % interval contains 0.
+bool MayBeZero(const ParameterEstimate& parameter) {
+  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+  return total && !parameter.at_bound && parameter.info.name != kInertia.name && parameter.lower95.value_or(0) <= 0 &&
+         std::abs(parameter.estimate) < kNormal95 * *total;
+}
+
+void AddListed(const std::string& item, std::string& list) {
+  if (!item.empty()) list += (list.empty() ? "" : ", ") + item;
+}
+
+/// What a value ± error does not say.
+std::string RemarksText(const FitReport& fit) {
+  std::string zero, weak, wide;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (!IsPhysical(fit, parameter)) continue;
+    const std::string name(parameter.info.name);
+    const auto known = std::ranges::find(fit.identifiability, name, &Identifiability::parameter);
+    if (MayBeZero(parameter)) {
+      AddListed(name, zero);
+    } else if (known != fit.identifiability.end() && known->verdict == Identifiability::Verdict::kWeakly) {
+      AddListed(name, weak);
+    }
+    AddListed(WideIntervalText(parameter), wide);
+  }
+  std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
+  if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";
+  if (!wide.empty()) text += "95 % intervals: " + wide + ", much wider than ± 2 errors. ";
+  if (!text.empty()) text.pop_back();
+  return text;
 }
 
 // ---- Sentences ------------------------------------------------------------------------------------------------------
@@ -178,8 +238,16 @@ std::string WithFullStop(const std::string& text) { return text.empty() || text.
 
 constexpr int kRmsDigits = 3;
 
+/// "residuals of 0.285 deg (rms)"; recordings in different units have no common residual.
+std::string ResidualsText(const FitReport& fit) {
+  if (fit.reading_unit.empty()) return "residuals";
+  const Conversion shown = Degrees(fit.reading_unit).value_or(Conversion{fit.reading_unit});
+  return "residuals of " + NumberText(shown.factor * fit.statistics.rms_residual, kRmsDigits) + " " +
+         std::string(shown.unit) + " (rms)";
+}
+
 /// Whether the law describes the readings.
-void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& summary) {
+void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit, FitSummary& summary) {
   const std::string law = "The law " + std::string(fit.model.name);
   if (fit.termination != Termination::kConverged) {
     summary.verdict = "No result with " + std::string(fit.model.name) + " (" +
@@ -187,10 +255,8 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& su
     summary.emphasis = Emphasis::kAlarm;
     return;
   }
-  const Conversion shown = Degrees(fit.reading_unit).value_or(Conversion{fit.reading_unit});
-  const std::string rms = "residuals of " + NumberText(shown.factor * fit.statistics.rms_residual, kRmsDigits) + " " +
-                          std::string(shown.unit) + " (rms)";
-  if (fit.HasWarning("lack_of_fit")) {
+  const std::string rms = ResidualsText(fit);
+  if (lacks_fit) {
     summary.verdict = law + " does not describe all of the readings: " + rms + " are more than noise.";
     summary.emphasis = Emphasis::kCaution;
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
@@ -202,6 +268,16 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, FitSummary& su
   } else {
     summary.verdict = law + " describes the readings: " + rms + " are noise.";
   }
+}
+
+/// Whether several recordings agree. Without a test nothing is known of that.
+void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
+  summary.agreement = WithFullStop(Capitalized(Printable(homogeneity.verdict)));
+  if (summary.emphasis == Emphasis::kAlarm) return;
+  if (!homogeneity.p) summary.emphasis = Emphasis::kCaution;
+  if (homogeneity.agrees()) return;
+  summary.verdict = "The errors below assume that the recordings agree: do not quote them.";
+  summary.emphasis = homogeneity.disagreeing.empty() ? Emphasis::kCaution : Emphasis::kAlarm;
 }
 
 /// What the formula assumes, or what disturbs it.
@@ -273,10 +349,9 @@ std::string ShortMessage(const std::string& message) {
   return text;
 }
 
-std::vector<std::string> ShortMessages(const std::vector<Warning>& warnings) {
-  std::vector<std::string> messages;
-  for (const Warning& warning : warnings) messages.push_back(ShortMessage(warning.message));
-  return messages;
+std::vector<Warning> Shortened(std::vector<Warning> warnings) {
+  for (Warning& warning : warnings) warning.message = ShortMessage(warning.message);
+  return warnings;
 }
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
@@ -296,7 +371,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
                    row.model == comparison.recommended ? "recommended"
                    : row.lack_of_fit                   ? "lack of fit"
                    : row.judged                        ? ""
-                                                       : "not compared"};
+                                                       : "no result"};
     summary.laws.push_back(std::move(law));
   }
 }
@@ -306,7 +381,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 /// What the linear formulas give.
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
-  summary.warnings = ShortMessages(AllWarnings(identification));
+  summary.warnings = Shortened(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
   if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
   const ClosedForms& forms = *identification.closed_forms;
@@ -322,9 +397,8 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 
 /// What a text leaves out to be short.
 struct Folding {
-  std::size_t warnings = 100;  ///< More than these are only counted.
+  std::size_t warnings = 100;  ///< More than these are only named.
   bool textbook = true;
-  bool clips = false;  ///< Cuts each warning to one line.
   bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
 };
 
@@ -367,24 +441,36 @@ std::string DerivedText(const FitSummary& summary) {
   return text;
 }
 
-/// A text cut between words to at most `columns` columns, with an ellipsis.
-std::string Clipped(const std::string& text, std::size_t columns) {
-  if (text.size() <= columns) return text + ".";
-  const std::size_t end = text.rfind(' ', columns - 4);
-  return text.substr(0, end == std::string::npos ? columns - 4 : end) + " ...";
+/// "lack of fit, zero drift" for the warnings from number `first` on: their codes in words, each once.
+std::string WarningNames(const std::vector<Warning>& warnings, std::size_t first) {
+  std::vector<std::string> names;
+  for (std::size_t k = first; k < warnings.size(); ++k) {
+    std::string name = warnings[k].code;
+    std::ranges::replace(name, '_', ' ');
+    if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+  }
+  std::string text;
+  for (const std::string& name : names) AddListed(name, text);
+  return text;
 }
 
 void AddWarnings(const FitSummary& summary, const Folding& folding, Section& section) {
-  constexpr std::size_t kOneLine = 66;
-  const std::size_t count = summary.warnings.size();
-  const std::size_t most = folding.warnings;
-  for (std::size_t k = 0; k < std::min(most, count); ++k) {
-    const std::string& warning = summary.warnings[k];
-    section.AddText("Warning: " + (folding.clips ? Clipped(warning, kOneLine) : warning + "."), Emphasis::kCaution);
+  const std::size_t count = summary.warnings.size(), shown = std::min(folding.warnings, count);
+  for (std::size_t k = 0; k < shown; ++k) {
+    section.AddText("Warning: " + summary.warnings[k].message + ".", Emphasis::kCaution);
   }
-  if (count > most)
-    section.AddText("And " + std::to_string(count - most) + (count - most == 1 ? " more warning." : " more warnings."),
-                    Emphasis::kCaution);
+  if (shown == count) return;
+  section.AddText((shown == 0 ? "Warnings: " : "More warnings: ") + WarningNames(summary.warnings, shown) + ".",
+                  Emphasis::kCaution);
+}
+
+/// The parameters that the table leaves out.
+std::string OmittedText(const FitSummary& summary, const Folding& folding) {
+  std::string names;
+  for (const SummaryQuantity& quantity : summary.parameters) {
+    if (!folding.sensor && IsOfSensor(quantity)) AddListed(quantity.name, names);
+  }
+  return names.empty() ? "" : "Also fitted: " + names + " (--details).";
 }
 
 Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
@@ -394,8 +480,8 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
   if (!summary.laws.empty()) section.Add(LawTable(summary));
   section.AddText(fit.agreement, fit.emphasis).AddText(fit.verdict, fit.emphasis);
   if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
-  section.AddText(DerivedText(fit));
-  if (!fit.equation.empty()) section.Add(Formula{fit.equation});
+  section.AddText(OmittedText(fit, folding)).AddText(fit.remarks).AddText(DerivedText(fit));
+  if (!fit.equation.empty()) section.Add(Formula{WithUnbrokenTerms(fit.equation)});
   section.AddText(fit.units);
   if (folding.textbook) section.AddText(fit.textbook);
   AddWarnings(fit, folding, section);
@@ -407,26 +493,24 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
 FitSummary SummarizeFit(const Identification& identification, std::size_t main) {
   FitSummary summary;
   const FitReport& fit = identification.fits[main];
-  summary.warnings = ShortMessages(WarningsOfFit(identification, main));
+  summary.warnings = Shortened(WarningsOfFit(identification, main));
   summary.law = fit.model.name;
-  SetVerdict(fit, identification.ConstancyOf(main), summary);
-  if (identification.is_joint()) {
-    const Homogeneity& homogeneity = identification.joint[main].homogeneity;
-    summary.agreement = WithFullStop(Capitalized(Printable(homogeneity.verdict)));
-    if (!homogeneity.agrees() && summary.emphasis != Emphasis::kAlarm) {
-      summary.verdict = "The errors below assume that the recordings agree: do not quote them.";
-      summary.emphasis = Emphasis::kCaution;
-    }
-  }
-  if (fit.termination == Termination::kFailed) return summary;
+  const bool lacks_fit =
+      fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[main].lacks_fit);
+  SetVerdict(fit, identification.ConstancyOf(main), lacks_fit, summary);
+  if (identification.is_joint()) SetAgreement(identification.joint[main].homogeneity, summary);
+  if (fit.termination != Termination::kConverged) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
     summary.parameters.push_back(QuantityOf(parameter, identification.rig));
     summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
   }
+  summary.remarks = RemarksText(fit);
   summary.derived = DerivedOf(fit);
   const bool has_all =
       !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
-  if (has_all) summary.equation = FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError);
+  if (has_all) {
+    summary.equation = WithoutZeroTerms(FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError));
+  }
   if (!identification.si_rig()) {
     summary.units = fit.model.gravity.is_linear()
                         ? "In units of the stiffness k. A known stiffness (--stiffness) gives SI units."
@@ -458,7 +542,7 @@ std::string SummaryText(const ResultSummary& summary, const std::string& more, T
                                                 Folding{.warnings = 2, .textbook = false},
                                                 Folding{.warnings = 2, .textbook = false, .sensor = false},
                                                 Folding{.warnings = 1, .textbook = false, .sensor = false},
-                                                Folding{1, false, true, false}};
+                                                Folding{.warnings = 0, .textbook = false, .sensor = false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);
@@ -503,6 +587,8 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
   const std::string level = summary.emphasis == Emphasis::kAlarm     ? "bad"
                             : summary.emphasis == Emphasis::kCaution ? "caution"
                                                                      : "good";
+  nlohmann::ordered_json messages = nlohmann::ordered_json::array();
+  for (const Warning& warning : summary.warnings) messages.push_back(warning.message);
   return {{"verdict", summary.verdict},
           {"level", level},
           {"agreement", summary.agreement},
@@ -511,7 +597,8 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"equation", summary.equation},
           {"units", summary.units},
           {"textbook", summary.textbook},
-          {"warnings", summary.warnings}};
+          {"remarks", summary.remarks},
+          {"warnings", messages}};
 }
 
 }  // namespace pendulum

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMaxDigits = 12;        // significant digits of a value; a reader has no use for more
 constexpr int kMinExponent = -4;      // numbers below 1e-4 are shown with a power of ten, as with %g
+constexpr int kPlainExponent = 2;     // "120 ± 40" is read more easily than "(1.2 ± 0.4)e+02"
 constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
 
 /// The three leading decimal digits (100 to 999) of x != 0, and the power of ten of the first one.
@@ -108,6 +109,10 @@ ValueAndError PdgText(double value, double error) {
   const int first = FirstDigit(value, rounded);
   if (first - rounded.last >= kMaxDigits) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const Rounding rounding = RoundingTo(first, rounded.last);
+  if (rounding.exponent > 0 && rounding.exponent <= kPlainExponent) {
+    const double unit = std::pow(10.0, rounded.last);
+    return {FixedText(unit * std::round(value / unit) + 0.0, 0), FixedText(rounded.error, 0)};
+  }
   const std::string exponent = ExponentText(rounding.exponent);
   if (exponent.empty()) return {Mantissa(value, rounding), Mantissa(rounded.error, rounding)};
   return {"(" + Mantissa(value, rounding), Mantissa(rounded.error, rounding) + ")" + exponent};

@@ -85,6 +85,10 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
   if (values[inertia] <= 0) {
     return BadFlag("--set: inertia is " + NumberText(values[inertia]) + "; it must be positive");
   }
+  if (const double angle = ValueOr0(values, kReleaseAngle); std::abs(angle) > 2 * kPi) {
+    return BadFlag("--set: release_angle is " + NumberText(angle) + " rad, more than a turn; give it in rad: " +
+                   NumberText(angle, 4) + " deg are " + NumberText(angle * kRadFromDeg, 4));
+  }
   for (const ParameterInfo& info : infos) {
     const bool is_scale = info.name == kRadius.name || info.name == kRateScale.name;
     if (is_scale && ValueOr0(values, info) == 0) {

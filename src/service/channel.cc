@@ -125,8 +125,8 @@ bool Channel::IsClosedByPeer(bool understands_interim) {
   tcp_info info = {};
   socklen_t size = sizeof info;
   if (::getsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
-  if (info.tcpi_state == TCP_CLOSE_WAIT && understands_interim && !std::exchange(has_probed_, true)) {
-    (void)::send(socket_.native_handle(), kProbe.data(), kProbe.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (info.tcpi_state == TCP_CLOSE_WAIT && understands_interim && !has_probed_) {
+    has_probed_ = ::send(socket_.native_handle(), kProbe.data(), kProbe.size(), MSG_DONTWAIT | MSG_NOSIGNAL) > 0;
   }
   return info.tcpi_state == TCP_CLOSE;
 }

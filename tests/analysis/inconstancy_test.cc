@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/analysis/inconstancy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -111,6 +112,27 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   EXPECT_EQ(fit.systematic_names, names);
   EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), expected, 1e-12);
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
+}
+
+// Two recordings with standard errors of 1 and 2 have the weights 4 : 1; a change of 0.03 in the first and none in the
+// second add 0.03 · sqrt(4/5).
+TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
+  FitReport first = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
+  ParameterEstimate& inertia = *std::ranges::find(
+      first.parameters, "inertia", [](const ParameterEstimate& parameter) { return parameter.info.name; });
+  inertia.std_error = 1e-5;
+  FitReport second = first;
+  second.parameters[0].std_error = 2e-5;
+  JointFit joint;
+  joint.whole = first;
+  joint.runs = {first, second};
+  Constancy changing;
+  changing.halves = {{"inertia", "s^2", inertia.estimate - 0.03, inertia.estimate + 0.03, 1e-6, 1e-6, 1414}};
+  const double change = std::hypot(0.03, 0.03);  // sum of squares over 2 - 1
+  AddInconstancyError({{first, changing}, {second, Constancy{}}}, joint);
+  EXPECT_NEAR(SystematicError(joint.whole, "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
+  EXPECT_NEAR(SystematicError(joint.runs[1], "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
+  EXPECT_TRUE(joint.whole.HasWarning("not_constant"));
 }
 
 TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {

@@ -87,7 +87,16 @@ TEST(Recommend, ReportsALackOfFit) {
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_THAT(
       made.comparison.reason,
-      HasSubstr("but the residuals are more than noise (lag-1 correlation 0.6), so the model still lacks something"));
+      HasSubstr("its residuals are still more than noise (lag-1 correlation 0.6), so the model lacks something"));
+}
+
+// An added term that is estimated as 0 leaves the law unchanged.
+TEST(Recommend, NamesLawsThatAreTheSame) {
+  Compared made = Make({{"viscous", 50, 0.7}, {"coulomb", 50, 0.7}, {"drag", 59, 0.7}});
+  for (ComparisonRow& row : made.comparison.rows) row.log_likelihood = row.model == "drag" ? -19 : -20;
+  Recommend(made.fitted.fits, made.comparison);
+  EXPECT_EQ(made.comparison.recommended, "viscous");
+  EXPECT_THAT(made.comparison.reason, HasSubstr("coulomb gives the same fit: its added terms are 0"));
 }
 
 // If more than noise is left, a smaller BIC is not enough: the law must predict readings that were not fitted.
@@ -100,8 +109,8 @@ TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   EXPECT_EQ(made.comparison.recommended, "drag");
   EXPECT_EQ(made.comparison.reason,
             "drag: no other is better; stribeck has a smaller BIC, but residuals that are more than noise, and a "
-            "prediction of the last 40 % that is missing or not better; but the residuals are more than noise (lag-1 "
-            "correlation 0), so the model still lacks something");
+            "prediction of the last 40 % that is missing or not better; its residuals are still more than noise "
+            "(lag-1 correlation 0), so the model lacks something");
   made.comparison.rows[1].forward.rms = 0.6;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "stribeck");

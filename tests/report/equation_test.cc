@@ -50,5 +50,11 @@ TEST(FittedEquation, KeepsTermsAtABoundAndNegativeSigns) {
   EXPECT_EQ(FittedEquation(fit, std::nullopt), "0.07900 th'' - 0.0030 th' + 0 sgn(th') + sin th = 0");
 }
 
+TEST(WithoutZeroTerms, RemovesWholeTerms) {
+  EXPECT_EQ(WithoutZeroTerms("0.079 th'' + 0 th' + 0 sgn(th') + sin th = 0"), "0.079 th'' + sin th = 0");
+  EXPECT_EQ(WithoutZeroTerms("1 th'' + 0 [1 + (2 + 3) th'] th' - 2 th = 0"), "1 th'' - 2 th = 0");
+  EXPECT_EQ(WithoutZeroTerms("1 th'' + 0.5 th' + th = 0"), "1 th'' + 0.5 th' + th = 0");
+}
+
 }  // namespace
 }  // namespace pendulum::equation_test

@@ -29,6 +29,12 @@ const SummaryQuantity& Find(const std::vector<SummaryQuantity>& quantities, cons
   return *found;
 }
 
+std::vector<std::string> Messages(const FitSummary& summary) {
+  std::vector<std::string> messages;
+  for (const Warning& warning : summary.warnings) messages.push_back(warning.message);
+  return messages;
+}
+
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -96,12 +102,80 @@ TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kAlarm);
 }
 
-TEST(SummarizeFit, ShowsNoNumbersOfAFailedFit) {
+TEST(SummarizeFit, ShowsNoNumbersWithoutAResult) {
   Identification identification = ExampleIdentification();
-  identification.fits[0].termination = Termination::kFailed;
-  const FitSummary summary = SummarizeFit(identification, 0);
-  EXPECT_THAT(summary.parameters, IsEmpty());
-  EXPECT_EQ(summary.equation, "");
+  for (const Termination termination : {Termination::kFailed, Termination::kNotConverged}) {
+    identification.fits[0].termination = termination;
+    const FitSummary summary = SummarizeFit(identification, 0);
+    EXPECT_THAT(summary.parameters, IsEmpty());
+    EXPECT_EQ(summary.equation, "");
+  }
+}
+
+TEST(SummarizeFit, OmitsTermsThatAreZero) {
+  EXPECT_THAT(SummarizeFit(ExampleIdentification(), 0).equation, Not(HasSubstr("sgn")));  // coulomb is at its bound 0
+}
+
+// ---- Remarks -------------------------------------------------------------------------------------------------------
+
+// With few independent samples Student's t makes the interval much wider than two errors.
+TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
+  Identification identification = ExampleIdentification();
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("95 %")));
+  ParameterEstimate& viscous = identification.fits[0].parameters[1];
+  viscous.estimate = 0.003;
+  viscous.std_error = 0.0004;
+  viscous.lower95 = 0.001;
+  viscous.upper95 = 0.008;
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("95 % intervals: viscous 0.0010 to 0.0080"));
+}
+
+TEST(SummarizeFit, NamesTermsThatMayBeZero) {
+  Identification identification = ExampleIdentification();
+  ParameterEstimate& viscous = identification.fits[0].parameters[1];
+  viscous.std_error = 0.6 * viscous.estimate;
+  viscous.lower95 = 0;
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Not distinguishable from 0: viscous."));
+}
+
+TEST(SummarizeFit, NamesWeaklyIdentifiableParameters) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].identifiability = {{"inertia", Identifiability::Verdict::kWeakly, {}, "measure longer"}};
+  EXPECT_EQ(SummarizeFit(identification, 0).remarks, "Weakly identifiable: inertia.");
+}
+
+// ---- Several recordings --------------------------------------------------------------------------------------------
+
+TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
+  Identification identification = ExampleJointIdentification();
+  identification.fits[0].warnings.clear();
+  Homogeneity& homogeneity = identification.joint[0].homogeneity;
+  homogeneity.p = 0.5;
+  homogeneity.disagreeing.clear();
+  identification.joint[0].lacks_fit = false;
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
+  homogeneity.p.reset();
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
+  homogeneity.p = 1e-4;
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
+  homogeneity.disagreeing = {1};
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kAlarm);
+}
+
+TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
+  Identification identification = ExampleJointIdentification();
+  identification.fits[0].warnings.clear();
+  identification.joint[0].homogeneity.p = 0.5;
+  identification.joint[0].lacks_fit = true;
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all of the readings"));
+}
+
+TEST(SummarizeFit, GivesResidualsInTheCommonUnit) {
+  Identification identification = ExampleJointIdentification();
+  identification.fits[0].reading_unit = "volts";
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr(" volts (rms)"));
+  identification.fits[0].reading_unit = "";
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, Not(HasSubstr("(rms)")));
 }
 
 // 0.0802 / 0.079 is 1.52 % more.
@@ -121,9 +195,9 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   identification.warnings = {{"gaps", "the recording has 3 gaps; the longest takes 2 s"}};
   identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
-  EXPECT_THAT(SummarizeFit(identification, 0).warnings,
+  EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
               ElementsAre("the recording has 3 gaps", "coulomb is at its bound 0"));
-  EXPECT_THAT(SummarizeFit(identification, 1).warnings,
+  EXPECT_THAT(Messages(SummarizeFit(identification, 1)),
               ElementsAre("the recording has 3 gaps", "the residuals are not white"));
 }
 
@@ -133,7 +207,7 @@ TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
   identification.fits[0].warnings.clear();
   identification.warnings = {
       {"unit_assumed", "deg is assumed (its period; its size); others are not. Or give --unit rad; and more."}};
-  EXPECT_THAT(SummarizeFit(identification, 0).warnings,
+  EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
               ElementsAre("deg is assumed (its period; its size). Or give --unit rad"));
 }
 
@@ -149,6 +223,18 @@ TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
   EXPECT_LE(lines.size(), 20);
   for (const std::string& line : lines) EXPECT_LE(DisplayWidth(line), 80) << line;
   EXPECT_THAT(lines.back(), HasSubstr("More."));
+}
+
+// Warnings without room are named, not cut.
+TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].warnings = {
+      {"gaps", "the recording has gaps, which this long sentence describes in more words than one line has"},
+      {"lack_of_fit", "the residuals are more than noise, which this long sentence says in more words than one line"},
+      {"zero_drift", "the zero drifts, which this long sentence describes in more words than one line has"}};
+  const std::string text = SummaryText(SummarizeResult(identification), "More.");
+  EXPECT_THAT(text, HasSubstr("zero drift"));
+  EXPECT_THAT(text, Not(HasSubstr("...")));
 }
 
 TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {

@@ -41,6 +41,13 @@ TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndLargeErrors) {
   EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
 }
 
+TEST(PdgText, WritesTensAndHundredsWithoutAPowerOfTen) {
+  EXPECT_EQ(Pdg(84, 41), "80 ± 40");
+  EXPECT_EQ(Pdg(-3, 41), "0 ± 40");
+  EXPECT_EQ(Pdg(123, 36), "120 ± 40");
+  EXPECT_EQ(Pdg(987, 360), "1000 ± 400");
+}
+
 TEST(PdgText, WritesOneDigitBeforeThePointAlsoAfterRoundingUp) {
   EXPECT_EQ(Pdg(9.97e-6, 5e-7), "(1.00 ± 0.05)e-05");
   EXPECT_EQ(Pdg(3e-6, 9.6e-6), "(0.3 ± 1.0)e-05");

@@ -236,6 +236,7 @@ TEST(MakeSimulation, RefusesWrongFlagsAndNamesThem) {
       {"inertia is 0; it must be positive", [](SimulationFlags& f) { f.set.replace(0, 12, "inertia=0"); }},
       {"--set lacks inertia", [](SimulationFlags& f) { f.set = "release_angle=0.4,release_time=1.5"; }},
       {"--set lacks the start", [](SimulationFlags& f) { f.set = "inertia=0.04"; }},
+      {"30 deg are 0.5236", [](SimulationFlags& f) { f.set = "inertia=0.04,release_angle=30,release_time=1"; }},
       {"--set lacks the start", [](SimulationFlags& f) { f.set = "inertia=0.04,release_angle=0.4"; }},
       {"--set gives two starts", [](SimulationFlags& f) { f.set += ",initial_rate=1"; }},
       {"--duration is 0; it must be positive", [](SimulationFlags& f) { f.duration = 0; }},

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/joint/fit_jointly.h"
 
 namespace pendulum {
 
@@ -11,7 +14,17 @@ namespace pendulum {
 /// shows that the windows scatter by more than their errors, or depend on amplitude. If windows have no estimates, the
 /// halves are used. The added error is the standard deviation of the windows about the estimate, beyond their errors
 /// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
-/// Joint fits use the scatter between recordings instead (RandomEffects).
 void AddInconstancyError(const Constancy& constancy, FitReport& fit);
+
+/// One of several recordings fitted together: its fit alone, and the test of this fit.
+struct ChangingRun {
+  const FitReport& alone;
+  const Constancy& constancy;
+};
+
+/// Adds this error to a joint fit, with the same warning. Recordings of one rig change in the same way, so their number
+/// does not reduce it: it is the root mean square of the recordings' errors, weighted with 1 / std_error² of their fits
+/// alone.
+void AddInconstancyError(const std::vector<ChangingRun>& runs, JointFit& joint);
 
 }  // namespace pendulum

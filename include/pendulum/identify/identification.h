@@ -51,6 +51,7 @@ struct JointPart {
   std::vector<std::string> shared;  ///< Names of the shared parameters.
   Homogeneity homogeneity;
   std::vector<std::string> alone;  ///< How each separate fit ended: its status, and the reason if it did not converge.
+  bool lacks_fit = false;          ///< Whether the law does not describe a recording completely in its separate fit.
 };
 
 /// Everything that was identified from a free swing, or from several recordings together. In a joint identification,

@@ -24,4 +24,7 @@ enum class EquationDigits { kOfStdError, kOfTotalError };
 std::string FittedEquation(const FitReport& fit, const std::optional<Rig>& rig,
                            EquationDigits digits = EquationDigits::kOfStdError);
 
+/// The equation without terms whose factor is 0: "0.079 th'' + sin th = 0" from "0.079 th'' + 0 sgn(th') + sin th = 0".
+std::string WithoutZeroTerms(std::string equation);
+
 }  // namespace pendulum

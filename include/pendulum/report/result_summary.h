@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pendulum/base/status.h"
 #include "pendulum/identify/identification.h"
 #include "pendulum/report/section.h"
 #include "pendulum/report/section_text.h"
@@ -41,7 +42,8 @@ struct FitSummary {
   std::string equation;                  ///< With numbers.
   std::string units;                     ///< What gives SI units, if there are none; else empty.
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
-  std::vector<std::string> warnings;     ///< Each that concerns this law, without its explanations.
+  std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
+  std::vector<Warning> warnings;         ///< Each that concerns this law; messages without explanations.
 };
 
 /// What a reader of a result needs first. Every front end shows it first.
@@ -62,9 +64,8 @@ ResultSummary SummarizeResult(const Identification& identification);
 Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
-/// more, all but two warnings are only counted, then the textbook's line and parameters of the sensor are left out,
-/// then all but one warning are only counted, and at last this one is cut to a line. `more`: a last line that says
-/// where to find more.
+/// more, all but two warnings are only named, then the textbook's line is left out and parameters of the sensor are
+/// only named, and then one warning after the other is only named. `more`: a last line that says where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,

@@ -53,8 +53,10 @@ struct Section {
   std::string remark = {};  ///< A short remark on the whole section; often empty.
   std::vector<Block> blocks = {};
 
-  Section& Add(Block block) {
-    blocks.push_back(std::move(block));
+  /// Adds one of the kinds of Block.
+  template <typename Kind>
+  Section& Add(Kind block) {
+    blocks.emplace_back(std::move(block));
     return *this;
   }
   /// Adds sentences; an empty text adds nothing.

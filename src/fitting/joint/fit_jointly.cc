@@ -264,6 +264,9 @@ void SetShared(JointFit& fit) {
   std::ranges::copy_if(first.parameters, std::back_inserter(whole.parameters),
                        [&](const ParameterEstimate& parameter) { return fit.IsShared(parameter.info.name); });
   for (ParameterEstimate& parameter : whole.parameters) parameter.closed_form.reset();
+  const bool have_one_unit =
+      std::ranges::all_of(fit.runs, [&](const FitReport& run) { return run.reading_unit == first.reading_unit; });
+  whole.reading_unit = have_one_unit ? first.reading_unit : "";
   CopyShared(fit, first.covariance_names, first.covariance, whole.covariance_names, whole.covariance);
   CopyShared(fit, first.systematic_names, first.systematic_covariance, whole.systematic_names,
              whole.systematic_covariance);

@@ -37,12 +37,12 @@ std::optional<double> TotalStdError(const std::optional<double>& std_error, cons
   return std::hypot(*std_error, systematic.Total().value_or(0));
 }
 
-std::optional<double> TotalIntervalEnd(double estimate, const std::optional<double>& end95,
+std::optional<double> TotalIntervalEnd(IntervalEnd end, double estimate, const std::optional<double>& end95,
                                        const SystematicErrors& systematic) {
   const std::optional<double> total = systematic.Total();
   if (!end95 || !total) return end95;
   const double distance = std::hypot(*end95 - estimate, kNormal95 * *total);
-  return *end95 < estimate ? estimate - distance : estimate + distance;
+  return end == IntervalEnd::kLower ? estimate - distance : estimate + distance;
 }
 
 }  // namespace pendulum

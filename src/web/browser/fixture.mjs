@@ -203,6 +203,7 @@ export function makeFailed() {
       derived: [],
       equation: '',
       textbook: '',
+      remarks: '',
       warnings: [],
     },
     parameters: {},

@@ -50,6 +50,7 @@ function summaryOf(model) {
     equation: "0.07900 th'' + 0.00300 th' + 1.803 sin th = 0",
     units: '',
     textbook: "The textbook's log decrement gives I_O 0.0798 (1 % more: it assumes small angles).",
+    remarks: '',
     warnings: model === 'drag' ? [...warnings, 'at the bound 0: drag'] : warnings,
   };
 }

@@ -146,6 +146,7 @@ export function makeJointFailed() {
       derived: [],
       equation: '',
       textbook: '',
+      remarks: '',
     },
     equation: null,
     derived: {},

@@ -120,6 +120,7 @@ export function answerPart({ fit, result, swing, remark = () => null }: Answer):
   const more = el(
     'div',
     { class: 'answer-more' },
+    summary.remarks ? text(typeset(summary.remarks)) : null,
     derivedList(summary),
     equation !== null && el('p', { class: 'equation' }, equation),
     summary.units !== '' && text(typeset(summary.units), 'quiet'),

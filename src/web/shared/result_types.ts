@@ -129,6 +129,8 @@ export interface FitSummary {
   equation: string;
   units: string;
   textbook: string;
+  /** What a value ± error does not say of the parameters; may be empty. */
+  remarks: string;
   warnings: string[];
 }
 

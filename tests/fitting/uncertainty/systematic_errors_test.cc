@@ -34,11 +34,19 @@ TEST(TotalStdError, NeedsTheStatisticalError) {
 
 TEST(TotalIntervalEnd, WidensEachSide) {
   SystematicErrors errors;
-  EXPECT_EQ(TotalIntervalEnd(10, 7.0, errors), 7.0);
+  EXPECT_EQ(TotalIntervalEnd(IntervalEnd::kLower, 10, 7.0, errors), 7.0);
   errors.Add(ErrorSource::kRig, 4 / 1.959963984540054);
-  EXPECT_DOUBLE_EQ(TotalIntervalEnd(10, 7.0, errors).value(), 5);    // 3 and 4 below
-  EXPECT_DOUBLE_EQ(TotalIntervalEnd(10, 13.0, errors).value(), 15);  // 3 and 4 above
-  EXPECT_FALSE(TotalIntervalEnd(10, std::nullopt, errors));
+  EXPECT_DOUBLE_EQ(TotalIntervalEnd(IntervalEnd::kLower, 10, 7.0, errors).value(), 5);    // 3 and 4 below
+  EXPECT_DOUBLE_EQ(TotalIntervalEnd(IntervalEnd::kUpper, 10, 13.0, errors).value(), 15);  // 3 and 4 above
+  EXPECT_FALSE(TotalIntervalEnd(IntervalEnd::kUpper, 10, std::nullopt, errors));
+}
+
+// At a bound the estimate is an end of the interval.
+TEST(TotalIntervalEnd, WidensAnEndAtTheEstimate) {
+  SystematicErrors errors;
+  errors.Add(ErrorSource::kRig, 4 / 1.959963984540054);
+  EXPECT_DOUBLE_EQ(TotalIntervalEnd(IntervalEnd::kLower, 10, 10.0, errors).value(), 6);
+  EXPECT_DOUBLE_EQ(TotalIntervalEnd(IntervalEnd::kUpper, 10, 10.0, errors).value(), 14);
 }
 
 }  // namespace

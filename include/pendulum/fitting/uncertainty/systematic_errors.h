@@ -41,9 +41,11 @@ class SystematicErrors {
 /// without it would be too small.
 std::optional<double> TotalStdError(const std::optional<double>& std_error, const SystematicErrors& systematic);
 
-/// An end of the total 95 % interval: the distance from the estimate to the end of the statistical interval, and 1.96
+enum class IntervalEnd { kLower, kUpper };
+
+/// An end of the total 95 % interval: the distance from the estimate to this end of the statistical interval, and 1.96
 /// systematic errors, in quadrature. Absent if the statistical interval has no such end.
-std::optional<double> TotalIntervalEnd(double estimate, const std::optional<double>& end95,
+std::optional<double> TotalIntervalEnd(IntervalEnd end, double estimate, const std::optional<double>& end95,
                                        const SystematicErrors& systematic);
 
 }  // namespace pendulum
