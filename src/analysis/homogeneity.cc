@@ -49,7 +49,7 @@ bool RemovePriors(const ParameterPriors& priors, SeparateEstimates& estimates) {
 std::string SourcesOf(const RunAlone& run) {
   const Recording& used = run.used;
   return SourcesText(used.clock_scale, used.clock_scale_std_dev,
-                     used.calibration ? used.calibration->source : nlohmann::ordered_json());
+                     used.calibration ? used.calibration->source.dump() : "null");
 }
 
 /// The systematic errors of the named parameters.

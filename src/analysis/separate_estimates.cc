@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::string SourcesText(double clock_scale, double clock_scale_std_dev, const nlohmann::ordered_json& calibration) {
-  return NumberText(clock_scale) + " " + NumberText(clock_scale_std_dev) + " " + calibration.dump();
+std::string SourcesText(double clock_scale, double clock_scale_std_dev, const std::string& calibration) {
+  return NumberText(clock_scale) + " " + NumberText(clock_scale_std_dev) + " " + calibration;
 }
 
 bool HaveOwnSources(const std::vector<std::string>& sources) {

@@ -72,7 +72,7 @@ inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(
 inline std::string SourcesOf(const Json& result) {
   const Json& data = result["data"];
   return SourcesText(Get<double>(data, "clock_scale").value_or(1), Get<double>(data, "clock_scale_std_dev").value_or(0),
-                     result.value("calibration", Json()));
+                     result.value("calibration", Json()).dump());
 }
 
 inline void SetErrorParts(const Json& json, QuantityRow& row) {

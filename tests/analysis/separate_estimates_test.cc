@@ -2,6 +2,7 @@
 #include "pendulum/analysis/separate_estimates.h"
 
 #include <limits>
+#include <optional>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
@@ -59,10 +60,10 @@ TEST(EstimatesToCompare, NeedFiniteNumbersAndPositiveVariances) {
 }
 
 TEST(HaveOwnSources, IsTrueIfAClockOrCalibrationDiffers) {
-  const auto same = SourcesText(1, 1e-4, nullptr);
+  const auto same = SourcesText(1, 1e-4, "null");
   EXPECT_FALSE(HaveOwnSources({same, same}));
-  EXPECT_TRUE(HaveOwnSources({same, SourcesText(1, 2e-4, nullptr)}));
-  EXPECT_TRUE(HaveOwnSources({same, SourcesText(1, 1e-4, {{"slope", 2}})}));
+  EXPECT_TRUE(HaveOwnSources({same, SourcesText(1, 2e-4, "null")}));
+  EXPECT_TRUE(HaveOwnSources({same, SourcesText(1, 1e-4, R"({"slope":2})")}));
 }
 
 }  // namespace

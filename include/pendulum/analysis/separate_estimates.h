@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
 namespace pendulum {
 
@@ -38,7 +37,8 @@ struct SeparateEstimates {
 };
 
 /// Names the clock and the calibration of a recording. Recordings with the same text share the errors of both.
-std::string SourcesText(double clock_scale, double clock_scale_std_dev, const nlohmann::ordered_json& calibration);
+/// `calibration`: its JSON text.
+std::string SourcesText(double clock_scale, double clock_scale_std_dev, const std::string& calibration);
 
 /// Whether clocks or calibrations differ between recordings, so that their errors cause differences. `sources`: the
 /// SourcesText of each.
