@@ -12,6 +12,7 @@
 #include "pendulum/analysis/homogeneity_text.h"
 #include "pendulum/analysis/linear_fit.h"
 #include "pendulum/analysis/part_fit.h"
+#include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/base/distributions.h"
 
 namespace pendulum {
@@ -22,19 +23,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // ---- Estimates of each recording alone ------------------------------------------------------------------------------
-
-/// Width of each parameter's 95 % interval over the width for a normal distribution. It is larger than 1 for Student's
-/// t, which is used because autocorrelated residuals have few effective samples. A parameter at its bound gets the
-/// largest factor of the other parameters.
-VectorXd IntervalFactors(const FitReport& fit, const std::vector<std::string>& names) {
-  double largest = kNormal95;
-  for (const std::string& name : names) largest = std::max(largest, fit.Find(name)->t95.value_or(kNormal95));
-  VectorXd factors(static_cast<Index>(names.size()));
-  for (std::size_t j = 0; j < names.size(); ++j) {
-    factors[static_cast<Index>(j)] = std::max(fit.Find(names[j])->t95.value_or(largest) / kNormal95, 1.0);
-  }
-  return factors;
-}
 
 /// Removes the priors, which all recordings share, from the estimates and their covariance. Returns false if no
 /// information remains.
@@ -58,39 +46,32 @@ bool RemovePriors(const ParameterPriors& priors, SeparateEstimates& estimates) {
   return true;
 }
 
-/// Whether clocks or calibrations with errors differ between recordings and so cause differences.
-bool HaveOwnSources(const std::vector<RunAlone>& runs) {
-  const auto clock = [](const RunAlone& run) { return std::pair(run.used.clock_scale, run.used.clock_scale_std_dev); };
-  const auto calibration = [](const RunAlone& run) {
-    return run.used.calibration ? run.used.calibration->source : nlohmann::ordered_json();
-  };
-  return std::ranges::any_of(runs, [&](const RunAlone& run) {
-    return clock(run) != clock(runs.front()) || calibration(run) != calibration(runs.front());
-  });
+std::string SourcesOf(const RunAlone& run) {
+  const Recording& used = run.used;
+  return SourcesText(used.clock_scale, used.clock_scale_std_dev,
+                     used.calibration ? used.calibration->source.dump() : "null");
 }
 
-/// The systematic covariance of the named parameters, without the rig's part, which all recordings share.
-MatrixXd SystematicOf(const RunAlone& run, const std::vector<std::string>& names) {
+/// The systematic errors of the named parameters.
+SystematicParts SystematicOf(const FitReport& fit, const std::vector<std::string>& names) {
   const auto size = static_cast<Index>(names.size());
-  MatrixXd covariance = MatrixXd::Zero(size, size);
-  VectorXd by_rig = VectorXd::Zero(size);
-  const std::vector<std::string>& known = run.fit.systematic_names;
+  SystematicParts parts{MatrixXd::Zero(size, size), VectorXd::Zero(size), VectorXd::Zero(size)};
+  const std::vector<std::string>& known = fit.systematic_names;
+  const auto row_of = [&](Index i) {
+    return std::ranges::find(known, names[static_cast<std::size_t>(i)]) - known.begin();
+  };
+  const auto count = static_cast<std::ptrdiff_t>(known.size());
   for (Index i = 0; i < size; ++i) {
-    const auto row = std::ranges::find(known, names[static_cast<std::size_t>(i)]) - known.begin();
+    const auto row = row_of(i);
     for (Index j = 0; j < size; ++j) {
-      const auto column = std::ranges::find(known, names[static_cast<std::size_t>(j)]) - known.begin();
-      const auto count = static_cast<std::ptrdiff_t>(known.size());
-      if (row < count && column < count) covariance(i, j) = run.fit.systematic_covariance(row, column);
+      const auto column = row_of(j);
+      if (row < count && column < count) parts.covariance(i, j) = fit.systematic_covariance(row, column);
     }
-    const ParameterEstimate& parameter = *run.fit.Find(names[static_cast<std::size_t>(i)]);
-    if (run.options.rig && parameter.info.scales_with_gravity()) {
-      const auto& torque = run.options.rig->gravity_torque;
-      by_rig[i] = parameter.estimate * torque.std_dev / torque.value;
-    }
+    const SystematicErrors& errors = fit.Find(names[static_cast<std::size_t>(i)])->systematic;
+    parts.rig[i] = errors.Of(ErrorSource::kRig);
+    parts.inconstancy[i] = errors.Of(ErrorSource::kInconstancy);
   }
-  covariance -= by_rig * by_rig.transpose();
-  covariance.diagonal() = covariance.diagonal().cwiseMax(0.0);
-  return covariance;
+  return parts;
 }
 
 /// All free parameters of a recording as its fit reports them, without the priors. If a parameter is at a bound:
@@ -126,13 +107,10 @@ std::optional<SeparateEstimates> EstimateNamed(const RunAlone& run, const std::v
     if (found == all->names.end()) return std::nullopt;
     rows.push_back(found - all->names.begin());
   }
-  const VectorXd wider = IntervalFactors(fit, names);
-  SeparateEstimates estimates{0, names, all->value(rows),
-                              wider.asDiagonal() * all->covariance(rows, rows) * wider.asDiagonal()};
-  if (own_sources) estimates.covariance += SystematicOf(run, names);
-  const bool is_valid =
-      estimates.value.allFinite() && estimates.covariance.allFinite() && estimates.covariance.diagonal().minCoeff() > 0;
-  return is_valid ? std::optional(estimates) : std::nullopt;
+  std::vector<std::optional<double>> t95;
+  for (const std::string& name : names) t95.push_back(fit.Find(name)->t95);
+  return EstimatesToCompare({names, all->value(rows), all->covariance(rows, rows), t95, SystematicOf(fit, names)},
+                            own_sources);
 }
 
 /// The recordings that determine all of the named parameters alone.
@@ -140,7 +118,9 @@ std::vector<SeparateEstimates> EstimateSeparately(const std::vector<RunAlone>& r
                                                   const std::vector<std::string>& names) {
   std::vector<SeparateEstimates> estimates;
   if (names.empty()) return estimates;
-  const bool own_sources = HaveOwnSources(runs);
+  std::vector<std::string> sources;
+  for (const RunAlone& run : runs) sources.push_back(SourcesOf(run));
+  const bool own_sources = HaveOwnSources(sources);
   for (std::size_t k = 0; k < runs.size(); ++k) {
     std::optional<SeparateEstimates> one = EstimateNamed(runs[k], names, own_sources);
     if (!one) continue;

@@ -53,12 +53,16 @@ void AddChanges(const std::vector<RunModels>& runs, std::size_t m, JointFit& fit
   AddInconstancyError(changing, fit);
 }
 
-/// If the recordings disagree, adds a warning with the verdict, and the verdict to the reason if the joint fit did not
-/// converge.
+/// If the recordings disagree, adds this to the reason of a fit that did not converge, and a warning otherwise. Both
+/// are short, because the homogeneity's verdict is shown beside them.
 void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
   if (homogeneity.agrees()) return;
-  if (whole.termination != Termination::kConverged) whole.reason += "; " + homogeneity.verdict;
-  whole.warnings.push_back({"recordings_disagree", homogeneity.verdict});
+  if (whole.termination != Termination::kConverged) {
+    whole.reason += "; the recordings do not agree";
+    return;
+  }
+  whole.warnings.push_back(
+      {"recordings_disagree", "the errors assume that the recordings agree, but they do not; do not quote them"});
 }
 
 }  // namespace

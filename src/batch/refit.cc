@@ -16,6 +16,7 @@
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/provenance.h"
+#include "pendulum/batch/summary.h"
 #include "pendulum/identify/identify.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/report/json.h"
@@ -263,6 +264,7 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   store.ShortenWaitsOnStop(options.stop);
   const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
   if (!meta) return tl::unexpected(meta.error());
+  if (const auto checked = CheckGroupBy(store, options.group_by); !checked) return tl::unexpected(checked.error());
   RefitCounts counts;
   counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
   Refitter refitter(source, store, options, counts);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/batch/store.h"
 
 /// The rows of a store's tables. They are derived from the result JSON, so rows and JSON always agree.
@@ -22,6 +24,8 @@ struct QuantityRow {
   std::string name;
   bool derived = false;
   std::optional<double> estimate, std_error, lower95, upper95, systematic_std_error, total_std_error;
+  std::optional<double> inconstancy_std_error, source_std_error;  ///< Parts of systematic_std_error; of clock and
+                                                                  ///< calibration together.
   std::string unit;
   bool fixed = false, at_bound = false;
 };
@@ -64,6 +68,33 @@ inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(
   return {};
 }
 
+/// The clock and the calibration of a result, as text.
+inline std::string SourcesOf(const Json& result) {
+  const Json& data = result["data"];
+  return SourcesText(Get<double>(data, "clock_scale").value_or(1), Get<double>(data, "clock_scale_std_dev").value_or(0),
+                     result.value("calibration", Json()).dump());
+}
+
+inline void SetErrorParts(const Json& json, QuantityRow& row) {
+  const auto budget = json.find("error_budget");
+  if (budget == json.end()) return;
+  row.inconstancy_std_error = Get<double>(*budget, "inconstancy");
+  const double clock = Get<double>(*budget, "clock").value_or(0);
+  const double calibration = Get<double>(*budget, "calibration").value_or(0);
+  if (clock > 0 || calibration > 0) row.source_std_error = std::hypot(clock, calibration);
+}
+
+/// Derived quantities have no budget of errors. If a parameter is not constant, all of their systematic error is taken
+/// for inconstancy, so that their repeats are not called different for a cause that is known.
+inline void SetInconstancyOfDerived(std::vector<QuantityRow>& quantities) {
+  const bool is_constant =
+      std::ranges::none_of(quantities, [](const QuantityRow& row) { return row.inconstancy_std_error.has_value(); });
+  if (is_constant) return;
+  for (QuantityRow& row : quantities) {
+    if (row.derived) row.inconstancy_std_error = row.systematic_std_error;
+  }
+}
+
 inline QuantityRow Quantity(const std::string& name, const Json& json, bool derived) {
   QuantityRow row;
   row.name = name;
@@ -75,6 +106,7 @@ inline QuantityRow Quantity(const std::string& name, const Json& json, bool deri
   if (row.std_error && !row.total_std_error) {
     row.total_std_error = std::hypot(*row.std_error, row.systematic_std_error.value_or(0));
   }
+  SetErrorParts(json, row);
   row.unit = Get<std::string>(json, "unit").value_or("");
   row.fixed = Get<bool>(json, "fixed").value_or(false);
   row.at_bound = Get<bool>(json, "at_bound").value_or(false);
@@ -116,6 +148,7 @@ inline FitRow Fit(const Json& result, const Json& fit) {
   SetStatistics(fit, row);
   for (const auto& [name, json] : fit["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
   for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));
+  SetInconstancyOfDerived(row.quantities);
   return row;
 }
 

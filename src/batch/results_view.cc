@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "batch/run_kinds.h"
 #include "pendulum/model/motion_model.h"
 
 namespace pendulum {
@@ -47,12 +48,13 @@ std::string ColumnsOf(std::string_view name) {
 std::string ResultsView() {
   std::string sql = R"sql(CREATE VIEW results AS  -- one row for each refitted run: its recommended law, or its only one
   SELECT main.id, main.position, main.path AS file, main.rig, main.law,
-    coalesce(fits.status, iif(main.reason IS NULL, 'no_law_recommended', 'failed')) AS status,
+    coalesce(fits.status, iif(main.reason IS NULL, 'no_law_recommended', main.refusal)) AS status,
     coalesce(main.reason, fits.verdict, iif(main.law IS NULL, 'no law is recommended', nullif(fits.reason, ''))) AS verdict,
     fits.used_samples, fits.rms_residual, fits.residual_unit)sql";
   for (const std::string_view name : ViewedQuantities()) sql += ColumnsOf(name);
   return sql + R"sql(
-  FROM (SELECT run, id, position, path, rig, reason, coalesce(recommended,
+  FROM (SELECT run, id, position, path, rig, reason, iif()sql" +
+         kIsMissing + R"sql(, 'missing', 'refused') AS refusal, coalesce(recommended,
           (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law
         FROM runs WHERE exit_code IS NOT NULL) AS main
   LEFT JOIN fits ON fits.run = main.run AND fits.model = main.law)sql";

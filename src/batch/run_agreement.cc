@@ -8,12 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "pendulum/analysis/agreement.h"
-#include "pendulum/base/distributions.h"
-#include "pendulum/base/format.h"
+#include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/report/json_parts.h"
 
@@ -30,9 +28,7 @@ constexpr std::size_t kMaxRows = 50;
 /// A run of a group.
 struct Member {
   std::string id;
-  SeparateEstimates estimates;  ///< Without systematic errors; no names if the run cannot be compared.
-  Eigen::MatrixXd systematic;   ///< Without the rig's part, which all runs of a pendulum share.
-  Json sources;                 ///< Clock and calibration.
+  FitAloneResult fit;  ///< No names if the run cannot be compared.
 };
 
 /// The free parameters of the pendulum in a fit, in the order of the model.
@@ -68,12 +64,11 @@ std::optional<Eigen::MatrixXd> MatrixOf(const Json& json, const std::vector<std:
   return matrix;
 }
 
-/// Width of the 95 % interval over the width for a normal distribution, at least 1; larger for Student's t.
-double IntervalFactor(const Json& parameter) {
+/// Half the 95 % interval over the standard error; absent if the interval is open.
+std::optional<double> HalfInterval(const Json& parameter) {
   const Json& interval = parameter["interval95"];
-  if (!interval.is_array() || !interval[0].is_number() || !interval[1].is_number()) return 1;
-  const double half = 0.5 * (interval[1].get<double>() - interval[0].get<double>());
-  return std::max(half / (kNormal95 * parameter["std_error"].get<double>()), 1.0);
+  if (!interval.is_array() || !interval[0].is_number() || !interval[1].is_number()) return std::nullopt;
+  return 0.5 * (interval[1].get<double>() - interval[0].get<double>()) / parameter["std_error"].get<double>();
 }
 
 bool IsComparable(const Json& result, const Json& fit, const std::vector<std::string>& names) {
@@ -88,45 +83,38 @@ bool IsComparable(const Json& result, const Json& fit, const std::vector<std::st
   return !result.contains("warnings") || std::ranges::none_of(result["warnings"], is_another_minimum);
 }
 
-/// The systematic covariance without the part of the rig.
-Eigen::MatrixXd SystematicOf(const Json& fit, const std::vector<std::string>& names) {
+SystematicParts SystematicOf(const Json& fit, const std::vector<std::string>& names) {
   const auto size = static_cast<Index>(names.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  SystematicParts parts{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
   if (const auto found = fit.find("systematic_covariance"); found != fit.end()) {
-    covariance = MatrixOf(*found, names).value_or(covariance);
+    parts.covariance = MatrixOf(*found, names).value_or(parts.covariance);
   }
-  Eigen::VectorXd by_rig = Eigen::VectorXd::Zero(size);
   for (Index i = 0; i < size; ++i) {
     const Json& parameter = fit["parameters"][names[static_cast<std::size_t>(i)]];
     const auto budget = parameter.find("error_budget");
-    if (budget != parameter.end() && budget->is_object()) by_rig[i] = budget->value("rig", 0.0);
+    if (budget == parameter.end() || !budget->is_object()) continue;
+    parts.rig[i] = budget->value("rig", 0.0);
+    parts.inconstancy[i] = budget->value("inconstancy", 0.0);
   }
-  covariance -= by_rig * by_rig.transpose();
-  covariance.diagonal() = covariance.diagonal().cwiseMax(0.0);
-  return covariance;
+  return parts;
 }
 
-Member MemberOf(std::string id, const std::string& text, const std::string& model) {
-  Member member{std::move(id), {}, {}, nullptr};
+FitAloneResult FitAloneOf(const std::string& text, const std::string& model) {
   const Json result = Json::parse(text);
   const auto fit = std::ranges::find_if(result["fits"], [&](const Json& one) { return one["model"] == model; });
-  if (fit == result["fits"].end() || !fit->contains("covariance")) return member;
+  if (fit == result["fits"].end() || !fit->contains("covariance")) return {};
   const std::vector<std::string> names = FreeNames(*fit);
-  if (names.empty() || !IsComparable(result, *fit, names)) return member;
+  if (names.empty() || !IsComparable(result, *fit, names)) return {};
   const auto covariance = MatrixOf((*fit)["covariance"], names);
-  if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
-  Eigen::VectorXd value(static_cast<Index>(names.size())), wider(value.size());
-  for (Index i = 0; i < value.size(); ++i) {
+  if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return {};
+  FitAloneResult alone{
+      names, Eigen::VectorXd(static_cast<Index>(names.size())), *covariance, {}, SystematicOf(*fit, names)};
+  for (Index i = 0; i < alone.value.size(); ++i) {
     const Json& parameter = (*fit)["parameters"][names[static_cast<std::size_t>(i)]];
-    value[i] = parameter["estimate"].get<double>();
-    wider[i] = IntervalFactor(parameter);
+    alone.value[i] = parameter["estimate"].get<double>();
+    alone.t95.push_back(HalfInterval(parameter));
   }
-  member.estimates = {0, names, value, Eigen::MatrixXd(wider.asDiagonal() * *covariance * wider.asDiagonal())};
-  member.systematic = SystematicOf(*fit, names);
-  const Json& data = result["data"];
-  member.sources = {data.value("clock_scale", Json()), data.value("clock_scale_std_dev", Json()),
-                    result.value("calibration", Json())};
-  return member;
+  return alone;
 }
 
 /// A disagreeing run, and the parameter in which it differs most.
@@ -159,26 +147,26 @@ Json OutlierJson(const std::vector<SeparateEstimates>& estimates, std::size_t ru
 /// One pendulum: its runs, and the test.
 class Group {
  public:
-  explicit Group(std::string name) : name_(std::move(name)) {}
+  Group(std::string name, bool own_sources) : name_(std::move(name)), own_sources_(own_sources) {}
 
   const std::string& name() const { return name_; }
 
   void Add(std::string id, const std::string& result, const std::string& model) {
-    if (++runs_ <= kMaxRuns) members_.push_back(MemberOf(std::move(id), result, model));
+    if (++runs_ <= kMaxRuns) members_.push_back({std::move(id), FitAloneOf(result, model)});
   }
 
   /// The row of the group; null if it cannot be tested. Adds the ids of the outliers if they are few.
   Json Test(std::set<std::string>& named) const {
-    const std::vector<const Member*> members = Comparable();
-    if (members.size() < 2 || runs_ > kMaxRuns) return nullptr;
-    const bool own_sources =
-        std::ranges::any_of(members, [&](const Member* one) { return one->sources != members.front()->sources; });
+    std::vector<const Member*> members;
     std::vector<SeparateEstimates> estimates;
-    for (const Member* member : members) {
-      estimates.push_back(member->estimates);
-      estimates.back().run = estimates.size() - 1;
-      if (own_sources) estimates.back().covariance += member->systematic;
+    for (const Member* member : Comparable()) {
+      std::optional<SeparateEstimates> one = EstimatesToCompare(member->fit, own_sources_);
+      if (!one) continue;
+      one->run = members.size();
+      members.push_back(member);
+      estimates.push_back(*std::move(one));
     }
+    if (members.size() < 2 || runs_ > kMaxRuns) return nullptr;
     const Agreement agreement = TestAgreement(estimates);
     if (!agreement.p) return nullptr;
     std::vector<std::size_t> outliers;
@@ -198,13 +186,14 @@ class Group {
   std::vector<const Member*> Comparable() const {
     std::vector<const Member*> members;
     for (const Member& member : members_) {
-      if (member.estimates.names.empty()) continue;
-      if (members.empty() || members.front()->estimates.names == member.estimates.names) members.push_back(&member);
+      if (member.fit.names.empty()) continue;
+      if (members.empty() || members.front()->fit.names == member.fit.names) members.push_back(&member);
     }
     return members;
   }
 
   std::string name_;
+  bool own_sources_;
   std::size_t runs_ = 0;
   std::vector<Member> members_;
 };
@@ -228,7 +217,7 @@ RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& mod
     const std::string name = sqlite::Text(rows, 0);
     if (!group || group->name() != name) {
       test();
-      group.emplace(name);
+      group.emplace(name, groups.own_sources.contains(name));
     }
     group->Add(sqlite::Text(rows, 1), sqlite::Text(rows, 2), model);
   }

@@ -17,9 +17,9 @@ struct RunAgreement {
   std::set<std::string> outliers;  ///< Ids of the runs that are named; few.
 };
 
-/// Tests the runs of each pendulum under a model, with their stored estimates and covariances. As in a joint fit,
-/// systematic errors are added if clocks or calibrations differ. Unlike there, runs with a parameter at a bound are
-/// left out, because their estimates without bounds are not stored, and a dependence on the amplitude is not examined.
+/// Tests the runs of each pendulum under a model, with their stored estimates and covariances, by the rules of a joint
+/// fit (EstimatesToCompare). Unlike there, priors are not removed, runs with a parameter at a bound are
+/// left out because their estimates without bounds are not stored, and a dependence on the amplitude is not examined.
 /// Groups of more than 500 runs and batches of more than 20 000 are not tested.
 RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& model, const RunGroups& groups);
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "batch/run_kinds.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
@@ -170,13 +171,17 @@ RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   RunGroups groups = Choose(database, group_by);
   SQLite::Statement sizes(database,
                           "SELECT coalesce(sum(n), 0), count(*), coalesce(min(n), 0), coalesce(max(n), 0) FROM (SELECT "
-                          "count(*) AS n FROM runs WHERE exit_code < 2 GROUP BY " +
-                              groups.sql + ")");
+                          "count(*) AS n FROM runs WHERE " +
+                              std::string(kIsFitted) + " GROUP BY " + groups.sql + ")");
   sizes.executeStep();
   groups.runs = sizes.getColumn(0).getInt64();
   groups.groups = sizes.getColumn(1).getInt64();
   groups.smallest = sizes.getColumn(2).getInt64();
   groups.largest = sizes.getColumn(3).getInt64();
+  const std::vector<std::string> own =
+      sqlite::Texts(database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " +
+                                  kIsFitted + ") GROUP BY pendulum HAVING count(DISTINCT sources) > 1");
+  groups.own_sources.insert(own.begin(), own.end());
   return groups;
 }
 
@@ -198,8 +203,8 @@ void FindUnlikeGroups(SQLite::Database& database, const std::string& model, RunG
       const double scatter = RelativeScatter(values.estimate);
       if (scatter / limit.scatter <= worst) continue;
       worst = scatter / limit.scatter;
-      groups.difference = "their " + std::string(limit.words) + " scatters by " + PercentText(scatter) +
-                          ", repeats of one pendulum by at most " + PercentText(limit.scatter);
+      groups.difference = std::string(limit.words) + " scatters by " + PercentText(scatter) +
+                          ", but between repeats of one pendulum by at most " + PercentText(limit.scatter);
     }
   }
 }
@@ -216,7 +221,7 @@ std::string GroupsText(const RunGroups& groups) {
   }
   if (groups.by == RunGroups::By::kAll) {
     if (!groups.unlike.empty()) {
-      return "The " + all + " are not taken for one pendulum: " + groups.difference +
+      return "The " + all + " are not taken for one pendulum: their " + groups.difference +
              ". So they are not compared, and nothing is concluded about their errors.";
     }
     const std::string why = groups.is_stated          ? "as --group_by all says"
@@ -231,8 +236,12 @@ std::string GroupsText(const RunGroups& groups) {
   std::string text = "Recordings with " + SharedWords(groups) +
                      " are taken for repeats of one pendulum: " + Count(groups.groups, "pendulum") + ", " + sizes + ".";
   if (!groups.unlike.empty()) {
-    text += " " + std::to_string(groups.unlike.size()) + " of them " + (groups.unlike.size() == 1 ? "is" : "are") +
-            " not compared: " + groups.difference + ".";
+    text += groups.unlike.size() == 1
+                ? " The recordings of one pendulum (" + groups.unlike.front() + ") are not compared: their "
+                : " The recordings of " + std::to_string(groups.unlike.size()) +
+                      " pendulums are not compared, because they differ too much for repeats: of one of these "
+                      "pendulums, the ";
+    text += groups.difference + ".";
   }
   return text;
 }
@@ -240,8 +249,8 @@ std::string GroupsText(const RunGroups& groups) {
 std::string OtherGroupsText(const RunGroups& groups) {
   if (groups.runs < 2) return "";
   if (groups.by == RunGroups::By::kAll && groups.unlike.empty()) {
-    return "If they are not, name the column of the manifest that tells the pendulums apart: --group_by COLUMN "
-           "(--group_by id: each is another).";
+    return "If they are of several, name the column of the manifest that tells the pendulums apart: --group_by COLUMN. "
+           "If each is of another pendulum: --group_by id.";
   }
   if (groups.by == RunGroups::By::kAll) {
     return "If they are of one pendulum: --group_by all. If a column of the manifest tells the pendulums apart: "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,12 @@ struct RunGroups {
   std::string sql = "''";    ///< The group of a row of table runs, a text.
   bool is_stated = false;    ///< A flag, the manifest or the true values say so; otherwise it is an assumption.
   std::string one_rig = {};  ///< The rig file of all runs, for kAll; empty if there is none.
-  std::int64_t runs = 0;
+  std::int64_t runs = 0;     ///< Fitted runs (kIsFitted); only these are counted here.
   std::int64_t groups = 0;
   std::int64_t smallest = 0, largest = 0;  ///< Runs of a group.
   std::vector<std::string> unlike = {};    ///< Groups whose runs differ too much for repeats; they are not compared.
-  std::string difference = {};             ///< "inertia differs by 42 %", if `unlike` is not empty.
+  std::string difference = {};  ///< If `unlike` is not empty: "inertia scatters by 49 % between its recordings, ...".
+  std::set<std::string> own_sources = {};  ///< Groups whose runs have different clocks or calibrations.
 
   /// Whether some runs are compared as repeats of one pendulum.
   bool compares() const { return largest > 1 && static_cast<std::int64_t>(unlike.size()) < groups; }

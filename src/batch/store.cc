@@ -10,6 +10,7 @@
 #include "batch/former_results.h"
 #include "batch/result_rows.h"
 #include "batch/results_view.h"
+#include "batch/run_kinds.h"
 #include "batch/sqlite.h"
 #include "batch/store_queries.h"
 #include "batch/store_schema.h"
@@ -226,8 +227,9 @@ void Store::State::RestrictToShard(const std::optional<Shard>& shard, StoreMeta&
 void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
   const Provenance& provenance = outcome.provenance;
   const bool fitted = !outcome.result.is_null();
-  std::optional<std::string> recommended, result;
+  std::optional<std::string> recommended, result, sources;
   if (fitted) {
+    sources = result_rows::SourcesOf(outcome.result);
     const Json& comparison = outcome.result["comparison"];
     if (comparison.is_object() && comparison["recommended"].is_string()) {
       recommended = comparison["recommended"].get<std::string>();
@@ -236,7 +238,7 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
   }
   sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason), recommended,
                provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256, provenance.options_sha256,
-               provenance.version, provenance.cpu, result, run)
+               provenance.version, provenance.cpu, result, sources, run)
       .exec();
 }
 
@@ -246,7 +248,7 @@ void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
   SQLite::Statement& fit =
       Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SQLite::Statement& quantity =
-      Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const FitRow& row : FitRows(outcome)) {
     sqlite::Bind(fit, run, row.model, row.status, row.reason, row.used_samples, row.effective_samples,
                  row.residual_unit, row.rms_residual, row.sigma, row.noise_model, row.lag1_correlation,
@@ -256,7 +258,8 @@ void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
     for (const QuantityRow& value : row.quantities) {
       sqlite::Bind(quantity, run, row.model, value.name, static_cast<int>(value.derived), value.estimate,
                    value.std_error, value.lower95, value.upper95, value.systematic_std_error, value.unit,
-                   static_cast<int>(value.fixed), static_cast<int>(value.at_bound), value.total_std_error)
+                   static_cast<int>(value.fixed), static_cast<int>(value.at_bound), value.total_std_error,
+                   value.inconstancy_std_error, value.source_std_error)
           .exec();
     }
   }
@@ -410,11 +413,14 @@ Result<StoreMeta> Store::Meta() {
 Result<StoreCounts> Store::Count() {
   return sqlite::Guard(name(), [&]() -> Result<StoreCounts> {
     StoreCounts counts;
-    SQLite::Statement runs(state_->database, "SELECT count(*), count(*) - count(exit_code), count(reason) FROM runs");
+    SQLite::Statement runs(state_->database,
+                           "SELECT count(*), count(*) - count(exit_code), count(reason), count(*) FILTER (WHERE " +
+                               std::string(kIsMissing) + ") FROM runs");
     runs.executeStep();
     counts.runs = runs.getColumn(0).getInt64();
     counts.pending = runs.getColumn(1).getInt64();
     counts.unfitted = runs.getColumn(2).getInt64();
+    counts.missing = runs.getColumn(3).getInt64();
     counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE position < 0").getInt64();
     SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
     fits.executeStep();

@@ -27,6 +27,6 @@ INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, col
 
 inline constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
-  options_sha256 = ?, version = ?, cpu = ?, result = ? WHERE run = ?)sql";
+  options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ? WHERE run = ?)sql";
 
 }  // namespace pendulum

@@ -13,8 +13,10 @@
 
 #include "batch/run_agreement.h"
 #include "batch/run_groups.h"
+#include "batch/run_kinds.h"
 #include "batch/sqlite.h"
 #include "batch/summary_verdict.h"
+#include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/overview.h"
@@ -59,14 +61,31 @@ struct Context {
 /// The values of a quantity, and the names of its runs.
 struct QuantityRuns {
   RunValues values;
+  std::vector<double> std_errors;        ///< Statistical, one per run; NaN if a run has none.
   std::vector<std::string> ids, groups;  ///< `ids`: one per run; `groups`: one per group.
   bool dates = false;
 };
 
+double NumberOrNan(const SQLite::Statement& row, int column) {
+  const SQLite::Column value = row.getColumn(column);
+  return value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
+}
+
+/// The error that makes a run differ from its repeats, as in the test of a joint fit (EstimatesToCompare), from the row
+/// of RunsOf.
+double RepeatError(const SQLite::Statement& row, bool own_sources) {
+  const double std_error = NumberOrNan(row, 3), half_interval = NumberOrNan(row, 6);
+  const double noise =
+      std_error > 0 && half_interval > 0 ? std_error * IntervalFactor(half_interval / std_error) : std_error;
+  const double sources = own_sources ? row.getColumn(8).getDouble() : 0;  // NULL gives 0
+  return std::hypot(noise, row.getColumn(7).getDouble(), sources);
+}
+
 QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const Context& context) {
   const std::string trend = context.trend_by.empty() ? "NULL" : ColumnSql(context.trend_by);
   SQLite::Statement rows(database,
-                         "SELECT id, position, estimate, std_error, " + context.groups.sql + ", " + trend + R"sql(
+                         "SELECT id, position, estimate, std_error, " + context.groups.sql + ", " + trend + R"sql(,
+    (upper95 - lower95) / 2, inconstancy_std_error, source_std_error
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL
   ORDER BY position, id)sql");
@@ -77,10 +96,9 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
   while (rows.executeStep()) {
     runs.ids.push_back(sqlite::Text(rows, 0));
     runs.values.estimate.push_back(rows.getColumn(2).getDouble());
-    const bool has_error = !rows.getColumn(3).isNull();
-    runs.values.std_error.push_back(has_error ? rows.getColumn(3).getDouble()
-                                              : std::numeric_limits<double>::quiet_NaN());
     const std::string group = sqlite::Text(rows, 4);
+    runs.std_errors.push_back(NumberOrNan(rows, 3));
+    runs.values.std_error.push_back(RepeatError(rows, context.groups.own_sources.contains(group)));
     // A run that is not compared is a group of its own.
     const bool is_unlike = std::ranges::find(unlike, group) != unlike.end();
     const auto [known, is_new] = groups.emplace(is_unlike ? '\0' + runs.ids.back() : group, groups.size());
@@ -99,10 +117,10 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
 /// A unit after a number; empty for a dimensionless one.
 std::string Spaced(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
 
-/// "20 runs scatter 1.03 times as much as their quoted errors predict (p 0.2)".
+/// "20 runs scatter 1.03 times as much as their errors predict (p 0.2)".
 std::string VerdictText(const Repeatability& all, const std::string& unit, std::size_t outliers) {
   std::string text = std::to_string(all.runs) + " runs scatter " + NumberText(all.ScatterRatio(), 3) +
-                     " times as much as their quoted errors predict (p " +
+                     " times as much as their errors predict (p " +
                      ProbabilityText(std::min(all.lower_p, all.upper_p)) + "): ";
   switch (all.verdict) {
     case Repeatability::Verdict::kAgrees: text += "the runs agree with the error bars"; break;
@@ -195,10 +213,16 @@ Json TrendJson(const QuantityRuns& runs, const Context& context, const std::stri
           {"points_total", runs.values.size()}};
 }
 
-Json DistributionJson(const Quantity& quantity, const RunValues& values) {
+/// The median of those that are finite; null if there is none.
+Json MedianOrNull(const std::vector<double>& values) {
+  std::vector<double> known;
+  std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return std::isfinite(value); });
+  return known.empty() ? Json(nullptr) : Json(MedianOf(std::move(known)));
+}
+
+Json DistributionJson(const Quantity& quantity, const QuantityRuns& runs) {
+  const RunValues& values = runs.values;
   const Distribution distribution = Describe(values.estimate);
-  std::vector<double> errors;
-  std::ranges::copy_if(values.std_error, std::back_inserter(errors), [](double error) { return std::isfinite(error); });
   return {{"model", quantity.model},
           {"name", quantity.name},
           {"unit", quantity.unit},
@@ -211,7 +235,8 @@ Json DistributionJson(const Quantity& quantity, const RunValues& values) {
           {"maximum", distribution.maximum},
           {"lower_quartile", distribution.lower_quartile},
           {"upper_quartile", distribution.upper_quartile},
-          {"median_std_error", errors.empty() ? Json(nullptr) : Json(Describe(errors).median)},
+          {"median_std_error", MedianOrNull(runs.std_errors)},
+          {"median_repeat_error", MedianOrNull(values.std_error)},
           {"histogram",
            {{"from", distribution.from},
             {"to", distribution.to},
@@ -245,7 +270,7 @@ Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const Co
   const std::vector<Outlier> outliers = of_the_rig ? FindOutliers(runs.values) : std::vector<Outlier>();
   const std::vector<Outlier> left_out = of_the_rig ? LeftOut(runs, context, outliers) : std::vector<Outlier>();
   const auto repeatability = of_the_rig ? AnalyzeRepeatability(runs.values, left_out) : std::nullopt;
-  Json json = DistributionJson(quantity, runs.values);
+  Json json = DistributionJson(quantity, runs);
   json["repeatability"] =
       repeatability ? RepeatabilityJson(runs, context, *repeatability, quantity.unit, left_out.size()) : Json(nullptr);
   const char* reason = of_the_rig ? NotComparedReason(context.groups)
@@ -298,12 +323,15 @@ Json VerdictsJson(const Json& overview, const Json& parameters, const RunGroups&
   return list;
 }
 
-Result<void> CheckColumn(SQLite::Database& database, const char* flag, const std::string& column) {
+Result<void> CheckColumn(const char* flag, const std::string& column, const std::vector<std::string>& known) {
   if (column.empty() || ColumnSql(column).starts_with("runs.")) return {};
-  const std::vector<std::string> known = sqlite::Texts(database, sqlite::kManifestColumns);
   if (std::ranges::find(known, column) != known.end()) return {};
   return Error(StatusCode::kInvalidArgument, std::string(flag) + ": the manifest has no column '" + column + "'" +
                                                  (known.empty() ? ", nor any other" : "; it has " + NameList(known)));
+}
+
+Result<void> CheckGroupBy(const std::string& group_by, const std::vector<std::string>& known) {
+  return IsWayToGroup(group_by) ? Result<void>() : CheckColumn("--group_by", group_by, known);
 }
 
 /// Number of runs whose value in the column is neither a number nor a date, and one such value.
@@ -331,9 +359,10 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
     add("not_in_the_manifest",
         std::to_string(counts.earlier) + " runs are not in the last manifest; their results belong to earlier ones");
   }
-  const std::int64_t same =
-      database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE exit_code < 2")
-          .getInt64();
+  const std::int64_t same = database
+                                .execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " +
+                                            std::string(kIsFitted))
+                                .getInt64();
   if (same > 0) {
     add("same_data",
         std::to_string(same) +
@@ -354,6 +383,12 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
 
 }  // namespace
 
+Result<void> CheckGroupBy(Store& store, const std::string& group_by) {
+  return sqlite::Guard(store.name(), [&]() -> Result<void> {
+    return CheckGroupBy(group_by, sqlite::Texts(store.database(), sqlite::kManifestColumns));
+  });
+}
+
 Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   const auto meta = store.Meta();
   if (!meta) return tl::unexpected(meta.error());
@@ -364,20 +399,18 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();
-    if (!IsWayToGroup(options.group_by)) {
-      if (auto checked = CheckColumn(database, "--group_by", options.group_by); !checked) {
-        return tl::unexpected(checked.error());
-      }
-    }
-    if (auto checked = CheckColumn(database, "--trend_by", options.trend_by); !checked) {
+    const std::vector<std::string> columns = sqlite::Texts(database, sqlite::kManifestColumns);
+    if (auto checked = CheckGroupBy(options.group_by, columns); !checked) return tl::unexpected(checked.error());
+    if (auto checked = CheckColumn("--trend_by", options.trend_by, columns); !checked) {
       return tl::unexpected(checked.error());
     }
     auto overview = Overview(store);
     if (!overview) return tl::unexpected(overview.error());
-    const std::string main = MainModel(*overview), only = options.main_model_only ? main : "";
     RunGroups groups = GroupRuns(database, options.group_by);
+    const std::string main = MainModel(database, *overview, groups), only = options.main_model_only ? main : "";
     FindUnlikeGroups(database, main, groups);
-    RunAgreement agreement = TestRunAgreement(database, main, groups);
+    RunAgreement agreement;
+    if (!options.without_agreement) agreement = TestRunAgreement(database, main, groups);
     const Json parameters = QuantitiesJson(database, {groups, agreement.outliers, options.trend_by}, only);
     Json json = {{"schema_version", kSchemaVersion},
                  {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "batch/run_kinds.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
@@ -12,9 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kExamples = 10;
-
-/// A run whose reason begins with its own path is about the recording; otherwise it is about the rig or calibration.
-constexpr const char* kIsMissing = "exit_code = 3 AND substr(coalesce(reason, ''), 1, length(path) + 1) = path || ':'";
 
 std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
   SQLite::Statement rows(database, "SELECT id, reason, path FROM runs WHERE " + condition +
@@ -52,11 +50,10 @@ Json Verdict(const std::string& model, const char* verdict, const char* level, c
 RunCounts CountRuns(SQLite::Database& database) {
   const std::string missing = kIsMissing;
   const std::string refused = "exit_code > 1 AND NOT (" + missing + ")";
-  SQLite::Statement row(
-      database,
-      "SELECT count(*), count(*) FILTER (WHERE exit_code = 0), count(*) FILTER (WHERE exit_code = 1), "
-      "count(*) FILTER (WHERE " +
-          missing + "), count(*) FILTER (WHERE " + refused + "), count(*) - count(exit_code) FROM runs");
+  SQLite::Statement row(database, "SELECT count(*), count(*) FILTER (WHERE " + std::string(kIsFitted) +
+                                      "), count(*) FILTER (WHERE exit_code = 1), count(*) FILTER (WHERE " + missing +
+                                      "), count(*) FILTER (WHERE " + refused +
+                                      "), count(*) - count(exit_code) FROM runs");
   row.executeStep();
   RunCounts counts{row.getColumn(0).getInt64(),
                    row.getColumn(1).getInt64(),
@@ -95,10 +92,15 @@ Json CountsJson(const RunCounts& counts) {
           {"refused_runs", ExamplesJson(counts.refused_runs)}};
 }
 
-std::string MainModel(const Json& overview) {
-  for (const Json& row : overview["recommendations"]) {
-    if (row["model"].is_string()) return row["model"].get<std::string>();
-  }
+std::string MainModel(SQLite::Database& database, const Json& overview, const RunGroups& groups) {
+  SQLite::Statement laws(database, "WITH laws AS (SELECT " + groups.sql + R"sql( AS pendulum, coalesce(recommended,
+    (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law FROM runs WHERE )sql" +
+                                       kIsFitted + R"sql()
+SELECT law FROM laws WHERE law IS NOT NULL AND
+    (?1 < 2 OR pendulum IN (SELECT pendulum FROM laws GROUP BY pendulum HAVING count(*) > 1))
+  GROUP BY law ORDER BY count(*) DESC, law LIMIT 1)sql");
+  sqlite::Bind(laws, groups.largest);
+  if (laws.executeStep()) return sqlite::Text(laws, 0);
   for (const Json& model : overview["models"]) {
     if (model["converged"].get<std::int64_t>() > 0) return model["model"].get<std::string>();
   }
@@ -129,7 +131,8 @@ Json VerdictJson(const std::string& model, const Json& parameters, const RunGrou
     worst = name;
   }
   const std::string count = std::to_string(all.size()) + (all.size() == 1 ? " parameter" : " parameters");
-  const std::string repeats = left_out ? "Without the outliers, repeats differ" : "Repeats differ";
+  const std::string repeats =
+      "Under the law " + model + ", repeats" + (left_out ? " without the outliers" : "") + " differ";
   if (all.empty()) {
     return Verdict(
         model, "not_compared", "caution",
@@ -137,9 +140,11 @@ Json VerdictJson(const std::string& model, const Json& parameters, const RunGrou
   }
   if (!larger.empty()) {
     return Verdict(model, "too_small", "caution",
-                   repeats + " by more than their errors, " + NumberText(largest, 3) + " times in " + worst + " (" +
-                       NamesText(larger) + "; " + std::to_string(larger.size()) + " of " + count +
-                       "). Either the pendulum changed or the errors are too small.");
+                   repeats + " by more than their errors in " + std::to_string(larger.size()) + " of " + count + ": " +
+                       (larger.size() > 1 ? NamesText(larger) + ". Most of all, " : "") + worst + " scatters " +
+                       NumberText(largest, 3) +
+                       " times as much as its errors predict. Either the pendulum changed or the errors are too "
+                       "small.");
   }
   if (!smaller.empty()) {
     return Verdict(model, "too_large", "good",

@@ -33,8 +33,9 @@ std::string CountsText(const RunCounts& counts);
 
 nlohmann::ordered_json CountsJson(const RunCounts& counts);
 
-/// The model that was recommended most often. Without a comparison, the first model with a converged fit.
-std::string MainModel(const nlohmann::ordered_json& overview);
+/// The law of the conclusions: of the fitted recordings that have repeats (of all, if none has), the law that was most
+/// often recommended or the only one. Otherwise the first model with a converged fit.
+std::string MainModel(SQLite::Database& database, const nlohmann::ordered_json& overview, const RunGroups& groups);
 
 /// Whether the errors of a model agree with the scatter between recordings. `parameters`: as in the summary.
 /// `left_out`: whether recordings that disagree are left out.

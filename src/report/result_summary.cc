@@ -55,8 +55,9 @@ std::string MainSources(double std_error, const SystematicErrors& systematic, co
     total += parts.back().first;
   }
   std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
-  const auto short_name = [](const Part& part) {
-    return part.second ? std::string(ErrorSourceName(*part.second)) : std::string("noise");
+  const auto short_name = [](const Part& part) -> std::string {
+    if (!part.second) return "noise";
+    return *part.second == ErrorSource::kInconstancy ? "change" : std::string(ErrorSourceName(*part.second));
   };
   if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
   return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
@@ -176,14 +177,15 @@ std::string RemarksText(const FitReport& fit) {
     const auto known = std::ranges::find(fit.identifiability, name, &Identifiability::parameter);
     if (MayBeZero(parameter)) {
       AddListed(name, zero);
-    } else if (known != fit.identifiability.end() && known->verdict == Identifiability::Verdict::kWeakly) {
+    } else if (!parameter.at_bound && known != fit.identifiability.end() &&
+               known->verdict == Identifiability::Verdict::kWeakly) {
       AddListed(name, weak);
     }
     AddListed(WideIntervalText(parameter), wide);
   }
   std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
   if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";
-  if (!wide.empty()) text += "95 % intervals: " + wide + ", much wider than ± 2 errors. ";
+  if (!wide.empty()) text += "95 % intervals, wider than ± 2 errors: " + wide + ". ";
   if (!text.empty()) text.pop_back();
   return text;
 }
@@ -277,6 +279,7 @@ void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
   if (!homogeneity.p) summary.emphasis = Emphasis::kCaution;
   if (homogeneity.agrees()) return;
   summary.verdict = "The errors below assume that the recordings agree: do not quote them.";
+  std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "recordings_disagree"; });
   summary.emphasis = homogeneity.disagreeing.empty() ? Emphasis::kCaution : Emphasis::kAlarm;
 }
 

@@ -119,6 +119,7 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   if (!has_fits) return WriteText(options.quiet ? "" : text);
   SummaryOptions how = options.summary;
   how.main_model_only = true;
+  how.without_agreement = options.quiet;
   const auto summary = Summarize(*store, how);
   if (!summary) return tl::unexpected(summary.error());
   return WriteText(options.quiet ? QuietText(*summary) : text + SummaryText(*summary, path));
@@ -140,6 +141,7 @@ Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& 
 
 Result<int> RunRefit(const RefitPendulumsOptions& options) {
   RefitOptions refit = options.refit;
+  refit.group_by = options.summary.group_by;
   if (auto read = ReadCommon(options, refit); !read) return tl::unexpected(read.error());
   const auto source = SourceOf(options);
   if (!source) return tl::unexpected(source.error());

@@ -47,7 +47,7 @@ std::string RecommendationsText(const nlohmann::ordered_json& recommendations) {
 
 std::string FailuresText(const nlohmann::ordered_json& failures) {
   if (failures.empty()) return "";
-  std::string text = Heading("Not converged");
+  std::string text = Heading("Failed or not converged");
   for (const auto& failure : failures) {
     const std::string first = "    " + failure["fits"].dump() + " x " + failure["status"].get<std::string>() + ": ";
     text += Paragraph(Printable(failure["reason"].get<std::string>()) + " (" +
@@ -133,7 +133,8 @@ std::string VerdictText(const Json& summary) {
   return "";
 }
 
-/// The parameters of the main model: typical value, scatter between recordings, typical error.
+/// The parameters of the main model: typical value, scatter between recordings, and the
+/// error that repeats are compared with.
 std::string ParametersText(const Json& summary, bool of_the_rig_only) {
   std::vector<Cells> rows;
   for (const Json& parameter : summary["parameters"]) {
@@ -142,7 +143,7 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
     const Json& found = parameter["repeatability"];
     rows.push_back(
         {parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
-         parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_std_error"]),
+         parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_repeat_error"]),
          found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
                                                                  : "",
          parameter["unit"] == "1" ? "" : parameter["unit"].get<std::string>()});
@@ -151,7 +152,7 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
   return AlignedTable({{summary["main_model"].get<std::string>()},
                        {"median", true},
                        {"spread", true},
-                       {"typical error", true},
+                       {"error of repeats", true},
                        {"scatter/error", true},
                        {"unit"}},
                       rows, kTextIndent);
@@ -270,7 +271,7 @@ Result<std::string> StatusText(Store& store) {
   const auto counts = store.Count();
   if (!counts) return tl::unexpected(counts.error());
   std::string text = Heading("Runs") + Row("in the store", counts->runs) + Row("not refitted yet", counts->pending) +
-                     Row("could not be fitted", counts->unfitted);
+                     Row("recording missing", counts->missing) + Row("refused", counts->unfitted - counts->missing);
   if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
   if (counts->fits == 0) return text;
   const auto overview = Overview(store);

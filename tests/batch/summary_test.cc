@@ -141,7 +141,7 @@ TEST_F(SummaryTest, DescribesEachFittedParameter) {
   EXPECT_NEAR(repeatability["p"].get<double>(), std::exp(-4), 1e-9);
   EXPECT_NEAR(repeatability["between_std_dev"].get<double>(), std::sqrt(3), 1e-6);
   EXPECT_EQ(repeatability["verdict"], "agrees");
-  EXPECT_THAT(repeatability["text"], StartsWith("3 runs scatter 2 times as much as their quoted errors predict (p "));
+  EXPECT_THAT(repeatability["text"], StartsWith("3 runs scatter 2 times as much as their errors predict (p "));
   ASSERT_THAT(repeatability["rows"], SizeIs(1));
   EXPECT_EQ(repeatability["rows"][0]["group"], "all runs");
   EXPECT_NEAR(repeatability["rows"][0]["weighted_mean"].get<double>(), 12, 1e-12);
@@ -354,8 +354,8 @@ TEST_F(SummaryTest, ConcludesNothingIfRecordingsDifferGrosslyAndNothingSaysThatT
   const Json summary = SummaryOf(store);
   EXPECT_EQ(
       summary["grouping"]["text"],
-      "The 5 recordings are not taken for one pendulum: their inertia scatters by 49 %, repeats of one pendulum by "
-      "at most 2 %. So they are not compared, and nothing is concluded about their errors.");
+      "The 5 recordings are not taken for one pendulum: their inertia scatters by 49 %, but between repeats of one "
+      "pendulum by at most 2 %. So they are not compared, and nothing is concluded about their errors.");
   EXPECT_THAT(summary["grouping"]["otherwise"].get<std::string>(), HasSubstr("--group_by all"));
   EXPECT_EQ(summary["verdicts"][0]["verdict"], "not_compared");
   EXPECT_EQ(ParameterOf(summary, "viscous", "inertia")["repeatability"], nullptr);
@@ -376,6 +376,81 @@ TEST_F(SummaryTest, GroupsByColumnsThatNamePendulumsAndByFolders) {
   Store folders = StoreOf(text, fit);
   EXPECT_EQ(SummaryOf(folders)["grouping"]["by"], "folder");
   EXPECT_EQ(SummaryOf(folders)["grouping"]["pendulums"], 2);
+}
+
+/// Two runs of inertia 10 and 10 + `distance` with standard errors of 1.
+std::vector<Json> TwoFits(double distance) {
+  return {FitWithCovariance(10, 1, 5, 0.1), FitWithCovariance(10 + distance, 1, 5, 0.1)};
+}
+
+// An interval of ± 4 standard errors, from few effective samples, is 4 / 1.96 times as wide as a normal one.
+TEST_F(SummaryTest, ComparesRepeatsWithTheErrorsThatCanMakeThemDiffer) {
+  std::vector<Json> fits = TwoFits(6);
+  const double wide = 4 / 1.959963984540054, inconstancy = 3;
+  for (Json& fit : fits) {
+    Json& inertia = fit["parameters"]["inertia"];
+    const double estimate = inertia["estimate"].get<double>();
+    inertia["interval95"] = {estimate - 4, estimate + 4};
+    inertia["systematic_std_error"] = 5;
+    inertia["error_budget"] = {{"noise", 1}, {"rig", 4}, {"inconstancy", inconstancy}};  // the rig is common
+    fit["systematic_covariance"] = {{"names", {"inertia"}}, {"matrix", {{25}}}};
+  }
+  Store store = StoreOf(PlainManifest(2), [&](std::size_t i) { return OutcomeOf({fits[i]}); });
+  const Json summary = SummaryOf(store);
+  const Json& inertia = ParameterOf(summary, "viscous", "inertia");
+  const double variance = wide * wide + inconstancy * inconstancy;
+  EXPECT_NEAR(inertia["repeatability"]["chi2"].get<double>(), 2 * 9 / variance, 1e-9);
+  EXPECT_NEAR(summary["agreement"]["rows"][0]["statistic"].get<double>(), 2 * 9 / variance, 1e-9);
+  EXPECT_EQ(inertia["median_std_error"], 1);
+  EXPECT_NEAR(inertia["median_repeat_error"].get<double>(), std::sqrt(variance), 1e-12);
+}
+
+TEST_F(SummaryTest, AddsTheErrorsOfClocksThatDiffer) {
+  for (const double other_clock : {1.0, 1.5}) {
+    std::vector<Json> fits = TwoFits(6);
+    for (Json& fit : fits) {
+      fit["parameters"]["inertia"]["error_budget"] = {{"noise", 1}, {"clock", 2}};
+      fit["systematic_covariance"] = {{"names", {"inertia"}}, {"matrix", {{4}}}};
+    }
+    fs::remove(folder_ / "store.sqlite");
+    Store store = StoreOf(PlainManifest(2), [&](std::size_t i) {
+      RunOutcome outcome = OutcomeOf({fits[i]});
+      outcome.result["data"]["clock_scale"] = i == 0 ? 1 : other_clock;
+      return outcome;
+    });
+    const Json summary = SummaryOf(store);
+    const double chi2 = 2 * 9 / (other_clock == 1 ? 1.0 : 5.0);
+    EXPECT_NEAR(ParameterOf(summary, "viscous", "inertia")["repeatability"]["chi2"].get<double>(), chi2, 1e-9);
+    EXPECT_NEAR(summary["agreement"]["rows"][0]["statistic"].get<double>(), chi2, 1e-9);
+  }
+}
+
+// Four different pendulums recommend viscous; the only repeats recommend coulomb.
+TEST_F(SummaryTest, ConcludesFromTheLawOfTheRepeats) {
+  const std::string manifest =
+      ManifestOf(7, ",pendulum", [](std::size_t i) { return i < 4 ? "," + std::to_string(i) : std::string(",same"); });
+  Store store = StoreOf(manifest, [](std::size_t i) {
+    return OutcomeOf({FitOf("viscous", 10), FitOf("coulomb", 10)}, i < 4 ? "viscous" : "coulomb");
+  });
+  EXPECT_EQ(SummaryOf(store)["main_model"], "coulomb");
+}
+
+TEST_F(SummaryTest, SaysInHowManyParametersRepeatsDiffer) {
+  Store store = StoreOf(PlainManifest(10), [](std::size_t i) {
+    return OutcomeOf({FitWithCovariance(10 + (i % 2 == 0 ? 1 : -1), 0.3, 5, 0.1)});
+  });
+  EXPECT_EQ(
+      SummaryOf(store, {"all", ""})["verdicts"][0]["text"],  // √(10 / 9) / 0.3
+      "Under the law viscous, repeats differ by more than their errors in 1 of 2 parameters: inertia scatters 3.51 "
+      "times as much as its errors predict. Either the pendulum changed or the errors are too small.");
+}
+
+TEST_F(SummaryTest, DoesNotTestTheAgreementIfNobodyAsks) {
+  Store store = StoreOf(PlainManifest(4),
+                        [](std::size_t i) { return OutcomeOf({FitWithCovariance(i == 3 ? 10.3 : 10, 0.05, 5, 0.1)}); });
+  SummaryOptions options;
+  options.without_agreement = true;
+  EXPECT_TRUE(SummaryOf(store, options)["agreement"].is_null());
 }
 
 // χ² by hand: inertia 10, 10, 10, 10.3: the mean is 10.075. The friction is equal, so its χ² is 0.

@@ -87,6 +87,15 @@ TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {
   EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
 }
 
+TEST_F(RefitCommandsTest, RefusesAnUnknownColumnBeforeAnyFit) {
+  RefitPendulumsOptions options = Options(RefitCommand::kRefit);
+  options.summary.group_by = "nonsense";
+  EXPECT_EQ(Run(options), 2);
+  EXPECT_THAT(stderr_text_, HasSubstr("--group_by: the manifest has no column 'nonsense'"));
+  EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
+  EXPECT_THAT(stderr_text_ + stdout_text_, HasSubstr("not refitted yet                2\n"));
+}
+
 TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
   ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
   RefitPendulumsOptions options = Options(RefitCommand::kExport);

@@ -387,7 +387,7 @@ class Reports(Lab):
             inertia = fit["parameters"]["inertia"]
             self.assertEqual((law, status, verdict), (fit["model"], "converged", fit["summary"]["verdict"]))
             self.assertEqual(values, [inertia[key] for key in ("estimate", "std_error", "total_std_error", "unit")])
-        self.assertEqual(found[2][1:7], (None, None, None, None, None, "failed"))
+        self.assertEqual(found[2][1:7], (None, None, None, None, None, "missing"))
         self.assertIn("there is no such file", found[2][7])
 
     def test_an_older_store_is_read_unchanged_and_gets_the_view_when_it_is_written(self):
@@ -396,6 +396,9 @@ class Reports(Lab):
         with sqlite3.connect(self.folder / "a.sqlite") as database:
             database.executescript("DROP VIEW results; DROP VIEW all_fits; ALTER TABLE fits DROP COLUMN verdict; "
                                    "ALTER TABLE quantities DROP COLUMN total_std_error; "
+                                   "ALTER TABLE quantities DROP COLUMN inconstancy_std_error; "
+                                   "ALTER TABLE quantities DROP COLUMN source_std_error; "
+                                   "ALTER TABLE runs DROP COLUMN sources; "
                                    "ALTER TABLE requests DROP COLUMN name; PRAGMA user_version = 3; "
                                    "CREATE VIEW results AS SELECT id, fits.* FROM runs JOIN fits USING(run)")
         (self.folder / "a.sqlite").chmod(0o444)

@@ -88,7 +88,7 @@ TEST(StatusText, CountsRunsFitsAndReasons) {
     ASSERT_TRUE(text) << text.error().message;
     EXPECT_THAT(*text, HasSubstr("    in the store                    3\n"));
     EXPECT_THAT(*text, HasSubstr("    not refitted yet                1\n"));
-    EXPECT_THAT(*text, HasSubstr("    could not be fitted             2\n"));
+    EXPECT_THAT(*text, HasSubstr("    recording missing               0\n    refused                         2\n"));
     EXPECT_THAT(*text, HasSubstr("    viscous     2          0              0                 0       2\n"));
     EXPECT_THAT(*text, HasSubstr("    2 x failed: no swing (run1.csv)\n"));
     EXPECT_THAT(*text, HasSubstr(" of 3 fields (run0.csv)\n"));

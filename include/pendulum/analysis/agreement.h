@@ -3,20 +3,11 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include <Eigen/Core>
+#include "pendulum/analysis/separate_estimates.h"
 
 namespace pendulum {
-
-/// Estimates of S parameters from one recording alone.
-struct SeparateEstimates {
-  std::size_t run = 0;             ///< Index of the recording.
-  std::vector<std::string> names;  ///< S
-  Eigen::VectorXd value;           ///< S, each in the unit of its parameter.
-  Eigen::MatrixXd covariance;      ///< S x S, positive definite, with all errors that can make recordings differ.
-};
 
 /// Whether K recordings have the same S parameters.
 struct Agreement {
@@ -27,7 +18,9 @@ struct Agreement {
   static constexpr double kDisagree = 0.01;  ///< Probability that recordings of one rig are reported as disagreeing.
 };
 
-/// Tests estimates of the same parameters from K >= 2 recordings.
+/// Tests estimates of the same parameters from K >= 2 recordings: the test of W. G. Cochran, Biometrics 10:101 (1954),
+/// for several parameters. The covariances contain the errors that are independent between recordings
+/// (EstimatesToCompare).
 Agreement TestAgreement(const std::vector<SeparateEstimates>& estimates);
 
 /// Indices into `estimates` of K >= 2 recordings that do not agree: the fewest recordings without which a majority

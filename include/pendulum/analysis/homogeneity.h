@@ -78,9 +78,10 @@ struct Homogeneity {
   static constexpr double kDisagree = Agreement::kDisagree;
 };
 
-/// Compares the estimates of the shared parameters from each recording alone. Priors are removed, and systematic errors
-/// of sources that differ between recordings (clocks, calibrations) are added. Gives the joint test, the recordings
-/// that disagree, the differences explained by amplitude, and the scatter between recordings.
+/// Compares the estimates of the shared parameters from each recording alone. Priors are removed. Systematic errors
+/// that differ between recordings are added: clocks and calibrations if they differ, and parameters that are not
+/// constant. Gives the joint test, the recordings that disagree, the differences explained by amplitude, and the
+/// scatter between recordings.
 Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -7,7 +7,7 @@
 
 namespace pendulum {
 
-/// What a long computation does now.
+/// A step of a long computation.
 struct ProgressStep {
   std::string what;  ///< "fitting stribeck".
   int done = 0;      ///< Parts that are complete.

@@ -33,6 +33,7 @@ struct RefitOptions {
   bool force = false;                       ///< Refits current runs, too.
   bool retry_failed = false;                ///< Refits runs that could not be fitted, too.
   const std::atomic<bool>* stop = nullptr;  ///< If true, started runs are finished and stored, and no others begin.
+  std::string group_by;                     ///< As in SummaryOptions; checked before the fits, which may take hours.
   std::function<void(const RefitCounts&)> progress;  ///< Called after every run, from any thread, one at a time.
   std::function<Result<void>()> committed;  ///< Called after commits, about once a second; errors end the refit.
 };

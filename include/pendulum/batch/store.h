@@ -62,8 +62,8 @@ struct StoreMeta {
 
 /// Counts of a store's runs and fits.
 struct StoreCounts {
-  /// All runs, those not refitted yet, and those that could not be fitted.
-  std::int64_t runs = 0, pending = 0, unfitted = 0;
+  /// All runs, those not refitted yet, those that could not be fitted, and of these the ones without a recording.
+  std::int64_t runs = 0, pending = 0, unfitted = 0, missing = 0;
   std::int64_t earlier = 0;           ///< Runs that are not in the last manifest.
   std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
 };

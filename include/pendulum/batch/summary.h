@@ -16,8 +16,13 @@ struct SummaryOptions {
                          ///< Empty: what the manifest says (columns pendulum, group and rig_id, true values of
                          ///< simulated recordings, rig files), else folders or all runs.
   std::string trend_by;  ///< A manifest column of numbers or ISO 8601 dates; empty: the position in the manifest.
-  bool main_model_only = false;  ///< Only the parameters of the main model.
+  bool main_model_only = false;    ///< Only the parameters of the main model.
+  bool without_agreement = false;  ///< Without the test of a joint fit, which reads the results of all runs.
 };
+
+/// Checks that the runs of a store can be grouped by this. kInvalidArgument: the manifest has no such column. Other
+/// errors: of the store.
+Result<void> CheckGroupBy(Store& store, const std::string& group_by);
 
 /// Statistics of all refitted runs as JSON (summary.schema.json). First it says how many recordings were fitted, which
 /// of them were taken for repeats of one pendulum, and whether these agree. Runs of different pendulums, and runs that

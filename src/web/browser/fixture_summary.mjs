@@ -147,6 +147,10 @@ function parameterOf(model, name, typical, options) {
       runs.map((run) => run.std_error).sort((a, b) => a - b),
       0.5,
     ),
+    median_repeat_error: quantile(
+      runs.map((run) => run.std_error).sort((a, b) => a - b),
+      0.5,
+    ),
     histogram: histogramOf(sorted),
     repeatability: comparable ? repeatabilityOf(runs.filter((run) => !isFar(run))) : null,
     repeatability_reason: comparable ? null : 'no rig has two runs to compare',

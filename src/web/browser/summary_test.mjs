@@ -86,7 +86,7 @@ test('the page begins with the verdict that the error bars are too small', async
     /Repeats differ by more than their errors, 1\.4 times in inertia/,
   );
   assert.equal(await page.locator('#parameters .no').count(), 1);
-  assert.match(await page.locator('#repeatability').textContent(), /Error bars are too small\./);
+  assert.match(await page.locator('#repeatability').textContent(), /The runs scatter by more than their errors predict\./);
 });
 
 test('the trend zooms by buttons, keys and the mouse', async (t) => {

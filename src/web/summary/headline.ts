@@ -13,12 +13,15 @@ const kMost = 0.9;
 
 type Judged = ParameterSummary & { repeatability: NonNullable<ParameterSummary['repeatability']> };
 
-/** The parameters that have several runs of one rig. */
+/** The parameters that have several runs of one rig; without derived quantities, as in the verdict's sentence. */
 export const judgedOf = (view: View): Judged[] =>
-  parametersOf(view).filter((one): one is Judged => one.repeatability !== null);
+  parametersOf(view).filter((one): one is Judged => one.repeatability !== null && !one.derived);
 
-/** The parameter with the largest scatter in units of its error bars; null if no scatter is known. */
-export function worst(judged: Judged[]): Judged | null {
+/** The parameter that the verdict names: of those that scatter by more than their errors (of all, if none does), the
+ *  one with the largest scatter in units of its errors; null if no scatter is known. */
+export function worst(all: Judged[]): Judged | null {
+  const larger = all.filter(({ repeatability }) => repeatability.verdict === 'scatter_larger');
+  const judged = larger.length > 0 ? larger : all;
   const ratio = (one: Judged): number => one.repeatability.scatter_ratio ?? 0;
   return judged.reduce<Judged | null>((most, one) => (most && ratio(most) >= ratio(one) ? most : one), null);
 }

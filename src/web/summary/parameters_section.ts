@@ -13,8 +13,8 @@ import { countText, ratioText, spreadText, valueTo } from './words';
 
 const kRemarks: Record<Verdict, Child> = {
   agrees: null,
-  scatter_larger: 'error bars too small',
-  scatter_smaller: 'error bars too large',
+  scatter_larger: 'more than the errors',
+  scatter_smaller: 'less than the errors',
 };
 
 /** "1.03" and its meaning in words. */
@@ -41,7 +41,8 @@ export function nameCell({ name, unit }: ParameterSummary): Child[] {
 }
 
 function row(one: ParameterSummary): Cell[] {
-  const { median, std_dev: spread, median_std_error: error, unit } = one;
+  const { median, std_dev: spread, unit } = one;
+  const error = one.median_repeat_error ?? one.median_std_error;
   return [
     nameCell(one),
     countText(one.runs),
@@ -66,7 +67,7 @@ function overview(view: View, all: ParameterSummary[]): HTMLElement {
     { head: 'Runs', kind: number },
     { head: 'Median', kind: number },
     { head: 'Spread (standard deviation)', kind: number },
-    { head: 'Quoted error (median)', kind: number },
+    { head: 'Error of repeats (median)', kind: number },
     { head: 'Scatter of one rig ÷ error', kind: number },
     { head: 'Outliers', kind: number },
     { head: 'p of no trend', kind: number },
@@ -79,7 +80,7 @@ function overview(view: View, all: ParameterSummary[]): HTMLElement {
 
 const kMeaning =
   'The spread is over all runs, of whatever rig. The scatter is that of runs of one rig about their mean, in units of the errors ' +
-  'they quote: 1 where error bars are true.';
+  'that can make them differ (noise, inconstancy, own clock or calibration): 1 where these errors are right.';
 
 /** `changed` is called after another parameter was selected. */
 export function parametersSection(view: View, changed: () => void): HTMLElement {

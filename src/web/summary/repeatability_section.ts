@@ -22,7 +22,7 @@ function numbers(found: Repeatability, unit: string): HTMLElement {
   return facts([
     ['scatter ÷ error bars', ratioText(found.scatter_ratio)],
     ['χ², degrees of freedom', `${significant(found.chi2, 5)}, ${countText(found.dof)}`],
-    ['p of true error bars', small],
+    ['p if the errors are right', small],
     [
       'scatter beyond the error bars',
       found.between_std_dev === null
@@ -99,7 +99,7 @@ function plots(one: ParameterSummary, found: Repeatability): HTMLElement {
       scatterRows(found),
       'scatter over error bars by group',
       '',
-      `${most} With 95 % intervals; 1 (dashed) where error bars are true.`.trim(),
+      `${most} With 95 % intervals; 1 (dashed) if the errors are right.`.trim(),
     ),
     plot(
       `Mean${unit && ` [${unit}]`}`,
@@ -133,16 +133,17 @@ function content(one: ParameterSummary, found: Repeatability, group: string): HT
   return parts;
 }
 
+/** What was found; the sentence that follows says how large it is. */
 const kLabels = {
-  agrees: 'Error bars are true.',
-  scatter_larger: 'Error bars are too small.',
-  scatter_smaller: 'Error bars are larger than the scatter.',
+  agrees: 'The runs agree with their errors.',
+  scatter_larger: 'The runs scatter by more than their errors predict.',
+  scatter_smaller: 'The runs scatter by less than their errors predict.',
 };
 
 /** A note that the agreement of only a few runs is weak evidence. */
 const labelOf = (found: Repeatability): string =>
   found.verdict === 'agrees' && !hasEnoughRuns(found)
-    ? 'The runs agree with the error bars, but they are few.'
+    ? 'The runs agree with their errors, but they are few.'
     : kLabels[found.verdict];
 
 /** group: column by which the runs are grouped. */

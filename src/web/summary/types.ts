@@ -8,7 +8,7 @@ export interface Summary {
   tool: { name: string; version: string };
   headline: RunCounts;
   grouping: Grouping;
-  /** The model that was recommended most often. */
+  /** The law of the conclusions: the one most often recommended for the recordings that have repeats. */
   main_model: string | null;
   verdicts: ModelVerdict[];
   agreement: Agreement | null;
@@ -123,6 +123,8 @@ export interface ParameterSummary {
   upper_quartile: Num;
   /** Median of the standard errors of the runs. */
   median_std_error: Num;
+  /** Median of the errors that repeats are compared with; absent in summaries of earlier versions. */
+  median_repeat_error?: Num;
   histogram: Counts | null;
   repeatability: Repeatability | null;
   repeatability_reason: string | null;

@@ -14,8 +14,8 @@ import { countText, ratioText, shareText } from './words';
 function scatterFigure(view: View): HTMLElement | null {
   const most = worst(judgedOf(view));
   if (!most || most.repeatability.scatter_ratio === null) return null;
-  return keyFigure(['largest scatter'], `${ratioText(most.repeatability.scatter_ratio)} error bars`, [
-    `${wordsOf(most.name)}; 1: error bars are true`,
+  return keyFigure(['largest scatter'], `${ratioText(most.repeatability.scatter_ratio)} × the errors`, [
+    `${wordsOf(most.name)}; 1: as much as the errors predict`,
   ]);
 }
 

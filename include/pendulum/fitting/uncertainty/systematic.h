@@ -43,7 +43,9 @@ struct SystematicCovariance {
   Eigen::MatrixXd of_ratios;     ///< Of the parameters over the restoring torque: the error of G belongs to no ratio.
 };
 
-/// The covariance that a source causes. of_all: every recording of the fit has this source.
+/// The covariance that a source causes. of_all: every recording of the fit has this source. `source` is of the same P
+/// parameters as `context`: its pull has P rows, and its powers have P elements or none. The optimum must be
+/// identifiable (optimum.inverse.identifiable), because its inverse information gives the change of the estimates.
 SystematicCovariance CovarianceOfSource(const SystematicSource& source, bool of_all, const SourceContext& context);
 
 /// Adds a covariance to that of its kind.
