@@ -155,17 +155,17 @@ test('a fit gets the name that is entered beside the Fit button, also after a re
   const page = await openView(t, service, '/');
   await drop(page, [{ name: 'logger.csv', content: renamed('t,reading') }]);
   await shownLook(page, 'logger.csv');
-  await field(page, 'Name (optional)').fill('Heavy bob');
+  await field(page, 'Name').fill('Heavy bob');
   await page.reload();
   await shownLook(page, 'logger.csv');
-  assert.equal(await field(page, 'Name (optional)').inputValue(), 'Heavy bob');
+  assert.equal(await field(page, 'Name').inputValue(), 'Heavy bob');
   await page.getByRole('button', { name: 'Fit', exact: true }).click();
   const { name, file } = await service.json(`/v1/fits/${await shownFit(page)}/request`);
   assert.deepEqual([name, file], ['Heavy bob', 'logger.csv']);
   await page.getByRole('link', { name: 'New fit' }).click();
   await drop(page, [{ name: 'other.csv', content: renamed('t,reading') }]);
   await shownLook(page, 'other.csv');
-  assert.equal(await field(page, 'Name (optional)').inputValue(), ''); // the name was that of another recording
+  assert.equal(await field(page, 'Name').inputValue(), ''); // the name was that of another recording
 });
 
 test('readings in volts without a calibration are a problem before the fit, unless the law needs no angle', async (t) => {

@@ -62,7 +62,7 @@ function restoreForms({ rig, models, options, name }: Forms): void {
 
 function theForms(): Forms {
   if (forms) return forms;
-  const name = textField('Name (optional)', '', { maxlength: String(kLongestName) });
+  const name = textField('Name', '', { maxlength: String(kLongestName), placeholder: 'optional' });
   forms = { rig: new RigForm(), models: new ModelForm(), options: new OptionsForm(), name };
   restoreForms(forms);
   return forms;
