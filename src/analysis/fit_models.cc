@@ -214,6 +214,11 @@ std::vector<std::string> PhysicalNames(const std::vector<std::string>& models) {
   return names;
 }
 
+Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
+                         const std::vector<std::string>& models) {
+  return CheckSwing(recording, swing, ForModel(options, models[Richest(models)], models).options);
+}
+
 Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models) {
   Result<FittedModels> fitted = swing.undersampled ? FitEach(recording, swing, options, models)

@@ -418,6 +418,16 @@ Identification CombineRecordings(const JointModels& joint, const std::optional<R
 
 }  // namespace
 
+Result<void> CheckBeforeFit(const IdentifyOptions& asked, const PreparedRecording& recording) {
+  const auto for_rig = OptionsForRig(asked, recording.known.rig);
+  if (!for_rig) return tl::unexpected(for_rig.error());
+  if (asked.closed_form_only) return {};
+  FitOptions options = for_rig->fit;
+  options.rig = recording.known.rig;
+  const auto first = static_cast<std::size_t>(recording.swings.chosen.front()) - 1;
+  return CheckModels(recording.recording, recording.swings.found[first], options, for_rig->models);
+}
+
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
   std::vector<Result<Identification>> all;
   const std::vector<int> chosen = recording.swings.chosen;

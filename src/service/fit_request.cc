@@ -11,6 +11,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/utf8.h"
 #include "pendulum/batch/source.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/rig_values.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/utf8.h"
 #include "pendulum/service/media_type.h"
 #include "service/escapes.h"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -79,7 +80,7 @@ void AskForRig(const IdentifyOptions& options, Preview& preview) {
     preview.missing.push_back(std::move(question));
 }
 
-/// Chooses the window as a fit does.
+/// Chooses the window and checks the readings as a fit does.
 void Prepare(const IdentifyOptions& options, std::optional<Rig> rig, Preview& preview) {
   preview.assumptions = preview.recording->warnings;
   IdentifyOptions own = options;
@@ -90,13 +91,17 @@ void Prepare(const IdentifyOptions& options, std::optional<Rig> rig, Preview& pr
     if (!preview.problem) preview.problem = prepared.error();
     return;
   }
+  if (!has_wrong_rig) {
+    if (const auto checked = CheckBeforeFit(own, *prepared); !checked) preview.problem = checked.error();
+  }
   preview.assumptions = std::move(prepared->known.warnings);
   preview.swings = std::move(prepared->swings.found);
   preview.release = prepared->swings.chosen.front();
 }
 
-/// Reads the recording of a request. Errors as ReadBytesOfRun, except those that are questions.
-Result<Preview> MakePreview(FitRequest request) {
+/// Reads the recording of a request. Errors as ReadBytesOfRun, except those that are questions; kTryAgain: the client
+/// has gone. The limits of lines, bytes and unpacked bytes bound the time of reading and of the search for the window.
+Result<Preview> MakePreview(FitRequest request, const std::stop_token& client_gone) {
   Preview preview;
   IdentifyOptions& options = request.options;
   options.read.preview = &preview.table;
@@ -116,6 +121,7 @@ Result<Preview> MakePreview(FitRequest request) {
   const bool describes_rig = has_rig_file || (run && !run->recording.rig_json.empty());
   if (!describes_rig && !options.rig_values.empty()) AskForRig(options, preview);
   if (!run) return preview;
+  if (client_gone.stop_requested()) return FitStopped();
   preview.recording = std::move(run->recording);
   Prepare(options, std::move(run->rig), preview);
   return preview;
@@ -221,7 +227,7 @@ HttpResponse PostPreview(ServiceState& state, const Call& call) {
   auto request = ParseFitRequest(call.http, call.target, state.options.limits);
   if (!request) return ProblemResponse(request.error());
   const std::string name = request->data.front().name;
-  const auto preview = MakePreview(*std::move(request));
+  const auto preview = MakePreview(*std::move(request), call.http.client_gone);
   if (!preview) return ProblemAnswer(preview.error());
   return JsonAnswer(PreviewJson(*preview, name));
 }

@@ -137,6 +137,31 @@ TEST_F(PreviewTest, HasTheProblemOfARecordingWithoutASwing) {
   EXPECT_EQ(preview["samples"]["samples"], 200);
 }
 
+TEST_F(PreviewTest, HasTheProblemOfReadingsThatAreNoAngles) {
+  const std::string text = Renamed("time_s,pot_volts");
+  const Json problem = PreviewOf(text)["problem"];
+  ASSERT_TRUE(problem.is_object());
+  EXPECT_EQ(problem, Json::parse(Post("/v1/fits", "text/csv", text).body));
+  EXPECT_THAT(problem["detail"].get<std::string>(), HasSubstr("the readings are in volts"));
+  EXPECT_EQ(PreviewOf(text, "?model=linear")["problem"], nullptr);
+}
+
+TEST_F(PreviewTest, HasTheProblemOfAPeriodThatNoPendulumHas) {
+  const std::string query = "?time_column=time_s:min";
+  const Json preview = PreviewOf(Recording(), query);
+  ASSERT_TRUE(preview["problem"].is_object());
+  EXPECT_EQ(preview["problem"], Json::parse(Post("/v1/fits" + query, "text/csv", Recording()).body));
+  EXPECT_THAT(preview["problem"]["detail"].get<std::string>(), StartsWith("the period is "));
+  EXPECT_NE(preview["window"], nullptr);
+}
+
+TEST_F(PreviewTest, NumbersAColumnWhoseNameIsNotUtf8) {
+  const std::string text = Renamed("t [s],\xA4ngle");  // JSON cannot return the name
+  const Json preview = PreviewOf(text, "?value_column=2&unit=rad");
+  EXPECT_EQ(preview["columns"][1], (Json{{"name", "2"}, {"value_column", "2"}}));
+  EXPECT_EQ(preview["problem"], nullptr);
+}
+
 TEST_F(PreviewTest, RefusesAnUnreadableRecordingAsAFitDoes) {
   for (const std::string& text : {Recording() + "1e9,x\n9e9,1\n", std::string("%PDF-1.4"), std::string()}) {
     const HttpResponse preview = Post("/v1/previews", "text/csv", text);

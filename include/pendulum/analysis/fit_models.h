@@ -30,6 +30,10 @@ OptionsForModel ForModel(const FitOptions& options, const std::string& model, co
 /// Names of inertia and of all friction parameters of the models.
 std::vector<std::string> PhysicalNames(const std::vector<std::string>& models);
 
+/// The checks of FitModels before its first fit. Cheap. Errors as CheckSwing for the richest law.
+Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
+                         const std::vector<std::string>& models);
+
 /// Fits each model to one free swing. The richest law among the models determines the window (FitSwing) and the kind of
 /// start. All fits use the noise family chosen for the model with the smallest residuals. With one model the result
 /// equals that of FitSwing. Errors as FitSwing; if the richest law can be fitted and another model cannot, its report

@@ -20,6 +20,10 @@ namespace pendulum {
 /// options.fit.stop is requested, all elements that are not finished are kTryAgain.
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording);
 
+/// The checks of IdentifyEach before the first fit, for the first chosen swing. Cheap, so a preview can report what a
+/// fit would refuse. Errors as CheckModels; kInvalidArgument: the rig has a spring, but the user chose gravity.
+Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecording& recording);
+
 /// Identifies one pendulum from all chosen swings of all recordings together, with asked.shared in common. Each swing
 /// is fitted alone first, on asked.fit.threads threads. Every error message names the recording. Errors: those of
 /// IdentifyEach; kInvalidArgument: asked.closed_form_only, fewer than two swings, the same readings twice, or one

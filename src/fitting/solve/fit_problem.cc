@@ -281,14 +281,18 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
 
 }  // namespace
 
+Result<void> CheckReadings(const Recording& recording, const FitOptions& options) {
+  if (Result<void> checked = CheckNoise(recording, options); !checked) return checked;
+  const Result<MotionModel> model = ModelOf(options);
+  if (!model) return tl::unexpected(model.error());
+  return CheckSensor(recording, *model, SensorOf(recording, model->gravity), options);
+}
+
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
-  if (const Result<void> checked = CheckNoise(recording, options); !checked) return tl::unexpected(checked.error());
+  if (const Result<void> checked = CheckReadings(recording, options); !checked) return tl::unexpected(checked.error());
   const Result<MotionModel> model = ModelOf(options);
   if (!model) return tl::unexpected(model.error());
   const SensorModel sensor = SensorOf(recording, model->gravity);
-  if (const Result<void> checked = CheckSensor(recording, *model, sensor, options); !checked) {
-    return tl::unexpected(checked.error());
-  }
   std::optional<Recording> scaled;
   if (recording.clock_scale != 1) scaled = InTrueSeconds(recording);
   const Recording& timed = scaled ? *scaled : recording;

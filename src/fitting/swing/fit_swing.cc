@@ -17,6 +17,7 @@
 #include "fitting/swing/steady_hold.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/lost_counts.h"
 #include "pendulum/fitting/swing/not_a_pendulum.h"
 #include "pendulum/fitting/swing/undersampled.h"
@@ -371,6 +372,16 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
 }
 
 }  // namespace
+
+Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, const FitOptions& options) {
+  if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
+    return Error(StatusCode::kFailedPrecondition, *why);
+  }
+  if (swing.undersampled) return {};
+  const Result<Recording> used = SelectWindow(recording, swing.from, swing.to);
+  if (!used) return tl::unexpected(used.error());
+  return CheckReadings(*used, options);
+}
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
   std::optional<Recording> original;

@@ -39,7 +39,7 @@ test('guessed columns and units are shown as menus before the fit, with first ro
   assert.deepEqual(await look(page).locator('.first-rows thead th').allTextContents(), ['ttime', 'readingreading']);
   assert.equal(await look(page).locator('.first-rows tbody tr').count(), 8);
   await look(page).locator('.plot canvas').first().waitFor();
-  assert.match(await look(page).locator('figcaption').textContent(), /Shaded: the window that is fitted, 0 to/);
+  assert.match(await look(page).locator('figcaption').textContent(), /Shaded: the window, 0 to/);
   assert.equal(await look(page).locator('.assumptions li').count(), 2);
   assert.doesNotMatch(await look(page).textContent(), /--/);
   await page.getByRole('button', { name: 'Fit', exact: true }).click();
@@ -149,6 +149,36 @@ test('the recording and all choices survive a reload and the way back from a fit
   await page.reload();
   await page.getByText('No recording at hand').waitFor();
   assert.equal(await look(page).locator('h3').count(), 0);
+});
+
+test('a fit gets the name that is entered beside the Fit button, also after a reload', async (t) => {
+  const page = await openView(t, service, '/');
+  await drop(page, [{ name: 'logger.csv', content: renamed('t,reading') }]);
+  await shownLook(page, 'logger.csv');
+  await field(page, 'Name').fill('Heavy bob');
+  await page.reload();
+  await shownLook(page, 'logger.csv');
+  assert.equal(await field(page, 'Name').inputValue(), 'Heavy bob');
+  await page.getByRole('button', { name: 'Fit', exact: true }).click();
+  const { name, file } = await service.json(`/v1/fits/${await shownFit(page)}/request`);
+  assert.deepEqual([name, file], ['Heavy bob', 'logger.csv']);
+  await page.getByRole('link', { name: 'New fit' }).click();
+  await drop(page, [{ name: 'other.csv', content: renamed('t,reading') }]);
+  await shownLook(page, 'other.csv');
+  assert.equal(await field(page, 'Name').inputValue(), ''); // the name was that of another recording
+});
+
+test('readings in volts without a calibration are a problem before the fit, unless the law needs no angle', async (t) => {
+  const page = await openView(t, service, '/');
+  await drop(page, [{ name: 'volts.csv', content: renamed('time_s,pot_volts') }]);
+  await shownLook(page, 'volts.csv');
+  assert.match(await look(page).locator('.problem').textContent(), /the readings are in volts/);
+  assert.match(await page.locator('.fit-bar').textContent(), /Solve the problem above first/);
+  await look(page).locator('.calibration-form').waitFor();
+  await page.locator('.choice label', { hasText: 'I choose' }).click();
+  await page.locator('.checks input[value=linear]').check();
+  for (const law of ['viscous', 'coulomb', 'drag']) await page.locator(`.checks input[value=${law}]`).uncheck();
+  await look(page).locator('.problem').waitFor({ state: 'detached' });
 });
 
 test('a recording that is too large for the memory of the browser is shown, and the page says so', async (t) => {

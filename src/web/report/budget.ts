@@ -11,7 +11,7 @@ export const kSources = [
   { key: 'rig', name: 'rig', words: 'masses and lengths of the rig', colour: 'budget-rig' },
   { key: 'calibration', name: 'calibration', words: 'calibration of the sensor', colour: 'budget-calibration' },
   { key: 'clock', name: 'clock', words: 'clock of the recorder', colour: 'budget-clock' },
-  { key: 'inconstancy', name: 'inconstancy', words: 'change during the recording', colour: 'budget-inconstancy' },
+  { key: 'inconstancy', name: 'change during the recording', words: 'change during the recording', colour: 'budget-inconstancy' },
 ] as const;
 
 export type Source = (typeof kSources)[number];

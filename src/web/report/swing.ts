@@ -25,8 +25,9 @@ export function swingFigure(report: Report): HTMLElement | null {
     name: 'swing',
     sentence: () => `The swing: ${names}, ${quantityOf(samples.unit)} over time.`,
     xLabel: 'time [s]',
-    yLabel: () => `${quantityOf(samples.unit)} [${unitText(samples.unit)}]`,
-    right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
+    // The text beside the plot is in degrees, too.
+    yLabel: () => `${quantityOf(samples.unit)} [${unitText(degrees?.unit ?? samples.unit)}]`,
+    factor: () => degrees?.factor ?? 1,
     height: swingHeight(),
   });
   const legend = el('ul', { class: 'legend', 'aria-label': 'Curves' });

@@ -121,7 +121,9 @@ export class TimePlot {
     const band = this.bands.get(trace);
     if (!band) return;
     const { x, low, high } = decimateArea(trace.time, band.low, band.high, ...this.view.current, this.chart.columns);
-    painter.area(x, low, high, 'band-curve');
+    const factor = this.options.factor?.() ?? 1;
+    const scaled = (values: Float64Array): Float64Array => (factor === 1 ? values : values.map((y) => factor * y));
+    painter.area(x, scaled(low), scaled(high), 'band-curve');
   }
 
   private drawTrace(painter: Painter, shown: Shown, mark: Mark): void {

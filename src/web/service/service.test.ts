@@ -23,7 +23,7 @@ import {
 } from './views/compare';
 import { mainModel, parameterWords, stateOf, windowWords } from './views/fit_rows';
 import { LiveSamples } from './views/live_plot';
-import { movedEnd } from './views/window_plot';
+import { movedEnd, roundedWindow } from './views/window_plot';
 
 describe('routes', () => {
   test('each address has one view', () => {
@@ -325,6 +325,17 @@ describe('windows', () => {
   test('a handle does not pass the other one', () => {
     expect(movedEnd([2, 20], 0, 25, [0, 30], 0.5)).toEqual([19.5, 20]);
     expect(movedEnd([2, 20], 1, 1, [0, 30], 0.5)).toEqual([2, 2.5]);
+  });
+});
+
+describe('rounding of a window', () => {
+  test('is to the millisecond', () => {
+    expect(roundedWindow([-1.23456, 20.00049], 0.03)).toEqual([-1.235, 20]);
+  });
+
+  test('does not close the narrowest window of a short recording', () => {
+    const [from, to] = roundedWindow([0.1001, 0.1001 + 2e-4], 2e-4); // of 0.2 s
+    expect(to - from).toBeCloseTo(2e-4, 5);
   });
 });
 

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 
-import { errorText, fixed, intervalText, plusMinus, probabilityText, significant } from './rounding';
+import {
+  errorText,
+  fixed,
+  intervalText,
+  plusMinus,
+  probabilityText,
+  significant,
+  timeText,
+  windowText,
+} from './rounding';
 
 describe('value ± error', () => {
   // Particle Data Group, Review of Particle Physics, introduction, "Rounding": the first three of its examples.
@@ -88,6 +97,17 @@ test('significant digits have no trailing zeros', () => {
   expect(significant(0, 3)).toBe('0');
   expect(significant(-0.5, 2)).toBe('−0.5');
   expect(significant(undefined)).toBe('–');
+});
+
+test('the times of a window have the decimals that its duration needs', () => {
+  expect(windowText([50490.1, 50510.1])).toBe('50490.1 to 50510.1\u00a0s');
+  expect(windowText([0, 19.9954])).toBe('0 to 20\u00a0s');
+  expect(windowText([1.25, 13.375])).toBe('1.25 to 13.38\u00a0s');
+  expect(windowText([0, 86400.25])).toBe('0 to 86400\u00a0s');
+  expect(windowText([10000, 10000.0025])).toBe('10000 to 10000.0025\u00a0s');
+  expect(windowText([-3, 400])).toBe('−3 to 400\u00a0s');
+  expect(windowText([2, 2])).toBe('2 to 2\u00a0s');
+  expect(timeText(50490.125, 20)).toBe('50490.13');
 });
 
 test('zero has no minus sign', () => {

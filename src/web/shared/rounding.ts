@@ -97,6 +97,23 @@ export function significant(x: number | null | undefined, digits = 4): string {
     .replace(/\.(?= |$)/, '');
 }
 
+const kTimeDigits = 4; // of a duration
+
+/**
+ * A time of a recording, in s, without trailing zeros: with as many decimals as the duration needs for four digits,
+ * however large the time is. Clocks may begin at 50000 s.
+ */
+export function timeText(time: number, duration: number): string {
+  const { decimals, exponent } = significantRounding(duration, kTimeDigits);
+  const text = fixed(time, Math.max(0, decimals - exponent));
+  return text.includes('.') ? text.replace(/\.?0+$/, '') : text;
+}
+
+/** "50490.1 to 50510.1 s"; `duration` is that of a longer recording in the same sentence. */
+export function windowText([from, to]: readonly [number, number], duration = to - from): string {
+  return `${timeText(from, duration)} to ${timeText(to, duration)}\u00a0s`;
+}
+
 /** "0.0790 ± 0.0028", "(1.2 ± 0.3) × 10⁻⁶"; only the value if there is no error. */
 export function plusMinus(value: number | null, error: number | null | undefined): string {
   if (value === null || !Number.isFinite(value)) return '–';

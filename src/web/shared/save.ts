@@ -23,15 +23,17 @@ function fileName(plot: string, ending: string): string {
   return `${stem.replace(/^_+|_+$/g, '') || 'pendulum'}_${plot}.${ending}`;
 }
 
-/** The canvas on a background. */
-function saveCanvas(canvas: HTMLCanvasElement, plot: string): void {
+/** Saves the canvas on a background. */
+async function saveCanvas(canvas: HTMLCanvasElement, plot: string): Promise<void> {
   const copy = el('canvas', { width: String(canvas.width), height: String(canvas.height) });
   const ctx = copy.getContext('2d');
-  if (!ctx) return;
+  if (!ctx) throw new Error('the browser gives no canvas');
   ctx.fillStyle = colour('paper');
   ctx.fillRect(0, 0, copy.width, copy.height);
   ctx.drawImage(canvas, 0, 0);
-  copy.toBlob((content) => content && save(content, fileName(plot, 'png')));
+  const content = await new Promise<Blob | null>((resolve) => copy.toBlob(resolve));
+  if (!content) throw new Error('the plot is too large');
+  save(content, fileName(plot, 'png'));
 }
 
 const asSvg = (text: string): Blob => new Blob([text], { type: 'image/svg+xml' });
@@ -53,17 +55,25 @@ async function rasterized(svgText: string): Promise<HTMLCanvasElement> {
 export function saveButtons(plot: string, svgText: () => string, canvas?: () => HTMLCanvasElement | null): HTMLElement {
   const png = async (): Promise<void> => {
     const drawn = canvas ? canvas() : await rasterized(svgText());
-    if (drawn) saveCanvas(drawn, plot);
+    if (drawn) await saveCanvas(drawn, plot);
+  };
+  const failure = el('span', { role: 'alert' });
+  const savePng = (): void => {
+    failure.textContent = '';
+    png().catch((error: unknown) => {
+      failure.textContent = `The PNG picture could not be made (${String(error)}). Save the plot as SVG.`;
+    });
   };
   const words = plot.replace(/_/g, ' ');
   return el(
     'div',
     { class: 'save' },
-    button('PNG', () => void png(), { 'aria-label': `Save the plot ${words} as PNG`, title: 'Save this plot as a PNG picture' }),
+    button('PNG', savePng, { 'aria-label': `Save the plot ${words} as PNG`, title: 'Save this plot as a PNG picture' }),
     button('SVG', () => save(asSvg(svgText()), fileName(plot, 'svg')), {
       'aria-label': `Save the plot ${words} as SVG`,
       title: 'Save this plot as an SVG drawing',
     }),
+    failure,
   );
 }
 

@@ -59,6 +59,10 @@ struct FitProblem {
 /// the other friction parameters balance the energy without them.
 std::vector<double> FirstGuess(const FitProblem& problem, const std::vector<bool>& fixed);
 
+/// Whether the model and the options suit the readings. Cheap. Returns the errors of FitRecording that no start value
+/// and no fit is needed for.
+Result<void> CheckReadings(const Recording& recording, const FitOptions& options);
+
 /// Takes start values from the data, and bounds and fixed values from the options. Returns the errors of FitRecording.
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options);
 

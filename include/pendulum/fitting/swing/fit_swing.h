@@ -18,6 +18,10 @@ struct SwingFit {
   std::string linear_reason = {};  ///< Why the motion is that of a linear oscillator, if the fit was rejected for that.
 };
 
+/// The checks of FitSwing before its first fit. Cheap. Errors: those of CheckReadings; kFailedPrecondition: the period
+/// is not that of a pendulum. The readings of an undersampled swing are not checked.
+Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, const FitOptions& options);
+
 /// Fits a free swing; an undersampled swing is fitted by FitUndersampled. If the residuals are more than noise,
 /// disturbed ends are left out as long as the richest law then fits the remaining window clearly better (warning
 /// `ends_trimmed`). If the fit does not converge, the window ends earlier. Ends chosen by the user stay. Larger motion
@@ -28,8 +32,8 @@ struct SwingFit {
 /// another amount, the fit ends kNotConverged, with `offset_jumps`. A possible jump gives `offset_unsteady`. Small
 /// swings to which no friction law applies are named (`presliding`), and left out if the fit of the larger ones
 /// improves; a vibration over the swing is named (`vibration`). A swing that few samples show may be fitted as a faster
-/// one, or the choice is named (`ambiguous_frequency`). Errors as FitRecording; kFailedPrecondition: the period is not
-/// that of a pendulum. Cost: as FitRecording, and some tens of small fits if something is wrong.
+/// one, or the choice is named (`ambiguous_frequency`). Errors as FitRecording and CheckSwing. Cost: as FitRecording,
+/// and some tens of small fits if something is wrong.
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options);
 
 }  // namespace pendulum

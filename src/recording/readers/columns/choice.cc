@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "pendulum/base/utf8.h"
+
 namespace pendulum::csv {
 
 using Eigen::Index;
@@ -44,7 +46,7 @@ std::vector<std::string> Choice::NamesOf(const Columns& columns) const {
 std::string Choice::FlagValueOf(std::size_t index) const {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
   const bool is_unique = index < names.size() && !names[index].written.empty() &&
-                         std::ranges::none_of(names[index].written, is_control) &&
+                         std::ranges::none_of(names[index].written, is_control) && IsUtf8(names[index].written) &&
                          std::ranges::count(names, names[index].written, &Name::written) == 1;
   return is_unique ? std::string(names[index].written) : std::to_string(index + 1);
 }

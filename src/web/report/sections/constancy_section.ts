@@ -9,7 +9,7 @@ import { fixed, plusMinus, probabilityText, significant } from '../../shared/rou
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { table, type Column } from '../../shared/table';
-import { spacedUnit, unitText, wordsOf } from '../../shared/units';
+import { inDegrees, spacedUnit, unitText, wordsOf } from '../../shared/units';
 import { shownFit, type Report } from '../report';
 
 type Amplitude = NonNullable<Constancy['amplitude']>;
@@ -42,6 +42,8 @@ function halvesTable(constancy: Constancy): HTMLElement | null {
   );
 }
 
+const kDegrees = inDegrees('rad')?.factor ?? 1; // in a radian
+
 function windowChart(
   name: string,
   unit: string,
@@ -51,7 +53,7 @@ function windowChart(
 ): HTMLElement | null {
   const used = windows.filter((w) => w.amplitude_rad !== null && value(w)[0] !== null);
   if (used.length < 2) return null;
-  const x = used.map((w) => w.amplitude_rad as number);
+  const x = used.map((w) => kDegrees * (w.amplitude_rad as number));
   const y = used.map((w) => value(w)[0] as number);
   const error = used.map((w) => value(w)[1] ?? 0);
   const [low, high] = [y.map((v, i) => v - error[i]), y.map((v, i) => v + error[i])];
@@ -59,8 +61,8 @@ function windowChart(
   const chart = new Chart({
     name: `${name}_by_amplitude`,
     sentence: () =>
-      `${words}. From ${significant(y[0], 4)} at ${significant(x[0], 3)} rad to ${significant(y[y.length - 1], 4)} at ${significant(x[x.length - 1], 3)} rad.`,
-    xLabel: 'amplitude [rad]',
+      `${words}. From ${significant(y[0], 4)} at ${significant(x[0], 3)}° to ${significant(y[y.length - 1], 4)} at ${significant(x[x.length - 1], 3)}°.`,
+    xLabel: 'amplitude [°]',
     yLabel: () => `${wordsOf(name)}${unitText(unit) ? ` [${unitText(unit)}]` : ''}`,
     xRange: () => padded(extent([x]), 0.08),
     yRange: () => padded(extent([low, high, whole === null ? [] : [whole]]), 0.12),

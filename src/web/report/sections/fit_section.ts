@@ -24,7 +24,8 @@ interface ResidualUnit {
   factor: number;
 }
 
-const axisLabel = (unit: string): string => `${quantityOf(unit)} [${unitText(unit)}]`;
+/** In degrees, as the text of the report. */
+const axisLabel = (unit: string): string => `${quantityOf(unit)} [${unitText(inDegrees(unit)?.unit ?? unit)}]`;
 
 const kFewPerPeriod = 12; // samples: with fewer, straight lines between them do not look like the motion
 
@@ -169,7 +170,8 @@ class FitPlots {
         `${names(this.traces.fitted)}: ${quantityOf(this.samples.unit)} over time ${inWords(this.view.current)}.`,
       xLabel: '',
       yLabel: () => axisLabel(this.samples.unit),
-      right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
+      factor: () => degrees?.factor ?? 1,
+      right: degrees && { label: `[${unitText(this.samples.unit)}]`, factor: 1 / degrees.factor },
       aligned: degrees ? 'with right axis' : 'without',
       height: 330,
       onCursor: this.onCursor,

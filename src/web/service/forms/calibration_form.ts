@@ -20,7 +20,15 @@ export class CalibrationForm {
       el('textarea', { rows: '4', spellcheck: 'false', autocomplete: 'off', placeholder: 'counts,angle_deg\n512,0\n600,18.5' }),
       'Two columns with their names: readings and angles.',
     );
-    const take = async (chosen: File): Promise<void> => use({ name: chosen.name, json: await chosen.text() });
+    const problem = el('p', { class: 'absent', role: 'alert' });
+    const take = async (chosen: File): Promise<void> => {
+      problem.textContent = '';
+      try {
+        use({ name: chosen.name, json: await chosen.text() });
+      } catch (error) {
+        problem.textContent = `${chosen.name} could not be read (${String(error)}). Choose the file again.`;
+      }
+    };
     file.input.addEventListener('change', () => file.input.files?.[0] && void take(file.input.files[0]));
     const press = button('Use this table', () => {
       if (area.input.value.trim() !== '') use({ name: 'the pasted table', json: area.input.value });
@@ -28,6 +36,7 @@ export class CalibrationForm {
     this.element.append(
       text('These readings are not angles yet. A table of readings and angles turns them into degrees.', 'quiet'),
       file.element,
+      problem,
       area.element,
       press,
     );

@@ -91,6 +91,11 @@ export class ModelForm {
     this.element.querySelector('.more')?.replaceChildren(...(this.own ? [own, this.boxes] : [text(auto, 'quiet')]));
   }
 
+  /** The ticked laws for a preview, which needs none. */
+  get entered(): string {
+    return this.own ? [...this.chosen].join(',') : kCompared.join(',');
+  }
+
   /** The ticked laws, "viscous,coulomb,drag". FieldError: none is ticked. */
   value(): string {
     if (!this.own) return kCompared.join(',');

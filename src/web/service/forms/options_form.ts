@@ -64,8 +64,8 @@ export class OptionsForm {
     const file = this.calibration.input.files?.[0];
     this.use(null, false);
     if (!file) return;
-    const json = await file.text();
-    if (this.calibration.input.files?.[0] === file) this.given = { name: file.name, json };
+    const json = await file.text().catch(() => null); // calibrationText() reports it
+    if (json !== null && this.calibration.input.files?.[0] === file) this.given = { name: file.name, json };
     this.element.dispatchEvent(new Event('change', { bubbles: true }));
   }
 

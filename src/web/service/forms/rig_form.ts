@@ -54,11 +54,14 @@ export class RigForm {
     this.draw();
   }
 
-  /** Reads the chosen file, because a browser does not keep it over a reload. What is no JSON is left to the service. */
+  /**
+   * Reads the chosen file, because a browser does not keep it over a reload. value() and the service report a file that
+   * is not readable or not JSON.
+   */
   private async takeFile(): Promise<void> {
     this.given = null;
-    const words = await this.file.input.files?.[0]?.text();
     try {
+      const words = await this.file.input.files?.[0]?.text();
       this.given = words === undefined ? null : (JSON.parse(words) as Loose);
     } catch {
       return;

@@ -41,9 +41,13 @@ export class FittedSwing {
     return new FittedSwing(law, estimates, estimates.inertia * frequency ** 2, clock, window[0], isRate);
   }
 
-  /** Sizes that the ranges of sliders depend on. */
-  scales(measured: Float64Array): { period: number; amplitude: number; torque: number } {
-    const [low, high] = extent([measured]) ?? [-1, 1];
+  /**
+   * Sizes that the ranges of sliders depend on: period of small swings in s, amplitude of the simulated angle in rad.
+   * The readings may be rates or pixels, so they do not show the angle.
+   */
+  scales(times: Float64Array): { period: number; amplitude: number; torque: number } {
+    const motion = this.motion(this.estimates, times);
+    const [low, high] = (motion && extent([motion.angle])) ?? [-1, 1];
     const period = 2 * Math.PI * Math.sqrt(this.estimates.inertia / this.torque);
     return { period, amplitude: 0.5 * (high - low), torque: this.torque };
   }
@@ -63,11 +67,15 @@ export class FittedSwing {
     return 'radius' in values ? (values.pivot_x ?? 0) + values.radius * Math.sin(shown) : shown;
   }
 
-  /** The readings at increasing times of the recording, s; null if these values give no motion. */
-  readings(values: Values, times: Float64Array): Float64Array | null {
+  private motion(values: Values, times: Float64Array): Motion | null {
     const friction = this.law.names.map((name) => (isTorque(name) ? values[name] / this.torque : values[name]));
     const pendulum = { law: this.law, inertia: values.inertia / this.torque, friction };
-    const motion = swing(pendulum, this.start(values), times.map((time) => this.clock * time));
+    return swing(pendulum, this.start(values), times.map((time) => this.clock * time));
+  }
+
+  /** The readings at increasing times of the recording, s; null if these values give no motion. */
+  readings(values: Values, times: Float64Array): Float64Array | null {
+    const motion = this.motion(values, times);
     return motion && times.map((time, i) => this.reading(motion, i, time, values));
   }
 

@@ -3,7 +3,7 @@
 
 import { append, el, symbolElement, type Child } from '../../shared/dom';
 import { typeset } from '../../shared/prose';
-import { plusMinus, significant } from '../../shared/rounding';
+import { plusMinus, windowText } from '../../shared/rounding';
 import { symbolOf, unitText } from '../../shared/units';
 import { fitPath } from '../routes';
 import type { FitItem, ItemModel } from '../types';
@@ -102,7 +102,7 @@ function selectCell(item: FitItem, { ids, changed }: Selection): HTMLElement {
 
 /** "0 to 46.35 s" */
 export function windowWords(window: readonly [number, number] | null | undefined): string {
-  return window ? `${significant(window[0], 5)} to ${significant(window[1], 5)}\u00a0s` : '–';
+  return window ? windowText(window) : '–';
 }
 
 /** The parameters of a list: past fits show their windows and dates instead of friction. */

@@ -2,7 +2,7 @@
 /** What the service reads in a recording before it is fitted: first rows, columns, window, and what is missing. */
 
 import { button, el, text } from '../../shared/dom';
-import { significant } from '../../shared/rounding';
+import { windowText } from '../../shared/rounding';
 import { figure } from '../../shared/section';
 import { inFields } from '../flag_words';
 import { CalibrationForm, kRawUnits } from '../forms/calibration_form';
@@ -173,10 +173,10 @@ export class LookSection {
   private sketch({ samples, window }: Preview): HTMLElement | null {
     if (!samples) return null;
     if (!window) return figure('The recording. No window is chosen yet.', new Sketch(samples, window).chart.host);
-    const [from, to] = window.window_s.map((time) => significant(time, 5));
     const others = window.releases.length > 1 ? ` It is swing ${window.release} of ${window.releases.length}.` : '';
     const why = [window.begins && `Begins: ${window.begins}.`, window.ends && `Ends: ${window.ends}.`];
-    const caption = `Shaded: the window that is fitted, ${from} to ${to} s. ${why.filter(Boolean).join(' ')}${others}`;
+    const words = `Shaded: the window, ${windowText(window.window_s)}. ${why.filter(Boolean).join(' ')}${others}`;
+    const caption = `${words} The fit may shorten the window.`;
     return figure(caption, new Sketch(samples, window).chart.host);
   }
 

@@ -4,7 +4,7 @@
 import { Chart, padded } from '../../shared/chart';
 import { kMeasured } from '../../shared/marks';
 import type { Painter } from '../../shared/painter';
-import { significant } from '../../shared/rounding';
+import { windowText } from '../../shared/rounding';
 import { extent, toArray } from '../../shared/samples';
 import { unitText } from '../../shared/units';
 import type { Preview, WholeRecording } from '../types';
@@ -33,7 +33,7 @@ export class Sketch {
     const [first, last] = [this.time[0] ?? 0, this.time[this.time.length - 1] ?? 1];
     this.chart = new Chart({
       sentence: () =>
-        `The recording from ${significant(first, 5)} to ${significant(last, 5)} s, ${quantity} in ${unit}; ${this.windowWords}.`,
+        `The recording from ${windowText([first, last])}, ${quantity} in ${unit}; ${this.windowWords}.`,
       xLabel: 'time [s]',
       yLabel: () => `${quantity} [${unit}]`,
       xRange: () => padded([first, last], 0.01),
@@ -44,9 +44,7 @@ export class Sketch {
   }
 
   private get windowWords(): string {
-    if (!this.window) return 'no window';
-    const [from, to] = this.window.window_s;
-    return `window from ${significant(from, 5)} to ${significant(to, 5)} s`;
+    return this.window ? `window from ${windowText(this.window.window_s)}` : 'no window';
   }
 
   private draw(painter: Painter): void {

@@ -17,8 +17,8 @@ const kPeriodShare = 0.25;
 const kTypical: Record<string, number> = { viscous: 0.01, coulomb: 0.01, drag: 0.005, stiction: 0.02 };
 
 /**
- * The range around an estimate, so that its ends differ visibly. period: of small swings, s. amplitude: of the readings.
- * torque: the restoring torque in the units of the result.
+ * The range around an estimate, so that its ends differ visibly. period: of small swings, s. amplitude: of the angle,
+ * rad, in any unit of the readings. torque: the restoring torque in the units of the result.
  */
 export function sliderRange(
   name: string,

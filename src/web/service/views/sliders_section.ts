@@ -99,7 +99,7 @@ class SlidersSection {
   private slider(name: string): HTMLElement {
     const { unit } = this.fit.parameters[name];
     const estimate = this.motion.estimates[name];
-    const { least, most } = sliderRange(name, estimate, this.motion.scales(this.samples.measured));
+    const { least, most } = sliderRange(name, estimate, this.motion.scales(this.time));
     const id = `slider-${name}`;
     const symbol = symbolOf(name, unit);
     const input = el('input', { type: 'range', id, min: '0', max: String(kSteps), step: '1', 'data-slider': name });

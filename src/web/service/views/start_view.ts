@@ -4,6 +4,7 @@
 import { button, el, text } from '../../shared/dom';
 import { keep, kept } from '../../shared/kept';
 import { kColumnFlags } from '../forms/column_form';
+import { textField, type Field } from '../forms/forms';
 import { dropZone, type DropZone } from '../forms/drop_zone';
 import { forgetRecording, heldRecording, holdRecording } from '../forms/held_recording';
 import { kCompared, knownModels, ModelForm } from '../forms/model_form';
@@ -14,7 +15,7 @@ import { previewed, sent, submission, type Choices, type Recording } from '../fo
 import { go } from '../router';
 import { askJson } from '../server/api';
 import type { Place, View } from '../shell';
-import type { Example, ExampleData, Preview } from '../types';
+import type { Example, ExampleData, Flags, Preview } from '../types';
 import { LookSection } from './look_section';
 import { alertPlace, attempt, clearProblems, showProblem } from './problem_view';
 
@@ -23,24 +24,37 @@ interface Forms {
   rig: RigForm;
   models: ModelForm;
   options: OptionsForm;
+  name: Field<HTMLInputElement>;
 }
 
 const kChoices = 'pendulum_choices';
 
 let forms: Forms | null = null;
 
-function keepForms({ rig, models, options }: Forms): void {
-  keep('closed', kChoices, JSON.stringify({ rig: rig.state, models: models.state, options: options.state }));
+/** What the forms keep over a reload. */
+interface Kept {
+  rig: RigState;
+  models: ModelForm['state'];
+  options: OptionsState;
+  name?: string;
 }
 
-function restoreForms({ rig, models, options }: Forms): void {
+const kLongestName = 200; // characters, as in the service
+
+function keepForms({ rig, models, options, name }: Forms): void {
+  const state = { rig: rig.state, models: models.state, options: options.state, name: name.input.value };
+  keep('closed', kChoices, JSON.stringify(state));
+}
+
+function restoreForms({ rig, models, options, name }: Forms): void {
   const words = kept('closed', kChoices);
   if (words === null) return;
   try {
-    const state = JSON.parse(words) as { rig: RigState; models: ModelForm['state']; options: OptionsState };
+    const state = JSON.parse(words) as Kept;
     rig.restore(state.rig);
     models.restore(state.models);
     options.restore(state.options);
+    name.input.value = state.name ?? '';
   } catch {
     keep('closed', kChoices, ''); // of another version of the page
   }
@@ -48,7 +62,8 @@ function restoreForms({ rig, models, options }: Forms): void {
 
 function theForms(): Forms {
   if (forms) return forms;
-  forms = { rig: new RigForm(), models: new ModelForm(), options: new OptionsForm() };
+  const name = textField('Name', '', { maxlength: String(kLongestName), placeholder: 'optional' });
+  forms = { rig: new RigForm(), models: new ModelForm(), options: new OptionsForm(), name };
   restoreForms(forms);
   return forms;
 }
@@ -69,8 +84,17 @@ async function choices({ rig, models, options }: Forms): Promise<Choices> {
 }
 
 /** The choices for a preview: as for a fit, but the form of the rig need not be complete. */
-async function readChoices({ rig, options }: Forms): Promise<Choices> {
-  return { flags: { ...options.flags(), ...rig.entered }, rig: null, calibration: await options.calibrationText() };
+async function readChoices({ rig, models, options }: Forms): Promise<Choices> {
+  const law: Flags = models.entered === '' ? {} : { model: models.entered };
+  const flags = { ...law, ...options.flags(), ...rig.entered };
+  return { flags, rig: null, calibration: await options.calibrationText() };
+}
+
+/** The choices for a fit of one recording, which may have a name. */
+async function namedChoices(all: Forms): Promise<Choices> {
+  const made = await choices(all);
+  const name = all.name.input.value.trim();
+  return name === '' ? made : { ...made, flags: { ...made.flags, name } };
 }
 
 /** Options of the next fit, for any source of its recording. */
@@ -117,6 +141,7 @@ class StartView {
   private readonly fitWords = text('', 'quiet');
   private readonly examples = el('ul', { class: 'examples' });
   private busy = false;
+  private taken = 0; // times that files were dropped or chosen
   private reading = new AbortController();
   private read: Promise<Preview | null> = Promise.resolve(null); // the last reading
 
@@ -131,18 +156,26 @@ class StartView {
     this.zone = dropZone('Drop a recording here, paste it, or press to choose', hint, (files) => void this.take(files), place.signal);
     this.look = new LookSection(all.options, () => this.changed(), () => this.remove());
     const fit = button('Fit', () => void this.fitCurrent(), { class: 'primary' });
-    this.fitBar.append(fit, this.fitWords);
+    this.fitBar.append(fit, all.name.element, this.fitWords);
     place.signal.addEventListener('abort', () => this.reading.abort());
     for (const event of ['input', 'change']) place.main.addEventListener(event, () => keepForms(all), { signal: place.signal });
-    for (const element of [all.rig.element, all.options.element])
+    for (const element of [all.rig.element, all.models.element, all.options.element])
       element.addEventListener('change', () => this.changed(), { signal: place.signal });
   }
 
   /** Takes new files: one recording, a recording with its calibration, or a batch. */
   private async take(files: File[]): Promise<void> {
     if (this.busy) return;
+    const order = ++this.taken;
     const calibration = calibrationOf(files);
-    if (calibration) this.all.options.use({ name: calibration.name, json: await calibration.text() });
+    if (calibration) {
+      try {
+        this.all.options.use({ name: calibration.name, json: await calibration.text() });
+      } catch (error) {
+        return showProblem(this.problems, error, () => void this.take(files));
+      }
+      if (order !== this.taken) return; // other files were dropped meanwhile
+    }
     const recordings = files.filter((file) => file !== calibration).map(asRecording);
     if (recordings.length > 1) await this.fit(() => recordings, () => choices(this.all));
     else await this.lookAt(recordings[0], true);
@@ -151,10 +184,11 @@ class StartView {
   /** Shows a new recording. Fits it at once if `mayFit` and there is nothing to decide. */
   private async lookAt(recording: Recording, mayFit: boolean): Promise<void> {
     if (mayFit) {
-      this.forgetColumns();
+      this.forgetRecordingChoices();
       this.look.hide();
       this.showParts();
     }
+    this.reading.abort(); // the answer for an earlier recording must not be shown with this one
     current = { recording, isKept: false };
     const isKept = await holdRecording(recording);
     if (current?.recording !== recording) return; // another was dropped meanwhile
@@ -162,9 +196,10 @@ class StartView {
     keepForms(this.all);
     this.read = this.readCurrent();
     const preview = await this.read;
+    if (current?.recording !== recording) return;
     if (!preview) {
       const again = (): void => void this.lookAt(recording, mayFit);
-      if (current?.recording === recording && !this.look.isShown) this.hold([recording], 'Read again', again);
+      if (!this.look.isShown) this.hold([recording], 'Read again', again);
       return;
     }
     const isReady = preview.missing.length === 0 && !preview.problem && !isGuessed(preview);
@@ -173,9 +208,10 @@ class StartView {
     this.look.element.scrollIntoView({ block: 'start' });
   }
 
-  /** Columns and units that the user chose in the menus belong to the recording before. */
-  private forgetColumns(): void {
+  /** The name, and the columns and units that the user chose in the menus, belong to the recording before. */
+  private forgetRecordingChoices(): void {
     if (!this.look.isShown) return;
+    this.all.name.input.value = '';
     this.all.options.put(Object.fromEntries(kColumnFlags.map((flag) => [flag, ''])));
   }
 
@@ -218,9 +254,11 @@ class StartView {
     if (flag) this.look.element.querySelector<HTMLElement>(`[data-flag="${flag}"]`)?.focus({ preventScroll: true });
     this.showParts();
     const open = preview.missing.length;
-    this.fitWords.textContent =
-      open > 0 ? 'Answer what is missing first.' : 'Fits the shaded window with the choices above.';
-    this.place.say(open > 0 ? `${preview.name}: ${open} things are missing` : `${preview.name} can be fitted`);
+    const said = open > 0 ? `${open} things are missing` : preview.problem ? 'a fit would be refused' : 'ready for a fit';
+    this.place.say(`${preview.name}: ${said}`);
+    if (open > 0) this.fitWords.textContent = 'Answer what is missing first.';
+    else if (preview.problem) this.fitWords.textContent = 'Solve the problem above first.';
+    else this.fitWords.textContent = 'Fits the shaded window with the choices above.';
   }
 
   private showParts(): void {
@@ -235,7 +273,7 @@ class StartView {
 
   private remove(): void {
     this.reading.abort();
-    this.forgetColumns();
+    this.forgetRecordingChoices();
     keepForms(this.all);
     current = null;
     forgetRecording();
@@ -249,7 +287,7 @@ class StartView {
     if (!current) return;
     const { recording } = current;
     if (this.look.focusMissing()) return this.place.say('Something is missing');
-    await this.fit(() => [recording], () => choices(this.all));
+    await this.fit(() => [recording], () => namedChoices(this.all));
   }
 
   /** Fits the recordings and then shows the fit. */

@@ -10,7 +10,7 @@ import { button, el } from '../../shared/dom';
 import { kMeasured } from '../../shared/marks';
 import { followPointer, navigationButtons } from '../../shared/navigation';
 import type { Painter } from '../../shared/painter';
-import { fixed, significant } from '../../shared/rounding';
+import { fixed, timeText, windowText } from '../../shared/rounding';
 import { extent, medianInterval, toArray } from '../../shared/samples';
 import { TimeView } from '../../shared/time_view';
 import { quantityOf, unitText } from '../../shared/units';
@@ -29,6 +29,13 @@ export function movedEnd(window: Window, end: 0 | 1, at: number, [first, last]: 
   return end === 0
     ? [Math.min(Math.max(at, first), to - least), to]
     : [from, Math.max(Math.min(at, last), from + least)];
+}
+
+/** The window to the millisecond, or to a tenth of the least width, so that rounding does not close a narrow window. */
+export function roundedWindow([from, to]: Window, least: number): Window {
+  const decimals = Math.max(3, Math.ceil(1 - Math.log10(least)));
+  const rounded = (time: number): number => Number(fixed(time, decimals).replace('−', '-'));
+  return [rounded(from), rounded(to)];
 }
 
 export class WindowPlot {
@@ -85,12 +92,16 @@ export class WindowPlot {
     return [this.time[0] ?? 0, this.time[this.time.length - 1] ?? 1];
   }
 
+  private get duration(): number {
+    return this.ends[1] - this.ends[0];
+  }
+
   private get least(): number {
-    return kLeastShare * (this.ends[1] - this.ends[0]);
+    return kLeastShare * this.duration;
   }
 
   private sentence(): string {
-    const part = ([from, to]: Window): string => `from ${significant(from, 5)} to ${significant(to, 5)} s`;
+    const part = (window: Window): string => `from ${windowText(window, this.duration)}`;
     const used = this.used ? `; fitted ${part(this.used)}` : '';
     return `The whole recording ${part(this.ends)}${used}; chosen ${part(this.chosen)}.`;
   }
@@ -101,17 +112,18 @@ export class WindowPlot {
     this.chart.update();
   }
 
-  /** Shows a window that the user has chosen, to the millisecond. */
-  private take([from, to]: Window): void {
-    const rounded = (time: number): number => Number(fixed(time, 3).replace('−', '-'));
-    this.choose([rounded(from), rounded(to)]);
+  /** Shows a window that the user has chosen. */
+  private take(window: Window): void {
+    this.choose(roundedWindow(window, this.least));
     this.change(this.chosen);
   }
 
   private chooseShown(): void {
     const [first, last] = this.ends;
-    const [from, to] = this.view.current;
-    this.take([Math.max(first, from), Math.min(last, to)]);
+    const [low, high] = this.view.current;
+    // The view may lie in the margin beside the recording.
+    const from = Math.min(Math.max(first, low), last - this.least);
+    this.take([from, Math.max(Math.min(last, high), from + this.least)]);
   }
 
   private draw(painter: Painter): void {
@@ -137,7 +149,7 @@ export class WindowPlot {
       handle.style.top = `${box.top - host.top}px`;
       handle.style.height = `${box.height}px`;
       handle.setAttribute('aria-valuenow', String(this.chosen[end]));
-      handle.setAttribute('aria-valuetext', `${significant(this.chosen[end], 5)} s`);
+      handle.setAttribute('aria-valuetext', `${timeText(this.chosen[end], this.duration)} s`);
     });
   }
 
