@@ -72,15 +72,18 @@ SELECT run, model, name, std_error, systematic_std_error FROM quantities
   }
 }
 
+/// Whether the view `results` is that of this program.
+bool HasResultsView(SQLite::Database& database) {
+  SQLite::Statement present(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'results'");
+  return present.executeStep() && sqlite::Text(present, 0) == ResultsView();
+}
+
 /// Replaces the view `results` unless it is that of this program. To be called within a transaction, because a store
 /// has no such view between the two statements.
 void UpdateResultsView(SQLite::Database& database) {
-  const std::string sql = ResultsView();
-  SQLite::Statement present(database, "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'results'");
-  if (present.executeStep() && sqlite::Text(present, 0) == sql) return;
-  present.reset();
+  if (HasResultsView(database)) return;
   database.exec("DROP VIEW IF EXISTS results");
-  database.exec(sql);
+  database.exec(ResultsView());
 }
 
 /// Updates the tables in one transaction; creates them in a new file.
@@ -299,7 +302,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
     const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
     if (!is_current && !(can_read && sqlite::IsReadOnly(name))) Migrate(state->database, version);
-    if (is_current && mode != Mode::kRead) {
+    if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
       UpdateResultsView(state->database);
       transaction.commit();

@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended. The view `results` is replaced after them (ResultsView).
 /// SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 5> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 4> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -97,8 +97,6 @@ DROP VIEW results;
 CREATE VIEW all_fits AS  -- the fits with the id of their run
   SELECT id, position, path, runs.recommended = model AS recommended, fits.* FROM runs JOIN fits USING(run);
 ALTER TABLE requests ADD COLUMN name TEXT NOT NULL DEFAULT '';  -- given by the client; '' for none
-)sql",
-                                                                     R"sql(
 ALTER TABLE runs ADD COLUMN sources TEXT;  -- clock and calibration: runs with the same text share the errors of both
 ALTER TABLE quantities ADD COLUMN inconstancy_std_error REAL;  -- the part of systematic_std_error from parameters that
                                                                -- are not constant; it differs between runs

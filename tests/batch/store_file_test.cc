@@ -167,7 +167,7 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 5);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 4);
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
