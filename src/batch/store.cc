@@ -301,7 +301,11 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     const int version = state->database.execAndGet("PRAGMA user_version").getInt();
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
     const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
-    if (!is_current && !(can_read && sqlite::IsReadOnly(name))) Migrate(state->database, version);
+    if (!is_current && can_read && sqlite::IsReadOnly(name)) {
+      state->database.exec(kViewsOfVersion3);
+    } else if (!is_current) {
+      Migrate(state->database, version);
+    }
     if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
       UpdateResultsView(state->database);

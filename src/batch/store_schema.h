@@ -103,6 +103,13 @@ ALTER TABLE quantities ADD COLUMN inconstancy_std_error REAL;  -- the part of sy
 ALTER TABLE quantities ADD COLUMN source_std_error REAL;       -- the part from clock and calibration
 )sql"};
 
+/// Lets queries read a store of version 3 that cannot be updated: views of the connection with the newer columns.
+inline constexpr const char* kViewsOfVersion3 = R"sql(
+CREATE TEMP VIEW runs AS SELECT *, NULL AS sources FROM main.runs;
+CREATE TEMP VIEW quantities AS
+  SELECT *, NULL AS total_std_error, NULL AS inconstancy_std_error, NULL AS source_std_error FROM main.quantities;
+)sql";
+
 /// The last version that stored results in schema version 1 of the result JSON.
 inline constexpr int kLastFormerResults = 2;
 

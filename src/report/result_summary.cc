@@ -340,20 +340,23 @@ std::vector<std::string> ClausesOf(const std::string& message) {
   return clauses;
 }
 
+bool HasFlag(const std::string& text) { return text.find("--") != std::string::npos; }
+
 /// A message without its explanations: its first clause, and the one that names a flag.
 std::string ShortMessage(const std::string& message) {
   const std::vector<std::string> clauses = ClausesOf(message);
-  const auto has_flag = [](const std::string& clause) { return clause.find("--") != std::string::npos; };
   std::string text = clauses.front();
-  const auto with_flag = std::ranges::find_if(clauses, has_flag);
+  const auto with_flag = std::ranges::find_if(clauses, HasFlag);
   if (with_flag != clauses.end() && with_flag != clauses.begin()) text += ". " + Capitalized(*with_flag);
   text = Printable(text);
   if (text.ends_with('.')) text.pop_back();
   return text;
 }
 
+/// The warnings in short. Those that name a flag come first: they say what was assumed.
 std::vector<Warning> Shortened(std::vector<Warning> warnings) {
   for (Warning& warning : warnings) warning.message = ShortMessage(warning.message);
+  std::ranges::stable_partition(warnings, HasFlag, &Warning::message);
   return warnings;
 }
 
@@ -402,6 +405,7 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 struct Folding {
   std::size_t warnings = 100;  ///< More than these are only named.
   bool textbook = true;
+  bool asides = true;  ///< Parentheses of warnings.
   bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
 };
 
@@ -457,10 +461,21 @@ std::string WarningNames(const std::vector<Warning>& warnings, std::size_t first
   return text;
 }
 
+/// A message without its parentheses, except those with a flag.
+std::string WithoutAsides(std::string text) {
+  for (std::size_t open = text.find(" ("); open != std::string::npos; open = text.find(" (", open + 1)) {
+    const std::size_t close = text.find(')', open);
+    if (close == std::string::npos) break;
+    if (!HasFlag(text.substr(open, close - open))) text.erase(open--, close + 1 - open);
+  }
+  return text;
+}
+
 void AddWarnings(const FitSummary& summary, const Folding& folding, Section& section) {
   const std::size_t count = summary.warnings.size(), shown = std::min(folding.warnings, count);
   for (std::size_t k = 0; k < shown; ++k) {
-    section.AddText("Warning: " + summary.warnings[k].message + ".", Emphasis::kCaution);
+    const std::string& message = summary.warnings[k].message;
+    section.AddText("Warning: " + (folding.asides ? message : WithoutAsides(message)) + ".", Emphasis::kCaution);
   }
   if (shown == count) return;
   section.AddText((shown == 0 ? "Warnings: " : "More warnings: ") + WarningNames(summary.warnings, shown) + ".",
@@ -540,12 +555,13 @@ Section SummarySection(const ResultSummary& summary) { return FoldedSection(summ
 
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
-  constexpr std::array<Folding, 6> kFoldings = {Folding{},
-                                                Folding{.warnings = 2},
-                                                Folding{.warnings = 2, .textbook = false},
-                                                Folding{.warnings = 2, .textbook = false, .sensor = false},
-                                                Folding{.warnings = 1, .textbook = false, .sensor = false},
-                                                Folding{.warnings = 0, .textbook = false, .sensor = false}};
+  constexpr std::array kFoldings = {Folding{},
+                                    Folding{.warnings = 2},
+                                    Folding{.warnings = 2, .textbook = false},
+                                    Folding{.warnings = 2, .textbook = false, .sensor = false},
+                                    Folding{.warnings = 2, .textbook = false, .asides = false, .sensor = false},
+                                    Folding{.warnings = 1, .textbook = false, .asides = false, .sensor = false},
+                                    Folding{.warnings = 0, .textbook = false, .sensor = false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

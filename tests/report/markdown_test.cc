@@ -86,8 +86,10 @@ Recommended: coulomb. It is the only one that converged.
 | release_angle | 24.236 ± 0.011 | deg | noise |
 | zero_angle | 0.572958 | deg | fixed |
 
+Weakly identifiable: viscous.
+
 ```text
-0.0790 th'' + 0.0030 th' + 0 sgn(th') + 1.80 sin th = 0
+0.0790 th'' + 0.0030 th' + 1.80 sin th = 0
 ```
 
 The textbook's log decrement gives I_O 0.0802 (1.5 % more), b 0.00306 (agrees).
