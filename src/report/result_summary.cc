@@ -463,10 +463,13 @@ std::string WarningNames(const std::vector<Warning>& warnings, std::size_t first
 
 /// A message without its parentheses, except those with a flag.
 std::string WithoutAsides(std::string text) {
-  for (std::size_t open = text.find(" ("); open != std::string::npos; open = text.find(" (", open + 1)) {
+  std::size_t open = text.find(" (");
+  while (open != std::string::npos) {
     const std::size_t close = text.find(')', open);
     if (close == std::string::npos) break;
-    if (!HasFlag(text.substr(open, close - open))) text.erase(open--, close + 1 - open);
+    const bool keeps = HasFlag(text.substr(open, close - open));
+    if (!keeps) text.erase(open, close + 1 - open);
+    open = text.find(" (", keeps ? close : open);
   }
   return text;
 }
