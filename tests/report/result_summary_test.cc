@@ -127,7 +127,8 @@ TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
   viscous.std_error = 0.0004;
   viscous.lower95 = 0.001;
   viscous.upper95 = 0.008;
-  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("95 % intervals, wider than ± 2 errors: viscous 0.0010 to 0.0080"));
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks,
+              HasSubstr("95 % intervals, wider than ± 2 errors: viscous 0.0010 to 0.0080"));
 }
 
 TEST(SummarizeFit, NamesTermsThatMayBeZero) {

@@ -65,7 +65,8 @@ Section SummarySection(const ResultSummary& summary);
 
 /// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
 /// more, all but two warnings are only named, then the textbook's line is left out, parameters of the sensor are only
-/// named, parentheses of warnings are left out, and at last the two warnings are only named. `more`: a last line that says where to find more.
+/// named, parentheses of warnings are left out, and at last the two warnings are only named. `more`: a last line that
+/// says where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
