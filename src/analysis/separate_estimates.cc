@@ -24,7 +24,7 @@ bool HaveOwnSources(const std::vector<std::string>& sources) {
 double IntervalFactor(double t95) { return std::max(t95 / kNormal95, 1.0); }
 
 MatrixXd SystematicBetweenRuns(const SystematicParts& parts, const VectorXd& value, bool own_sources) {
-  const MatrixXd inconstancy = parts.inconstancy.cwiseAbs2().asDiagonal();
+  MatrixXd inconstancy = parts.inconstancy.cwiseAbs2().asDiagonal();
   if (!own_sources) return inconstancy;
   // The rig's error is a common factor of the estimates, so it has the sign of each.
   VectorXd rig = parts.rig;

@@ -418,14 +418,14 @@ Identification CombineRecordings(const JointModels& joint, const std::optional<R
 
 }  // namespace
 
-Result<void> CheckBeforeFit(const IdentifyOptions& asked, const PreparedRecording& recording) {
-  const auto for_rig = OptionsForRig(asked, recording.known.rig);
+Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecording& recording) {
+  const auto for_rig = OptionsForRig(options, recording.known.rig);
   if (!for_rig) return tl::unexpected(for_rig.error());
-  if (asked.closed_form_only) return {};
-  FitOptions options = for_rig->fit;
-  options.rig = recording.known.rig;
+  if (options.closed_form_only) return {};
+  FitOptions fit_options = for_rig->fit;
+  fit_options.rig = recording.known.rig;
   const auto first = static_cast<std::size_t>(recording.swings.chosen.front()) - 1;
-  return CheckModels(recording.recording, recording.swings.found[first], options, for_rig->models);
+  return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig->models);
 }
 
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
@@ -482,7 +482,7 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
   return whole;
 }
 
-Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, RunFiles files) {
+Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, const RunFiles& files) {
   ReadRun run;
   if (files.rig) {
     auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name);
@@ -501,7 +501,8 @@ Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, RunFiles files) {
 }
 
 Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
-  auto read = ReadBytesOfRun(options, std::move(files));  // frees the bytes: a long recording takes much memory
+  auto read = ReadBytesOfRun(options, files);
+  files = {};  // the bytes of a long recording take much memory
   if (!read) return tl::unexpected(read.error());
   auto prepared = PrepareRecording(std::move(read->recording), options, std::move(read->rig));
   if (!prepared) return tl::unexpected(prepared.error());

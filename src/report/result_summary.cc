@@ -511,15 +511,15 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
 
 }  // namespace
 
-FitSummary SummarizeFit(const Identification& identification, std::size_t main) {
+FitSummary SummarizeFit(const Identification& identification, std::size_t index) {
   FitSummary summary;
-  const FitReport& fit = identification.fits[main];
-  summary.warnings = Shortened(WarningsOfFit(identification, main));
+  const FitReport& fit = identification.fits[index];
+  summary.warnings = Shortened(WarningsOfFit(identification, index));
   summary.law = fit.model.name;
   const bool lacks_fit =
-      fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[main].lacks_fit);
-  SetVerdict(fit, identification.ConstancyOf(main), lacks_fit, summary);
-  if (identification.is_joint()) SetAgreement(identification.joint[main].homogeneity, summary);
+      fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[index].lacks_fit);
+  SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, summary);
+  if (identification.is_joint()) SetAgreement(identification.joint[index].homogeneity, summary);
   if (fit.termination != Termination::kConverged) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
     summary.parameters.push_back(QuantityOf(parameter, identification.rig));
@@ -528,7 +528,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t main) 
   summary.remarks = RemarksText(fit);
   summary.derived = DerivedOf(fit);
   const bool has_all =
-      !identification.is_joint() || identification.joint[main].shared.size() == PhysicalParameters(fit.model).size();
+      !identification.is_joint() || identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
   if (has_all) {
     summary.equation = WithoutZeroTerms(FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError));
   }
@@ -537,7 +537,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t main) 
                         ? "In units of the stiffness k. A known stiffness (--stiffness) gives SI units."
                         : "In units of the gravity torque G. Masses and length (--rig) give SI units.";
   }
-  summary.textbook = TextbookText(identification.CheckOf(main));
+  summary.textbook = TextbookText(identification.CheckOf(index));
   return summary;
 }
 

@@ -55,7 +55,7 @@ struct ReadRun {
 
 /// Reads the files of a run. options.read receives the calibration. Errors as ParseRig, ParseCalibration and
 /// ParseRecording.
-Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, RunFiles files);
+Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, const RunFiles& files);
 
 /// Reads and identifies a recording from bytes in memory. If several swings are chosen, the first is used. Errors as
 /// ParseRig, ParseCalibration, ParseRecording, PrepareRecording and IdentifyEach.

@@ -56,7 +56,7 @@ struct ResultSummary {
 };
 
 /// The summary of one fit.
-FitSummary SummarizeFit(const Identification& identification, std::size_t fit);
+FitSummary SummarizeFit(const Identification& identification, std::size_t index);
 
 ResultSummary SummarizeResult(const Identification& identification);
 

@@ -147,7 +147,10 @@ std::vector<std::string> ValuesOf(const Folder& folder, const std::vector<Member
   std::vector<std::string> values;
   for (const MemberSummary& summary : summaries) {
     const std::string& path = folder.paths[summary.index];
-    for (const std::string& column : summary.candidates) values.push_back(column.empty() ? path : path + "/" + column);
+    for (const std::string& column : summary.candidates) {
+      values.push_back(path);
+      if (!column.empty()) values.back().append("/").append(column);
+    }
   }
   return values;
 }
