@@ -111,7 +111,7 @@ std::string DescribeAmplitude(const Homogeneity& result) {
         ProbabilityText(dependence.p) + ")" +
         (dependence.rest_p < Homogeneity::kDisagree ? ", but other differences remain" : ", and nothing else differs");
   }
-  return text.empty() ? text : text + "; another law may explain that (--model all)";
+  return text.empty() ? text : text + "; another law may explain that (--models all)";
 }
 
 /// Relative standard deviation of inertia if the recordings cannot come from one rig; otherwise 0.
@@ -133,7 +133,7 @@ std::string DescribeScatter(const Homogeneity& result, bool recommends_law) {
          (scatter.mean != 0 ? PercentText(scatter.between / scatter.mean) : NumberText(scatter.between, 2) + unit) +
          ", beyond its errors" +
          (recommends_law ? ""
-                         : "; another law may explain that (--model all); if not, the random-effects means and their "
+                         : "; another law may explain that (--models all); if not, the random-effects means and their "
                            "errors are the rig's constants");
 }
 
@@ -155,7 +155,7 @@ std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<Run
   const std::string text = "the recordings do not agree on " + DifferingNames(result) + test + "; ";
   const std::string end = lacks_fit ? misfit +
                                           ", so the errors compared here may be too small, and another law may explain "
-                                          "the differences (--model all)"
+                                          "the differences (--models all)"
                                     : "";
   if (!result.disagreeing.empty()) return text + DescribeOutliers(result, runs, lacks_fit) + end;
   if (const double share = ScatterOfDifferentRigs(result); share > 0) {

@@ -118,12 +118,13 @@ void Warn(const std::string& changes, FitReport& fit) {
 }
 
 /// Root mean square of a parameter's changes in all recordings, weighted with 1 / std_error²; 0 if it is constant, or
-/// if no recording has an error.
+/// if it was not tested.
 double CommonChange(std::string_view name, const std::vector<ChangingRun>& runs) {
   double squares = 0, weights = 0;
   for (const ChangingRun& run : runs) {
     const ParameterEstimate* const alone = run.alone.Find(name);
-    if (alone == nullptr || !(alone->std_error.value_or(0) > 0)) continue;
+    const bool is_tested = !run.constancy.windows.empty() || !run.constancy.halves.empty();
+    if (alone == nullptr || !is_tested || !(alone->std_error.value_or(0) > 0)) continue;
     const double weight = 1 / (*alone->std_error * *alone->std_error);
     const std::vector<Change> changes = Changes(run.constancy, run.alone);
     const auto change = std::ranges::find(changes, name, &Change::name);

@@ -44,7 +44,6 @@ Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const
   return TestHomogeneity(alone, shared);
 }
 
-/// Recordings whose constancy was not tested count as constant.
 void AddChanges(const std::vector<RunModels>& runs, std::size_t m, JointFit& fit) {
   std::vector<ChangingRun> changing;
   for (const RunModels& run : runs) {

@@ -84,17 +84,6 @@ inline void SetErrorParts(const Json& json, QuantityRow& row) {
   if (clock > 0 || calibration > 0) row.source_std_error = std::hypot(clock, calibration);
 }
 
-/// Derived quantities have no budget of errors. If a parameter is not constant, all of their systematic error is taken
-/// for inconstancy, so that their repeats are not called different for a cause that is known.
-inline void SetInconstancyOfDerived(std::vector<QuantityRow>& quantities) {
-  const bool is_constant =
-      std::ranges::none_of(quantities, [](const QuantityRow& row) { return row.inconstancy_std_error.has_value(); });
-  if (is_constant) return;
-  for (QuantityRow& row : quantities) {
-    if (row.derived) row.inconstancy_std_error = row.systematic_std_error;
-  }
-}
-
 inline QuantityRow Quantity(const std::string& name, const Json& json, bool derived) {
   QuantityRow row;
   row.name = name;
@@ -148,7 +137,6 @@ inline FitRow Fit(const Json& result, const Json& fit) {
   SetStatistics(fit, row);
   for (const auto& [name, json] : fit["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
   for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));
-  SetInconstancyOfDerived(row.quantities);
   return row;
 }
 

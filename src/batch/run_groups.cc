@@ -178,9 +178,10 @@ RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   groups.groups = sizes.getColumn(1).getInt64();
   groups.smallest = sizes.getColumn(2).getInt64();
   groups.largest = sizes.getColumn(3).getInt64();
-  const std::vector<std::string> own =
-      sqlite::Texts(database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " +
-                                  kIsFitted + ") GROUP BY pendulum HAVING count(DISTINCT sources) > 1");
+  const std::vector<std::string> own = sqlite::Texts(
+      database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE run IN " +
+                    "(SELECT run FROM fits WHERE status = 'converged')) GROUP BY pendulum HAVING "
+                    "count(DISTINCT sources) > 1");
   groups.own_sources.insert(own.begin(), own.end());
   return groups;
 }

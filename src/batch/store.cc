@@ -66,6 +66,13 @@ UPDATE quantities SET total_std_error = std_error WHERE systematic_std_error IS 
 SELECT run, model, name, std_error, systematic_std_error FROM quantities
   WHERE std_error IS NOT NULL AND systematic_std_error IS NOT NULL)sql");
   SQLite::Statement set(database, "UPDATE quantities SET total_std_error = ? WHERE run = ? AND model = ? AND name = ?");
+  SQLite::Statement results(database, "SELECT run, result FROM runs WHERE result IS NOT NULL");
+  SQLite::Statement sources(database, "UPDATE runs SET sources = ? WHERE run = ?");
+  while (results.executeStep()) {
+    const Json result = Json::parse(sqlite::Text(results, 1), nullptr, false);
+    if (!result.is_object() || !result.contains("data")) continue;
+    sqlite::Bind(sources, result_rows::SourcesOf(result), results.getColumn(0).getInt64()).exec();
+  }
   while (both.executeStep()) {
     const double total = std::hypot(both.getColumn(3).getDouble(), both.getColumn(4).getDouble());
     sqlite::Bind(set, total, both.getColumn(0).getInt64(), sqlite::Text(both, 1), sqlite::Text(both, 2)).exec();

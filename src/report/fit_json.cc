@@ -77,7 +77,10 @@ Json DerivedJson(const FitReport& fit) {
         .Set("std_error", quantity.std_error, "a parameter on which it depends has no standard error")
         .Set("interval95", IntervalJson(quantity.lower95, quantity.upper95))
         .Set("unit", Json(quantity.unit));
-    if (const auto systematic = quantity.systematic.Total()) json.Set("systematic_std_error", *systematic);
+    if (const auto systematic = quantity.systematic.Total()) {
+      json.Set("systematic_std_error", *systematic)
+          .Set("error_budget", ErrorBudgetJson(quantity.std_error, quantity.systematic));
+    }
     derived[quantity.name] = json.Done();
   }
   return derived;

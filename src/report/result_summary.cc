@@ -65,6 +65,8 @@ std::string MainSources(double std_error, const SystematicErrors& systematic, co
 
 // ---- Quantities -----------------------------------------------------------------------------------------------------
 
+constexpr double kMuchWider = 1.5;  // than ± 2 errors is an interval that must be said
+
 std::string ShownUnit(const std::string& unit) { return unit == "1" ? "" : unit; }
 
 SummaryQuantity Quantity(std::string name, std::string symbol, double value, const std::optional<double>& error,
@@ -113,6 +115,24 @@ constexpr std::array kAskedQuantities = {AskedQuantity{"small_angle_period", "pe
                                          AskedQuantity{"gravity_torque", "gravity torque"},
                                          AskedQuantity{"center_of_mass", "center of mass"}};
 
+/// Whether the 95 % interval is much wider than ± 2 errors: a parameter at its bound, or few independent samples.
+bool HasWideInterval(const DerivedQuantity& quantity) {
+  if (!quantity.std_error || !quantity.lower95 || !quantity.upper95) return false;
+  const double reach = std::max(quantity.estimate - *quantity.lower95, *quantity.upper95 - quantity.estimate);
+  return reach > kMuchWider * kNormal95 * *TotalStdError(quantity.std_error, quantity.systematic);
+}
+
+/// The total 95 % interval in the place of the value.
+SummaryQuantity IntervalOf(const DerivedQuantity& quantity, std::string name) {
+  constexpr int kDigits = 3;
+  const auto text = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return NumberText(TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic).value_or(0), kDigits);
+  };
+  std::string value =
+      text(IntervalEnd::kLower, quantity.lower95) + " to " + text(IntervalEnd::kUpper, quantity.upper95);
+  return {std::move(name) + " (95 %)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
+}
+
 std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
   std::vector<SummaryQuantity> derived;
   for (const auto& [name, word] : kAskedQuantities) {
@@ -121,7 +141,8 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
     const auto total = TotalStdError(found->std_error, found->systematic);
     const bool is_open = found->lower95.has_value() != found->upper95.has_value();
     if (is_open || (total && *total >= std::abs(found->estimate))) continue;  // its divisor may be 0
-    derived.push_back(Quantity(std::string(word), "", found->estimate, total, found->unit));
+    derived.push_back(HasWideInterval(*found) ? IntervalOf(*found, std::string(word))
+                                              : Quantity(std::string(word), "", found->estimate, total, found->unit));
   }
   return derived;
 }
@@ -142,7 +163,6 @@ bool IsPhysical(const FitReport& fit, const ParameterEstimate& parameter) {
 /// "coulomb 0.0016 to 0.0201" if the total 95 % interval is much wider than ± 2 total errors, which few independent
 /// samples or a likelihood that is no parabola make; otherwise empty.
 std::string WideIntervalText(const ParameterEstimate& parameter) {
-  constexpr double kMuchWider = 1.5;
   const auto total = TotalStdError(parameter.std_error, parameter.systematic);
   const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
     return TotalIntervalEnd(which, parameter.estimate, end95, parameter.systematic);
@@ -152,16 +172,21 @@ std::string WideIntervalText(const ParameterEstimate& parameter) {
   const double reach = std::max(parameter.estimate - *lower, *upper - parameter.estimate);
   if (!(reach > kMuchWider * kNormal95 * *total)) return "";
   const Conversion shown = Degrees(parameter.unit).value_or(Conversion{parameter.unit});
+  const std::string unit = ShownUnit(std::string(shown.unit));
   const Rounding rounding = PdgRounding(shown.factor * parameter.estimate, shown.factor * *total);
   const auto text = [&](double x) { return RoundedText(shown.factor * x, rounding); };
-  return std::string(parameter.info.name) + " " + text(std::max(*lower, parameter.info.lower)) + " to " + text(*upper);
+  return std::string(parameter.info.name) + " " + text(std::max(*lower, parameter.info.lower)) + " to " + text(*upper) +
+         (unit.empty() ? "" : " " + unit);
 }
 
-/// Whether a term of friction may be 0: its 95 % interval contains 0.
+/// Whether a term of friction may be 0: its total 95 % interval contains 0.
 bool MayBeZero(const ParameterEstimate& parameter) {
-  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
-  return total && !parameter.at_bound && parameter.info.name != kInertia.name && parameter.lower95.value_or(0) <= 0 &&
-         std::abs(parameter.estimate) < kNormal95 * *total;
+  const bool is_term = parameter.info.name != kInertia.name && parameter.info.name != "stribeck_rate";
+  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return TotalIntervalEnd(which, parameter.estimate, end95, parameter.systematic);
+  };
+  const auto lower = end(IntervalEnd::kLower, parameter.lower95), upper = end(IntervalEnd::kUpper, parameter.upper95);
+  return is_term && !parameter.at_bound && lower && upper && *lower <= 0 && *upper >= 0;
 }
 
 void AddListed(const std::string& item, std::string& list) {
@@ -185,7 +210,7 @@ std::string RemarksText(const FitReport& fit) {
   }
   std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
   if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";
-  if (!wide.empty()) text += "95 % intervals, wider than ± 2 errors: " + wide + ". ";
+  if (!wide.empty()) text += "Quote the 95 % intervals that are wider than ± 2 errors: " + wide + ". ";
   if (!text.empty()) text.pop_back();
   return text;
 }
@@ -278,7 +303,9 @@ void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
   if (summary.emphasis == Emphasis::kAlarm) return;
   if (!homogeneity.p) summary.emphasis = Emphasis::kCaution;
   if (homogeneity.agrees()) return;
-  summary.verdict = "The errors below assume that the recordings agree: do not quote them.";
+  const bool has_doubts = summary.emphasis == Emphasis::kCaution;  // which the verdict says
+  summary.verdict = "The errors below assume that the recordings agree: do not quote them." +
+                    (has_doubts ? " " + summary.verdict : std::string());
   std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "recordings_disagree"; });
   summary.emphasis = homogeneity.disagreeing.empty() ? Emphasis::kCaution : Emphasis::kAlarm;
 }
@@ -300,8 +327,11 @@ std::string CauseWords(DifferenceCause cause) {
 std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
   constexpr int kDigits = 4;
   std::string text = std::string(symbol) + " " + NumberText(row.closed_form, kDigits);
-  if (row.agrees.value_or(true)) return text + " (agrees)";
   const double ratio = row.closed_form / row.fit;
+  constexpr double kNear = 0.1;
+  if (row.agrees.value_or(true)) {
+    return text + (std::abs(ratio - 1) < kNear ? " (agrees)" : " (agrees within the errors)");
+  }
   constexpr double kTimes = 1.5, kMost = 100;  // more is said as a factor, far more only as "far more"
   const std::string size = !(ratio > 0 && ratio < kMost) ? "far from the fit's value"
                            : ratio > kTimes
@@ -353,14 +383,26 @@ std::string ShortMessage(const std::string& message) {
   return text;
 }
 
-/// The warnings in short. Those that name a flag come first: they say what was assumed.
+/// Whether a warning says what was assumed of the recording or the rig.
+bool IsAssumption(const Warning& warning) {
+  return warning.code.ends_with("_assumed") || warning.code.ends_with("_questioned") ||
+         warning.code == "linear_restoring_torque" || warning.code == "ambiguous_frequency";
+}
+
+/// The warnings in short, assumptions first.
 std::vector<Warning> Shortened(std::vector<Warning> warnings) {
   for (Warning& warning : warnings) warning.message = ShortMessage(warning.message);
-  std::ranges::stable_partition(warnings, HasFlag, &Warning::message);
+  std::ranges::stable_partition(warnings, IsAssumption);
   return warnings;
 }
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
+
+std::string VerdictOf(const ComparisonRow& row, bool is_recommended) {
+  if (!row.judged) return "no result";
+  if (is_recommended) return row.lack_of_fit ? "recommended, with lack of fit" : "recommended";
+  return row.lack_of_fit ? "lack of fit" : "";
+}
 
 void SetComparison(const Identification& identification, ResultSummary& summary) {
   const Comparison& comparison = *identification.comparison;
@@ -374,10 +416,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
   for (const ComparisonRow& row : comparison.rows) {
     SummaryLaw law{row.model, NumberText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
                    row.delta_bic && std::isfinite(*row.delta_bic) ? FixedText(*row.delta_bic, 1) : "",
-                   row.model == comparison.recommended ? "recommended"
-                   : row.lack_of_fit                   ? "lack of fit"
-                   : row.judged                        ? ""
-                                                       : "no result"};
+                   VerdictOf(row, row.model == comparison.recommended)};
     summary.laws.push_back(std::move(law));
   }
 }
@@ -406,6 +445,7 @@ struct Folding {
   std::size_t warnings = 100;  ///< More than these are only named.
   bool textbook = true;
   bool asides = true;  ///< Parentheses of warnings.
+  bool units = true;   ///< What gives SI units.
   bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
 };
 
@@ -489,7 +529,7 @@ void AddWarnings(const FitSummary& summary, const Folding& folding, Section& sec
 std::string OmittedText(const FitSummary& summary, const Folding& folding) {
   std::string names;
   for (const SummaryQuantity& quantity : summary.parameters) {
-    if (!folding.sensor && IsOfSensor(quantity)) AddListed(quantity.name, names);
+    if (!folding.sensor && IsOfSensor(quantity) && quantity.source != "fixed") AddListed(quantity.name, names);
   }
   return names.empty() ? "" : "Also fitted: " + names + " (--details).";
 }
@@ -503,7 +543,7 @@ Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
   if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
   section.AddText(OmittedText(fit, folding)).AddText(fit.remarks).AddText(DerivedText(fit));
   if (!fit.equation.empty()) section.Add(Formula{WithUnbrokenTerms(fit.equation)});
-  section.AddText(fit.units);
+  if (folding.units) section.AddText(fit.units);
   if (folding.textbook) section.AddText(fit.textbook);
   AddWarnings(fit, folding, section);
   return section;
@@ -564,7 +604,8 @@ std::string SummaryText(const ResultSummary& summary, const std::string& more, T
                                     Folding{.warnings = 2, .textbook = false, .sensor = false},
                                     Folding{.warnings = 2, .textbook = false, .asides = false, .sensor = false},
                                     Folding{.warnings = 1, .textbook = false, .asides = false, .sensor = false},
-                                    Folding{.warnings = 0, .textbook = false, .sensor = false}};
+                                    Folding{1, false, false, false, false},
+                                    Folding{0, false, false, false, false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

@@ -81,6 +81,9 @@ std::string ExponentText(int exponent) {
   return std::string(exponent < 0 ? "e-" : "e+") + (digits.size() < 2 ? "0" : "") + digits;
 }
 
+/// Whether tens or hundreds are written without a power of ten.
+bool IsPlain(const Rounding& rounding) { return rounding.exponent > 0 && rounding.exponent <= kPlainExponent; }
+
 std::string Mantissa(double x, const Rounding& rounding) {
   std::string text = FixedText(rounding.exponent == 0 ? x : x / std::pow(10.0, rounding.exponent), rounding.decimals);
   const bool zero = text.find_first_of("123456789") == std::string::npos;
@@ -109,16 +112,17 @@ ValueAndError PdgText(double value, double error) {
   const int first = FirstDigit(value, rounded);
   if (first - rounded.last >= kMaxDigits) return {NumberText(value, kMaxDigits), NumberText(error, 2)};
   const Rounding rounding = RoundingTo(first, rounded.last);
-  if (rounding.exponent > 0 && rounding.exponent <= kPlainExponent) {
-    const double unit = std::pow(10.0, rounded.last);
-    return {FixedText(unit * std::round(value / unit) + 0.0, 0), FixedText(rounded.error, 0)};
-  }
+  if (IsPlain(rounding)) return {RoundedText(value, rounding), RoundedText(rounded.error, rounding)};
   const std::string exponent = ExponentText(rounding.exponent);
   if (exponent.empty()) return {Mantissa(value, rounding), Mantissa(rounded.error, rounding)};
   return {"(" + Mantissa(value, rounding), Mantissa(rounded.error, rounding) + ")" + exponent};
 }
 
 std::string RoundedText(double x, const Rounding& rounding) {
+  if (IsPlain(rounding)) {
+    const double unit = std::pow(10.0, rounding.exponent - rounding.decimals);
+    return FixedText(unit * std::round(x / unit) + 0.0, 0);  // + 0.0: never -0
+  }
   return Mantissa(x, rounding) + ExponentText(rounding.exponent);
 }
 

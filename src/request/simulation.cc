@@ -85,10 +85,6 @@ Result<void> Complete(const std::vector<ParameterInfo>& infos, const std::option
   if (values[inertia] <= 0) {
     return BadFlag("--set: inertia is " + NumberText(values[inertia]) + "; it must be positive");
   }
-  if (const double angle = ValueOr0(values, kReleaseAngle); std::abs(angle) > 2 * kPi) {
-    return BadFlag("--set: release_angle is " + NumberText(angle) + " rad, more than a turn; give it in rad: " +
-                   NumberText(angle, 4) + " deg are " + NumberText(angle * kRadFromDeg, 4));
-  }
   for (const ParameterInfo& info : infos) {
     const bool is_scale = info.name == kRadius.name || info.name == kRateScale.name;
     if (is_scale && ValueOr0(values, info) == 0) {
@@ -164,6 +160,11 @@ Result<void> ChooseMotion(const SimulationFlags& flags, const std::optional<Rig>
   if (!start) return tl::unexpected(start.error());
   synthetic.start = *start;
   if (Result<void> complete = Complete(infos, rig, *start, *values); !complete) return complete;
+  if (const double angle = ValueOr0(*values, kReleaseAngle);
+      !synthetic.model.gravity.is_linear() && std::abs(angle) > 2 * kPi) {
+    return BadFlag("--set: release_angle is " + NumberText(angle) + " rad, more than a turn; if you mean " +
+                   NumberText(angle) + " deg, give " + NumberText(angle * kRadFromDeg, 4));
+  }
   simulation.gravity_torque = rig ? rig->gravity_torque.value : 1.0;
   SetMotion(*values, simulation.gravity_torque, synthetic);
   for (const ParameterInfo& info : infos) {

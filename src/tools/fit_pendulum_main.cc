@@ -117,6 +117,13 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   return text + (options.details ? ToText(run, style) : SummaryText(SummarizeResult(run), kMore, style));
 }
 
+/// What must not be overlooked where only numbers are shown: that they should not be quoted, or not without a doubt.
+void PrintVerdict(const Identification& run) {
+  if (run.fits.empty() || run.fits[run.MainFit()].termination != Termination::kConverged) return;
+  const FitSummary summary = SummarizeFit(run, run.MainFit());
+  if (summary.emphasis != Emphasis::kNone) PrintMessage(kName, "warning: " + summary.verdict);
+}
+
 /// All outputs of all runs. Text tables are joined on standard output unless data go there. Runs that could not be
 /// fitted are reported.
 Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std::vector<Result<Identification>>& runs) {
@@ -135,6 +142,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     const auto part = TextOf(options, *run);
     if (!part) return tl::unexpected(part.error());
     text += (text.empty() ? "" : "\n") + *part;
+    if (options.quiet) PrintVerdict(*run);
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(*run)) PrintMessage(kName, "warning: " + warning.message);
     }

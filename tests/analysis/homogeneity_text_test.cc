@@ -76,7 +76,7 @@ TEST(DescribeHomogeneity, ReportsTheEffectOfMisfitOnErrors) {
   EXPECT_THAT(
       WordsOf(Example(0.001), true),
       EndsWith(
-          "so the errors compared here may be too small, and another law may explain the differences (--model all)"));
+          "so the errors compared here may be too small, and another law may explain the differences (--models all)"));
 }
 
 TEST(DescribeHomogeneity, NamesTheOutlierAndItsDistance) {
@@ -117,7 +117,7 @@ TEST(DescribeHomogeneity, NamesTheParameterThatScattersMost) {
   result.parameters[1].statistic = 20;
   result.parameters[1].scatter.mean = 0;
   EXPECT_THAT(WordsOf(result), HasSubstr("between recordings viscous scatters by 0.015 kg m^2, beyond its errors"));
-  EXPECT_THAT(WordsOf(result), EndsWith("another law may explain that (--model all); if not, the random-effects means "
+  EXPECT_THAT(WordsOf(result), EndsWith("another law may explain that (--models all); if not, the random-effects means "
                                         "and their errors are the rig's constants"));
   EXPECT_THAT(WordsOf(result, true), Not(HasSubstr("the rig's constants")));
 }

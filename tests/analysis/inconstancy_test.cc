@@ -114,8 +114,8 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
 }
 
-// Two recordings with standard errors of 1 and 2 have the weights 4 : 1; a change of 0.03 in the first and none in the
-// second add 0.03 · sqrt(4/5).
+// Two recordings with standard errors of 1 and 2 have the weights 4 : 1. With a change of s in the first and none in
+// the second the mean square is 4/5 s².
 TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
   FitReport first = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
   ParameterEstimate& inertia = *std::ranges::find(
@@ -129,7 +129,9 @@ TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
   Constancy changing;
   changing.halves = {{"inertia", "s^2", inertia.estimate - 0.03, inertia.estimate + 0.03, 1e-6, 1e-6, 1414}};
   const double change = std::hypot(0.03, 0.03);  // sum of squares over 2 - 1
-  AddInconstancyError({{first, changing}, {second, Constancy{}}}, joint);
+  Constancy constant;
+  constant.halves = {{"inertia", "s^2", inertia.estimate, inertia.estimate, 1e-6, 1e-6, 0}};
+  AddInconstancyError({{first, changing}, {second, constant}}, joint);
   EXPECT_NEAR(SystematicError(joint.whole, "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_NEAR(SystematicError(joint.runs[1], "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_TRUE(joint.whole.HasWarning("not_constant"));

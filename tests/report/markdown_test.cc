@@ -74,7 +74,7 @@ Recommended: coulomb. It is the only one that converged.
 | law | rms residual | ΔBIC | |
 | --- | --: | --: | --- |
 | coulomb | 0.2 deg | 0.0 | recommended |
-| drag | 28.6 deg | - | **lack of fit** |
+| drag | 28.6 deg | - | no result |
 
 **The law coulomb does not describe all of the readings: residuals of 0.2 deg (rms) are more than noise.**
 

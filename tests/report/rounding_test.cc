@@ -46,6 +46,7 @@ TEST(PdgText, WritesTensAndHundredsWithoutAPowerOfTen) {
   EXPECT_EQ(Pdg(-3, 41), "0 ± 40");
   EXPECT_EQ(Pdg(123, 36), "120 ± 40");
   EXPECT_EQ(Pdg(987, 360), "(1.0 ± 0.4)e+03");  // 1000 after rounding
+  EXPECT_EQ(RoundedText(123, PdgRounding(123, 36)), "120");
 }
 
 TEST(PdgText, WritesOneDigitBeforeThePointAlsoAfterRoundingUp) {

@@ -79,9 +79,9 @@ struct Homogeneity {
 };
 
 /// Compares the estimates of the shared parameters from each recording alone. Priors are removed. Systematic errors
-/// that differ between recordings are added: clocks and calibrations if they differ, and parameters that are not
-/// constant. Gives the joint test, the recordings that disagree, the differences explained by amplitude, and the
-/// scatter between recordings.
+/// that differ between recordings are added: clocks and calibrations if they differ. Changes within recordings are not,
+/// because amplitude_dependence judges them. Gives the joint test, the recordings that disagree, the differences
+/// explained by amplitude, and the scatter between recordings.
 Homogeneity TestHomogeneity(const std::vector<RunAlone>& runs, const std::vector<std::string>& shared);
 
 }  // namespace pendulum

@@ -150,7 +150,7 @@ class StartView {
     private readonly all: Forms,
   ) {
     const hint =
-      'Read are: CSV and other text of loggers and serial monitors; exports of phyphox, Tracker, Logger Pro, Capstone ' +
+      'Accepted: CSV and other text of loggers and serial monitors; exports of phyphox, Tracker, Logger Pro, Capstone ' +
       'and ROS; workbooks (.xlsx, .xls, .ods); MAT-files; NumPy; JSON; zip files of these. Several files are fitted as ' +
       'a batch.';
     this.zone = dropZone('Drop a recording here, paste it, or press to choose', hint, (files) => void this.take(files), place.signal);
