@@ -132,7 +132,7 @@ test('plots are saved as PNG and SVG', async (t) => {
   const plots = await page.locator('.chart').count();
   assert.equal(await page.locator('.save button').count(), 2 * plots);
   for (const [plot, pattern] of [
-    ['swing', /time \[s\].*angle \[rad\].*<path d="M[^"]*L[^"]*" fill="none" stroke="#0072b2".*a1 1 0 1 0/],
+    ['swing', /time \[s\].*angle \[°\].*<path d="M[^"]*L[^"]*" fill="none" stroke="#0072b2".*a1 1 0 1 0/],
     ['residuals', /residual \[rad\].*<rect [^>]*fill="#e6eef5"/],
     ['autocorrelation', /lag \[samples\]/],
     ['phase portrait', /rate \[rad\/s\]/],

@@ -236,8 +236,8 @@ const verdictOf = (model, verdict = 'agrees') => ({
   level: verdict === 'too_small' || verdict === 'not_compared' ? 'caution' : 'good',
   text:
     verdict === 'too_small'
-      ? 'Repeats differ by more than their errors, 1.4 times in inertia. Either the pendulum changed or the errors are too small.'
-      : 'Repeats differ as much as their errors say, in all 4 parameters. No difference from the errors was found.',
+      ? `Under the law ${model}, repeats differ by more than their errors in 1 of 4 parameters: inertia scatters 1.4 times as much as its errors predict. Either the pendulum changed or the errors are too small.`
+      : `Under the law ${model}, repeats differ as much as their errors say, in all 4 parameters. No difference from the errors was found.`,
 });
 const ended = (model, fits, not_converged = 0, not_identifiable = 0, failed = 0) => ({
   model,

@@ -83,7 +83,7 @@ test('the page begins with the verdict that the error bars are too small', async
   const page = await openSummary(t, makeSummary({ scatter: 1.4 }));
   assert.match(
     await page.locator('.banner.caution').textContent(),
-    /Repeats differ by more than their errors, 1\.4 times in inertia/,
+    /repeats differ by more than their errors in 1 of 4 parameters: inertia scatters 1\.4 times/,
   );
   assert.equal(await page.locator('#parameters .no').count(), 1);
   assert.match(await page.locator('#repeatability').textContent(), /The runs scatter by more than their errors predict\./);
