@@ -197,7 +197,7 @@ std::string OutliersText(const Json& summary) {
 /// The beginning of a reason; --details shows all of it.
 std::string Beginning(const std::string& reason) {
   constexpr std::size_t kLongest = 90;  // bytes, of about two lines
-  const std::string text = Printable(reason.substr(0, reason.find("; ")));
+  std::string text = Printable(reason.substr(0, reason.find("; ")));
   if (text.size() <= kLongest) return text;
   return text.substr(0, text.rfind(' ', kLongest)) + " ...";
 }
