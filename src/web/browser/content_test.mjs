@@ -60,7 +60,7 @@ test('warnings are with the law that they concern', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
   assert.deepEqual(await page.locator('#verdict .warnings li').allTextContents(), ['Viscous is weakly identifiable.']);
   assert.doesNotMatch(await page.locator('.banner').textContent(), /warning/);
-  await page.locator('#verdict summary').click();
+  await page.locator('#verdict summary', { hasText: 'Explanations' }).click();
   await page.waitForSelector('#verdict details .warnings');
   assert.match(await page.locator('#verdict details').textContent(), /record for longer/);
   assert.doesNotMatch(await page.locator('#verdict').textContent(), /more than noise; try|at the bound/);

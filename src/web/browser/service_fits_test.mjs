@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 
+import { assertAccessible } from './page.mjs';
 import { assertShown, openView, readDataset, shownFit, startService } from './service_server.mjs';
 
 const kDegrees = 180 / Math.PI;
@@ -20,6 +21,21 @@ async function rename(page, name) {
   await page.getByLabel('Name', { exact: true }).fill(name);
   await page.keyboard.press('Enter');
 }
+
+for (const [width, height] of [
+  [1280, 800],
+  [390, 844],
+])
+  test(`verdict, parameters and swing are on the first screen of ${width} x ${height}`, async (t) => {
+    const id = await service.fit('recorded.csv', 'models=viscous,coulomb');
+    const page = await openView(t, service, `/fits/${id}`, { context: { viewport: { width, height } } });
+    await page.locator('#verdict .plot canvas').waitFor();
+    for (const part of ['.banner .title', '.answer-table', '#verdict .plot canvas']) {
+      const { bottom } = await page.locator(part).evaluate((element) => element.getBoundingClientRect().toJSON());
+      assert.ok(bottom > 0 && bottom <= height, `${part} ends at ${bottom} px`);
+    }
+    await assertAccessible(page);
+  });
 
 test('a fit is renamed, and the list shows name, file, law, window and the total error', async (t) => {
   const id = await service.fit('recorded.csv', 'model=coulomb&from=2&to=12', 'recorded_rig.json');

@@ -23,6 +23,8 @@ function withSymbols(words: string): HTMLElement {
   return el('p', { class: 'quiet' }, ...parts);
 }
 
+const kPhone = '(max-width: 560px)';
+
 /** Which law is recommended, and why; null if only one law was fitted. */
 export function recommendation(comparison: Comparison | null | undefined, shown: string | null): HTMLElement | null {
   if (!comparison) return null;
@@ -35,7 +37,9 @@ export function recommendation(comparison: Comparison | null | undefined, shown:
       : recommended === shown
         ? `Recommended law: ${recommended}.`
         : `This is not the recommended law. Recommended: ${recommended}.`;
-  return el('p', { class: 'recommendation' }, el('strong', {}, words), ` ${why}`);
+  const element = el('details', { class: 'recommendation' }, el('summary', {}, el('strong', {}, words)), ` ${why}`);
+  element.open = !window.matchMedia(kPhone).matches; // the swing comes first on a small screen
+  return element;
 }
 
 function verdictBanner(summary: FitSummary, recommended: HTMLElement | null): HTMLElement {

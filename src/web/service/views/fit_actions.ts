@@ -102,7 +102,7 @@ export function fitActions(
   const copy = button('Copy link', () => void copyLink(say));
   const said = el('span', { role: 'status', class: 'quiet' });
   const say = (words: string): void => void (said.textContent = words);
-  const compare = button('Compare with …', () => {
+  const compare = button('Compare', () => {
     select(request.id, request.name);
     go('/fits');
   });

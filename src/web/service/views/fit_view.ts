@@ -37,9 +37,8 @@ function factsOf(request: FitRequest, facts: string): HTMLElement {
     'p',
     { class: 'quiet facts-line' },
     facts,
-    facts !== '' && ' · ',
-    facts === '' ? 'sent ' : 'fitted ',
-    localTime(request.created),
+    facts !== '' && el('span', { class: 'when' }, ' · '),
+    el('span', { class: 'when' }, facts === '' ? 'sent ' : 'fitted ', localTime(request.created)),
   );
   if (request.file !== request.name) parts.append(' · file ', el('bdi', {}, request.file));
   if (request.batch) parts.append(' · ', el('a', { href: batchPath(request.batch) }, 'its batch'));
