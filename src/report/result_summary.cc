@@ -11,6 +11,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/model/friction/stribeck.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
@@ -115,6 +116,20 @@ constexpr std::array kAskedQuantities = {AskedQuantity{"small_angle_period", "pe
                                          AskedQuantity{"gravity_torque", "gravity torque"},
                                          AskedQuantity{"center_of_mass", "center of mass"}};
 
+struct Interval {
+  double lower = 0, upper = 0;
+};
+
+/// The total 95 % interval of a ParameterEstimate or DerivedQuantity, in its unit; absent without both ends.
+template <typename Estimated>
+std::optional<Interval> TotalIntervalOf(const Estimated& quantity) {
+  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
+  };
+  const auto lower = end(IntervalEnd::kLower, quantity.lower95), upper = end(IntervalEnd::kUpper, quantity.upper95);
+  return lower && upper ? std::optional(Interval{*lower, *upper}) : std::nullopt;
+}
+
 /// Whether the 95 % interval is much wider than ± 2 errors: a parameter at its bound, or few independent samples.
 bool HasWideInterval(const DerivedQuantity& quantity) {
   if (!quantity.std_error || !quantity.lower95 || !quantity.upper95) return false;
@@ -122,14 +137,11 @@ bool HasWideInterval(const DerivedQuantity& quantity) {
   return reach > kMuchWider * kNormal95 * *TotalStdError(quantity.std_error, quantity.systematic);
 }
 
-/// The total 95 % interval in the place of the value.
+/// The total 95 % interval in the place of the value. The quantity has one.
 SummaryQuantity IntervalOf(const DerivedQuantity& quantity, std::string name) {
   constexpr int kDigits = 3;
-  const auto text = [&](IntervalEnd which, const std::optional<double>& end95) {
-    return NumberText(TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic).value_or(0), kDigits);
-  };
-  std::string value =
-      text(IntervalEnd::kLower, quantity.lower95) + " to " + text(IntervalEnd::kUpper, quantity.upper95);
+  const Interval interval = TotalIntervalOf(quantity).value();
+  std::string value = NumberText(interval.lower, kDigits) + " to " + NumberText(interval.upper, kDigits);
   return {std::move(name) + " (95 %)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
 }
 
@@ -164,29 +176,24 @@ bool IsPhysical(const FitReport& fit, const ParameterEstimate& parameter) {
 /// samples or a likelihood that is no parabola make; otherwise empty.
 std::string WideIntervalText(const ParameterEstimate& parameter) {
   const auto total = TotalStdError(parameter.std_error, parameter.systematic);
-  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
-    return TotalIntervalEnd(which, parameter.estimate, end95, parameter.systematic);
-  };
-  const auto lower = end(IntervalEnd::kLower, parameter.lower95), upper = end(IntervalEnd::kUpper, parameter.upper95);
-  if (!total || !lower || !upper) return "";
-  const double reach = std::max(parameter.estimate - *lower, *upper - parameter.estimate);
+  const auto interval = TotalIntervalOf(parameter);
+  if (!total || !interval) return "";
+  const auto [lower, upper] = *interval;
+  const double reach = std::max(parameter.estimate - lower, upper - parameter.estimate);
   if (!(reach > kMuchWider * kNormal95 * *total)) return "";
   const Conversion shown = Degrees(parameter.unit).value_or(Conversion{parameter.unit});
   const std::string unit = ShownUnit(std::string(shown.unit));
   const Rounding rounding = PdgRounding(shown.factor * parameter.estimate, shown.factor * *total);
   const auto text = [&](double x) { return RoundedText(shown.factor * x, rounding); };
-  return std::string(parameter.info.name) + " " + text(std::max(*lower, parameter.info.lower)) + " to " + text(*upper) +
+  return std::string(parameter.info.name) + " " + text(std::max(lower, parameter.info.lower)) + " to " + text(upper) +
          (unit.empty() ? "" : " " + unit);
 }
 
 /// Whether a term of friction may be 0: its total 95 % interval contains 0.
 bool MayBeZero(const ParameterEstimate& parameter) {
-  const bool is_term = parameter.info.name != kInertia.name && parameter.info.name != "stribeck_rate";
-  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
-    return TotalIntervalEnd(which, parameter.estimate, end95, parameter.systematic);
-  };
-  const auto lower = end(IntervalEnd::kLower, parameter.lower95), upper = end(IntervalEnd::kUpper, parameter.upper95);
-  return is_term && !parameter.at_bound && lower && upper && *lower <= 0 && *upper >= 0;
+  const bool is_term = parameter.info.name != kInertia.name && parameter.info.name != kStribeckRate.name;
+  const auto interval = TotalIntervalOf(parameter);
+  return is_term && !parameter.at_bound && interval && interval->lower <= 0 && interval->upper >= 0;
 }
 
 void AddListed(const std::string& item, std::string& list) {
@@ -398,6 +405,7 @@ std::vector<Warning> Shortened(std::vector<Warning> warnings) {
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
 
+/// The last cell of a law in the comparison.
 std::string VerdictOf(const ComparisonRow& row, bool is_recommended) {
   if (!row.judged) return "no result";
   if (is_recommended) return row.lack_of_fit ? "recommended, with lack of fit" : "recommended";
@@ -598,14 +606,15 @@ Section SummarySection(const ResultSummary& summary) { return FoldedSection(summ
 
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
   constexpr std::ptrdiff_t kMostLines = 20;
-  constexpr std::array kFoldings = {Folding{},
-                                    Folding{.warnings = 2},
-                                    Folding{.warnings = 2, .textbook = false},
-                                    Folding{.warnings = 2, .textbook = false, .sensor = false},
-                                    Folding{.warnings = 2, .textbook = false, .asides = false, .sensor = false},
-                                    Folding{.warnings = 1, .textbook = false, .asides = false, .sensor = false},
-                                    Folding{1, false, false, false, false},
-                                    Folding{0, false, false, false, false}};
+  constexpr std::array kFoldings = {
+      Folding{},
+      Folding{.warnings = 2},
+      Folding{.warnings = 2, .textbook = false},
+      Folding{.warnings = 2, .textbook = false, .sensor = false},
+      Folding{.warnings = 2, .textbook = false, .asides = false, .sensor = false},
+      Folding{.warnings = 1, .textbook = false, .asides = false, .sensor = false},
+      Folding{.warnings = 1, .textbook = false, .asides = false, .units = false, .sensor = false},
+      Folding{.warnings = 0, .textbook = false, .asides = false, .units = false, .sensor = false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);
