@@ -163,9 +163,25 @@ test('a fit gets the name that is entered beside the Fit button, also after a re
   const { name, file } = await service.json(`/v1/fits/${await shownFit(page)}/request`);
   assert.deepEqual([name, file], ['Heavy bob', 'logger.csv']);
   await page.getByRole('link', { name: 'New fit' }).click();
+  await shownLook(page, 'logger.csv');
   await drop(page, [{ name: 'other.csv', content: renamed('t,reading') }]);
   await shownLook(page, 'other.csv');
   assert.equal(await field(page, 'Name').inputValue(), ''); // the name was that of another recording
+});
+
+test('the name of a fit is forgotten for a recording that is dropped before the one before is read again', async (t) => {
+  const page = await openView(t, service, '/');
+  await drop(page, [{ name: 'logger.csv', content: renamed('t,reading') }]);
+  await shownLook(page, 'logger.csv');
+  await field(page, 'Name').fill('Heavy bob');
+  const unanswered = [];
+  await page.route('**/v1/preview*', (route) => unanswered.push(route), { times: 1 });
+  await page.reload();
+  await page.getByText('Reading logger.csv').waitFor();
+  await drop(page, [{ name: 'other.csv', content: renamed('t,reading') }]);
+  await shownLook(page, 'other.csv');
+  assert.equal(unanswered.length, 1);
+  assert.equal(await field(page, 'Name').inputValue(), '');
 });
 
 test('readings in volts without a calibration are a problem before the fit, unless the law needs no angle', async (t) => {

@@ -11,6 +11,7 @@ export const kSources = [
   { key: 'rig', name: 'rig', words: 'masses and lengths of the rig', colour: 'budget-rig' },
   { key: 'calibration', name: 'calibration', words: 'calibration of the sensor', colour: 'budget-calibration' },
   { key: 'clock', name: 'clock', words: 'clock of the recorder', colour: 'budget-clock' },
+  { key: 'sensor', name: 'sensor', words: 'what the sensor may do', colour: 'budget-sensor' },
   { key: 'inconstancy', name: 'change during the recording', words: 'change during the recording', colour: 'budget-inconstancy' },
 ] as const;
 

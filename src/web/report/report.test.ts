@@ -2,7 +2,7 @@
 import { expect, test } from 'vitest';
 
 import type { Result } from '../shared/result_types';
-import { otherWarnings, warningsOf } from './report';
+import { bestFit, otherWarnings, warningsOf } from './report';
 
 const result = {
   fits: [{ model: 'viscous' }, { model: 'coulomb' }, { model: 'drag' }],
@@ -22,4 +22,18 @@ test('warnings of the other laws are with these laws', () => {
   const others = otherWarnings(result, 'drag');
   expect(others.map(({ model }) => model)).toEqual(['viscous']);
   expect(others[0].warnings[0].message).toBe('the residuals are more than noise');
+});
+
+test('the best fit is the recommended one, else the one with the smallest residuals that converged', () => {
+  const fits = [
+    { model: 'viscous', status: 'converged', statistics: { rms_residual_rad: 0.02 } },
+    { model: 'coulomb', status: 'converged', statistics: { rms_residual_rad: 0.01 } },
+    { model: 'stribeck', status: 'not_identifiable', statistics: { rms_residual_rad: 0.005 } },
+  ];
+  const of = (some: object[], recommended?: string) =>
+    bestFit({ fits: some, comparison: recommended ? { recommended } : null } as unknown as Result);
+  expect(of(fits, 'viscous')).toBe(0);
+  expect(of(fits)).toBe(1);
+  expect(of(fits.slice(2))).toBe(0);
+  expect(of([])).toBe(-1);
 });

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The input of every section of a report. */
 
+import { mainFit } from '../shared/main_fit';
 import type { Command, Fit, Result, Series } from '../shared/result_types';
 import { medianInterval, toSamples, type Samples } from '../shared/samples';
 import { TimeView } from '../shared/time_view';
+import { withUnit } from '../shared/units';
 
 export interface Report {
   result: Result;
@@ -16,12 +18,11 @@ export interface Report {
   view?: TimeView;
 }
 
-/** Index of the recommended fit, else of the first that converged, else 0; -1 without a fit. */
+/** Index of the main fit; -1 without a fit. */
 export function bestFit(result: Result): number {
-  const recommended = result.fits.findIndex((fit) => fit.model === result.comparison?.recommended);
-  if (recommended >= 0) return recommended;
-  const converged = result.fits.findIndex((fit) => fit.status === 'converged');
-  return converged >= 0 ? converged : result.fits.length > 0 ? 0 : -1;
+  const rms = (fit: Fit) => withUnit(fit.statistics, 'rms_residual')?.value;
+  const best = mainFit(result.fits, result.comparison?.recommended, rms);
+  return best ? result.fits.indexOf(best) : -1;
 }
 
 export function makeReport(result: Result, series: Series | null, command: Command | null): Report {

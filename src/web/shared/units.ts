@@ -49,6 +49,8 @@ const kSymbols: Record<string, string> = {
   stiction: 'τ_s',
   stribeck_rate: 'ω_s',
   asymmetry: 'α',
+  presliding_angle: 'θ_p',
+  load_friction: 'τ_l',
   release_angle: 'θ_r',
   release_time: 't_r',
   initial_angle: 'θ_0',
@@ -94,6 +96,7 @@ const kUnitOverG: Record<string, string> = {
   viscous: 's',
   coulomb: '1',
   stiction: '1',
+  load_friction: '1',
   drag: 's^2',
 };
 
@@ -105,6 +108,8 @@ const kWords: Record<string, string> = {
   stiction: 'static friction',
   stribeck_rate: 'Stribeck rate',
   asymmetry: 'asymmetry of friction',
+  presliding_angle: 'presliding angle',
+  load_friction: 'dry friction under the weight',
   release_angle: 'release angle',
   release_time: 'release time',
   initial_angle: 'initial angle',

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The laws of gravity and friction (MODEL.md section 2), with torques in units of the restoring torque G. */
 
-/** The friction torque T(ω, s); s = ±1 is the direction of motion. p: the parameters in the order of the law. */
-type Friction = (rate: number, direction: number, p: readonly number[]) => number;
+/** What friction depends on besides the rate. */
+export interface Contact {
+  /** Force on the bearing over the weight, cos θ + I ω². */
+  load: number;
+  /** Deflection of the bristles, as a share of that at which they slide. */
+  bristle: number;
+}
 
-export interface Law {
+/** The friction torque; direction = ±1 is that of the motion. p: the parameters in the order of the law. */
+type Friction = (rate: number, direction: number, p: readonly number[], contact: Contact) => number;
+
+interface FrictionLaw {
   /** Names of the parameters of friction, in the order of `friction`. */
   names: readonly string[];
   friction: Friction;
+  /** Of a law with bristles: how they bend, and the largest stiffness that they add to gravity's. */
+  bristles?: {
+    rate: (rate: number, bristle: number, p: readonly number[]) => number;
+    stiffness: (p: readonly number[]) => number;
+  };
+}
+
+export interface Law extends FrictionLaw {
   /** g(θ). */
   gravity: (angle: number) => number;
 }
 
-const kFrictions: Record<string, { names: readonly string[]; friction: Friction }> = {
+const kFrictions: Record<string, FrictionLaw> = {
   viscous: { names: ['viscous'], friction: (w, _s, [b]) => b * w },
   coulomb: { names: ['viscous', 'coulomb'], friction: (w, s, [b, dry]) => b * w + s * dry },
   drag: { names: ['viscous', 'coulomb', 'drag'], friction: (w, s, [b, dry, c]) => b * w + s * (dry + c * w * w) },
@@ -24,6 +40,18 @@ const kFrictions: Record<string, { names: readonly string[]; friction: Friction 
   asymmetric: {
     names: ['viscous', 'coulomb', 'asymmetry'],
     friction: (w, s, [b, dry, asymmetry]) => b * w + s * dry * (1 + s * asymmetry),
+  },
+  dahl: {
+    names: ['viscous', 'coulomb', 'presliding_angle'],
+    friction: (w, _s, [b, dry], { bristle }) => b * w + dry * bristle,
+    bristles: {
+      rate: (w, bristle, [, , angle]) => (w - Math.abs(w) * bristle) / angle,
+      stiffness: ([, dry, angle]) => (2 * dry) / angle,
+    },
+  },
+  load: {
+    names: ['viscous', 'load_friction'],
+    friction: (w, s, [b, dry], { load }) => b * w + s * dry * Math.abs(load),
   },
 };
 
@@ -37,5 +65,7 @@ export function lawOf(model: string): Law | null {
   return found && { ...found, gravity: isLinear ? linear : Math.sin };
 }
 
+const kTorques = ['viscous', 'coulomb', 'drag', 'stiction', 'load_friction'];
+
 /** Whether a parameter is a torque, which G divides. */
-export const isTorque = (name: string): boolean => ['viscous', 'coulomb', 'drag', 'stiction'].includes(name);
+export const isTorque = (name: string): boolean => kTorques.includes(name);

@@ -2,7 +2,7 @@
 /**
  * Integrates I θ'' = -g(θ) - T(ω, s) (MODEL.md eq. (2.1)) with the classical Runge-Kutta method in equal steps. A step
  * ends at each reversal, so it never crosses the jump of dry friction. At a reversal static friction may hold the
- * pendulum (eq. (2.9)).
+ * pendulum (eq. (2.9)), or bristles spring back (eq. (2.10)).
  */
 
 import type { Law } from './laws';
@@ -27,31 +27,44 @@ export interface Motion {
   rate: Float64Array;
 }
 
-type State = [angle: number, rate: number];
+/** Angle, rate, and deflection of the bristles. */
+type State = [angle: number, rate: number, bristle: number];
 
 const kStepsPerPeriod = 100; // errors of 1e-6 rad
 const kMostSteps = 4e6;
 
-/** Direction of the motion that follows a state; 0 if static friction holds the pendulum. */
-function directionOf({ law, friction }: Pendulum, [angle, rate]: State): number {
+const frictionAt = ({ law, inertia, friction }: Pendulum, [angle, rate, bristle]: State, direction: number): number =>
+  law.friction(rate, direction, friction, { load: Math.cos(angle) + inertia * rate * rate, bristle });
+
+/** Direction of the motion that follows a state; 0 if static friction holds the pendulum, which bristles cannot. */
+function directionOf(pendulum: Pendulum, state: State): number {
+  const [angle, rate] = state;
   if (rate !== 0) return Math.sign(rate);
-  const torque = law.gravity(angle);
-  const direction = torque > 0 ? -1 : 1;
-  return Math.abs(torque) > direction * law.friction(0, direction, friction) * (1 + 1e-12) ? direction : 0;
+  const gravity = pendulum.law.gravity(angle);
+  if (pendulum.law.bristles) return -Math.sign(gravity + frictionAt(pendulum, state, 1));
+  const direction = gravity > 0 ? -1 : 1;
+  return Math.abs(gravity) > direction * frictionAt(pendulum, state, direction) * (1 + 1e-12) ? direction : 0;
 }
 
-function step({ law, inertia, friction }: Pendulum, [angle, rate]: State, direction: number, dt: number): State {
-  const acceleration = (at: number, w: number): number =>
-    -(law.gravity(at) + law.friction(w, direction, friction)) / inertia;
-  const half = 0.5 * dt;
-  const a1 = acceleration(angle, rate);
-  const w2 = rate + half * a1;
-  const a2 = acceleration(angle + half * rate, w2);
-  const w3 = rate + half * a2;
-  const a3 = acceleration(angle + half * w2, w3);
-  const w4 = rate + dt * a3;
-  const a4 = acceleration(angle + dt * w3, w4);
-  return [angle + (dt / 6) * (rate + 2 * w2 + 2 * w3 + w4), rate + (dt / 6) * (a1 + 2 * a2 + 2 * a3 + a4)];
+function changeOf(pendulum: Pendulum, state: State, direction: number): State {
+  const { law, inertia, friction } = pendulum;
+  const [angle, rate, bristle] = state;
+  const acceleration = -(law.gravity(angle) + frictionAt(pendulum, state, direction)) / inertia;
+  return [rate, acceleration, law.bristles ? law.bristles.rate(rate, bristle, friction) : 0];
+}
+
+function step(pendulum: Pendulum, state: State, direction: number, dt: number): State {
+  const moved = (change: State, time: number): State => [
+    state[0] + time * change[0],
+    state[1] + time * change[1],
+    state[2] + time * change[2],
+  ];
+  const k1 = changeOf(pendulum, state, direction);
+  const k2 = changeOf(pendulum, moved(k1, 0.5 * dt), direction);
+  const k3 = changeOf(pendulum, moved(k2, 0.5 * dt), direction);
+  const k4 = changeOf(pendulum, moved(k3, dt), direction);
+  const mean = (n: number): number => (k1[n] + 2 * k2[n] + 2 * k3[n] + k4[n]) / 6;
+  return moved([mean(0), mean(1), mean(2)], dt);
 }
 
 /** Time in (0, dt) at which the rate vanishes; it changes its sign within the step. */
@@ -71,11 +84,11 @@ function advance(pendulum: Pendulum, state: State, direction: number, dt: number
   for (let reversals = 0; reversals < 8 && direction !== 0; ++reversals) {
     const next = step(pendulum, state, direction, left);
     if (direction * next[1] > 0 || (next[1] === 0 && left === 0)) {
-      [state[0], state[1]] = next;
+      [state[0], state[1], state[2]] = next;
       return direction;
     }
     const until = reversalTime(pendulum, state, direction, left);
-    state[0] = step(pendulum, state, direction, until)[0];
+    [state[0], , state[2]] = step(pendulum, state, direction, until);
     state[1] = 0;
     left -= until;
     direction = directionOf(pendulum, state);
@@ -89,11 +102,13 @@ function advance(pendulum: Pendulum, state: State, direction: number, dt: number
  * motion needs too many steps.
  */
 export function swing(pendulum: Pendulum, start: Start, times: Float64Array): Motion | null {
-  const longest = (2 * Math.PI * Math.sqrt(pendulum.inertia)) / kStepsPerPeriod;
+  const { law, inertia, friction } = pendulum;
+  const stiffness = 1 + (law.bristles?.stiffness(friction) ?? 0);
+  const longest = (2 * Math.PI * Math.sqrt(inertia / stiffness)) / kStepsPerPeriod;
   const span = (times[times.length - 1] ?? 0) - start.time;
   if (!(longest > 0) || !(span / longest < kMostSteps)) return null;
   const [angle, rate] = [new Float64Array(times.length), new Float64Array(times.length)];
-  const state: State = [start.angle, start.rate];
+  const state: State = [start.angle, start.rate, Math.sign(start.rate || start.angle)]; // slid until now
   let direction = directionOf(pendulum, state);
   let now = start.time;
   for (let i = 0; i < times.length; ++i) {

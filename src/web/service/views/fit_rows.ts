@@ -2,6 +2,7 @@
 /** Fits as rows of a table, which becomes a list of cards on a narrow page. */
 
 import { append, el, symbolElement, type Child } from '../../shared/dom';
+import { mainFit } from '../../shared/main_fit';
 import { typeset } from '../../shared/prose';
 import { plusMinus, windowText } from '../../shared/rounding';
 import { symbolOf, unitText } from '../../shared/units';
@@ -15,12 +16,9 @@ export const kParameters = [
   ['coulomb', 'Dry'],
 ] as const;
 
-/** The recommended model of a fit, else the first that converged, else the first. */
+/** The model that a list shows of a fit. */
 export function mainModel(item: Pick<FitItem, 'recommended' | 'models'>): ItemModel | null {
-  const { models, recommended } = item;
-  const found =
-    models.find((model) => model.model === recommended) ?? models.find((model) => model.status === 'converged');
-  return found ?? models[0] ?? null;
+  return mainFit(item.models, item.recommended, (model) => model.rms_residual);
 }
 
 /** "0.0790 ± 0.0028" and "kg m²", "G s²" without a rig; "–" if the model has no such parameter. */

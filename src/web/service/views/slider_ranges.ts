@@ -35,6 +35,7 @@ export function sliderRange(
     case 'stiction':
       return { least: 0, most: Math.max(kFrictionTimes * estimate, kTypical[name] * torque) };
     case 'stribeck_rate':
+    case 'presliding_angle':
       return { least: 0.1 * estimate, most: kFrictionTimes * estimate };
     case 'asymmetry':
       return { least: -1, most: 1 };

@@ -12,6 +12,7 @@ import { OptionsForm, type OptionsState } from '../forms/options_form';
 import { PasteForm } from '../forms/paste_form';
 import { RigForm, type RigState } from '../forms/rig_form';
 import { previewed, sent, submission, type Choices, type Recording } from '../forms/submit';
+import { pressEnded } from '../press';
 import { go } from '../router';
 import { askJson } from '../server/api';
 import type { Place, View } from '../shell';
@@ -210,7 +211,7 @@ class StartView {
 
   /** The name, and the columns and units that the user chose in the menus, belong to the recording before. */
   private forgetRecordingChoices(): void {
-    if (!this.look.isShown) return;
+    if (!current) return; // chosen before any recording, for the first
     this.all.name.input.value = '';
     this.all.options.put(Object.fromEntries(kColumnFlags.map((flag) => [flag, ''])));
   }
@@ -232,7 +233,8 @@ class StartView {
     this.held.replaceChildren();
     if (!this.look.isShown) this.progress.textContent = `Reading ${recording.name} …`;
     try {
-      const preview = await previewed(recording, await readChoices(this.all), signal);
+      // The answer may move the Fit button, whose press has caused this reading.
+      const preview = await previewed(recording, await readChoices(this.all), signal).finally(pressEnded);
       if (signal.aborted) return null;
       clearProblems(this.problems);
       this.showPreview(preview, isKept ? '' : kTooLarge);
