@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""When a logger takes its samples, and what it says about it."""
+
+import dataclasses
+
+import numpy
+
+from motion import Array
+
+
+@dataclasses.dataclass(frozen=True)
+class Clock:
+    """A logger that means to take `rate` samples a second."""
+
+    rate: float = 100.0  # Hz, as the file says
+    true_interval_scale: float = 1.0  # true interval over 1/rate
+    drift: float = 0.0  # the stamps run fast by this share
+    jitter: float = 0.0  # s, scatter of the true times about stamps that are even
+    has_stamps: bool = True  # False: the file has the rate in its header only
+
+    def true_times(self, duration: float, rng: numpy.random.Generator) -> Array:
+        """True times of the samples [s]."""
+        times = numpy.arange(round(duration * self.rate)) * (self.true_interval_scale / self.rate)
+        if self.jitter:
+            scatter = rng.normal(0, self.jitter, len(times))
+            times = times + numpy.clip(scatter, -0.4 / self.rate, 0.4 / self.rate)
+        return times
+
+    def stamps(self, count: int) -> Array:
+        """Time stamps [s] of the samples on the file's clock."""
+        scale = self.true_interval_scale if self.has_stamps else 1.0
+        return numpy.arange(count) * (scale * (1 + self.drift) / self.rate)
+
+    @property
+    def stamp_scale(self) -> float:
+        """Seconds of the file's clock in one true second."""
+        return (1 + self.drift) * (1.0 if self.has_stamps else 1 / self.true_interval_scale)
+
+
+def changes_only(stamps: Array, readings: Array) -> tuple[Array, Array]:
+    """A send-on-change log: the first row and the rows that differ from the row before."""
+    kept = numpy.concatenate([[True], numpy.diff(readings) != 0])
+    return stamps[kept], readings[kept]
