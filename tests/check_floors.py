@@ -37,7 +37,7 @@ STANDS_ON = {
 # own room and those listed before it.
 ROOMS = {
     "recording": ["", "readers/columns", "readers/text", "readers/process", "readers/mat", "readers/containers", "readers", "calibration"],
-    "fitting": ["likelihood", "start", "residuals", "solve", "uncertainty", "fit", "swing", "joint"],
+    "fitting": ["likelihood", "start", "residuals", "solve", "effects", "uncertainty", "fit", "swing", "joint"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
@@ -64,7 +64,7 @@ LIBRARY_FLOORS = {
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages", "simulator"}
 
 # Words that only the floors with a user interface may use.
 TALKING_FLOORS = {"tools"}

@@ -42,6 +42,12 @@ std::string RunHead(const RunDescription& description, const SamplingRate& rate)
                           ", reference: " + ReferenceName(logger)) +
                      Line("run " + std::to_string(description.run) + " of this logger, begun " + description.begun);
   if (rate.oversample > 1) head += Line("each row is the mean of " + std::to_string(rate.oversample) + " conversions");
+  if (rate.oversample > 1) {
+    // The time of a row is the mean of its conversions' times.
+    const double half = 0.5 * static_cast<double>(rate.Ticks()) / pendulum_logger::kTickHz;
+    head += Line("oversample: " + std::to_string(rate.oversample));
+    head += Line("window_s: " + NumberText(-half) + "," + NumberText(half));
+  }
   head += Line("sample_rate_hz: " + NumberText(rate.Hz()));
   head += Line("resolution: " + NumberText(1.0 / rate.oversample));
   head += Line("range: 0," + std::to_string(kFullScaleCounts));

@@ -139,6 +139,16 @@ std::string Describe(const Constancy& result) {
               names.empty() ? "" : "no trend of " + names + " with amplitude", ", ");
 }
 
+/// The corrected readings and their fit, so that the fits to parts see what the whole fit has seen.
+std::pair<Recording, FitReport> CorrectedReadings(Recording used, FitReport fit) {
+  if (fit.correction.size() > 0) {
+    used.value -= fit.correction;
+    fit.fitted -= fit.correction;
+    fit.correction.resize(0);
+  }
+  return {std::move(used), std::move(fit)};
+}
+
 }  // namespace
 
 bool Constancy::constant() const {
@@ -146,7 +156,8 @@ bool Constancy::constant() const {
          std::ranges::all_of(trends, [](const AmplitudeTrend& trend) { return trend.p >= kNotConstant; });
 }
 
-Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOptions& options) {
+Constancy TestConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options) {
+  const auto [used, fit] = CorrectedReadings(recorded, report);
   Constancy result;
   if (fit.termination != Termination::kConverged) {
     result.reason = "the fit did not converge";

@@ -2,8 +2,11 @@
 #include "pendulum/analysis/coverage_scenarios.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -41,6 +44,16 @@ CoverageScenario OnCounts(std::string name, std::string description, double nois
   return scenario;
 }
 
+/// The same with another law of friction, whose parameters are in units of the restoring torque G.
+CoverageScenario WithLaw(std::string_view law, std::string description, std::vector<double> friction) {
+  CoverageScenario scenario = OnCounts(std::string(law), std::move(description), 0.5);
+  scenario.run.model = *FindMotionModel(law);
+  scenario.run.parameters.resize(1);
+  std::ranges::copy(friction, std::back_inserter(scenario.run.parameters));
+  scenario.fit.model = std::string(law);
+  return scenario;
+}
+
 /// The same with continuous readings instead of counts.
 CoverageScenario WithoutCounts(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
@@ -53,6 +66,19 @@ CoverageScenario WithoutCounts(std::string name, std::string description, double
 CoverageScenario AlmostNoNoise(std::string name, std::string description, double noise) {
   CoverageScenario scenario = OnCounts(std::move(name), std::move(description), noise);
   scenario.rule.highest = 1;
+  return scenario;
+}
+
+/// Rows that are the means of n readings of a converter, spread over the sampling interval. The noise is that of one
+/// reading.
+CoverageScenario OfMeans(int readings, double noise) {
+  const std::string name = "mean_" + std::to_string(readings) + "_" + NumberText(noise);
+  CoverageScenario scenario = OnCounts(
+      name,
+      "means of " + std::to_string(readings) + " readings in counts with noise of " + NumberText(noise) + " count",
+      noise);
+  scenario.run.oversample = readings;
+  scenario.run.averaging_window = 1 / scenario.run.sample_rate;
   return scenario;
 }
 
@@ -241,6 +267,14 @@ CoverageScenario Without(std::size_t parameter, std::string name, std::string de
   return scenario;
 }
 
+std::vector<CoverageScenario> ScenariosOfMeans() {
+  std::vector<CoverageScenario> scenarios;
+  for (const int readings : {4, 16}) {
+    for (const double noise : {0.0, 0.05, 0.1, 0.25, 0.5}) scenarios.push_back(OfMeans(readings, noise));
+  }
+  return scenarios;
+}
+
 /// A draw from the normal distribution of mean 0 with this covariance.
 Eigen::VectorXd DrawNormal(const Eigen::MatrixXd& covariance, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> draw;
@@ -249,11 +283,55 @@ Eigen::VectorXd DrawNormal(const Eigen::MatrixXd& covariance, std::mt19937_64& g
   return covariance.llt().matrixL() * standard;
 }
 
+/// white_0.5 with a sensor about which only plausible sizes are known: 1 % of gain, a curve bent and eccentric by 0.25
+/// deg, a drift of 0.2 deg; or some of these.
+CoverageScenario WithSensor(std::string name, std::string description, std::span<const SensorEffect> effects) {
+  CoverageScenario scenario = WithoutCounts(std::move(name), std::move(description), 0.5);
+  scenario.sensor.kind = "angle sensor";
+  for (const SensorEffect effect : effects) {
+    const double size = effect == SensorEffect::kGain    ? 0.01
+                        : effect == SensorEffect::kDrift ? 0.2 * kRadFromDeg
+                                                         : 0.25 * kRadFromDeg;
+    scenario.sensor.Of(effect) = {size, "drawn"};
+  }
+  scenario.count = kCount;
+  scenario.rule.largest_error = kUnbounded;  // the Cramér-Rao bound knows no systematic errors
+  scenario.rule.highest = 0.99;              // a drawn error that is named is corrected
+  return scenario;
+}
+
+/// What a sensor makes of the angles of a recording: sizes in the order of kSensorEffects. The curve of a potentiometer
+/// or of an eccentric sensor is that of its angle, not one of the fit's polynomials.
+Recording ReadBy(Recording recording, const CoverageScenario& scenario, std::span<const double> sizes) {
+  const auto size = [&](SensorEffect effect) { return sizes[static_cast<std::size_t>(effect)]; };
+  const double amplitude = scenario.run.release_angle;
+  const double begin = recording.time[0];
+  const double duration = recording.time[recording.size() - 1] - begin;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    const double angle = recording.value[i];
+    const double cube = std::pow(angle / amplitude, 3);
+    const double read = (1 + size(SensorEffect::kGain)) * angle + size(SensorEffect::kCubic) * cube +
+                        size(SensorEffect::kEccentricSine) * std::sin(angle) +
+                        size(SensorEffect::kEccentricCosine) * (std::cos(angle) - 1) +
+                        size(SensorEffect::kDrift) * (recording.time[i] - begin) / duration;
+    recording.value[i] = scenario.count * std::round(read / scenario.count);
+  }
+  recording.resolution = scenario.count;
+  recording.sensor_errors = scenario.sensor;
+  return recording;
+}
+
+constexpr std::array kGainAlone = {SensorEffect::kGain};
+constexpr std::array kCurveAlone = {SensorEffect::kCubic, SensorEffect::kEccentricSine, SensorEffect::kEccentricCosine};
+constexpr std::array kDriftAlone = {SensorEffect::kDrift};
+constexpr std::array kGainCurveAndDrift = {SensorEffect::kGain, SensorEffect::kCubic, SensorEffect::kEccentricSine,
+                                           SensorEffect::kEccentricCosine, SensorEffect::kDrift};
+
 }  // namespace
 
 std::vector<CoverageScenario> CoverageScenarios() {
   constexpr double kStrongLowest = 0.91;  // lower limit at a correlation of 0.9: few samples are independent
-  return {
+  std::vector<CoverageScenario> all = {
       OnCounts("white_2.5", "white noise of 2.5 counts on counts", 2.5),
       OnCounts("white_0.5", "white noise of 0.5 count on counts", 0.5),
       OnCounts("white_0.25", "white noise of 0.25 count on counts", 0.25),
@@ -274,6 +352,10 @@ std::vector<CoverageScenario> CoverageScenarios() {
       HeavyTails(),
       Without(1, "no_viscous", "b = 0, at its bound; white noise of 0.5 count on counts"),
       Without(2, "no_coulomb", "tau_c = 0, at its bound; white noise of 0.5 count on counts"),
+      WithLaw("dahl", "white_0.5; dry friction builds up over 0.5 deg after a reversal",
+              {kViscousTruth / kGravityTorque, kCoulombTruth / kGravityTorque, 0.5 * kRadFromDeg}),
+      WithLaw("load", "white_0.5; dry friction in proportion to the load",
+              {kViscousTruth / kGravityTorque, kCoulombTruth / kGravityTorque}),
       WithOtherSensor("gyro_volts", "a gyro of 0.115 V s/rad with noise of 2 mV, of unknown scale", Quantity::kRate,
                       SensorKind::kScaledRate, {1.65, 0.115}, 0.002),
       WithOtherSensor("acceleration_across",
@@ -310,7 +392,13 @@ std::vector<CoverageScenario> CoverageScenarios() {
       Named("all_errors_noisy", "white_2.5; errors of rig, clock and calibration",
             WithAllErrors(OnCounts("", "", 2.5))),
       Named("all_errors_gyro", "moving, measured by a gyro; errors of rig and clock", GyroWithErrors()),
+      WithSensor("sensor_gain", "white_0.5; a sensor whose gain is wrong by 1 %", kGainAlone),
+      WithSensor("sensor_bent", "white_0.5; a sensor that is bent and eccentric by 0.25 deg", kCurveAlone),
+      WithSensor("sensor_drift", "white_0.5; a zero that drifts by 0.2 deg", kDriftAlone),
+      WithSensor("sensor_all", "white_0.5; gain, curve and drift together", kGainCurveAndDrift),
   };
+  std::ranges::move(ScenariosOfMeans(), std::back_inserter(all));
+  return all;
 }
 
 Result<std::vector<CoverageScenario>> FindCoverageScenarios(const std::string& names) {
@@ -361,12 +449,16 @@ DrawnErrors DrawErrors(const CoverageScenario& scenario, std::uint64_t seed) {
     Eigen::Map<Eigen::VectorXd>(drawn.calibration.data(), static_cast<Eigen::Index>(drawn.calibration.size())) +=
         DrawNormal(scenario.calibration->covariance, generator);
   }
+  if (!scenario.sensor.kind.empty()) {
+    for (const EffectSize& size : scenario.sensor.sizes) drawn.sensor.push_back(size.std_dev * draw(generator));
+  }
   return drawn;
 }
 
 Recording WithErrors(Recording recording, const CoverageScenario& scenario, const DrawnErrors& drawn) {
   recording.time /= drawn.clock;
   recording.clock_scale_std_dev = scenario.clock_std_dev;
+  if (!drawn.sensor.empty()) return ReadBy(std::move(recording), scenario, drawn.sensor);
   if (!scenario.calibration) return recording;
   const Calibration& known = *scenario.calibration;
   Calibration true_one = known;

@@ -99,7 +99,7 @@ Eigen::MatrixXd EdgeInformation(const SyntheticOptions& truth, const Sensitiviti
 /// form.
 std::optional<Eigen::MatrixXd> Information(const SyntheticOptions& truth, const Sensitivities& at,
                                            const Eigen::VectorXd& time) {
-  if (truth.rows == RowTiming::kEvenFromEncoder) return std::nullopt;
+  if (truth.rows == RowTiming::kEvenFromEncoder || truth.oversample > 1) return std::nullopt;
   if (truth.rows == RowTiming::kEvents) return EdgeInformation(truth, at, time);
   const bool has_levels = truth.resolution > 0;
   const bool correlated = truth.noise_correlation != 0;

@@ -79,8 +79,11 @@ class SharedFits {
         models_(models),
         result_{std::move(richest_fit.used), std::move(richest_fit.swing), {}} {
     options_.start = OptionsLike(richest_fit.fit, options_).start;
+    options_.search.may_correct = options_.search.may_correct && models.size() == 1;
     result_.fits.resize(models.size());
+    const bool is_corrected = richest_fit.fit.correction.size() > 0;
     result_.fits[richest_index] = std::move(richest_fit.fit);
+    if (is_corrected && models.size() > 1) FitAgain(richest_index, FitReport(result_.fits[richest_index]));
     for (std::size_t i = 0; i < models.size(); ++i) {
       if (i != richest_index) Fit(i, result_.fits[richest_index]);
     }
@@ -98,6 +101,21 @@ class SharedFits {
     ApplySharedWarnings(richest_fit, result_.fits[i]);
   }
 
+  /// Fits model i again and keeps what the former fit said of the window.
+  void FitAgain(std::size_t i, const FitReport& richest_fit) {
+    std::vector<Warning> said = std::move(result_.fits[i].warnings);
+    Fit(i, richest_fit);
+    std::vector<Warning>& warnings = result_.fits[i].warnings;
+    for (Warning& warning : said) {
+      constexpr std::array kOfWindow = {
+          "ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",   "offset_jumps", "presliding",
+          "vibration",    "ambiguous_frequency",   "hold_left_out",  "hold_disagrees"};
+      const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
+      const bool is_known = std::ranges::find(warnings, warning.code, &Warning::code) != warnings.end();
+      if (of_window && !is_known) warnings.push_back(std::move(warning));
+    }
+  }
+
   /// Fits all models with the noise family of the fit with the smallest residuals, because likelihoods can be compared
   /// only within one family.
   void ShareNoise(std::size_t richest_index) {
@@ -108,18 +126,8 @@ class SharedFits {
     options_.noise = OptionsLike(*best, options_).noise;
     const FitReport richest_fit = result_.fits[richest_index];
     for (std::size_t i = 0; i < models_.size(); ++i) {
-      FitReport& fit = result_.fits[i];
-      if (fit.termination == Termination::kFailed || fit.noise.family == family) continue;
-      std::vector<Warning> said = std::move(fit.warnings);
-      Fit(i, richest_fit);
-      for (Warning& warning : said) {
-        const auto known = std::ranges::find(fit.warnings, warning.code, &Warning::code);
-        constexpr std::array kOfWindow = {"ends_trimmed", "larger_motion_outside", "not_a_pendulum",
-                                          "lost_counts",  "offset_jumps",          "presliding",
-                                          "vibration",    "ambiguous_frequency"};
-        const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
-        if (of_window && known == fit.warnings.end()) fit.warnings.push_back(std::move(warning));
-      }
+      const FitReport& fit = result_.fits[i];
+      if (fit.termination != Termination::kFailed && fit.noise.family != family) FitAgain(i, richest_fit);
     }
   }
 
@@ -131,8 +139,9 @@ class SharedFits {
 
 /// For an undersampled swing: each model searches aliased frequencies itself. A model that chose another noise family
 /// than the model with the smallest residuals is fitted again with the family of that model.
-Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, const FitOptions& options,
+Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, FitOptions options,
                              const std::vector<std::string>& models) {
+  options.search.may_correct = options.search.may_correct && models.size() == 1;
   std::vector<Result<SwingFit>> fits;
   fits.reserve(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {

@@ -90,6 +90,13 @@ struct Change {
   std::string_view parts;
 };
 
+/// Standard deviation of the parts' estimates about the whole fit's, beyond their errors. Friction below 0 in a part is
+/// an error of that part.
+double ChangeAbout(const ParameterEstimate& parameter, const Estimates& estimates) {
+  const VectorXd possible = estimates.value.cwiseMax(parameter.info.lower).cwiseMin(parameter.info.upper);
+  return ScatterAbout(parameter.estimate, possible, estimates.std_error);
+}
+
 /// The parameters of `fit` that change by more than their errors.
 std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
   std::vector<Change> changes;
@@ -98,7 +105,7 @@ std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
     const bool differs =
         ScatterP(estimates.value, estimates.std_error) < kNotConstant || estimates.p_of_trend < kNotConstant;
     if (!differs || parameter == nullptr) continue;
-    const double about = ScatterAbout(parameter->estimate, estimates.value, estimates.std_error);
+    const double about = ChangeAbout(*parameter, estimates);
     if (about > 0 && std::isfinite(about)) changes.push_back({parameter->info.name, about, estimates.parts});
   }
   return changes;
@@ -109,10 +116,10 @@ std::string ChangeText(const ParameterEstimate& parameter, double std_dev) {
          (parameter.unit == "1" ? "" : " " + parameter.unit);
 }
 
-void Warn(const std::string& changes, FitReport& fit) {
+void Warn(const std::string& changes, const std::string& when, FitReport& fit) {
   if (changes.empty()) return;
   fit.warnings.push_back(
-      {"not_constant", "parameters change during a recording by more than their errors: " + changes +
+      {"not_constant", "parameters change " + when + " by more than their errors: " + changes +
                            ". Another run may differ by about as much; the systematic errors include this, standard "
                            "errors and intervals do not"});
 }
@@ -134,6 +141,14 @@ double CommonChange(std::string_view name, const std::vector<ChangingRun>& runs)
   return squares > 0 ? std::sqrt(squares / weights) : 0;
 }
 
+/// Standard deviation of a parameter between recordings beyond their errors, if that is significant. Short recordings
+/// cannot show a change within them, but their differences can.
+double ChangeBetweenRuns(std::string_view name, const std::vector<SharedParameter>& between) {
+  const auto shared = std::ranges::find(between, name, &SharedParameter::name);
+  if (shared == between.end() || !(shared->p < Homogeneity::kDisagree)) return 0;
+  return std::isfinite(shared->scatter.between) ? shared->scatter.between : 0;
+}
+
 }  // namespace
 
 void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
@@ -144,20 +159,23 @@ void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
     text +=
         (text.empty() ? "" : ", ") + ChangeText(*parameter, change.std_dev) + " between " + std::string(change.parts);
   }
-  Warn(text, fit);
+  Warn(text, "during a recording", fit);
 }
 
-void AddInconstancyError(const std::vector<ChangingRun>& runs, JointFit& joint) {
+void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector<SharedParameter>& between,
+                         JointFit& joint) {
   std::string text;
   for (ParameterEstimate& shared : joint.whole.parameters) {
-    const double change = shared.std_error ? CommonChange(shared.info.name, runs) : 0;
+    const double change =
+        shared.std_error ? std::max(CommonChange(shared.info.name, runs), ChangeBetweenRuns(shared.info.name, between))
+                         : 0;
     if (!(change > 0)) continue;
     AddSystematic(shared, change, joint.whole);
     for (FitReport& run : joint.runs)
       AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), change, run);
     text += (text.empty() ? "" : ", ") + ChangeText(shared, change);
   }
-  Warn(text, joint.whole);
+  Warn(text, "during or between recordings", joint.whole);
 }
 
 }  // namespace pendulum

@@ -44,12 +44,12 @@ Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const
   return TestHomogeneity(alone, shared);
 }
 
-void AddChanges(const std::vector<RunModels>& runs, std::size_t m, JointFit& fit) {
+void AddChanges(const std::vector<RunModels>& runs, std::size_t m, const Homogeneity& homogeneity, JointFit& fit) {
   std::vector<ChangingRun> changing;
   for (const RunModels& run : runs) {
     if (m < run.constancy.size()) changing.push_back({run.alone.fits[m], run.constancy[m]});
   }
-  AddInconstancyError(changing, fit);
+  AddInconstancyError(changing, homogeneity.parameters, fit);
 }
 
 /// If the recordings disagree, adds this to the reason of a fit that did not converge, and a warning otherwise. Both
@@ -81,7 +81,7 @@ JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, 
     result.joint.push_back(FitModel(result.runs, m, own, shared));
     result.homogeneity.push_back(CompareRuns(result.runs, m, own, shared));
     SetVerdict(result.homogeneity.back(), result.joint.back().whole);
-    AddChanges(result.runs, m, result.joint.back());
+    AddChanges(result.runs, m, result.homogeneity.back(), result.joint.back());
   }
   return result;
 }

@@ -32,8 +32,8 @@ ReadingTerms TermsOf(const NoiseModel& noise, const VectorXd& value, const Vecto
 
 MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& autocorrelation, const ReadingTerms& terms,
                          const VectorXd& time, const MatrixXd& weights) {
-  if (noise.family == NoiseFamily::kEdges)
-    return CorrelatedSum(autocorrelation, time, terms.information.cwiseSqrt().asDiagonal() * weights);
+  if (noise.family == NoiseFamily::kEdges || noise.family == NoiseFamily::kAveraged)
+    return CorrelatedSum(autocorrelation, time, terms.information.cwiseMax(0).cwiseSqrt().asDiagonal() * weights);
   const MatrixXd correlated = CorrelatedSum(autocorrelation, time, weights);
   if (noise.IsRobust()) return terms.score.squaredNorm() / static_cast<double>(time.size()) * correlated;
   const double variance = noise.sigma * noise.sigma;
@@ -69,8 +69,8 @@ std::optional<LinearFit> LinearizeFit(const Recording& recording, const FitRepor
 
 NoiseModel NoiseOfFit(const FitReport& fit, double low, double high) {
   const NoiseEstimate& noise = fit.noise;
-  return {noise.family, noise.sigma,       noise.resolution, low,         high,
-          noise.edge,   noise.stamp_ratio, noise.lag,        noise.spread};
+  return {noise.family, noise.sigma,       noise.resolution, low,          high,
+          noise.edge,   noise.stamp_ratio, noise.lag,        noise.spread, noise.averaging};
 }
 
 NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/analysis/linear_fit.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/solve/fit_problem.h"
@@ -110,6 +111,8 @@ double ReadingVariance(const FitReport& fit) {
     const auto edges = static_cast<Index>(noise.spread->size());
     return square * Eigen::Map<const Eigen::ArrayXd>(noise.spread->data(), edges).square().mean();
   }
+  if (noise.family == NoiseFamily::kAveraged)
+    return std::pow(NoiseOfFit(fit, -kInfinity, kInfinity).MeanDeviation(), 2);
   if (noise.family == NoiseFamily::kQuantized) return square + noise.resolution * noise.resolution / 12;
   const auto samples = static_cast<double>(fit.residual.size() - noise.censored);
   const auto free = static_cast<double>(fit.covariance_names.size());

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
 namespace {
@@ -68,14 +70,20 @@ class RankedRows {
 
   std::size_t Terms(std::size_t i) const { return PhysicalParameters(fits_[i].model).size(); }
 
+  /// Laws in the order in which they are preferred: fewer terms first, then the more common law, which the registry
+  /// names first.
+  std::pair<std::size_t, std::ptrdiff_t> Order(std::size_t i) const {
+    const MotionModel& model = fits_[i].model;
+    const auto place = std::ranges::find(FrictionModels::kNames, model.friction) - FrictionModels::kNames.begin();
+    return {Terms(i), place};
+  }
+
   /// Index of the recommended row; the number of rows if there is none.
   std::size_t Simplest() const {
     std::size_t chosen = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (!IsNear(i)) continue;
-      const bool simpler = chosen == rows_.size() || Terms(i) < Terms(chosen) ||
-                           (Terms(i) == Terms(chosen) && *rows_[i].bic < *rows_[chosen].bic);
-      if (simpler) chosen = i;
+      if (chosen == rows_.size() || Order(i) < Order(chosen)) chosen = i;
     }
     return chosen;
   }

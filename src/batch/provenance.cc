@@ -2,6 +2,7 @@
 #include "pendulum/batch/provenance.h"
 
 #include <array>
+#include <cstddef>
 #include <fstream>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 #include "pendulum/base/instruction_set.h"
 #include "pendulum/base/json.h"
 #include "pendulum/fitting/swing/choose_swings.h"
+#include "pendulum/recording/sensor_errors.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -36,6 +38,17 @@ Json ReadJson(const ReadOptions& read) {
                {"sample_rate_hz", read.sample_rate_hz}};
   json["resolution"] = read.resolution ? Json(*read.resolution) : Json(nullptr);
   json["range"] = read.range ? Json{read.range->low, read.range->high} : Json(nullptr);
+  // Without these flags the hash is that of earlier versions.
+  if (read.oversample > 0) json["oversample"] = read.oversample;
+  if (const auto& window = read.averaging_window) json["window_s"] = {window->from, window->to};
+  return json;
+}
+
+Json SensorJson(const SensorStatement& sensor) {
+  Json json = {{"kind", sensor.kind}};
+  for (const SensorEffect effect : kSensorEffects) {
+    if (const auto& size = sensor.std_devs[static_cast<std::size_t>(effect)]) json[SensorEffectName(effect)] = *size;
+  }
   return json;
 }
 
@@ -87,6 +100,7 @@ std::string OptionsJson(const IdentifyOptions& options) {
                {"fit", FitJson(options.fit)}};
   // Without flags for the rig the hash is that of earlier versions.
   if (!options.rig_values.empty()) json["rig_values"] = options.rig_values;
+  if (options.sensor) json["sensor"] = SensorJson(*options.sensor);
   return JsonText(json);
 }
 

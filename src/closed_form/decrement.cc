@@ -275,10 +275,10 @@ double RestTorque(const Decrement& decrement) {
   return torque;
 }
 
-/// Whether the law has no reference rate. The turning points give no start value for a reference rate.
+/// Whether the law has no reference. The turning points give no start value for a reference.
 bool IsLinear(const MotionModel& model) {
   bool linear = true;
-  FrictionModels::Visit(model.friction, [&]<typename F>() { linear = !HasRateScale<F>; });
+  FrictionModels::Visit(model.friction, [&]<typename F>() { linear = !HasReference<F>; });
   return linear;
 }
 

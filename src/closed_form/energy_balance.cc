@@ -19,17 +19,17 @@ namespace {
 /// ∫ T dθ over one half swing of this amplitude. In entry k, parameter k is 1 and the other parameters are 0, except a
 /// reference rate, which keeps its value. The substitution θ = A sin φ makes the integrand smooth at the ends.
 template <FrictionModel F>
-Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency,
-                                    double reference_rate) {
+Eigen::RowVectorXd LossPerParameter(Gravity gravity, double amplitude, double natural_frequency, double reference) {
   Eigen::RowVectorXd loss(kFrictionParameters<F>);
   for (int k = 0; k < kFrictionParameters<F>; ++k) {
     std::array<double, kFrictionParameters<F>> unit{};
-    if constexpr (HasRateScale<F>) unit.back() = reference_rate;
+    if constexpr (HasReference<F>) unit.back() = reference;
     if (unit[k] == 0) unit[k] = 1;
     const auto integrand = [&](double phi) {
       const double angle = amplitude * std::sin(phi);
       const double kinetic = std::max(2 * (gravity.Potential(amplitude) - gravity.Potential(angle)), 0.0);
-      return F::Torque(natural_frequency * std::sqrt(kinetic), 1.0, unit.data()) * amplitude * std::cos(phi);
+      const double load = 1 - gravity.Potential(angle) + kinetic;
+      return TorqueUnder<F>(load, natural_frequency * std::sqrt(kinetic), 1.0, unit.data()) * amplitude * std::cos(phi);
     };
     loss[k] = boost::math::quadrature::gauss<double, 15>::integrate(integrand, -kPi / 2, kPi / 2);
   }
@@ -76,8 +76,7 @@ class LossEquations {
 };
 
 template <FrictionModel F>
-EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double natural_frequency,
-                        double reference_rate) {
+EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double natural_frequency, double reference) {
   LossEquations equations(kFrictionParameters<F>);
   const auto amplitude_at = [&](std::size_t point) {
     return AngleAmplitude(table.quantity, table.Amplitude(point), natural_frequency, gravity);
@@ -87,33 +86,47 @@ EnergyBalance BalanceAt(Gravity gravity, const TurningPointTable& table, double 
     equations.StartRun(gravity.Potential(before));
     for (std::size_t i = first + 1; i <= last; ++i) {
       const double after = amplitude_at(i);
-      equations.Add(LossPerParameter<F>(gravity, 0.5 * (before + after), natural_frequency, reference_rate),
+      equations.Add(LossPerParameter<F>(gravity, 0.5 * (before + after), natural_frequency, reference),
                     gravity.Potential(after));
       before = after;
     }
     equations.FinishRun();
   }
-  return {equations.normal, equations.right, reference_rate};
+  return {equations.normal, equations.right, reference};
 }
 
 /// The reduction of the sum of squares by the best friction. It only ranks the balances of one table.
 double ExplainedSumOfSquares(const EnergyBalance& balance) {
   const std::vector<double> friction = FrictionFrom(balance);
-  double gain = 0;  // excludes the reference rate, whose equation is not solved
+  double gain = 0;  // excludes the reference, whose equation is not solved
   for (std::size_t k = 0; k + 1 < friction.size(); ++k)
     gain += friction[k] * balance.right[static_cast<Eigen::Index>(k)];
   return gain;
 }
 
-double LargestRate(Gravity gravity, const TurningPointTable& table, double natural_frequency) {
+double LargestAngle(Gravity gravity, const TurningPointTable& table, double natural_frequency) {
   double largest = 0;
   for (const auto& [first, last] : table.Runs()) {
     for (std::size_t i = first; i < last; ++i) {
-      const double amplitude = AngleAmplitude(table.quantity, table.Amplitude(i), natural_frequency, gravity);
-      largest = std::max(largest, natural_frequency * std::sqrt(2 * gravity.Potential(amplitude)));
+      largest = std::max(largest, AngleAmplitude(table.quantity, table.Amplitude(i), natural_frequency, gravity));
     }
   }
   return largest;
+}
+
+/// The values of the law's reference from which a search starts.
+template <HasReference F>
+std::vector<double> References(Gravity gravity, const TurningPointTable& table, double natural_frequency) {
+  const double angle = LargestAngle(gravity, table, natural_frequency);
+  std::vector<double> references;
+  if constexpr (HasRateScale<F>) {
+    const double rate = natural_frequency * std::sqrt(2 * gravity.Potential(angle));
+    for (const double scale : F::kRateScales) references.push_back(scale * rate);
+  } else {
+    for (const double scale : F::kAngleScales)
+      references.push_back(std::max(scale * angle, F::kParameters.back().lower));
+  }
+  return references;
 }
 
 }  // namespace
@@ -124,24 +137,24 @@ std::vector<EnergyBalance> BalanceEnergy(const MotionModel& model, const Turning
                                          double natural_frequency) {
   std::vector<EnergyBalance> balances;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    if constexpr (HasRateScale<F>) {
-      const double largest = LargestRate(model.gravity, table, natural_frequency);
-      for (const double scale : F::kRateScales) {
-        balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, scale * largest));
-      }
+    const auto balance_at = [&](double reference) {
+      balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, reference));
+    };
+    if constexpr (HasReference<F>) {
+      for (const double reference : References<F>(model.gravity, table, natural_frequency)) balance_at(reference);
       std::ranges::stable_sort(balances, std::ranges::greater(), ExplainedSumOfSquares);
     } else {
-      balances.push_back(BalanceAt<F>(model.gravity, table, natural_frequency, 0));
+      balance_at(0);
     }
   });
   return balances;
 }
 
 std::vector<double> FrictionFrom(const EnergyBalance& balance, const std::vector<bool>& left_out) {
-  const bool has_rate = balance.reference_rate > 0;
-  const auto size = static_cast<int>(balance.right.size()) - (has_rate ? 1 : 0);
+  const bool has_reference = balance.reference > 0;
+  const auto size = static_cast<int>(balance.right.size()) - (has_reference ? 1 : 0);
   Eigen::VectorXd best = Eigen::VectorXd::Zero(balance.right.size());
-  if (has_rate) best[size] = balance.reference_rate;
+  if (has_reference) best[size] = balance.reference;
   double best_gain = 0;
   // Non-negative least squares that tries every set of positive components: exact, and fast because K is small.
   for (unsigned set = 1; set < (1U << size); ++set) {

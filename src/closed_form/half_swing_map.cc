@@ -107,7 +107,10 @@ class HalfSwingPath {
   }
 
   /// The torque that opposes the motion, for both directions.
-  double Torque(double rate) const { return direction_ * F::Torque(direction_ * rate, direction_, friction_); }
+  double Torque(double angle, double rate) const {
+    const double load = 1 - PotentialAt(gravity_, angle) + (rate / natural_frequency_) * (rate / natural_frequency_);
+    return direction_ * TorqueUnder<F>(load, direction_ * rate, direction_, friction_);
+  }
 
   double RateAt(double energy, double angle) const {
     const double kinetic = energy - PotentialAt(gravity_, angle);
@@ -122,8 +125,9 @@ class HalfSwingPath {
     slope_ = half * kPi / 2 * cosine;
     Nodes loss;
     for (int i = 0; i < kNodes; ++i) {
-      rate_[i] = RateAt(energy[i], 0.5 * (after - before_) + half * sine[i]);
-      loss[i] = Torque(rate_[i]) * slope_[i];
+      const double angle = 0.5 * (after - before_) + half * sine[i];
+      rate_[i] = RateAt(energy[i], angle);
+      loss[i] = Torque(angle, rate_[i]) * slope_[i];
     }
     return loss;
   }
@@ -141,7 +145,7 @@ class HalfSwingPath {
     for (int round = 0; round < kMaxRounds; ++round) {
       x = 2 / kPi * std::asin(std::clamp((angle - middle) / half, -1.0, 1.0));
       rate = RateAt(PotentialAt(gravity_, before_) - Rule().WeightsTo(x).dot(loss.matrix()), angle);
-      const double torque = std::clamp(Torque(rate), -1.0, 1.0);
+      const double torque = std::clamp(Torque(angle, rate), -1.0, 1.0);
       const double last = std::exchange(angle, -gravity_.AngleAtTorque(torque));
       if (std::abs(last - angle) <= kSame * half) break;
     }

@@ -15,6 +15,7 @@ std::string Sentence(const WindowBegin& begin) {
     case kReleaseNotUsed:
       return "in motion: it was held before, but its motion determines the start better than its release";
     case kUnsteadyHold: return "after the release: the hold before it is not steady";
+    case kHoldDisagrees: return "after the release: the hold before it does not agree with the swing";
     case kAccelerationJump: return "after the release, at which an acceleration jumps";
     case kAfterFall:
       return "after the fall from " + NumberText(begin.angle_deg, 3) +

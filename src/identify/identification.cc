@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
 namespace pendulum {
 namespace {
@@ -53,6 +54,7 @@ void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& d
   data.resolution_source = used.resolution > 0 ? used.resolution_source : "";
   data.clock_scale = used.clock_scale;
   data.clock_scale_std_dev = used.clock_scale_std_dev;
+  data.sensor = used.sensor_errors;
   data.begins = Sentence(swing.begins);
   data.ends = Sentence(swing.ends);
 }
@@ -70,17 +72,12 @@ std::vector<const Identification*> Identification::Parts() const {
 }
 
 std::size_t Identification::MainFit() const {
-  const auto index_of = [&](const auto& is_match) {
-    return static_cast<std::size_t>(std::ranges::find_if(fits, is_match) - fits.begin());
+  const std::string recommended = comparison ? comparison->recommended : "";
+  const auto order = [&](const FitReport& fit) {
+    return std::tuple(fit.model.name != recommended, fit.termination != Termination::kConverged,
+                      fit.termination == Termination::kFailed, fit.statistics.rms_residual);
   };
-  if (comparison && !comparison->recommended.empty()) {
-    const std::size_t recommended =
-        index_of([&](const FitReport& fit) { return fit.model.name == comparison->recommended; });
-    if (recommended < fits.size()) return recommended;
-  }
-  const std::size_t converged =
-      index_of([](const FitReport& fit) { return fit.termination == Termination::kConverged; });
-  return converged < fits.size() ? converged : 0;
+  return static_cast<std::size_t>(std::ranges::min_element(fits, {}, order) - fits.begin());
 }
 
 std::vector<Warning> AllWarnings(const Identification& identification) {

@@ -18,6 +18,7 @@
 #include "pendulum/analysis/joint_comparison.h"
 #include "pendulum/analysis/joint_fit.h"
 #include "pendulum/analysis/model_comparison.h"
+#include "pendulum/analysis/rig_verdict.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/physics.h"
@@ -30,6 +31,7 @@
 #include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/recording/readers/read_recording.h"
 #include "pendulum/recording/sensor.h"
+#include "pendulum/recording/sensor_defaults.h"
 #include "pendulum/recording/window.h"
 
 namespace pendulum {
@@ -59,6 +61,7 @@ Swing TakeSwing(PreparedRecording& from, int release) {
     swing.known.data.release = release;
   }
   swing.recording = last ? std::exchange(from.recording, {}) : from.recording;
+  swing.recording.sensor_errors = SensorErrorsOf(swing.recording, swing.found.from, swing.found.to, from.sensor);
   return swing;
 }
 
@@ -123,6 +126,7 @@ bool FitsBetterInRadians(const Recording& used, const FitReport& fit, const FitO
   FitOptions quick;
   quick.model = fit.model.name;
   quick.search.max_traces = 200;
+  quick.search.may_correct = fit.correction.size() > 0;
   quick.noise = NoiseFamily::kGaussian;
   quick.interval = IntervalMethod::kCovariance;
   quick.stop = options.stop;
@@ -228,7 +232,11 @@ Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
   if (ratio == converged->derived.end()) return {};
   auto warnings = CompareRigWithSwing(rig, ratio->estimate);
   if (!warnings) return tl::unexpected(warnings.error());
+  const bool is_questioned = !warnings->empty();
   std::ranges::move(*warnings, std::back_inserter(identification.warnings));
+  if (is_questioned) return {};
+  const auto verdict = JudgeInertia(identification.rig, identification.fits[identification.MainFit()]);
+  if (verdict && verdict->differs()) identification.warnings.push_back({"inertia_differs_from_rig", verdict->text});
   return {};
 }
 

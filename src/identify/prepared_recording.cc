@@ -25,7 +25,11 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
     rig = *std::move(own);
   }
   if (has_file && !options.rig_values.empty()) notes.push_back(OverrideWarning(options.rig_values));
+  if (options.sensor && read.stated_sensor) {
+    notes.push_back({"sensor_replaced", "what --sensor states replaces the line # sensor of the recording"});
+  }
   PreparedRecording prepared;
+  prepared.sensor = options.sensor;
   prepared.samples = read.size();
   // Repairs compare a reading with its neighbours, which an undersampled recording does not allow.
   prepared.recording =

@@ -18,10 +18,10 @@ std::string ModelName(std::string_view gravity, std::string_view friction) {
   return std::string(gravity) + "_" + std::string(friction);
 }
 
-/// Whether a fit can determine the parameters of the two laws together.
+/// Whether a fit can determine the parameters of the two laws together. A spring has no weight that loads a bearing.
 template <FrictionModel F>
 bool IsDeterminable(Gravity gravity) {
-  return !(HasConstantTorque<F> && gravity.is_linear());
+  return !((HasConstantTorque<F> || HasLoad<F>)&&gravity.is_linear());
 }
 
 /// A model with its own name. The models returned to callers only refer to these names.
@@ -57,7 +57,8 @@ Result<MotionModel> ChangeGravity(const MotionModel& model, Gravity gravity) {
   if (const auto changed = WithGravity(model, gravity)) return *changed;
   return Error(StatusCode::kInvalidArgument,
                "model " + name + " cannot be combined with --gravity " + std::string(gravity.name()) +
-                   ", where its constant torque would only shift the zero; give --model coulomb");
+                   ", where a constant torque would only shift the zero, and no weight loads the bearing; give "
+                   "--model coulomb");
 }
 
 }  // namespace

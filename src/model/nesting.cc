@@ -29,15 +29,16 @@ std::array<double, kFrictionParameters<F>> NullOf(const std::vector<ParameterInf
   return p;
 }
 
-/// Whether the torque changes with parameter k at any of a few rates, in either direction.
+/// Whether the torque changes with parameter k at any of a few rates, in either direction, or at a reversal.
 template <FrictionModel F>
 bool AffectsTorque(std::array<double, kFrictionParameters<F>> p, std::size_t k) {
   const auto torques = [&] {
-    std::array<double, 6> at{};
+    std::array<double, 7> at{};
     std::size_t i = 0;
     for (const double rate : {0.0, 0.5, 2.0}) {
       for (const double direction : {1.0, -1.0}) at[i++] = F::Torque(direction * rate, direction, p.data());
     }
+    if constexpr (FrictionWithState<F>) at[i] = F::Stiffness(p.data());
     return at;
   };
   const auto before = torques();

@@ -60,6 +60,7 @@ Recording WithoutSamples(const Recording& recording) {
   copy.unit = recording.unit;
   copy.resolution = recording.resolution;
   copy.edge = recording.edge;
+  copy.oversampling = recording.oversampling;
   copy.range = recording.range;
   copy.clock_scale = recording.clock_scale;
   copy.clock_scale_std_dev = recording.clock_scale_std_dev;
@@ -67,6 +68,9 @@ Recording WithoutSamples(const Recording& recording) {
   copy.arc = recording.arc;
   copy.shows_gravity = recording.shows_gravity;
   copy.rig_json = recording.rig_json;
+  copy.time_source = recording.time_source;
+  copy.stated_sensor = recording.stated_sensor;
+  copy.sensor_errors = recording.sensor_errors;
   copy.warnings = recording.warnings;
   return copy;
 }

@@ -27,6 +27,7 @@ Json ParameterJson(const ParameterEstimate& parameter) {
   if (parameter.open_interval != OpenInterval::kClosed) {
     object.AddReason("the interval is open: " + std::string(Sentence(parameter.open_interval)));
   }
+  if (parameter.unseen_friction) object.Set("unseen_friction_std_error", *parameter.unseen_friction);
   return object.Set("estimate", parameter.estimate)
       .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
       .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
@@ -110,6 +111,7 @@ Json NoiseJson(const FitReport& fit, const DataSummary& data) {
       .Set("saturated_samples", Json(noise.censored))
       .Set("lag1_correlation", noise.lag1_correlation)
       .Set("correlation", Json(noise.autocorrelation.Name()));
+  if (noise.family == NoiseFamily::kAveraged) object.Set("averaged_readings", Json(noise.averaging.readings));
   if (noise.family == NoiseFamily::kEdges) object.Set("time_sigma_s", noise.stamp_ratio * noise.sigma);
   return object.Done();
 }

@@ -181,7 +181,9 @@ std::string OtherUnitsText(const NoiseEstimate& noise, const std::string& unit) 
   if (const auto degrees = Degrees(unit)) {
     also = NumberText(noise.sigma * degrees->factor, kReadingDigits) + " " + std::string(degrees->unit);
   }
-  if (noise.resolution > 0) {
+  if (noise.family == NoiseFamily::kAveraged) {
+    also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.averaging.count, kReadingDigits) + " counts";
+  } else if (noise.resolution > 0) {
     also += (also.empty() ? "" : ", ") + NumberText(noise.sigma / noise.resolution, kReadingDigits) + " resolutions";
   }
   return also.empty() ? "" : " (" + also + ")";
@@ -239,6 +241,8 @@ std::string NoiseText(const FitReport& fit) {
   text +=
       noise.sigma_std_error && !sigma.error.empty() ? sigma.value + " ± " + sigma.error : NumberText(noise.sigma, 3);
   text += " " + fit.reading_unit + OtherUnitsText(noise, fit.reading_unit);
+  if (noise.family == NoiseFamily::kAveraged)
+    return text + " of one of the " + std::to_string(noise.averaging.readings) + " readings in a mean";
   if (noise.family != NoiseFamily::kEdges) return text;
   text += " of an edge";
   if (noise.stamp_ratio == 0) return text;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/model/motion_model.h"
+#include "pendulum/report/ambiguity_sections.h"
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
 #include "pendulum/report/equation.h"
@@ -151,6 +152,7 @@ Json JointFitJson(const Identification& identification, std::size_t index) {
   json["identifiability"] = IdentifiabilityJson(fit);
   json["statistics"] = failed ? Json(nullptr) : WholeStatisticsJson(identification, fit);
   json["homogeneity"] = HomogeneityJson(identification.joint[index].homogeneity);
+  AddAmbiguities(identification, index, json);
   json["runs"] = std::move(runs);
   json["solver"] = SolverJson(fit.solver);
   json["summary"] = FitSummaryJson(SummarizeFit(identification, index));

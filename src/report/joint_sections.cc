@@ -12,6 +12,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/report/ambiguity_sections.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
@@ -211,6 +212,7 @@ void AddMainFit(const Identification& identification, std::size_t index, Section
   sections.push_back(NoiseSection(identification, index));
   const bool whole = identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
   if (is_a_motion && whole) sections.push_back(EquationSection(fit, identification.si_rig()));
+  std::ranges::move(AmbiguitySections(identification, index), std::back_inserter(sections));
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "pendulum/base/json.h"
 #include "pendulum/base/version.h"
+#include "pendulum/report/ambiguity_sections.h"
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
 #include "pendulum/report/equation.h"
@@ -14,6 +16,7 @@
 #include "pendulum/report/joint_json.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/result_summary.h"
+#include "pendulum/report/suspicion_sections.h"
 
 namespace pendulum {
 namespace {
@@ -31,6 +34,22 @@ Json StartJson(const Identification& identification) {
   return identification.fits.front().start == StartKind::kRelease ? "release" : "moving";
 }
 
+/// Null if nothing was decided about the sensor.
+Json SensorErrorsJson(const DataSummary& data) {
+  if (data.sensor.kind.empty()) return nullptr;
+  Json json = {{"kind", data.sensor.kind}};
+  for (const SensorEffect effect : kSensorEffects) {
+    const EffectSize& size = data.sensor.Of(effect);
+    const bool is_relative = effect == SensorEffect::kGain || effect == SensorEffect::kClock;
+    json[std::string(SensorEffectName(effect))] = {{"std_dev", size.std_dev},
+                                                   {"unit", is_relative                    ? "1"
+                                                            : effect == SensorEffect::kLag ? "s"
+                                                                                           : data.unit},
+                                                   {"source", TextOrNull(size.source)}};
+  }
+  return json;
+}
+
 Json DataJson(const Identification& identification) {
   const DataSummary& data = identification.data;
   return NumberObject()
@@ -44,6 +63,7 @@ Json DataJson(const Identification& identification) {
       .Set("resolution_source", TextOrNull(data.resolution_source))
       .Set("clock_scale", data.clock_scale)
       .Set("clock_scale_std_dev", data.clock_scale_std_dev)
+      .Set("sensor", SensorErrorsJson(data))
       .Set("window_s", Json::array({data.from, data.to}))
       .Set("window_reason", TextOrNull(WindowReason(data)))
       .Set("releases", Json(data.releases))
@@ -75,6 +95,8 @@ Json FitJson(const Identification& identification, std::size_t index) {
   json["closed_form"] = CheckJson(identification.CheckOf(index));
   json["constancy"] = ConstancyJson(identification.ConstancyOf(index));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, identification.ConstancyOf(index));
+  AddAmbiguities(identification, index, json);
+  if (fit.termination == Termination::kConverged) json["suspicions"] = SuspicionsJson(fit);
   json["solver"] = SolverJson(fit.solver);
   json["summary"] = FitSummaryJson(SummarizeFit(identification, index));
   return json;

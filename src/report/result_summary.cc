@@ -9,13 +9,17 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/analysis/ambiguities.h"
+#include "pendulum/analysis/rig_verdict.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/model/friction/dahl.h"
 #include "pendulum/model/friction/stribeck.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -40,6 +44,7 @@ std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
     case ErrorSource::kRig: return RigWords(rig);
     case ErrorSource::kCalibration: return "calibration";
     case ErrorSource::kClock: return "clock";
+    case ErrorSource::kSensor: return "sensor";
     case ErrorSource::kInconstancy: return "change during the recording";
   }
   return "";
@@ -191,13 +196,25 @@ std::string WideIntervalText(const ParameterEstimate& parameter) {
 
 /// Whether a term of friction may be 0: its total 95 % interval contains 0.
 bool MayBeZero(const ParameterEstimate& parameter) {
-  const bool is_term = parameter.info.name != kInertia.name && parameter.info.name != kStribeckRate.name;
+  const bool is_term = parameter.info.name != kInertia.name && parameter.info.name != kStribeckRate.name &&
+                       parameter.info.name != kPreslidingAngle.name;
   const auto interval = TotalIntervalOf(parameter);
   return is_term && !parameter.at_bound && interval && interval->lower <= 0 && interval->upper >= 0;
 }
 
 void AddListed(const std::string& item, std::string& list) {
   if (!item.empty()) list += (list.empty() ? "" : ", ") + item;
+}
+
+/// "viscous by 40 %": how far friction of another law that the readings do not show would change an estimate.
+std::string UnseenText(const ParameterEstimate& parameter) {
+  constexpr int kDigits = 2;
+  const double unseen = *parameter.unseen_friction, size = std::abs(parameter.estimate);
+  const double percent = 100 * unseen / size;
+  const std::string share = percent < 100 ? NumberText(percent, kDigits) : std::to_string(std::lround(percent));
+  const std::string by =
+      unseen < 10 * size ? share + " %" : NumberText(unseen, kDigits) + " " + std::string(parameter.unit);
+  return std::string(parameter.info.name) + " by " + by;
 }
 
 /// What a value ± error does not say.
@@ -218,6 +235,10 @@ std::string RemarksText(const FitReport& fit) {
   std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
   if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";
   if (!wide.empty()) text += "Quote the 95 % intervals that are wider than ± 2 errors: " + wide + ". ";
+  std::string unseen;
+  for (const ParameterEstimate* const parameter : ChangedByUnseenFriction(fit))
+    AddListed(UnseenText(*parameter), unseen);
+  if (!unseen.empty()) text += "Another, unseen friction law may change " + unseen + ". ";
   if (!text.empty()) text.pop_back();
   return text;
 }
@@ -290,8 +311,10 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
     return;
   }
   const std::string rms = ResidualsText(fit);
-  if (lacks_fit) {
-    summary.verdict = law + " does not describe all of the readings: " + rms + " are more than noise.";
+  const std::string suspected = SuspectedText(fit, false), corrected = SuspectedText(fit, true);
+  if (lacks_fit || !suspected.empty()) {
+    summary.verdict = law + " does not describe all of the readings: " + rms + " are more than noise." +
+                      (suspected.empty() ? "" : " Suspected: " + suspected + ".");
     summary.emphasis = Emphasis::kCaution;
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
     summary.verdict = law + " describes the readings, but not with constant parameters: " +
@@ -302,6 +325,26 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
   } else {
     summary.verdict = law + " describes the readings: " + rms + " are noise.";
   }
+  if (corrected.empty()) return;
+  summary.verdict += " The readings were corrected for " + corrected + ".";
+  summary.emphasis = Emphasis::kCaution;
+}
+
+/// Says that the rig's own inertia contradicts the fit, in the place of the warning.
+void SetRigVerdict(const std::optional<RigVerdict>& rig, FitSummary& summary) {
+  if (!rig || !rig->differs() || summary.emphasis == Emphasis::kAlarm) return;
+  summary.verdict += " " + WithFullStop(rig->brief);
+  summary.emphasis = Emphasis::kCaution;
+  std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "inertia_differs_from_rig"; });
+}
+
+/// What is unknown of a recording that is too short for a test of constancy (TooFewHalfSwings).
+std::string UntestedText(const Constancy* constancy) {
+  const bool is_tested = constancy == nullptr || constancy->halves_p || !constancy->trends.empty();
+  const std::size_t end = is_tested ? std::string::npos : constancy->reason.find(" are too few for halves");
+  if (end == std::string::npos) return "";
+  return "Constancy is not tested (" + constancy->reason.substr(0, end) +
+         " are too few): another recording may differ by more than these errors.";
 }
 
 /// Whether several recordings agree. Without a test nothing is known of that.
@@ -417,7 +460,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
   const bool recommends = !comparison.recommended.empty();
   const std::string reason = WithFullStop(Printable(comparison.reason));
   const bool names_law = reason.starts_with(comparison.recommended + ":");
-  summary.comparison = !recommends ? "No law is recommended: " + reason
+  summary.comparison = !recommends ? Capitalized(reason)
                        : names_law ? "Recommended: " + reason
                                    : "Recommended: " + comparison.recommended + ". " + reason;
   const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
@@ -454,15 +497,15 @@ struct Folding {
   bool textbook = true;
   bool asides = true;  ///< Parentheses of warnings.
   bool units = true;   ///< What gives SI units.
-  bool sensor = true;  ///< Parameters of the sensor: its zero, bias, drift, axis.
+  bool minor = true;   ///< Parameters of the sensor (its zero, bias, drift, axis) and the initial rate.
 };
 
-bool IsOfSensor(const SummaryQuantity& quantity) {
-  constexpr std::array kOfSensor = {
-      kZeroAngle.name, kRateBias.name,  kRateScale.name, kAccelerationBias.name, kAccelerationScale.name,
-      kAxis.name,      kRadius.name,    kPivotX.name,    kPivotY.name,           kZeroDrift.name,
-      kBiasDrift.name, kHysteresis.name};
-  return std::ranges::find(kOfSensor, quantity.name) != kOfSensor.end();
+bool IsMinor(const SummaryQuantity& quantity) {
+  constexpr std::array kMinor = {
+      kZeroAngle.name, kRateBias.name,   kRateScale.name,  kAccelerationBias.name, kAccelerationScale.name,
+      kAxis.name,      kRadius.name,     kPivotX.name,     kPivotY.name,           kZeroDrift.name,
+      kBiasDrift.name, kHysteresis.name, kInitialRate.name};
+  return std::ranges::find(kMinor, quantity.name) != kMinor.end();
 }
 
 Table LawTable(const ResultSummary& summary) {
@@ -481,7 +524,7 @@ Table ParameterTable(const FitSummary& summary, const Folding& folding) {
                {"unit"},
                {"error from"}}};
   for (const SummaryQuantity& quantity : summary.parameters) {
-    if (!folding.sensor && IsOfSensor(quantity)) continue;
+    if (!folding.minor && IsMinor(quantity)) continue;
     table.rows.push_back({quantity.name, quantity.value, quantity.error.empty() ? "" : "± " + quantity.error,
                           quantity.unit, quantity.source});
   }
@@ -537,7 +580,7 @@ void AddWarnings(const FitSummary& summary, const Folding& folding, Section& sec
 std::string OmittedText(const FitSummary& summary, const Folding& folding) {
   std::string names;
   for (const SummaryQuantity& quantity : summary.parameters) {
-    if (!folding.sensor && IsOfSensor(quantity) && quantity.source != "fixed") AddListed(quantity.name, names);
+    if (!folding.minor && IsMinor(quantity) && quantity.source != "fixed") AddListed(quantity.name, names);
   }
   return names.empty() ? "" : "Also fitted: " + names + " (--details).";
 }
@@ -567,13 +610,21 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   const bool lacks_fit =
       fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[index].lacks_fit);
   SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, summary);
+  // The verdict names the causes of the misfit that remains.
+  if (std::ranges::any_of(fit.suspicions, [](const Suspicion& suspicion) { return !suspicion.is_corrected; })) {
+    std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "lack_of_fit"; });
+  }
   if (identification.is_joint()) SetAgreement(identification.joint[index].homogeneity, summary);
   if (fit.termination != Termination::kConverged) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
     summary.parameters.push_back(QuantityOf(parameter, identification.rig));
     summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
   }
+  if (!identification.is_joint()) SetRigVerdict(JudgeInertia(identification.rig, fit), summary);
   summary.remarks = RemarksText(fit);
+  if (const std::string untested = UntestedText(identification.ConstancyOf(index)); !untested.empty()) {
+    summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
+  }
   summary.derived = DerivedOf(fit);
   const bool has_all =
       !identification.is_joint() || identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
@@ -610,11 +661,11 @@ std::string SummaryText(const ResultSummary& summary, const std::string& more, T
       Folding{},
       Folding{.warnings = 2},
       Folding{.warnings = 2, .textbook = false},
-      Folding{.warnings = 2, .textbook = false, .sensor = false},
-      Folding{.warnings = 2, .textbook = false, .asides = false, .sensor = false},
-      Folding{.warnings = 1, .textbook = false, .asides = false, .sensor = false},
-      Folding{.warnings = 1, .textbook = false, .asides = false, .units = false, .sensor = false},
-      Folding{.warnings = 0, .textbook = false, .asides = false, .units = false, .sensor = false}};
+      Folding{.warnings = 2, .textbook = false, .minor = false},
+      Folding{.warnings = 2, .textbook = false, .asides = false, .minor = false},
+      Folding{.warnings = 1, .textbook = false, .asides = false, .minor = false},
+      Folding{.warnings = 1, .textbook = false, .asides = false, .units = false, .minor = false},
+      Folding{.warnings = 0, .textbook = false, .asides = false, .units = false, .minor = false}};
   std::string text;
   for (const Folding& folding : kFoldings) {
     Section section = FoldedSection(summary, folding);

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/report/ambiguity_sections.h"
 #include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/joint_sections.h"
 #include "pendulum/report/result_summary.h"
 #include "pendulum/report/rounding.h"
+#include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -83,6 +85,8 @@ Sections ReportSections(const Identification& identification) {
     if (!identification.IsShownInFull(i)) continue;
     Append(FitSections(identification.fits[i], identification.si_rig(), identification.CheckOf(i)), sections);
     Append(ConstancySections(identification, i), sections);
+    Append(SuspicionSections(identification, i), sections);
+    Append(AmbiguitySections(identification, i), sections);
   }
   for (std::size_t i = 0; i < identification.fits.size(); ++i) {
     if (!identification.IsShownInFull(i)) sections.push_back(ParameterSection(identification.fits[i], true));

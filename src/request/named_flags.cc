@@ -52,8 +52,9 @@ constexpr std::array<SimulationFlag<std::string>, 7> kSimulationTexts = {{{"mode
                                                                           {"unit", &SimulationFlags::unit},
                                                                           {"range", &SimulationFlags::range},
                                                                           {"lose", &SimulationFlags::lose}}};
-constexpr std::array<SimulationFlag<double>, 9> kSimulationNumbers = {
-    {{"duration", &SimulationFlags::duration},
+constexpr std::array<SimulationFlag<double>, 10> kSimulationNumbers = {
+    {{"window_s", &SimulationFlags::window_s},
+     {"duration", &SimulationFlags::duration},
      {"rate", &SimulationFlags::rate},
      {"jitter", &SimulationFlags::jitter},
      {"start_time", &SimulationFlags::start_time},
@@ -64,7 +65,8 @@ constexpr std::array<SimulationFlag<double>, 9> kSimulationNumbers = {
      {"resolution", &SimulationFlags::resolution}}};
 constexpr std::array<SimulationFlag<bool>, 1> kSimulationSwitches = {
     {{"event_driven", &SimulationFlags::event_driven}}};
-constexpr std::array<SimulationFlag<std::uint64_t>, 1> kSimulationWholes = {{{"seed", &SimulationFlags::seed}}};
+constexpr std::array<SimulationFlag<std::uint64_t>, 2> kSimulationWholes = {
+    {{"seed", &SimulationFlags::seed}, {"oversample", &SimulationFlags::oversample}}};
 
 constexpr std::array<CalibrationFlag<std::string>, 1> kCalibrationTexts = {
     {{"input_range", &CalibrationFlags::input_range}}};

@@ -8,9 +8,13 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/motion_model.h"
+#include "pendulum/recording/oversampling.h"
+#include "pendulum/recording/sensor_statement.h"
 #include "pendulum/request/flag_values.h"
 #include "pendulum/request/rig_flags.h"
 
@@ -55,10 +59,11 @@ constexpr std::array<GravityWord, 3> kGravities = {
      {"sin", Gravity::kSine, "gravity: a pendulum"},
      {"linear", Gravity::kLinear, "a spring or wire: torsion pendulum, Pohl wheel, mass on a spring"}}};
 using NoiseWord = Word<std::optional<NoiseFamily>>;
-constexpr std::array<NoiseWord, 4> kNoises = {
+constexpr std::array<NoiseWord, 5> kNoises = {
     {{"auto", std::nullopt, "found in the recording"},
      {"gaussian", NoiseFamily::kGaussian, "even scatter"},
      {"quantized", NoiseFamily::kQuantized, "rounding to the steps of the sensor"},
+     {"averaged", NoiseFamily::kAveraged, "means of several readings in whole counts"},
      {"edges", NoiseFamily::kEdges, "edges of an encoder’s counts, a row for each change"}}};
 constexpr std::array<NoiseWord, 3> kLosses = {{{"none", std::nullopt, "there are none"},
                                                {"huber", NoiseFamily::kHuber, "count less (Huber)"},
@@ -90,6 +95,15 @@ constexpr std::array<FlagWord, 19> kReadingUnits = {{{"", "in the column’s nam
                                                      {"m", "metres"},
                                                      {"cm", "centimetres"},
                                                      {"mm", "millimetres"}}};
+
+constexpr std::array<FlagWord, 8> kSensorWords = {{{"", "as the recording says or suggests"},
+                                                   {"potentiometer", "potentiometer"},
+                                                   {"encoder", "encoder"},
+                                                   {"gyro", "gyro"},
+                                                   {"accelerometer", "accelerometer"},
+                                                   {"camera", "camera"},
+                                                   {"angle sensor", "another sensor of an angle"},
+                                                   {"ideal", "free of errors other than noise"}}};
 
 /// Parses an integer value of a flag, at least `least`.
 Result<void> ParseWhole(std::string_view flag, const std::string& value, double least, double& number) {
@@ -244,9 +258,24 @@ Result<void> ParseSensor(const RunFlags& flags, ReadOptions& options) {
   return {};
 }
 
+/// Parses how many readings a row averages, and over which window.
+Result<void> ParseAveraging(const RunFlags& flags, ReadOptions& options) {
+  const std::string most = std::to_string(kMostOversampling);
+  double readings = 0;
+  if (auto parsed = ParseWhole("--oversample", flags.oversample, 1, readings); !parsed) return parsed;
+  if (readings > kMostOversampling)
+    return BadFlag("--oversample is '" + flags.oversample + "'; it must be a whole number, 1 to " + most);
+  options.oversample = static_cast<int>(readings);
+  if (flags.window_s.empty()) return {};
+  options.averaging_window = ParseAveragingWindow(flags.window_s);
+  if (options.averaging_window) return {};
+  return BadFlag("--window_s is '" + flags.window_s + "'; it must be " + std::string(kAveragingWindowRule));
+}
+
 Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
   if (auto checked = CheckReadFlags(flags); !checked) return checked;
   if (auto parsed = ParseSensor(flags, options); !parsed) return parsed;
+  if (auto parsed = ParseAveraging(flags, options); !parsed) return parsed;
   options.time_column = flags.time_column;
   options.value_column = flags.value_column;
   options.unit = flags.unit;
@@ -255,6 +284,18 @@ Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
   if (!rate) return tl::unexpected(rate.error());
   if (*rate <= 0) return BadFlag("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
   options.sample_rate_hz = *rate;
+  return {};
+}
+
+constexpr std::string_view kSensorSource = "given by --sensor";
+
+bool IsSensorText(const std::string& text) { return IsSensorKind(text) || text.find('{') != std::string::npos; }
+
+Result<void> ParseStatedSensor(const RunFlags& flags, IdentifyOptions& options) {
+  if (flags.sensor.empty()) return {};
+  auto statement = ParseSensorStatement(flags.sensor, "--sensor", std::string(kSensorSource));
+  if (!statement) return BadFlag(statement.error().message);
+  options.sensor = *std::move(statement);
   return {};
 }
 
@@ -315,6 +356,17 @@ std::vector<RunFlag> MakeTable() {
                "recording.",
        .label = "Calibration file",
        .is_local = true},
+      {.name = "sensor",
+       .value = &RunFlags::sensor,
+       .help = "What the sensor may do to the readings, which the errors then contain: its kind, " +
+               NameList(SensorKinds()) +
+               ", or JSON (tools: also the name of a file) with the kind and standard deviations in SI units of gain, "
+               "nonlinearity, lag, backlash, drift and clock, 0 if exact; default what the recording states, or "
+               "assumed from its unit.",
+       .label = "Kind of sensor",
+       .words = {kSensorWords.begin(), kSensorWords.end()},
+       .schema = TextSchema(),
+       .example = "gyro"},
       {.name = "model",
        .value = &RunFlags::model,
        .help = models,
@@ -422,11 +474,24 @@ std::vector<RunFlag> MakeTable() {
                "treated as censored.",
        .schema = TextSchema(),
        .example = "0,1023"},
+      {.name = "oversample",
+       .value = &RunFlags::oversample,
+       .help = "Number of readings of the converter whose mean a row is, 1 to 64; default the value in the file's line "
+               "# oversample, or 1.",
+       .label = "Readings in a mean",
+       .schema = {{"type", "integer"}, {"minimum", 1}, {"maximum", kMostOversampling}}},
+      {.name = "window_s",
+       .value = &RunFlags::window_s,
+       .help =
+           "Averaging window of a row: its length in s, 0 to 1, about the time stamp, or its begin,end in s from the "
+           "time stamp; default the value in the file's line # window_s, or unknown.",
+       .schema = TextSchema(),
+       .example = "0,0.0018"},
       {.name = "noise",
        .value = &RunFlags::noise,
-       .help = "Noise of the readings: gaussian, quantized (rounded to levels), edges (one row for each change of a "
-               "count) or auto (edges for files with such rows, otherwise quantized if rounding matters); default "
-               "auto.",
+       .help = "Noise of the readings: gaussian, quantized (rounded to levels), averaged (means of readings in whole "
+               "counts), edges (one row for each change of a count) or auto (edges and averaged for files with such "
+               "rows, otherwise quantized if rounding matters); default auto.",
        .label = "Noise of the sensor",
        .words = WordsOf(kNoises),
        .needs_fit = true},
@@ -495,7 +560,7 @@ const std::vector<RunFlag>& RunFlagTable() {
     std::vector<RunFlag> flags = MakeTable();
     AddRigFlags(flags);
     for (RunFlag& flag : flags) {
-      if (!flag.words.empty()) flag.schema = WordSchema(flag);
+      if (!flag.words.empty() && flag.schema.is_null()) flag.schema = WordSchema(flag);
     }
     return flags;
   }();
@@ -504,6 +569,17 @@ const std::vector<RunFlag>& RunFlagTable() {
 
 tl::unexpected<Status> NeedsFitError(std::string_view flag) {
   return BadFlag(std::string(flag) + " needs a fit, but --closed_form_only makes none; leave one of them out");
+}
+
+Result<std::string> ReadSensorFile(RunFlags& flags) {
+  if (flags.sensor.empty() || IsSensorText(flags.sensor)) return std::string();
+  auto text = ReadFile(flags.sensor, "sensor", kMaxJsonBytes);
+  if (!text) {
+    return WithMessage(
+        text.error(), text.error().message + "; --sensor takes a file or a kind of sensor: " + NameList(SensorKinds()));
+  }
+  if (const auto parsed = ParseSensorStatement(*text, flags.sensor, ""); !parsed) return tl::unexpected(parsed.error());
+  return std::exchange(flags.sensor, *std::move(text));
 }
 
 Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
@@ -531,6 +607,7 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   auto rig_values = RigValuesOf(flags.rig_values, options.notes);
   if (!rig_values) return tl::unexpected(rig_values.error());
   options.rig_values = *std::move(rig_values);
+  if (const auto parsed = ParseStatedSensor(flags, options); !parsed) return tl::unexpected(parsed.error());
   if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
   return options;
 }

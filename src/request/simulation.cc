@@ -237,6 +237,27 @@ Result<void> CheckEvents(const SimulationFlags& flags) {
                  "; with --event_driven it must be at most a fifth of --resolution");
 }
 
+/// Checks the flags of means by the rules of SimulateRecording.
+Result<void> CheckAveraging(const SimulationFlags& flags) {
+  if (flags.oversample < 1 || flags.oversample > kMostOversampling) {
+    return BadFlag("--oversample is " + std::to_string(flags.oversample) + "; it must be a whole number, 1 to " +
+                   std::to_string(kMostOversampling));
+  }
+  if (flags.oversample == 1 && flags.window_s == 0) return {};
+  if (flags.oversample == 1) return BadFlag("--window_s needs --oversample");
+  if (!(flags.window_s >= 0) || flags.window_s > 1 / flags.rate) {
+    return BadFlag("--window_s is " + NumberText(flags.window_s) +
+                   "; it must be 0 or more and no longer than a sampling interval, " + NumberText(1 / flags.rate) +
+                   " s");
+  }
+  const bool plain = !flags.event_driven && flags.lose.empty() && flags.noise_correlation == 0 &&
+                     flags.noise_freedom == 0 && flags.unit != "px" && flags.unit != "m";
+  if (plain) return {};
+  return BadFlag(
+      "--oversample simulates the means of a converter's readings; leave out --event_driven, --lose, "
+      "--noise_correlation, --noise_freedom and the units px and m");
+}
+
 /// Sets sensor and sampling; converts noise, resolution and range to SI.
 Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) {
   const Result<std::optional<SensorRange>> range = ParseRange(flags.range);
@@ -259,6 +280,8 @@ Result<void> ChooseSensor(const SimulationFlags& flags, Simulation& simulation) 
   synthetic.jitter = flags.jitter;
   synthetic.rows = flags.event_driven ? RowTiming::kEvents : RowTiming::kEven;
   synthetic.time_noise = flags.time_noise;
+  synthetic.oversample = static_cast<int>(flags.oversample);
+  synthetic.averaging_window = flags.window_s;
   synthetic.seed = flags.seed;
   return {};
 }
@@ -293,6 +316,7 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
 Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optional<Rig>& rig) {
   if (Result<void> checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
   if (Result<void> checked = CheckEvents(flags); !checked) return tl::unexpected(checked.error());
+  if (Result<void> checked = CheckAveraging(flags); !checked) return tl::unexpected(checked.error());
   const Result<OutputUnit> unit = FindUnit(flags.unit);
   if (!unit) return tl::unexpected(unit.error());
   const Result<MotionModel> model = ChooseModel(flags);

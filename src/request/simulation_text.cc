@@ -52,9 +52,10 @@ class FileUnit {
   static constexpr int kMaxDecimals = 10;
 
   double Level(double si) const {
-    const double step = simulation_.resolution;
+    const double step = simulation_.resolution / simulation_.synthetic.oversample;
     const double level = std::round((si / simulation_.unit.si - low_) / step);
     const double value = low_ + step * level;
+    if (simulation_.synthetic.oversample > 1) return value;
     return decimals_ <= kMaxDecimals ? RoundedTo(decimals_, value) : value;
   }
 
@@ -77,10 +78,19 @@ std::string Head(const Simulation& simulation, std::uint64_t seed) {
   const MotionModel& model = simulation.synthetic.model;
   std::string text = "# simulate_pendulum " + std::string(kVersion) + ", model " + std::string(model.name) +
                      ", gravity " + std::string(model.gravity.name()) + ", seed " + std::to_string(seed) + "\n";
-  if (simulation.resolution > 0) text += "# resolution: " + NumberText(simulation.resolution) + "\n";
+  const int oversample = simulation.synthetic.oversample;
+  const double resolution = simulation.resolution / oversample;
+  if (oversample > 1) {
+    const double half = 0.5 * simulation.synthetic.averaging_window;
+    text += "# oversample: " + std::to_string(oversample) + "\n";
+    if (half > 0) text += "# window_s: " + NumberText(-half) + "," + NumberText(half) + "\n";
+    if (half == 0) text += "# window_s: 0\n";
+  }
+  if (resolution > 0) text += "# resolution: " + NumberText(resolution) + "\n";
   if (simulation.range) {
     text += "# range: " + NumberText(simulation.range->low) + "," + NumberText(simulation.range->high) + "\n";
   }
+  text += "# sensor: {\"kind\":\"ideal\"}\n";
   return text + "time_s," + std::string(simulation.unit.column) + "\n";
 }
 
@@ -132,6 +142,7 @@ std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {
   if (simulation.synthetic.noise_freedom > 0) json["noise_freedom"] = simulation.synthetic.noise_freedom;
   if (simulation.synthetic.time_noise > 0) json["time_noise_s"] = simulation.synthetic.time_noise;
   json["resolution" + unit] = simulation.synthetic.resolution;
+  if (simulation.synthetic.oversample > 1) json["oversample"] = simulation.synthetic.oversample;
   for (const auto& [time, counts] : simulation.synthetic.lost_counts) {
     json["lost_counts"].push_back({{"time_s", time}, {"counts", counts}});
   }

@@ -120,9 +120,10 @@ class FormReader {
     }
     if (part.name == "rig") return ReadFilePart(part, request_.rig);
     if (part.name == "calibration") return ReadFilePart(part, request_.calibration);
+    if (part.name == "sensor") return ReadSensorPart(part);
     if (part.name == "options") return ReadOptionsPart(part);
-    return Error(StatusCode::kInvalidArgument,
-                 "the form has a part " + Quoted(part.name) + "; it may have data, rig, calibration and options");
+    return Error(StatusCode::kInvalidArgument, "the form has a part " + Quoted(part.name) +
+                                                   "; it may have data, rig, calibration, sensor and options");
   }
 
  private:
@@ -130,6 +131,12 @@ class FormReader {
     if (file) return RepeatedPartError(part.name);
     file = Share({part.filename.empty() ? part.name : NameOf(part.filename), std::string(part.content)});
     return {};
+  }
+
+  /// A statement about the sensor is an option, so that it is stored as one.
+  Result<void> ReadSensorPart(const FormPart& part) {
+    if (std::exchange(has_sensor_, true)) return RepeatedPartError(part.name);
+    return AddFlag("sensor", std::string(part.content), request_.flags);
   }
 
   Result<void> ReadOptionsPart(const FormPart& part) {
@@ -144,7 +151,7 @@ class FormReader {
   }
 
   FitRequest& request_;
-  bool has_options_ = false;
+  bool has_options_ = false, has_sensor_ = false;
 };
 
 Result<void> ReadForm(std::string_view content_type, const std::string& body, FitRequest& request) {

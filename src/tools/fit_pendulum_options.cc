@@ -117,15 +117,19 @@ std::vector<NamedFile> FitPendulumOptions::Inputs() const {
   }
   if (!data_list.empty() && data_list != "-") inputs.push_back({"--data_list", data_list});
   if (!calibration.empty()) inputs.push_back({"--calibration", calibration});
+  if (!sensor_path.empty()) inputs.push_back({"--sensor", sensor_path});
   if (!rig.empty()) inputs.push_back({"--rig", rig});
   return inputs;
 }
 
-Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags) {
+Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& given) {
+  FitPendulumFlags flags = given;
   FitPendulumOptions options;
   if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckText(flags); !checked) return tl::unexpected(checked.error());
   if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
+  auto sensor = ReadSensorFile(flags);
+  if (!sensor) return tl::unexpected(sensor.error());
   auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());
   static_cast<IdentifyOptions&>(options) = *std::move(run);
@@ -133,6 +137,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags)
   options.data = RecordingPaths(flags);
   options.data_list = flags.data_list;
   options.calibration = flags.calibration;
+  options.sensor_path = *std::move(sensor);
   options.rig = flags.rig;
   static_cast<FitOutputs&>(options) = static_cast<const FitOutputs&>(flags);
   if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());

@@ -39,6 +39,7 @@ enum class Sharing { kByDefault, kNothing, kAsked };
 struct FitPendulumOptions : IdentifyOptions, FitOutputs {
   std::vector<std::string> data;  ///< Paths of the recordings; "-" is standard input.
   std::string data_list;          ///< Path of a file that lists the recordings instead; empty: none.
+  std::string sensor_path;        ///< Of the file that --sensor named; empty: none.
   std::string calibration;        ///< Path; empty: none. The caller reads ReadOptions::calibration from it.
   std::string rig;                ///< Path of the rig file; empty: none. The caller reads FitOptions::rig from it.
   Sharing sharing = Sharing::kByDefault;
@@ -57,6 +58,6 @@ struct FitPendulumOptions : IdentifyOptions, FitOutputs {
 };
 
 /// Converts flags to options. kInvalidArgument: a flag is missing, wrong or contradicts another; the message names it.
-Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& flags);
+Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& given);
 
 }  // namespace pendulum

@@ -50,7 +50,7 @@ std::vector<std::string> WordsOf(std::string_view name, bool is_run_flag) {
   const auto flag = std::ranges::find(table, name, &RunFlag::name);
   if (flag == table.end()) return words;
   for (const auto& [word, label] : flag->words) {
-    if (!word.empty()) words.emplace_back(word);
+    if (!word.empty() && word.find(' ') == std::string_view::npos) words.emplace_back(word);  // shells split at blanks
   }
   return words;
 }

@@ -26,7 +26,7 @@ const std::vector<HelpHeading>& Headings() {
     std::vector<HelpHeading> all = {
         {"Input",
          {"data", "data_list", "manifest", "port", "baud", "time_column", "value_column", "unit", "sample_rate_hz",
-          "calibration", "resolution", "input_range", "bits", "range"}},
+          "calibration", "sensor", "resolution", "input_range", "bits", "range", "oversample", "window_s"}},
         {"Task", {"plan", "counts", "store_calibration", "info", "list"}},
         {"Window", {"from", "to", "release", "start"}},
         {"Model", {"model", "gravity", "shared", "fix", "init", "bounds", "prior", "closed_form_only", "order"}},
@@ -35,7 +35,7 @@ const std::vector<HelpHeading>& Headings() {
          {"set", "spread", "duration", "rate", "start_time", "jitter", "event_driven", "time_noise",
           "noise_correlation", "noise_freedom", "lose", "scenario", "runs", "count"}},
         {"Plan of a sensor", {"reference_voltage", "supply_voltage", "potentiometer_range_deg", "divider"}},
-        {"Recording", {"seconds", "until_rest", "rate_hz", "oversample", "overwrite", "fit"}},
+        {"Recording", {"seconds", "until_rest", "rate_hz", "overwrite", "fit"}},
         {"Noise and intervals", {"noise", "loss", "interval", "checks", "seed"}},
         {"Store and shards",
          {"store", "force", "retry_failed", "shard", "scratch", "checkpoint_s", "shard_dir", "shard_count", "group_by",

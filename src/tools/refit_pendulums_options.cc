@@ -120,7 +120,8 @@ Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& opt
   return {};
 }
 
-Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options) {
+Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options) {
+  RefitFlags flags = given;
   std::error_code unknown;
   const bool is_file = !flags.positional.empty() && (flags.positional.size() > 1 || flags.positional[0] == "-" ||
                                                      std::filesystem::exists(flags.positional[0], unknown));
@@ -141,6 +142,7 @@ Result<void> ParseRefit(const RefitFlags& flags, RefitPendulumsOptions& options)
   if (flags.release == "all") {
     return BadFlag("--release all makes several results per run, but a batch stores one; give one release");
   }
+  if (const auto read = ReadSensorFile(flags); !read) return tl::unexpected(read.error());
   auto run = MakeIdentifyOptions(flags);
   if (!run) return tl::unexpected(run.error());
   options.refit.threads = run->fit.threads;

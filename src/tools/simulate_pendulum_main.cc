@@ -91,6 +91,12 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "the error of an edge; default off."},
       {"time_noise", &Flags::time_noise,
        "With --event_driven: standard deviation of the error of a time stamp, s; default 0."},
+      {"oversample", &Flags::oversample,
+       "Each row is the mean of this many readings, 1 to 64; --noise and --resolution are those of one reading; "
+       "default "
+       "1."},
+      {"window_s", &Flags::window_s,
+       "With --oversample: window about the time stamp over which the readings are spread, s; default 0."},
       {"resolution", &Flags::resolution, "Spacing of the sensor's levels, in --unit; default 0, no levels."},
       {"range", &Flags::range, "Range of the sensor, low,high in --unit; its levels start at low; default unlimited."},
       {"lose", &Flags::lose,

@@ -164,6 +164,23 @@ Result<void> CheckEvents(const SyntheticOptions& options) {
   return CheckNumber({"time_noise", options.time_noise, NumberRule::Domain::kZeroOrMore});
 }
 
+/// Only a direct sensor at even intervals averages, because its noise is drawn for each reading.
+Result<void> CheckAveraging(const SyntheticOptions& options) {
+  const int n = options.oversample;
+  if (n < 1 || n > kMostOversampling) return BadOption("oversample", n, "a whole number, 1 to 64");
+  const double window = options.averaging_window;
+  if (!(window >= 0) || window > 1 / options.sample_rate)
+    return BadOption("the averaging window", window, "0 or more and no longer than a sampling interval");
+  if (n == 1 && window == 0) return {};
+  if (n == 1) return BadOption("the averaging window", window, "0 unless rows are means of several readings");
+  if (options.rows == RowTiming::kEven && options.noise_correlation == 0 && options.noise_freedom == 0 &&
+      options.sensor.kind != SensorKind::kArc && options.lost_counts.empty())
+    return {};
+  return Error(StatusCode::kInvalidArgument,
+               "rows that are means of several readings need white normal noise, at equal intervals, without lost "
+               "counts, and not both coordinates of a point");
+}
+
 Result<Eigen::Index> SampleCount(const SyntheticOptions& options) {
   const double count = std::round(options.duration * options.sample_rate);
   if (!(count <= kMaxSamples)) {
@@ -291,11 +308,14 @@ std::string UnitOf(const SyntheticOptions& options) {
 }
 
 Result<void> CheckAll(const SyntheticOptions& options) {
-  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts, CheckEvents}) {
+  for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts, CheckEvents, CheckAveraging}) {
     if (Result<void> checked = check(options); !checked) return checked;
   }
   return {};
 }
+
+/// The simulated sensor does nothing to the readings but noise and levels.
+SensorStatement IdealSensor() { return {.kind = "ideal", .std_devs = {}, .source = "simulated"}; }
 
 /// Records the angles of a point about the circle on which it moves.
 Result<Recording> RecordAngles(const SyntheticOptions& options) {
@@ -309,7 +329,34 @@ Result<Recording> RecordAngles(const SyntheticOptions& options) {
   recording.value.resize(recording.time.size());
   for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = arc->Angle(point->x[i], point->y[i]);
   recording.arc = *std::move(arc);
+  recording.stated_sensor = IdealSensor();
   return MakeRecording(std::move(recording));
+}
+
+/// The mean of the readings about one sampling instant.
+double MeanReading(const SyntheticOptions& options, const Trajectory& trajectory, double time, NormalDraws& draw,
+                   std::mt19937_64& generator) {
+  const int n = options.oversample;
+  double sum = 0;
+  for (int k = 0; k < n; ++k) {
+    const double instant = std::max(time + ((k + 0.5) / n - 0.5) * options.averaging_window, options.start_time);
+    const double value = TrueReading(options, trajectory, instant) + options.noise * draw(generator);
+    sum += SensorReading(value, options.resolution, options.range);
+  }
+  return sum / n;
+}
+
+/// Sets the samples of a recording whose rows are means.
+void SetMeans(const SyntheticOptions& options, const Trajectory& trajectory, std::mt19937_64& generator,
+              Recording& recording) {
+  NormalDraws draw;
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    recording.value[i] = MeanReading(options, trajectory, recording.time[i], draw, generator);
+  }
+  const double half = 0.5 * options.averaging_window;
+  const double level = options.range ? options.range->low : 0;
+  recording.oversampling = {options.oversample, AveragingWindow{-half, half}, options.resolution, level, true};
+  recording.resolution = options.resolution / options.oversample;
 }
 
 }  // namespace
@@ -346,10 +393,12 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   const Eigen::VectorXd noise = NoiseSamples(options, *count, generator);
   Recording recording;
   recording.time = SamplingInstants(options, *count, generator);
-  const Result<Trajectory> trajectory = TraceStart(options, recording.time[*count - 1]);
+  const double end = recording.time[*count - 1];
+  const Result<Trajectory> trajectory = TraceStart(options, end + 0.5 * options.averaging_window);
   if (!trajectory) return tl::unexpected(trajectory.error());
 
   recording.quantity = options.quantity;
+  recording.stated_sensor = IdealSensor();
   recording.unit = UnitOf(options);
   recording.shows_gravity = options.quantity != Quantity::kAcceleration || options.sensor.gravity > 0;
   recording.resolution = options.resolution;
@@ -362,7 +411,8 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
     return MakeRecording(std::move(recording));
   }
   recording.value.resize(*count);
-  for (Eigen::Index i = 0; i < *count; ++i) {
+  if (options.oversample > 1) SetMeans(options, *trajectory, generator, recording);
+  for (Eigen::Index i = 0; i < *count && options.oversample == 1; ++i) {
     const double truth = TrueReading(options, *trajectory, recording.time[i]);
     recording.value[i] = SensorReading(truth + noise[i], options.resolution, options.range);
     recording.value[i] += LostOffsetBefore(options, recording.time[i]);

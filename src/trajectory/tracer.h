@@ -26,6 +26,7 @@ class Tracer {
         options_(options),
         order_(OrderForTolerance(options.tolerance)),
         longest_step_(0.5 * kPi * std::sqrt(values_.inertia / LargestStiffness(values_))),
+        rate_tolerance_(kRateShare * options.tolerance / longest_step_),
         visit_(visit) {}
 
   TraceSummary Run(const Start<T>& start) {
@@ -37,6 +38,12 @@ class Tracer {
   }
 
  private:
+  /// The error of the rate grows with 1 / step. With most laws a step takes a good part of a swing, and the tolerance
+  /// of the angle limits both. Where a law changes quickly, steps are short, and the rate has a tolerance of its own:
+  /// its error lasts for the rest of the swing.
+  static constexpr bool kHasShortSteps = HasSpecialRates<F> || FrictionWithState<F>;
+  static constexpr double kRateShare = 3;
+
 #ifdef PENDULUM_HAS_AVX
   [[PENDULUM_AVX2, gnu::flatten]] TraceSummary RunAvx2(const Start<T>& start) { return RunGeneric(start); }
   [[PENDULUM_AVX512, gnu::flatten]] TraceSummary RunAvx512(const Start<T>& start) { return RunGeneric(start); }
@@ -54,6 +61,11 @@ class Tracer {
   TraceSummary RunGeneric(const Start<T>& start) {
     Expander expander(pendulum_, segment_);
     StateOf<F, T> state{T(start.time), start.angle, start.rate};
+    if constexpr (FrictionWithState<F>) {
+      const double last = Value(start.rate) != 0 ? Value(start.rate) : Value(start.angle);
+      std::ranges::transform(F::SlidingStates(std::copysign(1.0, last)), state.friction.begin(),
+                             [](double x) { return T(x); });
+    }
     if (start.kind == StartKind::kRelease && start.time > options_.begin)
       VisitRest(options_.begin, start.time, start.angle);
     double direction = Direction(state);
@@ -84,7 +96,8 @@ class Tracer {
     if constexpr (FrictionWithState<F>) {
       return F::TorqueAt(Values(state.friction), values_.friction.data());
     } else {
-      return F::Torque(0.0, direction, values_.friction.data());
+      const double load = LoadAt(values_, Value(state.angle), 0);
+      return TorqueUnder<F>(load, 0.0, direction, values_.friction.data());
     }
   }
 
@@ -94,20 +107,22 @@ class Tracer {
     const RateSeries<T>& rate = expander.rate;
     while (Value(state.time) < options_.end) {
       expander.expansion.Expand(direction, state);
-      const double step = StepLength(segment_.angle, order_, options_.tolerance, longest_step_);
+      double step = StepLength(segment_.angle, order_, options_.tolerance, longest_step_);
+      if constexpr (kHasShortSteps) step = StepLength(rate.value, order_ - 1, rate_tolerance_, step);
       if (!(step > 0) || ++summary_.steps > options_.max_steps) {
         summary_.outcome = TraceSummary::Outcome::kNotTraceable;
         return false;
       }
-      const double end_rate = EvaluateSeries(rate.value, order_ - 1, step);
-      const double root = FirstReversal(rate.value, order_ - 1, direction, step, end_rate);
-      const double length = root > 0 ? root : step;
+      const auto [whole, end_rate] = UpToChange(direction, step, expander);
+      const double root = FirstSignChange(rate.value, order_ - 1, direction, whole, end_rate);
+      const double length = root > 0 ? root : whole;
       StateOf<F, T> next{state.time + length, T(EvaluateSeries(segment_.angle, order_, length)), T(end_rate)};
       if constexpr (DualNumber<T>) {
         next.angle.v = EvaluateSeries(segment_.partials, order_, length);
         next.rate.v = EvaluatePartials(rate.dual, order_ - 1, length);
       }
-      if constexpr (FrictionWithState<F>) next.friction = expander.expansion.FrictionStatesAt(length);
+      if constexpr (FrictionWithState<F>)
+        next.friction = expander.expansion.FrictionStatesAfter(next.angle - state.angle);
       VisitSwing(state.time, length);
       state = next;
       if (root > 0) {
@@ -118,11 +133,22 @@ class Tracer {
     return true;
   }
 
+  /// The part of a step up to the first instant at which the law changes its character, or all of it.
+  RatePassage UpToChange(double direction, double step, const Expander& expander) const {
+    const Series<double>& rate = expander.rate.value;
+    if constexpr (HasLoad<F>) step = UpToNoLoad(expander.expansion.load(), order_ - 1, step);
+    const RatePassage whole = {step, EvaluateSeries(rate, order_ - 1, step)};
+    if constexpr (HasSpecialRates<F>) {
+      return FirstPassage(rate, order_ - 1, direction, whole, F::SpecialRates(values_.friction.data()));
+    }
+    return whole;
+  }
+
   void Reverse(double direction, StateOf<F, T>& state) {
     const double gravity = values_.gravity.Torque(Value(state.angle));
     const double torque = gravity + FrictionAtReversal(direction, state);
     state = StateAtReversal(state, -torque / values_.inertia);
-    RecordReversal(gravity);
+    RecordReversal(gravity, Value(state.angle));
   }
 
   void VisitSwing(const T& start, double length) {
@@ -134,11 +160,12 @@ class Tracer {
 
   /// Counts a reversal. The margin is the difference between gravity and the friction that could hold the pendulum
   /// there. Friction with states cannot hold the pendulum.
-  void RecordReversal(double gravity) {
+  void RecordReversal(double gravity, double angle) {
     ++summary_.reversals;
     if constexpr (FrictionWithState<F>) return;
     const double direction = gravity > 0 ? -1.0 : 1.0;
-    const double holding = direction * F::Torque(0.0, direction, values_.friction.data());
+    const double holding =
+        direction * TorqueUnder<F>(LoadAt(values_, angle, 0), 0.0, direction, values_.friction.data());
     summary_.smallest_reversal_margin =
         std::min(summary_.smallest_reversal_margin, std::abs(std::abs(gravity) - holding));
   }
@@ -164,6 +191,7 @@ class Tracer {
   const TraceOptions& options_;
   const int order_;
   const double longest_step_;
+  const double rate_tolerance_;
   const SegmentVisitor<T>& visit_;
   Segment<T> segment_;
   TraceSummary summary_;

@@ -93,6 +93,7 @@ TEST(RunHead, ReportsUnusualConditions) {
   description.clock.is_measured = true;
   EXPECT_THAT(RunHead(description, {1250, 16}),
               AllOf(HasSubstr("# each row is the mean of 16 conversions\n"), HasSubstr("# sample_rate_hz: 100\n"),
+                    HasSubstr("# oversample: 16\n# window_s: -0.005,0.005\n"),
                     HasSubstr("# the logger's message about the end of the run did not arrive\n"),
                     HasSubstr("# lost_samples: 3\n"), HasSubstr("# the clock was compared with the host's"),
                     EndsWith("\ntime_s,adc_counts\n")));

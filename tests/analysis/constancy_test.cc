@@ -38,6 +38,16 @@ Constancy TestRun(const SyntheticOptions& run, std::string_view model, const std
   return TestFit(FitTo(run, model, rig), ModelOptions(model));
 }
 
+/// 30 s whose readings are all 2 % too large, by a sensor whose gain is known to 1 %.
+Recording TooLarge() {
+  SyntheticOptions run = NoisyTextbookRun("coulomb");
+  run.duration = 30;
+  Recording recording = Must(SimulateRecording(run));
+  recording.value *= 1.02;
+  recording.sensor_errors.Of(SensorEffect::kGain) = {0.01, "assumed"};
+  return recording;
+}
+
 /// Two recordings joined; the second has `second_inertia` times the inertia.
 Recording JoinedAt(double second_inertia) {
   SyntheticOptions run = NoisyTextbookRun("viscous");
@@ -61,6 +71,18 @@ Recording JoinedAt(double second_inertia) {
   joined.time << first.time, second.time;
   joined.value << first.value, second.value;
   return joined;
+}
+
+// Readings that are too large make the period depend on amplitude in another way than that of the model.
+TEST(TestConstancy, TestsTheCorrectedReadings) {
+  const FitOptions options = ModelOptions("coulomb");
+  const FitOfRun run = FitTo(TooLarge(), options);
+  ASSERT_GT(run.fit.correction.size(), 0);
+  const Constancy corrected = TestFit(run, options);
+  EXPECT_TRUE(corrected.constant()) << corrected.verdict;
+  FitOptions as_recorded = options;
+  as_recorded.search.may_correct = false;
+  EXPECT_FALSE(TestFit(FitTo(TooLarge(), as_recorded), as_recorded).constant());
 }
 
 TEST(Constancy, IsConfirmedForTheRightLaw) {

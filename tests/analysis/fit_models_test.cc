@@ -64,6 +64,16 @@ TEST(FitModels, UsesTheSameStartForAllModels) {
   }
 }
 
+TEST(FitModels, CorrectsTheReadingsOfALawAloneButNotOfSeveral) {
+  SyntheticOptions run = NoisyRun();
+  run.duration = 30;
+  Recording recording = Must(SimulateRecording(run));
+  recording.value *= 1.02;
+  recording.sensor_errors.Of(SensorEffect::kGain) = {0.01, "assumed"};
+  EXPECT_EQ(FitAll(recording, {"coulomb"}).fits[0].correction.size(), recording.size());
+  for (const FitReport& fit : FitAll(recording, {"coulomb", "drag"}).fits) EXPECT_EQ(fit.correction.size(), 0);
+}
+
 // Sampled once per second at 0.76 Hz: every model must search the aliased frequency itself.
 TEST(FitModels, FindsOneFrequencyForAnUndersampledSwing) {
   SyntheticOptions run = TextbookRun("coulomb");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -131,10 +132,46 @@ TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
   const double change = std::hypot(0.03, 0.03);  // sum of squares over 2 - 1
   Constancy constant;
   constant.halves = {{"inertia", "s^2", inertia.estimate, inertia.estimate, 1e-6, 1e-6, 0}};
-  AddInconstancyError({{first, changing}, {second, constant}}, joint);
+  AddInconstancyError({{first, changing}, {second, constant}}, {}, joint);
   EXPECT_NEAR(SystematicError(joint.whole, "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_NEAR(SystematicError(joint.runs[1], "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_TRUE(joint.whole.HasWarning("not_constant"));
+}
+
+SharedParameter Between(double p, double between) {
+  SharedParameter shared;
+  shared.name = "inertia";
+  shared.p = p;
+  shared.scatter.between = between;
+  return shared;
+}
+
+// Short recordings show no change within them, but they can differ. Differences that chance explains are no change.
+TEST(Inconstancy, OfShortRecordingsIsTheirScatter) {
+  const FitReport alone = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
+  Constancy untested;
+  for (const auto& [p, expected] : {std::pair(1e-6, 0.002), std::pair(0.3, 0.0)}) {
+    JointFit joint;
+    joint.whole = alone;
+    joint.runs = {alone, alone};
+    AddInconstancyError({{alone, untested}, {alone, untested}}, {Between(p, 0.002)}, joint);
+    EXPECT_EQ(SystematicError(joint.whole, "inertia"), expected);
+    EXPECT_EQ(SystematicError(joint.runs[0], "inertia"), expected);
+    EXPECT_EQ(joint.whole.HasWarning("not_constant"), expected > 0);
+  }
+}
+
+// A window that shows a friction of -0.01 shows that there is little, not that it may be as much as 0.01 larger.
+TEST(Inconstancy, DoesNotCountFrictionBelowZero) {
+  FitReport fit = FitTo(NoisyTextbookRun("coulomb"), "coulomb", {}).fit;
+  const double friction = fit.Find("coulomb")->estimate;
+  Constancy constancy;
+  constancy.windows = {{0, 5, 0.4, 0.0438, 1e-5, friction, 1e-6},
+                       {5, 10, 0.3, 0.0438, 1e-5, friction, 1e-6},
+                       {10, 15, 0.2, 0.0438, 1e-5, -0.01, 1e-6}};
+  constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1}};
+  AddInconstancyError(constancy, fit);
+  EXPECT_NEAR(SystematicError(fit, "coulomb"), friction / std::sqrt(2.0), 1e-3 * friction);
 }
 
 TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {

@@ -62,9 +62,10 @@ TEST(Recommend, ChoosesTheSimplestLawWithinTwoOfTheSmallestBic) {
   EXPECT_EQ(Recommended({{"viscous", 51, 1}, {"coulomb", 51.9, 1}, {"drag", 50, 1}}).recommended, "viscous");
 }
 
-TEST(Recommend, ChoosesTheSmallerBicOfTwoEquallySimpleLaws) {
-  EXPECT_EQ(Recommended({{"asymmetric", 51, 1}, {"drag", 50, 1}}).recommended, "drag");
-  EXPECT_EQ(Recommended({{"asymmetric", 50, 1}, {"drag", 51, 1}}).recommended, "asymmetric");
+TEST(Recommend, ChoosesTheMoreCommonOfTwoEquallySimpleLaws) {
+  EXPECT_EQ(Recommended({{"load", 50, 1}, {"coulomb", 51.9, 1}}).recommended, "coulomb");
+  EXPECT_EQ(Recommended({{"load", 50, 1}, {"coulomb", 52.1, 1}}).recommended, "load");
+  EXPECT_EQ(Recommended({{"asymmetric", 50, 1}, {"drag", 51, 1}}).recommended, "drag");
 }
 
 TEST(Recommend, GivesItsReasonInWords) {

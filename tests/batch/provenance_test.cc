@@ -103,6 +103,15 @@ std::vector<Change> ChangesOfTheFit() {
       {"max_trace_error", [](IdentifyOptions& o) { o.fit.search.max_trace_error = 1e-9; }},
       {"max_iterations", [](IdentifyOptions& o) { o.fit.search.max_iterations = 7; }},
       {"max_traces", [](IdentifyOptions& o) { o.fit.search.max_traces = 7; }},
+      {"oversample", [](IdentifyOptions& o) { o.read.oversample = 4; }},
+      {"window_s",
+       [](IdentifyOptions& o) {
+         o.read.averaging_window = AveragingWindow{-0.001, 0.001};
+       }},
+      {"sensor",
+       [](IdentifyOptions& o) {
+         o.sensor = SensorStatement{"gyro", {}, "given by --sensor"};
+       }},
   };
 }
 
@@ -123,18 +132,19 @@ TEST(OptionsJson, DependsOnEveryOption) {
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
 // the reader is that of the swing; `notes` are warnings; a rig chooses the gravity, and `is_spring` is set, only by
 // what `gravity` and the models say; `preview` receives what the reader sees;
-// users cannot set `start_values` and `sensor_start`; `shared` is for joint identifications, of which a batch has none.
+// users cannot set `start_values` and `sensor_start`, and `may_correct` follows from `models`; `shared` is for joint
+// identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
-  [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, rig_values, notes,
-                          shared] = options;
-  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, window,
-                          most_unpacked_bytes, preview] = read;
+  [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, rig_values, sensor,
+                          notes, shared] = options;
+  [[maybe_unused]] auto& [time_column, value_column, unit, sample_rate_hz, calibration, resolution, range, oversample,
+                          averaging_window, window, most_unpacked_bytes, preview] = read;
   [[maybe_unused]] auto& [from, to, release, is_spring] = swing;
   [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
                           seed, threads, progress, search, stop] = fit;
-  [[maybe_unused]] auto& [start_values, sensor_start, vibration_period, max_trace_error, max_iterations, max_traces] =
-      search;
+  [[maybe_unused]] auto& [start_values, sensor_start, vibration_period, max_trace_error, max_iterations, max_traces,
+                          may_correct] = search;
 }
 
 TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {

@@ -104,7 +104,7 @@ TEST_P(AtRate, EveryCodeOfAMinuteArrivesAtItsTime) {
 INSTANTIATE_TEST_SUITE_P(Boards, AtRate,
                          testing::Combine(testing::Values("uno", "mega"), testing::Values(200.0, 1000.0),
                                           testing::Values(1)));
-INSTANTIATE_TEST_SUITE_P(Oversampling, AtRate,
+INSTANTIATE_TEST_SUITE_P(Oversampled, AtRate,
                          testing::Values(std::tuple("uno", 200.0, 16), std::tuple("uno", 1000.0, 8)));
 
 TEST(PendulumLogger, CountsOverloadAndKeepsOtherSamplesRight) {

@@ -25,13 +25,13 @@ inline Calibration CountsToDegrees() {
 inline ReadOptions Options(std::uint8_t choice) {
   const std::array<ReadOptions, 8> options = {
       ReadOptions(),
-      ReadOptions{"", "", "deg", 100, {}, 0.5, {}},
-      ReadOptions{"1", "2", "counts", 0, CountsToDegrees(), {}, {}},
-      ReadOptions{"1:ms", "", "rad", 0, {}, 0.0, SensorRange{-1, 1}},
-      ReadOptions{"none", "", "", 50, {}, {}, {}},
-      ReadOptions{"", "2", "", 0, CountsToDegrees(), 1.0, SensorRange{0, 1023}},
-      ReadOptions{"time_s", "angle_deg", "", 0, {}, {}, {}},
-      ReadOptions{"", "1", "volts", 0, {}, {}, SensorRange{0, 5}},
+      ReadOptions{"", "", "deg", 100, {}, 0.5, {}, 0, {}},
+      ReadOptions{"1", "2", "counts", 0, CountsToDegrees(), {}, {}, 4, AveragingWindow{-0.001, 0.001}},
+      ReadOptions{"1:ms", "", "rad", 0, {}, 0.0, SensorRange{-1, 1}, 1, {}},
+      ReadOptions{"none", "", "", 50, {}, {}, {}, 0, {}},
+      ReadOptions{"", "2", "", 0, CountsToDegrees(), 1.0, SensorRange{0, 1023}, 16, {}},
+      ReadOptions{"time_s", "angle_deg", "", 0, {}, {}, {}, 0, {}},
+      ReadOptions{"", "1", "volts", 0, {}, {}, SensorRange{0, 5}, 0, {}},
   };
   return options.at(choice % options.size());
 }

@@ -215,6 +215,9 @@ inline Identification ExampleIdentification() {
   report.data.to = 19.5;
   report.data.resolution = kRadFromDeg / 4;
   report.data.resolution_source = "found";
+  report.data.sensor.kind = "potentiometer";
+  report.data.sensor.Of(SensorEffect::kGain) = {0.0078125, "calibration"};
+  report.data.sensor.Of(SensorEffect::kLag) = {0.001, "assumed for a potentiometer"};
   report.data.begins = "held, then released";
   report.data.ends = "the end of the recording";
   report.data.releases = {{1.5, 19.5}};

@@ -102,7 +102,7 @@ TEST(RecordingLabel, DistinguishesReleasesOfOneFile) {
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 
-TEST(MainFit, IsTheRecommendedOrTheFirstConvergedFit) {
+TEST(MainFit, IsTheRecommendedOrTheConvergedFitWithTheSmallestResiduals) {
   Identification report = ExampleComparedIdentification();
   EXPECT_EQ(report.MainFit(), 0);
   report.comparison->recommended = "drag";
@@ -110,9 +110,16 @@ TEST(MainFit, IsTheRecommendedOrTheFirstConvergedFit) {
   EXPECT_TRUE(report.IsShownInFull(1));
   EXPECT_FALSE(report.IsShownInFull(0));
   report.comparison->recommended.clear();
-  std::swap(report.fits[0], report.fits[1]);
+  report.fits[0].statistics.rms_residual = 0.002;
+  report.fits[1].statistics.rms_residual = 0.001;
+  report.fits[0].termination = report.fits[1].termination = Termination::kConverged;
   EXPECT_EQ(report.MainFit(), 1);
   report.fits[1].termination = Termination::kNotIdentifiable;
+  EXPECT_EQ(report.MainFit(), 0);
+  report.fits[0].termination = Termination::kNotIdentifiable;
+  EXPECT_EQ(report.MainFit(), 1);
+  report.fits[1].termination = Termination::kFailed;  // without residuals
+  report.fits[1].statistics = {};
   EXPECT_EQ(report.MainFit(), 0);
 }
 

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "pendulum/identify/identify.h"
+#include "pendulum/recording/sensor_statement.h"
+
 namespace pendulum::prepared_recording_test {
 namespace {
 
@@ -50,6 +53,24 @@ class PrepareFileTest : public testing::Test {
     return PrepareFile(path_, {}, rig);
   }
 
+  /// The names of the effects in the result of the fit of such a copy, with their sizes and sources, and the warnings.
+  std::string SensorOf(const std::string& line, const std::string& given) const {
+    std::ifstream rows("datasets/runs_1.csv");
+    std::string text = line + '\n';
+    for (std::string row; std::getline(rows, row);) text += row.starts_with("# sensor") ? "" : row + '\n';
+    std::ofstream(path_) << text;
+    IdentifyOptions options;
+    options.models = {"coulomb"};
+    options.closed_form_only = true;
+    if (!given.empty()) options.sensor = ParseSensorStatement(given, "x", "given by --sensor").value();
+    auto prepared = PrepareFile(path_, options, std::nullopt);
+    const auto result = IdentifyEach(options, *std::move(prepared));
+    const SensorErrors& sensor = result.front().value().data.sensor;
+    std::string summary = sensor.kind + ", gain: " + sensor.Of(SensorEffect::kGain).source;
+    for (const Warning& warning : result.front()->warnings) summary += ", " + warning.code;
+    return summary;
+  }
+
   const std::string path_ = testing::TempDir() + "prepared_recording_test_" + std::to_string(getpid()) + ".csv";
 };
 
@@ -75,6 +96,13 @@ TEST_F(PrepareFileTest, NamesWrongRigMetadata) {
   ASSERT_FALSE(one);
   EXPECT_EQ(one.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(one.error().message, StartsWith(path_ + ": # rig"));
+}
+
+TEST_F(PrepareFileTest, DecidesTheSensor) {
+  EXPECT_EQ(SensorOf("# a comment", ""), "angle sensor, gain: assumed for an angle sensor");
+  EXPECT_EQ(SensorOf("# sensor: encoder", ""), "encoder, gain: assumed for an encoder");
+  EXPECT_EQ(SensorOf("# a comment", R"({"gain": 0.01})"), "angle sensor, gain: given by --sensor");
+  EXPECT_EQ(SensorOf("# sensor: encoder", "ideal"), "ideal, gain: given by --sensor, sensor_replaced");
 }
 
 TEST_F(PrepareFileTest, HasNoRigWithoutADescription) {

@@ -47,8 +47,9 @@ TEST(MotionModels, LinearIsViscousFrictionWithLinearGravity) {
 TEST(MotionModels, CombineFrictionAndGravityLawsThatAFitCanDetermine) {
   std::set<std::pair<std::string_view, std::string_view>> pairs;
   for (const MotionModel& model : MotionModels()) pairs.emplace(model.gravity.name(), model.friction);
-  EXPECT_EQ(pairs.size(), GravityModels::kNames.size() * FrictionModels::kNames.size() - 1);
+  EXPECT_EQ(pairs.size(), GravityModels::kNames.size() * FrictionModels::kNames.size() - 2);
   EXPECT_EQ(pairs.count({"linear", "asymmetric"}), 0);
+  EXPECT_EQ(pairs.count({"linear", "load"}), 0);
   EXPECT_EQ(pairs.size(), MotionModels().size());
   const Result<MotionModel> model = FindMotionModel("linear_coulomb");
   ASSERT_TRUE(model);
@@ -71,7 +72,7 @@ TEST(FindMotionModels, GiveEachFrictionLawTheRequestedGravity) {
   EXPECT_THAT(Names(*FindMotionModels("linear_drag", Gravity::kLinear)), ElementsAre("linear_drag"));
   EXPECT_THAT(Names(*FindMotionModels("coulomb", Gravity::kSine)), ElementsAre("coulomb"));
   EXPECT_THAT(Names(*FindMotionModels("all", Gravity::kLinear)),
-              ElementsAre("linear", "linear_coulomb", "linear_drag", "linear_stribeck"));
+              ElementsAre("linear", "linear_coulomb", "linear_drag", "linear_stribeck", "linear_dahl"));
 }
 
 TEST(FindMotionModels, RefuseAModelThatContradictsTheGravity) {

@@ -47,6 +47,18 @@ TEST(FindNesting, NamesTheParameterUndefinedInTheSimplerLaw) {
   const auto asymmetric = Between("viscous", "asymmetric");
   ASSERT_TRUE(asymmetric);
   EXPECT_THAT(asymmetric->unidentified, ElementsAre("asymmetry"));
+  const auto dahl = Between("viscous", "dahl");
+  ASSERT_TRUE(dahl);
+  EXPECT_THAT(dahl->unidentified, ElementsAre("presliding_angle"));
+}
+
+// Dry friction that builds up over no angle is that of the law coulomb.
+TEST(FindNesting, CountsAParameterThatActsOnlyAfterAReversal) {
+  const auto nesting = Between("coulomb", "dahl");
+  ASSERT_TRUE(nesting);
+  EXPECT_EQ(nesting->bounded, 1);
+  EXPECT_EQ(nesting->free, 0);
+  EXPECT_THAT(nesting->unidentified, IsEmpty());
 }
 
 TEST(FindNesting, FindsNoNestingInItselfOrASimplerLaw) {

@@ -12,11 +12,14 @@ namespace pendulum {
 /// Parameters for any friction law, including laws added later. Each torque coefficient alone gives about `torque` (in
 /// units of the restoring torque G) at rest or at 1 rad/s. The torques increase by a quarter of `torque` from one to
 /// the next, so that no two cancel. A parameter that is not a torque, such as a reference rate, is 1, or a quarter of
-/// its upper bound if that is finite. Ordered parameters keep their order.
+/// its upper bound if that is finite; an angle is 0.05 rad. Ordered parameters keep their order.
 template <FrictionModel F>
 std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
   const auto clamp = [](double value, const ParameterInfo& info) { return std::clamp(value, info.lower, info.upper); };
-  const auto shape = [](const ParameterInfo& info) { return std::isfinite(info.upper) ? 0.25 * info.upper : 1.0; };
+  const auto shape = [](const ParameterInfo& info) {
+    if (info.unit == "rad") return 0.05;
+    return std::isfinite(info.upper) ? 0.25 * info.upper : 1.0;
+  };
   std::array<double, kFrictionParameters<F>> none{};
   for (int i = 0; i < kFrictionParameters<F>; ++i) {
     if (!F::kParameters[i].scales_with_gravity()) none[i] = shape(F::kParameters[i]);
@@ -39,7 +42,7 @@ std::array<double, kFrictionParameters<F>> TypicalFriction(double torque) {
 /// Whether the law can hold the pendulum at rest.
 template <FrictionModel F>
 bool HasDryFriction() {
-  return F::Torque(0.0, 1.0, TypicalFriction<F>(1.0).data()) > 0;
+  return !HasState<F> && F::Torque(0.0, 1.0, TypicalFriction<F>(1.0).data()) > 0;
 }
 
 }  // namespace pendulum

@@ -66,10 +66,10 @@ TEST(ToJson, NamesTheRecordingOfAJointFitsWarning) {
 
 TEST(JointFitJson, KeepsTheOrderOfKeys) {
   const Json fit = JointFitJson(ExampleJointIdentification(), 0);
-  EXPECT_THAT(Keys(fit),
-              ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
-                          "correlation", "systematic_covariance", "std_error_method", "interval_method",
-                          "identifiability", "statistics", "homogeneity", "runs", "solver", "summary"));
+  EXPECT_THAT(Keys(fit), ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived",
+                                     "covariance", "correlation", "systematic_covariance", "std_error_method",
+                                     "interval_method", "identifiability", "statistics", "homogeneity", "rig_verdict",
+                                     "ambiguities", "runs", "solver", "summary"));
   EXPECT_THAT(Keys(fit["parameters"]), ElementsAre("inertia", "viscous", "coulomb"));
   EXPECT_EQ(fit["shared"].dump(), R"(["inertia","viscous","coulomb"])");
   EXPECT_EQ(fit["correlation"].dump(), R"({"names":["inertia","viscous"],"matrix":[[1.0,0.5],[0.5,1.0]]})");

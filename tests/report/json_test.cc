@@ -46,7 +46,8 @@ TEST(ToJson, KeepsTheOrderOfKeys) {
   EXPECT_THAT(Keys(json["fits"][0]),
               ElementsAre("model", "status", "reason", "equation", "parameters", "derived", "covariance", "correlation",
                           "noise", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
-                          "statistics", "closed_form", "constancy", "solver", "summary"));
+                          "statistics", "closed_form", "constancy", "rig_verdict", "ambiguities", "suspicions",
+                          "solver", "summary"));
   EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
               ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
   EXPECT_EQ(json["tool"]["version"], kVersion);
@@ -119,11 +120,10 @@ TEST(ToJson, GivesEachEndOfDerivedIntervals) {
 
 TEST(ToJson, NamesTheNoiseFamily) {
   Identification report = ExampleIdentification();
-  const std::pair<NoiseFamily, const char*> named[] = {{NoiseFamily::kGaussian, "gaussian"},
-                                                       {NoiseFamily::kQuantized, "quantized"},
-                                                       {NoiseFamily::kHuber, "huber"},
-                                                       {NoiseFamily::kStudent, "student"},
-                                                       {NoiseFamily::kEdges, "edges"}};
+  const std::pair<NoiseFamily, const char*> named[] = {
+      {NoiseFamily::kGaussian, "gaussian"}, {NoiseFamily::kQuantized, "quantized"},
+      {NoiseFamily::kHuber, "huber"},       {NoiseFamily::kStudent, "student"},
+      {NoiseFamily::kEdges, "edges"},       {NoiseFamily::kAveraged, "averaged"}};
   for (const auto& [family, name] : named) {
     report.fits[0].noise.family = family;
     EXPECT_EQ(ToJson(report)["fits"][0]["noise"]["model"], name);

@@ -76,6 +76,31 @@ TEST(SummarizeFit, SaysWhyThereIsNoError) {
   EXPECT_EQ(Find(summary.parameters, "zero_angle").error, "");
 }
 
+// The fitted inertia is 0.079 ± 0.00025 kg m² with the error of the torque, 1 %.
+TEST(SummarizeFit, SaysThatTheRigDisagrees) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].warnings.clear();
+  identification.warnings = {{"inertia_differs_from_rig", "the fitted inertia is 13 % larger than the rig's"}};
+  identification.rig = ParseRig(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.018},
+                                    "inertia": {"value": 0.070, "std_dev": 0.0005}})",
+                                "rig")
+                           .value();
+  const FitSummary summary = SummarizeFit(identification, 0);
+  EXPECT_THAT(summary.verdict,
+              HasSubstr("The rig disagrees: the fitted inertia is 13 % larger than its own (z 9.3), by "));
+  EXPECT_EQ(summary.emphasis, Emphasis::kCaution);
+  EXPECT_THAT(summary.warnings, IsEmpty());  // the verdict says it
+}
+
+TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
+  Identification identification = ExampleIdentification();
+  identification.constancy = {Constancy{}};
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("Constancy")));
+  identification.constancy[0].reason = "9 half swings are too few for halves; 12 are needed; 9 half swings are too few";
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks,
+              HasSubstr("Constancy is not tested (9 half swings are too few): another recording may differ by more"));
+}
+
 TEST(SummarizeFit, GivesAnglesInDegrees) {
   const SummaryQuantity angle = Find(SummarizeFit(ExampleIdentification(), 0).parameters, "release_angle");
   EXPECT_EQ(angle.unit, "deg");
@@ -87,6 +112,7 @@ TEST(SummarizeFit, GivesAnglesInDegrees) {
 
 TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
   Identification identification = ExampleIdentification();
+  identification.rig.reset();  // its inertia disagrees
   EXPECT_THAT(SummarizeFit(identification, 0).verdict,
               StartsWith("The law coulomb does not describe all of the readings"));
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);

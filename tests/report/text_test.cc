@@ -89,6 +89,33 @@ constexpr const char* kWholeFit = R"([[Data]]
     th in rad from hanging straight down, torques in N m.
 [[Constancy]]
     inertia and friction are constants of the recording.
+[[What the residuals suggest]]
+    No cause outside the law is significant.
+[[What one swing cannot tell]]
+    The fitted inertia is 3.9 % larger than the rig's (z 4.2), more than all
+    errors allow: a wrong mass or length, a support that yields, the extent of
+    the bob, or gears and a motor can cause this, and one swing cannot tell
+    which; record a swing with another bob mass, and check the rig's values.
+  - A support that yields (stand, table, camera arm): the fitted inertia is an
+    effective one, larger than that of the pendulum. Swing another bob mass at
+    the same place: the added inertia grows with the square of the mass, the
+    pendulum's own with the mass. Or clamp the support, or read a second sensor
+    on it.
+  - A spring, cable or hose that adds torque at the axis: the fitted inertia and
+    friction are too small by the spring's share of G: 1 % of G makes 1 % less.
+    Swing another bob mass: G changes, the spring does not. Or compare a small
+    swing with a large one, with a sensor whose gain is known: only gravity
+    makes large swings slower. With this noise a swing of 90 deg beside a small
+    one shows a spring from 4.4 % of G on; simulate_pendulum --plan gives the
+    errors of other swings.
+  - A wrong mass or length: only ratios to G follow from the swing: inertia and
+    all friction torques have the relative error of G. Weigh the pendulum held
+    horizontal: force times distance from the axis is G. Or add a known mass at
+    a known distance and swing again.
+  - Gears, a belt or a motor at the axis: the fitted inertia and friction
+    include theirs: inertia and viscous friction times the square of the gear
+    ratio, dry friction times the ratio. Swing without them, or with two bob
+    masses: the inertia that remains for no mass is theirs.
 [[Warnings]]
   - there is a gap of 0.5 s after 7 s
   - the residuals are not white; friction may be of another kind
@@ -108,7 +135,8 @@ TEST(ToText, ShowsClosedFormsAfterTheFit) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
   EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Fit", "Parameters", "Derived quantities", "Correlations",
-                                    "Noise and statistics", "Equation of motion", "Constancy", "Closed forms",
+                                    "Noise and statistics", "Equation of motion", "Constancy",
+                                    "What the residuals suggest", "What one swing cannot tell", "Closed forms",
                                     "Closed forms against the fit", "Turning points", "Warnings"));
 }
 
@@ -234,10 +262,11 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
-  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
-                                    "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
-                                    "Constancy", "Parameters of drag", "Closed forms",
-                                    "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
+  EXPECT_THAT(sections,
+              ElementsAre("Data", "Sampling", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
+                          "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
+                          "Constancy", "What the residuals suggest", "What one swing cannot tell", "Parameters of drag",
+                          "Closed forms", "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
 }
 
 TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {

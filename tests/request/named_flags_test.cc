@@ -29,16 +29,16 @@ void ExpectRefused(const Result<Flags>& flags, const std::string& message) {
 
 // The flags of the tools without files and threads, which a remote client must not set.
 TEST(FlagNames, MatchTheFlagsOfTheTools) {
-  EXPECT_THAT(RunFlagNames(),
-              UnorderedElementsAre("model", "models", "start", "release", "from", "to", "fix", "init", "bounds",
-                                   "prior", "time_column", "value_column", "unit", "sample_rate_hz", "resolution",
-                                   "range", "noise", "loss", "interval", "checks", "seed", "closed_form_only",
-                                   "gravity", "bob_mass", "rod_mass", "rod_length", "g", "gravity_torque", "mass",
-                                   "center_of_mass", "stiffness", "length", "inertia"));
+  EXPECT_THAT(RunFlagNames(), UnorderedElementsAre(
+                                  "sensor", "model", "models", "start", "release", "from", "to", "fix", "init",
+                                  "bounds", "prior", "time_column", "value_column", "unit", "sample_rate_hz",
+                                  "resolution", "range", "oversample", "window_s", "noise", "loss", "interval",
+                                  "checks", "seed", "closed_form_only", "gravity", "bob_mass", "rod_mass", "rod_length",
+                                  "g", "gravity_torque", "mass", "center_of_mass", "stiffness", "length", "inertia"));
   EXPECT_THAT(SimulationFlagNames(),
               IsSupersetOf({"model", "gravity", "set", "unit", "duration", "rate", "jitter", "start_time", "noise",
                             "noise_correlation", "noise_freedom", "resolution", "range", "lose", "event_driven",
-                            "time_noise", "seed"}));
+                            "time_noise", "oversample", "window_s", "seed"}));
   EXPECT_THAT(SimulationFlagNames(), Not(Contains("out")));
   EXPECT_THAT(CalibrationFlagNames(), UnorderedElementsAre("order", "input_range", "bits"));
 }
@@ -142,6 +142,8 @@ TEST(SimulationFlagsOf, AcceptsTextsNumbersAndIntegers) {
                                         {"resolution", "0.0625"},
                                         {"event_driven", "true"},
                                         {"time_noise", "0.03125"},
+                                        {"oversample", "16"},
+                                        {"window_s", "0.001953125"},
                                         {"seed", "18446744073709551615"}});
   ASSERT_TRUE(flags) << flags.error().message;
   EXPECT_EQ(flags->model, "drag");
@@ -161,6 +163,8 @@ TEST(SimulationFlagsOf, AcceptsTextsNumbersAndIntegers) {
   EXPECT_EQ(flags->resolution, 0.0625);
   EXPECT_TRUE(flags->event_driven);
   EXPECT_EQ(flags->time_noise, 0.03125);
+  EXPECT_EQ(flags->oversample, 16U);
+  EXPECT_EQ(flags->window_s, 0.001953125);
   EXPECT_EQ(flags->seed, 18446744073709551615U);
 }
 

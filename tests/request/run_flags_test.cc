@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/request/run_flags.h"
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 #include <variant>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "pendulum/batch/provenance.h"
 #include "pendulum/fitting/swing/choose_swings.h"
@@ -113,6 +116,69 @@ TEST(MakeIdentifyOptions, NamesTheWrongFlag) {
   flags = {};
   flags.fix = "drag=1";
   EXPECT_THAT(Refusal(flags), HasSubstr("--fix: model coulomb has no parameter 'drag'"));
+}
+
+// ---- The sensor ----------------------------------------------------------------------------------------------------
+
+TEST(MakeIdentifyOptions, TakesAKindOrJsonForTheSensor) {
+  RunFlags flags;
+  EXPECT_FALSE(MakeIdentifyOptions(flags)->sensor);
+  flags.sensor = "angle sensor";
+  EXPECT_EQ(MakeIdentifyOptions(flags)->sensor->kind, "angle sensor");
+  flags.sensor = R"({"gain": 0.002})";
+  const auto options = MakeIdentifyOptions(flags);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->sensor->std_devs[0], 0.002);
+  EXPECT_EQ(options->sensor->source, "given by --sensor");
+  EXPECT_THAT(OptionsJson(*options), HasSubstr(R"("sensor":{"kind":"","gain":0.002})"));
+}
+
+TEST(MakeIdentifyOptions, RefusesTheFileOfASensor) {
+  RunFlags flags;
+  flags.sensor = "/etc/hostname";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--sensor: \"/etc/hostname\" is not a kind of sensor"));
+  flags.sensor = R"({"gain": -1})";
+  EXPECT_THAT(Refusal(flags), HasSubstr("--sensor: \"gain\" is -1; it must be"));
+}
+
+/// A file with this text, for one test.
+class SensorFile {
+ public:
+  explicit SensorFile(const std::string& text) { std::ofstream(path_) << text; }
+  ~SensorFile() { std::filesystem::remove(path_); }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_ = testing::TempDir() + "run_flags_test_" + std::to_string(getpid()) + ".json";
+};
+
+TEST(ReadSensorFile, ReplacesTheNameByTheText) {
+  const SensorFile file(R"({"kind": "gyro"})");
+  RunFlags flags;
+  flags.sensor = file.path();
+  EXPECT_EQ(ReadSensorFile(flags).value(), file.path());
+  EXPECT_EQ(flags.sensor, R"({"kind": "gyro"})");
+  for (const std::string text : {"", "gyro", R"({"gain": -1})"}) {
+    flags.sensor = text;
+    EXPECT_EQ(ReadSensorFile(flags).value(), "");
+    EXPECT_EQ(flags.sensor, text);
+  }
+}
+
+TEST(ReadSensorFile, NamesTheFileInErrors) {
+  const SensorFile file(R"({"gian": 0.01})");
+  RunFlags flags;
+  flags.sensor = file.path();
+  const auto wrong = ReadSensorFile(flags);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().code, StatusCode::kDataLoss);
+  EXPECT_THAT(wrong.error().message, HasSubstr(file.path() + ": \"gian\" is not a key of a sensor"));
+  flags.sensor = "gyroscope";
+  const auto missing = ReadSensorFile(flags);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
+  EXPECT_THAT(missing.error().message, HasSubstr("--sensor takes a file or a kind of sensor: potentiometer, encoder"));
 }
 
 }  // namespace

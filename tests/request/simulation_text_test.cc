@@ -71,7 +71,7 @@ TEST(RecordingCsv, ContainsItsOriginAndTheSensorsUnit) {
   const std::string csv = RecordingCsv(options, Simulated(options), 7);
   EXPECT_THAT(csv, StartsWith("# simulate_pendulum "));
   EXPECT_THAT(csv, HasSubstr(", model coulomb, gravity sin, seed 7\n# resolution: 0.1985\n"
-                             "# range: -49.6077,153.4578\ntime_s,angle_deg\n0,"));
+                             "# range: -49.6077,153.4578\n# sensor: {\"kind\":\"ideal\"}\ntime_s,angle_deg\n0,"));
   const Result<Recording> read = ParseRecording(csv, "run.csv");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_THAT(read->resolution, DoubleEq(0.1985 * kRadPerDeg));

@@ -196,7 +196,7 @@ TEST(ParseFitRequest, RefusesAndExplainsInvalidRequests) {
        Form(data + Part("options", R"({"model": "drag"})"))},
       {"400 --model is given in the query and in options; leave one of them out", "/v1/fits?model=drag",
        "application/json", R"({"data": "", "options": {"model": "drag"}})"},
-      {"400 the form has a part \"file\"; it may have data, rig, calibration and options", "/v1/fits", kForm,
+      {"400 the form has a part \"file\"; it may have data, rig, calibration, sensor and options", "/v1/fits", kForm,
        Form(data + Part("file", "x"))},
       {"400 the form has two parts rig; leave one of them out", "/v1/fits", kForm,
        Form(data + Part("rig", "{}") + Part("rig", "{}"))},

@@ -139,10 +139,10 @@ std::set<std::string> Names(const Json& list) {
 // model with another gravity.
 TEST_F(FittingServiceOtherTest, ReportsWhichModelsAreNested) {
   const std::map<std::string, std::set<std::string>> expected = {
-      {"viscous", {"coulomb", "drag", "stribeck", "asymmetric"}},
-      {"coulomb", {"drag", "stribeck", "asymmetric"}},
-      {"linear", {"linear_coulomb", "linear_drag", "linear_stribeck"}},
-      {"linear_coulomb", {"linear_drag", "linear_stribeck"}}};
+      {"viscous", {"coulomb", "drag", "stribeck", "asymmetric", "dahl", "load"}},
+      {"coulomb", {"drag", "stribeck", "asymmetric", "dahl"}},
+      {"linear", {"linear_coulomb", "linear_drag", "linear_stribeck", "linear_dahl"}},
+      {"linear_coulomb", {"linear_drag", "linear_stribeck", "linear_dahl"}}};
   const Json models = JsonAt("/v1/models")["models"];
   EXPECT_EQ(models.size(), MotionModels().size());
   for (const Json& model : models) {

@@ -361,13 +361,13 @@ class Live(Lab):
         self.assertEqual(server.get("/v1/live").json()["state"], "waiting")
         rows = (DATASETS / "runs_1.csv").read_text().splitlines(keepends=True)
         with open(self.folder / "run.csv.part", "w", encoding="utf-8") as file:
-            file.write("".join(rows[:1004]))
+            file.write("".join(rows[:1005]))
             file.flush()
             self.wait_until(lambda: server.get("/v1/live").json()["samples"] == 1000, "the first samples are seen")
             self.assertEqual(server.get("/v1/live").json()["state"], "recording")
             response, parser, found = server.open("/v1/live/events"), EventParser(), []
             found += self.read_until(response, parser, lambda event: event.kind == "samples")
-            file.write("".join(rows[1004:])[:-3])
+            file.write("".join(rows[1005:])[:-3])
             file.flush()
             found += self.read_until(response, parser,
                                      lambda event: event.kind == "samples" and event.json()["time_s"][-1:] >= [14.9])
@@ -377,7 +377,7 @@ class Live(Lab):
         response.close()
         times = [time_s for event in found if event.kind == "samples" for time_s in event.json()["time_s"]]
         self.assertEqual(times, sorted(set(times)))
-        values = {float(time_s): float(angle) for time_s, angle in (row.split(",") for row in rows[4:])}
+        values = {float(time_s): float(angle) for time_s, angle in (row.split(",") for row in rows[5:])}
         for event in found:
             if event.kind == "samples":
                 self.assertEqual(event.json()["values"], [values[time_s] for time_s in event.json()["time_s"]])

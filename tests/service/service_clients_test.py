@@ -205,7 +205,7 @@ class Stored(Curl):
                  "inertia=0.05,viscous=0.001,release_angle=0.9,release_time=0.2",
                  "--out", "long.csv", folder=self.folder)
         samples = self.curl(f"/v1/fits/{self.fit('long.csv', closed_form_only='true')}/samples").json()
-        angles = [float(line.split(",")[1]) for line in (self.folder / "long.csv").read_text().splitlines()[2:]]
+        angles = [float(line.split(",")[1]) for line in (self.folder / "long.csv").read_text().splitlines()[3:]]
         self.assertEqual(samples["samples"], len(angles))
         self.assertLessEqual(len(samples["measured"]), 4000)
         self.assertEqual(samples["time_s"], sorted(set(samples["time_s"])))

@@ -404,6 +404,14 @@ TEST(MakeFitPendulumOptions, RejectsABootstrapOfAJointFit) {
   EXPECT_EQ(Refusal(flags), refusal);
 }
 
+TEST(MakeFitPendulumOptions, KnowsTheFileOfTheSensorAsAnInput) {
+  FitPendulumFlags flags = WithData();
+  flags.sensor = "gyro";
+  EXPECT_TRUE(MakeFitPendulumOptions(flags).value().sensor_path.empty());
+  flags.sensor = "no_such_sensor.json";
+  EXPECT_EQ(MakeFitPendulumOptions(flags).error().code, StatusCode::kNotFound);
+}
+
 TEST(JointOutputs, AreNumberedIfEachRecordingHasItsOwnOutput) {
   FitPendulumFlags flags = WithTwoRecordings();
   flags.json = "fit.json";

@@ -22,7 +22,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "include/pendulum/report/result.schema.json").read_text(encoding="utf-8"))
 EXAMPLE = json.loads((ROOT / "tests/report/result_example.json").read_text(encoding="utf-8"))
 # Keys that came after the first results of schema version 2.
-ADDED = ("summary", "total_std_error", "error_budget")
+ADDED = ("summary", "total_std_error", "error_budget", "sensor", "rig_verdict", "ambiguities", "suspicions",
+         "unseen_friction_std_error")
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 TOOL = ""  # path of the binary, from the command line
 

@@ -47,8 +47,8 @@ class SimulatePendulumTest(unittest.TestCase):
         self.write_rig('{"gravity_torque": 1.8}')
         self.check_made(*NOISY, "--rig", "rig.json", "--out", "run.csv", "--truth", "truth.json", "--duration", "2")
         lines = (self.folder / "run.csv").read_text().splitlines()
-        self.assertEqual(lines[1:3], ["# resolution: 0.1985", "time_s,angle_deg"])
-        self.assertEqual(len(lines), 3 + 200)
+        self.assertEqual(lines[1:4], ["# resolution: 0.1985", '# sensor: {"kind":"ideal"}', "time_s,angle_deg"])
+        self.assertEqual(len(lines), 4 + 200)
         truth = json.loads((self.folder / "truth.json").read_text())
         self.assertEqual(list(truth), ["inertia", "viscous", "coulomb", "release_angle", "release_time", "zero_angle",
                                        "sigma_rad", "resolution_rad", "seed"])
@@ -65,7 +65,7 @@ class SimulatePendulumTest(unittest.TestCase):
         again = self.check_made(*NOISY, "--out", "-", "--seed", "5", "--jitter", "0.001")
         other = self.check_made(*NOISY, "--out", "-", "--seed", "6", "--jitter", "0.001")
         self.assertEqual(once, again)
-        self.assertNotEqual(once.splitlines()[4:], other.splitlines()[4:])
+        self.assertNotEqual(once.splitlines()[5:], other.splitlines()[5:])
 
     def test_noise_may_be_correlated_or_have_heavy_tails(self):
         white = self.check_made(*NOISY, "--out", "-")
@@ -101,7 +101,7 @@ class SimulatePendulumTest(unittest.TestCase):
 
     def test_spread_changes_the_motion_but_not_the_noise(self):
         def values(text):
-            return [math.radians(float(line.split(",")[1])) for line in text.splitlines()[2:]]
+            return [math.radians(float(line.split(",")[1])) for line in text.splitlines()[3:]]
 
         arguments = ["--set", MOTION, *SHORT, "--noise", "0.2", "--out", "-", "--seed", "5"]
         plain = values(self.check_made(*arguments))
@@ -169,14 +169,14 @@ class SimulatePendulumTest(unittest.TestCase):
 
     def test_clock_starts_at_the_given_time_and_stamps_increase(self):
         text = self.check_made("--set", MOTION, "--out", "-", "--start_time", "100", "--jitter", "0.02")
-        times = [float(line.split(",")[0]) for line in text.splitlines()[2:]]
+        times = [float(line.split(",")[0]) for line in text.splitlines()[3:]]
         self.assertEqual(times[0], 100)
         self.assertTrue(all(before < after for before, after in zip(times, times[1:])))
 
     def test_units_name_the_column(self):
         for unit, column in (("deg", "angle_deg"), ("rad", "angle_rad"), ("deg_s", "gyro_deg_s"), ("rad_s", "gyro_rad_s")):
             text = self.check_made("--set", MOTION, "--out", "-", "--unit", unit)
-            self.assertEqual(text.splitlines()[1], f"time_s,{column}")
+            self.assertEqual(text.splitlines()[2], f"time_s,{column}")
 
     def test_an_existing_recording_is_replaced_and_survives_a_failure(self):
         run = self.folder / "run.csv"

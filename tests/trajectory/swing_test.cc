@@ -50,6 +50,52 @@ TEST(EvaluatePartials, MatchThePolynomialsDerivativesForAnyOrder) {
   }
 }
 
+// ---- Special rates -----------------------------------------------------------------------------------------------
+
+constexpr std::array kSpecialRates = {1.0, 2.0, 3.0};  // rad/s
+
+// ω = ±(3.5 - 10 τ) passes 3 after 0.05 s, ω = ±(0.5 + 10 τ) passes 1 after 0.05 s.
+TEST(FirstPassage, EndsAtTheFirstSpecialRateOnTheWay) {
+  for (const double direction : {1.0, -1.0}) {
+    const Series<double> slower = Coefficients({3.5 * direction, -10 * direction});
+    const RatePassage down = FirstPassage(slower, 1, direction, {0.3, 0.5 * direction}, kSpecialRates);
+    EXPECT_THAT(down.step, DoubleNear(0.05, 1e-15));
+    EXPECT_EQ(down.end_rate, 3 * direction);
+    const Series<double> faster = Coefficients({0.5 * direction, 10 * direction});
+    const RatePassage up = FirstPassage(faster, 1, direction, {0.3, 3.5 * direction}, kSpecialRates);
+    EXPECT_THAT(up.step, DoubleNear(0.05, 1e-15));
+    EXPECT_EQ(up.end_rate, 1 * direction);
+  }
+}
+
+TEST(FirstPassage, ComesBeforeAReversal) {
+  const RatePassage passage = FirstPassage(Coefficients({1.5, -10}), 1, 1, {0.3, -1.5}, kSpecialRates);
+  EXPECT_THAT(passage.step, DoubleNear(0.05, 1e-15));
+  EXPECT_EQ(passage.end_rate, 1);
+}
+
+TEST(FirstPassage, IsNotTheRateAtWhichTheStepBegan) {
+  const RatePassage passage = FirstPassage(Coefficients({2, -10}), 1, 1, {0.2, 0}, kSpecialRates);
+  EXPECT_THAT(passage.step, DoubleNear(0.1, 1e-15));
+  EXPECT_EQ(passage.end_rate, 1);
+  EXPECT_EQ(FirstPassage(Coefficients({1, -10}), 1, 1, {0.2, -1}, kSpecialRates).step, 0.2);
+}
+
+TEST(FirstPassage, IsTheWholeStepIfNoSpecialRateIsPassed) {
+  const RatePassage passage = FirstPassage(Coefficients({5, -10}), 1, 1, {0.1, 4}, kSpecialRates);
+  EXPECT_EQ(passage.step, 0.1);
+  EXPECT_EQ(passage.end_rate, 4);
+}
+
+// ω = 2.5 - 2 τ + 2 τ² is 2 at its least, after 0.5 s, and 2.5 again after 1 s.
+TEST(FirstPassage, IsFoundWhereTheSpeedFallsAndRisesAgain) {
+  const Series<double> over_the_top = Coefficients({2.5, -2, 2});
+  const RatePassage whole = FirstPassage(over_the_top, 2, 1, {1, 2.5}, std::array{0.5});
+  EXPECT_EQ(whole.step, 1);
+  const RatePassage falling = FirstPassage(over_the_top, 2, 1, {1, 2.5}, std::array{2.18});
+  EXPECT_THAT(falling.step, DoubleNear(0.2, 1e-12));  // 2.5 - 0.4 + 0.08
+}
+
 // ---- Direction of motion -----------------------------------------------------------------------------------------
 
 TEST(DirectionOfMotion, FollowsTheRateHoweverSlow) {
@@ -160,11 +206,11 @@ TEST(StepLength, IsAtMostTheGivenMaximum) {
 // ---- Reversals ---------------------------------------------------------------------------------------------------
 
 double Reversal(const Series<double>& rate, int order, double direction, double step) {
-  return FirstReversal(rate, order, direction, step, EvaluateSeries(rate, order, step));
+  return FirstSignChange(rate, order, direction, step, EvaluateSeries(rate, order, step));
 }
 
 // (0.5 - τ)(1 + τ²) has one root.
-TEST(FirstReversal, IsTheRootOfTheRateUpToTheEndOfTheStep) {
+TEST(FirstSignChange, IsTheRootOfTheRateUpToTheEndOfTheStep) {
   const Series<double> rate = Coefficients({0.5, -1, 0.5, -1});
   EXPECT_THAT(Reversal(rate, 3, 1.0, 1.0), DoubleNear(0.5, 1e-15));
   EXPECT_THAT(Reversal(rate, 3, 1.0, 0.5), DoubleNear(0.5, 1e-15));
@@ -175,14 +221,14 @@ TEST(FirstReversal, IsTheRootOfTheRateUpToTheEndOfTheStep) {
 }
 
 // τ (0.25 - τ): the motion starts at the root 0.
-TEST(FirstReversal, IsTheNextRootFromRest) {
+TEST(FirstSignChange, IsTheNextRootFromRest) {
   const Series<double> rate = Coefficients({0, 0.25, -1});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(0.25, 1e-15));
   EXPECT_THAT(Reversal(rate, 2, 1.0, 0.2), Lt(0));
 }
 
 // 1 - 1e6 τ²: Halley's method alone, started at the end of the interval, would leave the interval.
-TEST(FirstReversal, IsFoundNearTheStartOfALongStep) {
+TEST(FirstSignChange, IsFoundNearTheStartOfALongStep) {
   const Series<double> rate = Coefficients({1, 0, -1e6});
   EXPECT_THAT(Reversal(rate, 2, 1.0, 1.0), DoubleNear(1e-3, 1e-16));
   // 1e-9 - τ + τ³ / 2, flat near its end

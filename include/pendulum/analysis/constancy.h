@@ -57,9 +57,9 @@ inline constexpr double kNotConstant = 1e-3;
 /// Chow, Econometrica 28:591, 1960). Each part has at least three periods after the release. Also fits three to eight
 /// such windows and tests their trend with amplitude, using the covariance that the windows' estimates have if the
 /// whole fit is right. Priors and values of the start belong to the whole recording and are not used for its parts.
-/// Samples after the last turning point are left out. `reason` is set if `fit` did not converge on `used` with
-/// `options`, the recording is undersampled or too short, or a part does not converge. Cost: up to ten fits of parts,
-/// some milliseconds for 2000 samples.
-Constancy TestConstancy(const Recording& used, const FitReport& fit, const FitOptions& options);
+/// Samples after the last turning point are left out. Readings are as corrected by the fit. `reason` is set if the fit
+/// did not converge on the recording with `options`, the recording is undersampled or too short, or a part does not
+/// converge. Cost: up to ten fits of parts, some milliseconds for 2000 samples.
+Constancy TestConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options);
 
 }  // namespace pendulum

@@ -34,7 +34,9 @@ struct CoverageScenario {
   // Like the rig in `fit`, these may have errors; DrawErrors draws them for each recording.
   double clock_std_dev = 0;  ///< Relative, of the clock of time stamps.
   std::optional<Calibration> calibration =
-      std::nullopt;  ///< Of readings in whole counts; `run` simulates angles without counts.
+      std::nullopt;          ///< Of readings in whole counts; `run` simulates angles without counts.
+  SensorErrors sensor = {};  ///< Plausible sizes of what the sensor does; `run` simulates angles without counts.
+  double count = 0;          ///< Spacing of the readings that such a sensor gives [rad].
 };
 
 /// All scenarios. They simulate the rig of datasets/textbook_rig.json. Most have viscous and dry friction and a
@@ -56,13 +58,14 @@ struct DrawnErrors {
   double torque = 1;                ///< The true G over the rig's.
   double clock = 1;                 ///< True seconds per second of the recording.
   std::vector<double> calibration;  ///< The true coefficients; empty without a calibration.
+  std::vector<double> sensor;  ///< The sizes of all effects, in the order of kSensorEffects; empty if there are none.
 };
 
 /// Draws the errors for this seed from their normal distributions.
 DrawnErrors DrawErrors(const CoverageScenario& scenario, std::uint64_t seed);
 
 /// The recording as its user gets it: in whole counts of the true calibration, converted by the known one, with time
-/// stamps of a clock whose error is unknown.
+/// stamps of a clock whose error is unknown; or as a sensor reads it that does what was drawn, to whole counts.
 Recording WithErrors(Recording recording, const CoverageScenario& scenario, const DrawnErrors& drawn);
 
 }  // namespace pendulum

@@ -26,7 +26,7 @@ std::vector<ParameterInfo> ParametersOf(const SyntheticOptions& run);
 /// Returns P in FitParameters' order, in the units of `truth` (torques and inertia in units of the restoring torque G).
 /// All bounds are absent:
 /// - without noise, except for edges,
-/// - for an encoder read at equal intervals,
+/// - for an encoder read at equal intervals, and for means of several readings,
 /// - for a sensor whose parameters have priors,
 /// - for a range, unless the noise is white Gaussian noise on levels,
 /// - for Student's t noise that is correlated or on levels,

@@ -35,9 +35,9 @@ Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, con
                          const std::vector<std::string>& models);
 
 /// Fits each model to one free swing. The richest law among the models determines the window (FitSwing) and the kind of
-/// start. All fits use the noise family chosen for the model with the smallest residuals. With one model the result
-/// equals that of FitSwing. Errors as FitSwing; if the richest law can be fitted and another model cannot, its report
-/// is kFailed.
+/// start. All fits use the noise family chosen for the model with the smallest residuals, and the readings as recorded.
+/// With one model the result equals that of FitSwing, which may correct them. Errors as FitSwing; if the richest law
+/// can be fitted and another model cannot, its report is kFailed.
 Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                const std::vector<std::string>& models);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pendulum/analysis/constancy.h"
+#include "pendulum/analysis/homogeneity.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/fitting/joint/fit_jointly.h"
 
@@ -13,7 +14,8 @@ namespace pendulum {
 /// it does not include the difference to the next window or run. The error is added if a test with p < kNotConstant
 /// shows that the windows scatter by more than their errors, or depend on amplitude. If windows have no estimates, the
 /// halves are used. The added error is the standard deviation of the windows about the estimate, beyond their errors
-/// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
+/// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning
+/// not_constant.
 void AddInconstancyError(const Constancy& constancy, FitReport& fit);
 
 /// One of several recordings fitted together: its fit alone, and the test of this fit.
@@ -24,7 +26,10 @@ struct ChangingRun {
 
 /// Adds this error to a joint fit, with the same warning. Recordings of one rig change in the same way, so their number
 /// does not reduce it: it is the root mean square of the recordings' errors, weighted with 1 / std_error² of their fits
-/// alone.
-void AddInconstancyError(const std::vector<ChangingRun>& runs, JointFit& joint);
+/// alone. Recordings that are too short for a test of their own do not count there and have the others' error. If the
+/// recordings differ by more than their errors (p < Homogeneity::kDisagree), the error is at least their standard
+/// deviation `between` (MODEL.md eq. (10.5)). between: the shared parameters of TestHomogeneity.
+void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector<SharedParameter>& between,
+                         JointFit& joint);
 
 }  // namespace pendulum

@@ -14,6 +14,7 @@ struct WindowBegin {
     kInMotion,                ///< The recording begins in motion.
     kReleaseNotUsed,          ///< It was held, but the motion determines the start better than the release.
     kUnsteadyHold,            ///< After a release from a hold that is not steady.
+    kHoldDisagrees,           ///< After a release from a hold whose readings do not agree with the swing.
     kAccelerationJump,        ///< After the release, at which an acceleration jumps.
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.

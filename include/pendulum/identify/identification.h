@@ -21,6 +21,7 @@
 #include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
+#include "pendulum/recording/sensor_errors.h"
 
 namespace pendulum {
 
@@ -35,6 +36,7 @@ struct DataSummary {
   std::string resolution_source;  ///< "given", "file" or "found"; empty: none.
   double clock_scale = 1;         ///< True seconds per second of the file's clock; the fit uses true seconds.
   double clock_scale_std_dev = 0;
+  SensorErrors sensor;                          ///< What the sensor may do to the readings.
   std::string begins, ends;                     ///< Why the window begins and ends where it does; may be empty.
   std::vector<std::array<double, 2>> releases;  ///< Begin and end of each free swing found [s].
   int release = 0;  ///< Number of the fitted free swing, from 1; 0: the user gave the window.
@@ -88,7 +90,8 @@ struct Identification {
   /// The identifications of single recordings: `runs` of a joint one, else this one alone.
   std::vector<const Identification*> Parts() const;
 
-  /// The main fit: the recommended one, otherwise the first that converged, otherwise the first.
+  /// Index of the main fit: the recommended one, otherwise the one with the smallest residuals among those that
+  /// converged, otherwise among all.
   std::size_t MainFit() const;
 
   /// Whether text output shows all details of fit `fit`; in a comparison only those of the main fit.

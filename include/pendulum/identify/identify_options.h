@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pendulum/fitting/start/fit_options.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/recording/readers/columns/read_options.h"
+#include "pendulum/recording/sensor_errors.h"
 
 namespace pendulum {
 
@@ -30,7 +32,8 @@ struct IdentifyOptions {
   Checks checks = Checks::kStandard;
   bool closed_form_only = false;  ///< No fit is made; of `fit`, only the model and the stop token are used.
   nlohmann::ordered_json rig_values = nlohmann::ordered_json::object();  ///< They replace those of a rig file.
-  std::vector<Warning> notes;       ///< What was assumed about the options, for the warnings of the report.
+  std::optional<SensorStatement> sensor;  ///< Replaces what a recording states about its sensor.
+  std::vector<Warning> notes;             ///< What was assumed about the options, for the warnings of the report.
   std::vector<std::string> shared;  ///< For a joint identification: names of the parameters that all recordings share.
 };
 

@@ -12,6 +12,7 @@
 #include "pendulum/identify/identify_options.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"
+#include "pendulum/recording/sensor_errors.h"
 
 namespace pendulum {
 
@@ -20,7 +21,8 @@ struct PreparedRecording {
   Recording recording;
   ChosenSwings swings;
   Eigen::Index samples = 0;  ///< Number as read; for an event-driven recording including samples for its silences.
-  Identification known;      ///< Common to the identifications of all its swings: rig, calibration, warnings.
+  std::optional<SensorStatement> sensor;  ///< Replaces what the recording states.
+  Identification known;  ///< Common to the identifications of all its swings: rig, calibration, warnings.
 };
 
 /// Repairs a recording, converts an event-driven one to edges (unless options.fit.noise requests otherwise), and

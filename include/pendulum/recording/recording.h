@@ -10,6 +10,7 @@
 #include "pendulum/base/status.h"
 #include "pendulum/recording/arc.h"
 #include "pendulum/recording/sensor.h"
+#include "pendulum/recording/sensor_errors.h"
 
 namespace pendulum {
 
@@ -18,6 +19,29 @@ namespace pendulum {
 enum class Quantity { kAngle, kRate, kAcceleration, kPosition };
 
 inline constexpr int kMinimumSamples = 8;
+
+/// Begin and end of an averaging window, relative to the time stamp of its row [s].
+struct AveragingWindow {
+  double from = 0;
+  double to = 0;
+
+  double length() const { return to - from; }
+  double middle() const { return 0.5 * (from + to); }
+};
+
+inline constexpr int kMostOversampling = 64;          ///< Readings in a mean.
+inline constexpr double kLongestAveragingWindow = 1;  ///< s; both ends lie within this of the time stamp.
+
+/// How each row is the mean of several readings of a converter, which shows whole counts.
+struct Oversampling {
+  int readings = 1;  ///< n, at equal intervals over the window; 1: rows are no means.
+  std::optional<AveragingWindow> window = std::nullopt;  ///< std::nullopt: unknown.
+  /// Spacing of the levels of one reading, in the unit of Recording::value, whose resolution is this / n. 0: unknown,
+  /// or the rows do not lie on such a grid.
+  double count = 0;
+  double level = 0;             ///< One of the levels, same unit.
+  bool is_level_known = false;  ///< If false, `level` is one of the n levels of the means that come into question.
+};
 
 /// The readings of a sensor. Invariant (MakeRecording): N >= kMinimumSamples, finite, time strictly increasing.
 struct Recording {
@@ -41,7 +65,12 @@ struct Recording {
   std::optional<Arc> arc;     ///< The circle about which coordinates, in `unit`, were converted to angles.
   bool shows_gravity = true;  ///< For an acceleration: false if it is 0 at rest, because g was removed.
   std::string rig_json;       ///< The rig described in the file itself, as JSON; empty if none.
+  TimeSource time_source = TimeSource::kUnknown;
+  std::optional<SensorStatement> stated_sensor;  ///< What the file itself states about the sensor (`# sensor`).
+  /// What the sensor may do to the readings. The kind is empty and all sizes are 0 until SensorErrorsOf decides.
+  SensorErrors sensor_errors;
   std::vector<Warning> warnings;
+  Oversampling oversampling;  ///< Of each row.
 
   /// False if `value` is not in the unit of an angle or a rate: counts or volts without a calibration, an acceleration,
   /// a coordinate.

@@ -22,7 +22,8 @@ inline constexpr std::string_view kDefaultModel = "coulomb";
 struct RunFlags {
   std::string rig;
   std::string calibration;
-  std::string model;  ///< Empty: kDefaultModel, and the recording may show that it is a spring's (may_be_spring).
+  std::string sensor;  ///< A kind or JSON; a tool replaces a file's name by its text (ReadSensorFile).
+  std::string model;   ///< Empty: kDefaultModel, and the recording may show that it is a spring's (may_be_spring).
   std::string gravity = "auto";
   std::string start = "auto";
   std::string release;
@@ -38,6 +39,8 @@ struct RunFlags {
   std::string sample_rate_hz;
   std::string resolution;
   std::string range;
+  std::string oversample;
+  std::string window_s;
   std::string noise = "auto";
   std::string loss = "none";
   std::string interval = "auto";
@@ -85,6 +88,10 @@ const std::vector<RunFlag>& RunFlagTable();
 
 /// The error for a flag that cannot be combined with --closed_form_only.
 tl::unexpected<Status> NeedsFitError(std::string_view flag);
+
+/// Replaces the name of a file in `sensor` by the file's text, and returns the name; empty if `sensor` is a kind, JSON
+/// or not given. kNotFound: no such file, nor such a kind. kDataLoss: as ReadFile and ParseSensorStatement.
+Result<std::string> ReadSensorFile(RunFlags& flags);
 
 /// Converts flags to options; the caller reads rig and calibration. kInvalidArgument: a flag is wrong or contradicts
 /// another; the message names it.

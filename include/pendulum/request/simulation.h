@@ -36,6 +36,8 @@ struct SimulationFlags {
   std::string lose;           ///< "time:counts,..." [s]; empty: no lost counts.
   bool event_driven = false;  ///< Writes a row only when the count changes.
   double time_noise = 0;      ///< s
+  std::uint64_t oversample = 1;
+  double window_s = 0;
   std::uint64_t seed = 1;
 };
 

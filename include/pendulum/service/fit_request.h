@@ -50,9 +50,9 @@ struct FitRequest {
 inline constexpr const char* kUnnamed = "data";
 
 /// Reads the request for one fit. The body is the recording (text/csv), a form (multipart/form-data) with the parts
-/// data, rig, calibration and options, or a JSON object with these members. The query has flags and the `name` of
-/// the fit, which is also the name of a recording without a file name. Problems: as RunFlagsOf and MakeIdentifyOptions;
-/// an unknown or repeated part, another content type, too many lines.
+/// data, rig, calibration, sensor (the flag of this name) and options, or a JSON object with all of these but sensor.
+/// The query has flags and the `name` of the fit, which is also the name of a recording without a file name. Problems:
+/// as RunFlagsOf and MakeIdentifyOptions; an unknown or repeated part, another content type, too many lines.
 ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const RequestTarget& target,
                                             const RequestLimits& limits);
 

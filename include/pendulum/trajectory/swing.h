@@ -147,13 +147,21 @@ double LargestStiffness(const Pendulum<F, double>& pendulum) {
   return 1;
 }
 
+/// The load of the bearing in units of the weight, for a bob on a light rod: 1 - V(θ) + I ω², which is cos θ + I ω²
+/// under gravity. MODEL.md eq. (2.11).
+template <FrictionModel F, typename T>
+double LoadAt(const Pendulum<F, T>& pendulum, double angle, double rate) {
+  return 1 - pendulum.gravity.Potential(angle) + Value(pendulum.inertia) * rate * rate;
+}
+
 /// Direction of the motion that follows a state: ±1, or 0 if static friction holds the pendulum (MODEL.md eq. (2.9)).
 template <FrictionModel F>
 double DirectionOfMotion(const Pendulum<F, double>& pendulum, double angle, double rate) {
   if (rate != 0) return rate > 0 ? 1.0 : -1.0;
   const double torque = pendulum.gravity.Torque(angle);
   const double direction = torque > 0 ? -1.0 : 1.0;
-  const double holding = direction * F::Torque(0.0, direction, pendulum.friction.data());
+  const double holding =
+      direction * TorqueUnder<F>(LoadAt(pendulum, angle, 0), 0.0, direction, pendulum.friction.data());
   constexpr double kMargin = 1.0 + 1e-12;  // at equality, rounding must not start a motion
   return std::abs(torque) > holding * kMargin ? direction : 0.0;
 }
@@ -175,29 +183,29 @@ inline double StepLength(const Series<double>& angle, int order, double toleranc
   return std::min(std::exp2(log_step), longest);
 }
 
-/// First root of the rate in (0, step]; negative if the direction of motion does not change. The step is at most a
-/// quarter of the small-angle period, which is shorter than any half swing, so the sign of end_rate, the rate at the
-/// end of the step, shows whether there is a root. For a start from rest the root at 0 is divided out. Halley's method
-/// starts from the chord and stays inside a bisection bracket. It stops after a relative step of 1e-4, because the
-/// remaining error is the cube of that.
-inline double FirstReversal(const Series<double>& rate, int order, double direction, double step, double end_rate) {
-  if (direction * end_rate > 0) return -1;
-  const double begin_rate = rate[0];
-  const int first = begin_rate == 0 ? 1 : 0;
+/// First root in (0, step] of a series, such as the rate, whose sign is `sign` behind the begin of the step; negative
+/// if there is none. `end` is its value at the end of the step, whose sign shows whether there is a root: the step must
+/// be too short for two. So is a quarter of the small-angle period, within which the rate has at most one. A root at 0,
+/// as of the rate in a start from rest, is divided out. Halley's method starts from the chord and stays inside a
+/// bisection bracket. It stops after a relative step of 1e-4, because the remaining error is the cube of that.
+inline double FirstSignChange(const Series<double>& series, int order, double sign, double step, double end) {
+  if (sign * end > 0) return -1;
+  const double begin = series[0];
+  const int first = begin == 0 ? 1 : 0;
   double low = 0;
   double high = step;
-  double root = begin_rate == 0 ? step : step * begin_rate / (begin_rate - end_rate);
+  double root = begin == 0 ? step : step * begin / (begin - end);
   for (int iteration = 0; iteration < 100; ++iteration) {
-    double value = rate[order];
+    double value = series[order];
     double slope = 0;
     double half_bend = 0;
     for (int k = order - 1; k >= first; --k) {
       half_bend = half_bend * root + slope;
       slope = slope * root + value;
-      value = value * root + rate[k];
+      value = value * root + series[k];
     }
     if (value == 0) break;
-    (direction * value > 0 ? low : high) = root;
+    (sign * value > 0 ? low : high) = root;
     const double next = root - value * slope / (slope * slope - value * half_bend);
     const bool last = std::abs(next - root) <= 1e-4 * root;
     const bool inside = next > low && next < high;
@@ -205,6 +213,51 @@ inline double FirstReversal(const Series<double>& rate, int order, double direct
     if (last) break;
   }
   return root;
+}
+
+/// The instant in (0, step) at which the size of a series of this sign begins to rise after it has fallen, as that of
+/// the rate does over the top; negative if there is none.
+inline double FirstMinimum(const Series<double>& series, int order, double sign, double step) {
+  Series<double> slope{};
+  for (int k = 0; k < order; ++k) slope[k] = (k + 1) * series[k + 1];
+  if (sign * slope[0] >= 0) return -1;
+  return FirstSignChange(slope, order - 1, -sign, step, EvaluateSeries(slope, order - 1, step));
+}
+
+/// A step that ends where the rate has a certain value.
+struct RatePassage {
+  double step = 0;      ///< s
+  double end_rate = 0;  ///< rad/s
+};
+
+/// The part of a step up to the first special rate of a friction law (HasSpecialRates), or all of it. If the speed
+/// falls and rises again within the step, as over the top, a special rate that it falls through lies before the least
+/// speed; otherwise one that matters lies between the speeds at the ends. The next part begins at exactly this rate,
+/// and so does not end there again.
+///
+/// The derivatives need no correction, unlike those at a reversal: the motion obeys the same analytic equation before
+/// and after the instant, which may therefore be taken as fixed, as the end of any other step.
+template <std::size_t K>
+RatePassage FirstPassage(const Series<double>& rate, int order, double direction, RatePassage whole,
+                         const std::array<double, K>& special_rates) {
+  const double begin = direction * rate[0];
+  const double least = FirstMinimum(rate, order, direction, whole.step);
+  if (least > 0) {
+    const double least_rate = EvaluateSeries(rate, order, least);
+    const auto is_passed = [&](double special) { return special < begin && special > direction * least_rate; };
+    if (std::ranges::any_of(special_rates, is_passed)) whole = {least, least_rate};
+  }
+  const double end = direction * whole.end_rate;
+  double level = end;
+  for (const double special : special_rates) {
+    const bool passed = begin < end ? special > begin && special < level : special < begin && special > level;
+    if (passed) level = special;
+  }
+  if (level == end) return whole;
+  Series<double> distance = rate;
+  distance[0] -= direction * level;
+  const double side = begin > level ? direction : -direction;
+  return {FirstSignChange(distance, order, side, whole.step, whole.end_rate - direction * level), direction * level};
 }
 
 /// The state at a reversal, computed from the state at the same instant, whose rate is 0 except for rounding. The rate

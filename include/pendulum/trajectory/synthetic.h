@@ -57,7 +57,11 @@ struct SyntheticOptions {
   double noise_freedom = 0;  ///< Degrees of freedom ν of Student's t noise, whose *scale* is `noise`; 0 is Gaussian.
   double resolution = 0;     ///< Spacing q of the levels that the sensor can show [rad or rad/s]; 0 means continuous
                              ///< readings.
-  std::optional<SensorRange> range;     ///< rad or rad/s; std::nullopt means unlimited.
+  std::optional<SensorRange> range;  ///< rad or rad/s; std::nullopt means unlimited.
+  /// Each sample is the mean of this many readings, each with its own noise and then rounded, at equal intervals within
+  /// the averaging window about the sampling instant. Then `noise` is that of one reading.
+  int oversample = 1;
+  double averaging_window = 0;  ///< Length of the window [s], less than the sampling interval; 0: at one instant.
   std::vector<LostCounts> lost_counts;  ///< Only for a sensor with levels; `range` applies before counts are lost.
   RowTiming rows = RowTiming::kEven;    ///< With events, `noise` is the error of each crossing of an edge.
   double hysteresis = 0;                ///< For events: how far behind its edge the count changes [rad].

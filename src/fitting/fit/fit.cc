@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "fitting/fit/attempt.h"
 #include "pendulum/fitting/fit/alternative_minima.h"
+#include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
 #include "pendulum/fitting/fit/order_violation.h"
 #include "pendulum/fitting/likelihood/noise.h"
@@ -62,6 +64,14 @@ bool ViolatesOrder(const Attempt& attempt, const FitOptions& /*options*/) {
   return !OrderViolation(*attempt.problem, attempt.solution.parameters).empty();
 }
 
+/// A search for the reference of a friction law may end at its least value, where the law is a simpler one.
+bool HasLeastReference(const Attempt& attempt, const FitOptions& /*options*/) {
+  const FitProblem& problem = *attempt.problem;
+  const auto last = static_cast<std::size_t>(problem.solve.last_friction);
+  return problem.start.energy_balance.reference > 0 && !problem.solve.fixed[last] && attempt.solution.usable &&
+         attempt.solution.parameters[last] <= problem.solve.lower[last];
+}
+
 template <StartKind kStart>
 std::vector<FitOptions> WithStart(const Attempt& /*attempt*/, const FitOptions& options) {
   std::vector<FitOptions> alternatives = {options};
@@ -69,8 +79,8 @@ std::vector<FitOptions> WithStart(const Attempt& /*attempt*/, const FitOptions& 
   return alternatives;
 }
 
-/// One attempt from each of the other reference rates that the data suggest.
-std::vector<FitOptions> FromOtherReferenceRates(const Attempt& attempt, const FitOptions& options) {
+/// One attempt from each of the other references that the data suggest.
+std::vector<FitOptions> FromOtherReferences(const Attempt& attempt, const FitOptions& options) {
   constexpr int kMaxTraces = 400;
   std::vector<FitOptions> alternatives;
   if (options.search.start_values) return alternatives;
@@ -89,10 +99,11 @@ bool KeepsOrder(const Attempt& other, const Attempt& /*attempt*/) {
   return other.solution.usable && OrderViolation(*other.problem, other.solution.parameters).empty();
 }
 
-constexpr std::array<Rescue, 3> kRescues = {{
+constexpr std::array<Rescue, 4> kRescues = {{
     {"moving_start", MayStartInMotion, WithStart<StartKind::kMoving>, MakeAttempt, IsBetter},
     {"release_start", MayStartHeld, WithStart<StartKind::kRelease>, MakeAttempt, IsBetter},
-    {"other_reference_rates", ViolatesOrder, FromOtherReferenceRates, SolveFromOneStart, KeepsOrder},
+    {"other_reference_rates", ViolatesOrder, FromOtherReferences, SolveFromOneStart, KeepsOrder},
+    {"other_references", HasLeastReference, FromOtherReferences, SolveFromOneStart, IsBetter},
 }};
 
 /// Applies the rescues in turn. Returns a record of each rescue that was tried.
@@ -111,6 +122,62 @@ std::vector<AttemptRecord> ApplyRescues(const Recording& recording, const FitOpt
     if (best) attempt = *std::move(best);
   }
   return records;
+}
+
+// ---- Corrections ---------------------------------------------------------------------------------------------------
+
+Recording WithoutEffects(Recording recording, const Correction& correction) {
+  recording.value -= correction.readings;
+  return recording;
+}
+
+/// Whether a correction is worth another fit: it has a new cause, or differs from the former one by more than a tenth
+/// of the noise.
+bool Changes(const Correction& correction, const Correction& former, double sigma) {
+  constexpr double kNegligible = 0.1;
+  if (correction.readings.size() == 0) return false;
+  if (former.readings.size() == 0 || correction.causes.size() != former.causes.size()) return true;
+  return (correction.readings - former.readings).cwiseAbs().maxCoeff() > kNegligible * sigma;
+}
+
+/// The same suspicions of a fit to corrected readings, with the significance that they had before.
+std::vector<Suspicion> WithFormerSignificance(std::vector<Suspicion> suspicions, std::span<const Suspicion> former) {
+  for (Suspicion& suspicion : suspicions) {
+    if (!suspicion.is_corrected) continue;
+    const auto same = std::ranges::find(former, suspicion.cause, &Suspicion::cause);
+    if (same != former.end()) suspicion.significance = same->significance;
+  }
+  return suspicions;
+}
+
+/// Fits readings corrected for the suspected causes that act in the sensor or at the release, until the correction
+/// no longer changes. A correction is kept only if the corrected readings are fitted better.
+void CorrectForSuspicions(const Recording& recording, const FitOptions& options, FitReport& report) {
+  constexpr int kMostFits = 2;
+  const EffectCheck as_recorded = report.effects;
+  Correction applied;
+  for (int fits = 0; fits < kMostFits; ++fits) {
+    const Correction next = report.effects.correction;
+    if (!Changes(next, applied, report.noise.sigma)) break;
+    const Recording corrected = WithoutEffects(recording, next);
+    const FitOptions like = OptionsLike(report, options);
+    Result<Attempt> attempt = MakeAttempt(corrected, like);
+    if (!attempt || !attempt->solution.usable) break;
+    FitReport better = MakeFitReport(corrected, like, *attempt->problem, *attempt->cost, attempt->solution, next);
+    const bool is_better = better.termination == Termination::kConverged &&
+                           better.effects.pull.cols() == report.effects.pull.cols() &&
+                           better.statistics.rms_residual <= report.statistics.rms_residual;
+    if (!is_better) break;
+    better.suspicions = WithFormerSignificance(std::move(better.suspicions), report.suspicions);
+    better.solver.attempts = report.solver.attempts;
+    report = std::move(better);
+    applied = next;
+  }
+  if (applied.readings.size() > 0) {
+    report.fitted += applied.readings;
+    report.correction = applied.readings;
+  }
+  report.effects = as_recorded;
 }
 
 // ---- The report ----------------------------------------------------------------------------------------------------
@@ -146,7 +213,12 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
   Result<FitReport> report = FitReport();
   if (violation.empty()) {
     const double log_posterior = LogPosterior(*attempt);
+    // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
+    const bool has_base = !HasLeastReference(*attempt, options);
     report = MakeFitReport(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+    const bool is_correctable = has_base && report->effects.correction.readings.size() > 0;
+    if (is_correctable && options.search.may_correct) CorrectForSuspicions(recording, options, *report);
+    WarnOfSuspicions(is_correctable && !options.search.may_correct, *report);
     CheckAlternativeMinima(*attempt->problem, attempt->alternatives, log_posterior, *report);
     CheckProfilesForBetterMinimum(*attempt->problem, *report);
     violation = OrderViolationOf(*attempt->problem, *report);

@@ -76,6 +76,7 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
   noise.censored = problem.censored;
   noise.why = solution.noise_reason;
   noise.lag1_correlation = Lag1Correlation(z);
+  if (noise.family == NoiseFamily::kAveraged) noise.averaging = solution.noise.averaging;
   if (noise.family != NoiseFamily::kEdges) return noise;
   noise.stamp_ratio = solution.noise.stamp_ratio;
   noise.lag = solution.noise.lag;

@@ -52,6 +52,7 @@ double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column) 
 FitOptions OptionsLike(const FitReport& fit, FitOptions options) {
   options.start = fit.start;
   options.noise = fit.noise.family;
+  options.search.may_correct = false;
   return options;
 }
 

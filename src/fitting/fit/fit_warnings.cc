@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <Eigen/QR>
 
@@ -101,8 +102,8 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
 void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kQuiet = 0.5;
   const double rms = std::min(report.statistics.rms_residual, report.noise.sigma);  // without outliers
-  const bool is_quantized =
-      report.noise.family == NoiseFamily::kQuantized || report.noise.family == NoiseFamily::kEdges;
+  const bool is_quantized = report.noise.family == NoiseFamily::kQuantized ||
+                            report.noise.family == NoiseFamily::kEdges || report.noise.family == NoiseFamily::kAveraged;
   if (is_quantized || !(rms < kQuiet * recording.resolution)) return;
   warnings.push_back(
       {"noise_below_resolution", "the residuals are " + NumberText(rms / recording.resolution, 2) +
@@ -205,6 +206,73 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
   }
 }
 
+// ---- Suspicions -----------------------------------------------------------------------------------------------------
+
+/// What a cause does, and what to measure or which flag to set.
+struct CauseText {
+  std::string_view what, advice;
+};
+
+CauseText TextOf(Cause cause) {
+  switch (cause) {
+    case Cause::kGain: return {"the sensor's gain is wrong", "calibrate the sensor at known angles (--calibration)"};
+    case Cause::kNonlinearity:
+      return {"the sensor's curve is bent or the sensor is eccentric",
+              "calibrate the sensor at ten angles or more (--calibration)"};
+    case Cause::kLag: return {"the readings are late", "switch off filters and averaging, or state the lag (--sensor)"};
+    case Cause::kBacklash: return {"the sensor has a play", "tighten the coupling of the sensor"};
+    case Cause::kDrift:
+      return {"the zero of the readings drifts", "let the sensor warm up, or fit the drift (--init zero_drift=0)"};
+    case Cause::kPush:
+      return {"the pendulum was pushed or let go slowly, as with a rate at the release",
+              "release it with a thread, or begin the window after the release (--from)"};
+    case Cause::kHold:
+      return {"the pendulum was not held still at the angle of the release: its hold is off",
+              "hold it at a stop, or begin the window after the release (--from)"};
+    case Cause::kFrictionLaw: return {"friction depends on the rate in another way", "compare the laws (--models all)"};
+    case Cause::kPositionFriction:
+      return {"dry friction depends on the angle or the load", "look for rubbing cables and bent shafts"};
+    case Cause::kPresliding:
+      return {"dry friction builds up after each reversal, as bristles do",
+              "fit the law dahl (--model dahl), or leave out small swings (--to)"};
+  }
+  return {};
+}
+
+/// A unit as it is shown, and the factor to it.
+struct ShownUnit {
+  double factor = 1;
+  std::string name;
+};
+
+ShownUnit ShownUnitOf(const std::string& unit) {
+  constexpr double kPercent = 100, kMilliseconds = 1000;
+  if (unit.starts_with("rad")) return {180 / kPi, "deg" + unit.substr(3)};
+  if (unit == "1") return {kPercent, "%"};
+  if (unit == "s") return {kMilliseconds, "ms"};
+  return {1, unit};
+}
+
+/// How large the cause is, or how much it changes the readings.
+std::string EffectText(const Suspicion& suspicion) {
+  const bool is_size = suspicion.cause != Cause::kNonlinearity && IsCorrectable(suspicion.cause);
+  const bool is_noun = suspicion.cause == Cause::kBacklash || suspicion.cause == Cause::kPush;
+  if (is_size) return (is_noun ? " of " : " by ") + SizeText(suspicion);
+  return " (it changes the readings by up to " + SizeText(suspicion) + ")";
+}
+
+/// law: the law that corrects for the cause if it is fitted alone; empty: none.
+Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
+  const auto [what, advice] = TextOf(suspicion.cause);
+  std::string consequence =
+      suspicion.is_corrected ? "the estimates are those of corrected readings" : "the estimates do not allow for it";
+  if (!law.empty()) consequence += " (a fit of this recording with --model " + law + " alone does)";
+  return {"suspected_" + std::string(CauseName(suspicion.cause)),
+          "the residuals suggest that " + std::string(what) + EffectText(suspicion) + ", " +
+              NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations; " + consequence + "; " +
+              std::string(advice)};
+}
+
 }  // namespace
 
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
@@ -221,6 +289,26 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
   WarnOfBounds(report, warnings);
   WarnOfStop(problem, solution, trace, report, warnings);
   return warnings;
+}
+
+std::string_view AdviceFor(Cause cause) { return TextOf(cause).advice; }
+
+std::string SizeText(const Suspicion& suspicion) {
+  const auto [factor, unit] = ShownUnitOf(suspicion.unit);
+  return NumberText(factor * suspicion.size, 3) + " ± " + NumberText(factor * suspicion.std_error, 1) + " " + unit;
+}
+
+std::string PlainSizeText(double size, const std::string& unit) {
+  const auto [factor, name] = ShownUnitOf(unit);
+  return NumberText(factor * size, 3) + " " + name;
+}
+
+void WarnOfSuspicions(bool is_correctable, FitReport& report) {
+  const std::vector<Cause>& causes = report.effects.correction.causes;
+  for (const Suspicion& suspicion : report.suspicions) {
+    const bool alone = is_correctable && std::ranges::find(causes, suspicion.cause) != causes.end();
+    report.warnings.push_back(SuspicionWarning(suspicion, alone ? std::string(report.model.name) : ""));
+  }
 }
 
 }  // namespace pendulum

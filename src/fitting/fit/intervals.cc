@@ -117,12 +117,16 @@ std::vector<std::string> MostCorrelatedParameters(const FitProblem& problem, con
 /// carry information.
 bool HasLittleNoise(const FittedModel& fitted) {
   constexpr double kFewAtEdges = 500;
+  constexpr double kMostReadings = 4000;  // in means: more take too long, and their likelihood is nearly parabolic
   constexpr double kAtSmallest = 1.05;
   const NoiseModel& noise = fitted.solution.noise;
-  if (noise.family != NoiseFamily::kQuantized) return false;
-  const double levels = noise.sigma / noise.resolution;
+  const bool averaged = noise.family == NoiseFamily::kAveraged;
+  if (noise.family != NoiseFamily::kQuantized && !averaged) return false;
+  const double levels = noise.sigma / (averaged ? noise.averaging.count : noise.resolution);
   const auto samples = static_cast<double>(fitted.problem.data.time.size());
-  return levels < kAtSmallest * kSmallestSigma || (levels < kSmallSigma && samples * levels < kFewAtEdges);
+  const double readings = samples * (averaged ? noise.averaging.readings : 1);
+  if (averaged && readings > kMostReadings) return false;
+  return levels < kAtSmallest * kSmallestSigma || (levels < kSmallSigma && readings * levels < kFewAtEdges);
 }
 
 /// Whether a bound truncates the posterior.

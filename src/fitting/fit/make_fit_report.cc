@@ -12,6 +12,7 @@
 #include "pendulum/fitting/fit/fit_description.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/intervals.h"
+#include "pendulum/fitting/fit/plausibility.h"
 #include "pendulum/fitting/solve/escape_discontinuities.h"
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 #include "pendulum/fitting/uncertainty/systematic.h"
@@ -105,6 +106,7 @@ struct SolutionChecks {
   double periods = 0;             ///< PeriodsOf
   bool correlated = false;
   bool at_kink = false;
+  std::string implausible;  ///< ImplausibleReason
 };
 
 void SetTermination(const FitProblem& problem, const Optimum& optimum, const SolutionChecks& checks,
@@ -123,6 +125,8 @@ void SetTermination(const FitProblem& problem, const Optimum& optimum, const Sol
     report.reason = "the motion lasts only " + NumberText(checks.periods, 2) +
                     " of a period of the best trajectory, too little to determine the pendulum; record several "
                     "periods, or choose a window of free swing with --from and --to";
+  } else if (!checks.implausible.empty()) {
+    report.reason = checks.implausible;
   } else if (checks.at_discontinuity) {
     report.termination = Termination::kConverged;
     report.reason = "the search stopped at a jump in the sum of squares: a further step of " +
@@ -156,13 +160,25 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   return report;
 }
 
+/// Sets how far estimates would be off by friction that the readings do not exclude.
+void SetUnseenFriction(const FitProblem& problem, FitReport& report) {
+  for (Eigen::Index i = 0; i < report.effects.unseen_friction.size(); ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const double unseen = problem.si_per_internal[index] * report.effects.unseen_friction[i];
+    if (unseen > 0) report.parameters[index].unseen_friction = unseen;
+  }
+}
+
 /// Sets estimates, errors and intervals of a converged fit, and the quantities they are based on.
 void SetErrors(const Recording& recording, const FitOptions& options, const FitProblem& problem, TrajectoryCost& cost,
                Solution& solution, const Optimum& optimum, const Eigen::VectorXd& z, bool correlated,
-               FitReport& report) {
+               const Correction& corrected, FitReport& report) {
   // Computed first, because the posterior changes σ, on which the optimum's information depends.
+  report.effects = CheckEffects(recording, problem, cost, solution, optimum, corrected);
+  report.suspicions = report.effects.suspicions;
+  SetUnseenFriction(problem, report);
   const std::vector<SystematicCovariance> systematic =
-      SystematicCovariances(recording, options, problem, cost, solution, optimum);
+      SystematicCovariances(recording, options, problem, cost, solution, optimum, report.effects);
   SetSystematicErrors(problem, systematic, report);
   const Autocorrelation autocorrelation = AutocorrelationOf(problem, cost, solution, optimum, z, correlated);
   Errors errors = ComputeErrors(problem, cost, solution, optimum, autocorrelation);
@@ -177,10 +193,40 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
   SetDerived(problem, sampled.value_or(optimum), errors, systematic, solution, report);
 }
 
+/// Removes the errors of static friction and of its reference rate where the readings do not show how friction falls
+/// from one to the other: the two then stand for any curve of the same slope, and an error would promise too much.
+void WithdrawUnseenStiction(const FitProblem& problem, FitReport& report) {
+  constexpr double kResolved = 0.25;
+  if (problem.solve.small_swing_parameters.empty()) return;
+  const ParameterEstimate& rate = report.parameters[static_cast<std::size_t>(problem.solve.last_friction)];
+  const bool is_narrow = rate.std_error && *rate.std_error <= kResolved * std::abs(rate.estimate);
+  const bool is_closed = rate.lower95 && *rate.lower95 > rate.info.lower && rate.upper95;
+  if (rate.fixed || (is_narrow && is_closed)) return;
+  for (const int i : problem.solve.small_swing_parameters) {
+    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
+    if (parameter.fixed) continue;
+    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+    parameter.systematic = {};
+    parameter.reason = "the readings do not show at which rate friction falls to its sliding value";
+    std::erase_if(report.profiles, [&](const ProfileCurve& curve) { return curve.name == parameter.info.name; });
+  }
+}
+
+/// Withdraws the errors of a converged fit whose residuals cannot test the model.
+void RejectIfTooFewEffectiveSamples(const FitProblem& problem, const Optimum& optimum, FitReport& report) {
+  const std::string why =
+      TooFewEffectiveSamples(report.statistics.effective_samples, static_cast<int>(optimum.free.size()),
+                             problem.UnexplainedShare(report.fitted));
+  if (why.empty()) return;
+  report.termination = Termination::kNotConverged;
+  report.reason = why;
+  WithdrawErrors("the fit does not describe the readings", report);
+}
+
 }  // namespace
 
 FitReport MakeFitReport(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                        TrajectoryCost& cost, Solution solution) {
+                        TrajectoryCost& cost, Solution solution, const Correction& corrected) {
   const std::optional<Optimum> optimum = Linearize(problem.solve, cost, solution);
   if (!optimum) return FailedReport(recording, options, problem, cost, solution);
   Description described = Describe(recording, problem, cost, solution, static_cast<int>(optimum->free.size()));
@@ -190,11 +236,15 @@ FitReport MakeFitReport(const Recording& recording, const FitOptions& options, c
   const bool at_discontinuity = IsStoppedByDiscontinuity(problem, cost, solution, *optimum);
   const bool at_kink = IsAtKink(problem, described.trace, solution);
   SetTermination(problem, *optimum,
-                 {shift, at_discontinuity, PeriodsOf(problem, solution), described.correlated, at_kink}, report);
+                 {shift, at_discontinuity, PeriodsOf(problem, solution), described.correlated, at_kink,
+                  ImplausibleReason(problem, solution, described.correlated)},
+                 report);
   SetParameters(recording, options, problem, *optimum, solution, report);
   if (report.termination == Termination::kConverged && options.interval != IntervalMethod::kNone) {
     SetErrors(recording, options, problem, cost, solution, *optimum, described.quantile_residuals, described.correlated,
-              report);
+              corrected, report);
+    WithdrawUnseenStiction(problem, report);
+    if (described.correlated) RejectIfTooFewEffectiveSamples(problem, *optimum, report);
   } else {
     report.derived = DerivedQuantities(problem.infos, solution.parameters, nullptr, {});
   }

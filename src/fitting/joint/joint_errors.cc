@@ -45,8 +45,8 @@ std::map<std::string, CommonSource> SourcesOf(const JointProblem& joint) {
   std::map<std::string, CommonSource> sources;
   const auto size = static_cast<Index>(joint.solve.fixed.size());
   for (const JointMember& member : joint.members) {
-    for (const SystematicSource& own :
-         SystematicSources(*member.recording, member.options, *member.problem, *member.cost, member.solution)) {
+    for (const SystematicSource& own : SystematicSources(*member.recording, member.options, *member.problem,
+                                                         *member.cost, member.solution, member.alone->effects)) {
       CommonSource& common = sources[own.identity];
       if (common.count++ == 0) {
         common.source = {own.kind, own.identity, Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0),

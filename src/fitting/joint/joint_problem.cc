@@ -35,11 +35,13 @@ NoiseModel NoiseOf(const FitProblem& problem, const FitReport& alone) {
   NoiseModel noise = problem.noise;
   noise.family = alone.noise.family;
   noise.sigma = std::max(alone.noise.sigma, problem.negligible_sigma());
-  const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kEdges;
+  const bool averaged = noise.family == NoiseFamily::kAveraged;
+  const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kEdges || averaged;
   noise.resolution = has_levels ? problem.resolution : 0;
   noise.stamp_ratio = alone.noise.stamp_ratio;
   noise.lag = alone.noise.lag;
   noise.spread = alone.noise.spread;
+  if (averaged) noise.averaging = alone.noise.averaging;
   return noise;
 }
 

@@ -9,18 +9,22 @@
 
 #include <Eigen/Core>
 
+#include "fitting/likelihood/averaged_counts.h"
 #include "fitting/likelihood/depth_table.h"
 #include "pendulum/fitting/likelihood/noise.h"
 
 namespace pendulum {
 
 /// Quantized samples under a linear model with parameters w: position + slope · w, in units of the resolution. Equal
-/// samples are merged and counted.
+/// samples are merged and counted. Means of readings (kAveraged) are all levels, in units of a count.
 struct LevelSamples {
-  Eigen::VectorXd position;  ///< n x 1, modelled minus measured; for censored readings, the depth within the interval.
-  Eigen::MatrixXd slope;     ///< n x F
-  Eigen::VectorXd count;     ///< n x 1
-  Eigen::Index levels = 0;   ///< The first `levels` samples are levels; the remaining ones are censored readings.
+  /// n x 1, modelled minus measured; for censored readings, the depth within the interval; for means, the modelled
+  /// value from a level.
+  Eigen::VectorXd position;
+  Eigen::MatrixXd slope;    ///< n x F
+  Eigen::VectorXd count;    ///< n x 1
+  Eigen::Index levels = 0;  ///< The first `levels` samples are levels; the remaining ones are censored readings.
+  std::vector<CountSum> sums = {};  ///< n for means, otherwise empty.
 
   Eigen::Index size() const { return position.size(); }
 
@@ -48,6 +52,9 @@ class LineLikelihood {
   double work() const { return work_; }
 
  private:
+  double SumOfMeans(const LevelSamples& samples, const Eigen::VectorXd& start, const Eigen::VectorXd& direction,
+                    double step, double floor);
+
   DepthTable level_{1};
   DepthTable censored_{std::numeric_limits<double>::infinity()};
   double sigma_ = 0;
@@ -61,7 +68,9 @@ inline LevelSamples LevelSamples::Near(double depth, double reach) const {
   std::vector<std::pair<double, Eigen::Index>> near;
   LevelSamples selected;
   for (Eigen::Index i = 0; i < size(); ++i) {
-    const double here = i < levels ? 0.5 - std::abs(position[i]) : position[i];
+    const double here = !sums.empty() ? CountSumMargin(sums[static_cast<std::size_t>(i)], position[i])
+                        : i < levels  ? 0.5 - std::abs(position[i])
+                                      : position[i];
     const double least = here - reach * slope.row(i).norm();
     if (least >= depth) continue;
     near.emplace_back(least, i);
@@ -76,6 +85,9 @@ inline LevelSamples LevelSamples::Near(double depth, double reach) const {
   selected.position = position(kept);
   selected.slope = slope(kept, Eigen::all);
   selected.count = count(kept);
+  for (const Eigen::Index i : kept) {
+    if (!sums.empty()) selected.sums.push_back(sums[static_cast<std::size_t>(i)]);
+  }
   return selected;
 }
 
@@ -103,8 +115,26 @@ inline Merged MergeEqual(const Eigen::VectorXd& value, const Eigen::VectorXd& re
   return merged;
 }
 
+/// Means of readings, in counts.
+inline LevelSamples MergeMeans(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings,
+                               const Eigen::MatrixXd& jacobian) {
+  const Merged merged = MergeEqual(value, readings, jacobian);
+  const auto n = static_cast<Eigen::Index>(merged.sample.size());
+  LevelSamples samples{Eigen::VectorXd(n), Eigen::MatrixXd(n, jacobian.cols()), Eigen::VectorXd(n), n, {}};
+  for (Eigen::Index row = 0; row < n; ++row) {
+    const auto k = static_cast<std::size_t>(row);
+    const Eigen::Index i = merged.sample[k];
+    samples.sums.push_back(CountSumOf(noise.ForSample(i), value[i]));
+    samples.position[row] = InCounts(noise, readings[i]);
+    samples.slope.row(row) = jacobian.row(i) / noise.averaging.count;
+    samples.count[row] = merged.count[k];
+  }
+  return samples;
+}
+
 inline LevelSamples MergeSamples(const NoiseModel& noise, const Eigen::VectorXd& value, const Eigen::VectorXd& readings,
                                  const Eigen::MatrixXd& jacobian) {
+  if (noise.family == NoiseFamily::kAveraged) return MergeMeans(noise, value, readings, jacobian);
   const Merged merged = MergeEqual(value, readings, jacobian);
   const auto n = static_cast<Eigen::Index>(merged.sample.size());
   LevelSamples samples{Eigen::VectorXd(n), Eigen::MatrixXd(n, jacobian.cols()), Eigen::VectorXd(n)};
@@ -132,8 +162,21 @@ inline void LineLikelihood::SetSigma(double sigma) {
   has_censored_table_ = false;
 }
 
+inline double LineLikelihood::SumOfMeans(const LevelSamples& samples, const Eigen::VectorXd& start,
+                                         const Eigen::VectorXd& direction, double step, double floor) {
+  constexpr double kWork = 20;  // evaluations of a level that one of a mean costs
+  double sum = 0;
+  for (Eigen::Index i = 0; i < samples.levels && sum >= floor; ++i) {
+    const CountSum& mean = samples.sums[static_cast<std::size_t>(i)];
+    sum += samples.count[i] * CountSumLog(mean, start[i] + step * direction[i], sigma_);
+    work_ += kWork;
+  }
+  return sum;
+}
+
 inline double LineLikelihood::Sum(const LevelSamples& samples, const Eigen::VectorXd& start,
                                   const Eigen::VectorXd& direction, double step, double floor) {
+  if (!samples.sums.empty()) return SumOfMeans(samples, start, direction, step, floor);
   if (samples.levels < samples.size() && !has_censored_table_) {
     censored_.Build(sigma_);
     has_censored_table_ = true;

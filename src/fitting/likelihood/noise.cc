@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/likelihood/averaged_counts.h"
 #include "fitting/likelihood/level_likelihoods.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
@@ -95,6 +96,7 @@ std::string_view NoiseFamilyName(NoiseFamily family) {
     case NoiseFamily::kHuber: return "huber";
     case NoiseFamily::kStudent: return "student";
     case NoiseFamily::kEdges: return "edges";
+    case NoiseFamily::kAveraged: return "averaged";
   }
   return "gaussian";
 }
@@ -228,9 +230,35 @@ NoiseLikelihood RobustEndLikelihood(const NoiseModel& noise, double y, double m)
   return l;
 }
 
+/// Whether the likelihood is that of a sum of rounded readings. A single reading, or its end of the range, is an
+/// interval.
+bool IsSum(const NoiseModel& noise) { return noise.family == NoiseFamily::kAveraged && noise.averaging.readings > 1; }
+
+/// Converts the likelihood from counts to the unit of the reading.
+NoiseLikelihood FromCounts(NoiseLikelihood l, double per_count) {
+  l.score *= per_count;
+  l.information *= per_count * per_count;
+  l.mixed *= per_count;
+  return l;
+}
+
+/// The likelihood of a mean is nearly concave. Where it is not, its weight is a part of the squared score, so that the
+/// gradient of a sample is never lost.
+SampleLikelihood DevianceOfMean(const NoiseModel& noise, double y, double m) {
+  constexpr double kLeast = 0.1;
+  const double per_count = 1 / noise.averaging.count;
+  const NoiseLikelihood l =
+      FromCounts(CountSumSlope(CountSumOf(noise, y), InCounts(noise, m), noise.sigma * per_count), per_count);
+  return {std::max(-2 * l.log, 0.0), l.score, std::max(l.information, kLeast * l.score * l.score)};
+}
+
 }  // namespace
 
 NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
+  if (IsSum(*this)) {
+    const double per_count = 1 / averaging.count;
+    return FromCounts(CountSumLikelihood(CountSumOf(*this, y), InCounts(*this, m), sigma * per_count), per_count);
+  }
   if (IsRobust()) {
     if (IsCensored(y)) return RobustEndLikelihood(*this, y, m);
     return family == NoiseFamily::kHuber ? HuberLikelihood(y - m, sigma) : StudentLikelihood(y - m, sigma);
@@ -240,6 +268,7 @@ NoiseLikelihood NoiseModel::LikelihoodAt(double y, double m) const {
 }
 
 SampleLikelihood NoiseModel::DevianceAt(double y, double m) const {
+  if (IsSum(*this)) return DevianceOfMean(*this, y, m);
   if (!IsRobust() && !IsInterval(y)) {
     const double z = (y - m) / sigma;
     return {z * z, z / sigma, 1 / (sigma * sigma)};
@@ -267,6 +296,7 @@ SampleLikelihood NoiseModel::DevianceAt(double y, double m) const {
 }
 
 NoiseModel::Distribution NoiseModel::DistributionAt(double y, double m) const {
+  if (IsSum(*this)) return CountSumDistribution(CountSumOf(*this, y), InCounts(*this, m), sigma / averaging.count);
   const auto below = [&](double x) {
     const double u = (x - m) / sigma;
     return IsRobust() ? RobustBelow(family, u).probability : 0.5 * std::erfc(-kRootHalf * u);

@@ -162,7 +162,8 @@ class TrajectoryCostFor final : public TrajectoryCost {
   /// Same result as noise_.DevianceAt, without an exponential and an error function for every quantized sample.
   SampleLikelihood DevianceAt(std::size_t sample, double reading) const {
     const double value = data_.value[sample];
-    if (noise_.spread) return noise_.ForSample(static_cast<Eigen::Index>(sample)).DevianceAt(value, reading);
+    if (noise_.spread || noise_.averaging.motions)
+      return noise_.ForSample(static_cast<Eigen::Index>(sample)).DevianceAt(value, reading);
     if (noise_.family != NoiseFamily::kQuantized || noise_.IsCensored(value)) return noise_.DevianceAt(value, reading);
     const double per_level = 1 / noise_.resolution;
     const double position = (value - reading) * per_level;

@@ -23,7 +23,7 @@ namespace {
 int HoldingParameter(const MotionModel& model) {
   int holding = -1;
   FrictionModels::Visit(model.friction, [&]<typename F>() {
-    for (int k = kFrictionParameters<F> - 1; k >= 0; --k) {
+    for (int k = kFrictionParameters<F> - 1; k >= 0 && !FrictionWithState<F>; --k) {
       std::array<double, kFrictionParameters<F>> unit{};
       unit[k] = 1;
       if (F::Torque(0.0, 1.0, unit.data()) > 0) holding = 1 + k;
@@ -157,6 +157,18 @@ void SetCensoring(const Recording& recording, FitProblem& problem) {
   if (problem.censored > 0) problem.noise = noise;
 }
 
+/// Sets how the samples are means of rounded readings, if their levels are known.
+void SetAveraging(const Recording& recording, FitProblem& problem) {
+  const Oversampling& oversampling = recording.oversampling;
+  if (oversampling.readings <= 1 || !(oversampling.count > 0)) return;
+  problem.oversampling = oversampling;
+  if (auto& window = problem.oversampling.window) {
+    window->from *= recording.clock_scale;
+    window->to *= recording.clock_scale;
+  }
+  problem.noise.averaging = {oversampling.readings, oversampling.count, oversampling.level, nullptr, {}};
+}
+
 /// Replaces each value by the median of the five values around it, so that single outliers do not look like the start
 /// of the motion.
 Recording WithoutOutliers(Recording recording) {
@@ -221,6 +233,12 @@ double FitProblem::UnexplainedShare(const Eigen::VectorXd& readings) const {
 namespace {
 
 Result<void> CheckNoise(const Recording& recording, const FitOptions& options) {
+  const bool has_means = recording.oversampling.readings > 1 && recording.oversampling.count > 0;
+  if (options.noise == NoiseFamily::kAveraged && !has_means) {
+    return Error(StatusCode::kInvalidArgument,
+                 "--noise averaged needs rows that are means of 2 to 64 readings in whole counts; give --oversample, "
+                 "and --resolution, the spacing of the means, if their levels are not found");
+  }
   const bool edges = options.noise == NoiseFamily::kEdges;
   if (!edges && options.noise != NoiseFamily::kQuantized) return {};
   if (edges && recording.edge) return {};
@@ -319,6 +337,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.data.zero_motion_factors = ZeroMotionFactors(recording, problem.data.times(), problem.zero_motion);
   problem.data.stop = options.stop;
   SetCensoring(recording, problem);
+  SetAveraging(recording, problem);
   const double gravity_torque = options.rig ? options.rig->gravity_torque.value : 1.0;
   for (const ParameterInfo& info : problem.infos) {
     const bool is_release = info.name == kReleaseTime.name;

@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/solve/averaged_noise.h"
 
 namespace pendulum {
 namespace {
@@ -49,19 +50,23 @@ void SetGaussianSigma(TrajectoryCost& cost, const FitProblem& problem, Solution&
   }
 }
 
-/// Alternates between estimating σ and solving for the parameters.
-void AlternateSigmaAndParameters(TrajectoryCost& cost, const FitProblem& problem, Solution& solution) {
+/// Alternates between estimating σ and solving for the parameters. `window`: length of the averaging window [s], for
+/// kAveraged.
+void AlternateSigmaAndParameters(TrajectoryCost& cost, const FitProblem& problem, double window, Solution& solution) {
   constexpr int kMaxRounds = 15;
   constexpr int kSpreadRounds = 3;         // rounds that estimate the errors of the time stamps
   constexpr double kMaxNegativeLag = 0.4;  // in counts: below 0.5, so that the interval of a silence is not empty
   constexpr double kSame = 3e-3;           // of σ: at most some tenths of its standard error
   const auto value = problem.data.values();
   const bool edges = solution.noise.family == NoiseFamily::kEdges;
+  const bool averaged = solution.noise.family == NoiseFamily::kAveraged;
   const bool lags = problem.zero_motion == ZeroMotion::kLags;
-  const double smallest = std::max(edges ? 0 : kSmallestSigma * problem.resolution, problem.negligible_sigma());
+  const double level_spacing = averaged ? solution.noise.averaging.count : problem.resolution;
+  const double smallest = std::max(edges ? 0 : kSmallestSigma * level_spacing, problem.negligible_sigma());
   for (int round = 0; round < kMaxRounds; ++round) {
     if (!cost.Readings(solution.parameters, &solution.readings, nullptr)) break;
     if (edges && round < kSpreadRounds) SetSpread(problem.data.times(), value, solution.readings, solution.noise);
+    if (averaged && round < kSpreadRounds) SetWindowMotions(cost, problem, solution, window, solution.noise);
     const double lag = lags ? std::max(solution.parameters.back(), -kMaxNegativeLag * problem.resolution) : 0.0;
     const bool same_lag = std::abs(lag - solution.noise.lag) <= kSame * solution.noise.sigma;
     if (!same_lag) solution.noise.lag = lag;
@@ -116,6 +121,9 @@ void RecomputeDeviances(TrajectoryCost& cost, Solution& solution) {
   }
 }
 
+/// Noise of a reading [counts] from which on means are treated as normal variables.
+constexpr double kContinuousNoise = 0.55;
+
 double DensityUnit(double resolution) { return resolution > 0 ? resolution : 1.0; }
 
 /// Log-likelihood of Gaussian noise with the likeliest σ, whose square is RSS / N.
@@ -158,11 +166,40 @@ ChosenNoise ChooseNoise(const FitOptions& options, double resolution, double res
 namespace {
 
 ChosenNoise ChooseNoiseOf(const FitProblem& problem, const FitOptions& options, double residual_std_dev) {
+  if (!options.noise && HasMeans(problem) && MayShowRounding(problem, residual_std_dev)) {
+    return {NoiseFamily::kAveraged, "each row is the mean of " + std::to_string(problem.oversampling.readings) +
+                                        " readings, whose rounding to whole counts does not average out"};
+  }
   if (!options.noise && problem.noise.edge) {
     return {NoiseFamily::kEdges,
             "rows exist only where the count changes, so the readings are treated as edges between counts"};
   }
   return ChooseNoise(options, problem.resolution, residual_std_dev);
+}
+
+/// The average over the window differs from the value at its middle by θ'' T²/24, so it shows an amplitude that is too
+/// small by the relative (ω T)²/24 (MODEL.md eq. (7.11)).
+bool IsWindowShort(const FitProblem& problem, double window) {
+  constexpr double kNegligible = 1e-6;
+  const double phase = problem.start.natural_frequency * window;
+  return phase * phase / 24 < kNegligible;
+}
+
+/// Sets σ, levels and motions of means. If the noise of a reading exceeds half a count and the window is short, the
+/// means are normal variables, and the family becomes kGaussian unless the user asked for means.
+void StartAveraging(const TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
+                    Solution& solution, double* window) {
+  NoiseModel likeliest = LikeliestAveraging(cost, problem, solution, window);
+  const double counts = likeliest.sigma / likeliest.averaging.count;
+  if (options.noise || counts < kContinuousNoise || !IsWindowShort(problem, *window)) {
+    solution.noise = std::move(likeliest);
+    return;
+  }
+  solution.noise.family = NoiseFamily::kGaussian;
+  solution.noise.resolution = 0;
+  solution.noise_reason = "each row is the mean of " + std::to_string(problem.oversampling.readings) +
+                          " readings with noise of " + NumberText(counts, 2) +
+                          " counts: their rounding averages out, so the means are treated as continuous";
 }
 
 }  // namespace
@@ -181,19 +218,25 @@ void MaximizeLikelihood(TrajectoryCost& cost, const FitProblem& problem, const F
   solution.noise.family = chosen.family;
   solution.noise_reason = std::move(chosen.why);
   const bool quantized = solution.noise.family == NoiseFamily::kQuantized;
-  solution.noise.resolution = quantized || solution.noise.family == NoiseFamily::kEdges ? problem.resolution : 0;
+  const bool edges = solution.noise.family == NoiseFamily::kEdges;
+  const bool averaged = solution.noise.family == NoiseFamily::kAveraged;
+  solution.noise.resolution = quantized || edges || averaged ? problem.resolution : 0;
+  double window = 0;
+  if (averaged) StartAveraging(cost, problem, options, solution, &window);
   if (solution.noise.IsUncensoredGaussian()) {
     SetGaussianSigma(cost, problem, solution);
   } else {
     const std::vector<Minimum> near = NearMinima(solution, samples);
-    const double rounding = quantized ? solution.noise.resolution / std::sqrt(12.0) : 0;
-    solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
+    if (solution.noise.family != NoiseFamily::kAveraged) {
+      const double rounding = quantized ? solution.noise.resolution / std::sqrt(12.0) : 0;
+      solution.noise.sigma = std::sqrt(std::max(rms * rms - rounding * rounding, 0.04 * rounding * rounding));
+    }
     solution.noise.sigma = std::max(solution.noise.sigma, problem.negligible_sigma());
     cost.set_noise(solution.noise);
     solution.other_minima.clear();
-    AlternateSigmaAndParameters(cost, problem, solution);
+    AlternateSigmaAndParameters(cost, problem, window, solution);
     CompareMinima(cost, problem, near, solution);
-    if (!near.empty()) AlternateSigmaAndParameters(cost, problem, solution);
+    if (!near.empty()) AlternateSigmaAndParameters(cost, problem, window, solution);
     RecomputeDeviances(cost, solution);
   }
   // The cost has these readings cached, unless the trajectory cannot be computed.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fitting/swing/disturbed_ends.h"
+#include "fitting/swing/hold_agreement.h"
 #include "fitting/swing/plausible_period.h"
 #include "fitting/swing/presliding.h"
 #include "fitting/swing/steady_hold.h"
@@ -161,6 +162,8 @@ struct SwingState {
   /// fit and the user did not choose the end.
   std::optional<Presliding> presliding = std::nullopt;
   bool is_pendulum = true;
+  /// How the hold disagrees with the swing; it was left out if the user did not ask for it.
+  std::optional<HoldDisagreement> hold = std::nullopt;
 
   /// Whether the fit leaves more than noise.
   bool IsLacking() const {
@@ -181,6 +184,60 @@ struct WindowRescue {
 
 bool IsLacking(const SwingState& state) { return state.IsLacking(); }
 
+// ---- The hold -------------------------------------------------------------------------------------------------------
+
+/// Whether the hold may disturb a fit that begins with a release: its residuals suggest a hand that moved or pushed,
+/// and the readings were not corrected for it, or the law does not describe them.
+bool HoldMayDisturb(const SwingState& state) {
+  const FitReport& fit = state.result.fit;
+  if (fit.start != StartKind::kRelease || fit.termination != Termination::kConverged) return false;
+  const auto of_hand = [](const Suspicion& suspicion) {
+    return suspicion.cause == Cause::kHold || suspicion.cause == Cause::kPush;
+  };
+  const auto named = std::ranges::find_if(fit.suspicions, of_hand);
+  if (named != fit.suspicions.end()) return !named->is_corrected;
+  return fit.HasWarning("lack_of_fit");
+}
+
+/// The swing without its hold, and without the first motion, during which a finger may still have touched it.
+FreeSwing WithoutHold(const SwingFit& result) {
+  constexpr double kTouched = 0.1;  // half periods
+  const double release = result.fit.Find(kReleaseTime.name)->estimate;
+  FreeSwing moving = result.swing;
+  moving.from = std::max(moving.after_hold, release + kTouched * moving.half_period);
+  moving.begins = {WindowBegin::Reason::kHoldDisagrees};
+  return moving;
+}
+
+/// Whether a disagreement of the hold is more than the misfit of a law that does not describe the swing either.
+bool ExceedsMisfit(const HoldDisagreement& hold, const FitReport& fit) {
+  constexpr double kFar = 3;
+  const double misfit = fit.HasWarning("lack_of_fit") ? kFar * fit.statistics.rms_residual : 0;
+  return std::abs(hold.offset) > misfit || std::abs(hold.creep) > misfit;
+}
+
+/// A hand may hold the pendulum at another angle before it lets go, or push it. Such a hold says only that the swing
+/// begins after it.
+Result<bool> LeaveOutHold(const FitOptions& options, SwingState& state) {
+  const std::optional<HoldDisagreement> hold = FindHoldDisagreement(state.result.used, state.result.fit, options);
+  if (!hold) return false;
+  if (options.start || state.swing.from_given || ConstrainsStart(options)) {
+    if (ExceedsMisfit(*hold, state.result.fit)) state.hold = hold;
+    return false;
+  }
+  const FreeSwing moving = WithoutHold(state.result);
+  Result<SwingFit> result = FitBetween(state.result.used, moving, options);
+  const bool is_better = result && result->fit.termination == Termination::kConverged &&
+                         result->fit.start == StartKind::kMoving && ExceedsMisfit(*hold, result->fit);
+  if (!is_better) return false;
+  state.hold = hold;
+  state.swing = moving;
+  state.result = *std::move(result);
+  return true;
+}
+
+// ---- The window and the readings ------------------------------------------------------------------------------------
+
 /// Lost counts shift the zero in steps, so the residuals are more than noise.
 bool MayHaveJumped(const SwingState& state) { return state.IsLacking() || MayHaveOffsetJump(state.result.fit); }
 
@@ -200,7 +257,7 @@ Result<bool> RejectIfNoPendulum(const FitOptions& options, SwingState& state) {
   return why.has_value();
 }
 
-/// Small swings to which no law applies would otherwise outweigh the large ones.
+/// Small swings to which the law does not apply would otherwise outweigh the large ones.
 Result<bool> LeaveOutPresliding(const FitOptions& options, SwingState& state) {
   constexpr double kBetter = 0.9;
   state.presliding = FindPresliding(state.result.used, state.result.fit.model.gravity);
@@ -247,7 +304,8 @@ Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
   return state.result.swing.to != to;
 }
 
-constexpr std::array<WindowRescue, 6> kWindowRescues = {{
+constexpr std::array<WindowRescue, 7> kWindowRescues = {{
+    {"hold_left_out", HoldMayDisturb, LeaveOutHold, false},
     {"offset_jumps", MayHaveJumped, CorrectJumps},
     {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
     {"presliding", IsLacking, LeaveOutPresliding, false},
@@ -269,8 +327,20 @@ Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, Swing
   return records;
 }
 
+void WarnOfHold(const HoldDisagreement& hold, const Recording& used, FitReport& fit) {
+  const std::string why = Sentence(hold, used) + ": the hand moved, or pushed or braked the pendulum at the release";
+  if (fit.start == StartKind::kRelease) {
+    fit.warnings.push_back({"hold_disagrees", "the hold does not agree with the swing: " + why +
+                                                  ". The hold affects all estimates; leave it out with --start moving "
+                                                  "and --from after the release"});
+    return;
+  }
+  fit.warnings.push_back({"hold_left_out", "the hold before the release was left out: " + why});
+}
+
 void AddWarnings(const FitOptions& options, SwingState& state) {
   FitReport& fit = state.result.fit;
+  if (state.hold) WarnOfHold(*state.hold, state.result.used, fit);
   if (state.was_trimmed) {
     fit.warnings.push_back(
         {"ends_trimmed", "disturbed ends were left out, because they do not fit the rest: the window is now " +
@@ -316,7 +386,7 @@ void FitWithHold(Recording recording, const FitOptions& options, SwingState& sta
   Result<SwingFit> released = FitBetween(std::move(recording), *held, options);
   const bool is_released =
       released && released->fit.termination == Termination::kConverged && released->fit.start == StartKind::kRelease;
-  if (!is_released) return;
+  if (!is_released || FindHoldDisagreement(released->used, released->fit, options)) return;
   state.swing = released->swing;
   state.result = *std::move(released);
 }

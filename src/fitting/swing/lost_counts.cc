@@ -12,6 +12,7 @@
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/edge_steps.h"
 #include "pendulum/fitting/swing/offset_steps.h"
+#include "pendulum/recording/oversampling.h"
 
 namespace pendulum {
 namespace {
@@ -26,7 +27,16 @@ struct CorrectedFit {
   double rms = 0;
   bool has_misfit = false;  // more misfit than noise
   FitResiduals residuals;
+  Index first_moving = 0;  // a jump before this sample belongs to the hand: it moved in the hold or at the release
 };
+
+/// The first sample a tenth of a period after the release; 0 for a start in motion.
+Index FirstMoving(const FitProblem& problem, const std::vector<double>& parameters, double period) {
+  constexpr double kBegun = 0.1;  // of a period
+  const auto release = problem.Find(kReleaseTime.name);
+  if (!release) return 0;
+  return (problem.data.times().array() < parameters[*release] + kBegun * period).count();
+}
 
 /// Computes the residuals of the recording at these parameters. Returns false if the trajectory cannot be computed.
 bool ComputeResiduals(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
@@ -82,6 +92,7 @@ std::optional<CorrectedFit> FitCorrected(const Recording& recording, const Recor
   CorrectedFit corrected_fit{
       fit->statistics.rms_residual, fit->HasWarning("lack_of_fit") || fit->HasWarning("correlated_residuals"), {}};
   if (!ComputeResiduals(recording, *problem, *cost, parameters, corrected_fit.residuals)) return std::nullopt;
+  corrected_fit.first_moving = FirstMoving(*problem, parameters, corrected_fit.residuals.period);
   if (recording.edge) RefineWithinRuns(recording, *problem, *cost, std::move(parameters), corrected_fit.residuals);
   return corrected_fit;
 }
@@ -102,24 +113,26 @@ struct StepInCounts {
 /// or has a sensor range. Readings with a range cannot be corrected, because the ends of the range would not shift with
 /// them.
 StepInCounts InCounts(const OffsetStep& step, const Recording& recording) {
-  if (!(recording.resolution > 0) || recording.range) return {};
-  return {step.size / recording.resolution, step.std_error / recording.resolution};
+  const double count = CountOf(recording);
+  if (!(count > 0) || recording.range) return {};
+  return {step.size / count, step.std_error / count};
 }
 
-/// Whether a step is larger than the rounding of readings or numbers.
+/// Whether a step is larger than the rounding of readings or numbers. The mean of readings with little noise is rounded
+/// to whole counts as they are.
 bool IsSignificant(const OffsetStep& step, const Recording& recording) {
   constexpr double kMinCount = 0.75;
   constexpr double kMinDeviations = 5;
   constexpr double kRounding = 1e-6;
   const double range = recording.value.maxCoeff() - recording.value.minCoeff();
-  const double least = std::max({kMinDeviations * step.std_error, kMinCount * recording.resolution, kRounding * range});
+  const double least = std::max({kMinDeviations * step.std_error, kMinCount * CountOf(recording), kRounding * range});
   return std::abs(step.size) > least;
 }
 
 Recording WithoutSteps(Recording recording, const std::vector<OffsetStep>& steps) {
   for (const OffsetStep& step : steps) {
     const StepInCounts counts = InCounts(step, recording);
-    const double size = counts.IsWhole() ? std::round(counts.number) * recording.resolution : step.size;
+    const double size = counts.IsWhole() ? std::round(counts.number) * CountOf(recording) : step.size;
     recording.value.tail(recording.size() - step.sample).array() -= size;
   }
   return recording;
@@ -178,13 +191,14 @@ bool MayHaveOffsetJump(const FitReport& fit) {
   const double mean = fit.residual.mean();
   const double scatter = std::sqrt((fit.residual.array() - mean).square().mean());
   if (!(scatter > kRounding * (fit.fitted.maxCoeff() - fit.fitted.minCoeff()))) return false;
+  const double count_size = std::max(fit.noise.resolution, fit.noise.averaging.count);
   double sum = 0;
   for (Index i = 0; i + 1 < count; ++i) {
     sum += fit.residual[i] - mean;
     const auto before = static_cast<double>(i + 1), after = static_cast<double>(count - i - 1);
     const double weight = before * after / static_cast<double>(count);
     // With very little noise, readings repeat the same rounding error throughout a hold.
-    const double least = std::max(kDeviations * scatter / std::sqrt(weight), kMinCount * fit.noise.resolution);
+    const double least = std::max(kDeviations * scatter / std::sqrt(weight), kMinCount * count_size);
     if (std::abs(sum) > least * weight) return true;
   }
   return false;
@@ -215,7 +229,9 @@ std::optional<ConsistentSteps> FindConsistentSteps(const Recording& recording, c
                                         ? FindEdgeSteps(corrected_fit->residuals, recording)
                                         : FindOffsetSteps(corrected_fit->residuals, kMaxOffsetSteps, options.stop);
     if (options.stop.stop_requested()) return std::nullopt;
-    std::erase_if(found, [&](const OffsetStep& step) { return !IsSignificant(step, recording); });
+    std::erase_if(found, [&](const OffsetStep& step) {
+      return step.sample < corrected_fit->first_moving || !IsSignificant(step, recording);
+    });
     const bool is_consistent = std::ranges::equal(found, consistent.steps, AreSame);
     consistent.uncertain = FirstUncertainSample(recording, consistent.steps, found);
     consistent.steps = std::move(found);
@@ -269,7 +285,8 @@ void RejectForOffsetJumps(const std::string& why, FitReport& fit) {
 void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit, FitReport& fit) {
   // For events, a misfit cannot hide a jump: a lasting offset between two edges is a step of the zero.
   const bool can_detect =
-      fit.noise.family == NoiseFamily::kEdges || (!has_misfit && fit.noise.family != NoiseFamily::kQuantized);
+      fit.noise.family == NoiseFamily::kEdges ||
+      (!has_misfit && fit.noise.family != NoiseFamily::kQuantized && fit.noise.family != NoiseFamily::kAveraged);
   if (!jumps && can_detect && MayHaveOffsetJump(fit)) {
     fit.warnings.push_back({"offset_unsteady",
                             "the mean of the residuals changes within the window by more than chance explains: the "

@@ -2,7 +2,9 @@
 #include "fitting/swing/presliding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "pendulum/base/format.h"
@@ -34,6 +36,27 @@ double MedianFrom(const std::vector<double>& values, std::size_t first, std::siz
   return Median(std::vector<double>(begin, end));
 }
 
+/// The standard deviation of (duration x amplitude) of a half swing: an error of the readings moves a turning
+/// point by an amount in proportion to 1/amplitude. Neighbouring durations share a turning point, so that their
+/// difference has three times the variance of a duration.
+double ScatterOf(const std::vector<double>& durations, const std::vector<double>& amplitude) {
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i + 1 < durations.size(); ++i) {  // the first may begin at the start of the recording
+    sizes.push_back(std::abs(durations[i + 1] - durations[i]) * amplitude[i + 1]);
+  }
+  constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
+  return kSigmaPerMedian * Median(std::move(sizes)) / std::sqrt(3.0);
+}
+
+/// The duration of the large half swings, the first `count`: the lower of their two middle durations, because noise
+/// during the hold adds turning points there. The very first may begin at the start of the recording.
+double DurationOfLarge(const std::vector<double>& durations, std::size_t count) {
+  std::vector<double> large(durations.begin() + 1, durations.begin() + 1 + static_cast<std::ptrdiff_t>(count));
+  const auto middle = large.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+  std::ranges::nth_element(large, middle);
+  return *middle;
+}
+
 /// The number of turning points whose amplitude is clearly above the noise.
 std::size_t CountClear(const TurningPointTable& table, const std::vector<double>& amplitude) {
   constexpr double kClear = 8;
@@ -46,6 +69,7 @@ std::size_t CountClear(const TurningPointTable& table, const std::vector<double>
 
 std::optional<Presliding> FindPresliding(const Recording& used, Gravity gravity) {
   constexpr double kClearlyFaster = 0.05, kFaster = 0.03;
+  constexpr double kSignificance = 4;  // as if the errors of the last durations were independent: they cancel in part
   constexpr std::size_t kMinLarge = 4, kMinSmall = 4, kSmoothed = 3;  // half swings
   if (!used.is_calibrated() || (used.quantity != Quantity::kAngle && used.quantity != Quantity::kRate)) {
     return std::nullopt;
@@ -57,14 +81,12 @@ std::optional<Presliding> FindPresliding(const Recording& used, Gravity gravity)
   const std::size_t clear = CountClear(*table, amplitude);
   if (clear < kMinLarge + kMinSmall + 1) return std::nullopt;
   durations.resize(clear - 1);
-  // The first turning point may be the start of the recording.
-  const double large = MedianFrom(durations, 1, kMinLarge);
-  if (MedianFrom(durations, durations.size() - kMinSmall, kMinSmall) > (1 - kClearlyFaster) * large) {
-    return std::nullopt;
-  }
+  const double large = DurationOfLarge(durations, kMinLarge);
+  const double last = MedianFrom(durations, durations.size() - kMinSmall, kMinSmall);
+  const double error = ScatterOf(durations, amplitude) / (amplitude[clear - 1] * std::sqrt(kMinSmall));
+  if (large - last < std::max(kClearlyFaster * large, kSignificance * error)) return std::nullopt;
   for (std::size_t i = kMinLarge; i < durations.size(); ++i) {
     if (MedianFrom(durations, i, kSmoothed) > (1 - kFaster) * large) continue;
-    const double last = MedianFrom(durations, durations.size() - kMinSmall, kMinSmall);
     return Presliding{table->points[i].time, amplitude[i], 1 - last / large};
   }
   return std::nullopt;
@@ -74,8 +96,8 @@ std::string Sentence(const Presliding& presliding, const std::string& unit, bool
   const std::string where = NumberText(presliding.from, 4) + " s";
   return "from " + where + " on, below about " + NumberText(presliding.amplitude, 2) + " " + unit +
          ", the swings are up to " + NumberText(100 * presliding.faster, 2) +
-         " % faster than the larger ones: before a bearing slides, its friction acts like a spring (presliding), which "
-         "no law here contains. " +
+         " % faster than the larger ones: before a bearing slides, its friction acts like a spring (presliding), as in "
+         "the law dahl (--model dahl). " +
          (is_left_out ? "They were left out; choose another end with --to"
                       : "Leave them out with --to " + NumberText(presliding.from, 4));
 }

@@ -11,7 +11,7 @@
 namespace pendulum {
 
 /// Small swings that are faster than larger ones, as if a spring were added to gravity. Before a bearing slides, its
-/// friction acts like such a spring; none of the laws contains that.
+/// friction acts like such a spring, as in the law dahl.
 struct Presliding {
   double from = 0;       ///< s, file's clock: the turning point from which on swings are clearly faster.
   double amplitude = 0;  ///< Of that turning point, in the unit of the readings.
@@ -19,8 +19,8 @@ struct Presliding {
 };
 
 /// Looks for presliding in the readings of an angle or a rate. With sine gravity, the longer period of large swings is
-/// taken into account. std::nullopt without presliding, for readings that are not calibrated, and if less than four
-/// half swings would remain.
+/// taken into account, and so is the scatter of the durations. std::nullopt without presliding, for readings that are
+/// not calibrated, and if less than four half swings would remain.
 std::optional<Presliding> FindPresliding(const Recording& used, Gravity gravity);
 
 /// The sentence of the warning. is_left_out: the window ends before.

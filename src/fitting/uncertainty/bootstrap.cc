@@ -68,7 +68,9 @@ class Replicas {
     const Eigen::VectorXd noise = Draw(generator).cwiseProduct(spread);
     for (Index i = 0; i < noise.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      replica.data.value[at] = QuantizedReading(solution_.readings[i] + noise[i], problem_.data.value[at]);
+      replica.data.value[at] = DrawsMeans()
+                                   ? MeanReading(i, generator)
+                                   : QuantizedReading(solution_.readings[i] + noise[i], problem_.data.value[at]);
     }
     const auto cost = MakeTrajectoryCost(replica.model, replica.start.start, replica.data);
     cost->set_tolerance(tolerance_);
@@ -134,6 +136,23 @@ class Replicas {
       for (Index k = 0; k < block_ && i < samples; ++k, ++i) noise[i] = residuals_[(first + k) % samples];
     }
     return noise;
+  }
+
+  bool DrawsMeans() const { return parametric_ && solution_.noise.family == NoiseFamily::kAveraged; }
+
+  /// The mean of rounded readings at sample i.
+  double MeanReading(Index i, std::mt19937_64& generator) const {
+    const NoiseModel noise = solution_.noise.ForSample(i);
+    const auto& [n, count, level, motions, motion] = noise.averaging;
+    boost::random::normal_distribution<double> normal;
+    double sum = 0;
+    for (int k = 0; k < n; ++k) {
+      const double s = (k + 0.5) / n - 0.5;
+      const double value =
+          solution_.readings[i] + s * (motion.slope + s * motion.bend) + noise.sigma * normal(generator);
+      sum += std::round((value - level) / count);
+    }
+    return level + count * sum / n;
   }
 
   /// The reading that the sensor shows for a value: rounded to its levels, of which `other` is one, and within its

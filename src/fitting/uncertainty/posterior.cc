@@ -41,15 +41,22 @@ Result<void> CheckSizes(const LinearizedFit& fit) {
   return {};
 }
 
+/// The spacing of the sensor's levels; for means, that of one reading.
+double LevelSpacing(const NoiseModel& noise) {
+  return noise.family == NoiseFamily::kAveraged ? noise.averaging.count : noise.resolution;
+}
+
 Result<void> CheckValues(const LinearizedFit& fit) {
   if (!fit.value.allFinite() || !fit.readings.allFinite() || !fit.jacobian.allFinite() || !fit.prior_mean.allFinite() ||
       !fit.prior_weight.allFinite()) {
     return Invalid("values, readings, Jacobian and priors must be finite numbers");
   }
   const NoiseModel& noise = fit.noise;
-  if (noise.family != NoiseFamily::kQuantized || !(noise.resolution > 0) || !std::isfinite(noise.resolution)) {
+  const double spacing = LevelSpacing(noise);
+  const bool has_levels = noise.family == NoiseFamily::kQuantized || noise.family == NoiseFamily::kAveraged;
+  if (!has_levels || !(spacing > 0) || !std::isfinite(spacing)) {
     return Invalid("the noise is " + std::string(NoiseFamilyName(noise.family)) + " with resolution " +
-                   NumberText(noise.resolution) + "; it must be quantized with a resolution greater than 0");
+                   NumberText(spacing) + "; it must be quantized or averaged with a resolution greater than 0");
   }
   if (!(noise.sigma >= 0)) return Invalid("sigma is " + NumberText(noise.sigma) + "; it must be 0 or more");
   for (Eigen::Index j = 0; j < fit.lower.size(); ++j) {
@@ -72,11 +79,12 @@ Result<Frame> FirstFrame(const LinearizedFit& fit) {
   constexpr double kMinSigma = 0.1;
   constexpr double kMinWeight = 0.01;
   NoiseModel noise = fit.noise;
-  noise.sigma = std::max(noise.sigma, kMinSigma * noise.resolution);
+  const double spacing = LevelSpacing(noise);
+  noise.sigma = std::max(noise.sigma, kMinSigma * spacing);
   Eigen::VectorXd weight(fit.value.size());
   for (Eigen::Index i = 0; i < weight.size(); ++i) {
-    const double least = noise.IsCensored(fit.value[i]) ? 0 : kMinWeight / (noise.resolution * noise.resolution);
-    weight[i] = noise.LikelihoodAt(fit.value[i], fit.readings[i]).information + least;
+    const double least = noise.IsCensored(fit.value[i]) ? 0 : kMinWeight / (spacing * spacing);
+    weight[i] = std::max(noise.ForSample(i).LikelihoodAt(fit.value[i], fit.readings[i]).information, 0.0) + least;
   }
   Eigen::MatrixXd information = fit.jacobian.transpose() * weight.asDiagonal() * fit.jacobian;
   information.diagonal() += fit.prior_weight.cwiseAbs2();
@@ -182,7 +190,7 @@ Chain::Chain(const LinearizedFit& fit, Frame frame, std::uint64_t seed, const st
       generator_(seed),
       samples_(MergeSamples(fit.noise, fit.value, fit.readings, fit.jacobian)) {
   constexpr double kMinStart = 0.05;  // from a smaller one, the chain would hardly move
-  log_sigma_ = std::log(std::clamp(fit.noise.sigma / fit.noise.resolution, kMinStart, kMaxSigma));
+  log_sigma_ = std::log(std::clamp(fit.noise.sigma / LevelSpacing(fit.noise), kMinStart, kMaxSigma));
   EnterFrame(std::move(frame), Eigen::VectorXd::Zero(fit.jacobian.cols()));
 }
 
@@ -394,7 +402,7 @@ Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed, 
   WarmUp(chain);
   Draws draws = RunUntilEnough(chain);
   if (chain.is_stopped()) return FitStopped();
-  return Summarize(std::move(draws), fit.noise.resolution);
+  return Summarize(std::move(draws), LevelSpacing(fit.noise));
 }
 
 }  // namespace pendulum

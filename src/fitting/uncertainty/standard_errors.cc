@@ -66,8 +66,9 @@ Eigen::MatrixXd MeatOf(const FitProblem& problem, const NoiseModel& noise, const
   if (noise.IsRobust() && problem.censored > 0) {
     return CorrelatedSum(correlation, problem.data.times(), terms.score.cwiseAbs().asDiagonal() * jacobian);
   }
-  if (noise.family == NoiseFamily::kEdges) {
-    const Eigen::VectorXd deviation = terms.information.cwiseSqrt();  // of the scores: it differs between edges
+  if (noise.family == NoiseFamily::kEdges || noise.family == NoiseFamily::kAveraged) {
+    const Eigen::VectorXd deviation =
+        terms.information.cwiseMax(0).cwiseSqrt();  // of the scores: it differs between samples
     return CorrelatedSum(correlation, problem.data.times(), deviation.asDiagonal() * jacobian);
   }
   const Eigen::MatrixXd correlated = CorrelatedSum(correlation, problem.data.times(), jacobian);

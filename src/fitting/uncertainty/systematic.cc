@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
@@ -104,13 +106,27 @@ Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SourceCont
   return follows;
 }
 
+/// The effects of the error budget as one source. Recordings of one kind of sensor share it.
+std::optional<SystematicSource> SensorSource(const SensorErrors& sensor, const EffectCheck& effects) {
+  std::vector<Index> budget;
+  for (Index k = 0; k < effects.second_moment.rows(); ++k) {
+    if (effects.second_moment(k, k) > 0) budget.push_back(k);
+  }
+  if (budget.empty()) return std::nullopt;
+  return SystematicSource{ErrorSource::kSensor,
+                          "sensor " + sensor.kind + " " + std::to_string(budget.size()),
+                          {},
+                          effects.pull(Eigen::all, budget),
+                          effects.second_moment(budget, budget)};
+}
+
 }  // namespace
 
 /// The rig's gravity torque is a common factor of inertia and friction. The clock's scale enters with the power of time
 /// in each parameter. The calibration's coefficients change every reading.
 std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
                                                 const FitProblem& problem, const TrajectoryCost& cost,
-                                                const Solution& solution) {
+                                                const Solution& solution, const EffectCheck& effects) {
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::VectorXd gravity = Eigen::VectorXd::Zero(size);
   Eigen::VectorXd time(size);
@@ -129,9 +145,10 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   if (const Rig* rig = SiRig(options)) {
     add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
   }
-  const double clock_error = recording.clock_scale_std_dev / recording.clock_scale;
-  const std::string clock =
-      "clock " + NumberText(recording.clock_scale) + " " + NumberText(recording.clock_scale_std_dev);
+  const SensorErrors& sensor = recording.sensor_errors;
+  const double stated = recording.clock_scale_std_dev / recording.clock_scale;
+  const double clock_error = stated > 0 ? stated : sensor.Of(SensorEffect::kClock).std_dev;
+  const std::string clock = "clock " + NumberText(recording.clock_scale) + " " + NumberText(clock_error);
   const bool has_own_clock = recording.quantity == Quantity::kRate || recording.quantity == Quantity::kAcceleration;
   if (!has_own_clock) {
     add_scale(ErrorSource::kClock, clock, time, clock_error);
@@ -149,6 +166,9 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
                        {},
                        ScoresByCalibration(*calibration, problem, cost, solution),
                        calibration->covariance});
+  }
+  if (std::optional<SystematicSource> of_sensor = SensorSource(sensor, effects)) {
+    sources.push_back(*std::move(of_sensor));
   }
   return sources;
 }
@@ -182,11 +202,12 @@ void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& cov
 
 std::vector<SystematicCovariance> SystematicCovariances(const Recording& recording, const FitOptions& options,
                                                         const FitProblem& problem, const TrajectoryCost& cost,
-                                                        const Solution& solution, const Optimum& optimum) {
+                                                        const Solution& solution, const Optimum& optimum,
+                                                        const EffectCheck& effects) {
   std::vector<SystematicCovariance> covariances;
   if (!optimum.inverse.identifiable) return covariances;
   const SourceContext context{solution.parameters, problem.solve.fixed, cost.priors(), optimum};
-  for (const SystematicSource& source : SystematicSources(recording, options, problem, cost, solution)) {
+  for (const SystematicSource& source : SystematicSources(recording, options, problem, cost, solution, effects)) {
     AddOfKind(CovarianceOfSource(source, true, context), covariances);
   }
   return covariances;

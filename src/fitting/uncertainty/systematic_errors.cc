@@ -10,6 +10,7 @@ std::string_view ErrorSourceName(ErrorSource source) {
     case ErrorSource::kRig: return "rig";
     case ErrorSource::kCalibration: return "calibration";
     case ErrorSource::kClock: return "clock";
+    case ErrorSource::kSensor: return "sensor";
     case ErrorSource::kInconstancy: return "inconstancy";
   }
   return "";

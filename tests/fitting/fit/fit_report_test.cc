@@ -24,6 +24,8 @@ TEST(OptionsLike, CopiesStartAndNoiseFamily) {
   fit.noise.family = NoiseFamily::kHuber;
   EXPECT_EQ(OptionsLike(fit, {}).start, StartKind::kRelease);
   EXPECT_EQ(OptionsLike(fit, {}).noise, NoiseFamily::kHuber);
+  EXPECT_TRUE(FitOptions().search.may_correct);
+  EXPECT_FALSE(OptionsLike(fit, {}).search.may_correct);
 }
 
 TEST(Termination, HasANameAndAnExitCode) {

@@ -59,7 +59,7 @@ TEST(FitWarnings, ReportAModelThatDoesNotDescribeTheData) {
   run.noise = 0.002;
   const Recording recording = Must(SimulateRecording(run));
   const FitReport poor = Fit(recording, ModelOptions("viscous"));
-  EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit"));
+  EXPECT_THAT(Codes(poor), ElementsAre("lack_of_fit", "suspected_friction_law"));
   const std::string& message = poor.warnings[0].message;
   EXPECT_THAT(message, HasSubstr("The error bars may be wrong"));
   // The message gives the residuals relative to the noise, and the misfit without the noise, with two digits.

@@ -122,7 +122,7 @@ TEST(FitSwing, KeepsTheWindowIfOnlyTheModelIsWrong) {
     const Recording recording = Must(SimulateRecording(run));
     const SwingFit result = FitChosen(recording, ModelOptions("viscous"));
     EXPECT_EQ(result.used.time, recording.time);
-    EXPECT_THAT(Codes(result.fit), ElementsAre("lack_of_fit"));
+    EXPECT_THAT(Codes(result.fit), ElementsAre("lack_of_fit", "suspected_friction_law"));
   }
 }
 

@@ -31,11 +31,12 @@ Recording Made(const std::function<double(double, const Noise&)>& y, std::uint64
 
 /// For every model and a few seeds, expects a refusal because there is no swing, or exit code 1 with a reason.
 ///
-/// The small-angle model can be left out: for a true swing of 40 deg it leaves 14 % of the variance unexplained, as
-/// much as for some of these data.
-void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make, bool with_linear = true) {
+/// Two models can be left out. The small-angle model leaves 14 % of the variance of a true swing of 40 deg unexplained,
+/// as much as for some of these data. Dahl's bristles let a pendulum creep to any angle, as a random walk does: of
+/// three walks one is fitted.
+void ExpectNeverConverged(const std::function<Recording(std::uint64_t)>& make, bool with_all = true) {
   for (const MotionModel& model : MotionModels()) {
-    if (model.gravity == Gravity::kLinear && !with_linear) continue;
+    if (!with_all && (model.gravity == Gravity::kLinear || model.friction == "dahl")) continue;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(std::string(model.name) + ", seed " + std::to_string(seed));
       const Result<FitReport> report = FitRecording(make(seed), ModelOptions(model.name));

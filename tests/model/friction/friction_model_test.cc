@@ -161,6 +161,7 @@ TYPED_TEST(FrictionLaw, RecurrenceIsTheTaylorSeriesOfTheTorque) {
     Series<double> known;
     known.fill(std::numeric_limits<double>::quiet_NaN());
     typename TypeParam::template Recurrence<double> recurrence;
+    if constexpr (FrictionWithState<TypeParam>) recurrence.Begin(TypeParam::SlidingStates(direction));
     for (int n = 0; n <= kMaxOrder; ++n) {
       known[n] = rate[n];  // The recurrence sees only coefficients 0..n, for n = 0, 1, 2, ... in order.
       ASSERT_THAT(recurrence(n, known, direction, p.data()),
@@ -252,6 +253,13 @@ TEST(StribeckFriction, IsCoulombFrictionIfStictionIsNotLarger) {
   }
 }
 
+// exp(-36) = 2.3e-16 is half of the distance from 1 to the next number.
+TEST(StribeckFriction, IsCoulombFrictionToRoundingBeyondItsSpecialRates) {
+  const std::array p = {0.0, 0.25, 0.5, 2.0};
+  EXPECT_EQ(StribeckFriction::SpecialRates(p.data()), (std::array{3.0, 6.0, 9.0, 12.0}));
+  EXPECT_DOUBLE_EQ(StribeckFriction::Torque(12.0, 1.0, p.data()), 0.25);
+}
+
 TEST(AsymmetricFriction, IsLargerTowardsPositiveAngles) {
   const std::array p = {0.5, 0.25, 0.5};
   EXPECT_EQ(AsymmetricFriction::Torque(3.0, 1.0, p.data()), 1.875);
@@ -284,6 +292,22 @@ TEST(FrictionModels, ForEachCallsEveryLawInTheOrderOfTheList) {
   std::vector<std::string_view> visited;
   FrictionModels::ForEach([&]<typename F>() { visited.push_back(F::kName); });
   EXPECT_THAT(visited, testing::ElementsAreArray(FrictionModels::kNames));
+}
+
+TEST(Dahl, SlidesLikeCoulombFrictionAndIsStiffestAtAReversal) {
+  constexpr std::array p = {0.5, 0.25, 0.01};
+  EXPECT_EQ(DahlFriction::Torque(3.0, 1.0, p.data()), 1.75);
+  EXPECT_EQ(DahlFriction::TorqueAt(DahlFriction::SlidingStates(-1.0), p.data()), -0.25);
+  EXPECT_DOUBLE_EQ(DahlFriction::Stiffness(p.data()), 50);  // τ_c (1 - s u) / θ_p with s u = -1
+}
+
+TEST(Load, IsInProportionToTheLoad) {
+  constexpr std::array p = {0.5, 0.25};
+  EXPECT_EQ(LoadFriction::Torque(3.0, 1.0, p.data()), 1.75);
+  EXPECT_EQ(TorqueUnder<LoadFriction>(2.0, 3.0, 1.0, p.data()), 2.0);
+  EXPECT_EQ(TorqueUnder<LoadFriction>(-2.0, -3.0, -1.0, p.data()), -2.0);
+  EXPECT_EQ(TorqueUnder<LoadFriction>(0.0, 0.0, 1.0, p.data()), 0.0);
+  EXPECT_EQ(TorqueUnder<CoulombFriction>(2.0, 3.0, 1.0, p.data()), 1.75);  // no other law depends on the load
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/fitting/effects/check_effects.h"
+#include "pendulum/fitting/effects/effect.h"
 #include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
 #include "pendulum/fitting/residuals/residual_diagnostics.h"
@@ -44,10 +46,13 @@ struct ParameterEstimate {
   std::string unit;  ///< info.unit with a rig, info.relative_unit without; counts and volts instead of rad.
   double estimate = 0;
   std::optional<double> std_error;         ///< Absent if fixed, at a bound, or not identifiable; see `reason`.
-  std::optional<double> lower95, upper95;  ///< 95 % confidence interval; if at_bound, one end is the bound.
+  std::optional<double> lower95, upper95;  ///< 95 % confidence interval; at a bound it begins or ends there.
   std::optional<double> t95;               ///< Student's t for 95 %: half the interval divided by std_error.
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
   SystematicErrors systematic;
+  /// How far the estimate would be off, as a standard deviation in `unit`, if friction had other terms that the
+  /// readings do not exclude (EffectCheck::unseen_friction). Not part of any error.
+  std::optional<double> unseen_friction;
   std::optional<double> closed_form;  ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;
@@ -69,6 +74,7 @@ struct NoiseEstimate {
   double lag = 0;          ///< rad: the estimate of the hysteresis.
   std::optional<double> edge = std::nullopt;
   std::shared_ptr<const std::vector<double>> spread = nullptr;  ///< N
+  Averaging averaging = {};                                     ///< For kAveraged, as in NoiseModel.
 };
 
 /// The likelihood along one parameter, with the others at their optimum, at M values: the basis of its profile
@@ -115,10 +121,14 @@ struct FitReport {
   NoiseEstimate noise;
   FitStatistics statistics;
   SolverSummary solver;
-  StartValues start_values;  ///< Start of the search, in units of the restoring torque G.
+  StartValues start_values;           ///< Start of the search, in units of the restoring torque G.
+  std::vector<Suspicion> suspicions;  ///< What the residuals suggest, the strongest first.
+  Eigen::VectorXd correction;         ///< N, what was subtracted from the readings before the fit; empty: nothing.
+  EffectCheck effects;                ///< Of the readings as recorded, before any correction; empty if not converged.
   std::vector<Warning> warnings;
   double trace_error = 0;  ///< Largest difference from a trajectory with a hundredth of the tolerance, rad or rad/s.
-  Eigen::VectorXd fitted, residual;  ///< N x 1, rad or rad/s: modelled (zero_angle included), measured - modelled.
+  /// N x 1, rad or rad/s: modelled (zero_angle and correction included), measured - modelled.
+  Eigen::VectorXd fitted, residual;
 
   /// The parameter with this name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
@@ -133,7 +143,8 @@ void WithdrawErrors(std::string_view why, FitReport& fit);
 /// Correlation of two free parameters, given by their rows in the fit's covariance; NaN if a variance is 0.
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
 
-/// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it.
+/// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it. They
+/// do not correct their readings.
 FitOptions OptionsLike(const FitReport& fit, FitOptions options);
 
 }  // namespace pendulum

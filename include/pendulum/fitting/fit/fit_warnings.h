@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pendulum/fitting/fit/fit_report.h"
@@ -26,5 +28,19 @@ namespace pendulum {
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
                                  const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
                                  const FitReport& report);
+
+/// Adds a warning for each suspicion of the report, with the code "suspected_" and the name of the cause: how large it
+/// seems to be, whether the estimates allow for it, and what to measure or which flag to set. is_correctable: whether
+/// the readings were not corrected although they can be.
+void WarnOfSuspicions(bool is_correctable, FitReport& report);
+
+/// What to measure, or which flag to set.
+std::string_view AdviceFor(Cause cause);
+
+/// "1.0 ± 0.1 %", "0.30 ± 0.02 deg", "5.0 ± 0.3 ms".
+std::string SizeText(const Suspicion& suspicion);
+
+/// "1 %", "0.25 deg", "5 ms": a size in the unit 1, s, rad or another.
+std::string PlainSizeText(double size, const std::string& unit);
 
 }  // namespace pendulum

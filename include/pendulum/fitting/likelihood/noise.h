@@ -34,6 +34,7 @@ enum class NoiseFamily {
   kHuber,      ///< Normal within 1.345 σ, two-sided exponential beyond (P. J. Huber, Ann. Math. Stat. 35:73, 1964).
   kStudent,    ///< Student's t with 4 degrees of freedom (Lange, Little & Taylor, JASA 84:881, 1989).
   kEdges,      ///< For events: normal about the edge between two levels; a silence is an interval, as for kQuantized.
+  kAveraged,   ///< The mean of several readings, each normal, then rounded to levels (Averaging).
 };
 
 /// Whether outliers have bounded influence: kHuber and kStudent.
@@ -41,8 +42,25 @@ inline bool IsRobust(std::optional<NoiseFamily> family) {
   return family == NoiseFamily::kHuber || family == NoiseFamily::kStudent;
 }
 
-/// "gaussian", "quantized", "huber", "student", "edges".
+/// "gaussian", "quantized", "huber", "student", "edges", "averaged".
 std::string_view NoiseFamilyName(NoiseFamily family);
+
+/// How the value moves while the readings of one mean are taken, in the unit of the reading. At the part s of the
+/// averaging window, from -1/2 to 1/2, it differs by slope · s + bend · s² from the value at its middle.
+struct WindowMotion {
+  double slope = 0;
+  double bend = 0;
+};
+
+/// How a sample is the mean of rounded readings (MODEL.md eq. (7.9)).
+struct Averaging {
+  int readings = 1;  ///< n, taken at the middles of n equal parts of the averaging window.
+  double count = 0;  ///< Spacing q of the levels of one reading, in the unit of the reading. Means are q / n apart.
+  double level = 0;  ///< One of the levels, same unit.
+  /// N; null: the value stands still while a mean is taken.
+  std::shared_ptr<const std::vector<WindowMotion>> motions = nullptr;
+  WindowMotion motion;  ///< Of one sample: NoiseModel::ForSample.
+};
 
 /// Log-likelihood l of one sample as a function of the modelled reading m.
 struct SampleLikelihood {
@@ -77,6 +95,7 @@ struct NoiseModel {
   /// N, for kEdges: the standard deviation of sample i is σ · spread[i], including the error of its time stamp. If
   /// null, every sample has σ.
   std::shared_ptr<const std::vector<double>> spread = nullptr;
+  Averaging averaging = {};  ///< For kAveraged; σ is that of one reading. `resolution` is the spacing of the means.
 
   bool IsCensored(double reading) const { return reading <= low || reading >= high; }
   /// Whether least squares is the exact likelihood: normal noise, and no reading at an end of the range.
@@ -92,29 +111,41 @@ struct NoiseModel {
   }
   /// Whether a reading is an interval, not a number.
   bool IsInterval(double reading) const {
-    return family == NoiseFamily::kQuantized || IsCensored(reading) ||
+    return family == NoiseFamily::kQuantized || family == NoiseFamily::kAveraged || IsCensored(reading) ||
            (family == NoiseFamily::kEdges && IsSilence(reading));
   }
 
-  /// The noise of sample i: σ includes its spread, and `spread` is null.
+  /// The noise of sample i: σ includes its spread, and `spread` is null; likewise the motion of the averaging.
   NoiseModel ForSample(Eigen::Index i) const {
-    if (!spread) return *this;
-    const double own = sigma * (*spread)[static_cast<std::size_t>(i)];
-    return {family, own, resolution, low, high, edge, stamp_ratio, lag, nullptr};
+    if (!spread && !averaging.motions) return *this;
+    const auto at = static_cast<std::size_t>(i);
+    const double own = spread ? sigma * (*spread)[at] : sigma;
+    const WindowMotion motion = averaging.motions ? (*averaging.motions)[at] : averaging.motion;
+    const Averaging here = {averaging.readings, averaging.count, averaging.level, nullptr, motion};
+    return {family, own, resolution, low, high, edge, stamp_ratio, lag, nullptr, here};
   }
   /// The noise of the samples from index `first` on.
   NoiseModel From(Eigen::Index first) const {
     NoiseModel remaining = *this;
     if (spread) remaining.spread = std::make_shared<const std::vector<double>>(spread->begin() + first, spread->end());
+    if (const auto& all = averaging.motions)
+      remaining.averaging.motions = std::make_shared<const std::vector<WindowMotion>>(all->begin() + first, all->end());
     return remaining;
   }
-  /// Standard deviation of each of the N samples.
+  /// Standard deviation of each of the N samples; for kAveraged of a mean, in which rounding is noise.
   Eigen::VectorXd Deviations(Eigen::Index samples) const {
+    if (family == NoiseFamily::kAveraged) return Eigen::VectorXd::Constant(samples, MeanDeviation());
     if (!spread) return Eigen::VectorXd::Constant(samples, sigma);
     return sigma * Eigen::Map<const Eigen::VectorXd>(spread->data(), samples);
   }
 
   bool IsRobust() const { return pendulum::IsRobust(family); }
+
+  /// For kAveraged: standard deviation of a mean if rounding were noise of q / sqrt(12).
+  double MeanDeviation() const {
+    const double rounding = averaging.count * averaging.count / 12;
+    return std::sqrt((sigma * sigma + rounding) / averaging.readings);
+  }
 
   /// Deviance of a reading y for the modelled reading m, as the solver needs it. If the noise has a spread, call this
   /// and the next two functions on ForSample(i).

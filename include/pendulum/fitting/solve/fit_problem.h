@@ -30,6 +30,9 @@ struct FitProblem {
   NoiseModel noise;           ///< Noise at the start of a search (σ is data.scale).
   Eigen::Index censored = 0;  ///< Number of censored readings.
   double resolution = 0;      ///< Of the readings; 0: none.
+  /// How the samples are means of rounded readings; noise.averaging has its counts. One reading if they are none, or if
+  /// their levels are not known.
+  Oversampling oversampling;
 
   /// Converts parameter i from internal to reported units, and back.
   double Reported(std::size_t i, double internal) const { return si_per_internal[i] * internal + offset[i]; }

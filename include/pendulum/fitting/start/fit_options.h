@@ -37,6 +37,8 @@ struct SearchOptions {
   double max_trace_error = 1e-8;
   int max_iterations = 100;  ///< Limit for the iterations of Ceres in each run.
   int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends failing fits.
+  /// Whether the readings are corrected for suspected causes; not where laws are compared: they need the same readings.
+  bool may_correct = true;
 };
 
 /// The user's options for a fit. Values by name are in SI with a rig (N m, kg m^2); without a rig, torques and inertia

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/fitting/effects/check_effects.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/start/fit_options.h"
@@ -23,10 +24,11 @@ struct SystematicSource {
   Eigen::MatrixXd covariance;  ///< C x C, of these numbers; for a common factor, relative.
 };
 
-/// The sources rig, clock and calibration that have errors, at the solution (MODEL.md eq. (5.3) and (5.4)).
+/// The sources rig, clock, calibration and sensor that have errors, at the solution (MODEL.md eq. (5.3), (5.4) and
+/// section 16). A clock without a stated error has the plausible one of the recording's sensor_errors.
 std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
                                                 const FitProblem& problem, const TrajectoryCost& cost,
-                                                const Solution& solution);
+                                                const Solution& solution, const EffectCheck& effects);
 
 /// The fit of one or several recordings that the sources affect. P parameters, in the problem's units.
 struct SourceContext {
@@ -51,10 +53,11 @@ SystematicCovariance CovarianceOfSource(const SystematicSource& source, bool of_
 /// Adds a covariance to that of its kind.
 void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& covariances);
 
-/// The covariances that errors of rig, clock and calibration cause (MODEL.md eq. (5.3) and (5.4)), one for each kind of
-/// source that has an error.
+/// The covariances that errors of rig, clock, calibration and sensor cause, one for each kind of source that has an
+/// error.
 std::vector<SystematicCovariance> SystematicCovariances(const Recording& recording, const FitOptions& options,
                                                         const FitProblem& problem, const TrajectoryCost& cost,
-                                                        const Solution& solution, const Optimum& optimum);
+                                                        const Solution& solution, const Optimum& optimum,
+                                                        const EffectCheck& effects);
 
 }  // namespace pendulum

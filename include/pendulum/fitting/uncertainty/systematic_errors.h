@@ -10,12 +10,12 @@
 namespace pendulum {
 
 /// What systematic errors come from.
-enum class ErrorSource { kRig, kCalibration, kClock, kInconstancy };
+enum class ErrorSource { kRig, kCalibration, kClock, kSensor, kInconstancy };
 
 inline constexpr std::array kErrorSources = {ErrorSource::kRig, ErrorSource::kCalibration, ErrorSource::kClock,
-                                             ErrorSource::kInconstancy};
+                                             ErrorSource::kSensor, ErrorSource::kInconstancy};
 
-/// "rig", "calibration", "clock", "inconstancy".
+/// "rig", "calibration", "clock", "sensor", "inconstancy".
 std::string_view ErrorSourceName(ErrorSource source);
 
 /// The systematic errors of one quantity: a standard deviation for each source, in the quantity's unit. Sources are

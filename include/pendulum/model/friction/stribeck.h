@@ -39,6 +39,10 @@ struct StribeckFriction {
     return p[0] * rate + direction * (p[1] + (p[2] - p[1]) * share);
   }
 
+  /// Beyond 6 ω_s the dry torque is τ_c to rounding. The torque's series, those of Hermite's polynomials in (ω - ω_0) /
+  /// ω_s, then converges quickly from each rate to the next: to order 8 and more it halves from term to term.
+  static std::array<double, 4> SpecialRates(const double* p) { return {1.5 * p[3], 3 * p[3], 4.5 * p[3], 6 * p[3]}; }
+
   /// E = exp(u) with u = -(ω/ω_s)², from n E_n = Σ k u_k E_{n-k}.
   template <typename T>
   struct Recurrence {

@@ -28,7 +28,8 @@ namespace pendulum {
 /// Separators: comma, semicolon, tab, blanks, or the one in a line `sep=;`; decimal commas if the separator is not a
 /// comma. A byte order mark, CRLF, quotes and the time stamps of a serial monitor are accepted. `# key: value` is
 /// metadata, each key once: `resolution` and `range` in the file's unit, `sample_rate_hz` (for rows without time),
-/// `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `calibration` and `rig` (JSON). Other lines with # are
+/// `clock_scale`, `clock_scale_std_dev`, `lost_samples`, `oversample` and `window_s` (the rows are means, and over
+/// which window), `calibration` and `rig` (JSON). Other lines with # are
 /// comments. If no resolution is given, it is estimated from the values (FindResolution). Counts that repeatedly reach
 /// 0 or the full scale of 10, 12, 14 or 16 bits have this range.
 ///

@@ -10,7 +10,10 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/recording/oversampling.h"
 #include "pendulum/recording/sensor.h"
+#include "pendulum/recording/sensor_errors.h"
+#include "pendulum/recording/sensor_statement.h"
 #include "recording/readers/columns/csv.h"
 
 /// The keys of `# key: value` lines and the form of their values.
@@ -47,7 +50,18 @@ inline bool IsRange(std::string_view text) {
   return ParseRange(text, range);
 }
 
+inline bool IsOversample(std::string_view text) {
+  double number = 0;
+  return IsCount(text) && ParseNumber(text, number) && number >= 1 && number <= kMostOversampling;
+}
+
+inline bool IsWindow(std::string_view text) { return ParseAveragingWindow(text).has_value(); }
+
 inline bool IsObject(std::string_view text) { return text.starts_with('{') && text.ends_with('}'); }
+
+/// Whether a value of `# sensor` is a statement: a kind or an object. Any other text is a comment, such as the name of
+/// a chip.
+inline bool IsSensor(std::string_view text) { return IsSensorKind(text) || text.starts_with('{'); }
 
 struct MetadataKey {
   std::string_view key;
@@ -62,8 +76,11 @@ constexpr std::array kMetadataKeys = {
     MetadataKey{"clock_scale", IsPositive, "a positive number"},
     MetadataKey{"clock_scale_std_dev", IsZeroOrMore, "a number, 0 or more"},
     MetadataKey{"lost_samples", IsCount, "a whole number, 0 or more"},
+    MetadataKey{"oversample", IsOversample, "a whole number, 1 to 64"},
+    MetadataKey{"window_s", IsWindow, kAveragingWindowRule},
     MetadataKey{"calibration", IsObject, "a JSON object on the same line"},
     MetadataKey{"rig", IsObject, "a JSON object on the same line"},
+    MetadataKey{"sensor", IsSensor, "a kind of sensor, or a JSON object on the same line"},
 };
 
 /// The values of the `# key: value` lines of one file.
@@ -74,10 +91,19 @@ struct Metadata {
   double clock_scale = 1;
   double clock_scale_std_dev = 0;
   std::string lost_samples;
+  double oversample = 0;  // 0: not given.
+  std::optional<AveragingWindow> window;
   std::optional<Calibration> calibration;
   std::size_t calibration_line = 0;
   std::string rig_json;
+  std::optional<SensorStatement> sensor;
+  std::string unknown_sensor;  // The text of a line `# sensor` that is no statement.
   std::array<bool, kMetadataKeys.size()> seen{};
+
+  /// Whether the file has a line with this key of kMetadataKeys.
+  bool Has(std::string_view key) const {
+    return seen.at(std::ranges::find(kMetadataKeys, key, &MetadataKey::key) - kMetadataKeys.begin());
+  }
 };
 
 /// Stores a value that has been checked.
@@ -88,9 +114,17 @@ inline Result<void> StoreMetadata(const Line& line, std::string_view key, std::s
   if (key == "clock_scale") ParseNumber(value, metadata.clock_scale);
   if (key == "clock_scale_std_dev") ParseNumber(value, metadata.clock_scale_std_dev);
   if (key == "lost_samples") metadata.lost_samples = value;
+  if (key == "oversample") ParseNumber(value, metadata.oversample);
+  if (key == "window_s") metadata.window = ParseAveragingWindow(value);
   if (key == "rig") metadata.rig_json = value;
-  if (key != "calibration") return {};
-  const std::string name = std::string(line.file) + ":" + std::to_string(line.number) + ": # calibration";
+  if (key != "calibration" && key != "sensor") return {};
+  const std::string name = std::string(line.file) + ":" + std::to_string(line.number) + ": # " + std::string(key);
+  if (key == "sensor") {
+    Result<SensorStatement> sensor = ParseSensorStatement(value, name, "stated in the file");
+    if (!sensor) return tl::unexpected(std::move(sensor).error());
+    metadata.sensor = *std::move(sensor);
+    return {};
+  }
   Result<Calibration> calibration = ParseCalibration(value, name);
   if (!calibration) return tl::unexpected(std::move(calibration).error());
   metadata.calibration = *std::move(calibration);
@@ -105,6 +139,10 @@ inline Result<void> ReadMetadata(const Line& line, std::string_view comment, Met
   if (entry == kMetadataKeys.end() || colon == comment.size()) return {};
   const std::string_view value = Trim(comment.substr(colon + 1));
   const std::string key(entry->key);
+  if (key == "sensor" && !IsSensor(value)) {
+    metadata.unknown_sensor = value;
+    return {};
+  }
   if (!entry->is_well_formed(value)) {
     return line.Fault(value.data(), "the metadata " + key + " is " + Quoted(value) + "; it must be " +
                                         std::string(entry->rule) + ": correct or delete this line");

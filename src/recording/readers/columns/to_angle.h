@@ -10,6 +10,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/recording/arc.h"
+#include "pendulum/recording/oversampling.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/recording/resolution.h"
 #include "recording/readers/columns/column_choice.h"
@@ -105,11 +106,47 @@ inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadat
   recording.range.reset();
 }
 
+/// Says that a flag and a line of the file disagree about the averaging; the flag is used.
+inline void WarnOfAveraging(const std::string& flag, const std::string& given, const std::string& line,
+                            Recording& recording) {
+  recording.warnings.push_back({"averaging_disagrees", flag + " is " + given + ", but the file says " + line +
+                                                           "; the flag is used: correct whichever is wrong"});
+}
+
+inline std::string WindowText(const AveragingWindow& window) {
+  return NumberText(window.from) + "," + NumberText(window.to) + " s";
+}
+
+/// Sets how rows are means of readings. The resolution is then that of the means, whether the file gives theirs or that
+/// of one reading.
+inline void SetOversampling(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
+                            Recording& recording) {
+  Oversampling& oversampling = recording.oversampling;
+  const auto by_file = static_cast<int>(metadata.oversample);
+  oversampling.readings = options.oversample > 0 ? options.oversample : std::max(by_file, 1);
+  oversampling.window = options.averaging_window ? options.averaging_window : metadata.window;
+  if (options.oversample > 0 && by_file > 0 && options.oversample != by_file) {
+    WarnOfAveraging("--oversample", std::to_string(options.oversample), "# oversample: " + std::to_string(by_file),
+                    recording);
+  }
+  if (options.averaging_window && metadata.window) {
+    const auto [from, to] = *options.averaging_window;
+    if (from != metadata.window->from || to != metadata.window->to) {
+      WarnOfAveraging("--window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
+    }
+  }
+  FindCountLevels(unit.name == "counts", recording);
+  if (oversampling.count > 0)
+    std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "resolution_disagrees"; });
+}
+
 /// Converts values to SI by their unit. Counts and volts stay as they are.
 inline void ScaleValues(const Unit& unit, Recording& recording) {
   if (unit.ToSi(1) == 1) return;
   for (double& value : recording.value) value = unit.ToSi(value);
   recording.resolution = unit.ToSi(recording.resolution);
+  recording.oversampling.count = unit.ToSi(recording.oversampling.count);
+  recording.oversampling.level = unit.ToSi(recording.oversampling.level);
   if (recording.range) recording.range = SensorRange{unit.ToSi(recording.range->low), unit.ToSi(recording.range->high)};
 }
 
@@ -118,6 +155,10 @@ inline void Calibrate(const Calibration& calibration, Recording& recording) {
   const auto [low, high] = std::minmax_element(recording.value.begin(), recording.value.end());
   const double slope = calibration.Slope(*low / 2 + *high / 2);
   recording.resolution *= std::abs(slope);
+  Oversampling& oversampling = recording.oversampling;
+  const bool is_straight = calibration.coefficients.size() == 2;
+  oversampling.count *= is_straight ? std::abs(slope) : 0;  // on a curve counts are not evenly spaced
+  oversampling.level = calibration.Angle(oversampling.level);
   const std::optional<SensorRange> ends = recording.range ? recording.range : calibration.input_range;
   recording.range.reset();
   if (ends) {
@@ -149,6 +190,7 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
   recording.quantity = Quantity::kAngle;
   recording.resolution = 0;  // levels of coordinates are not levels of the angle
   recording.resolution_source.clear();
+  recording.oversampling.count = 0;
   recording.range.reset();
   recording.arc = *std::move(arc);
   return {};
@@ -163,6 +205,7 @@ inline void SetValues(const Layout& layout, const ReadOptions& options, const Me
   recording.shows_gravity = !column.is_without_gravity;
   recording.unit = unit.name;
   SetResolution(unit, options, metadata, recording);
+  SetOversampling(unit, options, metadata, recording);
   SetRange(unit, options, metadata, recording);
   ScaleValues(unit, recording);
   const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);

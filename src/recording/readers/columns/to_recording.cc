@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pendulum/base/format.h"
+#include "pendulum/recording/sensor_statement.h"
 #include "recording/readers/columns/to_angle.h"
 
 namespace pendulum::csv {
@@ -11,6 +13,15 @@ namespace {
 
 double RateOf(const ReadColumns& columns, const ReadOptions& options) {
   return options.sample_rate_hz > 0 ? options.sample_rate_hz : columns.metadata.sample_rate_hz;
+}
+
+TimeSource TimeSourceOf(const ReadColumns& columns) {
+  if (columns.metadata.Has("clock_scale") || columns.metadata.Has("clock_scale_std_dev")) return TimeSource::kMeasured;
+  const Layout& layout = columns.layout;
+  if (!layout.time) return columns.is_host_time ? TimeSource::kComputer : TimeSource::kRate;
+  if (layout.is_clock || layout.is_from_first) return TimeSource::kComputer;
+  const bool is_counter = layout.time->unit->suffix == "ms" || layout.time->unit->suffix == "us";
+  return is_counter ? TimeSource::kDevice : TimeSource::kSeconds;
 }
 
 void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
@@ -29,6 +40,16 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
          "the file says that " + lost +
              " samples were lost, so times computed from the sample rate are too early after each loss");
   }
+}
+
+void WarnOfSensor(ReadColumns& columns) {
+  const std::string& unknown = columns.metadata.unknown_sensor;
+  if (unknown.empty() || columns.metadata.sensor) return;
+  columns.samples.warnings.push_back(
+      {"sensor_unknown",
+       columns.samples.name + ": the line # sensor: " + unknown +
+           " names no kind of sensor, so its errors are assumed from the readings; a kind is one of " +
+           NameList(SensorKinds())});
 }
 
 /// Converts times to seconds and repairs the clock.
@@ -57,6 +78,15 @@ Result<void> SetTimes(ReadColumns& columns, const ReadOptions& options) {
   return {};
 }
 
+/// Moves the time stamps to the middle of the averaging window, for which the rows stand to first order.
+void MoveToMiddle(Recording& recording) {
+  auto& window = recording.oversampling.window;
+  if (!window) return;
+  const double middle = window->middle();
+  if (middle != 0) recording.time.array() += middle;
+  *window = {window->from - middle, window->to - middle};
+}
+
 }  // namespace
 
 Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column) {
@@ -66,6 +96,7 @@ Warning EmptyCells(const std::string& file, std::size_t rows, const std::string&
 
 Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   WarnOfClock(columns, options);
+  WarnOfSensor(columns);
   if (Result<void> set = SetTimes(columns, options); !set) return tl::unexpected(std::move(set).error());
   RawSamples& samples = columns.samples;
   const Metadata& metadata = columns.metadata;
@@ -78,7 +109,10 @@ Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   recording.clock_scale_std_dev =
       std::hypot(metadata.clock_scale_std_dev, metadata.clock_scale * samples.clock_std_dev);
   recording.rig_json = metadata.rig_json;
+  recording.time_source = TimeSourceOf(columns);
+  recording.stated_sensor = metadata.sensor;
   SetValues(columns.layout, options, metadata, recording);
+  MoveToMiddle(recording);
   recording.is_unit_assumed = columns.layout.is_unit_assumed;
   if (columns.layout.second) {
     if (Result<void> turned = TurnIntoAngles(*columns.layout.second, samples.second, recording); !turned) {

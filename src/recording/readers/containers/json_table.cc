@@ -61,7 +61,9 @@ class JsonTableFinder {
   };
 
   /// Keys whose value is metadata even if it is an array or an object.
-  static bool IsMetadata(std::string_view key) { return key == "range" || key == "rig" || key == "calibration"; }
+  static bool IsMetadata(std::string_view key) {
+    return key == "range" || key == "window_s" || key == "rig" || key == "calibration";
+  }
 
   static bool IsColumn(std::string_view key, const JsonValue& value) {
     const JsonArray* const array = AsArray(value);
@@ -72,13 +74,14 @@ class JsonTableFinder {
   void AddComments(const JsonObject& object) {
     constexpr std::size_t kLongest = 10'000;
     for (const auto& [key, value] : object.members) {
-      constexpr std::array kNumbers = {"resolution", "sample_rate_hz", "clock_scale", "clock_scale_std_dev",
-                                       "lost_samples"};
+      constexpr std::array kNumbers = {"resolution",          "sample_rate_hz", "clock_scale",
+                                       "clock_scale_std_dev", "lost_samples",   "oversample"};
       const bool is_text = AsString(value) != nullptr;
-      if (IsMetadata(*key) ? is_text : !IsScalar(value)) continue;
+      const bool is_window = *key == "window_s";  // a length, or begin and end
+      if (IsMetadata(*key) && !(is_window && IsScalar(value)) ? is_text : !IsScalar(value)) continue;
       if (is_text && std::ranges::find(kNumbers, *key) != kNumbers.end()) continue;  // resolution: "1920x1080"
       std::string text = is_text ? *AsString(value) : JsonLine(value);
-      if (*key == "range" && AsArray(value) != nullptr) text = text.substr(1, text.size() - 2);
+      if ((*key == "range" || is_window) && AsArray(value) != nullptr) text = text.substr(1, text.size() - 2);
       if (text.size() < kLongest) comments_.push_back("# " + *key + ": " + text);
     }
   }

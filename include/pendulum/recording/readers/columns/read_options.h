@@ -7,6 +7,7 @@
 
 #include "pendulum/recording/clock.h"
 #include "pendulum/recording/readers/columns/table_preview.h"
+#include "pendulum/recording/recording.h"
 #include "pendulum/recording/sensor.h"
 
 namespace pendulum {
@@ -21,6 +22,8 @@ struct ReadOptions {
   std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
   std::optional<double> resolution;        ///< In the file's unit; 0: continuous; std::nullopt: the file's.
   std::optional<SensorRange> range;        ///< The sensor's range, in the file's unit; std::nullopt: the file's own.
+  int oversample = 0;                      ///< Readings in a mean, 1 to kMostOversampling; 0: as the file says.
+  std::optional<AveragingWindow> averaging_window;  ///< std::nullopt: the file's own.
   ClockWindow window = {};  ///< The part that is used: its clock may be right if that of the file is not.
   /// Limit for a member of a zip file, for all columns of a MAT-file and for all sheets of a workbook as text, which
   /// may be a thousand times larger than the file.

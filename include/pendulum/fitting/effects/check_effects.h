@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pendulum/fitting/effects/effect.h"
+#include "pendulum/fitting/likelihood/trajectory_cost.h"
+#include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/solve.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum {
+
+/// A suspicion is named from this significance on, in standard deviations of a normal variable.
+inline constexpr double kSuspicious = 5;
+
+/// What the readings were already corrected for, before the fit.
+struct Correction {
+  std::vector<Cause> causes;
+  Eigen::VectorXd sizes;     ///< E, of all effects in the order of EffectColumnsAt; 0 for those of other causes.
+  Eigen::VectorXd readings;  ///< N, what these effects add to the readings; empty if there is none.
+};
+
+/// What effects outside the fitted law do to a fit.
+struct EffectCheck {
+  std::vector<Suspicion> suspicions;  ///< Named causes, the one with the strongest evidence first.
+  Eigen::MatrixXd pull;               ///< P x E, derivatives of the problem's scores with respect to the E effects.
+  Eigen::MatrixXd second_moment;      ///< E x E, covariance of their sizes plus the product of their means.
+  /// P, the problem's units: how far the estimates would be off, as a standard deviation, if friction had other terms
+  /// of a third of its size that the readings do not exclude; empty if nothing is known of that.
+  Eigen::VectorXd unseen_friction;
+  Correction correction;  ///< For the named causes that can be corrected and are plausible, and for former ones.
+};
+
+/// Estimates all effects (EffectColumnsAt) at an optimum from the residuals, by one step of generalized least squares
+/// with the plausible sizes as priors, and tests each cause by its score (MODEL.md section 16). The autocorrelation of
+/// what remains is allowed for. `known` is what the fitted readings were corrected for: no suspicion is named for it.
+///
+/// The second moment is 0 for an effect that has no plausible size and is not suspected. Causes are not tested where
+/// the noise is too small against the resolution, and readings that are intervals between fixed levels are not
+/// corrected.
+EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
+                         const Solution& solution, const Optimum& optimum, const Correction& known);
+
+}  // namespace pendulum

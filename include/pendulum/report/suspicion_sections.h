@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "pendulum/fitting/fit/fit_report.h"
+#include "pendulum/identify/identification.h"
+#include "pendulum/report/section.h"
+
+namespace pendulum {
+
+/// What the residuals of a fit suggest: each named cause with its size, its significance, whether the estimates allow
+/// for it, and what to measure. Then what the sensor may do to the readings, with the source of each size. Empty for a
+/// fit without errors.
+Sections SuspicionSections(const Identification& identification, std::size_t fit);
+
+/// [{"name", "size", "std_error", "unit", "significance", "corrected"}, ...], the strongest first.
+nlohmann::ordered_json SuspicionsJson(const FitReport& fit);
+
+/// "gain 1.0 ± 0.1 %, backlash 0.05 ± 0.01 deg" of the suspicions that are corrected, or that are not.
+std::string SuspectedText(const FitReport& fit, bool corrected);
+
+}  // namespace pendulum

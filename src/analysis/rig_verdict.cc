@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/analysis/rig_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "pendulum/base/distributions.h"
+#include "pendulum/base/format.h"
+#include "pendulum/model/geometric_inertia.h"
+
+namespace pendulum {
+namespace {
+
+/// The error of the fitted inertia without the rig's, which the geometry shares.
+double OwnError(const ParameterEstimate& inertia) {
+  const double wider = std::max(inertia.t95.value_or(kNormal95) / kNormal95, 1.0);
+  double variance = std::pow(wider * *inertia.std_error, 2);
+  for (const ErrorSource source : kErrorSources) {
+    if (source != ErrorSource::kRig) variance += std::pow(inertia.systematic.Of(source), 2);
+  }
+  return std::sqrt(variance);
+}
+
+/// The error of a geometry that takes the bob for a point at the end of the rod (MODEL.md eq. (1.3)): a bob's extent,
+/// a clamp or a shaft change the inertia by some percent.
+double GeometryError(const Rig& rig, double geometric) {
+  constexpr double kOfAPoint = 0.05;
+  const bool is_from_masses =
+      rig.source.is_object() && rig.source.contains("bob_mass") && !rig.source.contains("inertia");
+  return is_from_masses ? kOfAPoint * geometric : 0;
+}
+
+std::string ExcessText(double excess) {
+  return NumberText(100 * std::abs(excess), 2) + (excess > 0 ? " % larger" : " % smaller");
+}
+
+/// What makes the fitted inertia larger or smaller than the geometry's.
+std::string CausesOf(double excess) {
+  return excess > 0 ? "a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor"
+                    : "a wrong mass or length, or a spring, cable or hose at the axis";
+}
+
+/// `lacks`: what has no standard deviations, if there is no z.
+void SetTexts(std::string_view lacks, RigVerdict& verdict) {
+  const std::string excess = ExcessText(verdict.excess);
+  const std::string size = "the fitted inertia is " + excess + " than the rig's";
+  if (!verdict.z) {
+    verdict.text = size + "; " + std::string(lacks) + " gives no standard deviations, so this is no verdict";
+    return;
+  }
+  const std::string z = "z " + NumberText(*verdict.z, 2);
+  if (!verdict.differs()) {
+    verdict.text = "the fitted inertia agrees with the rig's: " + excess + " (" + z + ")";
+    return;
+  }
+  verdict.text = size + " (" + z + "), more than all errors allow: " + CausesOf(verdict.excess) +
+                 " can cause this, and one swing cannot tell which; record a swing with another bob mass, and check "
+                 "the rig's values";
+  verdict.brief = "The rig disagrees: the fitted inertia is " + excess + " than its own (" + z + "), by " +
+                  CausesOf(verdict.excess) + "; swing another mass (--details)";
+}
+
+}  // namespace
+
+bool RigVerdict::differs() const { return z && std::abs(*z) > kRigDiffers; }
+
+std::optional<RigVerdict> JudgeInertia(const std::optional<Rig>& rig, const FitReport& fit) {
+  if (!rig || !rig->gives_torque || fit.termination != Termination::kConverged) return std::nullopt;
+  const ParameterEstimate* const inertia = fit.Find(kInertia.name);
+  if (inertia == nullptr || inertia->fixed || !(inertia->estimate > 0)) return std::nullopt;
+  const std::vector<GeometricInertia> all = GeometricInertias(*rig, inertia->estimate);
+  const auto own = std::ranges::find(all, false, &GeometricInertia::is_point_mass);
+  if (own == all.end() || !(own->value > 0)) return std::nullopt;
+  RigVerdict verdict{own->value, inertia->estimate, inertia->estimate / own->value - 1, {}, "", ""};
+  if (own->std_error && inertia->std_error) {
+    const double error = std::hypot(own->difference_std_error, OwnError(*inertia), GeometryError(*rig, own->value));
+    if (error > 0) verdict.z = (verdict.fitted - verdict.geometric) / error;
+  }
+  SetTexts(own->std_error ? "the fit" : "the rig", verdict);
+  return verdict;
+}
+
+}  // namespace pendulum

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/recording/oversampling.h"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "pendulum/recording/readers/read_recording.h"
+#include "pendulum/recording/recording.h"
+
+namespace pendulum::oversampling_test {
+namespace {
+
+TEST(ParseAveragingWindow, ReadsALengthOrBothEnds) {
+  const auto length = ParseAveragingWindow("0.004");
+  ASSERT_TRUE(length);
+  EXPECT_EQ(length->from, -0.002);
+  EXPECT_EQ(length->to, 0.002);
+  const auto ends = ParseAveragingWindow(" 0, 0.0018 ");
+  ASSERT_TRUE(ends);
+  EXPECT_EQ(ends->from, 0);
+  EXPECT_EQ(ends->to, 0.0018);
+  EXPECT_EQ(ends->middle(), 0.0009);
+}
+
+TEST(ParseAveragingWindow, RejectsOtherText) {
+  for (const char* text :
+       {"", "x", "nan", "inf", "-0.1", "1.1", "0.1,0.1", "0.2,0.1", "-1.5,0", "0,1.5", "0,1,2", "0,"})
+    EXPECT_FALSE(ParseAveragingWindow(text)) << text;
+}
+
+/// A swing of 30 counts read four times each, with readings that differ by one count now and then.
+std::string File(const std::string& head, const std::string& column, double scale) {
+  std::string text = head + "time_s," + column + "\n";
+  for (int i = 0; i < 200; ++i) {
+    const double mean = std::round(4 * (500 + 30 * std::sin(0.1 * i))) / 4;
+    text += std::to_string(0.01 * i) + "," + std::to_string(scale * mean) + "\n";
+  }
+  return text;
+}
+
+TEST(FindCountLevels, KnowsWholeCounts) {
+  for (const char* resolution : {"", "# resolution: 0.25\n", "# resolution: 1\n"}) {
+    const auto recording =
+        ParseRecording(File(std::string("# oversample: 4\n") + resolution, "adc_counts", 1), "run.csv");
+    ASSERT_TRUE(recording) << recording.error().message;
+    EXPECT_EQ(recording->oversampling.readings, 4);
+    EXPECT_EQ(recording->oversampling.count, 1);
+    EXPECT_TRUE(recording->oversampling.is_level_known);
+    EXPECT_EQ(recording->resolution, 0.25);
+    EXPECT_EQ(CountOf(*recording), 1);
+    for (const Warning& warning : recording->warnings) EXPECT_NE(warning.code, "resolution_disagrees");
+  }
+}
+
+TEST(FindCountLevels, FindsTheGridOfAngles) {
+  const auto recording = ParseRecording(File("# oversample: 4\n# resolution: 0.05\n", "angle_rad", 0.2), "run.csv");
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_NEAR(recording->oversampling.count, 0.2, 1e-12);
+  EXPECT_FALSE(recording->oversampling.is_level_known);
+  EXPECT_NEAR(std::remainder(recording->oversampling.level, 0.05), 0, 1e-6);
+}
+
+TEST(FindCountLevels, IsWithoutMeansTheResolution) {
+  const auto recording = ParseRecording(File("# resolution: 0.25\n", "adc_counts", 1), "run.csv");
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->oversampling.readings, 1);
+  EXPECT_EQ(recording->oversampling.count, 0);
+  EXPECT_EQ(CountOf(*recording), 0.25);
+}
+
+TEST(ReadRecording, MovesTimesToTheMiddleOfTheWindow) {
+  const auto recording = ParseRecording(File("# oversample: 4\n# window_s: 0,0.008\n", "adc_counts", 1), "run.csv");
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_NEAR(recording->time[0], 0.004, 1e-12);
+  ASSERT_TRUE(recording->oversampling.window);
+  EXPECT_NEAR(recording->oversampling.window->from, -0.004, 1e-12);
+}
+
+TEST(ReadRecording, SaysThatAFlagContradictsTheFile) {
+  ReadOptions options;
+  options.oversample = 16;
+  options.averaging_window = AveragingWindow{-0.001, 0.001};
+  const auto recording = ParseRecording(
+      File("# oversample: 4\n# window_s: 0.004\n# resolution: 0.25\n", "adc_counts", 1), "run.csv", options);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->oversampling.readings, 16);
+  int said = 0;
+  for (const Warning& warning : recording->warnings) said += warning.code == "averaging_disagrees" ? 1 : 0;
+  EXPECT_EQ(said, 2);
+}
+
+TEST(ReadRecording, RefusesImpossibleMeans) {
+  for (const char* line : {"# oversample: 0\n", "# oversample: 65\n", "# oversample: 2.5\n", "# window_s: 2\n"}) {
+    const auto recording = ParseRecording(File(line, "adc_counts", 1), "run.csv");
+    ASSERT_FALSE(recording) << line;
+    EXPECT_NE(recording.error().message.find("must be"), std::string::npos) << recording.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace pendulum::oversampling_test
