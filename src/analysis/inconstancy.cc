@@ -21,31 +21,51 @@ using Eigen::VectorXd;
 struct Estimates {
   std::string_view name;
   VectorXd value, std_error;  // K
-  double p_of_trend = 1;      // p of the trend with amplitude.
-  std::string_view parts = "windows";
+  bool differs = false;       // A test says that they differ.
+  double least_change = 0;    // The change that this test has seen, as a standard deviation.
+  std::string_view parts;
 };
+
+bool Scatters(const VectorXd& value, const VectorXd& std_error) { return ScatterP(value, std_error) < kNotConstant; }
+
+/// Standard deviation of a quantity that is evenly distributed over this range.
+double DeviationOverRange(double range) { return std::abs(range) / std::sqrt(12.0); }
 
 Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>& windows) {
   const auto count = static_cast<Index>(windows.size());
-  Estimates estimates{trend.name, VectorXd(count), VectorXd(count), trend.p};
+  Estimates estimates{trend.name, VectorXd(count), VectorXd(count), false, 0, "windows"};
+  VectorXd square(count);
   const bool is_inertia = trend.name == kInertia.name;
   for (Index w = 0; w < count; ++w) {
     const AmplitudeRow& row = windows[static_cast<std::size_t>(w)];
     estimates.value[w] = is_inertia ? row.inertia : row.friction;
     estimates.std_error[w] = is_inertia ? row.inertia_std_error : row.friction_std_error;
+    square[w] = row.amplitude * row.amplitude;
   }
+  const bool has_trend = trend.p < kNotConstant;
+  estimates.differs = has_trend || Scatters(estimates.value, estimates.std_error);
+  if (has_trend) estimates.least_change = DeviationOverRange(trend.slope * (square.maxCoeff() - square.minCoeff()));
   return estimates;
 }
 
-/// The windows' estimates of each parameter, or the halves' estimates if windows have none.
+/// The two halves. If only all parameters together differ, the one that differs most has changed.
+Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
+  const auto size = [](const HalvesRow& one) { return std::abs(one.z); };
+  const bool is_joint = constancy.halves_p.value_or(1) < kNotConstant;
+  const bool is_most = is_joint && &*std::ranges::max_element(constancy.halves, {}, size) == &row;
+  Estimates estimates{row.name, Eigen::Vector2d(row.first, row.second),
+                      Eigen::Vector2d(row.first_std_error, row.second_std_error), false, 0, "halves"};
+  estimates.differs = is_joint || Scatters(estimates.value, estimates.std_error);
+  if (is_most) estimates.least_change = 0.5 * std::abs(row.second - row.first);
+  return estimates;
+}
+
+/// The estimates of each parameter from windows and from halves. A change in the middle of a recording can be seen in
+/// its halves alone, one with amplitude in its windows alone.
 std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
   std::vector<Estimates> all;
   for (const AmplitudeTrend& trend : constancy.trends) all.push_back(OfWindows(trend, constancy.windows));
-  for (const HalvesRow& row : constancy.halves) {
-    if (std::ranges::find(all, row.name, &Estimates::name) != all.end()) continue;
-    all.push_back({row.name, Eigen::Vector2d(row.first, row.second),
-                   Eigen::Vector2d(row.first_std_error, row.second_std_error), 1, "halves"});
-  }
+  for (const HalvesRow& row : constancy.halves) all.push_back(OfHalves(row, constancy));
   return all;
 }
 
@@ -97,16 +117,21 @@ double ChangeAbout(const ParameterEstimate& parameter, const Estimates& estimate
   return ScatterAbout(parameter.estimate, possible, estimates.std_error);
 }
 
-/// The parameters of `fit` that change by more than their errors.
+/// The parameters of `fit` that change by more than their errors, each with the largest change that a test has seen.
 std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
   std::vector<Change> changes;
   for (const Estimates& estimates : EstimatesOfParts(constancy)) {
     const ParameterEstimate* const parameter = fit.Find(estimates.name);
-    const bool differs =
-        ScatterP(estimates.value, estimates.std_error) < kNotConstant || estimates.p_of_trend < kNotConstant;
-    if (!differs || parameter == nullptr) continue;
-    const double about = ChangeAbout(*parameter, estimates);
-    if (about > 0 && std::isfinite(about)) changes.push_back({parameter->info.name, about, estimates.parts});
+    if (!estimates.differs || parameter == nullptr) continue;
+    const double about = std::max(ChangeAbout(*parameter, estimates), estimates.least_change);
+    if (!(about > 0) || !std::isfinite(about)) continue;
+    const auto known = std::ranges::find(changes, parameter->info.name, &Change::name);
+    const Change change{parameter->info.name, about, estimates.parts};
+    if (known == changes.end()) {
+      changes.push_back(change);
+    } else if (about > known->std_dev) {
+      *known = change;
+    }
   }
   return changes;
 }

@@ -16,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::Ge;
 using testing::Gt;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -179,12 +180,58 @@ TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {
   Constancy constancy;
   // Friction differs by two standard errors, which may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
-  constancy.halves_p = 0;
   const double whole = fit.Find("inertia")->estimate;
   AddInconstancyError(constancy, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
   EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves. Another run"));
+}
+
+// A zero that moves in the middle of a recording makes the halves differ and gives the windows no trend. A recording
+// with halves that differ by 158 ppm (p 1e-18) had a total error of 5 ppm.
+TEST(Inconstancy, CountsHalvesThatDifferWhereWindowsDoNot) {
+  FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
+  const double whole = fit.Find("inertia")->estimate;
+  Constancy constancy;
+  for (const double from : {0.0, 5.0, 10.0, 15.0})
+    constancy.windows.push_back({from, from + 5, 0.4 - 0.02 * from, whole, 1e-4 * whole, 0.003, 1e-4});
+  constancy.trends = {{"inertia", "s^2", 0, 1, 0, 1}, {"viscous", "s", 0, 1, 0, 1}};
+  const double first = whole * (1 - 79e-6), second = whole * (1 + 79e-6);
+  constancy.halves = {{"inertia", "s^2", first, second, 1e-6 * whole, 1e-6 * whole, 112}};
+  constancy.halves_p = 1e-18;
+  AddInconstancyError(constancy, fit);
+  const double expected = std::hypot(79e-6 * whole, 79e-6 * whole);  // sum of squares over 2 - 1, less 1e-6 each
+  EXPECT_NEAR(SystematicError(fit, "inertia"), expected, 1e-3 * expected);
+  EXPECT_TRUE(fit.HasWarning("not_constant"));
+}
+
+// Estimates of viscous and dry friction compensate for each other: each alone differs by less than its error, both
+// together by much more.
+TEST(Inconstancy, CountsHalvesThatDifferOnlyTogether) {
+  FitReport fit = FitTo(NoisyTextbookRun("coulomb"), "coulomb", {}).fit;
+  Constancy constancy;
+  constancy.halves = {{"viscous", "s", 0.0010, 0.0014, 0.0002, 0.0002, 1.4},
+                      {"coulomb", "1", 0.0020, 0.0024, 0.0003, 0.0003, 0.9}};
+  constancy.halves_p = 1e-9;
+  AddInconstancyError(constancy, fit);
+  EXPECT_THAT(SystematicError(fit, "viscous"), Ge(0.0002 * (1 - 1e-9)));  // half the difference
+  EXPECT_TRUE(fit.HasWarning("not_constant"));
+}
+
+// The covariance of the windows may show a trend that is smaller than the error of each window: their common error
+// cancels. The line rises by 2e-5 over the windows; its standard deviation is that of a uniform distribution.
+TEST(Inconstancy, IsAtLeastTheTrend) {
+  FitReport fit = FitTo(NoisyTextbookRun("viscous"), "viscous", {}).fit;
+  const double whole = fit.Find("inertia")->estimate;
+  Constancy constancy;
+  constancy.windows = {{0, 5, 0.4, whole - 1e-5, 1e-4, 0.003, 1e-4},
+                       {5, 10, 0.3, whole, 1e-4, 0.003, 1e-4},
+                       {10, 15, 0.2, whole + 1e-5, 1e-4, 0.003, 1e-4}};
+  const double range = 0.4 * 0.4 - 0.2 * 0.2;
+  constancy.trends = {{"inertia", "s^2", -2e-5 / range, 1e-7, -2e-5 / whole, 1e-12}, {"viscous", "s", 0, 1, 0, 1}};
+  AddInconstancyError(constancy, fit);
+  EXPECT_NEAR(SystematicError(fit, "inertia"), 2e-5 / std::sqrt(12.0), 1e-9);
+  EXPECT_TRUE(fit.HasWarning("not_constant"));
 }
 
 // Estimates that alternate between windows have no trend. A parameter that the windows hold fixed may differ between
