@@ -53,8 +53,12 @@ Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
   const auto size = [](const HalvesRow& one) { return std::abs(one.z); };
   const bool is_joint = constancy.halves_p.value_or(1) < kNotConstant;
   const bool is_most = is_joint && &*std::ranges::max_element(constancy.halves, {}, size) == &row;
-  Estimates estimates{row.name, Eigen::Vector2d(row.first, row.second),
-                      Eigen::Vector2d(row.first_std_error, row.second_std_error), false, 0, "halves"};
+  Estimates estimates{row.name,
+                      Eigen::Vector2d(row.first, row.second),
+                      Eigen::Vector2d(row.first_std_error, row.second_std_error),
+                      false,
+                      0,
+                      "halves"};
   estimates.differs = is_joint || Scatters(estimates.value, estimates.std_error);
   if (is_most) estimates.least_change = 0.5 * std::abs(row.second - row.first);
   return estimates;

@@ -63,6 +63,7 @@ AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOption
   for (const auto* values : {&options.initial, &options.fixed}) {
     const auto inertia = values->find(kInertia.name);
     if (inertia == values->end() || !(inertia->second > 0)) continue;
+    if (values == &options.initial && allowed.bounded) continue;  // a start value is no limit
     const double frequency = FrequencyOf(inertia->second, options);
     allowed = {{frequency, frequency}, values == &options.fixed};
   }

@@ -35,7 +35,8 @@ struct AllowedFrequencies {
   bool bounded = false;  ///< Whether rig or user limit it; otherwise `range` is that of real pendulums.
 };
 
-/// 15 % around the rig's frequency, the user's inertia or its bounds; otherwise up to 3 Hz. A linear oscillator has no
+/// 15 % around the rig's frequency, the user's fixed inertia or its bounds; otherwise up to 3 Hz, or the inertia where
+/// the user lets the fit begin. A linear oscillator has no
 /// fastest frequency, and faster ones give exactly the same readings, so without bounds only those below half the
 /// sampling rate are searched.
 AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOptions& options);

@@ -282,8 +282,11 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   }
   RemoveHold(*used, swing);
   const AllowedFrequencies allowed = FindAllowedFrequencies(*used, options);
-  FitOptions moving = options;
-  moving.start = StartKind::kMoving;
+  FitOptions whole = options;
+  whole.start = StartKind::kMoving;
+  // The scan finds every start in a known range. One start for all aliases would lead to the same alias each time.
+  if (allowed.bounded) whole.initial.erase(std::string(kInertia.name));
+  FitOptions moving = whole;
   moving.interval = IntervalMethod::kCovariance;
   moving.search.max_traces = std::min(options.search.max_traces, kMaxAliasTraces);
   Result<std::vector<Alias>> aliases = FitAliases(*used, allowed, moving);
@@ -297,10 +300,8 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   const std::optional<Rejection> rejection = RejectionOf(*used, *aliases, allowed, moving);
   FitReport fit = aliases->front().fit;
   if (!rejection) {
-    moving = options;
-    moving.start = StartKind::kMoving;
-    moving.search.start_values = aliases->front().start;
-    Result<FitReport> best = FitRecording(*used, moving);
+    whole.search.start_values = aliases->front().start;
+    Result<FitReport> best = FitRecording(*used, whole);
     if (!best) return tl::unexpected(best.error());
     fit = *std::move(best);
   }

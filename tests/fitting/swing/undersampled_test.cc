@@ -110,6 +110,18 @@ TEST(FitUndersampled, FindsASwingSampledAtFiveThirdsOfItsFrequency) {
   EXPECT_EQ(ScatterOf(kFrequency * 5 / 3, 0.423, "viscous", 12).far, 0);
 }
 
+// A start value says where a fit begins, not which alias is right: the rig does.
+TEST(FitUndersampled, KeepsTheRangeOfTheRigWithAStartValue) {
+  const SwingFit expected = FitSimulated(Swing(1, 0.423, 1), TextbookRig(), "viscous");
+  for (const double inertia : {0.078, 0.2}) {
+    FitOptions options = ModelOptions("viscous");
+    options.initial = {{"inertia", inertia}};
+    const SwingFit result = FitAsTheToolDoes(Must(SimulateRecording(Swing(1, 0.423, 1))), TextbookRig(), options);
+    EXPECT_EQ(result.fit.termination, Termination::kConverged) << result.fit.reason;
+    EXPECT_EQ(InertiaOf(result), InertiaOf(expected)) << inertia;
+  }
+}
+
 TEST(FitUndersampled, ExcludesTheHold) {
   SyntheticOptions run = Swing(1, 0.423, 1);
   run.start = StartKind::kRelease;
