@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Autocorrelated noise below this many counts is neither Gaussian nor independent: its likelihood is unknown.
+/// Autocorrelated noise below this many counts is neither Gaussian nor independent: its likelihood is not known.
 constexpr double kSmallestSigma = 0.5;
 
 /// A parameter at the bound 0 leaves a simpler law and is not counted; a parameter at another bound is counted.
@@ -39,15 +39,12 @@ bool IsNormal(const FitReport& best) {
   return best.noise.family == NoiseFamily::kGaussian || best.noise.family == NoiseFamily::kQuantized;
 }
 
-std::string NoLikelihoodReason(const FitReport& best, const std::string& autocorrelation) {
-  const std::string residuals =
-      "the residuals of " + std::string(best.model.name) + ", the model nearest to the readings, ";
-  if (IsRounding(best)) return residuals + "are no larger than the error of its computed trajectory";
-  const std::string why = best.noise.censored > 0                    ? "readings at an end of the sensor's range"
-                          : IsNormal(best)                           ? "noise below half a count"
-                          : best.noise.family == NoiseFamily::kEdges ? "rows only where the count changes"
-                                                                     : "a robust loss";
-  return residuals + "are autocorrelated (" + autocorrelation + "), and with " + why + " their likelihood is not known";
+/// What keeps autocorrelated residuals from being Gaussian.
+std::string NotGaussianReason(const FitReport& best) {
+  if (best.noise.censored > 0) return "readings at an end of the sensor's range";
+  if (IsNormal(best)) return "noise below half a count";
+  if (best.noise.family == NoiseFamily::kEdges) return "rows only where the count changes";
+  return best.noise.family == NoiseFamily::kAveraged ? "averaged counts" : "a robust loss";
 }
 
 }  // namespace
@@ -119,7 +116,15 @@ std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best) {
     case Likelihood::kCorrelated:
       return "Gaussian likelihood of autocorrelated residuals, " + autocorrelation + " as for " +
              std::string(best.model.name) + ", with the variance of rounding added";
-    case Likelihood::kNone: return "none: " + NoLikelihoodReason(best, autocorrelation);
+    case Likelihood::kScaled:
+      return "likelihood of independent " + std::string(NoiseFamilyName(best.noise.family)) +
+             " residuals, in which the readings count as " +
+             NumberText(std::round(best.statistics.effective_samples), 4) +
+             " independent ones, because residuals are autocorrelated (" + autocorrelation + "), with " +
+             NotGaussianReason(best);
+    case Likelihood::kNone:
+      return "none: the residuals of " + std::string(best.model.name) +
+             ", the model nearest to the readings, are no larger than the error of its computed trajectory";
   }
   return "";
 }
@@ -128,7 +133,11 @@ Likelihood ChooseLikelihood(const FitReport& best, double resolution) {
   if (IsRounding(best)) return Likelihood::kNone;
   if (best.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) return Likelihood::kIndependent;
   const bool exceeds_rounding = best.noise.sigma >= kSmallestSigma * resolution;
-  return IsNormal(best) && exceeds_rounding && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kNone;
+  return IsNormal(best) && exceeds_rounding && best.noise.censored == 0 ? Likelihood::kCorrelated : Likelihood::kScaled;
+}
+
+double ScaledLikelihood(const FitReport& fit, const FitReport& best, double samples) {
+  return std::min(best.statistics.effective_samples / samples, 1.0) * fit.statistics.log_likelihood;
 }
 
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row) {

@@ -229,6 +229,16 @@ void SetCorrelatedLikelihood(const ComparedFits& compared, std::size_t m, std::s
   row.log_likelihood = sum - together.Loss();
 }
 
+/// Each recording counts with its own effective samples.
+double SumOfScaledLikelihoods(const ComparedFits& compared, std::size_t m, std::size_t best) {
+  double sum = 0;
+  for (std::size_t k = 0; k < compared.joint.runs.size(); ++k) {
+    const auto samples = static_cast<double>(compared.joint.runs[k].alone.used.size());
+    sum += ScaledLikelihood(compared.Fit(k, m), compared.Fit(k, best), samples);
+  }
+  return sum;
+}
+
 void SetLikelihoods(const ComparedFits& compared, std::size_t best, const FitOptions& options, Comparison& comparison) {
   const JointModels& joint = compared.joint;
   double samples = 0;
@@ -236,12 +246,16 @@ void SetLikelihoods(const ComparedFits& compared, std::size_t best, const FitOpt
   for (std::size_t m = 0; m < comparison.rows.size(); ++m) {
     ComparisonRow& row = comparison.rows[m];
     if (!row.judged || comparison.likelihood == Likelihood::kNone) continue;
+    double counted = samples;
     if (comparison.likelihood == Likelihood::kIndependent) {
       row.log_likelihood = compared.combined[m].statistics.log_likelihood;
+    } else if (comparison.likelihood == Likelihood::kScaled) {
+      row.log_likelihood = SumOfScaledLikelihoods(compared, m, best);
+      counted = comparison.effective_samples;
     } else {
       SetCorrelatedLikelihood(compared, m, best, ForModel(options, joint.models[m], joint.models).options, row);
     }
-    SetCriteria(samples, comparison.effective_samples, row);
+    SetCriteria(counted, comparison.effective_samples, row);
   }
   SetDifferences(comparison.rows);
 }

@@ -30,16 +30,21 @@ void SetCorrelatedLikelihood(const FittedModels& fitted, const FitReport& fit, c
 
 void SetLikelihoods(const FittedModels& fitted, const FitReport& best, const FitOptions& options,
                     Comparison& comparison) {
+  const auto samples = static_cast<double>(fitted.used.size());
   for (std::size_t i = 0; i < fitted.fits.size(); ++i) {
     ComparisonRow& row = comparison.rows[i];
     const FitReport& fit = fitted.fits[i];
     if (!row.judged || comparison.likelihood == Likelihood::kNone) continue;
+    double counted = samples;
     if (comparison.likelihood == Likelihood::kIndependent) {
       row.log_likelihood = fit.statistics.log_likelihood;
+    } else if (comparison.likelihood == Likelihood::kScaled) {
+      row.log_likelihood = ScaledLikelihood(fit, best, samples);
+      counted = comparison.effective_samples;
     } else {
       SetCorrelatedLikelihood(fitted, fit, SharedAutocorrelation(best), options, row);
     }
-    SetCriteria(static_cast<double>(fitted.used.size()), comparison.effective_samples, row);
+    SetCriteria(counted, comparison.effective_samples, row);
   }
   SetDifferences(comparison.rows);
 }

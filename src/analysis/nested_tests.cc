@@ -176,7 +176,7 @@ void SetProbability(const ComparedRuns& compared, std::size_t simpler, std::size
     test.reason = "the added parameters are not shared: each recording has its own";
   } else if (IsRestricted(nesting, options)) {
     test.reason = "--fix, --bounds or --prior name an added parameter";
-  } else if (!nesting.unidentified.empty() && likelihood == Likelihood::kCorrelated) {
+  } else if (!nesting.unidentified.empty() && likelihood != Likelihood::kIndependent) {
     test.reason = "its distribution is simulated for independent residuals only";
   } else if (nesting.unidentified.empty() && nesting.bounded <= 2) {
     const double correlation = nesting.bounded == 2 ? CorrelationOf(compared, richer, options, nesting.added) : 0;

@@ -88,6 +88,17 @@ class RankedRows {
     return chosen;
   }
 
+  /// Index of the simplest law whose residuals are rounding: no larger than the error of its computed trajectory. The
+  /// number of rows if there is none.
+  std::size_t SimplestWithoutNoise() const {
+    std::size_t chosen = rows_.size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!rows_[i].judged || rows_[i].rms > fits_[i].trace_error) continue;
+      if (chosen == rows_.size() || Order(i) < Order(chosen)) chosen = i;
+    }
+    return chosen;
+  }
+
   /// Index of the row with the smallest BIC among the rows that are not near the smallest one; the number of rows if
   /// there is none.
   std::size_t RunnerUp() const {
@@ -159,9 +170,17 @@ std::string DescribeDoubts(const ComparisonRow& row, const FitReport& fit) {
 
 void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   const RankedRows ranked(fits, comparison);
+  if (const std::size_t exact = ranked.SimplestWithoutNoise();
+      comparison.likelihood == Likelihood::kNone && exact != comparison.rows.size()) {
+    comparison.recommended = comparison.rows[exact].model;
+    comparison.reason = comparison.recommended +
+                        ": the simplest law whose residuals are no larger than the error of its computed trajectory, "
+                        "so that no noise is left to compare the laws by";
+    return;
+  }
   const std::size_t chosen = ranked.Simplest();
   if (chosen == comparison.rows.size()) {
-    comparison.reason = "no model is recommended, because there is no criterion";
+    comparison.reason = "no law is recommended: no likelihood of the residuals could be computed";
     return;
   }
   const ComparisonRow& row = comparison.rows[chosen];

@@ -15,6 +15,7 @@ std::string_view LikelihoodName(Likelihood likelihood) {
   switch (likelihood) {
     case Likelihood::kIndependent: return "independent";
     case Likelihood::kCorrelated: return "correlated";
+    case Likelihood::kScaled: return "scaled";
     case Likelihood::kNone: return "none";
   }
   return "none";

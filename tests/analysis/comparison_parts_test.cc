@@ -107,20 +107,23 @@ TEST(ChooseLikelihood, IsCorrelatedForNormalNoiseAboveHalfACount) {
   const FitReport fit = Autocorrelated();
   EXPECT_EQ(ChooseLikelihood(fit, 0), Likelihood::kCorrelated);
   EXPECT_EQ(ChooseLikelihood(fit, 1.9e-3), Likelihood::kCorrelated);
-  EXPECT_EQ(ChooseLikelihood(fit, 2.1e-3), Likelihood::kNone);
+  EXPECT_EQ(ChooseLikelihood(fit, 2.1e-3), Likelihood::kScaled);
   EXPECT_THAT(DescribeLikelihood(Likelihood::kCorrelated, fit), HasSubstr("AR(1) as for coulomb"));
-  EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, fit), HasSubstr("noise below half a count"));
+  EXPECT_THAT(DescribeLikelihood(Likelihood::kScaled, fit), HasSubstr("noise below half a count"));
 }
 
-TEST(ChooseLikelihood, ReturnsNoneIfNoLikelihoodIsKnown) {
+TEST(ChooseLikelihood, IsScaledIfThatOfAutocorrelatedResidualsIsNotKnown) {
   FitReport censored = Autocorrelated();
   censored.noise.censored = 1;
-  EXPECT_EQ(ChooseLikelihood(censored, 0), Likelihood::kNone);
-  EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, censored), HasSubstr("an end of the sensor's range"));
+  EXPECT_EQ(ChooseLikelihood(censored, 0), Likelihood::kScaled);
+  EXPECT_THAT(DescribeLikelihood(Likelihood::kScaled, censored), HasSubstr("an end of the sensor's range"));
   FitReport robust = Autocorrelated();
   robust.noise.family = NoiseFamily::kStudent;
-  EXPECT_EQ(ChooseLikelihood(robust, 0), Likelihood::kNone);
-  EXPECT_THAT(DescribeLikelihood(Likelihood::kNone, robust), HasSubstr("a robust loss"));
+  EXPECT_EQ(ChooseLikelihood(robust, 0), Likelihood::kScaled);
+  EXPECT_THAT(DescribeLikelihood(Likelihood::kScaled, robust), HasSubstr("a robust loss"));
+}
+
+TEST(ChooseLikelihood, ReturnsNoneForRounding) {
   FitReport rounding = Autocorrelated();
   rounding.statistics.rms_residual = rounding.trace_error;
   EXPECT_EQ(ChooseLikelihood(rounding, 0), Likelihood::kNone);

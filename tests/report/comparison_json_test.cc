@@ -39,8 +39,10 @@ TEST(ComparisonJson, ExplainsAMissingPrediction) {
 
 TEST(ComparisonJson, NamesTheBasisOfTheCriteria) {
   Identification report = ExampleComparedIdentification();
-  const std::pair<Likelihood, const char*> named[] = {
-      {Likelihood::kIndependent, "independent"}, {Likelihood::kCorrelated, "correlated"}, {Likelihood::kNone, "none"}};
+  const std::pair<Likelihood, const char*> named[] = {{Likelihood::kIndependent, "independent"},
+                                                      {Likelihood::kCorrelated, "correlated"},
+                                                      {Likelihood::kScaled, "scaled"},
+                                                      {Likelihood::kNone, "none"}};
   for (const auto& [likelihood, name] : named) {
     report.comparison->likelihood = likelihood;
     const Json json = ComparisonJson(report);

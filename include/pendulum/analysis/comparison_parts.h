@@ -36,6 +36,10 @@ std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best);
 /// Chooses the likelihood that suits the noise of the best fit. `resolution`: of the readings, in their unit.
 Likelihood ChooseLikelihood(const FitReport& best, double resolution);
 
+/// Likelihood::kScaled of a fit: the log-likelihood of independent residuals times the share of the `samples` readings
+/// that count as independent, which is that of the best model's residuals for all models (MODEL.md section 9).
+double ScaledLikelihood(const FitReport& fit, const FitReport& best, double samples);
+
 /// Sets AIC and AICc with `samples`, and BIC with `effective_samples`, for a row that has a log-likelihood.
 void SetCriteria(double samples, double effective_samples, ComparisonRow& row);
 

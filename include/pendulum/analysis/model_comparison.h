@@ -16,7 +16,8 @@ enum class Likelihood {
   kIndependent,  ///< The likelihood of the fits: residuals without autocorrelation.
   kCorrelated,   ///< Gaussian with the autocorrelation of the best model's residuals, and q²/12 for rounding (eq.
                  ///< (9.1)).
-  kNone,         ///< No criterion, because no likelihood is known or no fit converged; Comparison::criterion says why.
+  kScaled,       ///< That of the fits, where N autocorrelated readings count as the effective samples.
+  kNone,         ///< No criterion, because no fit converged or residuals are rounding; Comparison::criterion says why.
 };
 
 /// One model among those compared.
