@@ -48,7 +48,8 @@ Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>
   return estimates;
 }
 
-/// The two halves. If only all parameters together differ, the one that differs most has changed.
+/// The two halves. If only all parameters together differ, the one that differs most has changed. A jump between them
+/// has half its size as standard deviation.
 Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
   const auto size = [](const HalvesRow& one) { return std::abs(one.z); };
   const bool is_joint = constancy.halves_p.value_or(1) < kNotConstant;
@@ -59,8 +60,9 @@ Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
                       false,
                       0,
                       "halves"};
-  estimates.differs = is_joint || Scatters(estimates.value, estimates.std_error);
-  if (is_most) estimates.least_change = 0.5 * std::abs(row.second - row.first);
+  const bool has_jump = is_most || Scatters(estimates.value, estimates.std_error);
+  estimates.differs = is_joint || has_jump;
+  if (has_jump) estimates.least_change = 0.5 * std::abs(row.second - row.first);
   return estimates;
 }
 
@@ -121,15 +123,17 @@ double ChangeAbout(const ParameterEstimate& parameter, const Estimates& estimate
   return ScatterAbout(parameter.estimate, possible, estimates.std_error);
 }
 
-/// The parameters of `fit` that change by more than their errors, each with the largest change that a test has seen.
+/// The parameters of `fit` that change by more than their errors. Windows measure a change better than halves, which
+/// count if they have seen a larger one.
 std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
   std::vector<Change> changes;
   for (const Estimates& estimates : EstimatesOfParts(constancy)) {
     const ParameterEstimate* const parameter = fit.Find(estimates.name);
     if (!estimates.differs || parameter == nullptr) continue;
-    const double about = std::max(ChangeAbout(*parameter, estimates), estimates.least_change);
-    if (!(about > 0) || !std::isfinite(about)) continue;
     const auto known = std::ranges::find(changes, parameter->info.name, &Change::name);
+    const double scatter = known == changes.end() ? ChangeAbout(*parameter, estimates) : 0;
+    const double about = std::max(scatter, estimates.least_change);
+    if (!(about > 0) || !std::isfinite(about)) continue;
     const Change change{parameter->info.name, about, estimates.parts};
     if (known == changes.end()) {
       changes.push_back(change);

@@ -104,7 +104,7 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   constancy.windows = {{0, 5, 0.4, 0.078, 1e-5, 0.003, 1e-5},
                        {5, 10, 0.3, 0.079, 1e-5, 0.003, 1e-5},
                        {10, 15, 0.2, 0.080, 1e-5, 0.003, 1e-5}};
-  constancy.trends = {{"inertia", "kg m^2", 1, 0.1, 0.02, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
+  constancy.trends = {{"inertia", "kg m^2", -0.002 / 0.12, 1e-4, 0.025, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
   const double whole = fit.Find("inertia")->estimate;
   AddInconstancyError(constancy, fit);
   // Three values with the same error of 1e-5.
@@ -245,7 +245,7 @@ TEST(Inconstancy, NeedsNoTrend) {
   constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1}};
   constancy.halves = {{"inertia", "s^2", 0.0438, 0.0438, 1e-5, 1e-5, 0},
                       {"viscous", "s", 0.001, 0.003, 0.0001, 0.0001, 14},
-                      {"coulomb", "1", 0.001, 0.003, 1e-5, 1e-5, 140}};
+                      {"coulomb", "1", 0.00225, 0.00225, 1e-5, 1e-5, 0}};
   AddInconstancyError(constancy, fit);
   EXPECT_THAT(fit.systematic_names, ElementsAre("coulomb", "viscous"));
   // The error of coulomb is the scatter of the windows (the middle one differs by 1e-4); the error of viscous is the

@@ -13,9 +13,9 @@ namespace pendulum {
 /// Adds the error of parameters that are not constant. The standard error describes one value for the whole recording;
 /// it does not include the difference to the next window or run. The error is added if a test with p < kNotConstant
 /// shows that windows scatter by more than their errors or depend on amplitude, or that halves differ. It is the
-/// standard deviation of the windows (halves) about the estimate, beyond their errors, and at least that of the trend,
-/// and half the difference of the parameter that differs most between the halves; the larger of windows and halves
-/// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
+/// standard deviation of the windows about the estimate, beyond their errors, and at least that of the trend; if windows
+/// show no change, that of the halves. It is at least half of a significant difference between the halves (MODEL.md
+/// section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
 void AddInconstancyError(const Constancy& constancy, FitReport& fit);
 
 /// One of several recordings fitted together: its fit alone, and the test of this fit.
