@@ -20,7 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kMaxWindows = 8;
-constexpr std::size_t kMinWindows = 3;
 
 /// The friction parameter with the smallest relative standard error; nullptr: no friction has a standard error.
 const ParameterEstimate* BestFriction(const FitReport& fit) {

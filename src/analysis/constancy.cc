@@ -165,6 +165,7 @@ Constancy TestConstancy(const Recording& recorded, const FitReport& report, cons
     result.reason = "the recording is sampled too slowly to be cut at its turning points";
   } else {
     const std::vector<double> ends = HalfSwingEnds(used, BeginOfMotion(used, fit));
+    result.is_short = ends.size() - 1 < kMinWindows * kMinHalfSwings;
     const Parts parts(used, fit, options);
     const std::string halves = CompareHalves(parts, ends, fit, options, result);
     result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");

@@ -69,7 +69,7 @@ SystematicParts SystematicOf(const FitReport& fit, const std::vector<std::string
     }
     const SystematicErrors& errors = fit.Find(names[static_cast<std::size_t>(i)])->systematic;
     parts.rig[i] = errors.Of(ErrorSource::kRig);
-    parts.inconstancy[i] = errors.Of(ErrorSource::kInconstancy);
+    parts.inconstancy[i] = errors.OfMotion();
   }
   return parts;
 }

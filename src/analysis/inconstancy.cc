@@ -78,7 +78,7 @@ std::vector<Estimates> EstimatesOfParts(const Constancy& constancy) {
 std::string_view NameOf(const ParameterEstimate& parameter) { return parameter.info.name; }
 
 /// Adds this error to what is derived from the parameter. The ratios of the parameters to G determine them.
-void AddToDerived(const ParameterEstimate& changing, double std_dev, FitReport& fit) {
+void AddToDerived(const ParameterEstimate& changing, ErrorSource source, double std_dev, FitReport& fit) {
   const auto ratio = std::ranges::find(fit.derived, "gravity_over_inertia", &DerivedQuantity::name);
   if (ratio == fit.derived.end()) return;
   const double gravity = ratio->estimate * fit.Find(kInertia.name)->estimate;
@@ -93,12 +93,12 @@ void AddToDerived(const ParameterEstimate& changing, double std_dev, FitReport& 
     ratios.push_back(parameter.estimate / unit);
     if (&parameter == &changing) covariance(i, i) = std_dev * std_dev / (unit * unit);
   }
-  AddSystematicErrors(infos, ratios, ErrorSource::kInconstancy, covariance, fit.derived);
+  AddSystematicErrors(infos, ratios, source, covariance, fit.derived);
 }
 
 /// Adds a systematic error of this parameter that is independent of all other errors.
-void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit) {
-  parameter.systematic.Add(ErrorSource::kInconstancy, std_dev);
+void AddSystematic(ParameterEstimate& parameter, ErrorSource source, double std_dev, FitReport& fit) {
+  parameter.systematic.Add(source, std_dev);
   const auto place = std::ranges::find(fit.systematic_names, parameter.info.name);
   const Index row = place - fit.systematic_names.begin();
   if (place == fit.systematic_names.end()) {
@@ -106,7 +106,7 @@ void AddSystematic(ParameterEstimate& parameter, double std_dev, FitReport& fit)
     fit.systematic_covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, row + 1));
   }
   fit.systematic_covariance(row, row) += std_dev * std_dev;
-  AddToDerived(parameter, std_dev, fit);
+  AddToDerived(parameter, source, std_dev, fit);
 }
 
 /// How much a parameter changes during a recording.
@@ -182,13 +182,38 @@ double ChangeBetweenRuns(std::string_view name, const std::vector<SharedParamete
   return std::isfinite(shared->scatter.between) ? shared->scatter.between : 0;
 }
 
+/// How far an estimate is off by friction that the law does not have: what was named, and in a short recording also
+/// what the readings do not exclude.
+double FrictionLawError(const Constancy& constancy, const ParameterEstimate& parameter) {
+  return std::hypot(parameter.named_friction, constancy.is_short ? parameter.unseen_friction.value_or(0) : 0.0);
+}
+
+/// The part of this error that is not among the changes during the recording, which are a consequence of it.
+double BeyondChange(double law_error, const ParameterEstimate& parameter) {
+  const double change = parameter.systematic.Of(ErrorSource::kInconstancy);
+  return law_error > change ? std::sqrt(law_error * law_error - change * change) : 0;
+}
+
+/// Root mean square of this error of a parameter in all recordings, weighted with 1 / std_error².
+double CommonFrictionLawError(std::string_view name, const std::vector<ChangingRun>& runs) {
+  double squares = 0, weights = 0;
+  for (const ChangingRun& run : runs) {
+    const ParameterEstimate* const alone = run.alone.Find(name);
+    if (alone == nullptr || !(alone->std_error.value_or(0) > 0)) continue;
+    const double weight = 1 / (*alone->std_error * *alone->std_error);
+    weights += weight;
+    squares += weight * std::pow(FrictionLawError(run.constancy, *alone), 2);
+  }
+  return squares > 0 ? std::sqrt(squares / weights) : 0;
+}
+
 }  // namespace
 
 void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
   std::string text;
   for (const Change& change : Changes(constancy, fit)) {
     const auto parameter = std::ranges::find(fit.parameters, change.name, NameOf);
-    AddSystematic(*parameter, change.std_dev, fit);
+    AddSystematic(*parameter, ErrorSource::kInconstancy, change.std_dev, fit);
     text +=
         (text.empty() ? "" : ", ") + ChangeText(*parameter, change.std_dev) + " between " + std::string(change.parts);
   }
@@ -203,12 +228,31 @@ void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector
         shared.std_error ? std::max(CommonChange(shared.info.name, runs), ChangeBetweenRuns(shared.info.name, between))
                          : 0;
     if (!(change > 0)) continue;
-    AddSystematic(shared, change, joint.whole);
+    AddSystematic(shared, ErrorSource::kInconstancy, change, joint.whole);
     for (FitReport& run : joint.runs)
-      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), change, run);
+      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), ErrorSource::kInconstancy, change,
+                    run);
     text += (text.empty() ? "" : ", ") + ChangeText(shared, change);
   }
   Warn(text, "during or between recordings", joint.whole);
+}
+
+void AddFrictionLawError(const Constancy& constancy, FitReport& fit) {
+  for (ParameterEstimate& parameter : fit.parameters) {
+    const double error = BeyondChange(FrictionLawError(constancy, parameter), parameter);
+    if (parameter.std_error && error > 0) AddSystematic(parameter, ErrorSource::kFrictionLaw, error, fit);
+  }
+}
+
+void AddFrictionLawError(const std::vector<ChangingRun>& runs, JointFit& joint) {
+  for (ParameterEstimate& shared : joint.whole.parameters) {
+    const double error = BeyondChange(CommonFrictionLawError(shared.info.name, runs), shared);
+    if (!shared.std_error || !(error > 0)) continue;
+    AddSystematic(shared, ErrorSource::kFrictionLaw, error, joint.whole);
+    for (FitReport& run : joint.runs)
+      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), ErrorSource::kFrictionLaw, error,
+                    run);
+  }
 }
 
 }  // namespace pendulum

@@ -50,6 +50,7 @@ void AddChanges(const std::vector<RunModels>& runs, std::size_t m, const Homogen
     if (m < run.constancy.size()) changing.push_back({run.alone.fits[m], run.constancy[m]});
   }
   AddInconstancyError(changing, homogeneity.parameters, fit);
+  AddFrictionLawError(changing, fit);
 }
 
 /// If the recordings disagree, adds this to the reason of a fit that did not converge, and a warning otherwise. Both

@@ -78,7 +78,9 @@ inline std::string SourcesOf(const Json& result) {
 inline void SetErrorParts(const Json& json, QuantityRow& row) {
   const auto budget = json.find("error_budget");
   if (budget == json.end()) return;
-  row.inconstancy_std_error = Get<double>(*budget, "inconstancy");
+  const double change = Get<double>(*budget, "inconstancy").value_or(0);
+  const double law = Get<double>(*budget, "friction_law").value_or(0);
+  if (change > 0 || law > 0) row.inconstancy_std_error = std::hypot(change, law);
   const double clock = Get<double>(*budget, "clock").value_or(0);
   const double calibration = Get<double>(*budget, "calibration").value_or(0);
   if (clock > 0 || calibration > 0) row.source_std_error = std::hypot(clock, calibration);

@@ -94,7 +94,7 @@ SystematicParts SystematicOf(const Json& fit, const std::vector<std::string>& na
     const auto budget = parameter.find("error_budget");
     if (budget == parameter.end() || !budget->is_object()) continue;
     parts.rig[i] = budget->value("rig", 0.0);
-    parts.inconstancy[i] = budget->value("inconstancy", 0.0);
+    parts.inconstancy[i] = std::hypot(budget->value("inconstancy", 0.0), budget->value("friction_law", 0.0));
   }
   return parts;
 }

@@ -261,6 +261,7 @@ Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
     if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
     run->constancy.push_back(TestFit(options, fit_options, run->alone.used, identification.fits[m], is_checked));
     AddInconstancyError(run->constancy.back(), identification.fits[m]);
+    AddFrictionLawError(run->constancy.back(), identification.fits[m]);
   }
   if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
     return tl::unexpected(applied.error());

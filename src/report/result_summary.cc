@@ -46,6 +46,7 @@ std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
     case ErrorSource::kClock: return "clock";
     case ErrorSource::kSensor: return "sensor";
     case ErrorSource::kInconstancy: return "change during the recording";
+    case ErrorSource::kFrictionLaw: return "another friction law";
   }
   return "";
 }
@@ -63,7 +64,8 @@ std::string MainSources(double std_error, const SystematicErrors& systematic, co
   std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
   const auto short_name = [](const Part& part) -> std::string {
     if (!part.second) return "noise";
-    return *part.second == ErrorSource::kInconstancy ? "change" : std::string(ErrorSourceName(*part.second));
+    if (*part.second == ErrorSource::kInconstancy) return "change";
+    return *part.second == ErrorSource::kFrictionLaw ? "law" : std::string(ErrorSourceName(*part.second));
   };
   if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
   return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
@@ -339,12 +341,16 @@ void SetRigVerdict(const std::optional<RigVerdict>& rig, FitSummary& summary) {
 }
 
 /// What is unknown of a recording that is too short for a test of constancy (TooFewHalfSwings).
-std::string UntestedText(const Constancy* constancy) {
+std::string UntestedText(const Constancy* constancy, const FitReport& fit) {
   const bool is_tested = constancy == nullptr || constancy->halves_p || !constancy->trends.empty();
   const std::size_t end = is_tested ? std::string::npos : constancy->reason.find(" are too few for halves");
   if (end == std::string::npos) return "";
-  return "Constancy is not tested (" + constancy->reason.substr(0, end) +
-         " are too few): another recording may differ by more than these errors.";
+  const bool has_law_error = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& parameter) {
+    return parameter.systematic.Of(ErrorSource::kFrictionLaw) > 0;
+  });
+  return "Constancy is not tested (" + constancy->reason.substr(0, end) + " are too few)" +
+         (has_law_error ? "; the errors allow for friction of another law."
+                        : ": another recording may differ by more than these errors.");
 }
 
 /// Whether several recordings agree. Without a test nothing is known of that.
@@ -439,10 +445,20 @@ bool IsAssumption(const Warning& warning) {
          warning.code == "linear_restoring_torque" || warning.code == "ambiguous_frequency";
 }
 
-/// The warnings in short, assumptions first.
+/// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
+bool IsSerious(const Warning& warning) {
+  constexpr std::array<std::string_view, 8> kSerious = {"another_minimum", "frequency_differs_from_rig",
+                                                        "hold_disagrees",  "noise_below_resolution",
+                                                        "offset_unsteady", "prior_conflict",
+                                                        "rig_implausible", "trajectory_accuracy"};
+  return std::ranges::find(kSerious, warning.code) != kSerious.end();
+}
+
+/// The warnings in short: serious ones first, then assumptions.
 std::vector<Warning> Shortened(std::vector<Warning> warnings) {
   for (Warning& warning : warnings) warning.message = ShortMessage(warning.message);
-  std::ranges::stable_partition(warnings, IsAssumption);
+  const auto others = std::ranges::stable_partition(warnings, IsSerious);
+  std::ranges::stable_partition(others, IsAssumption);
   return warnings;
 }
 
@@ -566,7 +582,9 @@ std::string WithoutAsides(std::string text) {
 }
 
 void AddWarnings(const FitSummary& summary, const Folding& folding, Section& section) {
-  const std::size_t count = summary.warnings.size(), shown = std::min(folding.warnings, count);
+  const std::size_t count = summary.warnings.size();
+  const auto serious = static_cast<std::size_t>(std::ranges::count_if(summary.warnings, IsSerious));  // never folded
+  const std::size_t shown = std::min(std::max(folding.warnings, serious), count);
   for (std::size_t k = 0; k < shown; ++k) {
     const std::string& message = summary.warnings[k].message;
     section.AddText("Warning: " + (folding.asides ? message : WithoutAsides(message)) + ".", Emphasis::kCaution);
@@ -622,7 +640,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   }
   if (!identification.is_joint()) SetRigVerdict(JudgeInertia(identification.rig, fit), summary);
   summary.remarks = RemarksText(fit);
-  if (const std::string untested = UntestedText(identification.ConstancyOf(index)); !untested.empty()) {
+  if (const std::string untested = UntestedText(identification.ConstancyOf(index), fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
   }
   summary.derived = DerivedOf(fit);

@@ -254,5 +254,67 @@ TEST(Inconstancy, NeedsNoTrend) {
   EXPECT_THAT(SystematicError(fit, "viscous"), AllOf(Gt(0.001), Lt(0.003)));
 }
 
+// ---- Friction of another law ----------------------------------------------------------------------------------------
+
+/// A converged fit of the inertia alone, with 3e-5 by friction that was named and 4e-5 by friction that is not
+/// excluded.
+FitReport FitWithOtherFriction() {
+  FitReport fit;
+  fit.termination = Termination::kConverged;
+  ParameterEstimate inertia;
+  inertia.info = kInertia;
+  inertia.unit = "s^2";
+  inertia.estimate = 0.05;
+  inertia.std_error = 1e-5;
+  inertia.named_friction = 3e-5;
+  inertia.unseen_friction = 4e-5;
+  fit.parameters.push_back(inertia);
+  return fit;
+}
+
+TEST(FrictionLawError, ContainsWhatIsNotExcludedOnlyInAShortRecording) {
+  for (const auto& [is_short, expected] : {std::pair(false, 3e-5), std::pair(true, 5e-5)}) {
+    FitReport fit = FitWithOtherFriction();
+    Constancy constancy;
+    constancy.is_short = is_short;
+    AddFrictionLawError(constancy, fit);
+    EXPECT_DOUBLE_EQ(fit.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected);
+    EXPECT_DOUBLE_EQ(fit.systematic_covariance(0, 0), expected * expected);
+  }
+}
+
+// A law that lacks friction makes the windows differ: this is one error, not two.
+TEST(FrictionLawError, IsWhatExceedsTheChangeDuringTheRecording) {
+  for (const auto& [change, expected] : {std::pair(0.0, 3e-5), std::pair(1.8e-5, 2.4e-5), std::pair(6e-5, 0.0)}) {
+    FitReport fit = FitWithOtherFriction();
+    fit.parameters[0].systematic.Add(ErrorSource::kInconstancy, change);
+    AddFrictionLawError({}, fit);
+    EXPECT_NEAR(fit.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
+  }
+}
+
+TEST(FrictionLawError, NeedsAStandardError) {
+  FitReport fit = FitWithOtherFriction();
+  fit.parameters[0].std_error.reset();
+  AddFrictionLawError({}, fit);
+  EXPECT_FALSE(fit.parameters[0].systematic.Total());
+}
+
+// Two recordings with standard errors of 1 and 2 have the weights 4 : 1.
+TEST(FrictionLawError, OfRecordingsIsTheirWeightedRootMeanSquare) {
+  const FitReport first = FitWithOtherFriction();
+  FitReport second = first;
+  second.parameters[0].std_error = 2e-5;
+  second.parameters[0].named_friction = 0;
+  JointFit joint;
+  joint.whole = first;
+  joint.runs = {first, second};
+  const Constancy constant;
+  AddFrictionLawError({{first, constant}, {second, constant}}, joint);
+  const double expected = 3e-5 * std::sqrt(4.0 / 5);
+  EXPECT_NEAR(joint.whole.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
+  EXPECT_NEAR(joint.runs[1].parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
+}
+
 }  // namespace
 }  // namespace pendulum::inconstancy_test

@@ -45,6 +45,7 @@ struct Constancy {
   std::optional<double> halves_p;  ///< Absent if there is no such test; `reason` gives the cause.
   std::vector<AmplitudeRow> windows;
   std::vector<AmplitudeTrend> trends;  ///< Trends of inertia and one friction parameter; empty with too few windows.
+  bool is_short = false;               ///< The half swings are too few for windows.
   std::string reason;                  ///< Why a test is missing; empty if none is.
   std::string verdict;                 ///< A sentence that names what is not constant, or says that everything is.
 

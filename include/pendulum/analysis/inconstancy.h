@@ -13,9 +13,9 @@ namespace pendulum {
 /// Adds the error of parameters that are not constant. The standard error describes one value for the whole recording;
 /// it does not include the difference to the next window or run. The error is added if a test with p < kNotConstant
 /// shows that windows scatter by more than their errors or depend on amplitude, or that halves differ. It is the
-/// standard deviation of the windows about the estimate, beyond their errors, and at least that of the trend; if windows
-/// show no change, that of the halves. It is at least half of a significant difference between the halves (MODEL.md
-/// section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
+/// standard deviation of the windows about the estimate, beyond their errors, and at least that of the trend; if
+/// windows show no change, that of the halves. It is at least half of a significant difference between the halves
+/// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
 void AddInconstancyError(const Constancy& constancy, FitReport& fit);
 
 /// One of several recordings fitted together: its fit alone, and the test of this fit.
@@ -31,5 +31,15 @@ struct ChangingRun {
 /// deviation `between` (MODEL.md eq. (10.5)). between: the shared parameters of TestHomogeneity.
 void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector<SharedParameter>& between,
                          JointFit& joint);
+
+/// Adds the error by friction that the law does not have (MODEL.md section 16): how far the estimates are off by
+/// friction that was named (ParameterEstimate::named_friction), and in a recording too short for windows also by terms
+/// that its readings do not exclude (unseen_friction). A change during the recording is a consequence of it, so only
+/// what is beyond AddInconstancyError, which comes before, is added.
+void AddFrictionLawError(const Constancy& constancy, FitReport& fit);
+
+/// Adds this error to a joint fit. Recordings of one rig have the same friction, so their number does not reduce it: it
+/// is the root mean square of the recordings' errors, weighted with 1 / std_error² of their fits alone.
+void AddFrictionLawError(const std::vector<ChangingRun>& runs, JointFit& joint);
 
 }  // namespace pendulum

@@ -57,6 +57,9 @@ class Parts {
 
 inline constexpr std::size_t kMinHalfSwings = 6;
 
+/// With fewer windows there is no trend.
+inline constexpr std::size_t kMinWindows = 3;
+
 /// Cuts half swings into parts of equal ∫ amplitude^(2/3) dt (MODEL.md eq. (9.6)). Inertia and friction then have about
 /// equal errors in all parts, because their variances are proportional to 1 / (amplitude² duration³). Returns indices
 /// into `ends` [s, file's clock], which has at least parts · kMinHalfSwings + 1 elements. Every part has at least

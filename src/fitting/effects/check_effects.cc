@@ -279,11 +279,17 @@ void SetSize(const EffectTests& tests, const EffectSums& sums, const WeightedRow
       std::sqrt(std::max(left.row(at).dot(sizes.covariance * left.row(at).transpose()), 0.0)) / rows.deviation[at];
 }
 
-/// How far the estimates would be off by friction of other laws that the readings do not exclude.
-VectorXd UnseenFriction(const EffectTests& tests, const EffectSums& sums, const Optimum& optimum) {
-  const std::vector<Index> columns = tests.UnseenColumns();
-  VectorXd unseen = VectorXd::Zero(optimum.gradient.size());
-  if (columns.empty()) return unseen;
+/// What friction of these columns does to the estimates.
+struct FrictionPull {
+  VectorXd shift;    // P
+  VectorXd std_dev;  // P
+};
+
+/// A third of the whole friction is the standard deviation of each term before the recording.
+FrictionPull PullOf(const std::vector<Index>& columns, const EffectTests& tests, const EffectSums& sums,
+                    const Optimum& optimum) {
+  FrictionPull pull{VectorXd::Zero(optimum.gradient.size()), VectorXd::Zero(optimum.gradient.size())};
+  if (columns.empty()) return pull;
   const auto count = static_cast<Index>(columns.size());
   EffectPriors priors{VectorXd(count), VectorXd::Zero(count)};
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -291,8 +297,20 @@ VectorXd UnseenFriction(const EffectTests& tests, const EffectSums& sums, const 
   }
   const EffectSizes sizes = EstimateEffects(sums, columns, priors);
   const MatrixXd moved = optimum.inverse.matrix * sums.information(Eigen::seqN(0, sums.parameters), columns);
-  unseen(optimum.free) = (moved * sizes.covariance * moved.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
-  return unseen;
+  pull.shift(optimum.free) = moved * sizes.mean;
+  pull.std_dev(optimum.free) = (moved * sizes.covariance * moved.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+  return pull;
+}
+
+/// How far the estimates are off by the friction with the strongest evidence among what was named. What is named beside
+/// it only improves the description, and compensates for viscous and dry friction almost at will.
+VectorXd NamedFriction(const std::vector<Suspicion>& suspicions, const EffectTests& tests, const EffectSums& sums,
+                       const Optimum& optimum) {
+  const auto strongest = std::ranges::find_if_not(suspicions, IsCorrectable, &Suspicion::cause);
+  const std::vector<Cause> named =
+      strongest == suspicions.end() ? std::vector<Cause>{} : std::vector<Cause>{strongest->cause};
+  const FrictionPull pull = PullOf(tests.ColumnsOf(named), tests, sums, optimum);
+  return (pull.shift.cwiseAbs2() + pull.std_dev.cwiseAbs2()).cwiseSqrt();
 }
 
 /// Whether readings stay valid if a small angle is subtracted from each: not if they are compared with fixed levels or
@@ -359,7 +377,8 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
     }
   }
 
-  check.unseen_friction = UnseenFriction(tests, sums, optimum);
+  check.unseen_friction = PullOf(tests.UnseenColumns(), tests, sums, optimum).std_dev;
+  check.named_friction = NamedFriction(check.suspicions, tests, sums, optimum);
   const Index count = effects.columns.cols();
   check.pull = (rows.deviation.asDiagonal() * jacobian).transpose() * rows.columns.rightCols(count);
   check.second_moment = MatrixXd::Zero(count, count);

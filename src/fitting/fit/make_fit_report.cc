@@ -160,12 +160,14 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   return report;
 }
 
-/// Sets how far estimates would be off by friction that the readings do not exclude.
-void SetUnseenFriction(const FitProblem& problem, FitReport& report) {
+/// Sets how far estimates are off by friction that the law does not have: what was named, and what the readings do not
+/// exclude.
+void SetOtherFriction(const FitProblem& problem, FitReport& report) {
   for (Eigen::Index i = 0; i < report.effects.unseen_friction.size(); ++i) {
     const auto index = static_cast<std::size_t>(i);
     const double unseen = problem.si_per_internal[index] * report.effects.unseen_friction[i];
     if (unseen > 0) report.parameters[index].unseen_friction = unseen;
+    report.parameters[index].named_friction = problem.si_per_internal[index] * report.effects.named_friction[i];
   }
 }
 
@@ -176,7 +178,7 @@ void SetErrors(const Recording& recording, const FitOptions& options, const FitP
   // Computed first, because the posterior changes σ, on which the optimum's information depends.
   report.effects = CheckEffects(recording, problem, cost, solution, optimum, corrected);
   report.suspicions = report.effects.suspicions;
-  SetUnseenFriction(problem, report);
+  SetOtherFriction(problem, report);
   const std::vector<SystematicCovariance> systematic =
       SystematicCovariances(recording, options, problem, cost, solution, optimum, report.effects);
   SetSystematicErrors(problem, systematic, report);

@@ -12,8 +12,13 @@ std::string_view ErrorSourceName(ErrorSource source) {
     case ErrorSource::kClock: return "clock";
     case ErrorSource::kSensor: return "sensor";
     case ErrorSource::kInconstancy: return "inconstancy";
+    case ErrorSource::kFrictionLaw: return "friction_law";
   }
   return "";
+}
+
+double SystematicErrors::OfMotion() const {
+  return std::hypot(Of(ErrorSource::kInconstancy), Of(ErrorSource::kFrictionLaw));
 }
 
 void SystematicErrors::Add(ErrorSource source, double std_dev) {

@@ -13,6 +13,7 @@ export const kSources = [
   { key: 'clock', name: 'clock', words: 'clock of the recorder', colour: 'budget-clock' },
   { key: 'sensor', name: 'sensor', words: 'what the sensor may do', colour: 'budget-sensor' },
   { key: 'inconstancy', name: 'change during the recording', words: 'change during the recording', colour: 'budget-inconstancy' },
+  { key: 'friction_law', name: 'another friction law', words: 'friction of another law', colour: 'budget-law' },
 ] as const;
 
 export type Source = (typeof kSources)[number];

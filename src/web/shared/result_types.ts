@@ -15,7 +15,7 @@ export interface Parameter {
   systematic_std_error: Num;
   /** Statistical and systematic error together. */
   total_std_error?: Num;
-  /** Standard error by source: noise, rig, calibration, clock, sensor, inconstancy. */
+  /** Standard error by source: noise, rig, calibration, clock, sensor, inconstancy, friction_law. */
   error_budget?: Record<string, Num> | null;
   unit: string;
   fixed: boolean;

@@ -32,6 +32,9 @@ struct EffectCheck {
   /// P, the problem's units: how far the estimates would be off, as a standard deviation, if friction had other terms
   /// of a third of its size that the readings do not exclude; empty if nothing is known of that.
   Eigen::VectorXd unseen_friction;
+  /// P, the problem's units: how far the estimates are off, as a root mean square, by friction that is not in the
+  /// law: of what was named, the cause with the strongest evidence; empty if nothing is known of that.
+  Eigen::VectorXd named_friction;
   Correction correction;  ///< For the named causes that can be corrected and are plausible, and for former ones.
 };
 

@@ -53,6 +53,7 @@ struct ParameterEstimate {
   /// How far the estimate would be off, as a standard deviation in `unit`, if friction had other terms that the
   /// readings do not exclude (EffectCheck::unseen_friction). Not part of any error.
   std::optional<double> unseen_friction;
+  double named_friction = 0;          ///< EffectCheck::named_friction in `unit`.
   std::optional<double> closed_form;  ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;

@@ -10,12 +10,13 @@
 namespace pendulum {
 
 /// What systematic errors come from.
-enum class ErrorSource { kRig, kCalibration, kClock, kSensor, kInconstancy };
+enum class ErrorSource { kRig, kCalibration, kClock, kSensor, kInconstancy, kFrictionLaw };
 
-inline constexpr std::array kErrorSources = {ErrorSource::kRig, ErrorSource::kCalibration, ErrorSource::kClock,
-                                             ErrorSource::kSensor, ErrorSource::kInconstancy};
+inline constexpr std::array kErrorSources = {ErrorSource::kRig,         ErrorSource::kCalibration,
+                                             ErrorSource::kClock,       ErrorSource::kSensor,
+                                             ErrorSource::kInconstancy, ErrorSource::kFrictionLaw};
 
-/// "rig", "calibration", "clock", "sensor", "inconstancy".
+/// "rig", "calibration", "clock", "sensor", "inconstancy", "friction_law".
 std::string_view ErrorSourceName(ErrorSource source);
 
 /// The systematic errors of one quantity: a standard deviation for each source, in the quantity's unit. Sources are
@@ -23,6 +24,10 @@ std::string_view ErrorSourceName(ErrorSource source);
 class SystematicErrors {
  public:
   double Of(ErrorSource source) const { return std_dev_[static_cast<std::size_t>(source)]; }
+
+  /// The errors by which recordings of one rig differ although nothing outside them does: parameters that change, and
+  /// friction of another law.
+  double OfMotion() const;
 
   /// Adds an independent error of the source in quadrature. std_dev >= 0
   void Add(ErrorSource source, double std_dev);
