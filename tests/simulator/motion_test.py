@@ -73,6 +73,14 @@ class FreeMotionTest(unittest.TestCase):
         delay = motion.rate(numpy.array([1.05]))[0] - free.rate(numpy.array([1.05]))[0]
         self.assertAlmostEqual(delay / late, 1, delta=0.02)
 
+    def test_finger_with_all_of_the_torque_lets_go_when_dry_friction_no_longer_holds(self):
+        body, hand = with_friction(coulomb=0.05), Hand(angle=0.4, time=1.0, finger_share=1.0)
+        motion = swing(body, 1.0, 3.0, 0.4, hand=hand.torque(GRAVITY_TORQUE), hand_leaves=hand.leaves)
+        # 1 - (1 + cos(pi t/50 ms))/2 of gravity's torque is dry friction's.
+        share = 0.05 / (GRAVITY_TORQUE * math.sin(0.4))
+        self.assertAlmostEqual(motion.reversals[0], 1 + 0.05 * math.acos(1 - 2 * share) / math.pi, delta=1e-6)
+        self.assertLess(motion.rate(numpy.array([1.05]))[0], -0.1)
+
 
 class SlidingFrictionTest(unittest.TestCase):
     def test_coulomb_takes_the_same_angle_from_each_half_swing_of_a_linear_pendulum(self):
