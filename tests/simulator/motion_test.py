@@ -15,6 +15,7 @@ from friction import Bristles, Sliding
 from hands import Hand
 from motion import swing
 from pendulum import Body, Support, yielding_support
+from presliding_study import INERTIA as STUDIED_INERTIA, stopping_coulomb
 
 INERTIA, GRAVITY_TORQUE = 0.079, 1.8033
 FRICTIONLESS = Body(INERTIA, GRAVITY_TORQUE, Sliding())
@@ -80,6 +81,17 @@ class FreeMotionTest(unittest.TestCase):
         share = 0.05 / (GRAVITY_TORQUE * math.sin(0.4))
         self.assertAlmostEqual(motion.reversals[0], 1 + 0.05 * math.acos(1 - 2 * share) / math.pi, delta=1e-6)
         self.assertLess(motion.rate(numpy.array([1.05]))[0], -0.1)
+
+
+class StudyTest(unittest.TestCase):
+    def test_friction_of_the_study_stops_a_linear_pendulum_after_so_many_half_swings(self):
+        for half_swings in (6, 20):
+            coulomb = stopping_coulomb(0.003, 0.4, half_swings)
+            body = Body(STUDIED_INERTIA, GRAVITY_TORQUE, Sliding(viscous=0.003, coulomb=coulomb), is_linear=True)
+            motion = swing(body, 0.0, 20.0, 0.4)
+            turns = numpy.abs(motion.angle(numpy.array(motion.reversals)))
+            self.assertAlmostEqual(len(turns), half_swings, delta=1)
+            self.assertLess(turns[-1], coulomb / GRAVITY_TORQUE)
 
 
 class SlidingFrictionTest(unittest.TestCase):
