@@ -31,7 +31,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import judging  # noqa: E402, because NumPy reads the environment when it is imported
 from lab import GRAVITY_TORQUE, Lab, record, textbook_lab  # noqa: E402
-from row_summary import finite  # noqa: E402
+from row_summary import finite, verdict  # noqa: E402
 from scenarios import DEG, PRESLIDING, set_bristles  # noqa: E402
 
 FIRST_SEEDS = {"stopping": 500_000, "varied": 600_000}
@@ -113,8 +113,7 @@ def summary(fits: list[Fitted]) -> dict:
         "wrong": len(wrong), "share_wrong": finite(len(wrong) / len(fits), 3) if fits else 0.0,
         "wrong_by": dict(collections.Counter(name for fit in wrong for name, each in fit.outcome.judged.items()
                                              if abs(each.z) > judging.WRONG)),
-        "wrong_named": sum(fit.outcome.is_named(PRESLIDING) for fit in wrong),
-        "wrong_doubted": sum(fit.outcome.is_doubted and not fit.outcome.is_named(PRESLIDING) for fit in wrong),
+        "wrong_and": dict(collections.Counter(verdict(PRESLIDING, fit.outcome) for fit in wrong)),
         "named": sum(outcome.is_named(PRESLIDING) for outcome in converged),
         "without_error": {name: sum(name not in outcome.judged for outcome in converged) for name in JUDGED},
         "coverage": {name: finite(statistics.fmean(of_name), 3) for name in JUDGED
@@ -129,8 +128,7 @@ def summary(fits: list[Fitted]) -> dict:
 def text(study: str, found: dict) -> str:
     """The summary for the terminal."""
     lines = [f"{study}: {found['recordings']} recordings, exit codes {found['exit_codes']}",
-             f"  wrong with exit 0: {found['wrong']} ({100 * found['share_wrong']:.1f} %) {found['wrong_by']}; of these "
-             f"{found['wrong_named']} named, {found['wrong_doubted']} doubted",
+             f"  wrong with exit 0: {found['wrong']} ({100 * found['share_wrong']:.1f} %) {found['wrong_by']}, {found['wrong_and']}",
              f"  presliding or another law named in {found['named']}; without an error: {found['without_error']}",
              f"  covered: {found['coverage']}"]
     for name in ("tested", "untested"):

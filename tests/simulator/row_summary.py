@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the recordings of a row say together."""
 
-import collections
+import collections.abc
 import math
 import statistics
 
@@ -38,13 +38,13 @@ def of_parameter(judged: list[Judged]) -> dict:
             "relative_error": finite(statistics.median(each.relative_error for each in judged), 3)}
 
 
-def verdict(row: Row, outcome: Outcome) -> str:
+def verdict(names: collections.abc.Set[str], outcome: Outcome) -> str:
     """Of a recording whose inertia or friction is wrong: what the tool says of it. The first that applies counts."""
-    if outcome.is_named(row.names):
+    if outcome.is_named(names):
         return "named"
     if outcome.is_doubted:
         return "doubted"
-    return "misnamed" if outcome.is_misnamed(row.names) else "silent"
+    return "misnamed" if outcome.is_misnamed(names) else "silent"
 
 
 def is_remarked(row: Row, outcome: Outcome) -> bool:
@@ -59,7 +59,7 @@ def summarize(row: Row, outcomes: list[Outcome]) -> dict:
         for name, each in outcome.judged.items():
             by_name[name].append(each)
     wrong = [outcome for outcome in outcomes if outcome.is_wrong]
-    verdicts = collections.Counter(verdict(row, outcome) for outcome in wrong)
+    verdicts = collections.Counter(verdict(row.names, outcome) for outcome in wrong)
     without_warning = [each for outcome in outcomes if not (outcome.is_named(row.names) or outcome.is_doubted)
                        for each in outcome.judged.values()]
     all_judged = [each for of_name in by_name.values() for each in of_name]
@@ -76,9 +76,10 @@ def summarize(row: Row, outcomes: list[Outcome]) -> dict:
         "doubted_wrong": verdicts["doubted"],
         "misnamed_wrong": verdicts["misnamed"],
         "named_wrong": verdicts["named"],
-        "remarked": sum(verdict(row, outcome) == "silent" and is_remarked(row, outcome) for outcome in wrong),
+        "remarked": sum(verdict(row.names, outcome) == "silent" and is_remarked(row, outcome) for outcome in wrong),
         # Of all recordings:
-        "silent_start": sum(outcome.is_start_wrong and verdict(row, outcome) in ("silent", "misnamed") for outcome in outcomes),
+        "silent_start": sum(outcome.is_start_wrong and verdict(row.names, outcome) in ("silent", "misnamed")
+                            for outcome in outcomes),
         "doubted": sum(outcome.is_doubted for outcome in outcomes),
         "named": sum(outcome.is_named(row.names) for outcome in outcomes),
         "misnamed": sum(outcome.is_misnamed(row.names) for outcome in outcomes),
