@@ -181,6 +181,8 @@ class SummaryTest(unittest.TestCase):
     def test_false_alarms_fail_a_row_in_which_nothing_is_wrong(self):
         row = dataclasses.replace(ROW, kind="clean", names=frozenset())
         self.assertIn("2 false alarms", summarize(row, [self.outcome(0, ["lag"])] * 2 + [self.outcome(0)] * 8)["fails"])
+        misled = [self.outcome(0, ["lag"])] * 2
+        self.assertIn("2 with another cause named", summarize(ROW, misled + [self.outcome(0)] * 8)["fails"])
         doubtful = [self.outcome(0, codes=["lack_of_fit"])] * 2
         self.assertIn("2 false doubts", summarize(row, doubtful + [self.outcome(0)] * 8)["fails"])
 

@@ -12,8 +12,8 @@ LEAST_JUDGED = 0.9  # of the recordings, for each parameter, so that a tool that
 COVERAGE = {"exact": (0.93, 0.97), "clean": (0.93, 1.0), "modelled": (0.93, 0.99), "budgeted": (0.93, 1.0),
             "inherent": (0.93, 1.0)}  # of total 95 % intervals
 USELESS = 0.5  # of the value: a total error above it is no result
-# Of the recordings of a row in which nothing is wrong, or one: tests at 1 in 1000 sometimes reject. A tool that always doubts
-# would be silent nowhere.
+# Of the recordings of a row, or one: tests at 1 in 1000 sometimes reject. A tool that always doubts would be silent nowhere, and
+# one that names a wrong cause sends the reader to look at the wrong part.
 MOST_ALARMS = 0.1
 LARGEST_Z = 99999  # beyond it a z is cut, so that the JSON has no infinity
 
@@ -109,10 +109,11 @@ def faults(summary: dict) -> list[str]:
     for name, of_name in summary["z"].items():
         if name not in START and of_name["relative_error"] > USELESS:
             found.append(f"{name} ± {100 * of_name['relative_error']:.0f} %")
-    if summary["kind"] in ("exact", "clean"):
-        most = max(1, MOST_ALARMS * summary["recordings"])
-        found += [f"{summary[key]} false {words}" for key, words in (("misnamed", "alarms"), ("doubted", "doubts"))
-                  if summary[key] > most]
+    most, is_clean = max(1, MOST_ALARMS * summary["recordings"]), summary["kind"] in ("exact", "clean")
+    if summary["misnamed"] > most:
+        found.append(f"{summary['misnamed']} {'false alarms' if is_clean else 'with another cause named'}")
+    if is_clean and summary["doubted"] > most:
+        found.append(f"{summary['doubted']} false doubts")
     return found + coverage_faults(summary)
 
 
