@@ -21,8 +21,8 @@ a defect and with the sensor stated as ideal. A budget that is too wide has a sm
 
 A row fails if a recording is silently wrong, wrong with another cause named, or without an answer; if a parameter has no
 error in more than a tenth of the recordings, or a median error above half its value; if the intervals cover too seldom or
-too often; or if more than a tenth have another cause named or, where nothing is wrong, are doubted. --json writes the table; rows that are not run keep their place in it. --update
-also writes it into the guide. Exit code 1 if a row fails.
+too often; or if more than a tenth have another cause named or, where nothing is wrong, are doubted. --json writes the
+table; rows that are not run keep their place in it. --update also writes it into the guide. Exit code 1 if a row fails.
 """
 
 import argparse
