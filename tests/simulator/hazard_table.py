@@ -20,7 +20,7 @@ value, are those of inertia, viscous and dry friction; the last column has this 
 a defect and with the sensor stated as ideal. A budget that is too wide has a small z there and a large ratio.
 
 A row fails if a recording is silently wrong, wrong with another cause named, or without an answer; if a parameter has no
-error in more than a tenth of the recordings, or a median error above half its value; if the intervals cover too seldom or
+error in more than a tenth of the recordings, or a median error above half its value that is not that of noise; if the intervals cover too seldom or
 too often; or if more than a tenth have another cause named or, where nothing is wrong, are doubted. --json writes the
 table; rows that are not run keep their place in it. --update also writes it into the guide. Exit code 1 if a row fails.
 """
@@ -69,7 +69,8 @@ def table_of(tool: pathlib.Path, names: list[str], count: int, jobs: int, path: 
     with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
         futures = {name: [pool.submit(run, tool, name, FIRST_SEED + index) for index in range(count)] for name in names}
         for name, of_row in futures.items():
-            rows.append(summarize(ROWS[name], [future.result() for future in of_row]))
+            noise = next((row for row in [*rows, *former] if row["row"] == ROWS[name].reference), None)
+            rows.append(summarize(ROWS[name], [future.result() for future in of_row], noise))
             print(table_text.line(rows[-1], [*rows, *former]), flush=True)
             if path:
                 write(path, tool, rows)

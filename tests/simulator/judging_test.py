@@ -177,6 +177,9 @@ class SummaryTest(unittest.TestCase):
         self.assertAlmostEqual(summary["z"]["inertia"]["rms"], 0.1 / 6, delta=1e-4)
         self.assertAlmostEqual(summary["z"]["inertia"]["relative_error"], 0.6, delta=1e-3)
         self.assertIn("inertia ± 60 %", summary["fails"])
+        noise = summarize(ROW, [self.outcome(1, parameter={"systematic_std_error": 4.0})] * 3)
+        wide = [self.outcome(1, parameter={"systematic_std_error": 6.0})] * 3
+        self.assertEqual(summarize(ROW, wide, noise)["fails"], [])
 
     def test_false_alarms_fail_a_row_in_which_nothing_is_wrong(self):
         row = dataclasses.replace(ROW, kind="clean", names=frozenset())

@@ -128,7 +128,8 @@ def summary(fits: list[Fitted]) -> dict:
 def text(study: str, found: dict) -> str:
     """The summary for the terminal."""
     lines = [f"{study}: {found['recordings']} recordings, exit codes {found['exit_codes']}",
-             f"  wrong with exit 0: {found['wrong']} ({100 * found['share_wrong']:.1f} %) {found['wrong_by']}, {found['wrong_and']}",
+             f"  wrong with exit 0: {found['wrong']} ({100 * found['share_wrong']:.1f} %) {found['wrong_by']}, "
+             f"{found['wrong_and']}",
              f"  presliding or another law named in {found['named']}; without an error: {found['without_error']}",
              f"  covered: {found['coverage']}"]
     for name in ("tested", "untested"):

@@ -11,9 +11,10 @@ from scenarios import Row
 LEAST_JUDGED = 0.9  # of the recordings, for each parameter, so that a tool that withdraws its errors does not pass
 COVERAGE = {"exact": (0.93, 0.97), "clean": (0.93, 1.0), "modelled": (0.93, 0.99), "budgeted": (0.93, 1.0),
             "inherent": (0.93, 1.0)}  # of total 95 % intervals
-USELESS = 0.5  # of the value: a total error above it is no result
-# Of the recordings of a row, or one: tests at 1 in 1000 sometimes reject. A tool that always doubts would be silent nowhere, and
-# one that names a wrong cause sends the reader to look at the wrong part.
+USELESS = 0.5  # of the value: a total error above it is no result,
+WIDER = 2.0  # unless noise alone explains it: the error is below this many times that of noise
+# Of the recordings of a row, or one: tests at 1 in 1000 sometimes reject. A tool that always doubts would be silent nowhere,
+# and one that names a wrong cause sends the reader to look at the wrong part.
 MOST_ALARMS = 0.1
 LARGEST_Z = 99999  # beyond it a z is cut, so that the JSON has no infinity
 
@@ -52,8 +53,9 @@ def is_remarked(row: Row, outcome: Outcome) -> bool:
     return (row.group == "friction" and outcome.is_unseen) or (row.kind == "inherent" and outcome.is_remarked(row.names))
 
 
-def summarize(row: Row, outcomes: list[Outcome]) -> dict:
-    """The row of the table: counts of recordings, z, errors and coverage, and the reasons why it fails."""
+def summarize(row: Row, outcomes: list[Outcome], noise: dict | None = None) -> dict:
+    """The row of the table: counts of recordings, z, errors and coverage, and the reasons why it fails. `noise` is the row with
+    the errors of noise alone."""
     by_name = collections.defaultdict(list)
     for outcome in outcomes:
         for name, each in outcome.judged.items():
@@ -89,7 +91,7 @@ def summarize(row: Row, outcomes: list[Outcome]) -> dict:
         "causes": dict(collections.Counter(cause for outcome in outcomes for cause in outcome.causes)),
         "codes": dict(collections.Counter(code for outcome in outcomes for code in outcome.codes)),
     }
-    return summary | {"fails": faults(summary)}
+    return summary | {"fails": faults(summary, noise)}
 
 
 def judged_in(summary: dict, name: str) -> int:
@@ -98,8 +100,9 @@ def judged_in(summary: dict, name: str) -> int:
     return sum(summary["z"][each]["judged"] for each in (name, others.get(name)) if each in summary["z"])
 
 
-def faults(summary: dict) -> list[str]:
+def faults(summary: dict, noise: dict | None = None) -> list[str]:
     """Why a row does not pass; empty if it does."""
+    of_noise = {name: each["relative_error"] for name, each in noise["z"].items()} if noise else {}
     found = [f"{summary[key]} {words}" for key, words in (
         ("silent", "silently wrong"), ("misnamed_wrong", "wrong, with another cause named"),
         ("silent_start", "silently wrong about the start"), ("failed", "failed")) if summary[key]]
@@ -107,7 +110,7 @@ def faults(summary: dict) -> list[str]:
         if judged_in(summary, name) < LEAST_JUDGED * summary["recordings"]:
             found.append(f"{name} without an error in {summary['recordings'] - judged_in(summary, name)}")
     for name, of_name in summary["z"].items():
-        if name not in START and of_name["relative_error"] > USELESS:
+        if name not in START and of_name["relative_error"] > max(USELESS, WIDER * of_noise.get(name, 0.0)):
             found.append(f"{name} ± {100 * of_name['relative_error']:.0f} %")
     most, is_clean = max(1, MOST_ALARMS * summary["recordings"]), summary["kind"] in ("exact", "clean")
     if summary["misnamed"] > most:
