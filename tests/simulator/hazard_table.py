@@ -20,9 +20,10 @@ value, are those of inertia, viscous and dry friction; the last column has this 
 a defect and with the sensor stated as ideal. A budget that is too wide has a small z there and a large ratio.
 
 A row fails if a recording is silently wrong, wrong with another cause named, or without an answer; if a parameter has no
-error in more than a tenth of the recordings, or a median error above half its value that is not that of noise; if the intervals cover too seldom or
-too often; or if more than a tenth have another cause named or, where nothing is wrong, are doubted. --json writes the
-table; rows that are not run keep their place in it. --update also writes it into the guide. Exit code 1 if a row fails.
+error in more than a tenth of the recordings, or a median error above half its value that noise does not explain; if the
+intervals cover too seldom or too often; or if more than a tenth have another cause named or, where nothing is wrong, are
+doubted. --json writes the table; rows that are not run keep their place in it. --update also writes it into the guide.
+Exit code 1 if a row fails.
 """
 
 import argparse
@@ -65,7 +66,7 @@ def run(tool: pathlib.Path, name: str, seed: int) -> judging.Outcome:
 
 def table_of(tool: pathlib.Path, names: list[str], count: int, jobs: int, path: pathlib.Path | None) -> list[dict]:
     """Runs the rows. Prints each as it is done, and writes it to the file, so that an interrupted run loses nothing."""
-    rows, former = [], rows_of(path or TABLE)
+    rows, former = [], [*rows_of(path or TABLE), *rows_of(TABLE)]
     with concurrent.futures.ProcessPoolExecutor(jobs) as pool:
         futures = {name: [pool.submit(run, tool, name, FIRST_SEED + index) for index in range(count)] for name in names}
         for name, of_row in futures.items():
