@@ -17,6 +17,7 @@ class Clock:
     drift: float = 0.0  # the stamps run fast by this share
     jitter: float = 0.0  # s, scatter of the true times about stamps that are even
     has_stamps: bool = True  # False: the file has the rate in its header only
+    are_made_up: bool = False  # the logger counts its samples and writes multiples of 1/rate, whatever they really took
 
     def true_times(self, duration: float, rng: numpy.random.Generator) -> Array:
         """True times of the samples [s]."""
@@ -28,13 +29,18 @@ class Clock:
 
     def stamps(self, count: int) -> Array:
         """Time stamps [s] of the samples on the file's clock."""
-        scale = self.true_interval_scale if self.has_stamps else 1.0
+        scale = self.true_interval_scale if self._are_read else 1.0
         return numpy.arange(count) * (scale * (1 + self.drift) / self.rate)
 
     @property
     def stamp_scale(self) -> float:
         """Seconds of the file's clock in one true second."""
-        return (1 + self.drift) * (1.0 if self.has_stamps else 1 / self.true_interval_scale)
+        return (1 + self.drift) * (1.0 if self._are_read else 1 / self.true_interval_scale)
+
+    @property
+    def _are_read(self) -> bool:
+        """Whether each stamp was read from a clock."""
+        return self.has_stamps and not self.are_made_up
 
 
 def changes_only(stamps: Array, readings: Array) -> tuple[Array, Array]:

@@ -5,8 +5,8 @@
   false_alarms.py BIN_DIR [--count 2000] [--jobs 2] [--most 0.01] [--json OUT.json]
 
 The recordings are those of the textbook rig with white or AR(1) noise and 8 to 14 bits, as many of each kind. Nothing is
-stated about the sensor, so each cause may be suspected. A cause is named by a suspicion, or by a warning that stands for a cause. Exit code 1 if the share is above --most, or if fewer than
-0.9 of the parameters could be judged.
+stated about the sensor, so each cause may be suspected. A cause is named by a suspicion, or by a warning that stands for a
+cause. Exit code 1 if the share is above --most, or if fewer than 0.9 of the parameters could be judged.
 """
 
 import argparse
@@ -29,8 +29,8 @@ from scenarios import ANGLE, set_bits, set_noise  # noqa: E402
 
 FIRST_SEED = 100_000
 KINDS = list(itertools.product((8, 10, 12, 14), ((0.1, 0.0), (0.5, 0.0), (2.0, 0.0), (1.0, 0.5), (1.0, 0.9))))
-# Warnings that stand for a cause; others, such as lack_of_fit, are counted beside them.
-CAUSE_CODES = {"zero_drift", "presliding", "not_constant", "offset_unsteady", "offset_jumps", "lost_counts"}
+# Beside those that name a cause, because the message advises to look for one; others, such as lack_of_fit, are counted beside.
+ALARMS = judging.CAUSE_CODES | {"not_constant"}
 
 
 def run(tool: pathlib.Path, index: int) -> judging.Outcome:
@@ -45,7 +45,7 @@ def run(tool: pathlib.Path, index: int) -> judging.Outcome:
 
 def summary(outcomes: list[judging.Outcome]) -> dict:
     """Counts of alarms, by kind of noise and by cause."""
-    alarms = [outcome.causes + sorted(CAUSE_CODES.intersection(outcome.codes)) for outcome in outcomes]
+    alarms = [outcome.causes + sorted(ALARMS.intersection(outcome.codes)) for outcome in outcomes]
     by_kind = collections.Counter(index % len(KINDS) for index, names in enumerate(alarms) if names)
     judged = [each for outcome in outcomes for each in outcome.judged.values()]
     return {

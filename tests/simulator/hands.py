@@ -15,8 +15,9 @@ class Hand:
     """A hand that holds the pendulum at `angle` until `time`.
 
     It may push: the motion then begins with a rate. Its finger may leave slowly: from `finger_share` of gravity's torque at
-    the release, its torque falls to 0 in `finger_time`, as a half cosine. It may hold at another angle until it shifts
-    the pendulum just before the release, and creep there: the hold then ends at the release angle.
+    the release (1: the finger alone holds the pendulum), its torque falls to 0 in `finger_time`, as a half cosine. It may
+    hold at another angle until it shifts the pendulum just before the release, and creep there: the hold then ends at the
+    release angle.
     """
 
     angle: float  # release angle, rad

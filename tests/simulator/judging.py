@@ -3,7 +3,6 @@
 
 import collections.abc
 import dataclasses
-import functools
 import json
 import math
 import pathlib
@@ -11,18 +10,27 @@ import re
 import subprocess
 
 WRONG = 5.0  # total errors
+# What a user knows of the start without a fit. An estimate of it that is wrong is counted apart from inertia and friction.
+START = {"release_angle", "release_time", "initial_angle", "initial_rate", "zero_angle", "rate_bias"}
+# Warnings that tell the user to doubt the answer without naming a cause.
+DOUBTS = {"lack_of_fit", "not_constant", "prior_conflict", "inertia_differs_from_rig", "frequency_differs_from_rig",
+          "another_minimum", "not_a_pendulum"}
+# Warnings that name a cause, beside those of suspicions.
+CAUSE_CODES = {"zero_drift", "offset_unsteady", "offset_jumps", "lost_counts", "presliding", "hold_left_out", "hold_disagrees",
+               "vibration", "clock_implausible", "rig_implausible"}
 QUANTILE = 1.959964  # of a 95 % interval, in errors
 TIMEOUT = 120  # s, on a machine that is busy with other things
 # What a fit that begins in motion has instead of the release.
 IN_MOTION = {"release_angle": "initial_angle", "release_time": "initial_rate"}
-# What a user states if sensor and clock are exactly what they are said to be, if fit_pendulum has the flag --sensor.
+# What a user states if sensor and clock are exactly what they are said to be.
 EXACT_SENSOR = {"kind": "ideal", "clock": 0}
 
 
 @dataclasses.dataclass(frozen=True)
 class Judged:
     """One estimate: (estimate - true value) / total error, whether the total interval contains the true value, and the
-    total error over the true value."""
+    total error over the true value. The total error is that of the half of the total 95 % interval on the side of the
+    true value if this is wider."""
 
     z: float
     is_covered: bool
@@ -41,30 +49,47 @@ class Outcome:
     causes: list[str] = dataclasses.field(default_factory=list)
     codes: list[str] = dataclasses.field(default_factory=list)
     ambiguities: list[str] = dataclasses.field(default_factory=list)
+    is_constancy_tested: bool = False
     message: str = ""
 
     @property
-    def worst(self) -> float:
-        """The largest |z|."""
-        return max((abs(each.z) for each in self.judged.values()), default=0.0)
+    def is_wrong(self) -> bool:
+        """Whether the fit converged to an inertia or friction that its total error does not explain."""
+        return self._worst(lambda name, each: name not in START and each.z) > WRONG
 
     @property
-    def is_wrong(self) -> bool:
-        """Whether the fit converged to an estimate that its total error does not explain."""
-        return self.exit_code == 0 and self.worst > WRONG
+    def is_start_wrong(self) -> bool:
+        """Whether the fit converged to a release or a zero that its total error does not explain."""
+        return self._worst(lambda name, each: name in START and each.z) > WRONG
 
     @property
     def is_unseen(self) -> bool:
-        """Whether the size of friction that the result calls unseen explains every error."""
-        return max((abs(each.z_unseen) for each in self.judged.values()), default=0.0) <= WRONG
+        """Whether the size of friction that the result calls unseen explains the errors of inertia and friction."""
+        return bool(self.judged) and self._worst(lambda name, each: name not in START and each.z_unseen) <= WRONG
+
+    def _worst(self, z) -> float:
+        return max((abs(z(name, each)) for name, each in self.judged.items()), default=0.0)
+
+    @property
+    def all_causes(self) -> set[str]:
+        """The causes that suspicions and warnings name."""
+        return set(self.causes) | CAUSE_CODES.intersection(self.codes)
 
     def is_named(self, names: collections.abc.Set[str]) -> bool:
-        """Whether a suspicion or a warning has one of these names; a warning's code may have more words."""
-        return any(cause in names for cause in self.causes) or any(
-            f"_{name}_" in f"_{code}_" for name in names for code in self.codes)
+        """Whether a suspicion or a warning names one of these causes."""
+        return not names.isdisjoint({*self.causes, *self.codes})
 
-    def is_ambiguous(self, names: collections.abc.Set[str]) -> bool:
-        """Whether the report says that no free swing can tell one of these."""
+    def is_misnamed(self, names: collections.abc.Set[str]) -> bool:
+        """Whether causes are named, and none of these. Where nothing is wrong there is none, so each is a false alarm."""
+        return bool(self.all_causes) and not self.is_named(names)
+
+    @property
+    def is_doubted(self) -> bool:
+        """Whether the tool has no result, or says that something does not agree."""
+        return self.exit_code == 1 or not DOUBTS.isdisjoint(self.codes)
+
+    def is_remarked(self, names: collections.abc.Set[str]) -> bool:
+        """Whether the report lists one of these words among what no free swing can tell. It lists them for every swing."""
         return any(word in names for word in self.ambiguities)
 
 
@@ -82,7 +107,8 @@ def judge(parameter: dict, low: float, high: float) -> Judged | None:
         return None
     half = QUANTILE * error if end is None else abs(end - estimate)
     total_half = math.hypot(half, QUANTILE * systematic)
-    total = total_half / QUANTILE if error is None else parameter.get("total_std_error") or math.hypot(error, systematic)
+    stated = 0.0 if error is None else parameter.get("total_std_error") or math.hypot(error, systematic)
+    total = max(stated, total_half / QUANTILE)
     deviation = estimate - truth
     if total <= 0:  # the estimate is its bound, and the true value is beyond
         return Judged(0.0 if deviation == 0 else math.inf, deviation == 0, 0.0)
@@ -103,10 +129,11 @@ def ambiguous_words(result: dict) -> list[str]:
     return sorted({word for each in ambiguities for word in re.findall(r"[a-z]+", each["cause"].lower())})
 
 
-@functools.cache
-def has_flag(tool: pathlib.Path, flag: str) -> bool:
-    """Whether a tool has this flag."""
-    return f"--{flag} " in subprocess.run([tool, "--help"], capture_output=True, text=True, check=True).stdout
+def is_constancy_tested(result: dict) -> bool:
+    """Whether the first fit compares halves of the recording, or windows along it."""
+    constancy = result["fits"][0].get("constancy") if result["fits"] else None
+    return bool(constancy) and (constancy["halves"]["p"] is not None or
+                                any(trend["p"] is not None for trend in constancy["amplitude"]["trends"]))
 
 
 def judge_result(exit_code: int, result: dict, recording, parameters: tuple[str, ...], message: str = "",
@@ -115,7 +142,8 @@ def judge_result(exit_code: int, result: dict, recording, parameters: tuple[str,
     judged only if the fit gives it an error."""
     outcome = Outcome(exit_code, len(parameters), causes=significant_causes(result),
                       codes=sorted({warning["code"] for warning in result["warnings"]}),
-                      ambiguities=ambiguous_words(result), message=message)
+                      ambiguities=ambiguous_words(result), is_constancy_tested=is_constancy_tested(result),
+                      message=message)
     if exit_code != 0 or not result["fits"]:
         return outcome
     fitted, begin = result["fits"][0]["parameters"], result["data"]["window_s"][0]
@@ -134,12 +162,12 @@ def has_error(parameter: dict | None) -> bool:
 
 
 def fit(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, parameters: tuple[str, ...],
-        is_exact: bool = False, optional: tuple[str, ...] = ()) -> Outcome:
-    """Fits a recording in a folder as a user would, and judges the result."""
+        is_stated: bool = False, optional: tuple[str, ...] = ()) -> Outcome:
+    """Fits a recording in a folder as a user would, and judges the result. The user may state that the sensor is ideal."""
     (folder / "run.csv").write_text(recording.text, encoding="utf-8")
     (folder / "rig.json").write_text(json.dumps(recording.rig), encoding="utf-8")
     command = [str(tool), "--data", "run.csv", "--rig", "rig.json", "--model", model, "--json", "fit.json"]
-    if is_exact and has_flag(tool, "sensor"):
+    if is_stated:
         (folder / "sensor.json").write_text(json.dumps(EXACT_SENSOR), encoding="utf-8")
         command += ["--sensor", "sensor.json"]
     output = folder / "fit.json"

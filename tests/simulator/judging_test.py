@@ -3,6 +3,7 @@
 """Checks verdicts, summaries and tables on results written by hand. Needs python3-scipy."""
 
 import copy
+import dataclasses
 import json
 import math
 import pathlib
@@ -12,7 +13,7 @@ import unittest
 import numpy
 
 import table_text
-from judging import Outcome, judge, judge_result
+from judging import Judged, Outcome, judge, judge_result
 from lab import record, textbook_lab
 from row_summary import summarize
 from scenarios import ROWS, Row
@@ -24,7 +25,8 @@ RESULT = {"fits": [{"parameters": {"inertia": PARAMETER, "initial_angle": {**PAR
                                    {"name": "lag", "size": 0.0, "significance": 0.3, "significant": False}],
                     "ambiguities": [{"cause": "a support that yields", "meaning": "more inertia", "experiment": "clamp it"}]}],
           "data": {"window_s": [2.5, 20.0]}, "warnings": [{"code": "zero_drift", "message": "The zero drifts."}]}
-ROW = Row("gain_1", "sensor", "gain", "budgeted", lambda lab: None, frozenset({"gain"}))
+ROW = Row("gain_1", "sensor", "gain", "budgeted", lambda lab: None, frozenset({"gain"}),
+          parameters=("inertia",))
 
 
 class Truth:
@@ -37,9 +39,9 @@ class Truth:
 
 class JudgeTest(unittest.TestCase):
     def test_z_is_in_total_errors(self):
-        self.assertAlmostEqual(judge(PARAMETER, 10.0, 10.0).z, 4)
+        self.assertAlmostEqual(judge({**PARAMETER, "interval95": None}, 10.0, 10.0).z, 4)
         with_rig = judge({**PARAMETER, "systematic_std_error": 0.3}, 10.0, 10.0)
-        self.assertAlmostEqual(with_rig.z, 0.4 / math.hypot(0.1, 0.3))
+        self.assertAlmostEqual(with_rig.z, 0.4 / math.hypot(0.2 / 1.959964, 0.3))
         self.assertTrue(with_rig.is_covered)
         self.assertAlmostEqual(judge({**PARAMETER, "total_std_error": 0.2}, 10.0, 10.0).z, 2)
 
@@ -51,6 +53,11 @@ class JudgeTest(unittest.TestCase):
         bound = {**PARAMETER, "estimate": 0.0, "std_error": None, "interval95": [0.0, 0.5], "at_bound": True}
         self.assertTrue(judge(bound, 0.4, 0.4).is_covered)
         self.assertAlmostEqual(judge(bound, 1.0, 1.0).z, -1.959964 * 2)
+
+    def test_total_error_is_that_of_the_interval_if_it_is_wider(self):
+        wide = judge({**PARAMETER, "interval95": [9.4, 10.6]}, 10.0, 10.0)
+        self.assertAlmostEqual(wide.z, 0.4 / (1.0 / 1.959964))
+        self.assertAlmostEqual(wide.relative_error, 0.1 / 1.959964)
 
     def test_fixed_parameter_and_one_without_error_are_not_judged(self):
         self.assertIsNone(judge({**PARAMETER, "fixed": True}, 10.0, 10.0))
@@ -69,10 +76,24 @@ class ResultTest(unittest.TestCase):
         outcome = judge_result(0, RESULT, Truth(), ("inertia",))
         self.assertTrue(outcome.is_named({"gain"}))
         self.assertFalse(outcome.is_named({"lag"}))
-        self.assertTrue(outcome.is_named({"drift"}))  # a word of the warning's code
-        self.assertFalse(outcome.is_named({"rift"}))
+        self.assertTrue(outcome.is_named({"zero_drift"}))
+        self.assertFalse(outcome.is_named({"drift"}))  # a part of a code names nothing
         self.assertFalse(outcome.is_named({"support"}))
-        self.assertTrue(outcome.is_ambiguous({"support"}))
+        self.assertTrue(outcome.is_remarked({"support"}))
+        self.assertTrue(outcome.is_misnamed({"lag"}))
+        self.assertTrue(outcome.is_misnamed(frozenset()))  # a false alarm
+        self.assertFalse(outcome.is_misnamed({"gain"}))
+
+    def test_constancy_is_tested_if_halves_or_windows_are_compared(self):
+        def tested(halves_p, trends):
+            result = copy.deepcopy(RESULT)
+            result["fits"][0]["constancy"] = {"halves": {"p": halves_p}, "amplitude": {"trends": trends}}
+            return judge_result(0, result, Truth(), ("inertia",)).is_constancy_tested
+
+        self.assertFalse(judge_result(0, RESULT, Truth(), ("inertia",)).is_constancy_tested)
+        self.assertTrue(tested(0.4, []))
+        self.assertFalse(tested(None, [{"p": None}]))
+        self.assertTrue(tested(None, [{"p": 0.2}]))
 
     def test_fit_that_did_not_converge_is_not_judged(self):
         self.assertEqual(judge_result(1, RESULT, Truth(), ("inertia",)).judged, {})
@@ -91,7 +112,7 @@ class ResultTest(unittest.TestCase):
         low, high = record(lab).true_range("zero_angle", 0)
         self.assertAlmostEqual(low, 0.11)
         self.assertAlmostEqual(high, 0.13)
-        self.assertAlmostEqual(judge(PARAMETER, 10.0, 10.3).z, 1)
+        self.assertAlmostEqual(judge({**PARAMETER, "interval95": None}, 10.0, 10.3).z, 1)
         self.assertAlmostEqual(judge(PARAMETER, 10.0, 11.0).z, 0)
 
 
@@ -104,29 +125,90 @@ class SummaryTest(unittest.TestCase):
         summary = summarize(ROW, [judge_result(0, RESULT, NumpyTruth(), ("inertia",))])
         self.assertEqual(json.loads(json.dumps(summary, allow_nan=False))["judged"], 1)
 
-    def outcome(self, z, causes=(), exit_code=0):
-        parameter = {**PARAMETER, "estimate": 10 + 0.1 * z, "interval95": None}
+    def outcome(self, z, causes=(), exit_code=0, codes=(), parameter=None):
+        parameter = {**PARAMETER, "estimate": 10 + 0.1 * z, "interval95": None, **(parameter or {})}
         result = copy.deepcopy(RESULT)
         result["fits"][0] |= {"parameters": {"inertia": parameter}, "suspicions": [{"name": name} for name in causes]}
+        result["warnings"] = [{"code": code, "message": "A warning."} for code in codes]
         return judge_result(exit_code, result, Truth(), ("inertia",))
 
-    def test_wrong_and_unnamed_is_silent(self):
-        summary = summarize(ROW, [self.outcome(1), self.outcome(-6, ["gain"]), self.outcome(7, ["lag"])])
-        self.assertEqual((summary["wrong"], summary["silent"], summary["named"]), (2, 1, 1))
-        self.assertEqual(summary["z"]["inertia"]["largest"], 7)
-        self.assertIn("1 silently wrong", summary["fails"])
+    def test_wrong_is_named_or_doubted_or_misnamed_or_silent(self):
+        outcomes = [self.outcome(1), self.outcome(-6, ["gain"], codes=["lack_of_fit"]), self.outcome(7, ["lag"]),
+                    self.outcome(8), self.outcome(6, codes=["rig_taken_as_exact"]),
+                    self.outcome(6, ["lag"], codes=["not_constant"])]
+        summary = summarize(ROW, outcomes)
+        self.assertEqual([summary[key] for key in ("wrong", "named_wrong", "doubted_wrong", "misnamed_wrong", "silent")],
+                         [5, 1, 1, 1, 2])
+        self.assertEqual([summary[key] for key in ("named", "doubted", "misnamed")], [1, 2, 2])
+        self.assertEqual(summary["z"]["inertia"]["largest"], 8)
+        self.assertIn("2 silently wrong", summary["fails"])
+        self.assertIn("1 wrong, with another cause named", summary["fails"])
+
+    def test_remark_of_every_report_does_not_end_the_silence(self):
+        row = dataclasses.replace(ROW, kind="inherent", group="friction", names=frozenset({"support"}))
+        outcome = self.outcome(40, parameter={"unseen_friction_std_error": 2.0})
+        summary = summarize(row, [outcome])
+        self.assertEqual((summary["silent"], summary["remarked"], summary["named"]), (1, 1, 0))
+        self.assertTrue(outcome.is_unseen)
+        self.assertFalse(Outcome(1, 1).is_unseen)
+
+    def test_error_of_a_zero_is_counted_apart(self):
+        row = dataclasses.replace(ROW, parameters=("inertia", "zero_angle"))
+        outcome = self.outcome(0)
+        outcome.judged["zero_angle"] = Judged(-9.0, False, 0.01)
+        summary = summarize(row, [outcome])
+        self.assertEqual((summary["wrong"], summary["silent_start"]), (0, 1))
+        self.assertIn("1 silently wrong about the start", summary["fails"])
 
     def test_row_without_fits_fails(self):
         summary = summarize(ROW, [self.outcome(0, exit_code=1), Outcome(-1, 1)])
         self.assertEqual((summary["not_converged"], summary["failed"], summary["coverage"]), (1, 1, None))
-        self.assertIn("0 of 2 parameters judged", summary["fails"])
+        self.assertEqual(summary["doubted"], 1)
+        self.assertIn("inertia without an error in 2", summary["fails"])
+
+    def test_row_in_which_the_tool_withdraws_its_errors_fails(self):
+        withdrawn = {"std_error": None, "interval95": None}
+        summary = summarize(ROW, [self.outcome(0)] * 8 + [self.outcome(0, parameter=withdrawn)] * 2)
+        self.assertIn("inertia without an error in 2", summary["fails"])
+
+    def test_errors_that_contain_everything_fail(self):
+        summary = summarize(ROW, [self.outcome(1, parameter={"systematic_std_error": 6.0})] * 3)
+        self.assertEqual(summary["wrong"], 0)
+        self.assertAlmostEqual(summary["z"]["inertia"]["rms"], 0.1 / 6, delta=1e-4)
+        self.assertAlmostEqual(summary["z"]["inertia"]["relative_error"], 0.6, delta=1e-3)
+        self.assertIn("inertia ± 60 %", summary["fails"])
+        noise = summarize(ROW, [self.outcome(1, parameter={"systematic_std_error": 4.0})] * 3)
+        wide = [self.outcome(1, parameter={"systematic_std_error": 6.0})] * 3
+        self.assertEqual(summarize(ROW, wide, noise)["fails"], [])
+
+    def test_false_alarms_fail_a_row_in_which_nothing_is_wrong(self):
+        row = dataclasses.replace(ROW, kind="clean", names=frozenset())
+        self.assertIn("2 false alarms", summarize(row, [self.outcome(0, ["lag"])] * 2 + [self.outcome(0)] * 8)["fails"])
+        misled = [self.outcome(0, ["lag"])] * 2
+        self.assertIn("2 with another cause named", summarize(ROW, misled + [self.outcome(0)] * 8)["fails"])
+        doubtful = [self.outcome(0, codes=["lack_of_fit"])] * 2
+        self.assertIn("2 false doubts", summarize(row, doubtful + [self.outcome(0)] * 8)["fails"])
+
+    def test_inherent_row_is_judged_by_the_recordings_without_a_warning(self):
+        row = dataclasses.replace(ROW, kind="inherent")
+        self.assertEqual(summarize(row, [self.outcome(30, ["gain"])] * 9 + [self.outcome(0)])["fails"], [])
+        self.assertIn("coverage 0.10", summarize(row, [self.outcome(3)] * 9 + [self.outcome(0)])["fails"])
 
     def test_row_of_covered_estimates_passes(self):
         self.assertEqual(summarize(ROW, [self.outcome(z) for z in (0.1, -1.0, 1.5, 0.7)])["fails"], [])
 
     def test_every_row_names_a_cause_or_has_none_to_name(self):
         for row in ROWS.values():
-            self.assertTrue(row.names or row.kind == "clean" or row.name.startswith("mean_"), row.name)
+            self.assertTrue(row.names or row.kind in ("exact", "clean") or row.name.startswith("event_log"), row.name)
+
+    def test_every_row_is_compared_with_one_in_which_nothing_is_wrong(self):
+        for row in ROWS.values():
+            self.assertEqual(ROWS[row.reference].kind, "exact", row.name)
+
+    def test_errors_are_compared_with_those_of_noise(self):
+        noise = summarize(dataclasses.replace(ROW, name="exact_white"), [self.outcome(0)])
+        wide = summarize(ROW, [self.outcome(0, parameter={"systematic_std_error": math.sqrt(99) / 10})])
+        self.assertEqual(table_text.cells(wide, [noise, wide])[3], "10, -, -")
 
 
 class TableTest(unittest.TestCase):
@@ -140,7 +222,7 @@ class TableTest(unittest.TestCase):
                             encoding="utf-8")
             table_text.update(page, table)
             text = page.read_text(encoding="utf-8")
-        self.assertIn("| gain | `inertia` +6.0 | 1 of 1 | 0 of 1 | 1 of 1 | 0 of 1 | 0.00 |", text)
+        self.assertIn("| gain | 1 | 1 | 0 | 0 | 0 | 0.00 | 6, -, - | 1, -, - % | -, -, - |", text)
         self.assertEqual(text.count("| gain |"), 1)
         self.assertNotIn("old", text)
 

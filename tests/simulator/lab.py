@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """One recording of the textbook rig: random parameters, the true motion, the file, and the true values.
 
-The rig is that of datasets/textbook_rig.json. Its potentiometer turns 300 deg over 2^bits counts, 10 bits unless a
-scenario says otherwise.
+The rig is that of datasets/textbook_rig.json. Its potentiometer has 2^bits counts, 10 bits of 0.1985 deg unless a scenario
+says otherwise. The user states G, exactly, and nothing else.
 """
 
 import dataclasses
@@ -23,7 +23,8 @@ from sensors import Sensor
 RIG = json.loads((pathlib.Path(__file__).resolve().parents[2] / "datasets/textbook_rig.json").read_text(encoding="utf-8"))
 TOTAL_MASS = RIG["bob_mass"] + RIG["rod_mass"]
 GRAVITY_TORQUE = (RIG["bob_mass"] + RIG["rod_mass"] / 2) * RIG["gravity"] * RIG["rod_length"]  # MODEL.md eq. (1.2)
-POTENTIOMETER_TURN = math.radians(300)
+POTENTIOMETER_TURN = math.radians(0.1985) * 1024
+EXACT_TORQUE = {"gravity_torque": {"value": GRAVITY_TORQUE, "std_dev": 0}}
 
 
 def step_of(bits: int) -> float:
@@ -46,7 +47,7 @@ class Lab:
     is_event_log: bool = False
     camera: Camera | None = None
     camera_sigma: float = 0.3  # px
-    rig: dict = dataclasses.field(default_factory=lambda: dict(RIG))  # what the user states
+    rig: dict = dataclasses.field(default_factory=lambda: dict(EXACT_TORQUE))  # what the user states
     metadata: list[str] = dataclasses.field(default_factory=list)
 
     def set(self, part: str, **values) -> None:
@@ -83,10 +84,11 @@ class Recording:
     truth: dict[str, float]
     stamp_scale: float
     zero_span: tuple[float, float] = (0.0, 0.0)  # from the true zero to its lowest and highest value in the recording
+    release_span: float = 0.0  # s on the file's clock in which the hand leaves
 
     def true_range(self, name: str, first_stamp: float) -> tuple[float, float] | None:
-        """The true value of a parameter of a fit whose first used sample has this time, as a range: a zero that drifts has
-        several true values. None if there is none."""
+        """The true value of a parameter of a fit whose first used sample has this time, as a range: a zero that drifts and a
+        release that takes time have several true values. None if there is none."""
         start = {"initial_angle": self.motion.angle, "initial_rate": self.motion.rate}
         if name in start:
             value = float(start[name](numpy.array([first_stamp / self.stamp_scale]))[0])
@@ -94,19 +96,19 @@ class Recording:
             value = self.truth[name]
         else:
             return None
-        low, high = self.zero_span if name == "zero_angle" else (0.0, 0.0)
+        low, high = {"zero_angle": self.zero_span, "release_time": (0.0, self.release_span)}.get(name, (0.0, 0.0))
         return value + low, value + high
 
 
 def textbook_lab(seed: int) -> Lab:
-    """The textbook rig with a 10-bit potentiometer, 24 deg, and white noise of 0.3 to 0.6 counts; all that is not the rig's
-    varies with the seed."""
+    """The textbook rig with a 10-bit potentiometer, about 24 deg, a hold of about 2 s, and white noise of 0.25 count; all that
+    is not the rig's varies by a few per cent with the seed."""
     rng = numpy.random.default_rng(seed)
     body = Body(inertia=0.079 * rng.uniform(0.95, 1.05), gravity_torque=GRAVITY_TORQUE, mass=TOTAL_MASS,
                 gravity=RIG["gravity"],
-                friction=Sliding(viscous=0.003 * rng.uniform(0.8, 1.2), coulomb=0.004 * rng.uniform(0.8, 1.2)))
-    hand = Hand(angle=rng.choice([-1, 1]) * math.radians(rng.uniform(23.5, 24.5)), time=rng.uniform(1.8, 2.0))
-    sensor = Sensor(zero=math.radians(rng.uniform(-2, 2)), sigma=step_of(10) * rng.uniform(0.3, 0.6), resolution=step_of(10))
+                friction=Sliding(viscous=0.003 * rng.uniform(0.95, 1.05), coulomb=0.004 * rng.uniform(0.95, 1.05)))
+    hand = Hand(angle=rng.choice([-1, 1]) * math.radians(rng.uniform(23.5, 24.5)), time=rng.uniform(1.95, 2.05))
+    sensor = Sensor(zero=math.radians(rng.uniform(-2, 2)), sigma=0.25 * step_of(10), resolution=step_of(10))
     return Lab(rng, body, hand, sensor)
 
 
@@ -160,4 +162,5 @@ def record(lab: Lab) -> Recording:
     else:  # what the sensor shows where gravity has no torque
         truth["rate_bias" if lab.is_gyro else "zero_angle"] = lab.sensor.zero + float(lab.sensor.curve(numpy.zeros(1))[0])
     return Recording(_text(lab, names, stamps, columns), lab.rig, motion, truth, lab.clock.stamp_scale,
-                     (min(drift, 0.0), max(drift, 0.0)))
+                     (min(drift, 0.0), max(drift, 0.0)),
+                     lab.hand.finger_time * lab.clock.stamp_scale if lab.hand.finger_share else 0.0)

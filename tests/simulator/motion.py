@@ -7,10 +7,13 @@ import dataclasses
 
 import numpy
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
+from friction import Bristles
 from pendulum import Body, Torque, no_hand
 
 RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-11, 1e-13
+BEYOND = 1e-7  # s after friction no longer holds, because at that time the torque is the limit itself
 Array = numpy.ndarray
 
 
@@ -102,10 +105,26 @@ def _slide(body: Body, hand: Torque, begin: float, end: float, state, direction:
     return Piece(begin, float(solution.t[-1]), solution.sol, direction), last, at
 
 
+def _end_of_rest(body: Body, hand: Torque, begin: float, end: float, state: list[float]) -> float:
+    """Time at which a hand whose torque falls lets a pendulum on a firm axis go; `end` if friction holds it."""
+    if isinstance(body.friction, Bristles):
+        return end
+
+    def excess(time):
+        return abs(body.torque_to_hold(state, hand(time))) - body.friction.dry(state[0], 0.0)
+
+    if excess(end) <= 0:
+        return end
+    if excess(begin) >= 0:
+        return min(end, begin + BEYOND)
+    return min(end, brentq(excess, begin, end, xtol=1e-12) + BEYOND)
+
+
 def _rest(body: Body, hand: Torque, begin: float, end: float, state):
     """Rests until friction no longer holds the pendulum, or to the end."""
     still = numpy.array(state)
     if not body.support:
+        end = _end_of_rest(body, hand, begin, end, state.tolist())
         return Piece(begin, end, lambda times: numpy.repeat(still[:, None], len(times), axis=1), 0), still
 
     def derivative(_, current):
@@ -133,7 +152,7 @@ def swing(body: Body, begin: float, end: float, angle: float, rate: float = 0.0,
         else:
             piece, state = _rest(body, torque, time, until, state)
             passed = None
-            if piece.end < until:  # it breaks loose: the torque is the limit itself, so go on just beyond it
+            if piece.end < until and body.support:  # it breaks loose: the torque is the limit itself, so go on just beyond it
                 state = state + 1e-9 * numpy.array(body.derivative_at_rest(state.tolist()))
         pieces.append(piece)
         time = piece.end

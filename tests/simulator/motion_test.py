@@ -15,6 +15,7 @@ from friction import Bristles, Sliding
 from hands import Hand
 from motion import swing
 from pendulum import Body, Support, yielding_support
+from presliding_study import INERTIA as STUDIED_INERTIA, stopping_coulomb
 
 INERTIA, GRAVITY_TORQUE = 0.079, 1.8033
 FRICTIONLESS = Body(INERTIA, GRAVITY_TORQUE, Sliding())
@@ -72,6 +73,25 @@ class FreeMotionTest(unittest.TestCase):
         free = swing(FRICTIONLESS, 1.0, 3.0, 0.4)
         delay = motion.rate(numpy.array([1.05]))[0] - free.rate(numpy.array([1.05]))[0]
         self.assertAlmostEqual(delay / late, 1, delta=0.02)
+
+    def test_finger_with_all_of_the_torque_lets_go_when_dry_friction_no_longer_holds(self):
+        body, hand = with_friction(coulomb=0.05), Hand(angle=0.4, time=1.0, finger_share=1.0)
+        motion = swing(body, 1.0, 3.0, 0.4, hand=hand.torque(GRAVITY_TORQUE), hand_leaves=hand.leaves)
+        # 1 - (1 + cos(pi t/50 ms))/2 of gravity's torque is dry friction's.
+        share = 0.05 / (GRAVITY_TORQUE * math.sin(0.4))
+        self.assertAlmostEqual(motion.reversals[0], 1 + 0.05 * math.acos(1 - 2 * share) / math.pi, delta=1e-6)
+        self.assertLess(motion.rate(numpy.array([1.05]))[0], -0.1)
+
+
+class StudyTest(unittest.TestCase):
+    def test_friction_of_the_study_stops_a_linear_pendulum_after_so_many_half_swings(self):
+        for half_swings in (6, 20):
+            coulomb = stopping_coulomb(0.003, 0.4, half_swings)
+            body = Body(STUDIED_INERTIA, GRAVITY_TORQUE, Sliding(viscous=0.003, coulomb=coulomb), is_linear=True)
+            motion = swing(body, 0.0, 20.0, 0.4)
+            turns = numpy.abs(motion.angle(numpy.array(motion.reversals)))
+            self.assertAlmostEqual(len(turns), half_swings, delta=1)
+            self.assertLess(turns[-1], coulomb / GRAVITY_TORQUE)
 
 
 class SlidingFrictionTest(unittest.TestCase):

@@ -104,6 +104,12 @@ class ClockTest(unittest.TestCase):
         self.assertAlmostEqual(clock.stamps(200)[100], 1.0)
         self.assertAlmostEqual(clock.stamp_scale, 1 / 1.03)
 
+    def test_made_up_stamps_are_even_whatever_the_loop_takes(self):
+        clock = Clock(rate=100, true_interval_scale=1.03, are_made_up=True)
+        self.assertAlmostEqual(clock.true_times(20, generator())[100], 1.03)
+        self.assertAlmostEqual(clock.stamps(200)[100], 1.0)
+        self.assertAlmostEqual(clock.stamp_scale, 1 / 1.03)
+
     def test_fast_stamps_and_jitter(self):
         self.assertAlmostEqual(Clock(drift=1e-4).stamps(2001)[2000], 20.002)
         times = Clock(jitter=2e-4).true_times(200, generator())

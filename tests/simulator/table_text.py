@@ -10,49 +10,57 @@ import pathlib
 import re
 import sys
 
-HEAD = (f"{'row':<18} {'kind':<9} {'n':>3} {'fitted':>6} {'wrong':>5} {'silent':>6} {'named':>5} {'cover':>5} "
-        f"{'judged':>9}  largest |z|")
+SHOWN = (("inertia",), ("viscous",), ("coulomb", "load_friction"))  # of which z and errors are shown
+COUNTS = (("silent", "silent"), ("doubted", "doubted"), ("named", "named"), ("misnamed", "other"))
+HEAD = (f"{'row':<19}{'kind':<9}{'n':>3} {'wrong':>5} " + " ".join(f"{words:>7}" for _, words in COUNTS) + f" {'start':>5} "
+        f"{'none':>4} {'cover':>5}  {'rms z: I, b, dry':<20} {'total error: I, b, dry':<26} over that of noise")
 BLOCK = re.compile(r"(?P<head><!-- output: tests/simulator/table_text\.py \S+ (?P<groups>[^\n]*) -->\n).*?(?P<tail><!-- end -->)",
                    re.DOTALL)
 
 
-def worst(row: dict) -> tuple[str, float]:
-    """Parameter and z that are farthest from the truth."""
-    name = max(row["z"], key=lambda each: abs(row["z"][each]["largest"]), default="")
-    return name, row["z"][name]["largest"] if name else 0.0
+def number(value: float | None) -> str:
+    """Two significant digits, without an exponent."""
+    if value is None:
+        return "-"
+    if 0 < abs(value) < 1e-4:
+        return f"{value:.6f}"
+    return f"{value:.0f}" if abs(value) >= 100 else f"{float(f'{value:.2g}'):g}"
 
 
-def line(row: dict) -> str:
-    """A row for the terminal."""
-    name, z = worst(row)
-    fitted = row["recordings"] - row["not_converged"] - row["failed"]
-    cover = "-" if row["coverage"] is None else f"{row['coverage']:.3f}"
-    return (f"{row['row']:<18} {row['kind']:<9} {row['recordings']:>3} {fitted:>6} {row['wrong']:>5} {row['silent']:>6} "
-            f"{row['named']:>5} {cover:>5} {row['judged']:>4}/{row['expected']:<4}  {name} {z:+.3g}"
+def of_shown(row: dict | None, key: str) -> list[float | None]:
+    """This quantity of inertia, viscous and dry friction; None where the fit does not have it."""
+    z = row["z"] if row else {}
+    return [next((z[name][key] for name in names if name in z), None) for names in SHOWN]
+
+
+def cells(row: dict, rows: list[dict]) -> tuple[str, str, str, str]:
+    """Coverage, rms z, relative total errors, and these over those of the row with the errors of noise alone."""
+    errors = of_shown(row, "relative_error")
+    noise = of_shown(next((each for each in rows if each["row"] == row["reference"]), None), "relative_error")
+    ratios = [error / other if error is not None and other else None for error, other in zip(errors, noise)]
+    return ("-" if row["coverage"] is None else f"{row['coverage']:.2f}", ", ".join(map(number, of_shown(row, "rms"))),
+            ", ".join(number(error if error is None else 100 * error) for error in errors) + " %",
+            ", ".join(map(number, ratios)))
+
+
+def line(row: dict, rows: list[dict]) -> str:
+    """A row for the terminal; `rows` has the one that it is compared with."""
+    cover, z, errors, ratios = cells(row, rows)
+    counts = " ".join(f"{row[key]:>7}" for key, _ in COUNTS)
+    return (f"{row['row']:<19}{row['kind']:<9}{row['recordings']:>3} {row['wrong']:>5} {counts} {row['silent_start']:>5} "
+            f"{row['not_converged'] + row['failed']:>4} {cover:>5}  {z:<20} {errors:<26} {ratios}"
             + (f"  FAILS: {', '.join(row['fails'])}" if row["fails"] else ""))
-
-
-def number(z: float) -> str:
-    """A z with a sensible number of digits."""
-    return f"{z:+.1f}" if abs(z) < 10 else f"{z:+.0f}"
 
 
 def markdown(table: dict, groups: list[str]) -> str:
     """The rows of these groups as a table of the guide."""
-    rows = [row for row in table["rows"] if row["group"] in groups]
-    has_unseen = any(row["said"] for row in rows)
-    counted = {"wrong": "wrong", "named": "cause named"} | ({"said": "within unseen friction"} if has_unseen else {}) | {
-        "silent": "silently wrong"}
-    lines = [f"| cause | largest error, in total errors | {' | '.join(counted.values())} | not converged | intervals cover |",
-             "|---" * (len(counted) + 4) + "|"]
-    for row in rows:
-        name, z = worst(row)
-        count = row["recordings"]
-        cover = "" if row["coverage"] is None else f"{row['coverage']:.2f}"
-        largest = f"`{name}` {number(z)}" if name else ""
-        counts = (f"{row[key]} of {count}" for key in counted)
-        stopped = row["not_converged"] + row["failed"]
-        lines.append(f"| {row['cause']} | {largest} | {' | '.join(counts)} | {stopped} of {count} | {cover} |")
+    columns = ["cause", "recordings", "silent", "doubted", "named", "another cause", "intervals cover", "rms z", "total error",
+               "over noise"]
+    lines = [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
+    for row in table["rows"]:
+        if row["group"] in groups:
+            counts = (str(row[key]) for key in ("recordings", *(key for key, _ in COUNTS)))
+            lines.append(f"| {row['cause']} | {' | '.join((*counts, *cells(row, table['rows'])))} |")
     return "\n".join(lines) + "\n"
 
 
