@@ -19,6 +19,8 @@
 #include <pty.h>
 #include <unistd.h>
 
+#include "pendulum/acquisition/device_clock.h"
+
 namespace pendulum::serial_port_test {
 namespace {
 
@@ -187,6 +189,18 @@ TEST(SerialPort, RespectsTheTimeout) {
   EXPECT_LT(SecondsSince(begin), 100);  // on a busy machine; the unit is not the minute or the millisecond
   ASSERT_TRUE(port.Read(0));
   ASSERT_TRUE(port.Read(-1));  // the time has already passed
+}
+
+TEST(SerialPort, HasTheClockOfThisComputer) {
+  const Cable cable;
+  SerialPort port = Opened(cable);
+  const auto before = Clock::now();
+  const double begin = port.Time();
+  ASSERT_TRUE(port.Read(0.05));
+  const double needed = port.Time() - begin;
+  EXPECT_GE(needed, 0.049);
+  EXPECT_LE(needed, SecondsSince(before));
+  EXPECT_EQ(port.ClockStdDev(), HostClockStdDev());
 }
 
 TEST(SerialPort, IsMovable) {
