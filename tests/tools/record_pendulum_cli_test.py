@@ -117,22 +117,6 @@ class GoodRuns(Lab):
         if process.returncode != 2:
             self.check_rows(logger, logger.taken[:1])
 
-    def test_a_clock_that_is_one_percent_fast_is_measured(self):
-        with PythonLogger(speed=1.01) as logger:
-            out, _ = self.record(logger, "--seconds", 11)
-        self.check_rows(logger, logger.taken[:2200])
-        named = self.read()[1]
-        self.assertAlmostEqual(float(named["clock_scale"]), 1 / 1.01, delta=0.002)
-        self.assertLess(float(named["clock_scale_std_dev"]), 0.003)
-        self.assertRegex(out, r"clock \d+ ± \d+ ppm fast compared with this computer's")
-
-    def test_an_implausible_clock_is_not_used(self):
-        with PythonLogger(speed=4) as logger:
-            out, _ = self.record(logger, "--seconds", 12)
-        self.assertIn("differ by more than any resonator explains", out)
-        named = self.read()[1]
-        self.assertEqual((named["clock_scale"], named["clock_scale_std_dev"]), ("1", "0.003"))
-
     def test_fits_the_recording(self):
         with PythonLogger(speed=2, is_calibrated=1, calibration=single(LINE + [0, 0, 0])) as logger:
             out, _ = self.record(logger, "--seconds", 4, "--fit", "--model", "linear")

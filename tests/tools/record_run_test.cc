@@ -166,6 +166,22 @@ TEST(RecordRun, StopsAtRest) {
   EXPECT_TRUE(recorded.description.clock.is_implausible);
   EXPECT_EQ(recorded.description.clock.scale, 1);
   EXPECT_THAT(CodesOf(recorded), ElementsAre("clock_implausible"));
+  EXPECT_THAT(recorded.Csv(), HasSubstr("# clock_scale: 1\n# clock_scale_std_dev: 0.003\n"));
+  EXPECT_THAT(RecordText(recorded, "run.csv"), HasSubstr("differ by more than any resonator"));
+}
+
+TEST(RecordRun, MeasuresAClockThatIsOnePercentFast) {
+  LoggerScript script;
+  script.frame_seconds = 0.04 / 1.01;
+  Laboratory laboratory(script);
+  laboratory.options.seconds = 11;
+  const RecordedRun recorded = laboratory.Recorded();
+  const DeviceClock& clock = recorded.description.clock;
+  EXPECT_TRUE(clock.is_measured);
+  EXPECT_NEAR(clock.scale, 1 / 1.01, 4 * clock.std_dev);
+  EXPECT_LT(clock.std_dev, 60e-6);  // rounding to milliseconds: 1e-3 / √6 / 11
+  EXPECT_THAT(CodesOf(recorded), IsEmpty());
+  EXPECT_THAT(RecordText(recorded, "run.csv"), HasSubstr("ppm fast compared with this computer's"));
 }
 
 // ---- Abnormal ends -----------------------------------------------------------------------------------------------
