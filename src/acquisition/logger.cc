@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/acquisition/logger.h"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -38,14 +37,12 @@ std::string RefusalReason(std::uint8_t status) {
 
 }  // namespace
 
-double HostTime() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 Result<std::optional<TimedMessage>> Logger::Receive(double seconds) {
-  const double until = HostTime() + seconds;
+  const double until = port_.Time() + seconds;
   while (pending_.empty()) {
-    const auto bytes = port_.Read(until - HostTime());
+    const auto bytes = port_.Read(until - port_.Time());
     if (!bytes) return tl::unexpected(bytes.error());
-    const double now = HostTime();
+    const double now = port_.Time();
     bytes_ += bytes->size();
     for (const LoggerMessage& message : decoder_.Decode(*bytes)) pending_.push_back({message, now});
     if (pending_.empty() && (stop_ || now >= until)) return std::nullopt;
@@ -76,9 +73,9 @@ auto Logger::Exchange(const std::vector<std::uint8_t>& commands, int tries, cons
   using Answer = Result<decltype(pick(TimedMessage()))>;
   for (int i = 0; i < tries && !stop_; ++i) {
     if (auto sent = port_.Write(commands); !sent) return Answer(tl::unexpected(sent.error()));
-    const double repeat = HostTime() + kRepeatSeconds;
-    while (HostTime() < repeat) {
-      const auto received = Receive(repeat - HostTime());
+    const double repeat = port_.Time() + kRepeatSeconds;
+    while (port_.Time() < repeat) {
+      const auto received = Receive(repeat - port_.Time());
       if (!received) return Answer(tl::unexpected(received.error()));
       if (!*received) break;
       if (auto answer = pick(**received)) return Answer(std::move(answer));

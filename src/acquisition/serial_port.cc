@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <system_error>
@@ -16,6 +17,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "pendulum/acquisition/device_clock.h"
 #include "pendulum/base/staged_file.h"
 
 namespace pendulum {
@@ -150,5 +152,11 @@ Result<void> SerialPort::Write(std::span<const std::uint8_t> bytes) {
   }
   return {};
 }
+
+double SerialPort::Time() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double SerialPort::ClockStdDev() const { return HostClockStdDev(); }
 
 }  // namespace pendulum

@@ -34,7 +34,7 @@ bool IsOutputClosed() {
 /// A timer that is due when `seconds` have passed since it was last due.
 class PeriodicTimer {
  public:
-  explicit PeriodicTimer(double seconds) : seconds_(seconds) {}
+  PeriodicTimer(double seconds, double now) : seconds_(seconds), last_(now) {}
 
   void Restart(double now) { last_ = now; }
 
@@ -45,7 +45,7 @@ class PeriodicTimer {
   }
 
  private:
-  double seconds_, last_ = HostTime();
+  double seconds_, last_;
 };
 
 /// One recording in progress.
@@ -72,6 +72,7 @@ class RunInProgress {
   void ProcessData(const wire::Data& data, double host_time);
   void EndAsLost(const std::string& why);
   double LongestSilence() const;
+  double Now() const { return logger_.port().Time(); }
   void StopWhenDue(double now);
   void WritePartFile(double now);
   void Show(double now);
@@ -87,8 +88,8 @@ class RunInProgress {
   bool is_live_;
   RestDetector rest_;
   std::size_t rest_samples_ = 0;  // number of samples until rest; 0: not at rest, or not requested
-  PeriodicTimer draw_{kDrawSeconds}, report_{kReportSeconds}, synchronise_{kSynchroniseSeconds},
-      repeat_{kRepeatSeconds};
+  PeriodicTimer draw_{kDrawSeconds, Now()}, report_{kReportSeconds, Now()}, synchronise_{kSynchroniseSeconds, Now()},
+      repeat_{kRepeatSeconds, Now()};
   std::size_t written_ = 0;             // samples in the part file
   double silence_ = 0, last_poll_ = 0;  // s: time without data; time of the last poll
   double stop_asked_ = 0;
@@ -101,7 +102,7 @@ Result<void> RunInProgress::Record() {
   Trim();
   recorded_.description.losses = recorded_.run.Losses();
   recorded_.damaged_frames = logger_.RejectedFrames();
-  recorded_.description.clock = FitDeviceClock(recorded_.run.arrivals(), kUsbPolling, HostClockStdDev());
+  recorded_.description.clock = FitDeviceClock(recorded_.run.arrivals(), kUsbPolling, logger_.port().ClockStdDev());
   if (recorded_.run.size() > 0) return {};
   part_.Remove();
   if (recorded_.end == RunEnd::kStopped) {
@@ -123,7 +124,7 @@ void RunInProgress::Trim() {
 Result<void> RunInProgress::Begin() {
   if (auto started = logger_.Start(); !started) return started;
   recorded_.description.begun = UtcTimeText();
-  last_poll_ = HostTime();
+  last_poll_ = Now();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
   if (!opened) recorded_.part_file_error = opened.error().message;
@@ -133,7 +134,7 @@ Result<void> RunInProgress::Begin() {
 void RunInProgress::ReceiveUntilOver() {
   while (!is_over_) {
     const auto received = logger_.Receive(kPollSeconds);
-    const double now = HostTime();
+    const double now = Now();
     // The limit keeps the time in which this process was suspended from counting as silence of the logger.
     silence_ += std::min(now - last_poll_, 2 * kPollSeconds);
     last_poll_ = now;

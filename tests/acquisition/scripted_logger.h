@@ -2,26 +2,21 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
 #include <pendulum_logger/frame.h>
-#include <poll.h>
-#include <pty.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
+
+#include "pendulum/acquisition/port.h"
+#include "pendulum/base/status.h"
 
 namespace pendulum {
 
@@ -53,77 +48,65 @@ struct LoggerScript {
                                 .calibration = {}};
 
   std::function<int(double time)> counts = [](double) { return 500; };  ///< The reading at a time since the start [s].
-  double frame_seconds = 0.004;  ///< Between frames of 8 samples; shorter than real time, for quick tests.
-  int frames = 1000000;          ///< After so many frames, `then` happens.
+  double frame_seconds = 0.04;                                          ///< Between frames of 8 samples.
+  int frames = 1000000;                                                 ///< After so many frames, `then` happens.
   Then then = Then::kSilence;
   std::set<int> lost_frames;  ///< Lost on the line; numbered from 0.
   bool sends_end = true;
 };
 
-/// A logger connected through a pseudo terminal, in its own thread.
-class ScriptedLogger {
+/// A logger, and the port to it. Its clock runs only while the host waits in Read, by whole milliseconds, so tests take
+/// no time and always give the same.
+class ScriptedLogger final : public Port {
  public:
-  explicit ScriptedLogger(LoggerScript script) : script_(std::move(script)), info_(script_.info) {
-    std::array<char, 256> name{};
-    EXPECT_EQ(::openpty(&board_, &terminal_, name.data(), nullptr, nullptr), 0);
-    path_ = name.data();
-    ::fcntl(board_, F_SETFL, O_NONBLOCK);
+  explicit ScriptedLogger(LoggerScript script)
+      : script_(std::move(script)), info_(script_.info), sent_(script_.greeting) {
     info_.is_running = script_.begins_running ? 1 : 0;
-    thread_ = std::thread([this] { Work(); });
-  }
-  ScriptedLogger(const ScriptedLogger&) = delete;
-  ScriptedLogger& operator=(const ScriptedLogger&) = delete;
-  ~ScriptedLogger() {
-    SwitchOff();
-    if (board_ >= 0) ::close(board_);
-    ::close(terminal_);
   }
 
-  const std::string& path() const { return path_; }
-
-  /// Stops the logger and returns the first byte of each command received, in order.
-  std::string Heard() {
-    SwitchOff();
-    return heard_;
+  Result<std::vector<std::uint8_t>> Read(double seconds) override {
+    const std::int64_t end = milliseconds_ + static_cast<std::int64_t>(std::ceil(1000 * std::max(0.0, seconds)));
+    while (sent_.empty() && !is_unplugged_ && milliseconds_ < end) {
+      ++milliseconds_;
+      if (Turn()) break;
+    }
+    if (sent_.empty() && is_unplugged_) return Disconnected();
+    return std::exchange(sent_, {});
   }
+
+  Result<void> Write(std::span<const std::uint8_t> bytes) override {
+    if (is_unplugged_) return Disconnected();
+    if (Time() < script_.deaf_seconds) return {};
+    for (const std::uint8_t byte : bytes) {
+      if (receiver_.Take(byte) == pendulum_logger::Receiver::kFrame) Obey();
+    }
+    return {};
+  }
+
+  double Time() const override { return static_cast<double>(milliseconds_) / 1000; }
+  double ClockStdDev() const override { return 30e-6; }  // of a quartz
+  const std::string& path() const override { return path_; }
+
+  /// Calls `action` at that time [s], which ends a wait as a signal does.
+  void At(double time, std::function<void()> action) { actions_.emplace(time, std::move(action)); }
+
+  /// The first byte of each command received, in order.
+  const std::string& Heard() const { return heard_; }
 
  private:
-  /// Waits until everything written has been read, because unread data are lost with the terminal.
-  void Unplug() {
-    constexpr int kMaxWaits = 2000;
-    for (int waits = 0, unread = 1; unread > 0 && waits < kMaxWaits; ++waits) {
-      if (::ioctl(terminal_, FIONREAD, &unread) != 0) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ::close(std::exchange(board_, -1));
-  }
-
-  using Clock = std::chrono::steady_clock;
   static constexpr int kBlock = 8;  // samples in a frame
 
-  void SwitchOff() {
-    is_over_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
+  tl::unexpected<Status> Disconnected() const { return Error(StatusCode::kDataLoss, path_ + " was disconnected"); }
 
-  void Work() {
-    Write(script_.greeting);
-    while (!is_over_ && board_ >= 0) {
-      Listen();
-      Write(script_.chatter);
-      if (info_.is_running != 0) Run();
-    }
-  }
-
-  void Listen() {
-    pollfd waiting{board_, POLLIN, 0};
-    ::poll(&waiting, 1, script_.chatter.empty() ? 1 : 20);
-    std::array<std::uint8_t, 256> bytes{};
-    const ssize_t count = ::read(board_, bytes.data(), bytes.size());
-    if (Clock::now() - begin_ < std::chrono::duration<double>(script_.deaf_seconds)) return;
-    for (ssize_t i = 0; i < count; ++i) {
-      if (receiver_.Take(bytes.at(static_cast<std::size_t>(i))) == pendulum_logger::Receiver::kFrame) Obey();
-    }
+  /// What happens in a millisecond. Returns whether an action was called.
+  bool Turn() {
+    constexpr int kBetweenChatter = 20;
+    if (milliseconds_ % kBetweenChatter == 0) Send(script_.chatter);
+    if (info_.is_running != 0) Run();
+    const auto due = actions_.upper_bound(Time());
+    const bool has_acted = due != actions_.begin();
+    for (auto action = actions_.begin(); action != due; action = actions_.erase(action)) action->second();
+    return has_acted;
   }
 
   void Obey() {
@@ -133,9 +116,9 @@ class ScriptedLogger {
     const std::uint8_t status = script_.refused.contains(command) ? script_.refused[command] : Done(command);
     if (script_.lost_answers[command]-- > 0) return;
     if (command == 'I') {
-      Send(info_);
+      SendFrame(info_);
     } else {
-      Send(pendulum_logger::Ack{receiver_.payload()[0], status});
+      SendFrame(pendulum_logger::Ack{receiver_.payload()[0], status});
     }
   }
 
@@ -160,12 +143,12 @@ class ScriptedLogger {
     info_.is_running = 1;
     ++info_.run;
     frame_ = 0;
-    next_frame_ = Clock::now() + std::chrono::milliseconds(20);  // after the answer
+    next_frame_ = Time() + script_.frame_seconds;
     return pendulum_logger::kDone;
   }
 
   std::uint8_t Stop() {
-    if (info_.is_running != 0 && script_.sends_end) Send(EndOfRun());
+    if (info_.is_running != 0 && script_.sends_end) SendFrame(EndOfRun());
     info_.is_running = 0;
     return pendulum_logger::kDone;
   }
@@ -175,9 +158,9 @@ class ScriptedLogger {
   }
 
   void Run() {
+    if (frame_ > script_.frames || Time() < next_frame_) return;
     if (frame_ == script_.frames) return Finish();
-    if (frame_ > script_.frames || Clock::now() < next_frame_) return;
-    next_frame_ += std::chrono::microseconds(static_cast<int>(1e6 * script_.frame_seconds));
+    next_frame_ += script_.frame_seconds;
     const std::uint32_t step = std::uint32_t{info_.period} * info_.oversample;
     pendulum_logger::Data data{};
     data.sequence = static_cast<std::uint16_t>(frame_);
@@ -186,44 +169,38 @@ class ScriptedLogger {
       const double time = (frame_ * kBlock + data.count) * (step / 2e6);
       data.sums[data.count] = static_cast<std::uint16_t>(info_.oversample * script_.counts(time));
     }
-    if (!script_.lost_frames.contains(frame_)) Send(data);
+    if (!script_.lost_frames.contains(frame_)) SendFrame(data);
     ++frame_;
   }
 
   /// Does what the script specifies instead of the rest of the run.
   void Finish() {
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // lets the host read the data sent so far
     ++frame_;
     info_.is_running = script_.then == LoggerScript::Then::kSilence ? 1 : 0;
-    if (script_.then == LoggerScript::Then::kUnplugged) Unplug();
-    if (script_.then == LoggerScript::Then::kEnd) Send(EndOfRun());
-    if (script_.then == LoggerScript::Then::kReset) Send(info_);
+    is_unplugged_ = script_.then == LoggerScript::Then::kUnplugged;
+    if (script_.then == LoggerScript::Then::kEnd) SendFrame(EndOfRun());
+    if (script_.then == LoggerScript::Then::kReset) SendFrame(info_);
   }
 
   template <class Message>
-  void Send(const Message& message) {
+  void SendFrame(const Message& message) {
     std::vector<std::uint8_t> frame(pendulum_logger::kMaxEncoded + 1);
     frame.resize(pendulum_logger::MakeFrame(message, frame.data()));
-    Write(frame);
+    Send(frame);
   }
 
-  void Write(const std::vector<std::uint8_t>& bytes) {
-    for (std::size_t at = 0; at < bytes.size() && !is_over_;) {
-      const ssize_t count = ::write(board_, bytes.data() + at, bytes.size() - at);
-      if (count > 0) at += static_cast<std::size_t>(count);
-      if (count <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  }
+  void Send(const std::vector<std::uint8_t>& bytes) { sent_.insert(sent_.end(), bytes.begin(), bytes.end()); }
 
   LoggerScript script_;
   pendulum_logger::Info info_;
-  int board_ = -1, terminal_ = -1;
-  std::string path_, heard_;
-  Clock::time_point begin_ = Clock::now(), next_frame_ = begin_;
+  std::string path_ = "/dev/scripted", heard_;
+  std::int64_t milliseconds_ = 0;
+  double next_frame_ = 0;
   pendulum_logger::Receiver receiver_;
   int frame_ = 0;
-  std::atomic<bool> is_over_ = false;
-  std::thread thread_;
+  bool is_unplugged_ = false;
+  std::vector<std::uint8_t> sent_;  // not yet read
+  std::multimap<double, std::function<void()>> actions_;
 };
 
 }  // namespace pendulum

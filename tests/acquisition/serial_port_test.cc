@@ -19,6 +19,8 @@
 #include <pty.h>
 #include <unistd.h>
 
+#include "pendulum/acquisition/device_clock.h"
+
 namespace pendulum::serial_port_test {
 namespace {
 
@@ -32,6 +34,9 @@ using Bytes = std::vector<std::uint8_t>;
 using Clock = std::chrono::steady_clock;
 
 constexpr unsigned kBaud = 115200;
+
+/// A timeout that no test waits for, s. A call that ends within half of it ended for another reason.
+constexpr double kNever = 600;
 
 double SecondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -85,11 +90,11 @@ SerialPort Opened(const Cable& cable) {
   return *std::move(port);
 }
 
-/// Reads until `count` bytes have arrived or nothing arrives for a second.
+/// Reads until `count` bytes have arrived.
 Bytes ReadAll(SerialPort& port, std::size_t count) {
   Bytes all;
   while (all.size() < count) {
-    const auto bytes = port.Read(1);
+    const auto bytes = port.Read(kNever);
     EXPECT_TRUE(bytes) << bytes.error().message;
     if (!bytes || bytes->empty()) break;
     all.insert(all.end(), bytes->begin(), bytes->end());
@@ -119,10 +124,10 @@ TEST(SerialPort, ReadsWithoutALineEnd) {
   SerialPort port = Opened(cable);
   cable.Send({0x41});
   const auto begin = Clock::now();
-  const auto bytes = port.Read(5);
+  const auto bytes = port.Read(kNever);
   ASSERT_TRUE(bytes) << bytes.error().message;
   EXPECT_EQ(*bytes, Bytes({0x41}));
-  EXPECT_LT(SecondsSince(begin), 2);  // does not wait for more
+  EXPECT_LT(SecondsSince(begin), kNever / 2);  // does not wait for more
 }
 
 TEST(SerialPort, ReadsBytesUntranslated) {
@@ -181,9 +186,21 @@ TEST(SerialPort, RespectsTheTimeout) {
   ASSERT_TRUE(bytes) << bytes.error().message;
   EXPECT_THAT(*bytes, IsEmpty());
   EXPECT_GE(SecondsSince(begin), 0.19);
-  EXPECT_LT(SecondsSince(begin), 2);
+  EXPECT_LT(SecondsSince(begin), 100);  // on a busy machine; the unit is not the minute or the millisecond
   ASSERT_TRUE(port.Read(0));
   ASSERT_TRUE(port.Read(-1));  // the time has already passed
+}
+
+TEST(SerialPort, HasTheClockOfThisComputer) {
+  const Cable cable;
+  SerialPort port = Opened(cable);
+  const auto before = Clock::now();
+  const double begin = port.Time();
+  ASSERT_TRUE(port.Read(0.05));
+  const double needed = port.Time() - begin;
+  EXPECT_GE(needed, 0.049);
+  EXPECT_LE(needed, SecondsSince(before));
+  EXPECT_EQ(port.ClockStdDev(), HostClockStdDev());
 }
 
 TEST(SerialPort, IsMovable) {
@@ -200,7 +217,7 @@ TEST(SerialPort, ReportsAPulledCable) {
   Cable cable;
   SerialPort port = Opened(cable);
   cable.Pull();
-  const auto bytes = port.Read(1);
+  const auto bytes = port.Read(kNever);
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(bytes.error().message, HasSubstr(cable.path() + " was disconnected"));
@@ -217,22 +234,20 @@ TEST(SerialPort, ReportsACablePulledWhileWaiting) {
     cable.Pull();
   });
   const auto begin = Clock::now();
-  const auto bytes = port.Read(10);
+  const auto bytes = port.Read(kNever);
   board.join();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_LT(SecondsSince(begin), 5);
+  EXPECT_LT(SecondsSince(begin), kNever / 2);
 }
 
 TEST(SerialPort, TimesOutIfNobodyReads) {
   const Cable cable;
   SerialPort port = Opened(cable);
-  const auto begin = Clock::now();
   const auto written = port.Write(Bytes(1000000, 0x55));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(written.error().message, HasSubstr("accepts no data"));
-  EXPECT_LT(SecondsSince(begin), 3);
 }
 
 Status OpenError(const std::string& path) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated logger in real time: the firmware in simavr, a pendulum on the potentiometer, and a pseudo terminal as
-// the serial port. For the tests of record_pendulum, and for users without an Arduino.
+// A simulated logger: the firmware in simavr, and a pendulum on the potentiometer. In real time, its serial port is a
+// pseudo terminal, for users without an Arduino. With --virtual_clock, time passes only while the record_pendulum of
+// the tests waits (VirtualLine), so what it records is always the same.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +20,7 @@
 #include <fcntl.h>
 #include <gflags/gflags.h>
 #include <nlohmann/json.hpp>
+#include <poll.h>
 #include <pty.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
@@ -29,12 +32,15 @@
 #include "pendulum/trajectory/trajectory.h"
 #include "tests/firmware/potentiometer.h"
 #include "tests/firmware/simulated_board.h"
+#include "tests/firmware/virtual_line.h"
 #include "tools/run_tool.h"
 #include "tools/simulate_pendulum_options.h"
 
 DEFINE_string(firmware, "", "ELF file of pendulum_logger.");
 DEFINE_string(board, "uno", "uno or mega; default uno.");
 DEFINE_string(link, "", "Path at which a link to the serial port is created.");
+DEFINE_bool(virtual_clock, false,
+            "Lets time pass only while the record_pendulum of the tests waits; --link is its socket. Default off.");
 DEFINE_string(eeprom, "", "File that keeps the EEPROM from one power-on to the next; default none.");
 DEFINE_string(truth, "", "File for the true values of the run (JSON); default none.");
 DEFINE_string(rig, "", "Rig file; default none.");
@@ -52,7 +58,8 @@ DEFINE_double(supply_ripple, 0, "Relative ripple of the supply, which is also th
 DEFINE_double(clock_ppm, 0, "How much too fast the board's resonator is, ppm; default 0.");
 DEFINE_double(flip, 0, "Probability that a byte on its way to the host has one wrong bit; default 0.");
 DEFINE_double(drop, 0, "Probability that a byte on its way to the host is lost; default 0.");
-DEFINE_double(unplug_after, 0, "Seconds after the start of a run when the cable is pulled; default never.");
+DEFINE_double(unplug_after, 0,
+              "Seconds after the start of a run when the cable is pulled, in real time; default never.");
 DEFINE_double(boot_seconds, 0, "Seconds during which a boot loader sends bytes before the firmware runs; default 0.");
 DEFINE_uint64(seed, 1, "Seed of the noise and of the line errors; default 1.");
 
@@ -153,7 +160,7 @@ class PseudoTerminal {
   /// quiet for some time first.
   void Unplug() {
     if (host_side_ < 0) return;
-    constexpr int kQuietLooks = 200;
+    constexpr int kQuietLooks = 1000;
     for (int quiet = 0; quiet < kQuietLooks && is_stopped == 0;) {
       Write({});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -244,25 +251,86 @@ PotentiometerOptions PotentiometerOfFlags() {
   return options;
 }
 
-/// Runs board, pendulum and line in real time.
-void Run(SimulatedBoard& board, PseudoTerminal& terminal) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  const auto now = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  Line line;
-  while (now() < FLAGS_boot_seconds && is_stopped == 0) {
-    terminal.Write({0x30, 0x14, 0x00, 0x10});
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+/// The board with its boot loader and its line. Times are in seconds since it was plugged in.
+class PluggedBoard {
+ public:
+  explicit PluggedBoard(SimulatedBoard& board) : board_(board) {}
+
+  /// The boot loader ignores what is sent to it.
+  void Send(const std::vector<std::uint8_t>& bytes) {
+    if (!IsBooting()) board_.Send(bytes);
   }
-  const double powered = now();
+
+  /// Runs until that time and returns the bytes that the line has carried to the host.
+  std::vector<std::uint8_t> RunUntil(double time) {
+    constexpr double kBetweenBytes = 0.05;
+    time_ = time;
+    if (!IsBooting()) {
+      board_.RunUntil(time - FLAGS_boot_seconds);
+      return line_.Carry(board_.TakeBytes());
+    }
+    if (time < next_boot_bytes_) return {};
+    next_boot_bytes_ = time + kBetweenBytes;
+    return {0x30, 0x14, 0x00, 0x10};
+  }
+
+  bool IsCablePulled() const {
+    return FLAGS_unplug_after > 0 && board_.start() && board_.time() - *board_.start() > FLAGS_unplug_after;
+  }
+
+ private:
+  bool IsBooting() const { return time_ < FLAGS_boot_seconds; }
+
+  SimulatedBoard& board_;
+  Line line_;
+  double time_ = 0, next_boot_bytes_ = 0;
+};
+
+void RunInRealTime(PluggedBoard& board) {
+  using Clock = std::chrono::steady_clock;
+  PseudoTerminal terminal(FLAGS_link);
+  const Clock::time_point begin = Clock::now();
   while (is_stopped == 0) {
     board.Send(terminal.Read());
-    const double due = now() - powered;
-    board.RunUntil(due);
-    terminal.Write(line.Carry(board.TakeBytes()));
-    const auto& start = board.start();
-    if (FLAGS_unplug_after > 0 && start && board.time() - *start > FLAGS_unplug_after) terminal.Unplug();
+    terminal.Write(board.RunUntil(std::chrono::duration<double>(Clock::now() - begin).count()));
+    if (board.IsCablePulled()) terminal.Unplug();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+/// Waits until a socket can be read; returns false if this program is to end.
+bool IsReadable(int socket) {
+  constexpr int kMilliseconds = 100;  // a signal may arrive just before the wait
+  pollfd waiting{socket, POLLIN, 0};
+  while (is_stopped == 0) {
+    if (::poll(&waiting, 1, kMilliseconds) > 0) return true;
+  }
+  return false;
+}
+
+/// Serves one recorder after the other. As from a USB bridge, bytes come together at a whole millisecond, when the line
+/// has been silent for one. A message for each frame is enough then, so a busy computer switches programs less often.
+void RunOnVirtualClock(PluggedBoard& board) {
+  const VirtualLineListener listener(FLAGS_link);
+  std::int64_t milliseconds = 0;
+  const auto now = [&] { return static_cast<double>(milliseconds) / 1000; };
+  while (IsReadable(listener.socket())) {
+    const VirtualLine line = listener.Accept();
+    while (IsReadable(line.socket())) {
+      const auto asked = line.Receive();
+      if (!asked) break;
+      board.Send(asked->bytes);
+      std::vector<std::uint8_t> bytes;
+      const std::int64_t end =
+          milliseconds + static_cast<std::int64_t>(std::ceil(1000 * std::max(0.0, asked->seconds)));
+      for (bool is_silent = false; milliseconds < end && (bytes.empty() || !is_silent);) {
+        ++milliseconds;
+        const std::vector<std::uint8_t> more = board.RunUntil(now());
+        is_silent = more.empty();
+        bytes.insert(bytes.end(), more.begin(), more.end());
+      }
+      if (!line.Send(now(), bytes)) break;
+    }
   }
 }
 
@@ -283,8 +351,12 @@ Result<int> Work(const std::vector<std::string>&) {
   made.keeps_log = false;
   if (!FLAGS_eeprom.empty()) made.eeprom = BytesOf(FLAGS_eeprom);
   SimulatedBoard board(made);
-  PseudoTerminal terminal(FLAGS_link);
-  Run(board, terminal);
+  PluggedBoard plugged(board);
+  if (FLAGS_virtual_clock) {
+    RunOnVirtualClock(plugged);
+  } else {
+    RunInRealTime(plugged);
+  }
   if (!FLAGS_eeprom.empty()) WriteBytes(FLAGS_eeprom, board.Eeprom());
   const BoardFaults& faults = board.faults();
   std::cout << nlohmann::json{{"sleeps_with_converter_on", faults.sleeps_with_converter_on},

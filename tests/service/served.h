@@ -95,9 +95,9 @@ class Served : public testing::Test {
 
   RawClient Connect(int receive_buffer = 0) const { return RawClient(server_->port(), receive_buffer); }
 
-  /// Waits at most ten seconds for a condition set by other threads; returns whether it became true.
+  /// Waits at most a minute for a condition set by other threads; returns whether it became true.
   static bool Eventually(const std::function<bool()>& is_true) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (!is_true()) {
       if (std::chrono::steady_clock::now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));

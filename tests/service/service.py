@@ -88,6 +88,18 @@ class Server:
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
         return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS:")))
 
+    def cpu_seconds(self):
+        """Processor time of the process so far, which does not depend on what else the machine does."""
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def requests_running(self):
+        """Requests in progress, without the one that asks. An answered request may still be counted for a moment, so this is
+        the smaller of two counts."""
+        counts = [re.search(rb"^pendulum_http_requests_running (\d+)$", self.get("/metrics").body, re.MULTILINE)[1]
+                  for _ in range(2)]
+        return min(map(int, counts)) - 1
+
     def connect(self, timeout=TIMEOUT_S):
         return socket.create_connection(("127.0.0.1", self.port), timeout)
 

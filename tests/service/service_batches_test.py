@@ -301,7 +301,7 @@ class Survival(Batched):
         asking = threading.Thread(target=lambda: answers.append(
             server.post_csv(f"/v1/fits?{query_of(SLOW)}", (self.folder / names[0]).read_bytes())))
         asking.start()
-        time.sleep(0.5)
+        self.wait_until(lambda: server.requests_running() == 1, "the fit runs")
         server.process.send_signal(signal.SIGTERM)
         self.assertEqual(server.process.wait(TIMEOUT_S), 0)
         asking.join(TIMEOUT_S)
@@ -320,7 +320,7 @@ class Survival(Batched):
         answers = []
         asking = threading.Thread(target=lambda: answers.append(server.post_csv(f"/v1/fits?{query_of(ENDLESS)}", data)))
         asking.start()
-        self.wait_until(lambda: b"requests_running 2" in server.get("/metrics").body, "the fit and the request for the metrics run")
+        self.wait_until(lambda: server.requests_running() == 1, "the fit runs")
         server.process.send_signal(signal.SIGTERM)
         self.assertEqual(server.process.wait(TIMEOUT_S), 0)
         asking.join(TIMEOUT_S)

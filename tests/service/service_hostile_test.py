@@ -5,11 +5,12 @@
 Each is refused with a problem that gives the reason, or is harmless; the same process answers the next request.
 """
 
+import contextlib
 import gzip
+import http.client
 import io
 import json
 import threading
-import time
 import unittest
 import zipfile
 
@@ -17,7 +18,7 @@ from service import DATASETS, IS_SANITIZED, Lab, Served, data_part, json_part, m
 
 COULOMB = (DATASETS / "coulomb.csv").read_bytes()
 SHORT = b"".join((DATASETS / "runs_1.csv").read_bytes().splitlines(keepends=True)[:800])
-LONG_FIT = {"model": "all", "interval": "bootstrap"}  # half a minute on two cores
+LONG_FIT = {"model": "all", "interval": "bootstrap"}  # a minute of processor time
 FORM = "multipart/form-data; boundary=b"
 
 
@@ -271,16 +272,15 @@ class Overload(Lab):
         return answers
 
     def test_a_fit_that_takes_too_long_is_ended(self):
-        seconds = "5" if IS_SANITIZED else "1"  # A short fit must end within them on a busy machine.
+        seconds = "5"  # A short fit must end within them on a busy machine.
         server = self.serve("--fit_seconds", seconds, "--threads", "1")
-        begin = time.monotonic()
         problem = self.check_problem(server.post_csv(f"/v1/fits?{query_of(LONG_FIT)}", COULOMB), 408, "timed_out",
                                      f"not done after {seconds} s")
         self.assertEqual(problem["exit_code"], 75)
         self.assertEqual(server.get("/v1/fits").json()["fits"], [])
-        # The worker is free again: it finishes another fit well before the first fit would have ended.
+        # The worker is free again: it finishes another fit with less work than the rest of the first fit.
         self.assertEqual(server.post_csv("/v1/fits?closed_form_only=true", SHORT).status, 200)
-        self.assertLess(time.monotonic() - begin, 200 if IS_SANITIZED else 20)
+        self.assertLess(server.cpu_seconds(), 200 if IS_SANITIZED else 20)
 
     def test_a_run_of_a_batch_that_takes_too_long_is_ended_as_well(self):
         server = self.serve("--fit_seconds", "1", "--threads", "1")
@@ -302,14 +302,18 @@ class Overload(Lab):
         self.assertEqual(server.post_csv("/v1/fits?closed_form_only=true", SHORT).status, 200)
 
     def test_quick_requests_are_answered_while_fits_use_every_thread(self):
-        server = self.serve("--threads", "1", "--fit_seconds", "5")
-        slow = threading.Thread(target=lambda: server.post_csv(f"/v1/fits?{query_of(LONG_FIT)}", COULOMB))
+        server = self.serve("--threads", "1", "--fit_seconds", "3600")
+
+        def fit():
+            with contextlib.suppress(OSError, http.client.HTTPException):  # the test kills the server
+                server.post_csv(f"/v1/fits?{query_of(LONG_FIT)}", COULOMB)
+        slow = threading.Thread(target=fit)
         slow.start()
-        time.sleep(0.5)
+        self.wait_until(lambda: server.requests_running() == 1, "the fit runs")
         for target in ("/healthz", "/v1/fits", "/v1/models", "/", "/metrics"):
-            begin = time.monotonic()
             self.assertEqual(server.get(target).status, 200)
-            self.assertLess(time.monotonic() - begin, 4)
+        self.assertTrue(slow.is_alive())  # so nothing has waited for the fit's end
+        server.kill()
         slow.join()
 
 

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -36,15 +34,9 @@ using testing::StartsWith;
 
 using Then = LoggerScript::Then;
 
-SerialPort PortTo(const ScriptedLogger& board) {
-  auto port = SerialPort::Open(board.path(), 115200);
-  EXPECT_TRUE(port) << port.error().message;
-  return *std::move(port);
-}
-
 /// A scripted logger at 200 Hz, and a recording of it in run.csv of a separate folder.
 struct Laboratory {
-  explicit Laboratory(LoggerScript script = {}) : board(std::move(script)), logger(PortTo(board), stop) {
+  explicit Laboratory(LoggerScript script = {}) : board(std::move(script)), logger(board, stop) {
     options.out = folder.Path("run.csv");
   }
 
@@ -149,20 +141,16 @@ TEST(RecordRun, RecordsMeansWithTheirCalibration) {
 
 TEST(RecordRun, StopsOnRequest) {
   Laboratory laboratory(WithSawtooth());
-  std::thread user([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    laboratory.stop = true;
-  });
+  laboratory.board.At(0.5, [&] { laboratory.stop = true; });
   const RecordedRun recorded = laboratory.Recorded();
-  user.join();
   EXPECT_EQ(recorded.end, RunEnd::kStopped);
-  EXPECT_TRUE(IsComplete(recorded));  // including its End frame
-  EXPECT_GT(recorded.run.size(), 40);
+  EXPECT_TRUE(IsComplete(recorded));   // including its End frame
+  EXPECT_EQ(recorded.run.size(), 96);  // twelve frames in 0.5 s
   ExpectSawtooth(ReadBack(recorded.Csv()), static_cast<int>(recorded.run.size()));
 }
 
-// 300 counts that fall by 1/e in 3 s are half a count after 19 s; rest is certain 5 s later. The test plays a minute in
-// 1.5 s, so the logger's clock cannot agree with the host's.
+// 300 counts that fall by 1/e in 3 s are half a count after 19 s; rest is certain 5 s later. The logger sends 40 s a
+// second, so its clock cannot agree with the host's.
 TEST(RecordRun, StopsAtRest) {
   LoggerScript script;
   script.frame_seconds = 0.001;
@@ -178,6 +166,22 @@ TEST(RecordRun, StopsAtRest) {
   EXPECT_TRUE(recorded.description.clock.is_implausible);
   EXPECT_EQ(recorded.description.clock.scale, 1);
   EXPECT_THAT(CodesOf(recorded), ElementsAre("clock_implausible"));
+  EXPECT_THAT(recorded.Csv(), HasSubstr("# clock_scale: 1\n# clock_scale_std_dev: 0.003\n"));
+  EXPECT_THAT(RecordText(recorded, "run.csv"), HasSubstr("differ by more than any resonator"));
+}
+
+TEST(RecordRun, MeasuresAClockThatIsOnePercentFast) {
+  LoggerScript script;
+  script.frame_seconds = 0.04 / 1.01;
+  Laboratory laboratory(script);
+  laboratory.options.seconds = 11;
+  const RecordedRun recorded = laboratory.Recorded();
+  const DeviceClock& clock = recorded.description.clock;
+  EXPECT_TRUE(clock.is_measured);
+  EXPECT_NEAR(clock.scale, 1 / 1.01, 4 * clock.std_dev);
+  EXPECT_LT(clock.std_dev, 60e-6);  // rounding to milliseconds: 1e-3 / √6 / 11
+  EXPECT_THAT(CodesOf(recorded), IsEmpty());
+  EXPECT_THAT(RecordText(recorded, "run.csv"), HasSubstr("ppm fast compared with this computer's"));
 }
 
 // ---- Abnormal ends -----------------------------------------------------------------------------------------------
@@ -268,12 +272,8 @@ TEST(RecordRun, CanBeStoppedBeforeAnythingArrives) {
   LoggerScript script;
   script.frames = 0;
   Laboratory laboratory(script);
-  std::thread user([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    laboratory.stop = true;
-  });
+  laboratory.board.At(0.3, [&] { laboratory.stop = true; });
   const auto recorded = laboratory.Record();
-  user.join();
   ASSERT_FALSE(recorded);
   EXPECT_EQ(recorded.error().code, StatusCode::kTryAgain);
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
@@ -298,16 +298,11 @@ TEST(RecordRun, ChangesNothingIfTheLoggerDoesNotStart) {
 TEST(RecordRun, WritesAPartFileDuringTheRun) {
   Laboratory laboratory(WithSawtooth());
   std::string meanwhile;
-  std::thread user([&] {
-    constexpr int kMaxTries = 2000;
-    for (int i = 0; i < kMaxTries && std::ranges::count(meanwhile, '\n') < 250; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      meanwhile = laboratory.folder.Text("run.csv.part");
-    }
+  laboratory.board.At(2.5, [&] {
+    meanwhile = laboratory.folder.Text("run.csv.part");
     laboratory.stop = true;
   });
   const RecordedRun recorded = laboratory.Recorded();
-  user.join();
   EXPECT_THAT(meanwhile, EndsWith("\n"));  // complete rows
   const Recording recording = ReadBack(meanwhile);
   EXPECT_GT(recording.size(), 200);

@@ -7,30 +7,26 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pendulum/acquisition/messages.h"
+#include "pendulum/acquisition/port.h"
 #include "pendulum/acquisition/received_run.h"
-#include "pendulum/acquisition/serial_port.h"
 #include "pendulum/base/status.h"
 
 namespace pendulum {
 
-/// A message, and when the host received its last byte [s, HostTime].
+/// A message, and when the host received its last byte [s, Port::Time].
 struct TimedMessage {
   LoggerMessage message;
   double host_time;
 };
 
-/// This computer's monotonic clock [s].
-double HostTime();
-
 /// A logger connected to a port (firmware/pendulum_logger). Commands are repeated until they are answered.
 class Logger {
  public:
   /// Once `stop` is true, functions that wait for the logger return kTryAgain.
-  Logger(SerialPort port, const std::atomic<bool>& stop) : port_(std::move(port)), stop_(stop) {}
+  Logger(Port& port, const std::atomic<bool>& stop) : port_(port), stop_(stop) {}
 
   /// Stops a running measurement and asks the board for its Info. Opening the port resets most boards, and their boot
   /// loader then listens for a second or two; `timeout_seconds` must cover that. kDataLoss: no answer, not a logger,
@@ -53,6 +49,8 @@ class Logger {
   /// The next message within `seconds`; std::nullopt if none arrives. kDataLoss: the port is gone.
   Result<std::optional<TimedMessage>> Receive(double seconds);
 
+  const Port& port() const { return port_; }
+
   /// Number of invalid pieces of data received since Start.
   int RejectedFrames() const { return decoder_.rejected() - rejected_before_; }
 
@@ -65,7 +63,7 @@ class Logger {
   tl::unexpected<Status> NoAnswer(double seconds) const;
   tl::unexpected<Status> NoAnswerTo(std::uint8_t kind) const;
 
-  SerialPort port_;
+  Port& port_;
   const std::atomic<bool>& stop_;
   MessageDecoder decoder_;
   std::deque<TimedMessage> pending_;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/acquisition/port.h"
 #include "pendulum/base/status.h"
 
 namespace pendulum {
@@ -24,7 +25,7 @@ std::vector<PortName> ListSerialPorts(const std::filesystem::path& root = "/");
 
 /// A serial port opened exclusively by this process: 8 bits, no parity, no handshake, no translation of bytes. It may
 /// be a pseudo terminal.
-class SerialPort {
+class SerialPort final : public Port {
  public:
   /// kNotFound: there is no such port. kTryAgain: another program uses it. kDataLoss: it cannot be opened, is not a
   /// serial port, or does not support the rate.
@@ -34,16 +35,18 @@ class SerialPort {
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
   SerialPort& operator=(SerialPort&&) = delete;
-  ~SerialPort();
+  ~SerialPort() override;
 
-  /// Waits at most `seconds` for bytes and returns those available. Returns none after a timeout or a signal.
-  /// kDataLoss: the port is gone, for example because its cable was pulled.
-  Result<std::vector<std::uint8_t>> Read(double seconds);
+  Result<std::vector<std::uint8_t>> Read(double seconds) override;
 
-  /// Writes all bytes within a second. kDataLoss: the port is gone or accepts no bytes.
-  Result<void> Write(std::span<const std::uint8_t> bytes);
+  /// As Port, within a second.
+  Result<void> Write(std::span<const std::uint8_t> bytes) override;
 
-  const std::string& path() const { return path_; }
+  /// This computer's monotonic clock.
+  double Time() const override;
+  double ClockStdDev() const override;
+
+  const std::string& path() const override { return path_; }
 
  private:
   SerialPort(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
