@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/base/format.h"
 #include "pendulum/fitting/residuals/residual_diagnostics.h"
 
 namespace pendulum {
