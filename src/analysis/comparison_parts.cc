@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "pendulum/analysis/fitted_motion.h"
-#include "pendulum/base/format.h"
 #include "pendulum/fitting/residuals/residual_diagnostics.h"
 
 namespace pendulum {
@@ -33,9 +32,6 @@ std::pair<double, double> AllowedSteps(const ParameterEstimate& parameter, const
   return {std::min(lower - parameter.estimate, 0.0), std::max(upper - parameter.estimate, 0.0)};
 }
 
-/// Residuals as small as the trajectory's numerical error are rounding, not a sensor's noise.
-bool IsRounding(const FitReport& best) { return best.statistics.rms_residual <= best.trace_error; }
-
 bool IsNormal(const FitReport& best) {
   return best.noise.family == NoiseFamily::kGaussian || best.noise.family == NoiseFamily::kQuantized;
 }
@@ -50,6 +46,8 @@ std::string NotGaussianReason(const FitReport& best) {
 
 }  // namespace
 
+bool IsRounding(const FitReport& fit) { return fit.statistics.rms_residual <= fit.trace_error; }
+
 ComparisonRow DescribeFit(const FitReport& fit) {
   ComparisonRow row;
   row.model = fit.model.name;
@@ -58,6 +56,7 @@ ComparisonRow DescribeFit(const FitReport& fit) {
   if (fit.termination == Termination::kFailed) return row;
   row.parameters = static_cast<int>(std::ranges::count_if(fit.parameters, IsCounted)) + 1;
   row.rms = fit.statistics.rms_residual;
+  row.is_rounding = IsRounding(fit);
   row.lag1_correlation = fit.noise.lag1_correlation;
   row.ljung_box_p = fit.statistics.ljung_box_p;
   row.lack_of_fit = fit.HasWarning("lack_of_fit");
@@ -119,10 +118,8 @@ std::string DescribeLikelihood(Likelihood likelihood, const FitReport& best) {
              std::string(best.model.name) + ", with the variance of rounding added";
     case Likelihood::kScaled:
       return "likelihood of independent " + std::string(NoiseFamilyName(best.noise.family)) +
-             " residuals, in which the readings count as " +
-             NumberText(std::round(best.statistics.effective_samples), 4) +
-             " independent ones, because residuals are autocorrelated (" + autocorrelation + "), with " +
-             NotGaussianReason(best);
+             " residuals, in which the readings count as the effective samples, because they are autocorrelated (" +
+             autocorrelation + ") and with " + NotGaussianReason(best) + " no better likelihood is known";
     case Likelihood::kNone:
       return "none: the residuals of " + std::string(best.model.name) +
              ", the model nearest to the readings, are no larger than the error of its computed trajectory";

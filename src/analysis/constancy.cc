@@ -156,6 +156,19 @@ bool Constancy::constant() const {
          std::ranges::all_of(trends, [](const AmplitudeTrend& trend) { return trend.p >= kNotConstant; });
 }
 
+bool Constancy::is_too_short_for_halves() const { return half_swings && *half_swings < 2 * kMinHalfSwings; }
+
+bool Constancy::is_too_short_for_windows() const { return half_swings && *half_swings < kMinWindows * kMinHalfSwings; }
+
+Constancy UntestedConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options,
+                            std::string reason) {
+  Constancy result;
+  result.reason = std::move(reason);
+  if (report.termination == Termination::kConverged && !IsUndersampled(recorded, options.rig))
+    result.half_swings = HalfSwingEnds(recorded, BeginOfMotion(recorded, report)).size() - 1;
+  return result;
+}
+
 Constancy TestConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options) {
   const auto [used, fit] = CorrectedReadings(recorded, report);
   Constancy result;
@@ -165,7 +178,7 @@ Constancy TestConstancy(const Recording& recorded, const FitReport& report, cons
     result.reason = "the recording is sampled too slowly to be cut at its turning points";
   } else {
     const std::vector<double> ends = HalfSwingEnds(used, BeginOfMotion(used, fit));
-    result.is_short = ends.size() - 1 < kMinWindows * kMinHalfSwings;
+    result.half_swings = ends.size() - 1;
     const Parts parts(used, fit, options);
     const std::string halves = CompareHalves(parts, ends, fit, options, result);
     result.reason = Join(halves, CompareWindows(used, parts, ends, fit, options, result), "; ");

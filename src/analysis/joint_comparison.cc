@@ -99,9 +99,11 @@ ComparisonRow DescribeRow(const ComparedFits& compared, std::size_t m) {
   const FitReport& whole = compared.combined[m];
   ComparisonRow row = DescribeFit(whole);
   row.parameters = compared.parameters[m];
+  row.is_rounding = true;
   for (std::size_t k = 0; k < compared.joint.runs.size() && whole.termination != Termination::kFailed; ++k) {
     const FitReport& run = compared.Fit(k, m);
     row.lack_of_fit = row.lack_of_fit || run.HasWarning("lack_of_fit");
+    row.is_rounding = row.is_rounding && IsRounding(run);
     if (std::abs(run.noise.lag1_correlation) > std::abs(row.lag1_correlation))
       row.lag1_correlation = run.noise.lag1_correlation;
     row.ljung_box_p = std::min(row.ljung_box_p, run.statistics.ljung_box_p);

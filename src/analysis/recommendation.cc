@@ -93,7 +93,7 @@ class RankedRows {
   std::size_t SimplestWithoutNoise() const {
     std::size_t chosen = rows_.size();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (!rows_[i].judged || rows_[i].rms > fits_[i].trace_error) continue;
+      if (!rows_[i].judged || !rows_[i].is_rounding) continue;
       if (chosen == rows_.size() || Order(i) < Order(chosen)) chosen = i;
     }
     return chosen;
@@ -175,7 +175,7 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
     comparison.recommended = comparison.rows[exact].model;
     comparison.reason = comparison.recommended +
                         ": the simplest law whose residuals are no larger than the error of its computed trajectory, "
-                        "so that no noise is left to compare the laws by";
+                        "so that no noise is left by which laws could be compared";
     return;
   }
   const std::size_t chosen = ranked.Simplest();

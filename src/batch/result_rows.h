@@ -24,8 +24,9 @@ struct QuantityRow {
   std::string name;
   bool derived = false;
   std::optional<double> estimate, std_error, lower95, upper95, systematic_std_error, total_std_error;
-  std::optional<double> inconstancy_std_error, source_std_error;  ///< Parts of systematic_std_error; of clock and
-                                                                  ///< calibration together.
+  /// Parts of systematic_std_error: of changes and of friction of another law together, of clock and calibration
+  /// together.
+  std::optional<double> inconstancy_std_error, source_std_error;
   std::string unit;
   bool fixed = false, at_bound = false;
 };

@@ -93,10 +93,10 @@ bool IsChecked(Checks checks, std::size_t m, std::size_t main) {
 Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options, const Recording& used,
                   const FitReport& fit, bool is_checked) {
   if (!is_checked) {
-    Constancy untested;
-    untested.reason = options.checks == Checks::kNone ? "not tested (--checks none)"
-                                                      : "only the recommended model is tested; --checks full tests all";
-    return untested;
+    return UntestedConstancy(used, fit, fit_options,
+                             options.checks == Checks::kNone
+                                 ? "not tested (--checks none)"
+                                 : "only the recommended model is tested; --checks full tests all");
   }
   return TestConstancy(used, fit, ForModel(fit_options, std::string(fit.model.name), options.models).options);
 }
@@ -358,6 +358,7 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   FitOptions each = fit_options;
   each.threads = 1;
   each.progress = nullptr;
+  each.search.may_correct = false;  // the joint fit has the readings as recorded
   const auto count = static_cast<int>(swings.size());
   std::atomic<int> done = 0;
   ReportProgress(fit_options.progress, "fitting each recording", 0, count);

@@ -340,15 +340,12 @@ void SetRigVerdict(const std::optional<RigVerdict>& rig, FitSummary& summary) {
   std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "inertia_differs_from_rig"; });
 }
 
-/// What is unknown of a recording that is too short for a test of constancy (TooFewHalfSwings).
+/// What is unknown of a recording that is too short for a test of constancy.
 std::string UntestedText(const Constancy* constancy, const FitReport& fit) {
-  const bool is_tested = constancy == nullptr || constancy->halves_p || !constancy->trends.empty();
-  const std::size_t end = is_tested ? std::string::npos : constancy->reason.find(" are too few for halves");
-  if (end == std::string::npos) return "";
-  const bool has_law_error = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& parameter) {
-    return parameter.systematic.Of(ErrorSource::kFrictionLaw) > 0;
-  });
-  return "Constancy is not tested (" + constancy->reason.substr(0, end) + " are too few)" +
+  if (constancy == nullptr || !constancy->is_too_short_for_halves()) return "";
+  const bool has_law_error = std::ranges::any_of(
+      fit.parameters, [](const ParameterEstimate& parameter) { return parameter.unseen_friction.has_value(); });
+  return "Constancy is not tested (" + std::to_string(*constancy->half_swings) + " half swings are too few)" +
          (has_law_error ? "; the errors allow for friction of another law."
                         : ": another recording may differ by more than these errors.");
 }
@@ -447,10 +444,10 @@ bool IsAssumption(const Warning& warning) {
 
 /// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 8> kSerious = {"another_minimum", "frequency_differs_from_rig",
-                                                        "hold_disagrees",  "noise_below_resolution",
-                                                        "offset_unsteady", "prior_conflict",
-                                                        "rig_implausible", "trajectory_accuracy"};
+  constexpr std::array<std::string_view, 10> kSerious = {
+      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum", "frequency_differs_from_rig",
+      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady", "prior_conflict",
+      "rig_implausible",     "trajectory_accuracy"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
 }
 

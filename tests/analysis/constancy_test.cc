@@ -187,13 +187,26 @@ TEST(Constancy, ReportsTooShortParts) {
   run.duration = 12;
   const Constancy halves_only = TestRun(run, "viscous");
   EXPECT_TRUE(halves_only.halves_p);
+  EXPECT_TRUE(halves_only.is_too_short_for_windows() && !halves_only.is_too_short_for_halves());
   EXPECT_THAT(halves_only.reason, HasSubstr("too few for windows of three periods"));
   run.duration = 6;
   const Constancy nothing = TestRun(run, "viscous");
   EXPECT_FALSE(nothing.halves_p);
   EXPECT_THAT(nothing.trends, IsEmpty());
+  EXPECT_TRUE(nothing.is_too_short_for_windows() && nothing.is_too_short_for_halves());
   EXPECT_THAT(nothing.reason, HasSubstr("too few for halves"));
   EXPECT_THAT(nothing.verdict, HasSubstr("not tested"));
+}
+
+// An untested fit knows its half swings as well: 10 s after the release at 1.9 s of a pendulum of 0.66 s each.
+TEST(Constancy, CountsTheHalfSwingsOfAnUntestedFit) {
+  SyntheticOptions run = NoisyTextbookRun("viscous");
+  run.duration = 12;
+  const FitOfRun fitted = FitTo(run, "viscous", {});
+  const Constancy untested = UntestedConstancy(fitted.recording, fitted.fit, {}, "not asked for");
+  EXPECT_EQ(untested.half_swings, TestConstancy(fitted.recording, fitted.fit, ModelOptions("viscous")).half_swings);
+  EXPECT_TRUE(untested.half_swings == 15U || untested.half_swings == 14U) << *untested.half_swings;
+  EXPECT_EQ(untested.reason, "not asked for");
 }
 
 TEST(Constancy, IsNotTestedWithoutConvergence) {

@@ -273,10 +273,10 @@ FitReport FitWithOtherFriction() {
 }
 
 TEST(FrictionLawError, ContainsWhatIsNotExcludedOnlyInAShortRecording) {
-  for (const auto& [is_short, expected] : {std::pair(false, 3e-5), std::pair(true, 5e-5)}) {
+  for (const auto& [half_swings, expected] : {std::pair(18, 3e-5), std::pair(17, 5e-5)}) {
     FitReport fit = FitWithOtherFriction();
     Constancy constancy;
-    constancy.is_short = is_short;
+    constancy.half_swings = half_swings;
     AddFrictionLawError(constancy, fit);
     EXPECT_DOUBLE_EQ(fit.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected);
     EXPECT_DOUBLE_EQ(fit.systematic_covariance(0, 0), expected * expected);

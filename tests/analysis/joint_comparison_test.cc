@@ -105,6 +105,15 @@ TEST(CompareJointModels, RecommendsNothingIfNothingConverged) {
   EXPECT_EQ(none.reason, "no model converged, so none is recommended");
 }
 
+// Without noise the residuals of all laws that contain the true one are rounding errors in each recording.
+TEST(CompareJointModels, RecommendsTheSimplestLawWithoutNoise) {
+  std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 1);
+  for (SyntheticOptions& run : runs) run.noise = run.resolution = 0;
+  const auto [joint, comparison] = Compare(Simulate(runs), kThreeLaws);
+  EXPECT_EQ(comparison.likelihood, Likelihood::kNone);
+  EXPECT_EQ(comparison.recommended, "coulomb") << comparison.reason;
+}
+
 TEST(CompareJointModels, ComparesConvergedFitsOnly) {
   JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
   joint.joint[1].whole.termination = Termination::kNotConverged;

@@ -96,9 +96,14 @@ TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
   Identification identification = ExampleIdentification();
   identification.constancy = {Constancy{}};
   EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("Constancy")));
-  identification.constancy[0].reason = "9 half swings are too few for halves; 12 are needed; 9 half swings are too few";
+  identification.constancy[0].half_swings = 12;
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("Constancy")));
+  identification.constancy[0].half_swings = 9;
   EXPECT_THAT(SummarizeFit(identification, 0).remarks,
               HasSubstr("Constancy is not tested (9 half swings are too few): another recording may differ by more"));
+  identification.fits[0].parameters[0].unseen_friction = 1e-3;
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks,
+              HasSubstr("(9 half swings are too few); the errors allow for friction of another law."));
 }
 
 TEST(SummarizeFit, GivesAnglesInDegrees) {
@@ -264,6 +269,17 @@ TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
   EXPECT_THAT(text, HasSubstr("ore warnings: "));
   EXPECT_THAT(text, HasSubstr("zero drift."));
   EXPECT_THAT(text, Not(HasSubstr("the zero drifts")));
+}
+
+// A warning that the numbers may be wrong stands before the others and is not reduced to its name.
+TEST(SummaryText, ShowsEachSeriousWarning) {
+  Identification identification = ExampleIdentification();
+  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
+  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
+    identification.warnings.push_back({code, std::string("the reason is ") + code});
+  const std::string text = SummaryText(SummarizeResult(identification), "More.");
+  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
+    EXPECT_THAT(text, HasSubstr(std::string("the reason is ") + code));
 }
 
 TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {

@@ -10,6 +10,9 @@
 
 namespace pendulum {
 
+/// Whether residuals are as small as the trajectory's numerical error: rounding, not a sensor's noise.
+bool IsRounding(const FitReport& fit);
+
 /// The part of a row that needs no other model: parameters, residuals, and the reason if the fit is not compared.
 ComparisonRow DescribeFit(const FitReport& fit);
 

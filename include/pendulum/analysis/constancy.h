@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,11 +46,13 @@ struct Constancy {
   std::optional<double> halves_p;  ///< Absent if there is no such test; `reason` gives the cause.
   std::vector<AmplitudeRow> windows;
   std::vector<AmplitudeTrend> trends;  ///< Trends of inertia and one friction parameter; empty with too few windows.
-  bool is_short = false;               ///< The half swings are too few for windows.
-  std::string reason;                  ///< Why a test is missing; empty if none is.
-  std::string verdict;                 ///< A sentence that names what is not constant, or says that everything is.
+  std::optional<std::size_t> half_swings;  ///< Of the recording after its release, if its samples show them.
+  std::string reason;                      ///< Why a test is missing; empty if none is.
+  std::string verdict;                     ///< A sentence that names what is not constant, or says that everything is.
 
-  bool constant() const;  ///< No test has p < kNotConstant.
+  bool constant() const;                  ///< No test has p < kNotConstant.
+  bool is_too_short_for_halves() const;   ///< The half swings are too few for any test.
+  bool is_too_short_for_windows() const;  ///< No test can show how a parameter depends on amplitude.
 };
 
 inline constexpr double kNotConstant = 1e-3;
@@ -62,5 +65,9 @@ inline constexpr double kNotConstant = 1e-3;
 /// did not converge on the recording with `options`, the recording is undersampled or too short, or a part does not
 /// converge. Cost: up to ten fits of parts, some milliseconds for 2000 samples.
 Constancy TestConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options);
+
+/// The constancy of a fit that is not tested, for this reason: the half swings alone.
+Constancy UntestedConstancy(const Recording& recorded, const FitReport& report, const FitOptions& options,
+                            std::string reason);
 
 }  // namespace pendulum

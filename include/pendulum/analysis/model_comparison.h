@@ -29,6 +29,7 @@ struct ComparisonRow {
   std::optional<double> log_likelihood, aic, aicc, bic;  ///< Densities in 1/rad or 1/(rad/s), or probabilities.
   std::optional<double> delta_bic;                       ///< Difference to the smallest BIC.
   std::optional<double> akaike_weight;  ///< exp(-ΔAICc / 2) over their sum (Burnham & Anderson 2002, section 2.9)
+  bool is_rounding = false;             ///< Residuals are no larger than the error of the computed trajectory.
   Prediction cross_validation, forward;
   double lag1_correlation = 0;  ///< Lag-1 correlation of the quantile residuals.
   double ljung_box_p = 1;

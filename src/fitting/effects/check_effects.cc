@@ -285,15 +285,16 @@ struct FrictionPull {
   VectorXd std_dev;  // P
 };
 
-/// A third of the whole friction is the standard deviation of each term before the recording.
+/// Before the recording, each term has the standard deviation unseen_std_dev; nothing is known if that is 0.
 FrictionPull PullOf(const std::vector<Index>& columns, const EffectTests& tests, const EffectSums& sums,
                     const Optimum& optimum) {
   FrictionPull pull{VectorXd::Zero(optimum.gradient.size()), VectorXd::Zero(optimum.gradient.size())};
   if (columns.empty()) return pull;
   const auto count = static_cast<Index>(columns.size());
-  EffectPriors priors{VectorXd(count), VectorXd::Zero(count)};
+  EffectPriors priors{VectorXd::Zero(count), VectorXd::Zero(count)};
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    priors.precision[static_cast<Index>(k)] = 1 / std::pow(tests.EffectOf(columns[k]).unseen_std_dev, 2);
+    const double std_dev = tests.EffectOf(columns[k]).unseen_std_dev;
+    if (std_dev > 0) priors.precision[static_cast<Index>(k)] = 1 / (std_dev * std_dev);
   }
   const EffectSizes sizes = EstimateEffects(sums, columns, priors);
   const MatrixXd moved = optimum.inverse.matrix * sums.information(Eigen::seqN(0, sums.parameters), columns);

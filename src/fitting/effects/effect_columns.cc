@@ -190,16 +190,19 @@ bool ShowsMotion(const FitProblem& problem, const VectorXd& time) {
 void AddDisturbances(const FitProblem& problem, const FittedSwing& swing, const MotionStates& states,
                      std::span<const double> physical, ColumnWriter& writer) {
   constexpr double kUnseenShare = 0.3;
+  constexpr double kUnseenPresliding = 1;  // all dry friction builds up after a reversal, from -1 to 1
   if (!ShowsMotion(problem, swing.time)) return;
   const DisturbedMotion disturbed =
       RespondToDisturbances(swing.time, states, swing.release, swing.stop, problem.model, physical);
   const Eigen::MatrixXd& columns = ShowsRate(problem) ? disturbed.rate : disturbed.angle;
-  const double unseen = kUnseenShare * LargestFriction(problem.model, physical, states.value[1].cwiseAbs().maxCoeff());
+  const double friction = LargestFriction(problem.model, physical, states.value[1].cwiseAbs().maxCoeff());
   for (int k = 0; k < kDisturbances; ++k) {
     const auto disturbance = static_cast<Disturbance>(k);
     const bool is_push = disturbance == Disturbance::kPush;
     if ((is_push && !swing.is_held) || HasParameterFor(disturbance, problem)) continue;
-    writer.Add({CauseOf(disturbance), 0, is_push ? 0 : unseen}, swing.by_motion.cwiseProduct(columns.col(k)));
+    const Cause cause = CauseOf(disturbance);
+    const double share = is_push ? 0 : cause == Cause::kPresliding ? kUnseenPresliding : kUnseenShare;
+    writer.Add({cause, 0, share * friction}, swing.by_motion.cwiseProduct(columns.col(k)));
   }
 }
 

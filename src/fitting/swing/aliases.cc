@@ -65,7 +65,8 @@ AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOption
     if (inertia == values->end() || !(inertia->second > 0)) continue;
     if (values == &options.initial && allowed.bounded) continue;  // a start value is no limit
     const double frequency = FrequencyOf(inertia->second, options);
-    allowed = {{frequency, frequency}, values == &options.fixed};
+    const double within = values == &options.fixed ? 0 : kExpectedWithin;  // a start value is a guess
+    allowed = {{(1 - within) * frequency, (1 + within) * frequency}, values == &options.fixed};
   }
   const auto bounds = options.bounds.find(kInertia.name);
   if (bounds == options.bounds.end()) return allowed;

@@ -35,10 +35,9 @@ struct AllowedFrequencies {
   bool bounded = false;  ///< Whether rig or user limit it; otherwise `range` is that of real pendulums.
 };
 
-/// 15 % around the rig's frequency, the user's fixed inertia or its bounds; otherwise up to 3 Hz, or the inertia where
-/// the user lets the fit begin. A linear oscillator has no
-/// fastest frequency, and faster ones give exactly the same readings, so without bounds only those below half the
-/// sampling rate are searched.
+/// 15 % around the rig's frequency, the user's fixed inertia or its bounds; otherwise up to 3 Hz, or 15 % around the
+/// frequency of the user's start value. A linear oscillator has no fastest frequency, and faster ones give exactly the
+/// same readings, so without bounds only those below half the sampling rate are searched.
 AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOptions& options);
 
 /// A fit from one local minimum of the scan.

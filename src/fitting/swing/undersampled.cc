@@ -102,8 +102,8 @@ std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& al
   if (slowest && rate > (is_unambiguous ? kMinPerPeriodIfUnambiguous : kShown) * frequency) return std::nullopt;
   const double apparent = ApparentFrequency(frequency, rate);
   return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) +
-         " or faster; the readings suggest " + Hz(frequency) + ". If it swings at about " + Hz(apparent) + ", give " +
-         BoundsFlag(apparent, options) +
+         " or faster; the readings suggest " + Hz(frequency) + " (" + BoundsFlag(frequency, options) +
+         "). If it swings at about " + Hz(apparent) + ", give " + BoundsFlag(apparent, options) +
          "; otherwise give --rig with rod and bob, or with length and gravity, or sample at 6 Hz or faster";
 }
 
@@ -284,8 +284,8 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   const AllowedFrequencies allowed = FindAllowedFrequencies(*used, options);
   FitOptions whole = options;
   whole.start = StartKind::kMoving;
-  // The scan finds every start in a known range. One start for all aliases would lead to the same alias each time.
-  if (allowed.bounded) whole.initial.erase(std::string(kInertia.name));
+  // The scan finds every start in the range. One start for all aliases would lead to the same alias each time.
+  whole.initial.erase(std::string(kInertia.name));
   FitOptions moving = whole;
   moving.interval = IntervalMethod::kCovariance;
   moving.search.max_traces = std::min(options.search.max_traces, kMaxAliasTraces);

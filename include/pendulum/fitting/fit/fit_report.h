@@ -51,7 +51,7 @@ struct ParameterEstimate {
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
   SystematicErrors systematic;
   /// How far the estimate would be off, as a standard deviation in `unit`, if friction had other terms that the
-  /// readings do not exclude (EffectCheck::unseen_friction). Not part of any error.
+  /// readings do not exclude (EffectCheck::unseen_friction). Of a short recording it is part of the error.
   std::optional<double> unseen_friction;
   double named_friction = 0;          ///< EffectCheck::named_friction in `unit`.
   std::optional<double> closed_form;  ///< The start value, if it is a closed-form estimate (same unit).
