@@ -374,7 +374,13 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
     }
     if (MayCorrect(problem, solution.noise)) check.correction = CorrectionOf(tests, known, check.suspicions);
     if (!check.correction.causes.empty()) {
-      check.correction.readings = effects_at(AllSamples(problem)).columns * check.correction.sizes;
+      const EffectColumns of_all = effects_at(AllSamples(problem));
+      // Samples may show a motion that bins do not show; then they have other effects.
+      if (of_all.columns.cols() == check.correction.sizes.size()) {
+        check.correction.readings = of_all.columns * check.correction.sizes;
+      } else {
+        check.correction = known;
+      }
     }
   }
 
