@@ -93,7 +93,8 @@ std::optional<Ambiguity> UnseenFriction(const FitReport& fit) {
     changed += (changed.empty() ? "" : ", ") + UnseenText(*parameter);
   if (changed.empty()) return std::nullopt;
   return Ambiguity{"friction of another law (larger at rest, with the square of the rate, with the angle)",
-                   "terms of 30 % of the whole friction would change the estimates, unseen in these readings: " +
+                   "terms of 30 % of the whole friction (presliding: all of the dry one) would change the estimates, "
+                   "unseen in these readings: " +
                        changed + " (standard deviations)",
                    "compare the laws (--models all), and record a longer swing from a larger angle down to rest"};
 }

@@ -256,8 +256,7 @@ TEST(Inconstancy, NeedsNoTrend) {
 
 // ---- Friction of another law ----------------------------------------------------------------------------------------
 
-/// A converged fit of the inertia alone, with 3e-5 by friction that was named and 4e-5 by friction that is not
-/// excluded.
+/// A converged fit of the inertia alone, with 3e-5 by friction that was named and 4e-5 by friction that is suggested.
 FitReport FitWithOtherFriction() {
   FitReport fit;
   fit.termination = Termination::kConverged;
@@ -267,12 +266,12 @@ FitReport FitWithOtherFriction() {
   inertia.estimate = 0.05;
   inertia.std_error = 1e-5;
   inertia.named_friction = 3e-5;
-  inertia.unseen_friction = 4e-5;
+  inertia.hidden_friction = 4e-5;
   fit.parameters.push_back(inertia);
   return fit;
 }
 
-TEST(FrictionLawError, ContainsWhatIsNotExcludedOnlyInAShortRecording) {
+TEST(FrictionLawError, ContainsWhatIsOnlySuggestedInAShortRecording) {
   for (const auto& [half_swings, expected] : {std::pair(18, 3e-5), std::pair(17, 5e-5)}) {
     FitReport fit = FitWithOtherFriction();
     Constancy constancy;

@@ -34,8 +34,8 @@ void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector
 
 /// Adds the error by friction that the law does not have (MODEL.md section 16): how far the estimates are off by
 /// friction that was named (ParameterEstimate::named_friction), and in a recording too short for windows also by terms
-/// that its readings do not exclude (unseen_friction). A change during the recording is a consequence of it, so only
-/// what is beyond AddInconstancyError, which comes before, is added.
+/// that its readings suggest too weakly to be named (hidden_friction). A change during the recording is a consequence
+/// of it, so only what is beyond AddInconstancyError, which comes before, is added.
 void AddFrictionLawError(const Constancy& constancy, FitReport& fit);
 
 /// Adds this error to a joint fit. Recordings of one rig have the same friction, so their number does not reduce it: it

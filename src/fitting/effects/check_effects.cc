@@ -384,7 +384,9 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
     }
   }
 
-  check.unseen_friction = PullOf(tests.UnseenColumns(), tests, sums, optimum).std_dev;
+  const FrictionPull unseen = PullOf(tests.UnseenColumns(), tests, sums, optimum);
+  check.unseen_friction = unseen.std_dev;
+  check.hidden_friction = (unseen.shift.cwiseAbs2() - unseen.std_dev.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
   check.named_friction = NamedFriction(check.suspicions, tests, sums, optimum);
   const Index count = effects.columns.cols();
   check.pull = (rows.deviation.asDiagonal() * jacobian).transpose() * rows.columns.rightCols(count);

@@ -167,6 +167,7 @@ void SetOtherFriction(const FitProblem& problem, FitReport& report) {
     const auto index = static_cast<std::size_t>(i);
     const double unseen = problem.si_per_internal[index] * report.effects.unseen_friction[i];
     if (unseen > 0) report.parameters[index].unseen_friction = unseen;
+    report.parameters[index].hidden_friction = problem.si_per_internal[index] * report.effects.hidden_friction[i];
     report.parameters[index].named_friction = problem.si_per_internal[index] * report.effects.named_friction[i];
   }
 }

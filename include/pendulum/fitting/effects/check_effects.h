@@ -30,8 +30,12 @@ struct EffectCheck {
   Eigen::MatrixXd pull;               ///< P x E, derivatives of the problem's scores with respect to the E effects.
   Eigen::MatrixXd second_moment;      ///< E x E, covariance of their sizes plus the product of their means.
   /// P, the problem's units: how far the estimates would be off, as a standard deviation, if friction had other terms
-  /// of 30 % of its size that the readings do not exclude; empty if nothing is known of that.
+  /// of 30 % of its size (presliding: all of the dry friction) that the readings do not exclude; empty if nothing is
+  /// known of that.
   Eigen::VectorXd unseen_friction;
+  /// P, the same units: how far such terms move the estimates beyond what chance explains, the root of the squared
+  /// shift less its variance; empty with unseen_friction.
+  Eigen::VectorXd hidden_friction;
   /// P, the problem's units: how far the estimates are off, as a root mean square, by friction that is not in the
   /// law: of what was named, the cause with the strongest evidence; empty if nothing is known of that.
   Eigen::VectorXd named_friction;

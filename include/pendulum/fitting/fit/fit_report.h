@@ -51,9 +51,10 @@ struct ParameterEstimate {
   OpenInterval open_interval = OpenInterval::kClosed;  ///< Reason for a missing end of the interval.
   SystematicErrors systematic;
   /// How far the estimate would be off, as a standard deviation in `unit`, if friction had other terms that the
-  /// readings do not exclude (EffectCheck::unseen_friction). Of a short recording it is part of the error.
+  /// readings do not exclude (EffectCheck::unseen_friction).
   std::optional<double> unseen_friction;
-  double named_friction = 0;          ///< EffectCheck::named_friction in `unit`.
+  double hidden_friction = 0;  ///< EffectCheck::hidden_friction in `unit`; part of the error of a short recording.
+  double named_friction = 0;   ///< EffectCheck::named_friction in `unit`.
   std::optional<double> closed_form;  ///< The start value, if it is a closed-form estimate (same unit).
   bool fixed = false;
   bool at_bound = false;
