@@ -162,6 +162,22 @@ TEST(CheckEffects, KnowsHowFarNamedFrictionMovesTheEstimates) {
   }
 }
 
+// A tenth of that angle beside more noise is too weak to be named, and still moves the inertia by many standard errors.
+TEST(CheckEffects, KnowsHowFarHiddenFrictionMovesTheEstimates) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SyntheticOptions run = NoisyRun("dahl", seed);
+    run.parameters = {run.parameters[0], 0.001, 0.01, 0.002};
+    run.noise = 0.008;
+    const FitReport fit = Fit(Disturbed(run, [](double y, double) { return y; }), ModelOptions("coulomb"));
+    EXPECT_EQ(FindSuspicion(fit, Cause::kPresliding), nullptr) << seed;
+    const ParameterEstimate& inertia = fit.parameters[0];
+    const double off = std::abs(inertia.estimate - run.parameters[0]);
+    EXPECT_GT(off, 10 * *inertia.std_error) << seed;
+    EXPECT_GT(inertia.hidden_friction, 0.3 * off) << seed;
+    EXPECT_LT(inertia.hidden_friction, 2 * off) << seed;
+  }
+}
+
 TEST(CheckEffects, KnowsOfNoNamedFrictionInACleanRecording) {
   const FitReport fit = Fit(Disturbed(CleanRun(1), [](double y, double) { return y; }), ModelOptions("coulomb"));
   for (const ParameterEstimate& parameter : fit.parameters) EXPECT_EQ(parameter.named_friction, 0);
