@@ -82,6 +82,13 @@ def inertia_of(result: dict) -> tuple[float, float]:
     return inertia["estimate"], math.hypot(inertia["std_error"], inertia["systematic_std_error"] or 0)
 
 
+def inertia_of_run(result: dict) -> tuple[float, float]:
+    """Estimate, and the part of its error that another run of the same rig, sensor and clock does not have."""
+    inertia = result["fits"][0]["parameters"]["inertia"]
+    budget = inertia["error_budget"]
+    return inertia["estimate"], math.hypot(*(budget.get(source, 0) for source in ("noise", "inconstancy", "friction_law")))
+
+
 def scatter_of_windows(result: dict) -> float:
     """rms difference between windows of the recording and the whole, over the combined errors; 0 without windows."""
     estimate, error = inertia_of(result)
@@ -160,12 +167,13 @@ class Recordings(unittest.TestCase):
         self.check_all("drag", list(REFERENCES))
 
     def test_errors_explain_how_runs_of_one_rig_differ(self):
-        for pair in PAIRS:
-            inertias = []
-            for name in pair:
-                inertias.append(inertia_of(fit(name, "drag").result))
-            (first, first_error), (second, second_error) = inertias
-            self.assertLess(abs(first - second), 3 * math.hypot(first_error, second_error), pair)
+        for model in ("viscous", "coulomb", "drag"):
+            z = []
+            for pair in PAIRS:
+                (first, first_error), (second, second_error) = (inertia_of_run(fit(name, model).result) for name in pair)
+                z.append((first - second) / math.hypot(first_error, second_error))
+                self.assertLess(abs(z[-1]), 3.29, (model, pair))  # p 0.001
+            self.assertLess(sum(each**2 for each in z), 12.84, model)  # p 0.005 of chi-square with 3 degrees of freedom
 
 
 if __name__ == "__main__":

@@ -77,11 +77,14 @@ std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::v
 
 void CheckAlternativeMinima(const FitProblem& problem, std::span<const AlternativeMinimum> alternatives,
                             double log_posterior, FitReport& report) {
-  constexpr double kNearlyAsWell = 9;  // in -2 log L
   if (report.termination != Termination::kConverged) return;
+  // Samples with autocorrelated residuals tell less than their likelihood as independent ones.
+  const FitStatistics& statistics = report.statistics;
+  const auto samples = static_cast<double>(problem.data.time.size());
+  const double nearly_as_well = 9 * std::max(samples / std::max(statistics.effective_samples, 1.0), 1.0);
   const AlternativeMinimum* nearest = nullptr;
   for (const AlternativeMinimum& alternative : alternatives) {
-    if (2 * (log_posterior - alternative.log_posterior) > kNearlyAsWell) continue;
+    if (2 * (log_posterior - alternative.log_posterior) > nearly_as_well) continue;
     if (DifferingParameters(problem, alternative, report).empty()) continue;
     if (nearest == nullptr || alternative.log_posterior > nearest->log_posterior) nearest = &alternative;
   }

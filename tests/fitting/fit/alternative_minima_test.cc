@@ -55,6 +55,23 @@ TEST(AlternativeSolutions, ReportBothRadiiOfAnAccelerationAcrossTheRod) {
   }
 }
 
+// With friction of another law than the fitted one the residuals, not the friction, choose between the two radii.
+TEST(AlternativeSolutions, AreNotResolvedByAutocorrelatedResiduals) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SyntheticOptions options = MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, 0.63}, 0.03);
+    options.model = FindMotionModel("drag").value();
+    options.parameters = {1 / 22.2, 0.00135, 0.0009, 0.00225};
+    options.duration = 20;
+    options.seed = seed;
+    FitOptions coulomb;
+    coulomb.model = "coulomb";
+    const FitReport fit = Fit(options, coulomb);
+    const ParameterEstimate& radius = *fit.Find("radius");
+    const bool is_right = radius.std_error && std::abs(radius.estimate - 0.63) < 4 * *radius.std_error;
+    EXPECT_TRUE(is_right || fit.HasWarning("ambiguous_sensor")) << seed << ": " << radius.estimate;
+  }
+}
+
 TEST(AlternativeSolutions, AreResolvedByAPriorOnTheRadius) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     FitOptions known;

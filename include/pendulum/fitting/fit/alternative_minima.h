@@ -22,7 +22,8 @@ struct AlternativeMinimum {
 std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::vector<double> parameters);
 
 /// Changes a converged fit to kNotIdentifiable, with the warning `ambiguous_sensor`, if an alternative solution
-/// explains the data nearly as well: its -2 log L is within 9 of the fit's. The alternative must differ by more than
+/// explains the data nearly as well: its -2 log L is within 9 of the fit's, times the samples over the effective
+/// samples where residuals are autocorrelated. The alternative must differ by more than
 /// three standard errors in a parameter of the pendulum, or in a scale or position of the sensor. The sign of the
 /// motion does not count as a difference. `log_posterior` is that of the fit.
 void CheckAlternativeMinima(const FitProblem& problem, std::span<const AlternativeMinimum> alternatives,
