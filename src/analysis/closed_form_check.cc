@@ -376,6 +376,18 @@ std::string Summarize(const std::vector<ClosedFormRow>& rows, const std::string&
          (wrong_law.empty() ? "" : "; wrong friction law: " + wrong_law);
 }
 
+std::string DescribeUnexplained(const std::vector<ClosedFormRow>& rows, const std::string& wrong_law) {
+  if (!wrong_law.empty()) return "the turning points follow another friction law: " + wrong_law;
+  const ClosedFormRow* farthest = nullptr;
+  for (const ClosedFormRow& row : rows) {
+    if (row.cause != DifferenceCause::kRecording || !(std::abs(*row.z) >= kUnexplained)) continue;
+    if (farthest == nullptr || std::abs(*row.z) > std::abs(*farthest->z)) farthest = &row;
+  }
+  if (farthest == nullptr) return "";
+  return "the closed form " + farthest->quantity + " is " + NumberText(std::abs(*farthest->z), 2) +
+         " standard deviations from the fit, and " + farthest->why;
+}
+
 }  // namespace
 
 ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms, const FitReport& fit,
@@ -394,6 +406,7 @@ ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms
     }
   }
   check.summary = Summarize(check.rows, forms.wrong_law);
+  check.unexplained = DescribeUnexplained(check.rows, forms.wrong_law);
   return check;
 }
 

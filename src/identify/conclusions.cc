@@ -24,19 +24,27 @@ void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Ident
   identification.closed_forms_model = model.name;
 }
 
+/// A fit with lack of fit has said already that the law does not describe the readings. Closed forms of readings that
+/// were corrected before the fit differ from it for this reason.
+void WarnOfUnexplained(const ClosedFormCheck& check, FitReport& fit) {
+  if (check.unexplained.empty() || fit.HasWarning("lack_of_fit") || fit.correction.size() > 0) return;
+  fit.warnings.push_back({"closed_forms_differ", check.unexplained});
+}
+
 /// A fit that failed or is not to be checked has an empty check.
 void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
                Identification& identification) {
   if (!identification.closed_forms) return;
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
-    const FitReport& fit = identification.fits[m];
+    FitReport& fit = identification.fits[m];
     identification.checks.emplace_back();
     if (fit.termination == Termination::kFailed || !is_checked(m)) continue;
     const bool same = fit.model.name == identification.closed_forms_model;
     const auto own = same ? Result<ClosedForms>(*identification.closed_forms)
                           : EstimateClosedForms(identification.used, fit.model, stop);
-    if (own)
-      identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.si_rig(), stop);
+    if (!own) continue;
+    identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.si_rig(), stop);
+    WarnOfUnexplained(identification.checks.back(), fit);
   }
 }
 

@@ -565,11 +565,21 @@ std::string WarningNames(const std::vector<Warning>& warnings, std::size_t first
   return text;
 }
 
+/// The place of the parenthesis that closes the one at `open`; npos if there is none.
+std::size_t ClosingOf(const std::string& text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t k = open; k < text.size(); ++k) {
+    if (text[k] == '(') ++depth;
+    if (text[k] == ')' && --depth == 0) return k;
+  }
+  return std::string::npos;
+}
+
 /// A message without its parentheses, except those with a flag.
 std::string WithoutAsides(std::string text) {
   std::size_t open = text.find(" (");
   while (open != std::string::npos) {
-    const std::size_t close = text.find(')', open);
+    const std::size_t close = ClosingOf(text, open + 1);
     if (close == std::string::npos) break;
     const bool keeps = HasFlag(text.substr(open, close - open));
     if (!keeps) text.erase(open, close + 1 - open);

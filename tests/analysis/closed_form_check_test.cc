@@ -105,6 +105,7 @@ TEST(CheckClosedForms, AttributesDryFrictionsDecrementToTheFormula) {
     EXPECT_EQ(checked.Row(exact).agrees, true) << exact;
   }
   EXPECT_THAT(checked.check.summary, Not(HasSubstr("wrong friction law")));
+  EXPECT_EQ(checked.check.unexplained, "");
 }
 
 TEST(CheckClosedForms, NamesAWrongFrictionLaw) {
@@ -115,6 +116,7 @@ TEST(CheckClosedForms, NamesAWrongFrictionLaw) {
     EXPECT_THAT(row.why, AllOf(HasSubstr(kFrictionLaw), HasSubstr("with viscous friction"))) << quantity;
   }
   EXPECT_THAT(checked.check.summary, HasSubstr("; wrong friction law: chi2/dof of the turning points is"));
+  EXPECT_THAT(checked.check.unexplained, HasSubstr("the turning points follow another friction law: chi2/dof"));
   EXPECT_THAT(checked.Row("inertia_small_angle").why, HasSubstr(kFiniteAmplitude));
 }
 
@@ -151,6 +153,7 @@ TEST(CheckClosedForms, AttributesTheEffectOfAFixedParameterToTheRecording) {
   const ClosedFormRow& row = checked.Row("viscous_turning_points");
   EXPECT_EQ(row.agrees, false);
   EXPECT_THAT(row.why, HasSubstr("by features of the recording that the fitted motion lacks"));
+  EXPECT_THAT(checked.check.unexplained, HasSubstr("standard deviations from the fit, and "));
 }
 
 // Noise autocorrelated over 0.2 s, 8 s at 50 Hz: the law is right, but its turning points are not independent.

@@ -2,11 +2,15 @@
 #include "identify/conclusions.h"
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "pendulum/model/rig.h"
+#include "tests/analysis/checked_run.h"
 
 namespace pendulum::conclusions_test {
 namespace {
@@ -51,6 +55,37 @@ TEST(AddConclusions, HasNoFrequencyWithoutTurningPoints) {
   AddConclusions(FreeSwing(), std::nullopt, nullptr, {}, report);
   ASSERT_TRUE(report.sampling);
   EXPECT_EQ(report.sampling->frequency_hz, 0);
+}
+
+/// A recording with dry friction fitted without it, with only these warnings of the fit.
+Identification FittedWithoutDryFriction(const std::vector<Warning>& warnings) {
+  FitOfRun run = FitTo(NoisyTextbookRun("coulomb"), "viscous", std::nullopt);
+  run.fit.warnings = warnings;
+  Identification report;
+  report.used = std::move(run.recording);
+  report.fits.push_back(std::move(run.fit));
+  return report;
+}
+
+TEST(AddConclusions, WarnsIfClosedFormsDifferAndNothingElseSaysThatTheLawIsWrong) {
+  for (const std::string code : {"", "lack_of_fit"}) {
+    Identification report =
+        FittedWithoutDryFriction(code.empty() ? std::vector<Warning>() : std::vector<Warning>{{code, "words"}});
+    const MotionModel model = report.fits[0].model;
+    AddConclusions(
+        FreeSwing(), model, [](std::size_t) { return true; }, {}, report);
+    EXPECT_EQ(report.fits[0].HasWarning("closed_forms_differ"), code.empty());
+  }
+}
+
+// Closed forms use the readings as recorded, and the fit corrected ones.
+TEST(AddConclusions, DoesNotWarnOfClosedFormsIfTheReadingsWereCorrected) {
+  Identification report = FittedWithoutDryFriction({});
+  report.fits[0].correction = Eigen::VectorXd::Constant(report.used.size(), 1e-6);
+  const MotionModel model = report.fits[0].model;
+  AddConclusions(
+      FreeSwing(), model, [](std::size_t) { return true; }, {}, report);
+  EXPECT_FALSE(report.fits[0].HasWarning("closed_forms_differ"));
 }
 
 }  // namespace

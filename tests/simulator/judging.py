@@ -14,7 +14,7 @@ WRONG = 5.0  # total errors
 START = {"release_angle", "release_time", "initial_angle", "initial_rate", "zero_angle", "rate_bias"}
 # Warnings that tell the user to doubt the answer without naming a cause.
 DOUBTS = {"lack_of_fit", "not_constant", "prior_conflict", "inertia_differs_from_rig", "frequency_differs_from_rig",
-          "another_minimum", "not_a_pendulum"}
+          "another_minimum", "not_a_pendulum", "closed_forms_differ"}
 # Warnings that name a cause, beside those of suspicions.
 CAUSE_CODES = {"zero_drift", "offset_unsteady", "offset_jumps", "lost_counts", "presliding", "hold_left_out", "hold_disagrees",
                "vibration", "clock_implausible", "rig_implausible"}

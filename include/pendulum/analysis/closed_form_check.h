@@ -36,6 +36,7 @@ struct ClosedFormRow {
 };
 
 inline constexpr double kAgrees = 3;
+inline constexpr double kUnexplained = 5;  // in |z|, so that some ten rows alarm by chance in 1 of 100,000 recordings
 
 /// Trajectories with the textbook's numbers: inertia and viscous friction from the linear formulas, start and zero from
 /// the fit. Values at the N used samples; empty if the linear formulas gave no numbers.
@@ -50,6 +51,9 @@ struct ClosedFormCheck {
   std::vector<ClosedFormRow> rows;
   TextbookOverlay overlay;
   std::string summary;  ///< Says how many rows agree.
+  /// How the readings differ from the fitted law, if a closed form is at least kUnexplained from the fit for no reason
+  /// of its formula, or the turning points exclude the law (ClosedForms::wrong_law); otherwise empty.
+  std::string unexplained;
 };
 
 /// Compares a fit with the closed forms of its model, and with the inertia from the rig's geometry; empty for a fit
