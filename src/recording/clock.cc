@@ -559,6 +559,41 @@ Result<RawSamples> ClockRepair::Repair() {
   return std::move(samples_);
 }
 
+// ---- Rows far from all others ------------------------------------------------------------------------------------
+
+/// Refuses one or two rows at an end that are so far from the others that their time is wrong. The motion between them
+/// would have to be computed for as long as they are apart.
+Check RefuseDistantRows(const RawSamples& samples) {
+  constexpr Index kFewest = 3;        // rows that can be a recording of their own
+  constexpr double kFar = 10;         // times the time of all other rows
+  constexpr double kManySteps = 1e4;  // sampling intervals
+  const Eigen::VectorXd& time = samples.time;
+  const Index last = time.size() - 1;
+  if (last < 3 * kFewest) return {};
+  const double step = (time[last - kFewest] - time[kFewest]) / static_cast<double>(last - 2 * kFewest);
+  const auto check = [&](Index before, Index row, double rest) -> Check {
+    const double gap = time[before + 1] - time[before];
+    if (!(gap > kFar * rest) || !(gap > kManySteps * step)) return {};
+    const auto text = [&](double duration) { return NumberText(duration, 3) + " " + samples.time_unit; };
+    return Error(StatusCode::kDataLoss, samples.name + ":" + std::to_string(samples.lines.LineOf(row)) + ": the time " +
+                                            text(time[row]) + " is " + text(gap) +
+                                            " from the others, which take only " + text(rest) +
+                                            "; correct or remove this row");
+  };
+  for (Index k = 0; k + 1 < kFewest; ++k) {
+    if (Check done = check(k, k, time[last] - time[k + 1]); !done) return done;
+    if (Check done = check(last - k - 1, last - k, time[last - k - 1] - time[0]); !done) return done;
+  }
+  return {};
+}
+
+Result<RawSamples> RepairRows(ClockRepair repair) {
+  Result<RawSamples> repaired = repair.Repair();
+  if (!repaired) return repaired;
+  if (Check done = RefuseDistantRows(*repaired); !done) return tl::unexpected(done.error());
+  return repaired;
+}
+
 }  // namespace
 
 std::size_t LineNumbers::LineOf(Index row) const {
@@ -568,8 +603,8 @@ std::size_t LineNumbers::LineOf(Index row) const {
 }
 
 Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
-  if (window.IsOpen()) return ClockRepair(std::move(samples)).Repair();
-  Result<RawSamples> repaired = ClockRepair(samples).Repair();
+  if (window.IsOpen()) return RepairRows(ClockRepair(std::move(samples)));
+  Result<RawSamples> repaired = RepairRows(ClockRepair(samples));
   if (repaired) return repaired;
   const auto rows = RowsInWindow(samples, window);
   constexpr Index kMinRows = 3;
@@ -578,7 +613,7 @@ Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
   if (rows.size() == all) return repaired;
   ClockRepair part(std::move(samples));
   part.KeepOnly(rows);
-  Result<RawSamples> repaired_part = part.Repair();
+  Result<RawSamples> repaired_part = RepairRows(std::move(part));
   if (!repaired_part) return repaired_part;
   repaired_part->warnings.push_back(
       {"time_outside_window", repaired.error().message + ". Only the " + std::to_string(rows.size()) + " of " +

@@ -159,9 +159,11 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
     if (found == fit.derived.end()) continue;
     const auto total = TotalStdError(found->std_error, found->systematic);
     const bool is_open = found->lower95.has_value() != found->upper95.has_value();
-    if (is_open || (total && *total >= std::abs(found->estimate))) continue;  // its divisor may be 0
-    derived.push_back(HasWideInterval(*found) ? IntervalOf(*found, std::string(word))
-                                              : Quantity(std::string(word), "", found->estimate, total, found->unit));
+    const bool is_wide = HasWideInterval(*found);
+    const bool contains_0 = is_wide && TotalIntervalOf(*found)->lower <= 0;
+    if (is_open || contains_0 || (total && *total >= std::abs(found->estimate))) continue;  // its divisor may be 0
+    derived.push_back(is_wide ? IntervalOf(*found, std::string(word))
+                              : Quantity(std::string(word), "", found->estimate, total, found->unit));
   }
   return derived;
 }
@@ -444,10 +446,10 @@ bool IsAssumption(const Warning& warning) {
 
 /// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 10> kSerious = {
-      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum", "frequency_differs_from_rig",
-      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady", "prior_conflict",
-      "rig_implausible",     "trajectory_accuracy"};
+  constexpr std::array<std::string_view, 11> kSerious = {
+      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",    "frequency_differs_from_rig",
+      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",    "prior_conflict",
+      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
 }
 

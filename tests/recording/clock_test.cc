@@ -635,6 +635,27 @@ TEST(RepairClock, DetectsNonAdjacentUnorderedStamps) {
   EXPECT_EQ(Repaired(Rows(time)).time.size(), 98);
 }
 
+// The motion in between would be computed for so long: 1e80 s at 1 Hz take for ever.
+TEST(RepairClock, RefusesRowsThatAreFarFromAllOthers) {
+  for (const double far : {-1e308, -1e80, -1e5, 1e5, 1e80, 1e308}) {
+    for (int count = 1; count <= 2; ++count) {
+      std::vector<double> times = Stamps(400, Hundredth);
+      for (int k = 0; k < count; ++k) times.push_back(far * (1 - 0.01 * k));
+      std::ranges::sort(times);
+      const auto repaired = RepairClock(Rows(times));
+      ASSERT_FALSE(repaired) << far << ", " << count;
+      EXPECT_THAT(repaired.error().message,
+                  testing::AllOf(testing::HasSubstr("from the others, which take only 3.99 s"),
+                                 testing::HasSubstr("correct or remove this row")));
+    }
+  }
+}
+
+TEST(RepairClock, KeepsTwoRecordingsADayApart) {
+  const std::vector<double> time = Stamps(800, [](int i) { return Hundredth(i) + (i < 400 ? 0 : 86400); });
+  EXPECT_EQ(Repaired(Rows(time)).time.size(), 800);
+}
+
 TEST(RepairClock, RefusesAClockThatWasSetBack) {
   EXPECT_EQ(FaultOf(Rows(Stamps(400, [](int i) { return Hundredth(i % 200); }))),
             "run.csv:202: time 0 s follows 1.99 s, so the clock was set back: these are two recordings in one file; "

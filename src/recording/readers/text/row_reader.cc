@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <exception>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "recording/readers/columns/metadata.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
+#include "recording/readers/columns/unit_guess.h"
 #include "recording/readers/text/cell.h"
 #include "recording/readers/text/head.h"
 #include "recording/readers/text/host_stamp.h"
@@ -96,6 +98,7 @@ class Reader {
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
   void WarnOfEmptyCells();
+  void WarnOfOtherRate(Recording& recording) const;
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
   bool is_host_time() const { return head_.has_host && !layout_.time && !(rate_hz() > 0); }
@@ -524,8 +527,24 @@ Result<Recording> Reader::Finish() {
   if (layout_.second) samples_.second.conservativeResize(rows_);
   Result<std::string> sha256 = lines_.Sha256();
   if (!sha256) return tl::unexpected(std::move(sha256).error());
-  return csv::ToRecording({std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)},
-                          options_);
+  Result<Recording> recording = csv::ToRecording(
+      {std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)}, options_);
+  if (recording) WarnOfOtherRate(*recording);
+  return recording;
+}
+
+/// The times of rows count more than what the text above them says.
+void Reader::WarnOfOtherRate(Recording& recording) const {
+  constexpr double kDiffers = 0.02;  // no rounding of a rate or an interval is as coarse
+  if (!layout_.time || !(head_.sample_rate_hz > 0) || recording.edge) return;
+  const double step = csv::MedianStep(recording.time), stated = 1 / head_.sample_rate_hz;
+  if (!(std::abs(step / stated - 1) > kDiffers)) return;
+  const auto text = [](double seconds) { return NumberText(seconds, 4) + " s"; };
+  recording.warnings.push_back({"rate_disagrees", recording.path + ": the times in column " +
+                                                      Quoted(layout_.time->name) + " are " + text(step) +
+                                                      " apart, but the lines above say " + text(stated) +
+                                                      "; the times are used (--time_column none --sample_rate_hz " +
+                                                      NumberText(head_.sample_rate_hz, 6) + " uses the other)"});
 }
 
 }  // namespace

@@ -30,6 +30,13 @@ inline bool HasNumber(std::string_view row, char separator) {
   return false;
 }
 
+/// Whether a run has times and nothing else, as under an oscilloscope's `Label,pendulum`: then the labels name no runs.
+inline bool HasOnlyTimes(std::string_view run, const std::vector<TableColumn>& columns) {
+  return !run.empty() && std::ranges::all_of(columns, [&](const TableColumn& column) {
+    return column.run != run || IsTime(column.meaning);
+  });
+}
+
 /// The columns if the names have a line of labels above them; empty otherwise. `second` must contain only names, one of
 /// them a time, and `third` must contain numbers.
 inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::string_view second, std::string_view third,
@@ -57,6 +64,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
     columns.push_back(
         {written, is_tracker ? TrackerColumnMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
   }
+  if (std::ranges::any_of(columns, [&](const TableColumn& each) { return HasOnlyTimes(each.run, columns); })) return {};
   return columns;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of tables with text below and beside them, and of headers with line breaks.
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -12,6 +14,7 @@
 namespace pendulum::around_the_table_test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -52,6 +55,24 @@ TEST(AroundTheTable, RowsMayBeginWithText) {
 TEST(AroundTheTable, OneLineOfTextMayStandAboveRowsWithoutNames) {
   const Recording recording = RecordingOf("Ready\n" + Rows("{t}\t{v}"), TimeAndValue("1:ms", "2", "deg"));
   ExpectTheRows(recording, kDegree);
+}
+
+// A Tektronix oscilloscope's lines; its label is above the names.
+TEST(AroundTheTable, TimesOfRowsCountMoreThanAnIntervalAbove) {
+  for (const auto& [interval, has_warning] : {std::pair("0.01", false), {"0.0102", false}, {"0.03", true}}) {
+    for (const char* label : {"Label,,", "Label,pendulum,"}) {
+      const std::string head =
+          std::string("Model,DPO2014\nSample Interval,") + interval + "\nRecord Length,8\n" + label;
+      const Recording recording = RecordingOf(head + "\nTIME (ms),angle_rad\n" + Rows("{t},{v}"));
+      ExpectTheRows(recording);
+      const auto found = std::ranges::find(recording.warnings, "rate_disagrees", &Warning::code);
+      EXPECT_EQ(found != recording.warnings.end(), has_warning) << interval;
+      if (!has_warning) continue;
+      EXPECT_THAT(found->message,
+                  AllOf(HasSubstr("are 0.01 s apart, but the lines above say 0.03 s; the times are used"),
+                        HasSubstr("--time_column none --sample_rate_hz 33.3333")));
+    }
+  }
 }
 
 TEST(AroundTheTable, RowsMayHaveNamesThatTheHeaderOmits) {
