@@ -446,10 +446,10 @@ bool IsAssumption(const Warning& warning) {
 
 /// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 11> kSerious = {
-      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",    "frequency_differs_from_rig",
-      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",    "prior_conflict",
-      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy"};
+  constexpr std::array<std::string_view, 12> kSerious = {
+      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",     "frequency_differs_from_rig",
+      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",     "prior_conflict",
+      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy", "unequal_columns"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
 }
 

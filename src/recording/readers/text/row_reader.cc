@@ -98,6 +98,7 @@ class Reader {
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
   void WarnOfEmptyCells();
+  void WarnOfUnpairedRows();
   void WarnOfOtherRate(Recording& recording) const;
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
@@ -116,13 +117,14 @@ class Reader {
   csv::DayClock day_clock_;
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
-  std::optional<RowSetAside> below_;               // The first line after the last row that could be read.
-  std::vector<TextOfLine> comments_;               // After the last row. They may belong to a second table.
-  std::size_t header_again_ = 0;                   // The line in which the header stands again, after the last row.
-  bool is_over_ = false;                           // A second table follows, below that line.
-  std::size_t lines_not_read_ = 0;                 // Of the second table.
-  bool has_note_ = false;                          // A row has text beyond the columns.
-  bool is_short_ = false;                          // The current row has too few fields.
+  std::size_t unpaired_rows_ = 0;     // Those after it that have a time or a reading, and no other column has anything.
+  std::optional<RowSetAside> below_;  // The first line after the last row that could be read.
+  std::vector<TextOfLine> comments_;  // After the last row. They may belong to a second table.
+  std::size_t header_again_ = 0;      // The line in which the header stands again, after the last row.
+  bool is_over_ = false;              // A second table follows, below that line.
+  std::size_t lines_not_read_ = 0;    // Of the second table.
+  bool has_note_ = false;             // A row has text beyond the columns.
+  bool is_short_ = false;             // The current row has too few fields.
   Eigen::Index rows_ = 0;
   RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
 };
@@ -315,6 +317,7 @@ Check Reader::ReadRow() {
   constexpr std::size_t kMostSlots = 8;
   std::array<double, kMostSlots> numbers{};
   std::size_t index = 0;
+  bool has_number = false, has_others = false;
   std::string_view row = line_.text;
   if (head_.has_host) {
     const auto stamp = csv::FindHostStamp(row);
@@ -325,9 +328,14 @@ Check Reader::ReadRow() {
     const int slot = index < slots_.size() ? slots_[index] : kNotRead;
     if (slot != kNotRead) {
       const bool is_clock = slot == kTime && layout_.is_clock;
-      if (!is_clock && fields.NextNumber(cells_.numbers, numbers.at(slot))) continue;
+      if (!is_clock && fields.NextNumber(cells_.numbers, numbers.at(slot))) {
+        has_number = true;
+        continue;
+      }
       if (Check read = ReadField(fields, slot, numbers.at(slot)); !read) return read;
-    } else if (const std::string_view text = Trim(fields.Next()); index >= layout_.width && !text.empty()) {
+    } else if (const std::string_view text = Trim(fields.Next()); index < layout_.width) {
+      has_others |= !text.empty();
+    } else if (!text.empty()) {
       if (layout_.separator != ' ' && csv::IsText(text)) {
         WarnOfNote(csv::Unquote(text));
         continue;
@@ -343,6 +351,7 @@ Check Reader::ReadRow() {
     const bool is_cut_off = is_first || (!head_.may_be_short && !lines_.is_terminated());
     if (is_cut_off) WarnOfIncompleteRow(line_);
     gap_rows_ += is_cut_off ? 0 : 1;
+    unpaired_rows_ += has_number && !has_others && !is_cut_off ? 1 : 0;
     return {};
   }
   if (index <= last) {
@@ -421,6 +430,7 @@ Check Reader::Append(double time, double value, double second) {
   ++rows_;
   inner_gap_rows_ += rows_ > 1 ? gap_rows_ : 0;
   gap_rows_ = 0;
+  unpaired_rows_ = 0;
   return {};
 }
 
@@ -522,6 +532,7 @@ Result<Recording> Reader::Finish() {
   RemoveTruncatedValue();
   RemoveTruncatedStamp();
   WarnOfEmptyCells();
+  WarnOfUnpairedRows();
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);
   if (layout_.second) samples_.second.conservativeResize(rows_);
@@ -531,6 +542,16 @@ Result<Recording> Reader::Finish() {
       {std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)}, options_);
   if (recording) WarnOfOtherRate(*recording);
   return recording;
+}
+
+/// Lists of different lengths: nothing says which of their numbers belong together.
+void Reader::WarnOfUnpairedRows() {
+  constexpr std::size_t kMostCutOff = 1;
+  if (unpaired_rows_ <= kMostCutOff) return;
+  samples_.warnings.push_back(
+      {"unequal_columns", std::string(lines_.name()) + ": the last " + std::to_string(unpaired_rows_) +
+                              " rows have only one of time and reading: if readings were lost before them, the times "
+                              "after that are wrong; these rows were left out"});
 }
 
 /// The times of rows count more than what the text above them says.

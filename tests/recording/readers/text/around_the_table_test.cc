@@ -17,6 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 std::vector<std::string> MessagesOf(const Recording& recording) {
@@ -73,6 +74,20 @@ TEST(AroundTheTable, TimesOfRowsCountMoreThanAnIntervalAbove) {
                         HasSubstr("--time_column none --sample_rate_hz 33.3333")));
     }
   }
+}
+
+// Lists of a file of JSON, NumPy or MATLAB become columns of such a table.
+TEST(AroundTheTable, ColumnsOfDifferentLengthsAreSaid) {
+  const std::string others = "time_ms,angle_deg,torque\n" + Rows("{t},{v},1");
+  for (const std::string more : {"80,\n90,\n100,\n", ",108\n,109\n,110\n"}) {
+    const Recording recording = RecordingOf(kTable + more);
+    ExpectTheRows(recording, kDegree);
+    EXPECT_THAT(MessagesOf(recording),
+                ElementsAre("run.csv: the last 3 rows have only one of time and reading: if readings were lost before "
+                            "them, the times after that are wrong; these rows were left out"));
+  }
+  for (const std::string more : {"80,\n", ",\n,\n,\n"}) EXPECT_THAT(MessagesOf(RecordingOf(kTable + more)), IsEmpty());
+  EXPECT_THAT(MessagesOf(RecordingOf(others + "80,,1\n90,,1\n")), IsEmpty());  // the other sensor ran on
 }
 
 TEST(AroundTheTable, RowsMayHaveNamesThatTheHeaderOmits) {
