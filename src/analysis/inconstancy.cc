@@ -183,9 +183,9 @@ double ChangeBetweenRuns(std::string_view name, const std::vector<SharedParamete
 }
 
 /// How far an estimate is off by friction that the law does not have: what was named, and in a short recording also
-/// terms that the readings suggest too weakly to be named.
+/// terms that the readings suggest too weakly to be named, if they move it more.
 double FrictionLawError(const Constancy& constancy, const ParameterEstimate& parameter) {
-  return std::hypot(parameter.named_friction, constancy.is_too_short_for_windows() ? parameter.hidden_friction : 0.0);
+  return std::max(parameter.named_friction, constancy.is_too_short_for_windows() ? parameter.hidden_friction : 0.0);
 }
 
 /// The part of this error that is not among the changes during the recording, which are a consequence of it.

@@ -24,11 +24,13 @@ void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Ident
   identification.closed_forms_model = model.name;
 }
 
-/// A fit with lack of fit has said already that the law does not describe the readings. Closed forms of readings that
-/// were corrected before the fit differ from it for this reason.
+/// Only if nothing else says that the law does not describe the readings. Closed forms of readings that were corrected
+/// before the fit differ from it for this reason.
 void WarnOfUnexplained(const ClosedFormCheck& check, FitReport& fit) {
-  if (check.unexplained.empty() || fit.HasWarning("lack_of_fit") || fit.correction.size() > 0) return;
-  fit.warnings.push_back({"closed_forms_differ", check.unexplained});
+  const bool is_doubted = fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
+                          !fit.suspicions.empty() || fit.correction.size() > 0;
+  if (check.unexplained.empty() || is_doubted) return;
+  fit.warnings.push_back({"closed_forms_differ", check.unexplained + "; compare the laws: --models all"});
 }
 
 /// A fit that failed or is not to be checked has an empty check.

@@ -62,6 +62,15 @@ RowRange RowsInWindow(const RawSamples& samples, const ClockWindow& window) {
   return {begin, end};
 }
 
+/// Median of the forward steps; 0 if there is none.
+double MedianForwardStep(const Eigen::VectorXd& time) {
+  std::vector<double> steps;
+  for (Index i = 1; i < time.size(); ++i) {
+    if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+  }
+  return steps.empty() ? 0 : Median(std::move(steps));
+}
+
 /// Repairs the time stamps of one file.
 class ClockRepair {
  public:
@@ -141,14 +150,7 @@ bool ClockRepair::Increases() const {
 
 bool ClockRepair::IsNotDecreasing() const { return std::is_sorted(time().begin(), time().end()); }
 
-/// Median of the forward steps; 0 if there is none.
-double ClockRepair::MedianStep() const {
-  std::vector<double> steps;
-  for (Index i = 1; i < size(); ++i) {
-    if (time()[i] > time()[i - 1]) steps.push_back(time()[i] - time()[i - 1]);
-  }
-  return steps.empty() ? 0 : Median(std::move(steps));
-}
+double ClockRepair::MedianStep() const { return MedianForwardStep(time()); }
 
 // ---- Counters that wrap around -----------------------------------------------------------------------------------
 
@@ -561,28 +563,29 @@ Result<RawSamples> ClockRepair::Repair() {
 
 // ---- Rows far from all others ------------------------------------------------------------------------------------
 
-/// Refuses one or two rows at an end that are so far from the others that their time is wrong. The motion between them
-/// would have to be computed for as long as they are apart.
+/// Refuses rows that are so far from the others that their time is wrong: one or two at an end, or beyond any pause.
+/// The motion between them would have to be computed for as long as they are apart.
 Check RefuseDistantRows(const RawSamples& samples) {
-  constexpr Index kFewest = 3;        // rows that can be a recording of their own
-  constexpr double kFar = 10;         // times the time of all other rows
-  constexpr double kManySteps = 1e4;  // sampling intervals
+  constexpr Index kMostAtAnEnd = 2;
+  constexpr double kFar = 10;                         // times the time of the rows between the ends
+  constexpr double kManySteps = 1e6, kEndless = 1e9;  // sampling intervals: hours, and months
   const Eigen::VectorXd& time = samples.time;
   const Index last = time.size() - 1;
-  if (last < 3 * kFewest) return {};
-  const double step = (time[last - kFewest] - time[kFewest]) / static_cast<double>(last - 2 * kFewest);
-  const auto check = [&](Index before, Index row, double rest) -> Check {
-    const double gap = time[before + 1] - time[before];
-    if (!(gap > kFar * rest) || !(gap > kManySteps * step)) return {};
-    const auto text = [&](double duration) { return NumberText(duration, 3) + " " + samples.time_unit; };
+  if (last < 2 * kMostAtAnEnd + 1) return {};
+  const double inner = time[last - kMostAtAnEnd] - time[kMostAtAnEnd];
+  const double step = MedianForwardStep(time), mean_step = inner / static_cast<double>(last - 2 * kMostAtAnEnd);
+  for (Index i = 0; i < last; ++i) {
+    const double gap = time[i + 1] - time[i];
+    const bool is_early = i < kMostAtAnEnd, is_late = i >= last - kMostAtAnEnd;
+    const bool is_wrong = (is_early || is_late) && gap > kFar * inner && gap > kManySteps * mean_step;
+    if (!is_wrong && !(gap > kEndless * step)) continue;
+    const Index row = is_early ? i : i + 1;
     return Error(StatusCode::kDataLoss, samples.name + ":" + std::to_string(samples.lines.LineOf(row)) + ": the time " +
-                                            text(time[row]) + " is " + text(gap) +
-                                            " from the others, which take only " + text(rest) +
-                                            "; correct or remove this row");
-  };
-  for (Index k = 0; k + 1 < kFewest; ++k) {
-    if (Check done = check(k, k, time[last] - time[k + 1]); !done) return done;
-    if (Check done = check(last - k - 1, last - k, time[last - k - 1] - time[0]); !done) return done;
+                                            NumberText(time[row], kDigits) + " " + samples.time_unit + " is " +
+                                            NumberText(gap, 3) + " " + samples.time_unit + " from that of the row " +
+                                            (is_early ? "after" : "before") + " it, and rows are " +
+                                            NumberText(step, 3) + " " + samples.time_unit +
+                                            " apart; correct or remove this row");
   }
   return {};
 }

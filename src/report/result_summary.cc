@@ -345,10 +345,11 @@ void SetRigVerdict(const std::optional<RigVerdict>& rig, FitSummary& summary) {
 /// What is unknown of a recording that is too short for a test of constancy.
 std::string UntestedText(const Constancy* constancy, const FitReport& fit) {
   if (constancy == nullptr || !constancy->is_too_short_for_halves()) return "";
-  const bool has_law_error = std::ranges::any_of(
-      fit.parameters, [](const ParameterEstimate& parameter) { return parameter.unseen_friction.has_value(); });
+  const bool has_law_error = std::ranges::any_of(fit.parameters, [](const ParameterEstimate& parameter) {
+    return parameter.systematic.Of(ErrorSource::kFrictionLaw) > 0;
+  });
   return "Constancy is not tested (" + std::to_string(*constancy->half_swings) + " half swings are too few)" +
-         (has_law_error ? "; the errors allow for friction of another law."
+         (has_law_error ? "; the errors allow for the friction of another law that the readings suggest."
                         : ": another recording may differ by more than these errors.");
 }
 
@@ -446,10 +447,11 @@ bool IsAssumption(const Warning& warning) {
 
 /// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 12> kSerious = {
+  constexpr std::array<std::string_view, 13> kSerious = {
       "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",     "frequency_differs_from_rig",
       "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",     "prior_conflict",
-      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy", "unequal_columns"};
+      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy", "unequal_columns",
+      "closed_forms_differ"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
 }
 

@@ -272,7 +272,7 @@ FitReport FitWithOtherFriction() {
 }
 
 TEST(FrictionLawError, ContainsWhatIsOnlySuggestedInAShortRecording) {
-  for (const auto& [half_swings, expected] : {std::pair(18, 3e-5), std::pair(17, 5e-5)}) {
+  for (const auto& [half_swings, expected] : {std::pair(18, 3e-5), std::pair(17, 4e-5)}) {
     FitReport fit = FitWithOtherFriction();
     Constancy constancy;
     constancy.half_swings = half_swings;

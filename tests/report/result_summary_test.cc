@@ -101,9 +101,21 @@ TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
   identification.constancy[0].half_swings = 9;
   EXPECT_THAT(SummarizeFit(identification, 0).remarks,
               HasSubstr("Constancy is not tested (9 half swings are too few): another recording may differ by more"));
-  identification.fits[0].parameters[0].unseen_friction = 1e-3;
+  identification.fits[0].parameters[0].systematic.Add(ErrorSource::kFrictionLaw, 1e-3);
   EXPECT_THAT(SummarizeFit(identification, 0).remarks,
-              HasSubstr("(9 half swings are too few); the errors allow for friction of another law."));
+              HasSubstr("(9 half swings are too few); the errors allow for the friction of another law that the "
+                        "readings suggest."));
+}
+
+// 95 % of the decay time: 148 s less sqrt(48² + 196²) s.
+TEST(SummarizeFit, OmitsAnIntervalThatContains0) {
+  for (const auto& [systematic, is_shown] : {std::pair(10.0, true), {100.0, false}}) {
+    Identification identification = ExampleIdentification();
+    DerivedQuantity decay{"decay_time", "s", 148, 10, 100, 700};
+    decay.systematic.Add(ErrorSource::kSensor, systematic);
+    identification.fits[0].derived = {decay};
+    EXPECT_EQ(SummarizeFit(identification, 0).derived.size(), is_shown ? 1 : 0) << systematic;
+  }
 }
 
 TEST(SummarizeFit, GivesAnglesInDegrees) {
@@ -280,6 +292,15 @@ TEST(SummaryText, ShowsEachSeriousWarning) {
   const std::string text = SummaryText(SummarizeResult(identification), "More.");
   for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
     EXPECT_THAT(text, HasSubstr(std::string("the reason is ") + code));
+}
+
+TEST(SummaryText, LeavesOutWholeParenthesesWhereThereIsNoRoom) {
+  Identification identification = ExampleIdentification();
+  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
+  identification.warnings.push_back(
+      {"another_minimum", "the errors assume autocorrelated noise (as AR(1)) and are valid"});
+  const std::string text = SummaryText(SummarizeResult(identification), "More.");
+  EXPECT_THAT(text, HasSubstr("noise and are valid"));
 }
 
 TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {

@@ -76,26 +76,26 @@ std::optional<std::vector<double>> MirrorImage(const FitProblem& problem, std::v
 }
 
 void CheckAlternativeMinima(const FitProblem& problem, std::span<const AlternativeMinimum> alternatives,
-                            double log_posterior, FitReport& report) {
+                            const AlternativeMinimum& fit, double effective_share, FitReport& report) {
+  constexpr double kNearlyAsWell = 9;  // in -2 log L
   if (report.termination != Termination::kConverged) return;
-  // Samples with autocorrelated residuals tell less than their likelihood as independent ones.
-  const FitStatistics& statistics = report.statistics;
-  const auto samples = static_cast<double>(problem.data.time.size());
-  const double nearly_as_well = 9 * std::max(samples / std::max(statistics.effective_samples, 1.0), 1.0);
+  const auto behind = [&](const AlternativeMinimum& other) {
+    return 2 * effective_share * (fit.log_likelihood - other.log_likelihood) + other.prior_sum - fit.prior_sum;
+  };
   const AlternativeMinimum* nearest = nullptr;
   for (const AlternativeMinimum& alternative : alternatives) {
-    if (2 * (log_posterior - alternative.log_posterior) > nearly_as_well) continue;
+    if (behind(alternative) > kNearlyAsWell) continue;
     if (DifferingParameters(problem, alternative, report).empty()) continue;
-    if (nearest == nullptr || alternative.log_posterior > nearest->log_posterior) nearest = &alternative;
+    if (nearest == nullptr || behind(alternative) < behind(*nearest)) nearest = &alternative;
   }
   if (nearest == nullptr) return;
   const std::vector<std::size_t> different = DifferingParameters(problem, *nearest, report);
   const std::string_view deciding = problem.infos[DecidingParameter(problem, different)].name;
-  const double behind = std::max(2 * (log_posterior - nearest->log_posterior), 0.0);
   report.termination = Termination::kNotIdentifiable;
   report.reason = "with " + DescribeDifferences(problem, *nearest, report, different) +
-                  " the fit is nearly as good (-2 log L is " + NumberText(behind, 2) +
-                  " higher): " + MeasurementFor(deciding);
+                  " the fit is nearly as good (-2 log L is " + NumberText(std::max(behind(*nearest), 0.0), 2) +
+                  " higher" + (effective_share < 1 ? ", by the effective samples" : "") +
+                  "): " + MeasurementFor(deciding);
   report.warnings.push_back({"ambiguous_sensor", report.reason});
   for (Identifiability& known : report.identifiability) {
     if (std::ranges::none_of(different, [&](std::size_t i) { return problem.infos[i].name == known.parameter; }))

@@ -83,7 +83,7 @@ void KeepBetter(Attempt other, Attempt& best) {
     other.alternatives = std::move(best.alternatives);
     std::swap(best, other);
   }
-  if (IsAtLocalMinimum(other)) best.alternatives.push_back({other.solution.parameters, LogPosterior(other)});
+  if (IsAtLocalMinimum(other)) best.alternatives.push_back(MinimumOf(other));
 }
 
 }  // namespace
@@ -94,8 +94,14 @@ Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& 
   return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
 }
 
+AlternativeMinimum MinimumOf(const Attempt& attempt) {
+  const Solution& solution = attempt.solution;
+  return {solution.parameters, solution.log_likelihood, attempt.cost->PriorSum(solution.parameters)};
+}
+
 double LogPosterior(const Attempt& attempt) {
-  return attempt.solution.log_likelihood - 0.5 * attempt.cost->PriorSum(attempt.solution.parameters);
+  const AlternativeMinimum minimum = MinimumOf(attempt);
+  return minimum.log_likelihood - 0.5 * minimum.prior_sum;
 }
 
 bool IsBetter(const Attempt& a, const Attempt& b) {

@@ -32,6 +32,7 @@ Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& option
 
 /// Log-likelihood of the samples and the priors.
 double LogPosterior(const Attempt& attempt);
+AlternativeMinimum MinimumOf(const Attempt& attempt);
 
 /// Whether `a` is usable and more likely than `b`.
 bool IsBetter(const Attempt& a, const Attempt& b);

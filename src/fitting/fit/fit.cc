@@ -212,14 +212,16 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
   std::string violation = OrderViolation(*attempt->problem, attempt->solution.parameters);
   Result<FitReport> report = FitReport();
   if (violation.empty()) {
-    const double log_posterior = LogPosterior(*attempt);
+    const AlternativeMinimum minimum = MinimumOf(*attempt);
     // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
     const bool has_base = !HasLeastReference(*attempt, options);
     report = MakeFitReport(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+    const double effective_share =
+        report->statistics.effective_samples / static_cast<double>(attempt->problem->data.time.size());
     const bool is_correctable = has_base && report->effects.correction.readings.size() > 0;
     if (is_correctable && options.search.may_correct) CorrectForSuspicions(recording, options, *report);
     WarnOfSuspicions(is_correctable && !options.search.may_correct, *report);
-    CheckAlternativeMinima(*attempt->problem, attempt->alternatives, log_posterior, *report);
+    CheckAlternativeMinima(*attempt->problem, attempt->alternatives, minimum, effective_share, *report);
     CheckProfilesForBetterMinimum(*attempt->problem, *report);
     violation = OrderViolationOf(*attempt->problem, *report);
   }

@@ -33,8 +33,8 @@ struct EffectCheck {
   /// of 30 % of its size (presliding: all of the dry friction) that the readings do not exclude; empty if nothing is
   /// known of that.
   Eigen::VectorXd unseen_friction;
-  /// P, the same units: how far such terms move the estimates beyond what chance explains, the root of the squared
-  /// shift less its variance; empty with unseen_friction.
+  /// P, the same units: how far such terms move the estimates beyond the uncertainty of that, the root of the squared
+  /// shift less the square of unseen_friction; empty with it.
   Eigen::VectorXd hidden_friction;
   /// P, the problem's units: how far the estimates are off, as a root mean square, by friction that is not in the
   /// law: of what was named, the cause with the strongest evidence; empty if nothing is known of that.

@@ -14,6 +14,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/recording/clock.h"
+#include "pendulum/recording/encoder_edges.h"
 #include "recording/readers/columns/column.h"
 #include "recording/readers/columns/column_choice.h"
 #include "recording/readers/columns/csv.h"
@@ -332,7 +333,10 @@ Check Reader::ReadRow() {
         has_number = true;
         continue;
       }
+      const bool had_gap = std::exchange(cells_.is_gap, false);
       if (Check read = ReadField(fields, slot, numbers.at(slot)); !read) return read;
+      has_number |= !cells_.is_gap;
+      cells_.is_gap |= had_gap;
     } else if (const std::string_view text = Trim(fields.Next()); index < layout_.width) {
       has_others |= !text.empty();
     } else if (!text.empty()) {
@@ -351,7 +355,8 @@ Check Reader::ReadRow() {
     const bool is_cut_off = is_first || (!head_.may_be_short && !lines_.is_terminated());
     if (is_cut_off) WarnOfIncompleteRow(line_);
     gap_rows_ += is_cut_off ? 0 : 1;
-    unpaired_rows_ += has_number && !has_others && !is_cut_off ? 1 : 0;
+    const bool is_pair = layout_.time && !layout_.second && layout_.axes.empty();
+    unpaired_rows_ += is_pair && has_number && !has_others && !is_cut_off ? 1 : 0;
     return {};
   }
   if (index <= last) {
@@ -551,15 +556,18 @@ void Reader::WarnOfUnpairedRows() {
   samples_.warnings.push_back(
       {"unequal_columns", std::string(lines_.name()) + ": the last " + std::to_string(unpaired_rows_) +
                               " rows have only one of time and reading: if readings were lost before them, the times "
-                              "after that are wrong; these rows were left out"});
+                              "after that are wrong; these rows were left out. Look for the "
+                              "missing readings at their source"});
 }
 
 /// The times of rows count more than what the text above them says.
 void Reader::WarnOfOtherRate(Recording& recording) const {
   constexpr double kDiffers = 0.02;  // no rounding of a rate or an interval is as coarse
-  if (!layout_.time || !(head_.sample_rate_hz > 0) || recording.edge) return;
+  if (!layout_.time || !(head_.sample_rate_hz > 0) || IsEventDriven(recording)) return;
   const double step = csv::MedianStep(recording.time), stated = 1 / head_.sample_rate_hz;
-  if (!(std::abs(step / stated - 1) > kDiffers)) return;
+  // The interval may be in ms or us.
+  const auto is_stated = [&](double unit) { return std::abs(step / (stated * unit) - 1) <= kDiffers; };
+  if (is_stated(1) || is_stated(1e-3) || is_stated(1e-6)) return;
   const auto text = [](double seconds) { return NumberText(seconds, 4) + " s"; };
   recording.warnings.push_back({"rate_disagrees", recording.path + ": the times in column " +
                                                       Quoted(layout_.time->name) + " are " + text(step) +

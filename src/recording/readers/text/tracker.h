@@ -30,11 +30,27 @@ inline bool HasNumber(std::string_view row, char separator) {
   return false;
 }
 
-/// Whether a run has times and nothing else, as under an oscilloscope's `Label,pendulum`: then the labels name no runs.
-inline bool HasOnlyTimes(std::string_view run, const std::vector<TableColumn>& columns) {
-  return !run.empty() && std::ranges::all_of(columns, [&](const TableColumn& column) {
-    return column.run != run || IsTime(column.meaning);
-  });
+/// A label above times alone names no run: its columns become shared ones. Returns whether there was one.
+inline bool ShareTimes(const std::vector<Name>& names, std::vector<TableColumn>& columns) {
+  const auto has_reading = [&](std::string_view run) {
+    return std::ranges::any_of(columns,
+                               [&](const TableColumn& other) { return other.run == run && !IsTime(other.meaning); });
+  };
+  bool is_shared = false;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].run.empty() || has_reading(columns[i].run)) continue;
+    columns[i].run.clear();
+    columns[i].written = std::string(names[i].text);
+    is_shared = true;
+  }
+  return is_shared;
+}
+
+inline bool HasSeveralRuns(const std::vector<TableColumn>& columns) {
+  const auto is_of_run = [](const TableColumn& column) { return !column.run.empty(); };
+  const auto first = std::ranges::find_if(columns, is_of_run);
+  return std::any_of(first, columns.end(),
+                     [&](const TableColumn& column) { return is_of_run(column) && column.run != first->run; });
 }
 
 /// The columns if the names have a line of labels above them; empty otherwise. `second` must contain only names, one of
@@ -64,7 +80,8 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
     columns.push_back(
         {written, is_tracker ? TrackerColumnMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
   }
-  if (std::ranges::any_of(columns, [&](const TableColumn& each) { return HasOnlyTimes(each.run, columns); })) return {};
+  // An oscilloscope's `Label,pendulum` stands above its names and has nothing to do with them.
+  if (ShareTimes(names, columns) && !HasSeveralRuns(columns)) return {};
   return columns;
 }
 

@@ -18,6 +18,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 using testing::StartsWith;
 
 std::vector<std::string> MessagesOf(const Recording& recording) {
@@ -82,10 +83,13 @@ TEST(AroundTheTable, ColumnsOfDifferentLengthsAreSaid) {
   for (const std::string more : {"80,\n90,\n100,\n", ",108\n,109\n,110\n"}) {
     const Recording recording = RecordingOf(kTable + more);
     ExpectTheRows(recording, kDegree);
-    EXPECT_THAT(MessagesOf(recording),
-                ElementsAre("run.csv: the last 3 rows have only one of time and reading: if readings were lost before "
-                            "them, the times after that are wrong; these rows were left out"));
+    EXPECT_THAT(
+        MessagesOf(recording),
+        ElementsAre("run.csv: the last 3 rows have only one of time and reading: if readings were lost before "
+                    "them, the times after that are wrong; these rows were left out. Look for the missing readings "
+                    "at their source"));
   }
+  EXPECT_THAT(MessagesOf(RecordingOf(kTable + "\"80\",\"\"\n\"90\",\"\"\n")), SizeIs(1));
   for (const std::string more : {"80,\n", ",\n,\n,\n"}) EXPECT_THAT(MessagesOf(RecordingOf(kTable + more)), IsEmpty());
   EXPECT_THAT(MessagesOf(RecordingOf(others + "80,,1\n90,,1\n")), IsEmpty());  // the other sensor ran on
 }

@@ -69,5 +69,10 @@ TEST(Tracker, ALineAboveTheNamesMustContainLabels) {
   ExpectTheRows(RecordingOf("1\t2\nt\tx\n" + Rows("{t}\t{v}")));
 }
 
+TEST(LabelledColumns, HaveASharedColumnOfTimes) {
+  const std::string text = "Common\tRun 1\tRun 2\nTime (s)\tAngle (deg)\tAngle (deg)\n" + Rows("0.0{t}\t{v}\t1");
+  ExpectTheRows(RecordingOf(text, Value("Run 1: Angle (deg)", "")), kDegree);
+}
+
 }  // namespace
 }  // namespace pendulum::tracker_test
