@@ -170,7 +170,8 @@ TEST(ParseRecording, PassesOnMetadata) {
       "# lost_samples: 3\n# operator: resolution unknown\n# range: -45, 45\n# sample_rate_hz: 100\n"
       "# clock_scale: 1.0001\n# clock_scale_std_dev: 2e-5\n# rig: {\"gravity_torque\": 1.8}\n" +
       kHeader + Rows());
-  EXPECT_TRUE(recording.warnings.empty());
+  ASSERT_EQ(recording.warnings.size(), 1);
+  EXPECT_EQ(recording.warnings[0].code, "rate_disagrees");
   EXPECT_EQ(recording.time[1], 0.5);  // From the time column, neither scaled nor from the rate.
   EXPECT_EQ(recording.clock_scale, 1.0001);
   EXPECT_EQ(recording.clock_scale_std_dev, 2e-5);
