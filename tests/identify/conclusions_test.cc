@@ -57,10 +57,11 @@ TEST(AddConclusions, HasNoFrequencyWithoutTurningPoints) {
   EXPECT_EQ(report.sampling->frequency_hz, 0);
 }
 
-/// A recording with dry friction fitted without it, with only these warnings of the fit.
+/// A recording with dry friction fitted without it, with only these warnings of the fit and no suspicions.
 Identification FittedWithoutDryFriction(const std::vector<Warning>& warnings) {
   FitOfRun run = FitTo(NoisyTextbookRun("coulomb"), "viscous", std::nullopt);
   run.fit.warnings = warnings;
+  run.fit.suspicions.clear();
   Identification report;
   report.used = std::move(run.recording);
   report.fits.push_back(std::move(run.fit));
