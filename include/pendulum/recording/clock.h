@@ -70,7 +70,8 @@ struct ClockWindow {
 /// at most kMaxStepsBack sampling intervals. As few rows as possible are left out, up to a twentieth of all. Gaps and
 /// uneven sampling cause no warning. kDataLoss: any other stamps that do not increase, one or two rows at an end whose
 /// distance from the others is ten times the time of all others and a million sampling intervals, and a gap of 1e9
-/// intervals; the message has the line, the times and what to do. Cost: one pass, about twenty if the stamps are not uniform.
+/// intervals; the message has the line, the times and what to do. Cost: one pass, about twenty if the stamps are not
+/// uniform.
 ///
 /// If the stamps of the whole file cannot be repaired, those in the window are. time_outside_window: only its rows are
 /// returned.
