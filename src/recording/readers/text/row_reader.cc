@@ -556,8 +556,8 @@ void Reader::WarnOfUnpairedRows() {
   samples_.warnings.push_back(
       {"unequal_columns", std::string(lines_.name()) + ": the last " + std::to_string(unpaired_rows_) +
                               " rows have only one of time and reading: if readings were lost before them, the times "
-                              "after that are wrong; these rows were left out. Look for the "
-                              "missing readings at their source"});
+                              "after that are wrong; these rows were left out. Look for the missing readings at "
+                              "their source"});
 }
 
 /// The times of rows count more than what the text above them says.
@@ -569,9 +569,9 @@ void Reader::WarnOfOtherRate(Recording& recording) const {
   const auto is_stated = [&](double unit) { return std::abs(step / (stated * unit) - 1) <= kDiffers; };
   if (is_stated(1) || is_stated(1e-3) || is_stated(1e-6)) return;
   const auto text = [](double seconds) { return NumberText(seconds, 4) + " s"; };
-  recording.warnings.push_back({"rate_disagrees", recording.path + ": the times in column " +
-                                                      Quoted(layout_.time->name) + " are " + text(step) +
-                                                      " apart, but the lines above say " + text(stated) +
+  recording.warnings.push_back({"rate_disagrees", recording.path + ": the times in column " + layout_.time->name +
+                                                      " are " + text(step) + " apart, but the lines above say " +
+                                                      text(stated) +
                                                       "; the times are used (--time_column none --sample_rate_hz " +
                                                       NumberText(head_.sample_rate_hz, 6) + " uses the other)"});
 }

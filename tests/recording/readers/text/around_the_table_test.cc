@@ -70,9 +70,10 @@ TEST(AroundTheTable, TimesOfRowsCountMoreThanAnIntervalAbove) {
       const auto found = std::ranges::find(recording.warnings, "rate_disagrees", &Warning::code);
       EXPECT_EQ(found != recording.warnings.end(), has_warning) << interval;
       if (!has_warning) continue;
-      EXPECT_THAT(found->message,
-                  AllOf(HasSubstr("are 0.01 s apart, but the lines above say 0.03 s; the times are used"),
-                        HasSubstr("--time_column none --sample_rate_hz 33.3333")));
+      EXPECT_THAT(
+          found->message,
+          AllOf(HasSubstr("column \"TIME (ms)\" are 0.01 s apart, but the lines above say 0.03 s; the times are used"),
+                HasSubstr("--time_column none --sample_rate_hz 33.3333")));
     }
   }
 }
