@@ -572,10 +572,12 @@ Check RefuseDistantRows(const RawSamples& samples) {
   const Eigen::VectorXd& time = samples.time;
   const Index last = time.size() - 1;
   if (last < 2 * kMostAtAnEnd + 1) return {};
+  const Eigen::VectorXd steps = time.tail(last) - time.head(last);
+  if (!(steps.maxCoeff() > kManySteps * steps.minCoeff())) return {};  // spares most files the median
   const double inner = time[last - kMostAtAnEnd] - time[kMostAtAnEnd];
   const double step = MedianForwardStep(time), mean_step = inner / static_cast<double>(last - 2 * kMostAtAnEnd);
   for (Index i = 0; i < last; ++i) {
-    const double gap = time[i + 1] - time[i];
+    const double gap = steps[i];
     const bool is_early = i < kMostAtAnEnd, is_late = i >= last - kMostAtAnEnd;
     const bool is_wrong = (is_early || is_late) && gap > kFar * inner && gap > kManySteps * mean_step;
     if (!is_wrong && !(gap > kEndless * step)) continue;

@@ -99,10 +99,7 @@ AlternativeMinimum MinimumOf(const Attempt& attempt) {
   return {solution.parameters, solution.log_likelihood, attempt.cost->PriorSum(solution.parameters)};
 }
 
-double LogPosterior(const Attempt& attempt) {
-  const AlternativeMinimum minimum = MinimumOf(attempt);
-  return minimum.log_likelihood - 0.5 * minimum.prior_sum;
-}
+double LogPosterior(const Attempt& attempt) { return MinimumOf(attempt).log_posterior(); }
 
 bool IsBetter(const Attempt& a, const Attempt& b) {
   return a.solution.usable && (!b.solution.usable || LogPosterior(a) > LogPosterior(b));

@@ -32,6 +32,8 @@ Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& option
 
 /// Log-likelihood of the samples and the priors.
 double LogPosterior(const Attempt& attempt);
+
+/// Where the search of the attempt ended.
 AlternativeMinimum MinimumOf(const Attempt& attempt);
 
 /// Whether `a` is usable and more likely than `b`.

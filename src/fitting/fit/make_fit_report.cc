@@ -160,8 +160,8 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   return report;
 }
 
-/// Sets how far estimates are off by friction that the law does not have: what was named, what the
-/// readings suggest, and what they do not exclude.
+/// Sets how far estimates are off by friction that the law does not have: what was named, what the readings
+/// suggest, and what they do not exclude.
 void SetOtherFriction(const FitProblem& problem, FitReport& report) {
   for (Eigen::Index i = 0; i < report.effects.unseen_friction.size(); ++i) {
     const auto index = static_cast<std::size_t>(i);

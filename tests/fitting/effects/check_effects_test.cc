@@ -41,6 +41,19 @@ Recording Disturbed(const SyntheticOptions& run, const std::function<double(doub
   return recording;
 }
 
+Recording Undisturbed(const SyntheticOptions& run) {
+  return Disturbed(run, [](double y, double) { return y; });
+}
+
+/// A recording with bristles that slide after this angle [rad], too short to show that the inertia depends on the
+/// amplitude.
+SyntheticOptions BristleRun(double presliding_angle, double noise, std::uint64_t seed) {
+  SyntheticOptions run = NoisyRun("dahl", seed);
+  run.parameters = {run.parameters[0], 0.001, 0.01, presliding_angle};
+  run.noise = noise;
+  return run;
+}
+
 const Suspicion* FindSuspicion(const FitReport& fit, Cause cause) {
   const auto found = std::ranges::find(fit.suspicions, cause, &Suspicion::cause);
   return found == fit.suspicions.end() ? nullptr : &*found;
@@ -55,7 +68,7 @@ double InertiaDeviation(const FitReport& fit, const SyntheticOptions& run) {
 TEST(CheckEffects, NamesNothingInACleanRecording) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const SyntheticOptions run = CleanRun(seed);
-    const FitReport fit = Fit(Disturbed(run, [](double y, double) { return y; }), ModelOptions("coulomb"));
+    const FitReport fit = Fit(Undisturbed(run), ModelOptions("coulomb"));
     EXPECT_TRUE(fit.suspicions.empty()) << seed << " " << CauseName(fit.suspicions.front().cause);
     EXPECT_GT(fit.parameters[0].systematic.Of(ErrorSource::kSensor), 0);
     EXPECT_LT(std::abs(InertiaDeviation(fit, run)), 4);
@@ -139,7 +152,7 @@ TEST(CheckEffects, FindsFrictionOfAnotherLaw) {
   run.noise = 0.002;
   run.duration = 30;
   run.parameters[3] *= 20;
-  const FitReport fit = Fit(Disturbed(run, [](double y, double) { return y; }), ModelOptions("viscous"));
+  const FitReport fit = Fit(Undisturbed(run), ModelOptions("viscous"));
   const Suspicion* law = FindSuspicion(fit, Cause::kFrictionLaw);
   ASSERT_NE(law, nullptr);
   EXPECT_FALSE(law->is_corrected);
@@ -149,10 +162,8 @@ TEST(CheckEffects, FindsFrictionOfAnotherLaw) {
 // in a recording too short to show that the inertia depends on the amplitude.
 TEST(CheckEffects, KnowsHowFarNamedFrictionMovesTheEstimates) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    SyntheticOptions run = NoisyRun("dahl", seed);
-    run.parameters = {run.parameters[0], 0.001, 0.01, 0.02};
-    run.noise = 0.0005;
-    const FitReport fit = Fit(Disturbed(run, [](double y, double) { return y; }), ModelOptions("coulomb"));
+    const SyntheticOptions run = BristleRun(0.02, 0.0005, seed);
+    const FitReport fit = Fit(Undisturbed(run), ModelOptions("coulomb"));
     ASSERT_NE(FindSuspicion(fit, Cause::kPresliding), nullptr) << seed;
     const ParameterEstimate& inertia = fit.parameters[0];
     const double off = std::abs(inertia.estimate - run.parameters[0]);
@@ -165,10 +176,8 @@ TEST(CheckEffects, KnowsHowFarNamedFrictionMovesTheEstimates) {
 // A tenth of that angle beside more noise is too weak to be named, and still moves the inertia by many standard errors.
 TEST(CheckEffects, KnowsHowFarHiddenFrictionMovesTheEstimates) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    SyntheticOptions run = NoisyRun("dahl", seed);
-    run.parameters = {run.parameters[0], 0.001, 0.01, 0.002};
-    run.noise = 0.008;
-    const FitReport fit = Fit(Disturbed(run, [](double y, double) { return y; }), ModelOptions("coulomb"));
+    const SyntheticOptions run = BristleRun(0.002, 0.008, seed);
+    const FitReport fit = Fit(Undisturbed(run), ModelOptions("coulomb"));
     EXPECT_EQ(FindSuspicion(fit, Cause::kPresliding), nullptr) << seed;
     const ParameterEstimate& inertia = fit.parameters[0];
     const double off = std::abs(inertia.estimate - run.parameters[0]);
@@ -179,7 +188,7 @@ TEST(CheckEffects, KnowsHowFarHiddenFrictionMovesTheEstimates) {
 }
 
 TEST(CheckEffects, KnowsOfNoNamedFrictionInACleanRecording) {
-  const FitReport fit = Fit(Disturbed(CleanRun(1), [](double y, double) { return y; }), ModelOptions("coulomb"));
+  const FitReport fit = Fit(Undisturbed(CleanRun(1)), ModelOptions("coulomb"));
   for (const ParameterEstimate& parameter : fit.parameters) EXPECT_EQ(parameter.named_friction, 0);
 }
 

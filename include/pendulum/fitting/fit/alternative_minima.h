@@ -15,6 +15,8 @@ struct AlternativeMinimum {
   std::vector<double> parameters;  ///< P, the problem's units.
   double log_likelihood = 0;       ///< Of the samples.
   double prior_sum = 0;            ///< Of squares, that of the priors.
+
+  double log_posterior() const { return log_likelihood - 0.5 * prior_sum; }
 };
 
 /// For an accelerometer that measures across the rod: the solution with another radius and the motion to the other

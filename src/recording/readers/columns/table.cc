@@ -71,6 +71,13 @@ std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, c
   return without_unit;
 }
 
+std::set<std::string_view> RunsOf(const std::vector<TableColumn>& columns) {
+  std::set<std::string_view> runs;
+  for (const TableColumn& column : columns) runs.insert(column.run);
+  runs.erase("");
+  return runs;
+}
+
 Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColumn>& columns,
                                   const ReadOptions& options) {
   const std::size_t chosen = options.value_column.empty() ? columns.size() : IndexOf(columns, options.value_column);
@@ -81,11 +88,8 @@ Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColum
                           "vector's components with --value_column",
                       StatusCode::kInvalidArgument);
   }
-  std::set<std::string_view> runs;
-  for (const TableColumn& column : columns) runs.insert(column.run);
-  runs.erase("");
   std::optional<std::string> run;
-  if (runs.size() > 1) {
+  if (RunsOf(columns).size() > 1) {
     auto one = ChooseRun(line, columns, options);
     if (!one) return tl::unexpected(std::move(one).error());
     run = *std::move(one);

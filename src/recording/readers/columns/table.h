@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "recording/readers/columns/column_choice.h"
@@ -32,6 +34,9 @@ TimeFlag TimeFlagOf(const std::vector<TableColumn>& columns, const std::string& 
 
 /// The columns that could be the quantity. If any column has the requested unit, only columns with this unit.
 std::vector<std::size_t> CandidatesOf(const std::vector<TableColumn>& columns, const std::string& unit);
+
+/// The runs beside each other that the columns belong to; they refer to `columns`.
+std::set<std::string_view> RunsOf(const std::vector<TableColumn>& columns);
 
 /// The names from which ChooseColumns chooses; they refer to `columns`. If there are several runs, only one run can
 /// be chosen: the run of the requested column or of the only candidate. Lengths of vectors are excluded. kDataLoss:

@@ -46,13 +46,6 @@ inline bool ShareTimes(const std::vector<Name>& names, std::vector<TableColumn>&
   return is_shared;
 }
 
-inline bool HasSeveralRuns(const std::vector<TableColumn>& columns) {
-  const auto is_of_run = [](const TableColumn& column) { return !column.run.empty(); };
-  const auto first = std::ranges::find_if(columns, is_of_run);
-  return std::any_of(first, columns.end(),
-                     [&](const TableColumn& column) { return is_of_run(column) && column.run != first->run; });
-}
-
 /// The columns if the names have a line of labels above them; empty otherwise. `second` must contain only names, one of
 /// them a time, and `third` must contain numbers.
 inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::string_view second, std::string_view third,
@@ -81,7 +74,7 @@ inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::str
         {written, is_tracker ? TrackerColumnMeaning(name) : PlainUnits(name), is_shared ? "" : run, names[i].at});
   }
   // An oscilloscope's `Label,pendulum` stands above its names and has nothing to do with them.
-  if (ShareTimes(names, columns) && !HasSeveralRuns(columns)) return {};
+  if (ShareTimes(names, columns) && RunsOf(columns).size() < 2) return {};
   return columns;
 }
 
