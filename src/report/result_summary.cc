@@ -447,11 +447,11 @@ bool IsAssumption(const Warning& warning) {
 
 /// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 13> kSerious = {
+  constexpr std::array<std::string_view, 14> kSerious = {
       "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",     "frequency_differs_from_rig",
       "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",     "prior_conflict",
       "rate_disagrees",      "rig_implausible",          "trajectory_accuracy", "unequal_columns",
-      "closed_forms_differ"};
+      "closed_forms_differ", "gravity_in_readings"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
 }
 

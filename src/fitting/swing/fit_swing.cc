@@ -150,6 +150,12 @@ std::optional<std::string> NotAPendulumReason(SwingFit& result, const std::stop_
   return linear->why + "; " + linear->advice;
 }
 
+/// Whether a fit does not converge, or leaves more than noise.
+bool LeavesMoreThanNoise(const FitReport& fit) {
+  return fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
+         fit.HasWarning("correlated_residuals");
+}
+
 // ---- Rescues -------------------------------------------------------------------------------------------------------
 
 /// A fit of a swing, and what the rescues have found so far.
@@ -165,12 +171,7 @@ struct SwingState {
   /// How the hold disagrees with the swing; it was left out if the user did not ask for it.
   std::optional<HoldDisagreement> hold = std::nullopt;
 
-  /// Whether the fit leaves more than noise.
-  bool IsLacking() const {
-    const FitReport& fit = result.fit;
-    return fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
-           fit.HasWarning("correlated_residuals");
-  }
+  bool IsLacking() const { return LeavesMoreThanNoise(result.fit); }
   bool HasNewWindow() const { return swing.from != result.swing.from || swing.to != result.swing.to; }
 };
 
@@ -441,6 +442,34 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
   result = std::move(other);
 }
 
+/// Whether an accelerometer's readings decide that `other`, which contains gravity where `first` does not or the
+/// reverse, is right: it describes at least as many of them, and better.
+bool IsBetterAcceleration(const SwingFit& other, const SwingFit& first) {
+  constexpr double kBetter = 0.8;
+  const bool is_described = other.fit.termination == Termination::kConverged && !other.fit.HasWarning("lack_of_fit");
+  if (!is_described || other.used.size() < first.used.size()) return false;
+  return !LeavesMoreThanNoise(other.fit) ||
+         other.fit.statistics.rms_residual < kBetter * first.fit.statistics.rms_residual;
+}
+
+/// Fits an acceleration whose name says wrongly whether it contains gravity. If this does not help, the result stays.
+/// recording, swing: as for FitAsSpring.
+void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions& options, Result<SwingFit>& result) {
+  if (!LeavesMoreThanNoise(result->fit)) return;
+  recording.shows_gravity = !recording.shows_gravity;
+  const bool is_shown = recording.shows_gravity;
+  Result<SwingFit> other = FitUnlessStopped(std::move(recording), std::move(swing), options);
+  if (!other || !IsBetterAcceleration(*other, *result)) return;
+  const std::string is = is_shown ? "contains" : "does not contain";
+  const std::string says = is_shown ? "does not" : "does";
+  other->fit.warnings.insert(
+      other->fit.warnings.begin(),
+      {"gravity_in_readings", "the acceleration " + is + " gravity, although by its name it " + says +
+                                  ": only so does the motion explain the readings. Correct "
+                                  "the column's name"});
+  result = std::move(other);
+}
+
 }  // namespace
 
 Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, const FitOptions& options) {
@@ -455,9 +484,12 @@ Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, cons
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
   std::optional<Recording> original;
-  if (options.may_be_spring && ReasonForUnit(recording)) original = recording;
+  const bool is_acceleration = recording.quantity == Quantity::kAcceleration;
+  if (is_acceleration || (options.may_be_spring && ReasonForUnit(recording))) original = recording;
   Result<SwingFit> result = FitUnlessStopped(std::move(recording), swing, options);
-  if (result && original && !result->linear_reason.empty()) {
+  if (result && is_acceleration) {
+    FitWithOtherGravity(*std::move(original), std::move(swing), options, result);
+  } else if (result && original && !result->linear_reason.empty()) {
     FitAsSpring(*std::move(original), std::move(swing), options, result);
   }
   if (options.stop.stop_requested()) return FitStopped();

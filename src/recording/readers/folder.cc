@@ -13,6 +13,7 @@
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/swing_choice.h"
 #include "recording/readers/content.h"
+#include "recording/readers/text/phone_log.h"
 #include "recording/readers/text/row_reader.h"
 
 namespace pendulum {
@@ -175,13 +176,14 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   if (summaries.empty() && fault) return tl::unexpected(*std::move(fault));
   if (summaries.empty()) return std::nullopt;
   std::vector<std::string> candidates;
-  std::optional<std::size_t> raw;
+  std::optional<std::size_t> usual;
   for (const MemberSummary& summary : summaries) {
-    if (folder.paths[summary.index] == "Raw Data") raw = summary.index;
-    for (const std::string& column : summary.candidates)
-      candidates.push_back(QuotedMemberAndColumn(folder.paths[summary.index], column));
+    const std::string& path = folder.paths[summary.index];
+    const bool is_gyro = folder.member == "file" && csv::IsGyroFile(path);
+    if (path == "Raw Data" || (!usual && is_gyro)) usual = summary.index;
+    for (const std::string& column : summary.candidates) candidates.push_back(QuotedMemberAndColumn(path, column));
   }
-  if (!raw) {
+  if (!usual) {
     const MemberSummary& first = summaries.front();
     const std::string flag = FlagOf(folder.paths[first.index], first.candidates.front());
     auto several = WithTry(Fault(folder.name, "columns " + SeveralQuantities(candidates)), {flag});
@@ -190,11 +192,11 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
     }
     return several;
   }
-  warnings.push_back({"member_assumed", folder.name + ": " + folder.member +
-                                            " \"Raw Data\" was read, although others have columns of a swing too; "
+  warnings.push_back({"member_assumed", folder.name + ": " + folder.member + " " + Quoted(folder.paths[*usual]) +
+                                            " was read, although others have columns of a swing too; "
                                             "choose another with --value_column " +
                                             FlagExample(folder)});
-  return raw;
+  return usual;
 }
 
 Result<Recording> ReadWhole(const Folder& folder, std::size_t index, const ReadOptions& options,

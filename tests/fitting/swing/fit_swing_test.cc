@@ -149,6 +149,30 @@ TEST(FitSwing, ReturnsTheErrorOfTheFit) {
   EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
 }
 
+// A phone's "Linear Acceleration" that contains gravity, and an acceleration of which the phone has removed it.
+TEST(FitSwing, FindsWhetherAnAccelerationContainsGravity) {
+  for (const double gravity : {0.0, kStandardGravity}) {
+    for (const double axis : {0.0, 0.3, 0.5 * kPi}) {
+      SyntheticOptions options =
+          MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.03, 1, axis, 0.2}, 0.02);
+      options.sensor.gravity = gravity;
+      options.duration = 20;
+      Recording recording = Must(SimulateRecording(options));
+      const double inertia = options.parameters[0];
+      recording.shows_gravity = gravity == 0;
+      const SwingFit result = FitChosen(recording, {});
+      const ParameterEstimate& radius = *result.fit.Find("radius");
+      EXPECT_TRUE(result.fit.HasWarning("gravity_in_readings")) << gravity << ", " << axis;
+      ASSERT_TRUE(radius.std_error) << gravity << ", " << axis << ": " << result.fit.reason;
+      EXPECT_NEAR(radius.estimate, 0.2, 4 * *radius.std_error) << gravity << ", " << axis;
+      EXPECT_NEAR(result.fit.Find("inertia")->estimate, inertia, 1e-3 * inertia) << gravity << ", " << axis;
+
+      recording.shows_gravity = gravity > 0;
+      EXPECT_FALSE(FitChosen(recording, {}).fit.HasWarning("gravity_in_readings")) << gravity << ", " << axis;
+    }
+  }
+}
+
 TEST(FitSwing, RemovesWholeTurnsFromTheZero) {
   SyntheticOptions truth = NoisyRun("coulomb", 3);
   truth.start = StartKind::kMoving;

@@ -71,7 +71,7 @@ std::vector<Index> FindDistinct(const Eigen::MatrixXd& covariance) {
 
 /// Whether columns are two or three axes of a gyro.
 bool IsRotation(const Choice& choice, const Columns& columns) {
-  return columns.size() > 1 && choice.Meaning(columns.front()).kind == Kind::kRate && AreAxes(choice, columns);
+  return columns.size() > 1 && KindOf(choice, columns.front()) == Kind::kRate && AreAxes(choice, columns);
 }
 
 /// Combines the axes of a gyro to the rotation about one fixed axis if several show it. Returns false if the axes turn
@@ -186,7 +186,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     const auto row = static_cast<Index>(i);
     if (row != best) others.push_back(choice.NameOf(columns[i]) + " " + Percent(shares[row]));
   }
-  const std::optional<Kind> kind = choice.Meaning(columns.front()).kind;
+  const std::optional<Kind> kind = KindOf(choice, columns.front());
   if (!kind && HaveSeveralSwings(choice, columns)) {
     choice.AskForColumn(
         "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns)),
@@ -203,12 +203,29 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
                       (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""));
     return columns[best];
   }
+  // Whether one axis is enough follows from the unit, which will be asked for.
+  if (IsAxisOfThree(choice, columns[best]) && choice.options.unit.empty()) return columns[best];
   others.insert(others.begin(), choice.NameOf(columns[best]) + " " + Percent(share));
   choice.AskForColumn("no single column carries the swing: " + ListOf(others), columns[best]);
   return std::nullopt;
 }
 
 }  // namespace
+
+std::optional<Kind> KindOf(const Choice& choice, std::size_t index) {
+  const NameMeaning& meaning = choice.Meaning(index);
+  const Unit* const asked = choice.options.unit.empty() ? nullptr : UnitOfText(choice.options.unit);
+  return meaning.unit == nullptr && asked != nullptr ? asked->kind : meaning.kind;
+}
+
+bool IsAxisOfThree(const Choice& choice, std::size_t index) {
+  const auto has = [&](std::string_view letter) {
+    return std::ranges::any_of(
+        choice.meanings, [&](const NameMeaning& meaning) { return meaning.stem == letter && meaning.unit == nullptr; });
+  };
+  const NameMeaning& own = choice.Meaning(index);
+  return own.unit == nullptr && own.stem.size() == 1 && has("x") && has("y") && has("z");
+}
 
 bool WantsCombination(const Choice& choice) {
   return choice.options.value_column == kCombined &&

@@ -42,6 +42,26 @@ Columns TimesByNumbers(Choice& choice) {
   return times;
 }
 
+Eigen::VectorXd SwingBeside(const Choice& choice) {
+  return choice.value ? choice.SwingOf(*choice.value) : Eigen::VectorXd();
+}
+
+/// Asks what a column counts whose numbers increase by 1.
+void AskWhatIsCounted(Choice& choice, std::size_t index) {
+  const std::string counts = "column " + choice.NameOf(index) + " increases by 1 in each row, so it counts ";
+  const std::string unit = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
+  const std::string rate = "--sample_rate_hz and --time_column none (100 is an example; give your rate)";
+  if (MaySecondsCount(SwingBeside(choice))) {
+    choice.Ask(counts + "seconds, rows or milliseconds: give the unit with " + unit +
+                   " and --gravity linear, or with :ms, or the rate of the rows with " + rate,
+               {unit, "--gravity linear"});
+    return;
+  }
+  choice.Ask(counts + "rows, seconds or milliseconds: give the rate of the rows with " + rate + ", or the unit with " +
+                 unit + " or :ms",
+             {"--sample_rate_hz 100", "--time_column none"});
+}
+
 /// Whether the unit of times must be asked for: the name has an unknown one, or the column may count rows.
 bool AskForTimeUnit(Choice& choice, std::size_t index) {
   const std::string column = "column " + choice.NameOf(index);
@@ -53,11 +73,7 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
     return true;
   }
   if (!IsRowNumber(choice, index)) return false;
-  choice.Ask(column +
-                 " increases by 1 in each row, so it counts rows or milliseconds: give the rate of the rows with " +
-                 "--sample_rate_hz and --time_column none (100 is an example; give your rate), or the unit with " +
-                 flag + ":ms",
-             {"--sample_rate_hz 100", "--time_column none"});
+  AskWhatIsCounted(choice, index);
   return true;
 }
 
@@ -72,8 +88,7 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
                   "column " + choice.NameOf(index) + " holds times of day; times count from the first row");
     return {};
   }
-  const TimeGuess guess =
-      GuessTimeUnit(choice.NumbersOf(index), choice.value ? choice.SwingOf(*choice.value) : Eigen::VectorXd());
+  const TimeGuess guess = GuessTimeUnit(choice.NumbersOf(index), SwingBeside(choice));
   if (guess.unit.empty()) {
     const std::string flag = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
     choice.Ask("column " + choice.NameOf(index) + " does not give its unit, and " + guess.reason + ": give it with " +

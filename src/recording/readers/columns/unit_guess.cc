@@ -97,11 +97,11 @@ UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude)
   return {"", ", which may be m/s^2 or g", "m_s2"};
 }
 
-/// Whether times may be seconds of a slow torsion pendulum or milliseconds of a fast pendulum: milliseconds are usually
-/// whole numbers. period: if the times are seconds.
-bool IsSlowOrInMs(const Eigen::VectorXd& times, double period) {
+/// Whether times may be seconds of a slow torsion pendulum, which is read every 10 s, or milliseconds of a fast
+/// pendulum. period: if the times are seconds.
+bool IsSlowOrInMs(double period) {
   constexpr double kLongestSlowPeriod = 400;  // s
-  return period > kLongestPeriod && period < kLongestSlowPeriod && !AreWhole(times);
+  return period > kLongestPeriod && period < kLongestSlowPeriod;
 }
 
 }  // namespace
@@ -140,6 +140,11 @@ double MedianStep(const Eigen::VectorXd& numbers) {
   return std::min(advance / rows, Median(std::move(steps)));
 }
 
+bool MaySecondsCount(const Eigen::VectorXd& values) {
+  const auto swing = FindSwingSignature(values);
+  return swing && swing->rows_per_period * 1e-3 < kShortestPeriod;
+}
+
 TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {
   struct Scale {
     std::string_view unit;
@@ -161,7 +166,7 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
   }
   const auto swing = FindSwingSignature(values);
   if (swing) {
-    if (const double period = swing->rows_per_period * step; IsSlowOrInMs(times, period)) {
+    if (const double period = swing->rows_per_period * step; IsSlowOrInMs(period)) {
       return {"", "the period is " + NumberText(period, 3) + " s if the times are in s, and " +
                       NumberText(period / 1e3, 3) + " s if they are in ms"};
     }

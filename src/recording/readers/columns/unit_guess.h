@@ -33,6 +33,9 @@ struct TimeGuess {
 /// without a swing the one that gives a usual sampling interval. `values` may be empty.
 TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values);
 
+/// Whether numbers of the rows may be seconds: a swing would be too fast for any pendulum if they were milliseconds.
+bool MaySecondsCount(const Eigen::VectorXd& values);
+
 struct UnitGuess {
   std::string_view unit;  // Suffix; empty if several units are plausible.
   std::string reason;     // ", because ...", or why it is not clear.

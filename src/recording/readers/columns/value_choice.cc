@@ -124,7 +124,7 @@ tl::unexpected<Status> NoRotation(const Choice& choice, std::size_t index) {
 
 void KeepRates(const Choice& choice, std::vector<Columns>& classes) {
   for (Columns& columns : classes) {
-    std::erase_if(columns, [&](std::size_t i) { return choice.Meaning(i).kind != Kind::kRate; });
+    std::erase_if(columns, [&](std::size_t i) { return KindOf(choice, i) != Kind::kRate; });
   }
   std::erase_if(classes, [](const Columns& columns) { return columns.empty(); });
 }
@@ -219,6 +219,13 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
                    ", which is not a unit known here: convert the column, or give its unit with --unit (" +
                    std::string(kValueUnits) + ")",
                {}, "unit");
+    return nullptr;
+  }
+  if (IsAxisOfThree(choice, index)) {
+    choice.Ask(column +
+                   ", and x, y and z may be rates, accelerations or coordinates: give it with --unit (rad_s, "
+                   "deg_s, m_s2, g, m, ...)",
+               {"--unit rad_s"});
     return nullptr;
   }
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {

@@ -25,6 +25,7 @@
 #include "recording/readers/text/cell.h"
 #include "recording/readers/text/head.h"
 #include "recording/readers/text/host_stamp.h"
+#include "recording/readers/text/phone_log.h"
 #include "recording/readers/text/ros_rows.h"
 #include "recording/readers/text/truncated_row.h"
 
@@ -175,6 +176,7 @@ Check Reader::ParseHead() {
   const std::size_t last_line_end = begin.rfind('\n');
   if (begin.size() == kHeadBytes && last_line_end != std::string_view::npos) begin = begin.substr(0, last_line_end + 1);
   head_ = csv::ParseHead(begin, layout_);
+  csv::NamePhoneSensor(lines_.name(), head_.columns);
   line_ = {lines_.name(), head_.names.text, head_.names.number};
   if (head_.columns.empty() || head_.first_row.number == 0) return {};
   const auto table = csv::FindRos(head_.columns, head_.first_row.text, layout_.separator, options_);

@@ -238,6 +238,21 @@ TEST(ChooseColumns, AsksWhetherASlowSwingIsInMilliseconds) {
   EXPECT_NEAR(RecordingOf(Table("time,angle_deg", 0.4), TimeAndValue("time:s", "")).time[1], 0.4, 1e-12);
 }
 
+/// A torsion pendulum with a period of 215 s, read every 10 s, and one of 8 s, read every second.
+TEST(ChooseColumns, NamesSecondsFirstForWholeTimesOfASlowSwing) {
+  const auto slow = [](double step, double period) {
+    std::string text = "t,angle_deg\n";
+    for (int i = 0; i < 90; ++i) {
+      text += std::to_string(static_cast<int>(step * i)) + "," +
+              std::to_string(20 * std::cos(2 * kPi * step * i / period)) + "\n";
+    }
+    return text;
+  };
+  EXPECT_THAT(Refusal(slow(10, 215)), HasSubstr("the period is 215 s if the times are in s, and 0.215 s"));
+  EXPECT_THAT(Refusal(slow(1, 8)), HasSubstr("counts seconds, rows or milliseconds: give the unit with --time_column "
+                                             "t:s and --gravity linear, or with :ms"));
+}
+
 TEST(ChooseColumns, ReadsTheDaysOfASpreadsheet) {
   for (const double step : {0.01, 1.0}) {  // s
     std::string text = "Date,angle_deg\n";
