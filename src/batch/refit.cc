@@ -3,17 +3,24 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <exception>
 #include <iterator>
 #include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/time_limit.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/provenance.h"
 #include "pendulum/batch/summary.h"
@@ -115,10 +122,20 @@ Result<Identification> FitInputs(const ManifestEntry& entry, RunInputs& inputs) 
                                          Named(inputs.calibration_name, *std::move(inputs.calibration))});
 }
 
-RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance) {
+std::string TooLong(std::chrono::milliseconds limit) {
+  const double seconds = std::chrono::duration<double>(limit).count();
+  return "the fit took longer than " + NumberText(seconds, 4) +
+         " s; look at the recording with fit_pendulum, shorten it (from_s and to_s in the manifest), or give more time "
+         "with --fit_seconds and --retry_failed";
+}
+
+/// `limit`: of the fit's time; nullptr: none.
+RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance provenance, TimeLimit* limit) {
   RunOutcome outcome;
   outcome.provenance = std::move(provenance);
   outcome.models = inputs.options->models;
+  std::optional<TimeLimit::Watch> watch;
+  if (limit != nullptr) inputs.options->fit.stop = watch.emplace(*limit).token();
   const Result<Identification> run = FitInputs(entry, inputs);
   if (run) {
     outcome.exit_code = ExitCode(*run);
@@ -126,6 +143,7 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
   } else {
     outcome.exit_code = ExitCode(run.error().code);
     outcome.reason = run.error().message;
+    if (watch && watch->token().stop_requested()) outcome.reason = entry.path + ": " + TooLong(limit->limit());
   }
   return outcome;
 }
@@ -142,31 +160,43 @@ RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, cons
 /// The outcome of a run; std::nullopt if its provenance is current.
 template <typename IsCurrent>
 std::optional<RunOutcome> RefitUnless(const Source& source, const ManifestEntry& entry, const RefitOptions& options,
-                                      const IsCurrent& is_current) {
+                                      const IsCurrent& is_current, TimeLimit* limit = nullptr) {
   RunInputs inputs = ReadInputs(source, entry, options);
   auto provenance = ProvenanceOf(entry, inputs);
   if (!provenance) return Failure(entry, options, provenance.error());
   if (is_current(*provenance)) return std::nullopt;
-  return OutcomeOf(entry, inputs, *std::move(provenance));
+  return OutcomeOf(entry, inputs, *std::move(provenance), limit);
 }
 
 /// Refits a batch with several threads, which take runs from the store and write their outcomes to it.
 class Refitter {
  public:
   Refitter(const Source& source, Store& store, const RefitOptions& options, RefitCounts& counts)
-      : source_(source), store_(store), options_(options), counts_(counts) {}
+      : source_(source), store_(store), options_(options), counts_(counts), limit_(options.fit_time) {}
 
   /// The loop of each thread.
   void Work() {
     try {
       while (std::optional<StoredRun> run = NextRun()) {
         const std::optional<RunOutcome> outcome = TryOne(*run);
+        const bool is_cut_off = outcome && IsStopped() && outcome->exit_code == ExitCode(StatusCode::kTryAgain);
+        if (is_cut_off) return;
         Record(*run, outcome ? &*outcome : nullptr);
       }
     } catch (const std::exception& error) {  // out of memory between two runs
       const std::scoped_lock lock(mutex_);
       error_ = {StatusCode::kInternal, std::string("internal error: ") + error.what()};
     }
+  }
+
+  /// Relays the stop of the options to the fits in progress until `done`. A signal handler may only set a flag.
+  void RelayStop(const std::stop_token& done) {
+    constexpr std::chrono::milliseconds kPoll{50};
+    std::mutex mutex;
+    std::condition_variable_any changed;
+    std::unique_lock lock(mutex);
+    while (!done.stop_requested() && !IsStopped()) changed.wait_for(lock, done, kPoll, [] { return false; });
+    if (IsStopped()) limit_.StopAll();
   }
 
   /// The error that ended the refit, if any.
@@ -178,10 +208,11 @@ class Refitter {
 
   /// The outcome of a run; std::nullopt if its rows are current. An exception, from a bug or lack of memory, fails only
   /// this run. The next refit tries it again.
-  std::optional<RunOutcome> TryOne(const StoredRun& run) const {
+  std::optional<RunOutcome> TryOne(const StoredRun& run) {
     try {
-      return RefitUnless(source_, run.entry, options_,
-                         [&](const Provenance& provenance) { return IsCurrent(run, provenance); });
+      return RefitUnless(
+          source_, run.entry, options_, [&](const Provenance& provenance) { return IsCurrent(run, provenance); },
+          &limit_);
     } catch (const std::exception& error) {
       return Failure(run.entry, options_, {StatusCode::kInternal, std::string("internal error: ") + error.what()});
     }
@@ -246,6 +277,7 @@ class Refitter {
   Store& store_;
   const RefitOptions& options_;
   RefitCounts& counts_;
+  TimeLimit limit_;
   std::mutex mutex_;  // for all members below, the store and the counts
   std::deque<StoredRun> page_;
   std::int64_t position_ = 0;
@@ -269,7 +301,10 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
   Refitter refitter(source, store, options, counts);
   const int threads = ThreadsOrCores(options.threads);
-  ParallelFor(threads, threads, [&](int) { refitter.Work(); });
+  {
+    const std::jthread relay([&](const std::stop_token& done) { refitter.RelayStop(done); });
+    ParallelFor(threads, threads, [&](int) { refitter.Work(); });
+  }
   if (refitter.error()) return tl::unexpected(*refitter.error());
   counts.stopped = counts.done() < counts.runs;
   const auto stored = counts.stopped ? store.Commit() : store.Complete();

@@ -10,10 +10,10 @@
 #include <string>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/time_limit.h"
 #include "pendulum/batch/store.h"
 #include "pendulum/identify/identify.h"
 #include "pendulum/identify/identify_options.h"
-#include "pendulum/service/time_limit.h"
 
 namespace pendulum {
 

@@ -31,10 +31,11 @@ namespace {
 std::atomic<bool> stop = false;
 std::atomic<int> stop_signal = 0;
 
-/// The first signal requests an orderly end. A second Ctrl-C stops at once, which does not damage the store.
+/// The first signal requests an orderly end: the fits in progress are left for the next refit, and what is done is
+/// stored. A second Ctrl-C stops at once, which does not damage the store.
 void Stop(int signal) {
   constexpr std::string_view kWords =
-      "\nrefit_pendulums: stopping after the runs in progress; press Ctrl-C again to stop at once\n";
+      "\nrefit_pendulums: stopping and storing what is done; press Ctrl-C again to stop at once\n";
   if (signal == SIGINT && stop_signal == SIGINT) ::_exit(kInterrupted);
   const int error = errno;
   if (signal == SIGINT) WriteAll(STDERR_FILENO, kWords);

@@ -62,6 +62,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},
       {"retry_failed", &Flags::retry_failed,
        "Also refits runs that could not be fitted; default off, because the same files fail again."},
+      {"fit_seconds", &Flags::fit_seconds,
+       "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason; default 600."},
       {"details", &Flags::details,
        "Prints counts of fits, recommendations and failures, and the summary last; default: the summary alone."},
       {"quiet", &Flags::quiet,

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -149,6 +151,11 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
   options.refit.run = *std::move(run);
   // The store has a row for each model that was asked for.
   options.refit.run.fit.may_be_spring = options.refit.run.rig_chooses_gravity = false;
+  constexpr double kDay = 86'400;
+  if (!(flags.fit_seconds > 0 && flags.fit_seconds <= kDay)) {
+    return BadFlag("--fit_seconds is " + NumberText(flags.fit_seconds) + "; it must be above 0 and at most 86400");
+  }
+  options.refit.fit_time = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1e3 * flags.fit_seconds)));
   options.refit.force = flags.force;
   options.refit.retry_failed = flags.retry_failed;
   options.summary.group_by = flags.group_by;

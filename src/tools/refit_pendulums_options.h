@@ -26,6 +26,7 @@ struct RefitFlags : RunFlags {
   std::string trend_by;
   double checkpoint_s = 60;
   std::int64_t shard_count = 0;
+  double fit_seconds = 600;
   bool force = false;
   bool retry_failed = false;
   bool details = false;

@@ -180,7 +180,7 @@ TEST_F(RefitTest, ResumesAfterAStop) {
   EXPECT_EQ(AllRows(store_), AllRows(folder_ / "whole.sqlite"));
 }
 
-TEST_F(RefitTest, FinishesRunsInProgress) {
+TEST_F(RefitTest, StoresWhatIsDoneWhenStopped) {
   WriteBatch(folder_, 12);
   RefitInto(folder_ / "whole.sqlite", folder_ / "runs.csv", coulomb_);
   std::atomic<bool> stop = false;

@@ -263,6 +263,48 @@ TEST_F(RefitTest, RetriesFailuresOnRequest) {
   EXPECT_THAT(Refitted(again), ElementsAre("bad", "none"));
 }
 
+/// Options whose fit waits in each step of a bootstrap after `begun`, so that it lasts ten seconds unless it is
+/// stopped.
+RefitOptions SlowOptions(const RefitOptions& options, const std::function<void()>& begun) {
+  RefitOptions slow = options;
+  slow.threads = 1;
+  slow.run.fit.interval = IntervalMethod::kBootstrap;
+  slow.run.fit.progress = [begun](const ProgressStep& step) {
+    constexpr int kWaits = 100;
+    if (!step.what.starts_with("bootstrap") || step.done > kWaits) return;
+    begun();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  };
+  return slow;
+}
+
+TEST_F(RefitTest, GivesUpARunThatTakesTooLong) {
+  WriteBatch(folder_, 2);
+  RefitOptions options = SlowOptions(coulomb_, [] {});
+  options.fit_time = std::chrono::milliseconds(200);
+  EXPECT_EQ(RefitAll(options).unfitted, 2);
+  EXPECT_THAT(ValueOf("SELECT reason FROM runs WHERE id = 'a'"),
+              AllOf(StartsWith("0.csv: the fit took longer than 0.2 s; "), HasSubstr("--fit_seconds")));
+  EXPECT_EQ(ValueOf("SELECT exit_code FROM runs WHERE id = 'a'"), std::to_string(ExitCode(StatusCode::kTryAgain)));
+  RefitOptions again = coulomb_;
+  again.run.fit.interval = IntervalMethod::kBootstrap;
+  EXPECT_THAT(Refitted(again), IsEmpty());
+  again.retry_failed = true;
+  EXPECT_THAT(Refitted(again), ElementsAre("a", "b"));
+}
+
+TEST_F(RefitTest, LeavesTheRunInProgressForTheNextRefitWhenStopped) {
+  WriteBatch(folder_, 2);
+  std::atomic<bool> stop = false;
+  RefitOptions options = SlowOptions(coulomb_, [&] { stop = true; });
+  options.stop = &stop;
+  const RefitCounts counts = RefitAll(options);
+  EXPECT_TRUE(counts.stopped);
+  EXPECT_EQ(counts.refitted, 0);
+  EXPECT_EQ(ValueOf("SELECT count(*) FROM fits"), "0");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
+}
+
 TEST_F(RefitTest, RemovesRowsOfModelsNoLongerRequested) {
   WriteBatch(folder_, 1);
   RefitAll(OptionsWith({"viscous", "coulomb", "drag"}));

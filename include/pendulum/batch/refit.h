@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,10 +30,11 @@ struct RefitOptions {
   IdentifyOptions run;                          ///< Options of every run; its entry may change some.
   std::optional<std::string> rig, calibration;  ///< JSON, for entries that name none.
   std::optional<Shard> shard;
-  int threads = 0;                          ///< Each fits one recording; 0: one per core. Rows do not depend on it.
-  bool force = false;                       ///< Refits current runs, too.
-  bool retry_failed = false;                ///< Refits runs that could not be fitted, too.
-  const std::atomic<bool>* stop = nullptr;  ///< If true, started runs are finished and stored, and no others begin.
+  int threads = 0;            ///< Each fits one recording; 0: one per core. Rows do not depend on it.
+  bool force = false;         ///< Refits current runs, too.
+  bool retry_failed = false;  ///< Refits runs that could not be fitted, too.
+  std::chrono::milliseconds fit_time = std::chrono::minutes(10);  ///< A run that takes longer is not fitted.
+  const std::atomic<bool>* stop = nullptr;  ///< If true, the refit ends soon; runs in progress are left for the next.
   std::string group_by;                     ///< As in SummaryOptions; checked before the fits, which may take hours.
   std::function<void(const RefitCounts&)> progress;  ///< Called after every run, from any thread, one at a time.
   std::function<Result<void>()> committed;  ///< Called after commits, about once a second; errors end the refit.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/service/time_limit.h"
+#include "pendulum/base/time_limit.h"
 
 #include <atomic>
 #include <chrono>
