@@ -294,6 +294,9 @@ bool MayHaveJumpedInside(const SwingState& state) {
   return state.was_trimmed && !(state.jumps && state.jumps->AreCorrected());
 }
 
+/// A disturbed end, such as a push by hand, may have hidden that the motion is no pendulum's.
+bool MayBeNoPendulumInside(const SwingState& state) { return state.was_trimmed && state.IsLacking(); }
+
 /// Near a stop of the pendulum the cost may have no minimum; an earlier end of the window may help.
 bool MayConvergeWithEarlierEnd(const SwingState& state) {
   return state.result.fit.termination != Termination::kConverged && !state.swing.to_given;
@@ -305,13 +308,14 @@ Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
   return state.result.swing.to != to;
 }
 
-constexpr std::array<WindowRescue, 7> kWindowRescues = {{
+constexpr std::array<WindowRescue, 8> kWindowRescues = {{
     {"hold_left_out", HoldMayDisturb, LeaveOutHold, false},
     {"offset_jumps", MayHaveJumped, CorrectJumps},
     {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
     {"presliding", IsLacking, LeaveOutPresliding, false},
     {"disturbed_ends", MayBeDisturbed, TrimDisturbedEnds},
     {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
+    {"not_a_pendulum_inside", MayBeNoPendulumInside, RejectIfNoPendulum, false},
     {"earlier_end", MayConvergeWithEarlierEnd, TryEarlierEnd},
 }};
 

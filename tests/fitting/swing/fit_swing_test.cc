@@ -89,6 +89,37 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
+// A Pohl wheel with strong dry friction that a hand moves aside first: the motion of the hand is no oscillator's
+// either, so only the rest shows that the restoring torque is proportional to the angle.
+TEST(FitSwing, RejectsALinearOscillatorAfterAMotionByHand) {
+  constexpr double kHand = 1;  // s
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SyntheticOptions options;
+    options.model = FindMotionModel("linear_coulomb").value();
+    options.parameters = {1 / 20.1, 0.03 / 20.1, 1.95 / 20.1};
+    options.start = StartKind::kMoving;
+    options.initial_angle = -2.3;
+    options.start_time = kHand;
+    options.sample_rate = 20;
+    options.duration = 11;
+    options.noise = 0.003;
+    options.resolution = kPi / 180;
+    options.seed = seed;
+    const Recording free = Must(SimulateRecording(options));
+    const auto by_hand = static_cast<Eigen::Index>(kHand * options.sample_rate);
+    Recording recording = free;
+    recording.time.resize(by_hand + free.size());
+    recording.value.resize(by_hand + free.size());
+    recording.time << Eigen::ArrayXd::LinSpaced(by_hand, 0, kHand - 1 / options.sample_rate).matrix(), free.time;
+    const Eigen::ArrayXd aside =
+        0.5 * options.initial_angle * (1 - (kPi * recording.time.head(by_hand).array() / kHand).cos());
+    recording.value << ((aside / options.resolution).round() * options.resolution).matrix(), free.value;
+    const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
+    EXPECT_EQ(result.fit.termination, Termination::kNotConverged) << seed;
+    EXPECT_THAT(result.fit.reason, HasSubstr("the period does not depend on the amplitude as in a pendulum")) << seed;
+  }
+}
+
 TEST(FitSwing, ReportsTheRemovedEnds) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
