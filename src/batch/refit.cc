@@ -143,7 +143,8 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
   } else {
     outcome.exit_code = ExitCode(run.error().code);
     outcome.reason = run.error().message;
-    if (watch && watch->token().stop_requested()) outcome.reason = entry.path + ": " + TooLong(limit->limit());
+    const bool is_stopped = watch && watch->token().stop_requested() && run.error().code == StatusCode::kTryAgain;
+    if (is_stopped) outcome.reason = entry.path + ": " + TooLong(limit->limit());
   }
   return outcome;
 }

@@ -282,7 +282,10 @@ TEST_F(RefitTest, GivesUpARunThatTakesTooLong) {
   WriteBatch(folder_, 2);
   RefitOptions options = SlowOptions(coulomb_, [] {});
   options.fit_time = std::chrono::milliseconds(200);
-  EXPECT_EQ(RefitAll(options).unfitted, 2);
+  folder_.Write("bad.csv", "time_s,angle_rad\n0,nonsense\n");
+  folder_.Write("runs.csv", folder_.Read("runs.csv") + "bad.csv,bad\n");
+  EXPECT_EQ(RefitAll(options).unfitted, 3);
+  EXPECT_THAT(ValueOf("SELECT reason FROM runs WHERE id = 'bad'"), HasSubstr("nonsense"));
   EXPECT_THAT(ValueOf("SELECT reason FROM runs WHERE id = 'a'"),
               AllOf(StartsWith("0.csv: the fit took longer than 0.2 s; "), HasSubstr("--fit_seconds")));
   EXPECT_EQ(ValueOf("SELECT exit_code FROM runs WHERE id = 'a'"), std::to_string(ExitCode(StatusCode::kTryAgain)));
@@ -290,7 +293,7 @@ TEST_F(RefitTest, GivesUpARunThatTakesTooLong) {
   again.run.fit.interval = IntervalMethod::kBootstrap;
   EXPECT_THAT(Refitted(again), IsEmpty());
   again.retry_failed = true;
-  EXPECT_THAT(Refitted(again), ElementsAre("a", "b"));
+  EXPECT_THAT(Refitted(again), ElementsAre("a", "b", "bad"));
 }
 
 TEST_F(RefitTest, LeavesTheRunInProgressForTheNextRefitWhenStopped) {

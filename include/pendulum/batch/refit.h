@@ -33,7 +33,7 @@ struct RefitOptions {
   int threads = 0;            ///< Each fits one recording; 0: one per core. Rows do not depend on it.
   bool force = false;         ///< Refits current runs, too.
   bool retry_failed = false;  ///< Refits runs that could not be fitted, too.
-  std::chrono::milliseconds fit_time = std::chrono::minutes(10);  ///< A run that takes longer is not fitted.
+  std::chrono::milliseconds fit_time = std::chrono::minutes(10);  ///< Longest fit; a longer one fails with kTryAgain.
   const std::atomic<bool>* stop = nullptr;  ///< If true, the refit ends soon; runs in progress are left for the next.
   std::string group_by;                     ///< As in SummaryOptions; checked before the fits, which may take hours.
   std::function<void(const RefitCounts&)> progress;  ///< Called after every run, from any thread, one at a time.

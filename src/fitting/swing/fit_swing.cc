@@ -294,6 +294,9 @@ bool MayHaveJumpedInside(const SwingState& state) {
   return state.was_trimmed && !(state.jumps && state.jumps->AreCorrected());
 }
 
+/// A disturbed end, such as a push by hand, may have hidden that the motion is no pendulum's.
+bool MayBeNoPendulumInside(const SwingState& state) { return state.was_trimmed && state.IsLacking(); }
+
 /// Near a stop of the pendulum the cost may have no minimum; an earlier end of the window may help.
 bool MayConvergeWithEarlierEnd(const SwingState& state) {
   return state.result.fit.termination != Termination::kConverged && !state.swing.to_given;
@@ -305,13 +308,14 @@ Result<bool> TryEarlierEnd(const FitOptions& options, SwingState& state) {
   return state.result.swing.to != to;
 }
 
-constexpr std::array<WindowRescue, 7> kWindowRescues = {{
+constexpr std::array<WindowRescue, 8> kWindowRescues = {{
     {"hold_left_out", HoldMayDisturb, LeaveOutHold, false},
     {"offset_jumps", MayHaveJumped, CorrectJumps},
     {"not_a_pendulum", IsLacking, RejectIfNoPendulum, false},
     {"presliding", IsLacking, LeaveOutPresliding, false},
     {"disturbed_ends", MayBeDisturbed, TrimDisturbedEnds},
     {"offset_jumps_inside", MayHaveJumpedInside, CorrectJumps},
+    {"not_a_pendulum_inside", MayBeNoPendulumInside, RejectIfNoPendulum, false},
     {"earlier_end", MayConvergeWithEarlierEnd, TryEarlierEnd},
 }};
 
@@ -452,21 +456,28 @@ bool IsBetterAcceleration(const SwingFit& other, const SwingFit& first) {
          other.fit.statistics.rms_residual < kBetter * first.fit.statistics.rms_residual;
 }
 
+/// Whether the readings contradict a fit. One that is not identifiable may describe them: without friction an
+/// accelerometer across the rod shows the same with gravity as without it, at another radius (MODEL.md eq. (14.6)).
+bool IsContradicted(const FitReport& fit) {
+  if (fit.termination == Termination::kNotIdentifiable) return fit.HasWarning("lack_of_fit");
+  return LeavesMoreThanNoise(fit);
+}
+
 /// Fits an acceleration whose name says wrongly whether it contains gravity. If this does not help, the result stays.
 /// recording, swing: as for FitAsSpring.
 void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions& options, Result<SwingFit>& result) {
-  if (!LeavesMoreThanNoise(result->fit)) return;
+  if (!IsContradicted(result->fit)) return;
   recording.shows_gravity = !recording.shows_gravity;
   const bool is_shown = recording.shows_gravity;
   Result<SwingFit> other = FitUnlessStopped(std::move(recording), std::move(swing), options);
   if (!other || !IsBetterAcceleration(*other, *result)) return;
-  const std::string is = is_shown ? "contains" : "does not contain";
-  const std::string says = is_shown ? "does not" : "does";
+  const std::string says = is_shown ? "that gravity was removed" : "nothing of gravity being removed";
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
-      {"gravity_in_readings", "the acceleration " + is + " gravity, although by its name it " + says +
-                                  ": only so does the motion explain the readings. Correct "
-                                  "the column's name"});
+      {"gravity_in_readings", "the readings fit only if the acceleration " +
+                                  std::string(is_shown ? "contains gravity" : "is one without gravity") +
+                                  ", but its name says " + says + "; they were fitted so. Correct the name (" +
+                                  (is_shown ? "Acceleration" : "Linear Acceleration") + ")"});
   result = std::move(other);
 }
 

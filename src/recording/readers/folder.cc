@@ -176,13 +176,18 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   if (summaries.empty() && fault) return tl::unexpected(*std::move(fault));
   if (summaries.empty()) return std::nullopt;
   std::vector<std::string> candidates;
-  std::optional<std::size_t> usual;
+  std::optional<std::size_t> usual, gyro;
+  std::size_t gyros = 0;
   for (const MemberSummary& summary : summaries) {
     const std::string& path = folder.paths[summary.index];
-    const bool is_gyro = folder.member == "file" && csv::IsGyroFile(path);
-    if (path == "Raw Data" || (!usual && is_gyro)) usual = summary.index;
+    if (path == "Raw Data") usual = summary.index;
+    if (csv::IsPhoneGyro(path, summary.candidates)) {
+      gyro = summary.index;
+      ++gyros;
+    }
     for (const std::string& column : summary.candidates) candidates.push_back(QuotedMemberAndColumn(path, column));
   }
+  if (!usual && gyros == 1) usual = gyro;
   if (!usual) {
     const MemberSummary& first = summaries.front();
     const std::string flag = FlagOf(folder.paths[first.index], first.candidates.front());

@@ -29,8 +29,8 @@ using MemberReader =
 
 /// Reads the only member with a time and a column that could be the quantity, or the one that --value_column
 /// "MEMBER/COLUMN" names; MEMBER may omit its folders. Of several, one called "Raw Data", which phyphox writes, is
-/// preferred, or the file of a phone's gyro. If no header tells, the only member that can be read. kDataLoss: no such
-/// member or several.
+/// preferred, or the only file of a phone's gyro. If no header tells, the only member that can be read. kDataLoss: no
+/// such member or several.
 Result<Recording> ReadOnlyMember(const Folder& folder, const ReadOptions& options, const MemberReader& read);
 
 }  // namespace pendulum

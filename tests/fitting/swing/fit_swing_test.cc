@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -89,6 +90,37 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
+// A Pohl wheel with strong dry friction that a hand moves aside first: the motion of the hand is no oscillator's
+// either, so only the rest shows that the restoring torque is proportional to the angle.
+TEST(FitSwing, RejectsALinearOscillatorAfterAMotionByHand) {
+  constexpr double kHand = 1;  // s
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SyntheticOptions options;
+    options.model = FindMotionModel("linear_coulomb").value();
+    options.parameters = {1 / 20.1, 0.03 / 20.1, 1.95 / 20.1};
+    options.start = StartKind::kMoving;
+    options.initial_angle = -2.3;
+    options.start_time = kHand;
+    options.sample_rate = 20;
+    options.duration = 11;
+    options.noise = 0.003;
+    options.resolution = kPi / 180;
+    options.seed = seed;
+    const Recording free = Must(SimulateRecording(options));
+    const auto by_hand = static_cast<Eigen::Index>(kHand * options.sample_rate);
+    Recording recording = free;
+    recording.time.resize(by_hand + free.size());
+    recording.value.resize(by_hand + free.size());
+    recording.time << Eigen::ArrayXd::LinSpaced(by_hand, 0, kHand - 1 / options.sample_rate).matrix(), free.time;
+    const Eigen::ArrayXd aside =
+        0.5 * options.initial_angle * (1 - (kPi * recording.time.head(by_hand).array() / kHand).cos());
+    recording.value << ((aside / options.resolution).round() * options.resolution).matrix(), free.value;
+    const SwingFit result = FitChosen(recording, ModelOptions("coulomb"));
+    EXPECT_EQ(result.fit.termination, Termination::kNotConverged) << seed;
+    EXPECT_THAT(result.fit.reason, HasSubstr("the period does not depend on the amplitude as in a pendulum")) << seed;
+  }
+}
+
 TEST(FitSwing, ReportsTheRemovedEnds) {
   SyntheticOptions run = NoisyRun();
   run.duration = 20;
@@ -149,26 +181,45 @@ TEST(FitSwing, ReturnsTheErrorOfTheFit) {
   EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
 }
 
-// A phone's "Linear Acceleration" that contains gravity, and an acceleration of which the phone has removed it.
+// A phone's "Linear Acceleration" that contains gravity, across the rod and along it, and an acceleration of which the
+// phone has removed it.
 TEST(FitSwing, FindsWhetherAnAccelerationContainsGravity) {
-  for (const double gravity : {0.0, kStandardGravity}) {
-    for (const double axis : {0.0, 0.3, 0.5 * kPi}) {
-      SyntheticOptions options =
-          MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.03, 1, axis, 0.2}, 0.02);
-      options.sensor.gravity = gravity;
-      options.duration = 20;
-      Recording recording = Must(SimulateRecording(options));
-      const double inertia = options.parameters[0];
-      recording.shows_gravity = gravity == 0;
-      const SwingFit result = FitChosen(recording, {});
-      const ParameterEstimate& radius = *result.fit.Find("radius");
-      EXPECT_TRUE(result.fit.HasWarning("gravity_in_readings")) << gravity << ", " << axis;
-      ASSERT_TRUE(radius.std_error) << gravity << ", " << axis << ": " << result.fit.reason;
-      EXPECT_NEAR(radius.estimate, 0.2, 4 * *radius.std_error) << gravity << ", " << axis;
-      EXPECT_NEAR(result.fit.Find("inertia")->estimate, inertia, 1e-3 * inertia) << gravity << ", " << axis;
+  for (const auto& [gravity, axis] : {std::pair{0.0, 0.3}, {kStandardGravity, 0.0}, {kStandardGravity, 0.5 * kPi}}) {
+    SCOPED_TRACE(testing::Message() << gravity << ", " << axis);
+    SyntheticOptions options =
+        MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0.03, 1, axis, 0.2}, 0.02);
+    options.sensor.gravity = gravity;
+    options.duration = 20;
+    const Recording named = Must(SimulateRecording(options));
+    EXPECT_FALSE(FitChosen(named, {}).fit.HasWarning("gravity_in_readings"));
 
-      recording.shows_gravity = gravity > 0;
-      EXPECT_FALSE(FitChosen(recording, {}).fit.HasWarning("gravity_in_readings")) << gravity << ", " << axis;
+    Recording misnamed = named;
+    misnamed.shows_gravity = !named.shows_gravity;
+    const SwingFit result = FitChosen(misnamed, {});
+    const ParameterEstimate& radius = *result.fit.Find("radius");
+    EXPECT_TRUE(result.fit.HasWarning("gravity_in_readings"));
+    ASSERT_TRUE(radius.std_error) << result.fit.reason;
+    EXPECT_NEAR(radius.estimate, 0.2, 4 * *radius.std_error);
+    EXPECT_NEAR(result.fit.Find("inertia")->estimate, options.parameters[0], 1e-3 * options.parameters[0]);
+  }
+}
+
+// Without dry friction both readings of a name describe the motion, at different radii: the name is believed.
+TEST(FitSwing, BelievesTheNameOfAnAccelerationThatItsReadingsDoNotContradict) {
+  for (const double radius : {0.1, 0.3}) {
+    for (const double angle : {0.2, 0.5}) {
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        SyntheticOptions options =
+            MeasuredSwing(Quantity::kAcceleration, SensorKind::kAcceleration, {0, 1, 0, radius}, 0.05);
+        options.model = FindMotionModel("viscous").value();
+        options.parameters = {0.04, 0.002};
+        options.initial_angle = angle;
+        options.duration = 12;
+        options.sample_rate = 50;
+        options.seed = seed;
+        const SwingFit result = FitChosen(Must(SimulateRecording(options)), ModelOptions("viscous"));
+        EXPECT_FALSE(result.fit.HasWarning("gravity_in_readings")) << radius << ", " << angle << ", " << seed;
+      }
     }
   }
 }

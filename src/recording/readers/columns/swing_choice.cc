@@ -186,8 +186,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     const auto row = static_cast<Index>(i);
     if (row != best) others.push_back(choice.NameOf(columns[i]) + " " + Percent(shares[row]));
   }
-  const std::optional<Kind> kind = KindOf(choice, columns.front());
-  if (!kind && HaveSeveralSwings(choice, columns)) {
+  if (!choice.Meaning(columns.front()).kind && HaveSeveralSwings(choice, columns)) {
     choice.AskForColumn(
         "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns)),
         columns.front());
@@ -196,7 +195,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   const bool is_rotation = IsRotation(choice, columns) && CombineAxes(choice, columns, covariance);
   if (is_rotation && !choice.axes.empty()) return choice.value;
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.
-  if (is_rotation || share >= (kind == Kind::kAcceleration ? kMost / 2 : kMost)) {
+  if (is_rotation || share >= (KindOf(choice, columns.front()) == Kind::kAcceleration ? kMost / 2 : kMost)) {
     choice.Assume("value_column_assumed",
                   "column " + choice.NameOf(columns[best]) + " carries " + Percent(share) +
                       " of the swing and was used, not " + ListOf(others) + "; --value_column chooses another" +
@@ -204,7 +203,8 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     return columns[best];
   }
   // Whether one axis is enough follows from the unit, which will be asked for.
-  if (IsAxisOfThree(choice, columns[best]) && choice.options.unit.empty()) return columns[best];
+  const bool has_unit = !choice.options.unit.empty() || !choice.table.value_unit.empty();
+  if (IsAxisOfThree(choice, columns[best]) && !has_unit) return columns[best];
   others.insert(others.begin(), choice.NameOf(columns[best]) + " " + Percent(share));
   choice.AskForColumn("no single column carries the swing: " + ListOf(others), columns[best]);
   return std::nullopt;
@@ -223,8 +223,9 @@ bool IsAxisOfThree(const Choice& choice, std::size_t index) {
     return std::ranges::any_of(
         choice.meanings, [&](const NameMeaning& meaning) { return meaning.stem == letter && meaning.unit == nullptr; });
   };
-  const NameMeaning& own = choice.Meaning(index);
-  return own.unit == nullptr && own.stem.size() == 1 && has("x") && has("y") && has("z");
+  const std::string& own = choice.Meaning(index).stem;
+  const bool is_axis = own == "x" || own == "y" || own == "z";
+  return is_axis && choice.Meaning(index).unit == nullptr && has("x") && has("y") && has("z");
 }
 
 bool WantsCombination(const Choice& choice) {

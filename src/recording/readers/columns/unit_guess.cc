@@ -141,8 +141,10 @@ double MedianStep(const Eigen::VectorXd& numbers) {
 }
 
 bool MaySecondsCount(const Eigen::VectorXd& values) {
+  constexpr double kFewRows =
+      30;  // A logger reads a swing more often than a hand that writes down a number each second.
   const auto swing = FindSwingSignature(values);
-  return swing && swing->rows_per_period * 1e-3 < kShortestPeriod;
+  return swing && swing->rows_per_period < kFewRows;
 }
 
 TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values) {

@@ -33,7 +33,7 @@ struct TimeGuess {
 /// without a swing the one that gives a usual sampling interval. `values` may be empty.
 TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& values);
 
-/// Whether numbers of the rows may be seconds: a swing would be too fast for any pendulum if they were milliseconds.
+/// Whether numbers that increase by 1 are most likely seconds: a swing has few rows, as of readings by hand.
 bool MaySecondsCount(const Eigen::VectorXd& values);
 
 struct UnitGuess {

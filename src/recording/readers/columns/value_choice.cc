@@ -224,7 +224,7 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (IsAxisOfThree(choice, index)) {
     choice.Ask(column +
                    ", and x, y and z may be rates, accelerations or coordinates: give it with --unit (rad_s, "
-                   "deg_s, m_s2, g, m, ...)",
+                   "deg_s, m_s2, g, m, px, ...)",
                {"--unit rad_s"});
     return nullptr;
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,27 +14,22 @@
 /// units are not in the header; the name of the file names the sensor.
 namespace pendulum::csv {
 
-/// What the columns of a file of this name mean, after the name of their axis: "gyroscope (rad/s)"; empty: not to be
-/// read; std::nullopt: the name says nothing. Uncalibrated accelerations are in g on some phones.
-inline std::optional<std::string_view> MeaningOfPhoneFile(std::string_view file) {
-  struct Sensor {
-    std::string_view word, meaning;
-  };
-  constexpr std::array kSensors = {Sensor{"uncalibrated", ""},
-                                   Sensor{"magnet", ""},
-                                   Sensor{"gravity", ""},
-                                   Sensor{"gyro", "gyroscope (rad/s)"},
-                                   Sensor{"totalaccel", "acceleration (m/s^2)"},
-                                   Sensor{"accel", "linear acceleration (m/s^2)"}};
+/// What the columns of a file of this name mean, after the name of their axis: "gyroscope (rad/s)"; empty: the name
+/// does not say. Uncalibrated accelerations are in g on some phones.
+inline std::string_view MeaningOfPhoneFile(std::string_view file) {
   const std::string plain = PlainName(file.substr(file.find_last_of("/\\:") + 1));
-  for (const Sensor& sensor : kSensors) {
-    if (plain.find(sensor.word) != std::string::npos) return sensor.meaning;
-  }
-  return std::nullopt;
+  const auto has = [&](std::string_view word) { return plain.find(word) != std::string::npos; };
+  if (has("gyro")) return "gyroscope (rad/s)";
+  if (has("totalaccel")) return "acceleration (m/s^2)";
+  return has("accel") && !has("uncalibrated") ? "linear acceleration (m/s^2)" : "";
 }
 
-/// Whether a file has this name because a phone's app wrote the rates of its gyro into it.
-inline bool IsGyroFile(std::string_view file) { return MeaningOfPhoneFile(file).value_or("").starts_with("gyro"); }
+/// Whether a file with these names of readings holds the calibrated rates of a phone's gyro.
+inline bool IsPhoneGyro(std::string_view file, const std::vector<std::string>& readings) {
+  const auto is_axis = [](const std::string& name) { return name == "x" || name == "y" || name == "z"; };
+  return std::ranges::all_of(readings, is_axis) && MeaningOfPhoneFile(file).starts_with("gyro") &&
+         PlainName(file).find("uncalibrated") == std::string::npos;
+}
 
 /// Gives the columns of such a file their meaning. `file` is its name, perhaps after that of its archive and a colon.
 inline void NamePhoneSensor(std::string_view file, std::vector<TableColumn>& columns) {
@@ -44,12 +38,11 @@ inline void NamePhoneSensor(std::string_view file, std::vector<TableColumn>& col
     return std::ranges::find(kNames, column.written) != kNames.end();
   };
   if (columns.size() != 5 || !std::ranges::all_of(columns, is_of_log)) return;
-  const auto sensor = MeaningOfPhoneFile(file);
+  const std::string_view sensor = MeaningOfPhoneFile(file);
   for (TableColumn& column : columns) {
     if (column.written == "time") column.meaning.clear();
     if (column.written == "seconds_elapsed") column.meaning = "time_s";
-    if (column.written.size() > 1 || !sensor) continue;
-    column.meaning = sensor->empty() ? "" : column.written + " " + std::string(*sensor);
+    if (column.written.size() == 1 && !sensor.empty()) column.meaning = column.written + " " + std::string(sensor);
   }
 }
 

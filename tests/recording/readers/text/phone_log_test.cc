@@ -67,5 +67,24 @@ TEST(PhoneLog, PrefersTheGyroInAnArchive) {
   EXPECT_EQ(recording.warnings.at(0).code, "member_assumed");
 }
 
+TEST(PhoneLog, AsksWhichOfSeveralGyrosOrOtherFilesIsMeant) {
+  EXPECT_THAT(FaultOf(ZipOf({{"gyro_1.csv", Log()}, {"gyro_2.csv", Log()}})), HasSubstr("could all be the quantity"));
+  const std::string angle = "time_s,angle_deg\n" + Rows("0.0{t},{v}");
+  const std::string rate = "time_s,rate_deg_s\n" + Rows("0.0{t},{v}");
+  EXPECT_THAT(FaultOf(ZipOf({{"angle.csv", angle}, {"gyro.csv", rate}})), HasSubstr("could both be the quantity"));
+}
+
+TEST(PhoneLog, LeavesOtherColumnsAlone) {
+  std::string preamble = "Vertical Units,m\n" + Log();
+  EXPECT_FALSE(ParseRecording(preamble, "run.csv"));
+  std::string two = "t_s,a,b\n";
+  for (int i = 0; i < 500; ++i) {
+    const double value = std::cos(0.1 * i);
+    two += std::to_string(0.01 * i) + "," + std::to_string(value) + "," + std::to_string(0.3 * value * value * value) +
+           "\n";
+  }
+  EXPECT_THAT(FaultOf(two, Unit("rad")), HasSubstr("several columns swing"));
+}
+
 }  // namespace
 }  // namespace pendulum::phone_log_test
