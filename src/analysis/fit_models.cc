@@ -51,8 +51,8 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
   return fit;
 }
 
-/// Two warnings of the richest law hold for every model: the recording is not a pendulum's swing, or its zero jumps. If
-/// one of them exists, no fit counts as converged.
+/// Warnings of the richest law that hold for every model. If the recording is not a pendulum's swing, or its zero
+/// jumps, no fit counts as converged. Whether an acceleration contains gravity is only said.
 void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
   const auto of_gravity = std::ranges::find(richest_fit.warnings, "gravity_in_readings", &Warning::code);
   if (of_gravity != richest_fit.warnings.end() && !fit.HasWarning(of_gravity->code))
@@ -110,10 +110,9 @@ class SharedFits {
     Fit(i, richest_fit);
     std::vector<Warning>& warnings = result_.fits[i].warnings;
     for (Warning& warning : said) {
-      constexpr std::array kOfWindow = {"ends_trimmed",   "larger_motion_outside", "not_a_pendulum",
-                                        "lost_counts",    "offset_jumps",          "presliding",
-                                        "vibration",      "ambiguous_frequency",   "hold_left_out",
-                                        "hold_disagrees", "gravity_in_readings"};
+      constexpr std::array kOfWindow = {
+          "ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",   "offset_jumps", "presliding",
+          "vibration",    "ambiguous_frequency",   "hold_left_out",  "hold_disagrees"};
       const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
       const bool is_known = std::ranges::find(warnings, warning.code, &Warning::code) != warnings.end();
       if (of_window && !is_known) warnings.push_back(std::move(warning));

@@ -263,8 +263,7 @@ TEST_F(RefitTest, RetriesFailuresOnRequest) {
   EXPECT_THAT(Refitted(again), ElementsAre("bad", "none"));
 }
 
-/// Options whose fit waits in each step of a bootstrap after `begun`, so that it lasts ten seconds unless it is
-/// stopped.
+/// Options whose fit calls `begun` and waits in each of the first steps of a bootstrap, two seconds in all.
 RefitOptions SlowOptions(const RefitOptions& options, const std::function<void()>& begun) {
   RefitOptions slow = options;
   slow.threads = 1;

@@ -141,8 +141,7 @@ double MedianStep(const Eigen::VectorXd& numbers) {
 }
 
 bool MaySecondsCount(const Eigen::VectorXd& values) {
-  constexpr double kFewRows =
-      30;  // A logger reads a swing more often than a hand that writes down a number each second.
+  constexpr double kFewRows = 30;  // a period; a logger reads more
   const auto swing = FindSwingSignature(values);
   return swing && swing->rows_per_period < kFewRows;
 }
