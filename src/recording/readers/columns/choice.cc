@@ -2,9 +2,12 @@
 #include "recording/readers/columns/choice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "pendulum/base/utf8.h"
@@ -22,6 +25,12 @@ void MarkDerivatives(std::vector<NameMeaning>& meanings) {
   for (NameMeaning& meaning : meanings) meaning.is_secondary |= meaning.unit == nullptr && meaning.Has("alpha");
 }
 
+/// Beside x and y, z is the third axis of the same sensor.
+void MarkThirdAxis(std::vector<NameMeaning>& meanings) {
+  const auto axes = FindAxes(meanings);
+  if (axes && !meanings[axes->at(2)].kind) meanings[axes->at(2)].kind = meanings[axes->at(0)].kind;
+}
+
 }  // namespace
 
 std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t width) {
@@ -30,7 +39,20 @@ std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t 
   for (const Name& name : names) meanings.push_back(MeaningOf(name.text));
   meanings.resize(std::max(names.size(), width));
   MarkDerivatives(meanings);
+  MarkThirdAxis(meanings);
   return meanings;
+}
+
+std::optional<std::array<std::size_t, 3>> FindAxes(const std::vector<NameMeaning>& meanings) {
+  std::array<std::size_t, 3> axes{};
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const auto found = std::ranges::find_if(meanings, [&](const NameMeaning& meaning) {
+      return meaning.stem == std::string_view("xyz").substr(k, 1) && meaning.unit == nullptr;
+    });
+    if (found == meanings.end()) return std::nullopt;
+    axes.at(k) = static_cast<std::size_t>(found - meanings.begin());
+  }
+  return axes;
 }
 
 std::string Choice::NameOf(std::size_t index) const {

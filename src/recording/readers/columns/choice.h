@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ using Columns = std::vector<std::size_t>;
 
 /// The meanings of the names, then those of columns without a name up to `width`.
 std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t width);
+
+/// The columns x, y and z, if all have no unit: the axes of a gyro or an accelerometer, or the coordinates of a point.
+std::optional<std::array<std::size_t, 3>> FindAxes(const std::vector<NameMeaning>& meanings);
 
 /// A choice of columns that is being made: the table, what has been chosen and assumed, and what the user must tell.
 struct Choice {

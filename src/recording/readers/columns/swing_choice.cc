@@ -219,13 +219,8 @@ std::optional<Kind> KindOf(const Choice& choice, std::size_t index) {
 }
 
 bool IsAxisOfThree(const Choice& choice, std::size_t index) {
-  const auto has = [&](std::string_view letter) {
-    return std::ranges::any_of(
-        choice.meanings, [&](const NameMeaning& meaning) { return meaning.stem == letter && meaning.unit == nullptr; });
-  };
-  const std::string& own = choice.Meaning(index).stem;
-  const bool is_axis = own == "x" || own == "y" || own == "z";
-  return is_axis && choice.Meaning(index).unit == nullptr && has("x") && has("y") && has("z");
+  const auto axes = FindAxes(choice.meanings);
+  return axes && std::ranges::find(*axes, index) != axes->end();
 }
 
 bool WantsCombination(const Choice& choice) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "pendulum/base/format.h"
@@ -22,13 +23,16 @@ constexpr double kLeastSwing = 0.02;   // rad
 /// rad; from here on the period shows the amplitude (MODEL.md section 3: 2.3 % at 0.6 rad).
 constexpr double kTellingSwing = 0.6;
 
-double MedianMagnitude(const Eigen::VectorXd& values) {
-  std::vector<double> magnitudes;
-  for (const double value : values) {
-    if (std::isfinite(value)) magnitudes.push_back(std::abs(value));
-  }
-  return magnitudes.empty() ? 0 : Median(std::move(magnitudes));
+/// Of the finite numbers; 0 without any.
+double MedianOf(const Eigen::VectorXd& values) {
+  std::vector<double> numbers;
+  std::ranges::copy_if(values, std::back_inserter(numbers), [](double value) { return std::isfinite(value); });
+  return numbers.empty() ? 0 : Median(std::move(numbers));
 }
+
+/// An acceleration at rest is near 1 in g, near 9.8 in m/s².
+bool IsNearG(double in_si) { return std::abs(in_si - kStandardGravity) < 1.5; }
+bool IsNearOne(double in_g) { return std::abs(in_g - 1) < 0.2; }
 
 /// Whether the period of the swing depends on the amplitude as for a pendulum with this amplitude [rad].
 enum class Evidence { kNone, kPendulum, kLinear };
@@ -90,10 +94,10 @@ UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingS
 }
 
 UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude) {
-  constexpr double kNearG = 1.5, kNearOne = 0.2, kMore = 2;
-  const double usual = MedianMagnitude(values);
-  if (std::abs(usual - 1) < kNearOne && amplitude < kMore) return {"g", " (it is about 1 at rest)", ""};
-  if (std::abs(usual - kStandardGravity) < kNearG || amplitude > kMore) return {"m_s2", "", ""};
+  constexpr double kMore = 2;
+  const double usual = MedianOf(values.cwiseAbs());
+  if (IsNearOne(usual) && amplitude < kMore) return {"g", " (it is about 1 at rest)", ""};
+  if (IsNearG(usual) || amplitude > kMore) return {"m_s2", "", ""};
   return {"", ", which may be m/s^2 or g", "m_s2"};
 }
 
@@ -183,6 +187,11 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
     }
   }
   return {"s", ""};
+}
+
+std::string_view ExampleForAxes(const std::array<Eigen::VectorXd, 3>& axes) {
+  const double usual = std::hypot(MedianOf(axes[0]), MedianOf(axes[1]), MedianOf(axes[2]));
+  return IsNearG(usual) ? "m_s2" : IsNearOne(usual) ? "g" : "rad_s";
 }
 
 UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds) {

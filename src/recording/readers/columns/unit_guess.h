@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,9 @@ struct UnitGuess {
   std::string reason;     // ", because ...", or why it is not clear.
   std::string example;    // A plausible suffix.
 };
+
+/// The unit that x, y and z have most likely: of an acceleration if they contain gravity, otherwise of a rate.
+std::string_view ExampleForAxes(const std::array<Eigen::VectorXd, 3>& axes);
 
 /// The unit of a quantity of this kind, or of any kind. `seconds` is the sampling interval, 0 if unknown.
 UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds);

@@ -222,10 +222,12 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     return nullptr;
   }
   if (IsAxisOfThree(choice, index)) {
+    const auto [x, y, z] = *FindAxes(choice.meanings);
+    const std::string_view example = ExampleForAxes({choice.NumbersOf(x), choice.NumbersOf(y), choice.NumbersOf(z)});
     choice.Ask(column +
                    ", and x, y and z may be rates, accelerations or coordinates: give it with --unit (rad_s, "
                    "deg_s, m_s2, g, m, px, ...)",
-               {"--unit rad_s"});
+               {"--unit " + std::string(example)});
     return nullptr;
   }
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,9 +18,9 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A swing of amplitude 2 about an axis askew: 0.8 in y, 0.6 in x.
-std::string Log() {
-  std::string text = "time,seconds_elapsed,z,y,x\n";
+/// A swing of amplitude 2 about an axis askew: 0.8 in the second axis, 0.6 in the last.
+std::string Log(const std::string& axes = "z,y,x") {
+  std::string text = "time,seconds_elapsed," + axes + "\n";
   for (int i = 0; i < 500; ++i) {
     const double value = 2 * std::cos(0.1 * i);
     text += std::to_string(1'700'000'000'000'000'000 + 10'000'000LL * i) + "," + std::to_string(0.01 * i) + ",0," +
@@ -58,6 +59,24 @@ TEST(PhoneLog, AsksForTheUnitOfAnotherNameAndThenCombinesTheAxes) {
   EXPECT_THAT(refused.error().try_flags, testing::ElementsAre("--unit rad_s"));
   ExpectRates(Read("run.csv", Unit("rad_s")));
   ExpectRates(Read("run.csv", TimeAndValue("", "combined", "rad_s")));
+}
+
+TEST(PhoneLog, CombinesEachTwoOfTheThreeAxes) {
+  for (const char* const axes : {"z,y,x", "x,z,y", "y,x,z"}) {
+    ExpectRates(RecordingOf(Log(axes), Unit("rad_s")));
+    ExpectRates(RecordingOf(Log(axes), TimeAndValue("", "combined", "rad_s")));
+  }
+}
+
+TEST(PhoneLog, ProposesTheUnitOfAnAccelerationIfTheReadingsContainGravity) {
+  for (const auto& [rest, unit] : {std::pair{9.81, "--unit m_s2"}, {1.0, "--unit g"}}) {
+    std::string text = "t_s,x,y,z\n";
+    for (int i = 0; i < 500; ++i) {
+      text += std::to_string(0.01 * i) + "," + std::to_string(0.1 * rest * std::cos(0.1 * i)) + ",0," +
+              std::to_string(rest * (1 + 0.01 * std::cos(0.2 * i))) + "\n";
+    }
+    EXPECT_THAT(ParseRecording(text, "run.csv").error().try_flags, testing::ElementsAre(unit));
+  }
 }
 
 TEST(PhoneLog, PrefersTheGyroInAnArchive) {
