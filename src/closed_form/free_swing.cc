@@ -9,6 +9,7 @@
 
 #include <Eigen/QR>
 
+#include "closed_form/driven_part.h"
 #include "closed_form/swing_ends.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
@@ -22,6 +23,9 @@ namespace pendulum {
 namespace {
 
 using Eigen::Index;
+
+/// The amplitude at the end of a motion that decays, divided by that at its start, is less.
+constexpr double kDecayed = 0.7;
 
 /// The runs of free half swings.
 std::vector<TurningPointRun> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
@@ -173,11 +177,25 @@ double RisingShare(const TurningPointTable& table, const Weights& weights) {
   return climbing / SumOf(weights, 0, weights.size());
 }
 
+/// The error of an amplitude that rises repeatedly. It proposes the last part if this decays to the end.
+tl::unexpected<Status> Driven(const Recording& recording, const TurningPointTable& table,
+                              const std::vector<TurningPointRun>& runs) {
+  constexpr std::size_t kMinPoints = 6;
+  const std::string driven = "the amplitude rises repeatedly: the pendulum is driven";
+  if (runs.empty() || runs.back().last + 1 != table.points.size()) return NoSwing(driven);
+  const std::size_t first = EndOfDrive(table, runs.back()), last = runs.back().last;
+  if (last - first + 1 < kMinPoints || Decay(table, first, last) > kDecayed) return NoSwing(driven);
+  const double time = recording.time[table.points[first].sample];
+  const std::string from = "--from " + NumberText(time, 6);
+  return WithTry(Error(StatusCode::kFailedPrecondition, driven + "; if the drive ends at " + NumberText(time, 6) +
+                                                            " s, " + from + " fits the decay after it"),
+                 {from});
+}
+
 /// Returns an error if the turning points are not a free swing, a swing if it beats, and otherwise std::nullopt.
 Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording, const TurningPointTable& table,
                                                      const std::vector<TurningPointRun>& runs, const Weights& weights) {
   constexpr double kMaxRisingShare = 0.2;
-  constexpr double kDecayed = 0.7;
   constexpr std::size_t kMinFreePoints = 6;
   const std::size_t turns = table.points.size();
   const auto weight = [&](const TurningPointRun& run) { return SumOf(weights, run.first, run.last); };
@@ -188,7 +206,7 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   const double share = longest == runs.end() ? 0 : (weight(*longest) + weights[longest->first]) / all;
   const bool climbs = RisingShare(table, weights) > kMaxRisingShare;
   if (!climbs && 2 * share >= 1) {
-    if (Decays(table, longest->first, longest->last)) return std::nullopt;
+    if (Decays(table, EndOfDrive(table, *longest), longest->last)) return std::nullopt;
     return Error(StatusCode::kFailedPrecondition, "the amplitude does not decay over " + std::to_string(free - 1) +
                                                       " half swings: the pendulum is driven, or its friction is too "
                                                       "small to see; give --from and --to to fit this window anyway");
@@ -199,7 +217,7 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   // A motion that begins near standstill and grows was not released.
   const bool from_standstill = climbs && table.Amplitude(1) < 0.35 * largest;
   if (from_standstill || Decay(table, 0, turns - 1) > kDecayed) {
-    if (climbs) return NoSwing("the amplitude rises repeatedly: the pendulum is driven");
+    if (climbs) return Driven(recording, table, runs);
     return NoSwing("of " + std::to_string(turns) + " turning points no more than " + std::to_string(free) +
                    " in a row belong to a free swing, with equal times between them and decreasing amplitude: the "
                    "pendulum was moved by hand or motor, or held at one angle after another");
@@ -207,6 +225,17 @@ Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording,
   FreeSwing swing = MakeSwing(recording, table, {0, turns - 1});
   swing.has_beats = true;
   return swing;
+}
+
+/// Begins each run after the drive that may have kept its amplitude. Returns which of them had one.
+std::vector<bool> LeaveOutDrives(const TurningPointTable& table, std::vector<TurningPointRun>& runs) {
+  std::vector<bool> had_drive;
+  for (TurningPointRun& run : runs) {
+    const std::size_t end = EndOfDrive(table, run);
+    had_drive.push_back(end > run.first);
+    run.first = end;
+  }
+  return had_drive;
 }
 
 /// The largest amplitude of turning points outside all runs. Runs are in time order.
@@ -242,15 +271,17 @@ Result<void> CheckUnit(const TurningPointTable& table) {
 Result<std::vector<FreeSwing>> FindAmong(const Recording& recording, const TurningPointTable& table,
                                          const Weights& weights) {
   const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
-  const std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
+  std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
   const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs, weights);
   if (!other_motion) return tl::unexpected(other_motion.error());
   if (*other_motion) return std::vector<FreeSwing>{**other_motion};
+  const std::vector<bool> after_drive = LeaveOutDrives(table, runs);
   std::vector<FreeSwing> swings;
   const double outside = LargestOutside(table, runs);
-  for (const TurningPointRun& run : runs) {
-    swings.push_back(MakeSwing(recording, table, run));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    swings.push_back(MakeSwing(recording, table, runs[i]));
     swings.back().amplitude_outside = outside;
+    if (after_drive[i]) swings.back().begins = {WindowBegin::Reason::kAfterDrive};
   }
   if (swings.empty()) return NoSwing("there are no two successive half swings that lose amplitude and cross the zero");
   return swings;

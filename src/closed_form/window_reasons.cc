@@ -22,6 +22,7 @@ std::string Sentence(const WindowBegin& begin) {
              " deg: so near the top the smallest push determines when it falls, so the release is not used";
     case kAfterTurns: return "after its turns over the top";
     case kAfterMove: return "the first turning point after the pendulum was moved";
+    case kAfterDrive: return "after a drive that kept the amplitude (--from 0 fits that part too)";
     case kAfterVibration:
       return "after a faster vibration of " + NumberText(begin.frequency_hz, 2) + " Hz has died away";
     case kDisturbed:

@@ -349,6 +349,44 @@ TEST(FindFreeSwings, RefusesADrivenSwing) {
             "see; give --from and --to to fit this window anyway");
 }
 
+/// Driven at resonance for 30 s, steadily or from rest; then the drive ends and the swing decays by `rate` [1/s].
+Recording DrivenThenFree(double rate, bool from_rest) {
+  const auto angle = [=](double t) {
+    const double amplitude = from_rest ? 0.8 * (1 - std::exp(-rate * std::min(t, 30.0))) : 0.8;
+    return amplitude * std::exp(-rate * std::max(t - 30, 0.0)) * std::cos(kOmega * t);
+  };
+  return Joined({Sample(angle, 60, kRate)});
+}
+
+TEST(FindFreeSwings, BeginsAfterASteadyDrive) {
+  for (const double rate : {0.02, 0.05, 0.2}) {
+    const auto swings = FindFreeSwings(DrivenThenFree(rate, false), true);
+    ASSERT_TRUE(swings.has_value()) << swings.error().message;
+    ASSERT_THAT(*swings, SizeIs(1));
+    EXPECT_EQ(swings->front().begins.reason, WindowBegin::Reason::kAfterDrive) << rate;
+    EXPECT_THAT(swings->front().from, AllOf(Ge(30.0 - kHalfPeriod), Le(30 + 4 * kHalfPeriod))) << rate;
+  }
+}
+
+TEST(FindFreeSwings, ProposesTheDecayAfterADriveFromRest) {
+  const auto swings = FindFreeSwings(DrivenThenFree(0.1, true), true);
+  ASSERT_FALSE(swings.has_value());
+  EXPECT_THAT(swings.error().message, StartsWith("the amplitude rises repeatedly: the pendulum is driven; if the drive "
+                                                 "ends at "));
+  ASSERT_THAT(swings.error().try_flags, SizeIs(1));
+  EXPECT_THAT(std::stod(swings.error().try_flags.front().substr(7)),
+              AllOf(Ge(30.0 - kHalfPeriod), Le(30 + 4 * kHalfPeriod)));
+}
+
+TEST(FindFreeSwings, TakesNoFreeSwingForADrive) {
+  for (const auto& decay :
+       {Decay{kOmega, 0, 0.004, 0, 0.8, 60}, Decay{kOmega, 0.01, 0, 0, 0.8, 60}, Decay{kOmega, 0, 0, 0.004, 0.8, 60}}) {
+    const auto swings = FindFreeSwings(SimulateDecay(decay));
+    ASSERT_TRUE(swings.has_value()) << swings.error().message;
+    EXPECT_NE(swings->front().begins.reason, WindowBegin::Reason::kAfterDrive);
+  }
+}
+
 TEST(FindFreeSwings, DoesNotTreatAStartInMotionAsARiseOfTheAmplitude) {
   // It loses about 0.4 % of its amplitude per half swing, and starts where it passes its rest position.
   const Recording swing = SimulateDecay({kOmega, 0, 0.001, 0, 0.5, 9});

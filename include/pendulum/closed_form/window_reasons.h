@@ -19,6 +19,7 @@ struct WindowBegin {
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
+    kAfterDrive,              ///< After a drive has kept the amplitude.
     kAfterVibration,          ///< After a vibration with `frequency_hz` has died away.
     kDisturbed,               ///< The motion before the window does not fit the later motion.
     kUndersampled,            ///< The recording is undersampled: all of it is used.

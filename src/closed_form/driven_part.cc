@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "closed_form/driven_part.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pendulum {
+namespace {
+
+/// Means of neighbouring amplitudes of a run, in which an error of the zero cancels.
+std::vector<double> PairAmplitudes(const TurningPointTable& table, const TurningPointRun& run) {
+  std::vector<double> pairs;
+  for (std::size_t i = run.first; i < run.last; ++i) {
+    pairs.push_back(0.5 * (table.Amplitude(i) + table.Amplitude(i + 1)));
+  }
+  return pairs;
+}
+
+/// Whether the amplitude is kept before pair `k` and decays after it. The losses must be clear of the noise.
+bool IsKnee(const std::vector<double>& pairs, std::size_t k, double noise) {
+  constexpr std::size_t kMinCount = 8;
+  constexpr double kDecayed = 0.9, kKept = 0.2, kClear = 6;
+  const auto after = pairs.begin() + static_cast<std::ptrdiff_t>(k);
+  const auto decayed = std::find_if(after, pairs.end(), [&](double pair) { return pair < kDecayed * *after; });
+  const std::size_t count = std::max(static_cast<std::size_t>(decayed - after), kMinCount);
+  if (decayed == pairs.end() || k < count || k + count >= pairs.size()) return false;
+  const double loss_before = pairs[k - count] - pairs[k], loss = pairs[k] - pairs[k + count];
+  return loss_before < kKept * loss && loss - loss_before > kClear * noise;
+}
+
+}  // namespace
+
+std::size_t EndOfDrive(const TurningPointTable& table, const TurningPointRun& run) {
+  constexpr double kDecayed = 0.7, kSame = 0.99;
+  const std::vector<double> pairs = PairAmplitudes(table, run);
+  if (pairs.empty()) return run.first;
+  for (std::size_t k = pairs.size() - 1; k > 0; --k) {
+    if (pairs.back() > kDecayed * pairs[k] || !IsKnee(pairs, k, table.noise + table.resolution)) continue;
+    while (pairs[k + 1] >= kSame * pairs[k]) ++k;
+    // The drive may still act on the second turning point of the last pair that is kept.
+    return run.first + k + 2;
+  }
+  return run.first;
+}
+
+}  // namespace pendulum
