@@ -495,7 +495,7 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
 Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, const RunFiles& files) {
   ReadRun run;
   if (files.rig) {
-    auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name);
+    auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name, options.notes);
     if (!parsed) return tl::unexpected(parsed.error());
     run.rig = *std::move(parsed);
   }

@@ -19,7 +19,7 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   std::vector<Warning> notes = options.notes;
   const bool has_file = rig || !read.rig_json.empty();
   if (!rig && (has_file || !options.rig_values.empty())) {
-    auto own = has_file ? ParseRigWith(options.rig_values, read.rig_json, read.path + ": # rig")
+    auto own = has_file ? ParseRigWith(options.rig_values, read.rig_json, read.path + ": # rig", notes)
                         : RigOfValues(options.rig_values, notes);
     if (!own) return tl::unexpected(own.error());
     rig = *std::move(own);

@@ -24,30 +24,35 @@ bool LacksGravity(const Json& values) {
          std::ranges::any_of(kBesideGravity, [&](std::string_view key) { return values.contains(key); });
 }
 
-}  // namespace
-
-Result<Rig> ParseRigWith(const Json& values, std::string_view text, const std::string& name) {
-  auto rig = ParseJsonObject(text, name, "rig", "{}");
-  if (!rig || values.empty()) return ParseRig(text, name);  // ParseRig has the better message
-  rig->update(values);
-  return ParseRig(JsonText(*rig), name);
-}
-
-Result<Rig> RigOfValues(Json values, std::vector<Warning>& warnings) {
+/// The rig of the values. If it needs g and has none, it gets the mean at sea level, and a warning says so.
+Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<Warning>& warnings) {
   const bool lacks_gravity = LacksGravity(values);
   if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
-  Result<Rig> rig = ParseRig(JsonText(values), std::string(kRigOfValuesName));
-  if (!rig) {
-    Status error = std::move(rig).error();
-    error.code = StatusCode::kInvalidArgument;
-    return tl::unexpected(std::move(error));
-  }
-  if (lacks_gravity) {
+  Result<Rig> rig = ParseRig(JsonText(values), name);
+  if (rig && lacks_gravity) {
     warnings.push_back({"gravity_assumed", "g was taken as " + NumberText(kMeanGravity) + " +- " +
                                                NumberText(kGravityStdDev) +
                                                " m/s^2, as at sea level; give the local value with --g"});
   }
   return rig;
+}
+
+}  // namespace
+
+Result<Rig> ParseRigWith(const Json& values, std::string_view text, const std::string& name,
+                         std::vector<Warning>& warnings) {
+  auto rig = ParseJsonObject(text, name, "rig", "{}");
+  if (!rig) return ParseRig(text, name);  // ParseRig has the better message
+  rig->update(values);
+  return ParseWithGravity(*std::move(rig), name, warnings);
+}
+
+Result<Rig> RigOfValues(Json values, std::vector<Warning>& warnings) {
+  Result<Rig> rig = ParseWithGravity(std::move(values), std::string(kRigOfValuesName), warnings);
+  if (rig) return rig;
+  Status error = std::move(rig).error();
+  error.code = StatusCode::kInvalidArgument;
+  return tl::unexpected(std::move(error));
 }
 
 Warning OverrideWarning(const Json& values) {

@@ -37,6 +37,18 @@ std::string UnitsOf(RigQuantity quantity) {
   return NameList(names);
 }
 
+/// The text with points for decimal commas: 38,5cm. A comma with three digits after it may separate thousands.
+std::string WithDecimalPoints(std::string text) {
+  const auto is_digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
+  if (text.find('.') != std::string::npos) return text;
+  for (std::size_t at = text.find(','); at != std::string::npos && at > 0; at = text.find(',', at + 1)) {
+    std::size_t end = at + 1;
+    while (is_digit(end)) ++end;
+    if (is_digit(at - 1) && end > at + 1 && end != at + 4) text[at] = '.';
+  }
+  return text;
+}
+
 /// Takes a number from the beginning of the text.
 std::optional<double> TakeNumber(std::string_view& text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
@@ -58,7 +70,8 @@ bool TakePlusMinus(std::string_view& text) {
 }
 
 bool HasUnit(const std::string& text) {
-  std::string_view rest = text;
+  const std::string with_points = WithDecimalPoints(text);
+  std::string_view rest = with_points;
   TakeNumber(rest);
   if (TakePlusMinus(rest)) TakeNumber(rest);
   return !rest.empty();
@@ -79,7 +92,8 @@ Result<RigValue> ParseRigValue(const std::string& flag, const std::string& text,
                                                            : "1.5" + Plain(key.unit)) +
                    "; the units are " + UnitsOf(key.quantity));
   };
-  std::string_view rest = text;
+  const std::string with_points = WithDecimalPoints(text);
+  std::string_view rest = with_points;
   const std::optional<double> number = TakeNumber(rest);
   if (!number) return fault();
   RigValue value{*number, 0};

@@ -268,8 +268,9 @@ ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limi
   auto options = IdentifyOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
   if (request.rig) {
-    if (const auto rig = ParseRigWith(options->rig_values, request.rig->bytes, request.rig->name); !rig)
-      return Refused(rig.error());
+    std::vector<Warning> ignored;  // Reading the recording gives them.
+    const auto rig = ParseRigWith(options->rig_values, request.rig->bytes, request.rig->name, ignored);
+    if (!rig) return Refused(rig.error());
   }
   if (request.calibration) {
     const auto calibration = CalibrationFromText(request.calibration->bytes, request.calibration->name);

@@ -19,7 +19,7 @@ Result<Setup> ReadSetup(FitPendulumOptions& options) {
   if (!options.rig.empty()) {
     const auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
-    auto rig = ParseRigWith(options.rig_values, *text, options.rig);
+    auto rig = ParseRigWith(options.rig_values, *text, options.rig, options.notes);
     if (!rig) return tl::unexpected(rig.error());
     setup.rig = *std::move(rig);
   }

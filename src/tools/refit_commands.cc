@@ -60,7 +60,8 @@ Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refi
   if (!options.rig.empty()) {
     auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
-    const auto rig = ParseRigWith(options.refit.run.rig_values, *text, options.rig);
+    std::vector<Warning> ignored;  // Each run gives them.
+    const auto rig = ParseRigWith(options.refit.run.rig_values, *text, options.rig, ignored);
     if (!rig) return tl::unexpected(rig.error());
     refit.rig = *std::move(text);
   }

@@ -152,6 +152,19 @@ TEST(FindTurningPoints, RefusesFewerThanThreeTurningPointsWithTheirNumber) {
   EXPECT_TRUE(FindTurningPoints(Sample(wave, 2.0, 100)));
 }
 
+TEST(FindTurningPoints, NamesATableOfMaxima) {
+  // 1 % of noise, until nothing is left.
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.002);
+  Recording maxima =
+      Sample([&](double t) { return 0.5 * std::exp(-0.05 * t) - 0.002 * t + noise(random); }, 56, 1 / 1.4);
+  const auto found = FindTurningPoints(maxima);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, HasSubstr("maxima of a swing, one of each period of 1.4 s"));
+  maxima.value *= -1;
+  EXPECT_THAT(FindTurningPoints(maxima).error().message, HasSubstr("maxima of a swing"));
+}
+
 // ---- Zero and runs -----------------------------------------------------------------------------------------------
 
 constexpr double kHalfPeriod = kPi / kOmega;

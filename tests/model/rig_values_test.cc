@@ -17,17 +17,30 @@ using testing::IsEmpty;
 constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": 0.1, "rod_length": 0.5, "gravity": 9.8})";
 
 TEST(ParseRigWith, ReplacesValuesOfTheText) {
-  const auto rig = ParseRigWith({{"bob_mass", {{"value", 0.3}, {"std_dev", 0.001}}}}, kRodAndBob, "rig.json");
+  std::vector<Warning> warnings;
+  const auto rig = ParseRigWith({{"bob_mass", {{"value", 0.3}, {"std_dev", 0.001}}}}, kRodAndBob, "rig.json", warnings);
   ASSERT_TRUE(rig) << rig.error().message;
+  EXPECT_THAT(warnings, IsEmpty());
   // G = (M + m/2) g l
   EXPECT_NEAR(rig->gravity_torque.value, 0.35 * 9.8 * 0.5, 1e-12);
   EXPECT_NEAR(rig->gravity_torque.std_dev, 0.001 * 9.8 * 0.5, 1e-12);
   EXPECT_EQ(rig->source["bob_mass"]["value"], 0.3);
 }
 
+TEST(ParseRigWith, AssumesGravityIfItIsNeeded) {
+  std::vector<Warning> warnings;
+  const auto rig = ParseRigWith({}, R"({"mass": 0.5, "center_of_mass": 0.2})", "rig.json", warnings);
+  ASSERT_TRUE(rig) << rig.error().message;
+  EXPECT_NEAR(rig->gravity_torque.value, 0.5 * 0.2 * 9.806, 1e-12);
+  ASSERT_EQ(warnings.size(), 1);
+  EXPECT_EQ(warnings[0].code, "gravity_assumed");
+}
+
 TEST(ParseRigWith, RefusesAWrongText) {
-  EXPECT_THAT(ParseRigWith({{"bob_mass", 0.3}}, "{", "rig.json").error().message, testing::StartsWith("rig.json:"));
-  EXPECT_THAT(ParseRigWith({{"mass", 0.3}}, kRodAndBob, "rig.json").error().message,
+  std::vector<Warning> warnings;
+  EXPECT_THAT(ParseRigWith({{"bob_mass", 0.3}}, "{", "rig.json", warnings).error().message,
+              testing::StartsWith("rig.json:"));
+  EXPECT_THAT(ParseRigWith({{"mass", 0.3}}, kRodAndBob, "rig.json", warnings).error().message,
               testing::HasSubstr("belong to different descriptions"));
 }
 

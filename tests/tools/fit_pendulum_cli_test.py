@@ -414,11 +414,11 @@ class PeoplesHabits(CliTest):
         self.assertIn("a straight line through the 4 points of table.csv", warning["message"])
 
     def test_refusal_ends_with_the_command_to_try(self):
-        rows = "".join(row.split(",")[1] + "\n" for row in GOOD_DATA.splitlines()[1:])
-        self.write("no times.csv", "angle_deg\n" + rows)
-        refused = self.run_tool("no times.csv", "--model", "viscous")
+        rows = GOOD_DATA.splitlines()[1:]
+        self.write("no unit.csv", "time_s,pm\n" + "".join("{},{:.4f}\n".format(t, float(a) / 57.2958) for t, a in (row.split(",") for row in rows)))
+        refused = self.run_tool("no unit.csv", "--model", "viscous")
         self.assertEqual(refused.returncode, 4)
-        self.assertRegex(refused.stderr, r"\ntry: \S*fit_pendulum 'no times.csv' --model viscous --sample_rate_hz 100\n\Z")
+        self.assertRegex(refused.stderr, r"\ntry: \S*fit_pendulum 'no unit.csv' --model viscous --unit rad\n\Z")
         command = refused.stderr.splitlines()[-1].removeprefix("try: ")
         tried = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertIn(tried.returncode, (0, 1), tried.stderr)

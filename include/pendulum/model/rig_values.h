@@ -15,12 +15,13 @@ namespace pendulum {
 /// The name of a rig that is given by values alone, for messages.
 inline constexpr std::string_view kRigOfValuesName = "the rig given by flags";
 
-/// As ParseRig, with `values`, an object with keys of the rig, in the place of those of the text.
-Result<Rig> ParseRigWith(const nlohmann::ordered_json& values, std::string_view text, const std::string& name);
+/// As ParseRig, with `values`, an object with keys of the rig, in the place of those of the text. A rig that needs g
+/// and has none gets the mean at sea level, with its variation from the equator to the poles as error; the warning
+/// gravity_assumed is added to `warnings`.
+Result<Rig> ParseRigWith(const nlohmann::ordered_json& values, std::string_view text, const std::string& name,
+                         std::vector<Warning>& warnings);
 
-/// The rig of the values alone. A rig that needs g and has none gets the mean at sea level, with its variation from the
-/// equator to the poles as error; the warning gravity_assumed is added to `warnings`. kInvalidArgument: the
-/// values are no rig, as in ParseRig.
+/// As ParseRigWith, of the values alone. kInvalidArgument: they are no rig.
 Result<Rig> RigOfValues(nlohmann::ordered_json values, std::vector<Warning>& warnings);
 
 /// The warning rig_overridden, which names the flags of the values that replaced those of a rig file.

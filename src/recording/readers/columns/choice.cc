@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "pendulum/base/utf8.h"
+#include "pendulum/recording/recording.h"
 
 namespace pendulum::csv {
 
@@ -169,6 +170,14 @@ bool Choice::IsIncreasing(std::size_t index) const {
     last = number;
   }
   return last > first && kRowsPerStepBack * back <= NumbersOf(index).size();
+}
+
+bool Choice::IsRowNumber(std::size_t index) const {
+  const Eigen::VectorXd& counts = NumbersOf(index);
+  for (Index i = 1; i < counts.size(); ++i) {
+    if (std::isfinite(counts[i]) && std::isfinite(counts[i - 1]) && counts[i] - counts[i - 1] != 1) return false;
+  }
+  return counts.size() >= kMinimumSamples && counts[0] == std::floor(counts[0]);
 }
 
 bool AreSeparated(const Columns& times) {

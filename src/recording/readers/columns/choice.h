@@ -99,6 +99,9 @@ struct Choice {
 
   /// Whether the numbers of a column increase, as times do; at most one in a hundred is smaller than the one before.
   bool IsIncreasing(std::size_t index) const;
+
+  /// Whether a column counts the rows: whole numbers that increase by 1.
+  bool IsRowNumber(std::size_t index) const;
 };
 
 /// Whether quantities lie between columns of times, so that each time belongs to a run beside the others.

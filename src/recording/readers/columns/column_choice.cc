@@ -2,6 +2,7 @@
 #include "recording/readers/columns/column_choice.h"
 
 #include "recording/readers/columns/choice.h"
+#include "recording/readers/columns/passages.h"
 #include "recording/readers/columns/time_choice.h"
 #include "recording/readers/columns/value_choice.h"
 
@@ -25,6 +26,7 @@ void FillPreview(const Choice& choice, TablePreview& preview) {
 }
 
 Result<void> Choose(Choice& choice) {
+  if (Result<void> refused = RefusePassages(choice); !refused) return refused;
   if (Result<void> found = FindNamedTime(choice); !found) return found;
   if (Result<void> chosen = ChooseValue(choice); !chosen) return chosen;
   if (Result<void> chosen = ChooseTime(choice); !chosen) return chosen;

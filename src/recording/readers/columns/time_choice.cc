@@ -17,22 +17,13 @@ void UseTime(Choice& choice, std::size_t index, const Unit& unit) {
   choice.layout.time = Column{index, choice.NameOf(index), &unit};
 }
 
-/// Whether a column counts the rows: whole numbers that increase by 1.
-bool IsRowNumber(const Choice& choice, std::size_t index) {
-  const Eigen::VectorXd& numbers = choice.NumbersOf(index);
-  for (Index i = 1; i < numbers.size(); ++i) {
-    if (std::isfinite(numbers[i]) && std::isfinite(numbers[i - 1]) && numbers[i] - numbers[i - 1] != 1) return false;
-  }
-  return numbers.size() >= kMinimumSamples && numbers[0] == std::floor(numbers[0]);
-}
-
 /// The columns without a meaning whose numbers increase. A single one is assumed to be the time.
 Columns TimesByNumbers(Choice& choice) {
   Columns times;
   for (std::size_t i = 0; i < choice.layout.width; ++i) {
     const bool is_hidden = i < choice.names.size() && choice.names[i].is_hidden;
     const bool is_free = i != choice.value && !is_hidden && choice.MayBeTime(i);
-    if (is_free && choice.IsNumeric(i) && choice.IsIncreasing(i) && !IsRowNumber(choice, i)) times.push_back(i);
+    if (is_free && choice.IsNumeric(i) && choice.IsIncreasing(i) && !choice.IsRowNumber(i)) times.push_back(i);
   }
   if (times.size() == 1) {
     choice.Assume("time_column_assumed",
@@ -50,7 +41,7 @@ Eigen::VectorXd SwingBeside(const Choice& choice) {
 void AskWhatIsCounted(Choice& choice, std::size_t index) {
   const std::string counts = "column " + choice.NameOf(index) + " increases by 1 in each row, so it counts ";
   const std::string unit = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
-  const std::string rate = "--sample_rate_hz and --time_column none (100 is an example; give your rate)";
+  const std::string rate = "--sample_rate_hz (in Hz) and --time_column none";
   if (MaySecondsCount(SwingBeside(choice))) {
     choice.Ask(counts + "seconds, rows or milliseconds: give the unit with " + unit +
                    " and --gravity linear, or with :ms, or the rate of the rows with " + rate,
@@ -59,7 +50,7 @@ void AskWhatIsCounted(Choice& choice, std::size_t index) {
   }
   choice.Ask(counts + "rows, seconds or milliseconds: give the rate of the rows with " + rate + ", or the unit with " +
                  unit + " or :ms",
-             {"--sample_rate_hz 100", "--time_column none"});
+             {}, "sample_rate_hz");
 }
 
 /// Whether the unit of times must be asked for: the name has an unknown one, or the column may count rows.
@@ -72,7 +63,7 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
                {}, "time_column");
     return true;
   }
-  if (!IsRowNumber(choice, index)) return false;
+  if (!choice.IsRowNumber(index)) return false;
   AskWhatIsCounted(choice, index);
   return true;
 }
@@ -169,11 +160,8 @@ Result<void> ChooseTime(Choice& choice) {
   if (times.empty()) {
     const std::string none = choice.names.empty() ? "no column increases as a time does"
                                                   : "none of the columns " + choice.ColumnNames() + " is a time";
-    choice.Ask(
-        none +
-            ": give the rate of the rows with --sample_rate_hz (100 is an example; give your rate), or the column "
-            "with --time_column",
-        {"--sample_rate_hz 100"});
+    choice.Ask(none + ": give the rate of the rows in Hz with --sample_rate_hz, or the column with --time_column", {},
+               "sample_rate_hz");
     return {};
   }
   const auto has_unit = [&](std::size_t i) { return choice.Meaning(i).unit != nullptr; };

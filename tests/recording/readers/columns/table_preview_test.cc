@@ -55,7 +55,6 @@ TEST(TablePreview, HasAllQuestionsWithTheirFlagsIfReadingFails) {
   const TablePreview preview = PreviewOf(text);
   ASSERT_THAT(preview.questions, SizeIs(2));
   EXPECT_THAT(preview.questions[0].options, ElementsAre("sample_rate_hz"));
-  EXPECT_THAT(preview.questions[0].try_flags, ElementsAre("--sample_rate_hz 100"));
   EXPECT_THAT(preview.questions[1].options, ElementsAre("unit"));
   EXPECT_THAT(preview.questions[1].sentence, HasSubstr("counts or degrees"));
   EXPECT_THAT(preview.names, ElementsAre("n", "encoder"));

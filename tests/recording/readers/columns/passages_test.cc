@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/readers/columns/passages.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/recording/rows.h"
+
+namespace pendulum::passages_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Passages of a pendulum with a period of 1.6 s through a gate that stands beside its zero, so that the two halves of
+/// a period differ; in units of `unit` [s].
+std::vector<std::string> Passages(double unit) {
+  std::vector<std::string> times;
+  for (int i = 0; i < 41; ++i) {
+    times.push_back(std::to_string(std::lround((3 + 0.8 * i + (i % 2 == 1 ? 0.02 : 0)) / unit)));
+  }
+  return times;
+}
+
+std::string Text(const std::string& header, const std::vector<std::string>& times, bool is_numbered) {
+  std::string text = header;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    text += (is_numbered ? std::to_string(i + 1) + "," : std::string()) + times[i] + "\n";
+  }
+  return text;
+}
+
+TEST(RefusePassages, GivesTheMeanOfFullPeriods) {
+  for (const bool is_numbered : {true, false}) {
+    const std::string fault = FaultOf(Text("", Passages(1e-3), is_numbered));
+    EXPECT_THAT(fault, HasSubstr("holds times of passages, not readings: the mean of full periods is 1.6 s (if the "
+                                 "times are in ms); friction needs readings"));
+  }
+  EXPECT_THAT(
+      FaultOf(Text("passage,time_us\n", Passages(1e-6), true)),
+      HasSubstr("column \"time_us\" holds times of passages, not readings: the mean of full periods is 1.6 s; "));
+}
+
+TEST(RefusePassages, TakesNoClockForPassages) {
+  std::vector<std::string> even;
+  for (int i = 0; i < 40; ++i) even.push_back(std::to_string(20 * i));
+  EXPECT_THAT(FaultOf(Text("n,time_ms\n", even, true)), Not(HasSubstr("passages")));
+}
+
+}  // namespace
+}  // namespace pendulum::passages_test
