@@ -105,6 +105,13 @@ class AcceptedFiles(ReadTest):
                                             "--unit", "counts", "--calibration", "cal.json")
         self.assertNotIn("time_repeated", codes)
 
+    def test_a_paste_with_lines_between_its_rows(self):
+        lines = ("", "Temp: 23 C\r\n", "09:14:09 -> # battery 7.4V\r\n", "4711\r\n")
+        between = lambda t: lines[round(10 * t) % 4] if round(100 * t) % 300 == 10 * (round(10 * t) % 4) else ""
+        rows = table("Ready v1\r\nmillis\tADC\r\n", lambda t, a: f"{between(t)}{round(1000 * t)}\t{counts(a)}\r")
+        codes = self.assert_finds_the_truth("--data", self.write("paste.txt", rows), "--calibration", "cal.json")
+        self.assertEqual([code for code in codes if "column" in code or "lines" in code], ["stray_lines"])
+
     def test_a_paste_a_calibration_table_and_masses_in_grams_are_one_command(self):
         stamp = lambda t: f"14:03:{22 + t:06.3f} -> " if t < 38 else ""
         self.write("paste.txt", table("", lambda t, a: f"{stamp(t)}{round(1000 * t) + 7},{counts(a)}")[9:-2])

@@ -175,6 +175,10 @@ bool IsRule(std::string_view line) {
          line.find_first_of("-=_*~") != std::string_view::npos;
 }
 
+bool SaysSomething(const std::vector<Name>& names) {
+  return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
+}
+
 /// Where the table is, for one separator.
 struct Table {
   char separator = ',';
@@ -183,6 +187,18 @@ struct Table {
   std::size_t width = 0;      // Of the rows.
   double score = 0;
 };
+
+/// The line of the names, which remarks may separate from the rows: a device that says that it calibrates.
+template <typename AreNames>
+std::size_t SkipRemarks(const std::vector<std::string_view>& lines, const Table& table, const AreNames& are_names) {
+  constexpr std::size_t kMostRemarks = 5;
+  for (std::size_t i = table.names; i + kMostRemarks > table.names; --i) {
+    const std::vector<Name> names = SplitHeader(lines[i], table.separator);
+    if (SaysSomething(names)) return are_names(i) ? i : table.names;
+    if (i == 0 || names.size() == table.width) break;
+  }
+  return table.names;
+}
 
 Table FindTable(const std::vector<std::string_view>& lines, char separator) {
   std::vector<std::string> masks;
@@ -203,15 +219,17 @@ Table FindTable(const std::vector<std::string_view>& lines, char separator) {
   if (table.first_row == 0) return table;
   table.names = table.first_row - 1;
   while (table.names > 0 && IsRule(lines[table.names])) --table.names;
-  // A faulty row below the names.
   const auto are_names = [&](std::size_t i) {
     const std::vector<Name> above = SplitHeader(lines[i], separator);
     return above.size() == table.width &&
            std::ranges::all_of(above, [](const Name& name) { return IsName(name.text); });
   };
-  while (table.names > 0 && masks[table.names].find(kNumber) != std::string::npos && are_names(table.names - 1)) {
-    table.first_row = table.names--;
-  }
+  // A faulty row below the names.
+  const auto is_faulty_row = [&](std::size_t i) {
+    return masks[i].find(kNumber) != std::string::npos && (!IsText(lines[i]) || masks[i].size() == usual.size());
+  };
+  while (table.names > 0 && is_faulty_row(table.names) && are_names(table.names - 1)) table.first_row = table.names--;
+  table.names = SkipRemarks(lines, table, are_names);
   constexpr double kSame = 1.5, kOther = 0.4;
   const std::vector<Name> names = SplitHeader(lines[table.names], separator);
   const bool has_names = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
@@ -249,15 +267,26 @@ std::string_view WithoutBrackets(std::string_view text) {
   return has_brackets ? text.substr(1, text.size() - 2) : text;
 }
 
-/// Whether each field is a unit, perhaps in brackets, or empty.
-bool AreUnits(const std::vector<Name>& names) {
+bool IsWord(std::string_view text) {
+  constexpr std::size_t kLongerThanSymbols = 3;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return text.size() >= kLongerThanSymbols && std::ranges::all_of(text, is_letter);
+}
+
+/// Whether each field is a unit, perhaps in brackets, or empty, below a name. Words for units such as
+/// `millis` and `ADC` are names themselves if those above say nothing: `Hello, world`.
+bool AreUnits(const std::vector<Name>& names, const std::vector<Name>& above) {
   bool has_unit = false;
-  for (const Name& name : names) {
-    const std::string_view text = WithoutBrackets(name.text);
+  const bool may_be_words = SaysSomething(above);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view text = WithoutBrackets(names[i].text);
     if (text.empty() || text == "-") continue;
+    if (i >= above.size()) return false;
     const NameMeaning meaning = MeaningOf(text);
-    const bool is_unit = UnitOfText(text) != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
-    if (!is_unit) return false;
+    const Unit* unit = UnitOfText(text);
+    const bool is_word = text == names[i].text && IsWord(text) && UnitOfSuffix(PlainName(text)) == nullptr;
+    const bool is_unit = unit != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
+    if (!is_unit || (is_word && !may_be_words)) return false;
     has_unit = true;
   }
   return has_unit;
@@ -292,10 +321,6 @@ std::vector<TableColumn> ColumnsOf(const std::vector<Name>& names) {
   }
   SplitRuns(columns);
   return columns;
-}
-
-bool SaysSomething(const std::vector<Name>& names) {
-  return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
 }
 
 /// The text without these blanks at its beginning.
@@ -446,7 +471,7 @@ class HeadParser {
     if (table_.names < table_.first_row) names_ = SplitHeader(NamesOf(table_.names), table_.separator);
     if (table_.names > 0 && table_.names < table_.first_row) {
       std::vector<Name> above = SplitHeader(NamesOf(table_.names - 1), table_.separator);
-      if (HasName(above) && (AreUnits(names_) || ReadRigolHeader(above, names_, head_))) {
+      if (HasName(above) && (AreUnits(names_, above) || ReadRigolHeader(above, names_, head_))) {
         units_ = std::exchange(names_, std::move(above));
         --table_.names;
       }
@@ -509,7 +534,7 @@ std::optional<char> SeparatorLine(std::string_view line) {
 }
 
 bool IsTextAmongRows(std::string_view line, const Head& head, char separator) {
-  const std::string_view row = DevicePart(line, head.has_host);
+  const std::string_view row = DevicePart(line, true);  // A device may stamp its remarks alone.
   if (!IsText(row) || IsMissing(Unquote(FieldCutter(row, separator).Next()))) return false;
   return head.fields_of_text == 0 || CountFields(row, separator) < head.fields_of_text;
 }
@@ -571,6 +596,7 @@ std::vector<std::vector<std::string>> FirstRows(std::string_view text, std::size
   ForEachTextLine(text, 1, [&](std::string_view line, std::size_t at) {
     if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
     if (rows.size() == most || IsHeaderAgain(line, head, layout)) return false;
+    if (IsTextAmongRows(line, head, layout.separator)) return true;
     std::vector<std::string>& cells = rows.emplace_back();
     for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator);
          !fields.done() && cells.size() < layout.width;) {
