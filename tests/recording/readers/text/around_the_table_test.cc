@@ -186,6 +186,47 @@ TEST(AroundTheTable, RemarksBesideTheHeaderAreNoNames) {
   ExpectTheRows(RecordingOf("Ido;Szog\nms;deg\n" + Rows("{t};{v}"), TimeAndValue("Ido", "Szog")), kDegree);
 }
 
+TEST(AroundTheTable, NamesMayBeSeparatedByAnotherMarkThanRows) {
+  for (const auto& [header, pattern] : {std::pair("t (ms),cmd,phi (deg)", "{t}\t0\t{v}"),
+                                        {"t (ms),cmd,phi (deg)", "{t};0;{v}"},
+                                        {"\"t (ms),cmd,phi (deg)\"", "{t}\t0\t{v}"},
+                                        {"t (ms), cmd, phi (deg)", "{t} 0 {v}"},
+                                        {"# t (ms), cmd, phi (deg)", "{t} 0 {v}"},
+                                        {"t (ms)\tcmd\tphi (deg)", "{t};0;{v}"},
+                                        {"t (ms);cmd;phi (deg)", "{t},0,{v}"},
+                                        {"t (ms) cmd phi (deg)", "{t},0,{v}"},
+                                        {"t,cmd,phi\nms,V,deg", "{t}\t0\t{v}"}}) {
+    const std::string phi = std::string(header).starts_with("t,") ? "phi" : "phi (deg)";
+    for (const std::string above : {"", "# a\n", "--- pendolo, oggi ---\n"}) {
+      if (header[0] == '#' && above.starts_with('-')) continue;
+      const Recording recording =
+          RecordingOf(above + header + "\n" + Rows(pattern), TimeAndValue(phi == "phi" ? "t" : "t (ms)", phi));
+      ExpectTheRows(recording, kDegree);
+      EXPECT_TRUE(recording.warnings.empty()) << header;
+    }
+  }
+  std::string commas = "Tempo (s),Comando,Angolo (gradi)\r\n";
+  for (int i = 0; i < 8; ++i) commas += "0,0" + std::to_string(i) + "\t0,5\t" + std::to_string(100 + i) + ",0\r\n";
+  ExpectTheRows(RecordingOf(commas), kDegree);
+}
+
+// LabVIEW with `X_Columns No`: X_Value is empty, and the interval stands above.
+TEST(AroundTheTable, AnEmptyColumnOfTimesIsReplacedByTheInterval) {
+  for (const auto& [separator, word] : {std::pair('\t', "Tab"), {',', "Comma"}}) {
+    for (const std::string step : {"0.01", "0,01"}) {
+      if (separator == ',' && step == "0,01") continue;
+      std::string text = std::string("LabVIEW Measurement\nSeparator|") + word +
+                         "\nX_Columns|No\n***End_of_Header***\n\nChannels|1\nSamples|8\nX0|0\nDelta_X|" + step +
+                         "\n***End_of_Header***\nX_Value|angle_deg|Comment\n";
+      for (int i = 0; i < 8; ++i) text += "|" + std::to_string(100 + i) + step.substr(1, 1) + "0\n";
+      std::ranges::replace(text, '|', separator);
+      const Recording recording = RecordingOf(text);
+      ExpectTheRows(recording, kDegree);
+      EXPECT_TRUE(recording.warnings.empty());
+    }
+  }
+}
+
 TEST(AroundTheTable, AShortTableWithTextBelowHasTooFewRows) {
   EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + "End\n", {}, StatusCode::kFailedPrecondition),
               HasSubstr("rows of data found: 5; at least 8 are needed"));
