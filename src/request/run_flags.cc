@@ -76,7 +76,7 @@ constexpr std::array<Word<IntervalMethod>, 4> kIntervals = {
 constexpr std::array<Word<Checks>, 3> kChecks = {
     {{"none", Checks::kNone}, {"standard", Checks::kStandard}, {"full", Checks::kFull}}};
 
-constexpr std::array<FlagWord, 19> kReadingUnits = {{{"", "in the column’s name"},
+constexpr std::array<FlagWord, 20> kReadingUnits = {{{"", "in the column’s name"},
                                                      {"rad", "radians"},
                                                      {"deg", "degrees"},
                                                      {"mrad", "milliradians"},
@@ -91,6 +91,7 @@ constexpr std::array<FlagWord, 19> kReadingUnits = {{{"", "in the column’s nam
                                                      {"mv", "millivolts"},
                                                      {"m_s2", "metres per second squared"},
                                                      {"g", "standard gravity (9.80665 m/s²)"},
+                                                     {"mg", "milli-g (a thousandth of g)"},
                                                      {"px", "pixels"},
                                                      {"m", "metres"},
                                                      {"cm", "centimetres"},
@@ -446,16 +447,17 @@ std::vector<RunFlag> MakeTable() {
        .example = "1:ms"},
       {.name = "value_column",
        .value = &RunFlags::value_column,
-       .help = "Column of the angle or rate: its name, or its number from 1; combined: the rate about the fixed axis "
-               "that the axes of a gyro share; default found by its name, its unit and its swing.",
+       .help = "Column of the angle or rate: its name, or its number from 1; two separated by a comma: the horizontal "
+               "and the vertical coordinate of a point; combined: the rate about the fixed axis that the axes of a "
+               "gyro share; default found by its name, its unit and its swing.",
        .label = "Column of the angle",
        .schema = TextSchema(),
        .example = "angle_deg"},
       {.name = "unit",
        .value = &RunFlags::unit,
-       .help =
-           "Unit of the values: rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, px, "
-           "m, cm or mm; default the unit in the column's name, or the one that the numbers show.",
+       .help = "Unit of the values: rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, "
+               "mg, px, "
+               "m, cm or mm; default the unit in the column's name, or the one that the numbers show.",
        .label = "Unit of the values",
        .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",

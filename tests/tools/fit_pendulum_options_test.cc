@@ -237,8 +237,7 @@ TEST(MakeFitPendulumOptions, RefusesFlagsThatContradictEachOther) {
   flags.unit = "grad";
   EXPECT_EQ(Refusal(flags),
             "--unit is 'grad'; it must be one of rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, "
-            "mv, m_s2, g, "
-            "px, m, cm, mm");
+            "mv, m_s2, g, mg, px, m, cm, mm");
 }
 
 TEST(MakeFitPendulumOptions, RequiresAPositiveSampleRate) {

@@ -7,8 +7,10 @@ and a sentence.
 """
 
 import json
+import math
 import os
 import pathlib
+import random
 import re
 import resource
 import shutil
@@ -104,6 +106,41 @@ class AcceptedFiles(ReadTest):
         codes = self.assert_finds_the_truth("--data", self.write("paste.txt", rows[9:-2]), "--time_column", "1:ms",
                                             "--unit", "counts", "--calibration", "cal.json")
         self.assertNotIn("time_repeated", codes)
+
+    def test_a_paste_with_lines_between_its_rows(self):
+        lines = ("", "Temp: 23 C\r\n", "09:14:09 -> # battery 7.4V\r\n", "4711\r\n")
+        between = lambda t: lines[round(10 * t) % 4] if round(100 * t) % 300 == 10 * (round(10 * t) % 4) else ""
+        rows = table("Ready v1\r\nmillis\tADC\r\n", lambda t, a: f"{between(t)}{round(1000 * t)}\t{counts(a)}\r")
+        codes = self.assert_finds_the_truth("--data", self.write("paste.txt", rows), "--calibration", "cal.json")
+        self.assertEqual([code for code in codes if "column" in code or "lines" in code], ["stray_lines"])
+
+    def assert_finds_the_truth_with_its_proposal(self, sentence, data):
+        """Checks that the tool asks with this sentence, and that the flags it proposes lead to the true values."""
+        run = self.run_tool("--data", data)
+        self.assertEqual(run.returncode, 4, run.stdout)
+        self.assertIn(sentence, run.stderr)
+        flags = re.search(rf"{data} (.*)\n", run.stderr.split("try: ")[1])[1].split()
+        self.assert_finds_the_truth("--data", data, *flags)
+
+    def test_points_without_names(self):
+        point = lambda t, a: f"{t:.3f}\t{430 * math.sin(math.radians(a)):.2f}\t{-430 * math.cos(math.radians(a)):.2f}\r"
+        codes = self.assert_finds_the_truth("--data", self.write("points.txt", table("", point)))
+        self.assertIn("value_column_assumed", codes)
+        self.assert_finds_the_truth("--data", "points.txt", "--value_column", "2,3", "--unit", "mm")
+
+    def test_accelerations_in_milli_g_without_names(self):
+        noise, radius = random.Random(3), 0.15  # m
+        rows = []
+        for time, angle, rate in swing.swing(20.0):
+            friction = swing.TRUTH["viscous"] * rate + swing.TRUTH["coulomb"] * math.tanh(rate / 1e-3)
+            turn = -(swing.GRAVITY_TORQUE * math.sin(angle) + friction) / swing.TRUTH["inertia"]  # rad/s^2
+            is_held = time < swing.TRUTH["release_time"]
+            along = 9.80665 * math.cos(angle) + radius * rate**2
+            across = 9.80665 * math.sin(angle) + (0 if is_held else radius * turn)
+            readings = (round(1000 * each / 9.80665 + noise.gauss(0, 4)) for each in (along, across))
+            rows.append("\t".join(map(str, (round(1000 * time), *readings))))
+        self.write("microbit.txt", "\n".join(rows) + "\n")
+        self.assert_finds_the_truth_with_its_proposal("have the size of gravity in mg", "microbit.txt")
 
     def test_a_paste_a_calibration_table_and_masses_in_grams_are_one_command(self):
         stamp = lambda t: f"14:03:{22 + t:06.3f} -> " if t < 38 else ""

@@ -125,8 +125,7 @@ TEST(ForeignFormats, RefuseFlagsThatContradictTheFile) {
       "another column with --value_column");
   EXPECT_EQ(WrongFlag(text, Unit("brad")),
             "run.csv:1:8: --unit is \"brad\"; it must be rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, "
-            "volts, mv, "
-            "m_s2, g, px, m, cm or mm");
+            "volts, mv, m_s2, g, mg, px, m, cm or mm");
   EXPECT_EQ(
       WrongFlag(text, Unit("", 50)),
       "run.csv:1:1: column \"time_s\" holds the times, so --sample_rate_hz 50 contradicts it; leave the flag out, "

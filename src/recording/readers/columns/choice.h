@@ -33,9 +33,10 @@ struct Choice {
   std::vector<Warning>& warnings;
   const std::vector<Name>& names = table.names;
   const std::vector<NameMeaning> meanings = MeaningsOf(table.names, layout.width);
-  std::optional<std::size_t> time = {};   // The column of times, if the user named it or it has been chosen.
-  std::optional<std::size_t> value = {};  // The column of the quantity.
-  Columns axes = {};                      // The other axes of a rotation.
+  std::optional<std::size_t> time = {};      // The column of times, if the user named it or it has been chosen.
+  std::optional<std::size_t> value = {};     // The column of the quantity.
+  std::optional<std::size_t> vertical = {};  // The other coordinate of a point that no name shows.
+  Columns axes = {};                         // The other axes of a rotation.
   std::optional<TableNumbers> numbers = {};
   std::optional<std::size_t> example = {};   // Of a column that the user may choose.
   std::vector<ReadQuestion> questions = {};  // What the user must tell.

@@ -268,6 +268,8 @@ constexpr std::array kUnitWords = {
     UnitWord{"m*s-2", "m_s2"},
     UnitWord{"m/sec2", "m_s2"},
     UnitWord{"mps2", "m_s2"},
+    UnitWord{"millig", "mg"},
+    UnitWord{"milli-g", "mg"},
     UnitWord{"pixel", "px"},
     UnitWord{"pixels", "px"},
     UnitWord{"pix", "px"},
@@ -432,6 +434,9 @@ constexpr std::array kWords = {
     Word{"poti", Sense::kRaw},
     Word{"potenciometro", Sense::kRaw},
     Word{"acc", Sense::kAcceleration},
+    Word{"ax", Sense::kAcceleration},
+    Word{"ay", Sense::kAcceleration},
+    Word{"az", Sense::kAcceleration},
     Word{"accel", Sense::kAcceleration},
     Word{"acceleration", Sense::kAcceleration},
     Word{"accelerometer", Sense::kAcceleration},
@@ -475,6 +480,8 @@ constexpr std::array kWords = {
     Word{"magnetfeld", Sense::kOther},
     Word{"sound", Sense::kOther},
     Word{"mass", Sense::kOther},
+    Word{"masse", Sense::kOther},
+    Word{"gewicht", Sense::kOther},
     Word{"weight", Sense::kOther},
     Word{"energy", Sense::kOther},
     Word{"energie", Sense::kOther},
@@ -518,6 +525,12 @@ std::optional<Sense> SenseOf(std::string_view word) {
   return find(word.substr(0, word.size() - 1));
 }
 
+/// Whether a name is the letter of an axis: `x_mg` without its unit.
+bool IsAxis(std::string_view stem) {
+  const std::vector<std::string_view> words = WordsIn(stem);
+  return words.size() == 1 && (words[0] == "x" || words[0] == "y" || words[0] == "z");
+}
+
 /// The kind that the words of a name say.
 struct WordMeaning {
   std::optional<Kind> kind;
@@ -529,8 +542,10 @@ WordMeaning MeaningOfWords(std::string_view stem) {
   WordMeaning meaning;
   std::array<bool, static_cast<std::size_t>(Sense::kSecondary) + 1> has{};
   std::optional<Sense> last;
-  for (const std::string_view word : WordsIn(stem)) {
-    const std::optional<Sense> sense = SenseOf(word);
+  const std::vector<std::string_view> words = WordsIn(stem);
+  const bool is_split_axis = words.size() == 2 && words[0] == "a" && IsAxis(words[1]);  // a_x, aX
+  for (const std::string_view word : words) {
+    const std::optional<Sense> sense = is_split_axis ? Sense::kAcceleration : SenseOf(word);
     if (sense) has.at(static_cast<std::size_t>(*sense)) = true;
     last = sense;
   }
@@ -637,6 +652,7 @@ bool IsUnitAfter(std::string_view word, const std::string& stem) {
   const std::optional<Kind> kind = MeaningOfWords(stem).kind;
   if (word == "min") return kind == Kind::kTime;
   if (word == "g") return kind == Kind::kAcceleration;
+  if (word == "mg") return kind == Kind::kAcceleration || IsAxis(stem);
   if (word == "v") return kind != Kind::kAngle && kind != Kind::kRate;
   if (word == "rev" || word == "turns") return kind == Kind::kAngle;
   return true;
@@ -665,7 +681,7 @@ std::optional<Division> DivideAtSuffix(const std::string& plain) {
 
 Division DivideName(std::string_view name) {
   const std::string letters = UnitLetters(name);
-  const bool is_ambiguous = letters == "min" || letters == "g" || letters == "m";
+  const bool is_ambiguous = letters == "min" || letters == "g" || letters == "mg" || letters == "m";
   if (const Unit* unit = is_ambiguous ? nullptr : UnitOfLetters(letters)) return {unit, ""};
   if (IsMultiple(InBrackets(name)))
     return {nullptr, PlainName(SplitCamelCase(name.substr(0, name.find_last_of("(["))))};
@@ -740,6 +756,11 @@ NameMeaning MeaningOf(std::string_view name) {
     if (const auto before = DivideAtSuffix(meaning.stem); before && before->unit != nullptr) {
       meaning.second = before->unit->kind == Kind::kTime ? nullptr : before->unit;
     }
+  }
+  const bool is_gram = meaning.unit != nullptr && (meaning.unit->suffix == "g" || meaning.unit->suffix == "mg");
+  if (is_gram && words.is_of_other_quantity) {
+    meaning.unit = nullptr;
+    meaning.has_other_unit = true;
   }
   const bool is_time_unit = meaning.unit != nullptr && meaning.unit->kind == Kind::kTime;
   if (is_time_unit) {

@@ -53,6 +53,7 @@ inline constexpr std::array kUnits = {
     Unit{"mv", Kind::kRaw, "volts", 1, 1e3},
     Unit{"m_s2", Kind::kAcceleration, "m/s^2"},
     Unit{"g", Kind::kAcceleration, "m/s^2", kStandardGravity},
+    Unit{"mg", Kind::kAcceleration, "m/s^2", kStandardGravity, 1e3},
     Unit{"px", Kind::kLength, "px"},
     Unit{"cm", Kind::kLength, "m", 1, 1e2},
     Unit{"mm", Kind::kLength, "m", 1, 1e3},
@@ -61,7 +62,7 @@ inline constexpr std::array kUnits = {
 
 /// The units of a quantity, as --unit takes them.
 inline constexpr std::string_view kValueUnits =
-    "rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, px, m, cm or mm";
+    "rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, mg, px, m, cm or mm";
 
 /// The unit with this suffix, or nullptr.
 inline const Unit* UnitOfSuffix(std::string_view suffix) {

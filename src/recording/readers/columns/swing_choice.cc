@@ -13,6 +13,8 @@
 
 #include "pendulum/base/format.h"
 #include "recording/readers/columns/name_list.h"
+#include "recording/readers/columns/point_choice.h"
+#include "recording/readers/columns/unit_guess.h"
 #include "recording/swing_signature.h"
 
 namespace pendulum::csv {
@@ -157,6 +159,58 @@ bool HaveSeveralSwings(const Choice& choice, const Columns& columns) {
   return std::ranges::count_if(columns, swings) > 1;
 }
 
+/// Whether columns whose names say nothing may be lengths: neither a flag nor the file says that they are not.
+bool MayBeLengths(const Choice& choice) {
+  const std::string& asked = choice.options.unit;
+  const Unit* unit = asked.empty() ? UnitOfSuffix(choice.table.value_unit) : UnitOfText(asked);
+  return unit == nullptr ? choice.table.raw_input.empty() : unit->kind == Kind::kLength;
+}
+
+/// The unit of acceleration in which two or three columns contain gravity; empty: none.
+std::string_view GravityUnitOf(const Choice& choice, const Columns& columns) {
+  constexpr std::size_t kAxes = 3;
+  if (columns.size() < 2 || columns.size() > kAxes) return "";
+  std::vector<Eigen::VectorXd> axes;
+  for (const std::size_t i : columns) axes.push_back(choice.NumbersOf(i));
+  return UnitOfGravity(axes);
+}
+
+/// The flag that names both coordinates.
+std::string FlagOf(const Choice& choice, const Point& point) {
+  return "--value_column " + choice.FlagValueOf(point.horizontal) + "," + choice.FlagValueOf(point.vertical);
+}
+
+/// Asks which of several columns that swing, and whose names say nothing, is the quantity; `best` carries the most.
+void AskWhichSwing(Choice& choice, const Columns& columns, std::size_t best, const std::optional<Point>& point) {
+  const std::string sentence =
+      "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns));
+  const bool has_unit = !choice.options.unit.empty() || !choice.table.value_unit.empty();
+  const std::string gravity(has_unit ? "" : GravityUnitOf(choice, columns));
+  if (gravity.empty()) return choice.AskForColumn(sentence, columns.front());
+  const std::string column = "--value_column " + choice.FlagValueOf(best);
+  choice.Ask(sentence + "; together they have the size of gravity in " + std::string(UnitOfSuffix(gravity)->Written()) +
+                 ", so they may be accelerations: give " + column + " --unit " + gravity +
+                 (point ? ", or " + FlagOf(choice, *point) + " for the coordinates of a point" : "") +
+                 ", or choose another quantity with --value_column",
+             {column, "--unit " + gravity});
+}
+
+/// Takes two columns whose names say nothing for the coordinates of a point if that is clear; asks otherwise.
+std::optional<std::size_t> ChoosePoint(Choice& choice, const Point& point) {
+  const std::string both = "columns " + ListOf(choice.NamesOf({point.horizontal, point.vertical}));
+  const std::string one = "--value_column " + ShellWord(choice.FlagValueOf(point.horizontal));
+  if (!point.is_clear) {
+    choice.Ask(both + " may be the coordinates of a point: choose both with " + FlagOf(choice, point) +
+                   ", or one quantity with " + one,
+               {FlagOf(choice, point)});
+    return std::nullopt;
+  }
+  choice.vertical = point.vertical;
+  choice.Assume("value_column_assumed",
+                both + " lie on a circle and were used as the coordinates of a point; " + one + " uses one alone");
+  return point.horizontal;
+}
+
 /// Chooses by the share of each column in the variance of the swing.
 std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidates, double period) {
   constexpr double kMost = 0.8;
@@ -186,10 +240,12 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     const auto row = static_cast<Index>(i);
     if (row != best) others.push_back(choice.NameOf(columns[i]) + " " + Percent(shares[row]));
   }
-  if (!choice.Meaning(columns.front()).kind && HaveSeveralSwings(choice, columns)) {
-    choice.AskForColumn(
-        "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns)),
-        columns.front());
+  const bool is_unknown = !choice.Meaning(columns.front()).kind;
+  const auto point = is_unknown && MayBeLengths(choice) ? FindPointOnArc(choice, columns, period) : std::nullopt;
+  if (point && (point->is_no_acceleration || GravityUnitOf(choice, columns).empty()))
+    return ChoosePoint(choice, *point);
+  if (is_unknown && KindOf(choice, columns.front()) != Kind::kAcceleration && HaveSeveralSwings(choice, columns)) {
+    AskWhichSwing(choice, columns, columns[best], point);
     return std::nullopt;
   }
   const bool is_rotation = IsRotation(choice, columns) && CombineAxes(choice, columns, covariance);

@@ -30,9 +30,21 @@ double MedianOf(const Eigen::VectorXd& values) {
   return numbers.empty() ? 0 : Median(std::move(numbers));
 }
 
-/// An acceleration at rest is near 1 in g, near 9.8 in m/s².
-bool IsNearG(double in_si) { return std::abs(in_si - kStandardGravity) < 1.5; }
-bool IsNearOne(double in_g) { return std::abs(in_g - 1) < 0.2; }
+/// A unit of acceleration, and what gravity is in it.
+struct GravityUnit {
+  std::string_view unit;
+  double gravity;
+};
+
+constexpr std::array kGravityUnits = {GravityUnit{"g", 1}, GravityUnit{"m_s2", kStandardGravity},
+                                      GravityUnit{"mg", 1e3}};
+
+/// The median length of the vector with these components.
+double UsualLength(const std::vector<Eigen::VectorXd>& axes) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(axes.front().size());
+  for (const Eigen::VectorXd& axis : axes) squares += axis.cwiseAbs2();
+  return std::sqrt(MedianOf(squares));
+}
 
 /// Whether the period of the swing depends on the amplitude as for a pendulum with this amplitude [rad].
 enum class Evidence { kNone, kPendulum, kLinear };
@@ -91,14 +103,6 @@ UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingS
     return {"rad", " (its period depends on the amplitude as in radians)", ""};
   }
   return {"", ", and its name does not say whether it is an angle, a voltage or a length", is_whole ? "counts" : "rad"};
-}
-
-UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, double amplitude) {
-  constexpr double kMore = 2;
-  const double usual = MedianOf(values.cwiseAbs());
-  if (IsNearOne(usual) && amplitude < kMore) return {"g", " (it is about 1 at rest)", ""};
-  if (IsNearG(usual) || amplitude > kMore) return {"m_s2", "", ""};
-  return {"", ", which may be m/s^2 or g", "m_s2"};
 }
 
 /// Whether times may be seconds of a slow torsion pendulum, which is read every 10 s, or milliseconds of a fast
@@ -189,9 +193,30 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
   return {"s", ""};
 }
 
-std::string_view ExampleForAxes(const std::array<Eigen::VectorXd, 3>& axes) {
-  const double usual = std::hypot(MedianOf(axes[0]), MedianOf(axes[1]), MedianOf(axes[2]));
-  return IsNearG(usual) ? "m_s2" : IsNearOne(usual) ? "g" : "rad_s";
+std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes) {
+  constexpr double kNear = 0.2;
+  constexpr double kLeastSteady = 0.5;  // the part along the rod, which keeps its sign
+  const double length = UsualLength(axes);
+  double steady = 0;
+  for (const Eigen::VectorXd& axis : axes) steady = std::hypot(steady, MedianOf(axis));
+  const auto* const found = std::ranges::find_if(kGravityUnits, [&](const GravityUnit& each) {
+    return std::abs(length / each.gravity - 1) < kNear && steady > kLeastSteady * each.gravity;
+  });
+  return found == kGravityUnits.end() ? std::string_view() : found->unit;
+}
+
+UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, const std::vector<Eigen::VectorXd>& axes) {
+  constexpr double kMostInG = 2, kMostInSi = 100, kMostInMg = 4e3;
+  const auto swing = FindSwingSignature(values);
+  const double amplitude = swing ? swing->amplitude : HalfRange(values);
+  const std::string_view unit = UnitOfGravity(axes);
+  const std::string at_rest = " (it is about " + NumberText(UsualLength(axes), 2) + " at rest)";
+  if (unit == "mg" || unit == "m_s2" || (unit == "g" && amplitude < kMostInG)) return {unit, at_rest, ""};
+  if (amplitude > kMostInG && amplitude < kMostInSi) return {"m_s2", "", ""};
+  if (amplitude <= kMostInG) return {"", ", which may be m/s^2 or g", "m_s2"};
+  if (amplitude < kMostInMg) return {"", ", which may be mg (thousandths of g)", "mg"};
+  return {"", ", and is too large for m/s^2, g and mg: divide it by what it is at rest along the rod, then it is in g",
+          ""};
 }
 
 UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds) {
@@ -209,7 +234,7 @@ UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values
       return GuessAngleUnit(swing, amplitude, per_rate, "rad_s", "deg_s");
     }
     case Kind::kRaw: return {AreWhole(values) ? "counts" : "volts", "", ""};
-    case Kind::kAcceleration: return GuessAccelerationUnit(values, amplitude);
+    case Kind::kAcceleration: return GuessAccelerationUnit(values, {values});
     case Kind::kLength: return {"px", ", a length of unknown scale", ""};
     case Kind::kTime: break;
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -43,10 +43,15 @@ struct UnitGuess {
   std::string example;    // A plausible suffix.
 };
 
-/// The unit that x, y and z have most likely: of an acceleration if they contain gravity, otherwise of a rate.
-std::string_view ExampleForAxes(const std::array<Eigen::VectorXd, 3>& axes);
+/// The unit of acceleration in which axes of one sensor contain gravity, whose size they have together; empty: none.
+std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes);
 
-/// The unit of a quantity of this kind, or of any kind. `seconds` is the sampling interval, 0 if unknown.
+/// The unit of an acceleration, one of these axes of its sensor, which may be one axis alone. No unit and no example:
+/// none of the known units is plausible.
+UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, const std::vector<Eigen::VectorXd>& axes);
+
+/// The unit of a quantity of this kind, or of any kind; of an acceleration of one axis. `seconds` is the sampling
+/// interval, 0 if unknown.
 UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds);
 
 }  // namespace pendulum::csv

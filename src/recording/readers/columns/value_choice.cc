@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "recording/readers/columns/name_list.h"
+#include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/swing_choice.h"
 #include "recording/readers/columns/unit_guess.h"
 
@@ -56,52 +57,6 @@ std::vector<Columns> CandidateClasses(const Choice& choice, bool has_unit_flag) 
   return classes;
 }
 
-/// The words of a column's name without its unit, each between blanks.
-std::string WordsOf(const NameMeaning& meaning) {
-  std::string words = " " + meaning.stem + " ";
-  std::ranges::replace_if(
-      words, [](char c) { return c == '_' || c == '.' || c == '-'; }, ' ');
-  return words;
-}
-
-/// The column with the other coordinate of the same point: bob_y_px for bob_x_px.
-std::optional<std::size_t> FindVertical(const Choice& choice, std::size_t horizontal) {
-  const NameMeaning& x = choice.Meaning(horizontal);
-  if (x.kind != Kind::kLength || x.unit == nullptr || !x.Has("x")) return std::nullopt;
-  std::string wanted = WordsOf(x);
-  const std::size_t at = wanted.rfind(" x ");
-  if (at == std::string::npos) return std::nullopt;
-  wanted.replace(at + 1, 1, "y");
-  for (std::size_t i = 0; i < choice.names.size(); ++i) {
-    const NameMeaning& y = choice.Meaning(i);
-    const bool may_be_point = y.kind == Kind::kLength && y.unit == x.unit && y.stem.size() == x.stem.size();
-    if (may_be_point && !choice.names[i].is_hidden && WordsOf(y) == wanted) return i;
-  }
-  return std::nullopt;
-}
-
-/// The horizontal coordinate if the candidates contain one point.
-std::optional<std::size_t> FindPoint(const Choice& choice, const Columns& candidates) {
-  Columns points;
-  std::ranges::copy_if(candidates, std::back_inserter(points),
-                       [&](std::size_t i) { return FindVertical(choice, i).has_value(); });
-  return points.size() == 1 ? std::optional(points.front()) : std::nullopt;
-}
-
-/// Refuses a vertical coordinate. It is the same on both sides, so it oscillates twice as fast as the angle.
-Result<void> CheckCoordinate(const Choice& choice, std::size_t index) {
-  const NameMeaning& meaning = choice.Meaning(index);
-  if (meaning.kind != Kind::kLength || meaning.unit == nullptr || !meaning.Has("y")) return {};
-  const bool asked = !choice.options.value_column.empty();
-  const StatusCode code = asked ? StatusCode::kInvalidArgument : StatusCode::kDataLoss;
-  return choice.table.line.Fault(
-      choice.PlaceOf(index),
-      "column " + choice.NameOf(index) +
-          " is the height of the point, which is the same on both sides; choose the horizontal "
-          "coordinate with --value_column, or leave the flag out to use both",
-      code);
-}
-
 /// Names the columns of numbers that were not chosen although they may be a quantity.
 void WarnOfOthers(Choice& choice, std::size_t chosen, std::span<const Columns> classes) {
   std::vector<std::string> names;
@@ -132,6 +87,10 @@ void KeepRates(const Choice& choice, std::vector<Columns>& classes) {
 /// The column of the quantity; std::nullopt if the user must be asked.
 Result<std::optional<std::size_t>> ChooseByName(Choice& choice) {
   if (!choice.options.value_column.empty() && !WantsCombination(choice)) {
+    if (const auto point = FindNamedPoint(choice)) {
+      choice.vertical = point->vertical;
+      return point->horizontal;
+    }
     const Result<std::size_t> index = choice.FindColumn("--value_column", choice.options.value_column);
     if (!index) return tl::unexpected(index.error());
     return *index;
@@ -200,11 +159,29 @@ bool IsEncoderOfWholeNumbers(const Choice& choice, std::size_t index) {
          std::ranges::none_of(numbers, [](double value) { return std::abs(value) >= kMostDegrees; });
 }
 
+/// The numbers of an acceleration without a unit and of the other axes of its sensor; alone if there may be several
+/// sensors.
+std::vector<Eigen::VectorXd> AccelerationsBeside(const Choice& choice, std::size_t index) {
+  constexpr std::size_t kAxes = 3;
+  std::vector<Eigen::VectorXd> axes;
+  for (std::size_t i = 0; i < choice.meanings.size(); ++i) {
+    const bool is_axis = choice.Meaning(i).kind == Kind::kAcceleration && choice.Meaning(i).unit == nullptr;
+    if (is_axis && IsCandidate(choice, i) && choice.IsNumeric(i)) axes.push_back(choice.NumbersOf(i));
+  }
+  return axes.size() > kAxes || axes.empty() ? std::vector{choice.NumbersOf(index)} : axes;
+}
+
 /// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
 Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   const NameMeaning& meaning = choice.Meaning(index);
   if (!choice.options.unit.empty()) return UnitOfText(choice.options.unit);
   if (meaning.unit != nullptr) return meaning.unit;
+  if (choice.vertical) {
+    choice.Assume("value_unit_assumed", "columns " + ListOf(choice.NamesOf({index, *choice.vertical})) +
+                                            " do not give their unit and were assumed to be in px, which changes no "
+                                            "angle; --unit says otherwise");
+    return UnitOfSuffix("px");
+  }
   if (!choice.table.value_unit.empty()) return UnitOfSuffix(choice.table.value_unit);
   if (!choice.table.raw_input.empty() && meaning.kind.value_or(Kind::kRaw) == Kind::kRaw) {
     return UnitOfText(choice.table.raw_input);
@@ -212,7 +189,9 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (Result<void> read = choice.NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
   const double step = choice.layout.time ? MedianStep(choice.NumbersOf(choice.layout.time->index)) : 0;
   const double seconds = choice.layout.time ? choice.layout.time->unit->ToSi(step) : 0;
-  const UnitGuess guess = GuessValueUnit(meaning.kind, choice.NumbersOf(index), seconds);
+  const UnitGuess guess = meaning.kind == Kind::kAcceleration
+                              ? GuessAccelerationUnit(choice.NumbersOf(index), AccelerationsBeside(choice, index))
+                              : GuessValueUnit(meaning.kind, choice.NumbersOf(index), seconds);
   const std::string column = "column " + choice.NameOf(index) + " does not give its unit";
   if (!meaning.unknown_unit.empty()) {
     choice.Ask("column " + choice.NameOf(index) + " is in " + Quoted(meaning.unknown_unit) +
@@ -223,11 +202,11 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   }
   if (IsAxisOfThree(choice, index)) {
     const auto [x, y, z] = *FindAxes(choice.meanings);
-    const std::string_view example = ExampleForAxes({choice.NumbersOf(x), choice.NumbersOf(y), choice.NumbersOf(z)});
+    const std::string_view gravity = UnitOfGravity({choice.NumbersOf(x), choice.NumbersOf(y), choice.NumbersOf(z)});
     choice.Ask(column +
                    ", and x, y and z may be rates, accelerations or coordinates: give it with --unit (rad_s, "
-                   "deg_s, m_s2, g, m, px, ...)",
-               {"--unit " + std::string(example)});
+                   "deg_s, m_s2, g, mg, m, px, ...)",
+               {"--unit " + std::string(gravity.empty() ? "rad_s" : gravity)});
     return nullptr;
   }
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {
@@ -241,8 +220,10 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     return nullptr;
   }
   if (guess.unit.empty()) {
-    choice.Ask(column + guess.reason + ": give it with --unit (" + std::string(kValueUnits) + ")",
-               {"--unit " + guess.example});
+    std::vector<std::string> flags;
+    if (!guess.example.empty()) flags.push_back("--unit " + guess.example);
+    choice.Ask(column + guess.reason + ": give it with --unit (" + std::string(kValueUnits) + ")", flags,
+               flags.empty() ? "unit" : "");
     return nullptr;
   }
   choice.Assume("value_unit_assumed", column + " and was assumed to be in " +
@@ -284,7 +265,7 @@ Result<void> ChooseValue(Choice& choice) {
                             "column " + choice.NameOf(*choice.value) +
                                 " cannot be both the time and the quantity; choose another with --value_column");
   }
-  return CheckCoordinate(choice, *choice.value);
+  return CheckCoordinates(choice);
 }
 
 Result<void> SetValue(Choice& choice) {
@@ -299,8 +280,8 @@ Result<void> SetValue(Choice& choice) {
   if (*unit == nullptr) return {};
   choice.layout.value = ColumnOf(choice, *choice.value, **unit);
   for (const std::size_t axis : choice.axes) choice.layout.axes.push_back(ColumnOf(choice, axis, **unit));
-  const std::optional<std::size_t> vertical =
-      choice.options.value_column.empty() ? FindVertical(choice, *choice.value) : std::nullopt;
+  std::optional<std::size_t> vertical = choice.vertical;
+  if (choice.options.value_column.empty() && !vertical) vertical = FindVertical(choice, *choice.value);
   if (vertical) choice.layout.second = Column{*vertical, choice.NameOf(*vertical), choice.layout.value.unit};
   return {};
 }

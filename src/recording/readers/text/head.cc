@@ -137,10 +137,12 @@ std::string UsualMask(const std::vector<std::string>& masks) {
   return usual;
 }
 
-/// Whether a line can be the first row: it has most of the numbers of the usual row, up to the last of them.
+/// Whether a line can be the first row: it has most of the numbers of the usual row, up to the last of them, and no
+/// text where the usual row begins with empty fields.
 bool IsFullRow(const std::string& mask, const std::string& usual) {
   const std::size_t last = usual.rfind(kNumber);
   if (last == std::string::npos || mask.size() <= last) return false;
+  if (usual.front() == kEmpty && mask.front() == kText) return false;
   std::size_t wanted = 0, found = 0;
   for (std::size_t j = 0; j <= last; ++j) {
     if (usual[j] != kNumber) continue;
@@ -175,6 +177,25 @@ bool IsRule(std::string_view line) {
          line.find_first_of("-=_*~") != std::string_view::npos;
 }
 
+bool SaysSomething(const std::vector<Name>& names) {
+  return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
+}
+
+/// The names in the header of a table of this width. Some programs separate them by another mark than the rows; then
+/// the names must say something, because a remark may have as many words.
+std::vector<Name> SplitNames(std::string_view line, char separator, std::size_t width) {
+  std::vector<Name> names = SplitHeader(line, separator);
+  const bool is_one = names.size() == 1;
+  if (width < 2 || (!is_one && separator != ' ')) return names;
+  for (const char other : {'\t', ';', ',', ' '}) {
+    if (other == separator) continue;
+    std::vector<Name> split = SplitHeader(is_one ? Unquote(line) : line, other);
+    const bool are_names = std::ranges::all_of(split, [](const Name& name) { return IsName(name.text); });
+    if (split.size() == width && are_names && SaysSomething(split)) return split;
+  }
+  return names;
+}
+
 /// Where the table is, for one separator.
 struct Table {
   char separator = ',';
@@ -182,7 +203,20 @@ struct Table {
   std::size_t names = 0;      // Index of the line with the names, or first_row.
   std::size_t width = 0;      // Of the rows.
   double score = 0;
+  bool begins_empty = false;  // The first field of all rows is empty.
 };
+
+/// The line of the names, which remarks may separate from the rows: a device that says that it calibrates.
+template <typename AreNames>
+std::size_t SkipRemarks(const std::vector<std::string_view>& lines, const Table& table, const AreNames& are_names) {
+  constexpr std::size_t kMostRemarks = 5;
+  for (std::size_t i = table.names; i + kMostRemarks > table.names; --i) {
+    const std::vector<Name> names = SplitNames(lines[i], table.separator, table.width);
+    if (SaysSomething(names)) return are_names(i) ? i : table.names;
+    if (i == 0 || names.size() == table.width) break;
+  }
+  return table.names;
+}
 
 Table FindTable(const std::vector<std::string_view>& lines, char separator) {
   std::vector<std::string> masks;
@@ -196,6 +230,8 @@ Table FindTable(const std::vector<std::string_view>& lines, char separator) {
   }
   table.names = table.first_row;
   if (table.first_row == lines.size()) return table;
+  table.begins_empty = std::all_of(masks.begin() + static_cast<std::ptrdiff_t>(table.first_row), masks.end(),
+                                   [](const std::string& mask) { return mask.starts_with(kEmpty); });
   const auto rows = std::ranges::count_if(masks, [&](const auto& mask) { return IsRow(mask, usual); });
   const auto numbers = static_cast<double>(std::ranges::count(usual, kNumber));
   const auto texts = static_cast<double>(std::ranges::count(usual, kText));
@@ -203,20 +239,29 @@ Table FindTable(const std::vector<std::string_view>& lines, char separator) {
   if (table.first_row == 0) return table;
   table.names = table.first_row - 1;
   while (table.names > 0 && IsRule(lines[table.names])) --table.names;
-  // A faulty row below the names.
   const auto are_names = [&](std::size_t i) {
-    const std::vector<Name> above = SplitHeader(lines[i], separator);
+    const std::vector<Name> above = SplitNames(lines[i], separator, table.width);
     return above.size() == table.width &&
            std::ranges::all_of(above, [](const Name& name) { return IsName(name.text); });
   };
-  while (table.names > 0 && masks[table.names].find(kNumber) != std::string::npos && are_names(table.names - 1)) {
-    table.first_row = table.names--;
-  }
+  // A faulty row below the names.
+  const auto is_faulty_row = [&](std::size_t i) {
+    return masks[i].find(kNumber) != std::string::npos && (!IsText(lines[i]) || masks[i].size() == usual.size());
+  };
+  while (table.names > 0 && is_faulty_row(table.names) && are_names(table.names - 1)) table.first_row = table.names--;
+  table.names = SkipRemarks(lines, table, are_names);
   constexpr double kSame = 1.5, kOther = 0.4;
-  const std::vector<Name> names = SplitHeader(lines[table.names], separator);
+  const std::vector<Name> names = SplitNames(lines[table.names], separator, table.width);
   const bool has_names = std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
   if (has_names) table.score *= names.size() == table.width ? kSame : kOther;
   return table;
+}
+
+/// The separator that LabVIEW states above its table; NUL if there is none.
+char LabViewSeparator(const std::vector<std::string_view>& lines) {
+  if (lines.empty() || !lines.front().starts_with("LabVIEW Measurement")) return '\0';
+  if (std::ranges::find(lines, "Separator\tTab") != lines.end()) return '\t';
+  return std::ranges::find(lines, "Separator,Comma") != lines.end() ? ',' : '\0';
 }
 
 Table BestTable(const std::vector<std::string_view>& lines, char separator) {
@@ -249,15 +294,26 @@ std::string_view WithoutBrackets(std::string_view text) {
   return has_brackets ? text.substr(1, text.size() - 2) : text;
 }
 
-/// Whether each field is a unit, perhaps in brackets, or empty.
-bool AreUnits(const std::vector<Name>& names) {
+bool IsWord(std::string_view text) {
+  constexpr std::size_t kLongerThanSymbols = 3;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return text.size() >= kLongerThanSymbols && std::ranges::all_of(text, is_letter);
+}
+
+/// Whether each field is a unit, perhaps in brackets, or empty, below a name. Words for units such as
+/// `millis` and `ADC` are names themselves if those above say nothing: `Hello, world`.
+bool AreUnits(const std::vector<Name>& names, const std::vector<Name>& above) {
   bool has_unit = false;
-  for (const Name& name : names) {
-    const std::string_view text = WithoutBrackets(name.text);
+  const bool may_be_words = SaysSomething(above);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view text = WithoutBrackets(names[i].text);
     if (text.empty() || text == "-") continue;
+    if (i >= above.size()) return false;
     const NameMeaning meaning = MeaningOf(text);
-    const bool is_unit = UnitOfText(text) != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
-    if (!is_unit) return false;
+    const Unit* unit = UnitOfText(text);
+    const bool is_word = text == names[i].text && IsWord(text) && UnitOfSuffix(PlainName(text)) == nullptr;
+    const bool is_unit = unit != nullptr || (meaning.has_other_unit && meaning.stem.size() < 2);
+    if (!is_unit || (is_word && !may_be_words)) return false;
     has_unit = true;
   }
   return has_unit;
@@ -294,10 +350,6 @@ std::vector<TableColumn> ColumnsOf(const std::vector<Name>& names) {
   return columns;
 }
 
-bool SaysSomething(const std::vector<Name>& names) {
-  return std::ranges::any_of(names, [](const Name& name) { return MeaningOf(name.text).kind.has_value(); });
-}
-
 /// The text without these blanks at its beginning.
 std::string_view WithoutLeading(std::string_view blanks, std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(blanks), text.size()));
@@ -313,7 +365,7 @@ std::optional<TextLine> CommentWithNames(const FirstLines& first, const TextLine
     const bool has_tabs = table.separator == '\t';
     for (const std::string_view blanks : {" ", " \t"}) {
       const std::string_view names = WithoutLeading(blanks, has_tabs ? text : Trim(text));
-      const std::vector<Name> split = SplitHeader(names, table.separator);
+      const std::vector<Name> split = SplitNames(names, table.separator, table.width);
       if (split.size() == table.width && SaysSomething(split)) return TextLine{names, comment.number};
     }
     return std::nullopt;
@@ -401,7 +453,8 @@ class HeadParser {
 
  private:
   TextLine LineOf(std::size_t i) const { return {lines_[i], first_.lines[i].number}; }
-  std::string_view NamesOf(std::size_t i) const { return NamesIn(lines_[i], table_.separator); }
+  std::string_view NamesTextOf(std::size_t i) const { return NamesIn(lines_[i], table_.separator); }
+  std::vector<Name> NamesOf(std::size_t i) const { return SplitNames(NamesTextOf(i), table_.separator, table_.width); }
 
   static bool HasName(const std::vector<Name>& names) {
     return std::ranges::any_of(names, [](const Name& name) { return IsName(name.text); });
@@ -433,9 +486,10 @@ class HeadParser {
   void ChooseTable() {
     head_.has_host = HasHostStamps(first_.lines);
     for (const TextLine& line : first_.lines) lines_.push_back(DevicePart(line.text, head_.has_host));
-    table_ = BestTable(lines_, first_.separator);
+    const char stated = first_.separator != '\0' ? first_.separator : LabViewSeparator(lines_);
+    table_ = BestTable(lines_, stated);
     if (table_.score == 0) {  // Without rows of numbers, the first line is the header, so that messages name columns.
-      const char separator = first_.separator != '\0' ? first_.separator : Separator(lines_[0]);
+      const char separator = stated != '\0' ? stated : Separator(lines_[0]);
       table_ = {separator, std::min<std::size_t>(1, lines_.size()), 0};
     }
     layout_.separator = table_.separator;
@@ -443,10 +497,10 @@ class HeadParser {
 
   /// Finds the names, perhaps above a line of units, and whether they are a header.
   void FindNames() {
-    if (table_.names < table_.first_row) names_ = SplitHeader(NamesOf(table_.names), table_.separator);
+    if (table_.names < table_.first_row) names_ = NamesOf(table_.names);
     if (table_.names > 0 && table_.names < table_.first_row) {
-      std::vector<Name> above = SplitHeader(NamesOf(table_.names - 1), table_.separator);
-      if (HasName(above) && (AreUnits(names_) || ReadRigolHeader(above, names_, head_))) {
+      std::vector<Name> above = NamesOf(table_.names - 1);
+      if (HasName(above) && (AreUnits(names_, above) || ReadRigolHeader(above, names_, head_))) {
         units_ = std::exchange(names_, std::move(above));
         --table_.names;
       }
@@ -466,7 +520,7 @@ class HeadParser {
     const std::size_t before = table_.first_row > 0 ? first_.lines[table_.first_row - 1].number : 0;
     const auto comment = CommentWithNames(first_, head_.first_row, before, table_);
     if (!comment) return false;
-    names_ = SplitHeader(comment->text, table_.separator);
+    names_ = SplitNames(comment->text, table_.separator, table_.width);
     layout_.has_header = true;
     head_.names = *comment;
     return true;
@@ -475,15 +529,16 @@ class HeadParser {
   void MakeColumns() {
     const bool is_comment = head_.names.number != first_.lines[table_.names].number;
     if (units_.empty() && table_.names > 0 && !is_comment) {
-      head_.columns =
-          LabelledColumns(lines_[table_.names - 1], NamesOf(table_.names), lines_[table_.first_row], table_.separator);
+      head_.columns = LabelledColumns(lines_[table_.names - 1], names_, lines_[table_.first_row], table_.separator);
       head_.may_be_short = !head_.columns.empty();
     }
     if (head_.columns.empty() && table_.width == 1 && table_.separator == ' ' && names_.size() > 1) {
       // The name of a single column may contain blanks.
-      names_ = {{Unquote(NamesOf(table_.names)), Trim(NamesOf(table_.names)).data()}};
+      names_ = {{Unquote(NamesTextOf(table_.names)), Trim(NamesTextOf(table_.names)).data()}};
     }
     if (head_.columns.empty()) head_.columns = units_.empty() ? ColumnsOf(names_) : WithUnits(names_, units_);
+    // LabVIEW with `X_Columns No`: the times follow from the interval alone.
+    if (table_.begins_empty && head_.sample_rate_hz > 0) head_.columns.front().meaning.clear();
     const auto times =
         std::ranges::count_if(head_.columns, [](const TableColumn& each) { return IsTime(each.meaning); });
     head_.may_be_short |= times > 1;
@@ -509,7 +564,7 @@ std::optional<char> SeparatorLine(std::string_view line) {
 }
 
 bool IsTextAmongRows(std::string_view line, const Head& head, char separator) {
-  const std::string_view row = DevicePart(line, head.has_host);
+  const std::string_view row = DevicePart(line, true);  // A device may stamp its remarks alone.
   if (!IsText(row) || IsMissing(Unquote(FieldCutter(row, separator).Next()))) return false;
   return head.fields_of_text == 0 || CountFields(row, separator) < head.fields_of_text;
 }
@@ -571,6 +626,7 @@ std::vector<std::vector<std::string>> FirstRows(std::string_view text, std::size
   ForEachTextLine(text, 1, [&](std::string_view line, std::size_t at) {
     if (at < head.first_row.number || IsEmptyRow(line) || Trim(line).front() == '#') return true;
     if (rows.size() == most || IsHeaderAgain(line, head, layout)) return false;
+    if (IsTextAmongRows(line, head, layout.separator)) return true;
     std::vector<std::string>& cells = rows.emplace_back();
     for (FieldCutter fields(DevicePart(line, head.has_host), layout.separator);
          !fields.done() && cells.size() < layout.width;) {

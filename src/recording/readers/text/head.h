@@ -53,8 +53,8 @@ bool IsTextAmongRows(std::string_view line, const Head& head, char separator);
 bool IsHeaderAgain(std::string_view line, const Head& head, const Layout& layout);
 
 /// Examines the first lines of a text. The table begins with the first two rows that have numbers where the later rows
-/// have numbers; the names are in the line above, or in the one above a line of units or a rule. Sets separator, width
-/// and has_header. `begin` must outlive the result.
+/// have numbers; the names are in the line above, or in the one above a line of units, a rule or a few remarks. Sets
+/// separator, width and has_header. `begin` must outlive the result.
 Head ParseHead(std::string_view begin, Layout& layout);
 
 /// Reads the numbers of the rows of a text from line `first_row` on, at most kMostCells; `number` is the number of the

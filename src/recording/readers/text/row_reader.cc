@@ -57,11 +57,17 @@ struct TextOfLine {
   std::size_t number = 0;
 };
 
-/// A line that could not be read as a row. Its error is returned if a row follows.
-struct RowSetAside {
-  Status error;
-  TextOfLine line;
-  bool is_text = false;  // Not a row that is cut off.
+/// Lines that are no rows.
+struct LinesLeftOut {
+  std::size_t count = 0, cut_off = 0;  // All, and the rows among them that are cut off.
+  TextOfLine first;
+};
+
+/// Those after the last row.
+struct LinesSetAside {
+  LinesLeftOut lines;
+  bool begins_with_text = false;  // The first is not a row that is cut off.
+  std::optional<Status> error;    // Why they must not be left out if a row follows.
 };
 
 /// Reads one text, line by line.
@@ -81,7 +87,11 @@ class Reader {
   Check ReadComments();
   Check ChooseColumns();
   Check ReadOrSetAsideRow();
-  Check SetAside(Status error);
+  std::optional<Status> FaultOfText() const;
+  Check SetAside(std::optional<Status> error);
+  bool HasFewFields() const;
+  Check LeaveOutBetweenRows();
+  Check CheckLeftOut();
   bool BeginsSecondTable(double time) const;
   Check ReadRow();
   Check ReadRosRow();
@@ -104,6 +114,7 @@ class Reader {
   void WarnOfOtherRate(Recording& recording) const;
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
+  bool has_times() const { return layout_.time || is_host_time(); }
   bool is_host_time() const { return head_.has_host && !layout_.time && !(rate_hz() > 0); }
 
   LineReader lines_;
@@ -120,13 +131,13 @@ class Reader {
   std::optional<csv::RosRows> ros_;
   std::size_t gap_rows_ = 0, inner_gap_rows_ = 0;  // Rows with a gap after the last complete row, and before it.
   std::size_t unpaired_rows_ = 0;     // Those after it that have a time or a reading, and no other column has anything.
-  std::optional<RowSetAside> below_;  // The first line after the last row that could be read.
+  LinesSetAside below_;               // After the last row.
+  LinesLeftOut between_;              // Between rows.
   std::vector<TextOfLine> comments_;  // After the last row. They may belong to a second table.
   std::size_t header_again_ = 0;      // The line in which the header stands again, after the last row.
   bool is_over_ = false;              // A second table follows, below that line.
   std::size_t lines_not_read_ = 0;    // Of the second table.
   bool has_note_ = false;             // A row has text beyond the columns.
-  bool is_short_ = false;             // The current row has too few fields.
   Eigen::Index rows_ = 0;
   RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
 };
@@ -245,36 +256,89 @@ Check Reader::ReadComments() {
   return {};
 }
 
-/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off, and text or a
-/// second table may follow. The error of such a line is set aside.
+/// Reads a row. The first row of a paste without a header and the last row of a file may be cut off, text may stand
+/// between rows, and text or a second table may follow. Such a line is set aside.
 Check Reader::ReadOrSetAsideRow() {
-  if (below_ && !below_->is_text) return tl::unexpected(below_->error);
-  is_short_ = false;
-  const bool is_text = !ros_ && csv::IsTextAmongRows(line_.text, head_, layout_.separator);
-  Check read = is_text ? line_.Fault(Trim(line_.text).data(),
-                                     "the text " + Quoted(Trim(line_.text)) + " stands between rows; delete the line")
-               : ros_  ? ReadRosRow()
-                       : ReadRow();
-  if (read) return below_ ? tl::unexpected(below_->error) : read;
+  const bool is_after_fault = below_.error && !below_.begins_with_text;
+  if (is_after_fault && !csv::IsHeaderAgain(line_.text, head_, layout_)) return tl::unexpected(*below_.error);
+  if (!ros_ && csv::IsTextAmongRows(line_.text, head_, layout_.separator)) return SetAside(FaultOfText());
+  Check read = ros_ ? ReadRosRow() : ReadRow();
+  if (read) return LeaveOutBetweenRows();
   const bool is_first = !layout_.has_header && rows_ == 0 && line_.number == head_.first_row.number;
   if (!is_first) return SetAside(std::move(read).error());
   WarnOfIncompleteRow(line_);
   return {};
 }
 
-/// Sets aside a line that cannot be read. Returns its error if it can be neither a cut-off row nor text.
-Check Reader::SetAside(Status error) {
+/// Why the text of this line must not be left out between rows; std::nullopt if it may be. Rows without times are
+/// counted, so the text must be one that surely stands for no row: a remark of several words.
+std::optional<Status> Reader::FaultOfText() const {
+  const std::string_view row = Trim(csv::DevicePart(line_.text, head_.has_host));
+  const std::vector<csv::Name> names = csv::SplitHeader(row, layout_.separator);
+  const bool has_width = names.size() == layout_.width;
+  const auto fault = [&](const std::string& sentence) {
+    return line_.Fault(row.data(), "the text " + Quoted(row) + " stands between rows" + sentence).value();
+  };
+  const bool are_names = std::ranges::all_of(names, [](const csv::Name& name) { return csv::IsName(name.text); });
+  if (has_width && are_names && std::ranges::any_of(names, csv::IsTime, &csv::Name::text)) {
+    return fault(" and may be the header of another table; save each table in a file of its own, or delete the line");
+  }
+  const bool is_remark = row.find(' ') != std::string_view::npos && (layout_.width == 1 || !has_width);
+  if (has_times() || is_remark) return std::nullopt;
+  return fault(
+      " that have no times, and if it stands for a row, all later times are wrong; write a number in its place, or "
+      "delete the line if it stands for none");
+}
+
+/// Sets aside a line that is no row. error: why it must not be left out if a row follows. A row that is cut off may be,
+/// if its time is missing then. Returns the error of a line that is neither cut off nor text.
+Check Reader::SetAside(std::optional<Status> error) {
   if (csv::IsHeaderAgain(line_.text, head_, layout_)) {
     header_again_ = line_.number;
-    below_.reset();
     return {};
   }
-  const bool is_text = csv::IsText(line_.text);
+  const bool is_text = csv::IsText(csv::DevicePart(line_.text, true));
   if (is_text && header_again_ > 0) return {};  // units below the names
-  if (!below_ && !is_text && !is_short_ && lines_.is_terminated()) return tl::unexpected(std::move(error));
-  if (!below_) {
-    below_ = {std::move(error), {std::string(line_.text), line_.number}, is_text && lines_.is_terminated()};
+  const bool is_short = !is_text && !ros_ && HasFewFields();
+  const bool is_first = below_.lines.count == 0, is_faulty = !is_text && !is_short && lines_.is_terminated();
+  if (is_first && is_faulty) return tl::unexpected(*std::move(error));
+  if (is_short && has_times()) error.reset();
+  const bool is_cut_off = !is_text || !lines_.is_terminated();
+  if (is_first) {
+    below_.lines.first = {std::string(line_.text), line_.number};
+    below_.begins_with_text = !is_cut_off;
   }
+  ++below_.lines.count;
+  below_.lines.cut_off += is_cut_off ? 1 : 0;
+  if (!below_.error) below_.error = std::move(error);
+  return {};
+}
+
+/// Whether the line ends before the last column that is read.
+bool Reader::HasFewFields() const {
+  std::size_t count = 0;
+  for (FieldCutter fields(csv::DevicePart(line_.text, head_.has_host), layout_.separator); !fields.done(); ++count) {
+    fields.Next();
+  }
+  return count <= LastIndex();
+}
+
+/// After a row or at the end: leaves out the lines that were set aside.
+Check Reader::LeaveOutBetweenRows() {
+  constexpr std::size_t kMostNeighbours = 10;  // more are another table, or rows that are not understood
+  auto [lines, begins_with_text, error] = std::exchange(below_, {});
+  const Line first{lines_.name(), lines.first.text, lines.first.number};
+  if (is_over_ && lines.count > 0 && !begins_with_text) WarnOfIncompleteRow(first);
+  if (is_over_ || lines.count == 0) return {};
+  if (error) return tl::unexpected(*std::move(error));
+  if (lines.count > kMostNeighbours) {
+    return first.Fault(first.text.data(), "this line and " + std::to_string(lines.count - 1) +
+                                              " below it are no rows; delete them, or save each table in a file of "
+                                              "its own");
+  }
+  if (between_.count == 0) between_.first = lines.first;
+  between_.count += lines.count;
+  between_.cut_off += lines.cut_off;
   return {};
 }
 
@@ -362,7 +426,6 @@ Check Reader::ReadRow() {
     return {};
   }
   if (index <= last) {
-    is_short_ = true;
     return line_.Fault(line_.text.data() + line_.text.size(),
                        "the row ends after " + std::to_string(index) + " of " + std::to_string(layout_.width) +
                            " fields, before column " + ColumnOf(slots_[last]).name + "; complete the row or delete it");
@@ -472,7 +535,11 @@ Check Reader::CheckEnd() {
   if (!is_over_) {
     if (Check read = ReadComments(); !read) return read;
   }
-  if (below_ && !below_->is_text && rows_ < kMinimumSamples) return tl::unexpected(below_->error);
+  if (below_.error && !below_.begins_with_text && rows_ < kMinimumSamples) return tl::unexpected(*below_.error);
+  if (below_.lines.count > 1 && !below_.begins_with_text) {
+    if (Check left_out = LeaveOutBetweenRows(); !left_out) return left_out;
+  }
+  if (Check checked = CheckLeftOut(); !checked) return checked;
   WarnOfTheEnd();
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
@@ -487,6 +554,26 @@ Check Reader::CheckEnd() {
   return last.Fault(last.text.data(), sentence, StatusCode::kFailedPrecondition);
 }
 
+/// Says which lines between rows were left out; refuses many.
+Check Reader::CheckLeftOut() {
+  constexpr std::size_t kMost = 3, kRowsPerLine = 10;  // so many lines, or one for so many rows
+  const auto& [count, cut_off, first] = between_;
+  if (count == 0) return {};
+  std::string sentence = count == 1 ? "1 line that is no row" : std::to_string(count) + " lines that are no rows";
+  sentence += (count == 1 ? ", " : ", the first is ") + Quoted(Trim(first.text));
+  if (count > std::max(kMost, static_cast<std::size_t>(rows_) / kRowsPerLine)) {
+    const Line line{lines_.name(), first.text, first.number};
+    return line.Fault(line.text.data(), "between " + std::to_string(rows_) + " rows stand " + sentence +
+                                            ": too many to leave out; delete them, or have the device send rows alone");
+  }
+  sentence += count == 1 ? ", was left out" : ", were left out";
+  if (cut_off > 0) sentence += "; rows that are cut off: " + std::to_string(cut_off);
+  if (!has_times()) sentence += "; the rows have no times, so a line that stood for a row makes later times wrong";
+  Warn("stray_lines", first.number, sentence);
+  samples_.left_out += cut_off;
+  return {};
+}
+
 /// Warns of what stands below the last row.
 void Reader::WarnOfTheEnd() {
   if (is_over_) {
@@ -494,9 +581,9 @@ void Reader::WarnOfTheEnd() {
          "the header stands again, and the times begin again; the " + std::to_string(lines_not_read_) +
              " lines below it were not read. Save each table in a file of its own to fit the others");
   }
-  if (!below_) return;
-  const TextOfLine& line = below_->line;
-  if (!below_->is_text) return WarnOfIncompleteRow({lines_.name(), line.text, line.number});
+  if (below_.lines.count == 0) return;
+  const TextOfLine& line = below_.lines.first;
+  if (!below_.begins_with_text) return WarnOfIncompleteRow({lines_.name(), line.text, line.number});
   Warn("text_below_table", line.number,
        "the table ends here, at the text " + Quoted(line.text) + "; this line and all below it were not read");
 }
@@ -529,7 +616,7 @@ void Reader::RemoveTruncatedValue() {
 /// Does not count empty cells before the first complete row and after the last: there, only other columns have values.
 void Reader::WarnOfEmptyCells() {
   if (inner_gap_rows_ == 0) return;
-  samples_.left_out = inner_gap_rows_;
+  samples_.left_out += inner_gap_rows_;
   samples_.warnings.push_back(csv::EmptyCells(lines_.name(), inner_gap_rows_, layout_.value.name));
 }
 

@@ -46,11 +46,10 @@ inline bool ShareTimes(const std::vector<Name>& names, std::vector<TableColumn>&
   return is_shared;
 }
 
-/// The columns if the names have a line of labels above them; empty otherwise. `second` must contain only names, one of
-/// them a time, and `third` must contain numbers.
-inline std::vector<TableColumn> LabelledColumns(std::string_view first, std::string_view second, std::string_view third,
-                                                char separator) {
-  const std::vector<Name> names = SplitHeader(second, separator);
+/// The columns if the names have a line of labels above them, `first`; empty otherwise. `names` must contain only names,
+/// one of them a time, and `third`, the line below, must contain numbers.
+inline std::vector<TableColumn> LabelledColumns(std::string_view first, const std::vector<Name>& names,
+                                                std::string_view third, char separator) {
   const auto is_name = [](const Name& name) { return name.text.empty() || IsName(name.text); };
   const auto is_time = [](const Name& name) { return IsTime(TrackerColumnMeaning(std::string(name.text))); };
   if (names.size() < 2 || !std::ranges::all_of(names, is_name) || std::ranges::none_of(names, is_time)) return {};

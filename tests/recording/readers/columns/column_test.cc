@@ -58,6 +58,11 @@ TEST(MeaningOf, ReadsNamesInManyForms) {
       {"Angular Velocity", Kind::kRate, ""},
       {"Linear Acceleration x (m/s^2)", Kind::kAcceleration, "m_s2"},
       {"Beschleunigung y (m/s\u00B2)", Kind::kAcceleration, "m_s2"},
+      {"az", Kind::kAcceleration, ""},
+      {"a_x", Kind::kAcceleration, ""},
+      {"ay [g]", Kind::kAcceleration, "g"},
+      {"acc_x_mg", Kind::kAcceleration, "mg"},
+      {"x (mg)", Kind::kAcceleration, "mg"},
       {"x (m)", Kind::kLength, "m"},
       {"spot_mm", Kind::kLength, "mm"},
       {"bob_y_px", Kind::kLength, "px"},
@@ -70,8 +75,8 @@ TEST(MeaningOf, ReadsNamesInManyForms) {
 }
 
 TEST(MeaningOf, RecognisesOtherQuantities) {
-  for (const char* const name :
-       {"Temperature (\u00B0C)", "v (m/s)", "delay_s", "force (N)", "temperature_C", "battery", "alpha (rad/s^2)"}) {
+  for (const char* const name : {"Temperature (\u00B0C)", "v (m/s)", "delay_s", "force (N)", "temperature_C", "battery",
+                                 "alpha (rad/s^2)", "mass (mg)", "weight_g", "Masse (g)"}) {
     EXPECT_FALSE(MeaningOf(name).kind) << name;
     EXPECT_TRUE(MeaningOf(name).has_other_unit) << name;
   }

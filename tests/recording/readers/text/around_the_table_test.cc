@@ -103,10 +103,128 @@ TEST(AroundTheTable, RowsMayHaveNamesThatTheHeaderOmits) {
   ExpectTheRows(RecordingOf(text), kDegree);
 }
 
-TEST(AroundTheTable, TextBetweenRowsIsAFault) {
-  EXPECT_THAT(FaultOf(kTable + "pause\n80,108\n"),
-              StartsWith("run.csv:10:1: the text \"pause\" stands between rows; delete the line"));
-  EXPECT_THAT(FaultOf(kTable + "Mean,0.5\n80,108\n"), StartsWith("run.csv:10:1: the text \"Mean,0.5\" stands"));
+/// Forty rows with a line after every tenth.
+std::string WithLines(const std::string& header, const std::string& pattern, const std::vector<std::string>& lines) {
+  std::string text = header;
+  for (int i = 0; i < 40; ++i) {
+    std::string row = Rows(pattern, i + 1);
+    text += row.substr(row.rfind('\n', row.size() - 2) + 1);
+    if (i % 10 == 9 && i / 10 < static_cast<int>(lines.size())) text += lines[i / 10] + "\n";
+  }
+  return text;
+}
+
+TEST(AroundTheTable, LinesBetweenRowsAreCountedAndNamedOnce) {
+  const std::vector<std::string> lines = {"Temp: 23 C", "110", "09:14:09 -> # battery"};
+  for (const char separator : {',', '\t', ';', ' '}) {
+    const std::string pattern = std::string("{t}") + separator + "{v}";
+    const Recording recording =
+        RecordingOf(WithLines(std::string("time_ms") + separator + "angle_deg\n", pattern, lines));
+    ASSERT_EQ(recording.size(), 40);
+    EXPECT_DOUBLE_EQ(recording.time[39], 0.39);
+    EXPECT_THAT(MessagesOf(recording),
+                ElementsAre("run.csv:12: 3 lines that are no rows, the first is \"Temp: 23 C\", were left out; rows "
+                            "that are cut off: 1"));
+  }
+  EXPECT_THAT(MessagesOf(RecordingOf(kTable + "pause\r\n80,108\r\n")),
+              ElementsAre("run.csv:10: 1 line that is no row, \"pause\", was left out"));
+}
+
+// One that stood for a row shifts all later times then.
+TEST(AroundTheTable, LinesBetweenRowsWithoutTimesMustBeRemarks) {
+  const std::string header = "# sample_rate_hz: 100\nangle_deg\n";
+  EXPECT_THAT(MessagesOf(RecordingOf(WithLines(header, "{v}", {"Temp: 23 C", "low battery, again"}))),
+              ElementsAre(HasSubstr("2 lines that are no rows, the first is \"Temp: 23 C\", were left out; the rows "
+                                    "have no times, so a line that stood for a row makes later times wrong")));
+  EXPECT_THAT(FaultOf(WithLines(header, "{v}", {"ovf"})),
+              StartsWith("run.csv:13:1: the text \"ovf\" stands between rows that have no times"));
+  const std::string pair = "# sample_rate_hz: 100\ntorque,angle_deg\n";
+  EXPECT_THAT(FaultOf(WithLines(pair, "{t},{v}", {"110"})), HasSubstr("the row ends after 1 of 2 fields"));
+  EXPECT_THAT(FaultOf(WithLines(pair, "{t},{v}", {"bad value,110"})), HasSubstr("stands between rows that have no"));
+}
+
+TEST(AroundTheTable, ManyLinesBetweenRowsAreRefused) {
+  EXPECT_THAT(FaultOf(kTable + "a\n80,108\nb\n90,109\nc\n100,110\nd\n110,111\n"),
+              StartsWith("run.csv:10:1: between 12 rows stand 4 lines that are no rows, the first is \"a\": too many"));
+  std::string block;
+  for (int i = 0; i < 11; ++i) block += "pause\n";
+  EXPECT_THAT(FaultOf(WithLines("time_ms,angle_deg\n", "{t},{v}", {block})),
+              StartsWith("run.csv:12:1: this line and 10 below it are no rows"));
+  // A column that ends early.
+  std::string cut_off;
+  for (int i = 40; i < 52; ++i) cut_off += std::to_string(10 * i) + "\n";
+  EXPECT_THAT(FaultOf(WithLines("time_ms,angle_deg\n", "{t},{v}", {}) + cut_off),
+              StartsWith("run.csv:42:1: this line and 11 below it are no rows"));
+}
+
+TEST(AroundTheTable, OtherTablesAndFaultyRowsAreNoStrayLines) {
+  EXPECT_THAT(
+      FaultOf(kTable + "time_ms,temp\n80,108\n"),
+      StartsWith("run.csv:10:1: the text \"time_ms,temp\" stands between rows and may be the header of another"));
+  EXPECT_THAT(FaultOf(kTable + "80,1.5x\n90,1\n"), StartsWith("run.csv:10:4: column \"angle_deg\" holds \"1.5x\""));
+  EXPECT_THAT(FaultOf(kTable + "pause\n80,1.5x\n90,1\n"), HasSubstr("holds \"1.5x\""));
+}
+
+TEST(AroundTheTable, ASecondStartIsNotHidden) {
+  EXPECT_THAT(FaultOf(kTable + "Ready\n" + Rows("{t},9")), HasSubstr("two recordings in one file"));
+  const Recording recording = RecordingOf(kTable + "8\nReady v1\ntime_ms,angle_deg\n" + Rows("{t},9"));
+  ExpectTheRows(recording, kDegree);
+  EXPECT_THAT(MessagesOf(recording), ElementsAre("run.csv:10: the row \"8\" is incomplete; it was left out",
+                                                 HasSubstr("the header stands again")));
+}
+
+TEST(AroundTheTable, RemarksBesideTheHeaderAreNoNames) {
+  for (const std::string above : {"Ready v1\n", "Hello, world\n", "Ready\n\nv 1.2\n"}) {
+    for (const std::string below : {"", "Calibrating...\nDone\n"}) {
+      const Recording recording = RecordingOf(above + "millis,ADC\n" + below + Rows("{t},{v}"));
+      ExpectTheRows(recording);
+      EXPECT_TRUE(recording.warnings.empty()) << above << below << recording.warnings.at(0).message;
+    }
+  }
+  ExpectTheRows(RecordingOf("Ready v1\nmillis ADC\nTemp: 23 C\n" + Rows("{t} {v}")));
+  // Names in a language that is not known here, above their units.
+  ExpectTheRows(RecordingOf("Ido;Szog\nms;deg\n" + Rows("{t};{v}"), TimeAndValue("Ido", "Szog")), kDegree);
+}
+
+TEST(AroundTheTable, NamesMayBeSeparatedByAnotherMarkThanRows) {
+  for (const auto& [header, pattern] : {std::pair("t (ms),cmd,phi (deg)", "{t}\t0\t{v}"),
+                                        {"t (ms),cmd,phi (deg)", "{t};0;{v}"},
+                                        {"\"t (ms),cmd,phi (deg)\"", "{t}\t0\t{v}"},
+                                        {"t (ms), cmd, phi (deg)", "{t} 0 {v}"},
+                                        {"# t (ms), cmd, phi (deg)", "{t} 0 {v}"},
+                                        {"t (ms)\tcmd\tphi (deg)", "{t};0;{v}"},
+                                        {"t (ms);cmd;phi (deg)", "{t},0,{v}"},
+                                        {"t (ms) cmd phi (deg)", "{t},0,{v}"},
+                                        {"t,cmd,phi\nms,V,deg", "{t}\t0\t{v}"}}) {
+    const std::string phi = std::string(header).starts_with("t,") ? "phi" : "phi (deg)";
+    for (const std::string above : {"", "# a\n", "--- pendolo, oggi ---\n"}) {
+      if (header[0] == '#' && above.starts_with('-')) continue;
+      const Recording recording =
+          RecordingOf(above + header + "\n" + Rows(pattern), TimeAndValue(phi == "phi" ? "t" : "t (ms)", phi));
+      ExpectTheRows(recording, kDegree);
+      EXPECT_TRUE(recording.warnings.empty()) << header;
+    }
+  }
+  std::string commas = "Tempo (s),Comando,Angolo (gradi)\r\n";
+  for (int i = 0; i < 8; ++i) commas += "0,0" + std::to_string(i) + "\t0,5\t" + std::to_string(100 + i) + ",0\r\n";
+  ExpectTheRows(RecordingOf(commas), kDegree);
+}
+
+// LabVIEW with `X_Columns No`: X_Value is empty, and the interval stands above.
+TEST(AroundTheTable, AnEmptyColumnOfTimesIsReplacedByTheInterval) {
+  for (const auto& [separator, word] : {std::pair('\t', "Tab"), {',', "Comma"}}) {
+    for (const std::string step : {"0.01", "0,01"}) {
+      if (separator == ',' && step == "0,01") continue;
+      std::string text = std::string("LabVIEW Measurement\nSeparator|") + word +
+                         "\nX_Columns|No\n***End_of_Header***\n\nChannels|1\nSamples|8\nX0|0\nDelta_X|" + step +
+                         "\n***End_of_Header***\nX_Value|angle_deg|Comment\n";
+      for (int i = 0; i < 8; ++i) text += "|" + std::to_string(100 + i) + step.substr(1, 1) + "0\n";
+      std::ranges::replace(text, '|', separator);
+      const Recording recording = RecordingOf(text);
+      ExpectTheRows(recording, kDegree);
+      EXPECT_TRUE(recording.warnings.empty());
+    }
+  }
 }
 
 TEST(AroundTheTable, AShortTableWithTextBelowHasTooFewRows) {
