@@ -108,7 +108,7 @@ UnitGuess GuessUnnamed(const Eigen::VectorXd& values, const std::optional<SwingS
 /// Whether times may be seconds of a slow torsion pendulum, which is read every 10 s, or milliseconds of a fast
 /// pendulum. period: if the times are seconds.
 bool IsSlowOrInMs(double period) {
-  constexpr double kLongestSlowPeriod = 400;  // s
+  constexpr double kLongestSlowPeriod = 620;  // s
   return period > kLongestPeriod && period < kLongestSlowPeriod;
 }
 

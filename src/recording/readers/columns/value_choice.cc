@@ -250,12 +250,10 @@ Result<void> ChooseValue(Choice& choice) {
   choice.value = *chosen;
   if (!choice.value) {
     if (choice.questions.empty()) {
-      const bool is_rate = MeaningOf(choice.Meaning(choice.layout.width - 1).stem).kind == Kind::kRate;
-      choice.Ask(
-          "none of the columns " + choice.ColumnNames() +
-              " is an angle, a rate or another quantity of a swing: choose one " +
-              "with --value_column, and give its unit with --unit",
-          {"--value_column " + choice.FlagValueOf(choice.layout.width - 1), is_rate ? "--unit rad_s" : "--unit deg"});
+      const std::size_t last = choice.layout.width - 1;
+      choice.AskForColumn("none of the columns " + choice.ColumnNames() +
+                              " is an angle, a rate or another quantity of a swing by its name",
+                          last);
     }
     return {};
   }
