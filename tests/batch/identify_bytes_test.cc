@@ -82,9 +82,9 @@ TEST(IdentifyBytes, EqualsTheFitOfTheFilesWithACalibration) {
 TEST(IdentifyBytes, NamesTheFaultyFileAndPlace) {
   const IdentifyOptions options = OptionsFor({"viscous"});
   const std::string good = small_batch::RecordingText(1);
-  const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\nsoon,1\n0.2,1\n"}, {}, {}});
+  const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\n0.1,soon\n0.2,1\n"}, {}, {}});
   EXPECT_EQ(data.code, StatusCode::kDataLoss);
-  EXPECT_THAT(data.message, StartsWith("a.csv:3:1: "));
+  EXPECT_THAT(data.message, StartsWith("a.csv:3:5: "));
   const Status rig = FaultOf(options, {{"a.csv", good}, Share({"my rig", "{"}), {}});
   EXPECT_EQ(rig.code, StatusCode::kDataLoss);
   EXPECT_THAT(rig.message, StartsWith("my rig:1:"));

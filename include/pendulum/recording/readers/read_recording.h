@@ -33,13 +33,13 @@ namespace pendulum {
 /// comments. If no resolution is given, it is estimated from the values (FindResolution). Counts that repeatedly reach
 /// 0 or the full scale of 10, 12, 14 or 16 bits have this range.
 ///
-/// Warnings: those of RepairClock; incomplete_row, empty_cells, sample_rate_from_text, notes_left_out,
-/// text_below_table, second_table, host_time, lost_samples; time_column_assumed, time_unit_assumed, times_of_day,
-/// value_column_assumed, value_unit_assumed, axes_combined; unreadable_member (in a zip file); member_assumed (several
-/// sheets); metadata_not_applied (a calibration in a file of angles). kNotFound: no such file. kDataLoss: not readable
-/// as above, or a calibration of another unit. kInvalidArgument: the options contradict the file. kFailedPrecondition:
-/// fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file or a workbook. Messages begin
-/// "path:line:", or "path:".
+/// Warnings: those of RepairClock; incomplete_row, empty_cells, sample_rate_from_text, notes_left_out, stray_lines (no
+/// rows between rows), text_below_table, second_table, host_time, lost_samples; time_column_assumed, time_unit_assumed,
+/// times_of_day, value_column_assumed, value_unit_assumed, axes_combined; unreadable_member (in a zip file);
+/// member_assumed (several sheets); metadata_not_applied (a calibration in a file of angles). kNotFound: no such file.
+/// kDataLoss: not readable as above, or a calibration of another unit. kInvalidArgument: the options contradict the
+/// file. kFailedPrecondition: fewer than kMinimumSamples rows. kTryAgain: no process or no room for a MAT-file or a
+/// workbook. Messages begin "path:line:", or "path:".
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from bytes in memory; `name` replaces the path in messages and in Recording::path. Never returns kNotFound.

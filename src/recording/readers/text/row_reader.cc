@@ -279,8 +279,12 @@ std::optional<Status> Reader::FaultOfText() const {
   const auto fault = [&](const std::string& sentence) {
     return line_.Fault(row.data(), "the text " + Quoted(row) + " stands between rows" + sentence).value();
   };
-  const bool are_names = std::ranges::all_of(names, [](const csv::Name& name) { return csv::IsName(name.text); });
-  if (has_width && are_names && std::ranges::any_of(names, csv::IsTime, &csv::Name::text)) {
+  const auto says_something = [](const csv::Name& name) {
+    const csv::NameMeaning meaning = csv::MeaningOf(name.text);
+    return meaning.kind || meaning.has_other_unit;
+  };
+  const bool is_header = has_width && layout_.width > 1 && std::ranges::all_of(names, says_something);
+  if (is_header && std::ranges::any_of(names, csv::IsTime, &csv::Name::text)) {
     return fault(" and may be the header of another table; save each table in a file of its own, or delete the line");
   }
   const bool is_remark = row.find(' ') != std::string_view::npos && (layout_.width == 1 || !has_width);
@@ -326,10 +330,13 @@ bool Reader::HasFewFields() const {
 /// After a row or at the end: leaves out the lines that were set aside.
 Check Reader::LeaveOutBetweenRows() {
   constexpr std::size_t kMostNeighbours = 10;  // more are another table, or rows that are not understood
+  if (below_.lines.count == 0) return {};
   auto [lines, begins_with_text, error] = std::exchange(below_, {});
   const Line first{lines_.name(), lines.first.text, lines.first.number};
-  if (is_over_ && lines.count > 0 && !begins_with_text) WarnOfIncompleteRow(first);
-  if (is_over_ || lines.count == 0) return {};
+  if (is_over_) {
+    if (!begins_with_text) WarnOfIncompleteRow(first);
+    return {};
+  }
   if (error) return tl::unexpected(*std::move(error));
   if (lines.count > kMostNeighbours) {
     return first.Fault(first.text.data(), "this line and " + std::to_string(lines.count - 1) +

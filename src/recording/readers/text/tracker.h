@@ -46,8 +46,8 @@ inline bool ShareTimes(const std::vector<Name>& names, std::vector<TableColumn>&
   return is_shared;
 }
 
-/// The columns if the names have a line of labels above them, `first`; empty otherwise. `names` must contain only names,
-/// one of them a time, and `third`, the line below, must contain numbers.
+/// The columns if the names have a line of labels above them, `first`; empty otherwise. `names` must contain only
+/// names, one of them a time, and `third`, the line below, must contain numbers.
 inline std::vector<TableColumn> LabelledColumns(std::string_view first, const std::vector<Name>& names,
                                                 std::string_view third, char separator) {
   const auto is_name = [](const Name& name) { return name.text.empty() || IsName(name.text); };

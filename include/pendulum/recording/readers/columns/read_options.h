@@ -16,7 +16,7 @@ namespace pendulum {
 struct ReadOptions {
   /// Name or 1-based number, optionally with :s, :ms or :us; "none": use the sample rate; empty: use the header.
   std::string time_column;
-  std::string value_column;   ///< Name or 1-based number; empty: use the header.
+  std::string value_column;   ///< Name or 1-based number; "x,y": both coordinates of a point; empty: use the header.
   std::string unit;           ///< Of the values, as a suffix in the header: rad, m_s2 ...; empty: use the header.
   double sample_rate_hz = 0;  ///< For a file without times, Hz; 0: use its times, or its `# sample_rate_hz`.
   std::optional<Calibration> calibration;  ///< For counts or volts; std::nullopt: the file's own, if any.
