@@ -43,7 +43,7 @@ Result<Rig> ParseRigWith(const Json& values, std::string_view text, const std::s
                          std::vector<Warning>& warnings) {
   auto rig = ParseJsonObject(text, name, "rig", "{}");
   if (!rig) return ParseRig(text, name);  // ParseRig has the better message
-  rig->update(values);
+  if (!values.empty()) rig->update(values);
   return ParseWithGravity(*std::move(rig), name, warnings);
 }
 

@@ -157,7 +157,7 @@ TEST(FindTurningPoints, NamesATableOfMaxima) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 0.002);
   Recording maxima =
-      Sample([&](double t) { return 0.5 * std::exp(-0.05 * t) - 0.002 * t + noise(random); }, 56, 1 / 1.4);
+      Sample([&](double t) { return 0.5 * std::exp(-0.05 * t) - 0.0005 * t + noise(random); }, 56, 1 / 1.4);
   const auto found = FindTurningPoints(maxima);
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().message, HasSubstr("maxima of a swing, one of each period of 1.4 s"));

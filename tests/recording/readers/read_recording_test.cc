@@ -215,8 +215,8 @@ TEST(ParseRecording, RefusesAHeaderWithoutTime) {
 TEST(ParseRecording, RefusesAHeaderWithoutQuantity) {
   EXPECT_THAT(FaultOf("# one\ntime_s,pressure (hPa)\n" + Rows()),
               AllOf(StartsWith("run.csv:2:1: none of the columns"),
-                    HasSubstr("is an angle, a rate or another quantity of a swing: choose one with --value_column, and "
-                              "give its unit with --unit")));
+                    HasSubstr("is an angle, a rate or another quantity of a swing by its name; choose one with "
+                              "--value_column; column \"pressure (hPa)\" does not give its unit")));
 }
 
 TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {

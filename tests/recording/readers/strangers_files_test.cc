@@ -462,6 +462,13 @@ ReadOptions WithFlags(ReadOptions options, const std::vector<std::string>& flags
   return options;
 }
 
+/// The flags of a refusal, with a rate if it asks for one, of which it cannot give an example.
+std::vector<std::string> AnswersTo(const Status& refusal) {
+  std::vector<std::string> flags = refusal.try_flags;
+  if (refusal.message.find("give the rate of the rows") != std::string::npos) flags.push_back("--sample_rate_hz 100");
+  return flags;
+}
+
 /// Whether flags are examples, because only the user knows the unit or the rate.
 bool NeedKnowledge(const std::vector<std::string>& flags) {
   return std::ranges::any_of(flags, [](const std::string& flag) {
@@ -488,9 +495,9 @@ TEST(StrangersFiles, AreReadWithoutFlagsOrSayWhichFlagsWork) {
       continue;
     }
     const Status& status = recording.error();
-    const Result<Recording> again = ParseRecording(file.text, "run.csv", WithFlags({}, status.try_flags));
-    const bool is_answer = again && (NeedKnowledge(status.try_flags) || IsRight(*again, file));
-    const bool helps = !status.try_flags.empty() && is_answer;
+    const Result<Recording> again = ParseRecording(file.text, "run.csv", WithFlags({}, AnswersTo(status)));
+    const bool is_answer = again && (NeedKnowledge(AnswersTo(status)) || IsRight(*again, file));
+    const bool helps = !AnswersTo(status).empty() && is_answer;
     useless += helps ? 0 : 1;
     std::string flags;
     for (const std::string& flag : status.try_flags) flags += " " + flag;
@@ -511,7 +518,7 @@ TEST(StrangersFiles, ThatAreAmbiguousAreRefusedWithFlagsThatWork) {
     const std::string text = AmbiguousText(i, random);
     const Result<Recording> recording = ParseRecording(text, "run.csv");
     ASSERT_FALSE(recording) << text.substr(0, 200);
-    const Result<Recording> again = ParseRecording(text, "run.csv", WithFlags({}, recording.error().try_flags));
+    const Result<Recording> again = ParseRecording(text, "run.csv", WithFlags({}, AnswersTo(recording.error())));
     EXPECT_TRUE(again) << text.substr(0, 200) << recording.error().message << "\n"
                        << (again ? "" : again.error().message);
   }
