@@ -5,16 +5,27 @@
 #include <cstddef>
 #include <vector>
 
+#include "pendulum/base/median.h"
+
 namespace pendulum {
 namespace {
 
-/// Means of neighbouring amplitudes of a run, in which an error of the zero cancels.
+/// Running medians of the means of neighbouring amplitudes of a run. An error of the zero cancels in the means, and a
+/// few outliers, as beside a gap, in the medians.
 std::vector<double> PairAmplitudes(const TurningPointTable& table, const TurningPointRun& run) {
+  constexpr std::size_t kHalfWidth = 3;
   std::vector<double> pairs;
   for (std::size_t i = run.first; i < run.last; ++i) {
     pairs.push_back(0.5 * (table.Amplitude(i) + table.Amplitude(i + 1)));
   }
-  return pairs;
+  std::vector<double> medians;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::size_t reach = std::min({i, kHalfWidth, pairs.size() - 1 - i});
+    const auto middle = pairs.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto span = static_cast<std::ptrdiff_t>(reach);
+    medians.push_back(Median(std::vector<double>(middle - span, middle + span + 1)));
+  }
+  return medians;
 }
 
 /// Whether the amplitude is kept before pair `k` and decays after it. The losses must be clear of the noise.

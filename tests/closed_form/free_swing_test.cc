@@ -378,6 +378,17 @@ TEST(FindFreeSwings, ProposesTheDecayAfterADriveFromRest) {
               AllOf(Ge(30.0 - kHalfPeriod), Le(30 + 4 * kHalfPeriod)));
 }
 
+/// Beside a gap, turning points lie too far out.
+TEST(FindFreeSwings, TakesNoOutliersForADrive) {
+  Recording recording = SimulateDecay({kOmega, 0.004, 0, 0, 0.8, 60});
+  for (Eigen::Index i = 0; i < recording.size(); ++i) {
+    if (std::abs(recording.time[i] - 12) < 1.5 * kHalfPeriod) recording.value[i] *= 1.3;
+  }
+  const auto swings = FindFreeSwings(recording);
+  ASSERT_TRUE(swings.has_value()) << swings.error().message;
+  for (const FreeSwing& swing : *swings) EXPECT_NE(swing.begins.reason, WindowBegin::Reason::kAfterDrive);
+}
+
 TEST(FindFreeSwings, TakesNoFreeSwingForADrive) {
   for (const auto& decay :
        {Decay{kOmega, 0, 0.004, 0, 0.8, 60}, Decay{kOmega, 0.01, 0, 0, 0.8, 60}, Decay{kOmega, 0, 0, 0.004, 0.8, 60}}) {
