@@ -48,9 +48,10 @@ std::size_t EndOfDrive(const TurningPointTable& table, const TurningPointRun& ru
   if (pairs.empty()) return run.first;
   for (std::size_t k = pairs.size() - 1; k > 0; --k) {
     if (pairs.back() > kDecayed * pairs[k] || !IsKnee(pairs, k, table.noise + table.resolution)) continue;
-    while (pairs[k + 1] >= kSame * pairs[k]) ++k;
+    const double kept = pairs[k];
+    while (k + 1 < pairs.size() && pairs[k + 1] >= kSame * kept) ++k;
     // The drive may still act on the second turning point of the last pair that is kept.
-    return run.first + k + 2;
+    return std::min(run.first + k + 2, run.last);
   }
   return run.first;
 }

@@ -184,7 +184,7 @@ tl::unexpected<Status> Driven(const Recording& recording, const TurningPointTabl
   const std::string driven = "the amplitude rises repeatedly: the pendulum is driven";
   if (runs.empty() || runs.back().last + 1 != table.points.size()) return NoSwing(driven);
   const std::size_t first = EndOfDrive(table, runs.back()), last = runs.back().last;
-  if (last - first + 1 < kMinPoints || Decay(table, first, last) > kDecayed) return NoSwing(driven);
+  if (first + kMinPoints > last + 1 || Decay(table, first, last) > kDecayed) return NoSwing(driven);
   const double time = recording.time[table.points[first].sample];
   const std::string from = "--from " + NumberText(time, 6);
   return WithTry(Error(StatusCode::kFailedPrecondition, driven + "; if the drive ends at " + NumberText(time, 6) +
