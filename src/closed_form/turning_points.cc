@@ -7,7 +7,6 @@
 
 #include <Eigen/QR>
 
-#include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/period.h"
@@ -142,29 +141,28 @@ double LongestGap(const Eigen::VectorXd& time, double from, double to) {
   return gap;
 }
 
-/// Whether the readings may be the maxima of a swing on one side: few of them, and hardly any is larger than the one
-/// before.
-bool IsTableOfMaxima(const Recording& recording) {
-  constexpr Index kMostMaxima = 500, kFallsPerRise = 10;
-  constexpr double kNearZero = 0.05;  // Of the first one.
+/// Whether the readings may be the maxima of a swing on one side: few of them, and nearly all are smaller than the one
+/// before. Those of a hold are not.
+bool AreMaxima(const Recording& recording) {
+  constexpr Index kMostMaxima = 500;
+  constexpr double kNearZero = 0.05, kNearlyAll = 0.9;
   const Index count = recording.size();
   const Eigen::ArrayXd share = recording.value / recording.value[0];
-  if (count > kMostMaxima || !(share.minCoeff() > -kNearZero) || !(share[count - 1] < 0.5)) return false;
-  return kFallsPerRise * (share.tail(count - 1) > share.head(count - 1)).count() < count;
+  const auto falls = static_cast<double>((share.tail(count - 1) < share.head(count - 1)).count());
+  return count <= kMostMaxima && share.minCoeff() > -kNearZero && share[count - 1] < 0.5 &&
+         falls > kNearlyAll * static_cast<double>(count - 1);
 }
 
 tl::unexpected<Status> TooFewFound(const Recording& recording, std::size_t found) {
-  const Index count = recording.size();
   if (recording.value.maxCoeff() == recording.value.minCoeff()) {
     return Error(StatusCode::kFailedPrecondition,
                  "the reading is constant, so there is no swing; check the sensor, or choose another column");
   }
-  if (IsTableOfMaxima(recording)) {
+  if (AreMaxima(recording)) {
     return Error(
         StatusCode::kFailedPrecondition,
-        "the readings fall steadily on one side of 0: if they are the maxima of a swing, one of each period of " +
-            NumberText((recording.time[count - 1] - recording.time[0]) / static_cast<double>(count - 1), 4) +
-            " s, they lack the motion between them; give all readings of the swing, 20 or more a period");
+        "the readings fall steadily on one side of 0: they may be the maxima of a swing, one of each period; give "
+        "all readings of the swing, 20 or more a period");
   }
   return Error(StatusCode::kFailedPrecondition,
                "turning points above the noise between neighbouring samples: " + std::to_string(found) +
