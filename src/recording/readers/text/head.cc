@@ -210,6 +210,12 @@ struct Table {
 template <typename AreNames>
 std::size_t SkipRemarks(const std::vector<std::string_view>& lines, const Table& table, const AreNames& are_names) {
   constexpr std::size_t kMostRemarks = 5;
+  // A remark may have as many words as there are columns, so names between the separators of the rows come first.
+  for (std::size_t i = table.names; i + kMostRemarks > table.names; --i) {
+    const std::vector<Name> names = SplitHeader(lines[i], table.separator);
+    if (names.size() == table.width && SaysSomething(names) && are_names(i)) return i;
+    if (i == 0 || names.size() == table.width) break;
+  }
   for (std::size_t i = table.names; i + kMostRemarks > table.names; --i) {
     const std::vector<Name> names = SplitNames(lines[i], table.separator, table.width);
     if (SaysSomething(names)) return are_names(i) ? i : table.names;

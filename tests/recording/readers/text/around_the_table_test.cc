@@ -175,7 +175,7 @@ TEST(AroundTheTable, ASecondStartIsNotHidden) {
 
 TEST(AroundTheTable, RemarksBesideTheHeaderAreNoNames) {
   for (const std::string above : {"Ready v1\n", "Hello, world\n", "Ready\n\nv 1.2\n"}) {
-    for (const std::string below : {"", "Calibrating...\nDone\n"}) {
+    for (const std::string below : {"", "Calibrating...\nDone\n", "Calibrating gyro...\n", "Start time\n"}) {
       const Recording recording = RecordingOf(above + "millis,ADC\n" + below + Rows("{t},{v}"));
       ExpectTheRows(recording);
       EXPECT_TRUE(recording.warnings.empty()) << above << below << recording.warnings.at(0).message;
