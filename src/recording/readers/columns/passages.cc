@@ -20,12 +20,12 @@ bool MayHoldPassages(const Choice& choice) {
                              [](const NameMeaning& meaning) { return !meaning.kind || *meaning.kind == Kind::kTime; });
 }
 
-/// The only column of numbers that does not number the rows.
+/// The only column beside those that number the rows, if it has numbers.
 std::optional<std::size_t> OnlyColumn(const Choice& choice) {
   std::optional<std::size_t> only;
   for (std::size_t i = 0; i < choice.layout.width; ++i) {
-    if (!choice.IsNumeric(i) || choice.IsRowNumber(i)) continue;
-    if (only) return std::nullopt;
+    if (choice.IsNumeric(i) && choice.IsRowNumber(i)) continue;
+    if (only || !choice.IsNumeric(i)) return std::nullopt;
     only = i;
   }
   return only;
