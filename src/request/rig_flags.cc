@@ -37,14 +37,16 @@ std::string UnitsOf(RigQuantity quantity) {
   return NameList(names);
 }
 
-/// The text with points for decimal commas: 38,5cm. A comma with three digits after it may separate thousands.
+/// The text with points for decimal commas: 38,5cm. A comma with three digits after it may separate thousands, but not
+/// after 0.
 std::string WithDecimalPoints(std::string text) {
   const auto is_digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
   if (text.find('.') != std::string::npos) return text;
   for (std::size_t at = text.find(','); at != std::string::npos && at > 0; at = text.find(',', at + 1)) {
     std::size_t end = at + 1;
     while (is_digit(end)) ++end;
-    if (is_digit(at - 1) && end > at + 1 && end != at + 4) text[at] = '.';
+    const bool is_after_zero = text[at - 1] == '0' && (at == 1 || !is_digit(at - 2));
+    if (is_digit(at - 1) && end > at + 1 && (end != at + 4 || is_after_zero)) text[at] = '.';
   }
   return text;
 }

@@ -36,6 +36,7 @@ TEST(ParseRigValue, ConvertsUnits) {
   EXPECT_DOUBLE_EQ(ValueOf("43cm", "rod_length").value, 0.43);
   EXPECT_EQ(ValueOf("47.5cm", "rod_length").value, 0.475);
   EXPECT_EQ(ValueOf("47,5cm", "rod_length").value, 0.475);
+  EXPECT_EQ(ValueOf("0,475m", "rod_length").value, 0.475);
   EXPECT_THAT(Refusal("1,500g", "bob_mass"), HasSubstr("must be a number with a unit"));  // 1.5 g or 1500 g
   EXPECT_DOUBLE_EQ(ValueOf("430 mm", "rod_length").value, 0.43);
   EXPECT_DOUBLE_EQ(ValueOf("10in", "rod_length").value, 0.254);
