@@ -159,6 +159,9 @@ bool HaveSeveralSwings(const Choice& choice, const Columns& columns) {
   return std::ranges::count_if(columns, swings) > 1;
 }
 
+/// Whether a flag or the file states the unit of the values.
+bool HasStatedUnit(const Choice& choice) { return !choice.options.unit.empty() || !choice.table.value_unit.empty(); }
+
 /// Whether columns whose names say nothing may be lengths: neither a flag nor the file says that they are not.
 bool MayBeLengths(const Choice& choice) {
   const std::string& asked = choice.options.unit;
@@ -184,8 +187,7 @@ std::string FlagOf(const Choice& choice, const Point& point) {
 void AskWhichSwing(Choice& choice, const Columns& columns, std::size_t best, const std::optional<Point>& point) {
   const std::string sentence =
       "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns));
-  const bool has_unit = !choice.options.unit.empty() || !choice.table.value_unit.empty();
-  const std::string gravity(has_unit ? "" : GravityUnitOf(choice, columns));
+  const std::string gravity(HasStatedUnit(choice) ? "" : GravityUnitOf(choice, columns));
   if (gravity.empty()) return choice.AskForColumn(sentence, columns.front());
   const std::string column = "--value_column " + choice.FlagValueOf(best);
   choice.Ask(sentence + "; together they have the size of gravity in " + std::string(UnitOfSuffix(gravity)->Written()) +
@@ -259,8 +261,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     return columns[best];
   }
   // Whether one axis is enough follows from the unit, which will be asked for.
-  const bool has_unit = !choice.options.unit.empty() || !choice.table.value_unit.empty();
-  if (IsAxisOfThree(choice, columns[best]) && !has_unit) return columns[best];
+  if (IsAxisOfThree(choice, columns[best]) && !HasStatedUnit(choice)) return columns[best];
   others.insert(others.begin(), choice.NameOf(columns[best]) + " " + Percent(share));
   choice.AskForColumn("no single column carries the swing: " + ListOf(others), columns[best]);
   return std::nullopt;

@@ -205,21 +205,26 @@ std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes) {
   return found == kGravityUnits.end() ? std::string_view() : found->unit;
 }
 
-UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, const std::vector<Eigen::VectorXd>& axes) {
+namespace {
+
+/// The unit of an acceleration that is one of these axes.
+UnitGuess GuessAccelerationUnit(double amplitude, const std::vector<Eigen::VectorXd>& axes) {
   constexpr double kMostInG = 2, kMostInSi = 100, kMostInMg = 4e3;
-  const auto swing = FindSwingSignature(values);
-  const double amplitude = swing ? swing->amplitude : HalfRange(values);
+  const double usual = UsualLength(axes);
   const std::string_view unit = UnitOfGravity(axes);
-  const std::string at_rest = " (it is about " + NumberText(UsualLength(axes), 2) + " at rest)";
+  const std::string at_rest = " (it is about " + NumberText(usual, 2) + " at rest)";
   if (unit == "mg" || unit == "m_s2" || (unit == "g" && amplitude < kMostInG)) return {unit, at_rest, ""};
   if (amplitude > kMostInG && amplitude < kMostInSi) return {"m_s2", "", ""};
   if (amplitude <= kMostInG) return {"", ", which may be m/s^2 or g", "m_s2"};
-  if (amplitude < kMostInMg) return {"", ", which may be mg (thousandths of g)", "mg"};
+  if (std::max(amplitude, usual) < kMostInMg) return {"", ", which may be mg (thousandths of g)", "mg"};
   return {"", ", and is too large for m/s^2, g and mg: divide it by what it is at rest along the rod, then it is in g",
           ""};
 }
 
-UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds) {
+}  // namespace
+
+UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds,
+                         const std::vector<Eigen::VectorXd>& axes) {
   const auto swing = FindSwingSignature(values);
   const double amplitude = swing ? swing->amplitude : HalfRange(values);
   if (!kind) return GuessUnnamed(values, swing, amplitude);
@@ -234,7 +239,7 @@ UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values
       return GuessAngleUnit(swing, amplitude, per_rate, "rad_s", "deg_s");
     }
     case Kind::kRaw: return {AreWhole(values) ? "counts" : "volts", "", ""};
-    case Kind::kAcceleration: return GuessAccelerationUnit(values, {values});
+    case Kind::kAcceleration: return GuessAccelerationUnit(amplitude, axes);
     case Kind::kLength: return {"px", ", a length of unknown scale", ""};
     case Kind::kTime: break;
   }

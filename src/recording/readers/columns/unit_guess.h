@@ -46,12 +46,10 @@ struct UnitGuess {
 /// The unit of acceleration in which axes of one sensor contain gravity, whose size they have together; empty: none.
 std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes);
 
-/// The unit of an acceleration, one of these axes of its sensor, which may be one axis alone. No unit and no example:
-/// none of the known units is plausible.
-UnitGuess GuessAccelerationUnit(const Eigen::VectorXd& values, const std::vector<Eigen::VectorXd>& axes);
-
-/// The unit of a quantity of this kind, or of any kind; of an acceleration of one axis. `seconds` is the sampling
-/// interval, 0 if unknown.
-UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds);
+/// The unit of a quantity of this kind, or of any kind. `seconds` is the sampling interval, 0 if unknown; `axes` are
+/// those of an acceleration's sensor, perhaps this one alone. No unit and no example: none of the known ones is
+/// plausible.
+UnitGuess GuessValueUnit(std::optional<Kind> kind, const Eigen::VectorXd& values, double seconds,
+                         const std::vector<Eigen::VectorXd>& axes);
 
 }  // namespace pendulum::csv

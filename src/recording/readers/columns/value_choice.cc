@@ -189,9 +189,8 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (Result<void> read = choice.NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
   const double step = choice.layout.time ? MedianStep(choice.NumbersOf(choice.layout.time->index)) : 0;
   const double seconds = choice.layout.time ? choice.layout.time->unit->ToSi(step) : 0;
-  const UnitGuess guess = meaning.kind == Kind::kAcceleration
-                              ? GuessAccelerationUnit(choice.NumbersOf(index), AccelerationsBeside(choice, index))
-                              : GuessValueUnit(meaning.kind, choice.NumbersOf(index), seconds);
+  const UnitGuess guess =
+      GuessValueUnit(meaning.kind, choice.NumbersOf(index), seconds, AccelerationsBeside(choice, index));
   const std::string column = "column " + choice.NameOf(index) + " does not give its unit";
   if (!meaning.unknown_unit.empty()) {
     choice.Ask("column " + choice.NameOf(index) + " is in " + Quoted(meaning.unknown_unit) +
