@@ -48,10 +48,10 @@ std::size_t EndOfDrive(const TurningPointTable& table, const TurningPointRun& ru
   if (pairs.empty()) return run.first;
   for (std::size_t k = pairs.size() - 1; k > 0; --k) {
     if (pairs.back() > kDecayed * pairs[k] || !IsKnee(pairs, k, table.noise + table.resolution)) continue;
-    const double kept = pairs[k];
-    while (k + 1 < pairs.size() && pairs[k + 1] >= kSame * kept) ++k;
-    // The drive may still act on the second turning point of the last pair that is kept.
-    return std::min(run.first + k + 2, run.last);
+    const auto decays = std::find_if(pairs.begin() + static_cast<std::ptrdiff_t>(k), pairs.end(),
+                                     [&](double pair) { return pair < kSame * pairs[k]; });
+    // The drive may still act on the first turning point of this pair.
+    return run.first + static_cast<std::size_t>(decays - pairs.begin()) + 1;
   }
   return run.first;
 }

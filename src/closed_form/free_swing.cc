@@ -27,6 +27,9 @@ using Eigen::Index;
 /// The amplitude at the end of a motion that decays, divided by that at its start, is less.
 constexpr double kDecayed = 0.7;
 
+/// A run of fewer turning points shows no decay.
+constexpr std::size_t kMinFreePoints = 6;
+
 /// The runs of free half swings.
 std::vector<TurningPointRun> FreeRuns(const TurningPointTable& table, const std::vector<Verdict>& verdicts) {
   constexpr std::size_t kMinHalfSwings = 2;
@@ -180,11 +183,10 @@ double RisingShare(const TurningPointTable& table, const Weights& weights) {
 /// The error of an amplitude that rises repeatedly. It proposes the last part if this decays to the end.
 tl::unexpected<Status> Driven(const Recording& recording, const TurningPointTable& table,
                               const std::vector<TurningPointRun>& runs) {
-  constexpr std::size_t kMinPoints = 6;
   const std::string driven = "the amplitude rises repeatedly: the pendulum is driven";
   if (runs.empty() || runs.back().last + 1 != table.points.size()) return NoSwing(driven);
   const std::size_t first = EndOfDrive(table, runs.back()), last = runs.back().last;
-  if (first + kMinPoints > last + 1 || Decay(table, first, last) > kDecayed) return NoSwing(driven);
+  if (first + kMinFreePoints > last + 1 || Decay(table, first, last) > kDecayed) return NoSwing(driven);
   const double time = recording.time[table.points[first].sample];
   const std::string from = "--from " + NumberText(time, 6);
   return WithTry(Error(StatusCode::kFailedPrecondition, driven + "; if the drive ends at " + NumberText(time, 6) +
@@ -196,7 +198,6 @@ tl::unexpected<Status> Driven(const Recording& recording, const TurningPointTabl
 Result<std::optional<FreeSwing>> ClassifyOtherMotion(const Recording& recording, const TurningPointTable& table,
                                                      const std::vector<TurningPointRun>& runs, const Weights& weights) {
   constexpr double kMaxRisingShare = 0.2;
-  constexpr std::size_t kMinFreePoints = 6;
   const std::size_t turns = table.points.size();
   const auto weight = [&](const TurningPointRun& run) { return SumOf(weights, run.first, run.last); };
   const auto longest = std::ranges::max_element(runs, {}, weight);

@@ -456,8 +456,7 @@ std::vector<RunFlag> MakeTable() {
       {.name = "unit",
        .value = &RunFlags::unit,
        .help = "Unit of the values: rad, deg, mrad, rev, gon, rad_s, deg_s, rpm, rev_s, counts, volts, mv, m_s2, g, "
-               "mg, px, "
-               "m, cm or mm; default the unit in the column's name, or the one that the numbers show.",
+               "mg, px, m, cm or mm; default the unit in the column's name, or the one that the numbers show.",
        .label = "Unit of the values",
        .words = {kReadingUnits.begin(), kReadingUnits.end()}},
       {.name = "sample_rate_hz",
