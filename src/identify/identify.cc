@@ -151,12 +151,14 @@ void QuestionUnit(const Recording& used, double half_period, bool is_spring, con
   if (!is_odd) return;
   const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
   identification.warnings.push_back(
-      {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in " +
-                              (is_rate ? "rad/s" : "rad") + " (" +
-                              NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
-                              " deg), correct the unit (--unit " + (is_rate ? "rad_s" : "rad") +
-                              ", or in the column's name): the period stays, but "
-                              "angles and dry friction are 57.3 times larger"});
+      {"unit_questioned",
+       "the pendulum swings by only " + degrees + " deg; if the readings are in " + (is_rate ? "rad/s" : "rad") + " (" +
+           NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) + " deg), correct the unit (--unit " +
+           (is_rate ? "rad_s" : "rad") +
+           ", or in the column's name): the period stays, but "
+           "angles and dry friction are 57.3 times larger",
+       "readings in deg" + std::string(is_rate ? "/s" : "") + ", though the swing is only " + degrees +
+           " deg (--unit " + (is_rate ? "rad_s" : "rad") + ")"});
 }
 
 /// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
@@ -216,7 +218,8 @@ void WarnOfSpring(const IdentifyOptions& asked, const IdentifyOptions& options, 
   identification.warnings.push_back({"linear_restoring_torque",
                                      "the rig gives a stiffness, so a restoring torque proportional to the angle is "
                                      "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
-                                     "masses and lengths, or gravity_torque"});
+                                     "masses and lengths, or gravity_torque",
+                                     "a spring, as the rig gives a stiffness (--gravity)"});
 }
 
 /// Adds what the rig makes known to the fits, and compares the rig with the first converged fit. kDataLoss: the rig
@@ -438,6 +441,19 @@ Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecord
   return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig->models);
 }
 
+namespace {
+
+/// The error with the path of the recording that it is about, which the message may have already.
+tl::unexpected<Status> WithPath(const std::string& path, Status error) {
+  const bool is_of_data = error.code == StatusCode::kDataLoss || error.code == StatusCode::kFailedPrecondition;
+  if (!is_of_data || path.empty() || error.message.find(path) != std::string::npos)
+    return tl::unexpected(std::move(error));
+  const std::string message = path + ": " + error.message;
+  return WithMessage(std::move(error), message);
+}
+
+}  // namespace
+
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
   std::vector<Result<Identification>> all;
   const std::vector<int> chosen = recording.swings.chosen;
@@ -447,6 +463,7 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
     // A stop may have caused another error.
     if (!identification && options.fit.stop.stop_requested()) identification = FitStopped();
     if (!identification && chosen.size() > 1) identification = ErrorOfRun(identification.error(), path, release);
+    if (!identification) identification = WithPath(path, std::move(identification).error());
     all.push_back(std::move(identification));
   }
   return all;

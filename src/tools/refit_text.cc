@@ -2,17 +2,19 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <unistd.h>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
+#include "pendulum/model/parameter.h"
 #include "pendulum/report/layout.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 #include "tools/progress_line.h"
 
@@ -102,14 +104,21 @@ std::size_t LineCount(const std::string& text) { return static_cast<std::size_t>
 /// A standard error or a spread; "-" if there is none.
 std::string SpreadText(const Json& number) {
   constexpr int kDigits = 2;
-  return number.is_number() ? NumberText(number.get<double>(), kDigits) : "-";
+  if (!number.is_number()) return "-";
+  const auto size = number.get<double>();
+  return size > 0 ? RoundedText(size, SignificantRounding(size, kDigits)) : "0";
 }
 
-/// A value with the decimals of its spread.
-std::string ValueText(const Json& value, const Json& spread) {
-  if (!value.is_number()) return "-";
-  if (!spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value.get<double>(), kTextDigits);
-  return RoundedText(value.get<double>(), {PdgRounding(value.get<double>(), spread.get<double>()).decimals, 0});
+/// A median with the decimals of the smaller of the spread and the error of repeats: one outlier makes the spread
+/// large, but leaves the median as it is.
+std::string MedianText(const Json& median, const Json& spread, const Json& error) {
+  if (!median.is_number()) return "-";
+  const auto value = median.get<double>();
+  double least = kUnbounded;
+  for (const Json& size : {spread, error}) {
+    if (size.is_number() && size.get<double>() > 0) least = std::min(least, size.get<double>());
+  }
+  return std::isfinite(least) ? RoundedText(value, PdgRounding(value, least)) : NumberText(value, kTextDigits);
 }
 
 /// The law of the table, and how often it was recommended.
@@ -142,7 +151,8 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
     if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
     const Json& found = parameter["repeatability"];
     rows.push_back(
-        {parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
+        {parameter["name"].get<std::string>(),
+         MedianText(parameter["median"], parameter["std_dev"], parameter["median_repeat_error"]),
          parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_repeat_error"]),
          found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
                                                                  : "",

@@ -51,6 +51,7 @@ function summaryOf(model) {
     units: '',
     textbook: "The textbook's log decrement gives I_O 0.0798 (1 % more: it assumes small angles).",
     remarks: '',
+    assumptions: ['times in s (--time_column t:ms)'],
     warnings: model === 'drag' ? [...warnings, 'at the bound 0: drag'] : warnings,
   };
 }

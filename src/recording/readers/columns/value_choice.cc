@@ -111,8 +111,10 @@ void WarnOfOthers(Choice& choice, std::size_t chosen, std::span<const Columns> c
     }
   }
   if (names.empty()) return;
-  choice.Assume("value_column_assumed", "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names) +
-                                            "; --value_column chooses another");
+  choice.Assume(
+      "value_column_assumed",
+      "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names) + "; --value_column chooses another",
+      "value column " + choice.NameOf(chosen) + " (--value_column)");
 }
 
 /// The error for --value_column combined without axes that turn about one fixed axis.
@@ -178,8 +180,11 @@ Result<void> CheckUnitFlag(Choice& choice, std::size_t index) {
                    " contradicts it; leave the flag out, or choose another column with --value_column");
   }
   if (is_quantity && asked != nullptr && meaning.unit != asked) {
-    choice.Assume("unit_overridden", column + " names " + std::string(meaning.unit->Written()) + ", but --unit says " +
-                                         std::string(asked->Written()) + ", which was used");
+    choice.Assume("unit_overridden",
+                  column + " names " + std::string(meaning.unit->Written()) + ", but --unit says " +
+                      std::string(asked->Written()) + ", which was used",
+                  "readings in " + std::string(asked->Written()) + ", as --unit says, not in " +
+                      std::string(meaning.unit->Written()));
   }
   if (meaning.unit != nullptr && meaning.unit->kind == Kind::kTime && asked == nullptr) {
     return choice.table.line.Fault(
@@ -245,9 +250,10 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
                {"--unit " + guess.example});
     return nullptr;
   }
-  choice.Assume("value_unit_assumed", column + " and was assumed to be in " +
-                                          std::string(UnitOfSuffix(guess.unit)->Written()) + guess.reason +
-                                          "; --unit says otherwise");
+  const std::string unit(UnitOfSuffix(guess.unit)->Written());
+  choice.Assume("value_unit_assumed",
+                column + " and was assumed to be in " + unit + guess.reason + "; --unit says otherwise",
+                "readings in " + unit + " (--unit)");
   choice.layout.is_unit_assumed = true;
   return UnitOfSuffix(guess.unit);
 }
