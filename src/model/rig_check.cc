@@ -159,7 +159,8 @@ void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
            " would add a systematic error of " + NumberText(100 * converting.std_dev / converting.value, 2) + " % to " +
            Converted(rig) + ". " + HowToGiveError(*example, rig),
        "rig exact (" + std::string(is_direct ? "±1 g, ±1 mm" : "1 % in " + std::string(example->name)) + " add " +
-           NumberText(100 * converting.std_dev / converting.value, 2) + " %: " + ErrorExample(*example, rig) + ")"});
+           NumberText(100 * converting.std_dev / converting.value, 2) +
+           " %: " + (IsGivenByFlags(rig.name) ? ErrorExample(*example, rig) : R"("std_dev" in the rig)") + ")"});
 }
 
 // ---- With the swing ------------------------------------------------------------------------------------------------

@@ -154,7 +154,8 @@ SummaryQuantity IntervalOf(const DerivedQuantity& quantity, std::string name) {
   constexpr int kDigits = 3;
   const Interval interval = TotalIntervalOf(quantity).value();
   std::string value = SignificantText(interval.lower, kDigits) + " to " + SignificantText(interval.upper, kDigits);
-  return {std::move(name) + " (95 %)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
+  return {
+      std::move(name) + " (95" + std::string(kNoBreak) + "%)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
 }
 
 std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
@@ -267,7 +268,8 @@ std::string SamplesText(Eigen::Index used, Eigen::Index all) {
                      : std::to_string(used) + " of " + std::to_string(all) + " samples";
 }
 
-/// "All 2000 samples, 0 s (held, then released) to 19.99 s (end of recording)."
+/// "All 2000 samples, 0 s (held, then released) to 19.99 s.", "600 of 1400 samples, 0 s (in motion) to 5.99 s (at
+/// rest)."
 std::string DataText(const DataSummary& data) {
   std::string text = Capitalized(SamplesText(data.used_samples, data.samples));
   if (data.releases.size() > 1 && data.release > 0) {
@@ -277,7 +279,8 @@ std::string DataText(const DataSummary& data) {
   const auto end = [](const std::string& time, const std::string& why) {
     return time + std::string(kNoBreak) + "s" + (why.empty() ? "" : " (" + why + ")");
   };
-  return text + ", " + end(from, data.begins) + " to " + end(to, data.ends) + ".";
+  const bool is_whole = data.used_samples == data.samples;  // ends where the recording does
+  return text + ", " + end(from, data.begins) + " to " + end(to, is_whole ? "" : data.ends) + ".";
 }
 
 std::string JointDataText(const Identification& identification) {
@@ -339,8 +342,8 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
     return;
   }
   if (lacks_fit || !SuspectedText(fit, false).empty()) {
-    summary.verdict = law + " does not describe all of the readings: residuals" + RmsText(fit) +
-                      " are more than noise. " + MisfitText(fit, is_one_of_several);
+    summary.verdict = law + " does not describe all readings: residuals" + RmsText(fit) + " exceed the noise. " +
+                      MisfitText(fit, is_one_of_several);
     summary.emphasis = Emphasis::kCaution;
     is_said("lack_of_fit");
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
@@ -387,7 +390,7 @@ std::string ChangingText(const FitReport& fit) {
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.systematic.Of(ErrorSource::kInconstancy) > 0) AddListed(std::string(parameter.info.name), names);
   }
-  return names.empty() ? "" : "Not constant, which the errors include: " + names + ".";
+  return names.empty() ? "" : "Not constant (the errors include that): " + names + ".";
 }
 
 /// Whether several recordings agree. Without a test nothing is known of that.
@@ -411,9 +414,12 @@ void CollectMisfits(const Identification& identification, std::size_t index, Fit
   }
   if (list.empty()) return;
   EraseWarnings("lack_of_fit", summary);
+  if (identification.joint[index].lacks_fit) return;  // the verdict says it
   summary.warnings.insert(
       summary.warnings.begin(),
-      {"lack_of_fit", "the law does not describe the recordings with the numbers " + list + " (--models all)"});
+      {"lack_of_fit", "the law does not describe " +
+                          std::string(list.find(',') == std::string::npos ? "recording " : "recordings ") + list +
+                          " (--models all)"});
 }
 
 /// What the formula assumes, or what disturbs it.
@@ -626,6 +632,9 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   summary.assumptions = AssumptionsOf(warnings);
   summary.warnings = Shortened(warnings, identification.data.path);
   summary.law = fit.model.name;
+  if (!identification.is_joint()) {  // the ends of the window say it
+    for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
+  }
   const bool lacks_fit =
       fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[index].lacks_fit);
   SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, identification.fits.size() > 1, summary);

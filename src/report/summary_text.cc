@@ -25,12 +25,14 @@ enum class Folding {
   kRemarks,           // Remarks, derived quantities and the textbook's formulas are in one paragraph.
   kNames,             // Warnings that are not serious are only named.
   kEquation,          // No equation: the table has its numbers.
-  kTextbook           // No textbook's formulas.
+  kParagraphs,        // Window and verdict are in one paragraph, assumptions and warnings too.
+  kReasons,           // The textbook's values have no reasons.
+  kTextbook           // No textbook's values.
 };
 
-constexpr std::array kFoldings = {Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,
-                                  Folding::kWarnings, Folding::kRemarks,          Folding::kNames,
-                                  Folding::kEquation, Folding::kTextbook};
+constexpr std::array kFoldings = {
+    Folding::kNone,  Folding::kSensorParameters, Folding::kAsides,     Folding::kWarnings, Folding::kRemarks,
+    Folding::kNames, Folding::kEquation,         Folding::kParagraphs, Folding::kReasons,  Folding::kTextbook};
 
 /// Adds a sentence or a list item to a text.
 void Join(const std::string& more, std::string_view separator, std::string& text) {
@@ -134,27 +136,48 @@ std::string NameOf(const Warning& warning) {
   return name;
 }
 
-void AddWarnings(const FitSummary& summary, Folding folding, Section& section) {
+/// Warnings that are said, and the names of those that are only named.
+struct WarningTexts {
   std::vector<std::string> sentences, names;
-  for (const Warning& warning : summary.warnings) {
-    if (folding >= Folding::kNames && !IsSerious(warning)) {
-      if (std::ranges::find(names, NameOf(warning)) == names.end()) names.push_back(NameOf(warning));
-      continue;
+};
+
+WarningTexts TextsOf(const std::vector<Warning>& warnings, Folding folding) {
+  WarningTexts texts;
+  for (const Warning& warning : warnings) {
+    if (folding < Folding::kNames || IsSerious(warning)) {
+      texts.sentences.push_back(folding >= Folding::kAsides ? WithoutAsides(warning.message) : warning.message);
+    } else if (std::ranges::find(texts.names, NameOf(warning)) == texts.names.end()) {
+      texts.names.push_back(NameOf(warning));
     }
-    sentences.push_back(folding >= Folding::kAsides ? WithoutAsides(warning.message) : warning.message);
   }
-  if (folding < Folding::kWarnings) {
-    for (const std::string& sentence : sentences) section.AddText("Warning: " + sentence + ".", Emphasis::kCaution);
+  return texts;
+}
+
+/// All warnings in one paragraph.
+std::string WarningsText(const WarningTexts& warnings) {
+  std::string text, list;
+  for (const std::string& sentence : warnings.sentences) Join(sentence, "; ", text);
+  for (const std::string& name : warnings.names) Join(name, ", ", list);
+  if (!list.empty()) Join((text.empty() ? "" : "more: ") + list, "; ", text);
+  if (text.empty()) return "";
+  return (warnings.sentences.size() + warnings.names.size() > 1 ? "Warnings: " : "Warning: ") + text + ".";
+}
+
+void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, Section& section) {
+  const WarningTexts warnings = TextsOf(summary.warnings, folding);
+  std::string text = AssumedText(summary);
+  if (folding >= Folding::kParagraphs) {
+    Join(WarningsText(warnings), " ", text);
+    section.AddText(text, warnings.sentences.empty() ? Emphasis::kNone : Emphasis::kCaution);
     return;
   }
-  std::string text, list;
-  for (const std::string& sentence : sentences) Join(sentence, "; ", text);
-  for (const std::string& name : names) Join(name, ", ", list);
-  if (!list.empty()) Join((text.empty() ? "" : "more: ") + list + " (--details)", "; ", text);
-  if (!text.empty()) {
-    section.AddText((sentences.size() + names.size() > 1 ? "Warnings: " : "Warning: ") + text + ".",
-                    Emphasis::kCaution);
+  section.AddText(text);
+  if (folding >= Folding::kWarnings) {
+    section.AddText(WarningsText(warnings), Emphasis::kCaution);
+    return;
   }
+  for (const std::string& sentence : warnings.sentences)
+    section.AddText("Warning: " + sentence + ".", Emphasis::kCaution);
 }
 
 // ---- The whole ------------------------------------------------------------------------------------------------------
@@ -166,11 +189,14 @@ Section& AddComparison(const ResultSummary& summary, Section& section) {
   return section.AddText(summary.without_result);
 }
 
+std::string TextbookText(const FitSummary& fit, Folding folding) {
+  if (folding >= Folding::kTextbook) return "";
+  return folding >= Folding::kReasons ? WithoutAsides(fit.textbook) : fit.textbook;
+}
+
 void AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
-  const std::vector<std::string> parts = {OmittedText(fit, folding), fit.remarks, DerivedText(fit),
-                                          folding < Folding::kTextbook ? fit.textbook : ""};
   std::string text;
-  for (std::string part : parts) {
+  for (std::string part : {OmittedText(fit, folding), fit.remarks, DerivedText(fit), TextbookText(fit, folding)}) {
     if (folding < Folding::kRemarks) {
       section.AddText(part);
       continue;
@@ -181,16 +207,26 @@ void AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
   section.AddText(text);
 }
 
+/// The window, the comparison of laws, and whether the law describes the readings.
+void AddVerdict(const ResultSummary& summary, Folding folding, Section& section) {
+  const FitSummary& fit = summary.fit;
+  std::string verdict = fit.verdict;
+  if (folding >= Folding::kParagraphs && summary.comparison.empty() && fit.agreement.empty()) {
+    verdict = summary.data + " " + verdict;
+  } else {
+    section.AddText(summary.data);
+  }
+  AddComparison(summary, section).AddText(fit.agreement, fit.emphasis).AddText(verdict, fit.emphasis);
+}
+
 Section FoldedSection(const ResultSummary& summary, Folding folding) {
   const FitSummary& fit = summary.fit;
   Section section{summary.title};
-  section.AddText(summary.data);
-  AddComparison(summary, section).AddText(fit.agreement, fit.emphasis).AddText(fit.verdict, fit.emphasis);
+  AddVerdict(summary, folding, section);
   if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
   if (!fit.equation.empty() && folding < Folding::kEquation) section.Add(Formula{WithUnbrokenTerms(fit.equation)});
   AddRemarks(fit, folding, section);
-  section.AddText(AssumedText(fit));
-  AddWarnings(fit, folding, section);
+  AddAssumptionsAndWarnings(fit, folding, section);
   return section;
 }
 

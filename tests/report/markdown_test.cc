@@ -67,7 +67,7 @@ TEST(ToMarkdown, StartsWithTheSummary) {
 
 ## Summary
 
-1801 of 2000 samples, 1.5 s to 19.5 s. Begins: held, then released. Ends: the end of the recording.
+1801 of 2000 samples, 1.5 s (held, then released) to 19.5 s (the end of the recording).
 
 Recommended: coulomb. It is the only one that converged.
 
@@ -76,7 +76,7 @@ Recommended: coulomb. It is the only one that converged.
 | coulomb | 0.2 deg | 0.0 | recommended |
 | drag | 28.6 deg | - | no result |
 
-**The law coulomb does not describe all of the readings: residuals of 0.2 deg (rms) are more than noise. The rig disagrees: the fitted inertia is 3.9 % larger than its own (z 4.2), by a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor; swing another mass (--details).**
+**The law coulomb does not describe all readings: residuals of 0.2 deg (rms) exceed the noise. The rig disagrees: the fitted inertia is 3.9 % larger than its own (z 4.2), by a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor; swing another mass (--details).**
 
 | coulomb | value ± total error | unit | error from |
 | --- | --: | --- | --- |

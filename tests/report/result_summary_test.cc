@@ -128,8 +128,7 @@ TEST(SummarizeFit, GivesAnglesInDegrees) {
 TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
   Identification identification = ExampleIdentification();
   identification.rig.reset();  // its inertia disagrees
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict,
-              StartsWith("The law coulomb does not describe all of the readings"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, StartsWith("The law coulomb does not describe all readings"));
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
   identification.fits[0].warnings.clear();
   identification.constancy.clear();
@@ -209,7 +208,7 @@ TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
   identification.fits[0].warnings.clear();
   identification.joint[0].homogeneity.p = 0.5;
   identification.joint[0].lacks_fit = true;
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all of the readings"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all readings"));
 }
 
 TEST(SummarizeFit, GivesResidualsInTheCommonUnit) {

@@ -25,11 +25,19 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
+/// The text without line breaks.
+std::string Unbroken(const std::string& text) {
+  std::istringstream stream(text);
+  std::string unbroken;
+  for (std::string word; stream >> word;) unbroken += (unbroken.empty() ? "" : " ") + word;
+  return unbroken;
+}
+
 /// The summary of the example with these warnings only, in one string.
 std::string TextWith(std::vector<Warning> warnings) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings = std::move(warnings);
-  return SummaryText(SummarizeResult(identification), "More.");
+  return Unbroken(SummaryText(SummarizeResult(identification), "More."));
 }
 
 TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
@@ -50,7 +58,7 @@ TEST(SummaryText, SaysEachAssumptionWithItsFlag) {
   for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
   identification.warnings.push_back({"time_unit_assumed", "a long sentence", "times in ms (--time_column t:s)"});
   identification.warnings.push_back({"gravity_assumed", "another one", "g 9.80665 m/s^2 (--g)"});
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
+  const std::string text = Unbroken(SummaryText(SummarizeResult(identification), "More."));
   EXPECT_THAT(text, HasSubstr("Assumed: times in ms (--time_column t:s); g 9.80665 m/s^2 (--g)"));
   EXPECT_THAT(text, Not(HasSubstr("time unit assumed")));
   EXPECT_THAT(text, Not(HasSubstr("a long sentence")));
@@ -72,7 +80,7 @@ TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
   for (const char* code : {"gaps", "jitter", "spikes", "stale_values", "unwrapped", "vibration", "event_driven"})
     warnings.push_back({code, std::string("this is ") + code + words});
   const std::string text = TextWith(warnings);
-  EXPECT_THAT(text, HasSubstr("gaps, jitter, spikes, stale values, unwrapped, vibration, event"));
+  EXPECT_THAT(text, HasSubstr("gaps, jitter, spikes, stale values, unwrapped, vibration, event driven."));
   EXPECT_THAT(text, Not(HasSubstr("this is")));
 }
 
@@ -82,23 +90,23 @@ TEST(SummaryText, ShowsEachSeriousWarning) {
   for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
   for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
     identification.warnings.push_back({code, std::string("the reason is ") + code});
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
+  const std::string text = Unbroken(SummaryText(SummarizeResult(identification), "More."));
   for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
-    EXPECT_THAT(text, HasSubstr(std::string("he reason is ") + code));
+    EXPECT_THAT(text, HasSubstr(std::string("the reason is ") + code));
 }
 
 TEST(SummaryText, LeavesOutWholeParenthesesWhereThereIsNoRoom) {
   Identification identification = ExampleIdentification();
   for (int i = 0; i < 10; ++i) identification.warnings.push_back({"prior_conflict", "conflict " + std::to_string(i)});
   identification.warnings.push_back({"another_minimum", "this is (as AR(1)) short"});
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
-  EXPECT_THAT(text, HasSubstr("is short."));
+  const std::string text = Unbroken(SummaryText(SummarizeResult(identification), "More."));
+  EXPECT_THAT(text, HasSubstr("this is short;"));
   EXPECT_THAT(text, Not(HasSubstr("AR(1)")));
 }
 
 TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {
   const ResultSummary summary = SummarizeResult(ExampleComparedIdentification());
-  EXPECT_THAT(summary.laws, SizeIs(ExampleComparedIdentification().comparison->rows.size()));
+  EXPECT_THAT(summary.laws, SizeIs(1));  // the other one has no result
   const std::string text = SummaryText(summary, "");
   EXPECT_LT(text.find("Recommended: "), text.find("inertia"));
 }
@@ -112,7 +120,7 @@ TEST(SummaryText, SaysWhyALawHasNoResult) {
   row.reason = "the fit did not converge; more";
   const std::string text = SummaryText(SummarizeResult(identification), "");
   EXPECT_THAT(text, HasSubstr("No result with " + row.model + ": the fit did not converge."));
-  EXPECT_THAT(text, Not(HasSubstr("0 deg")));
+  EXPECT_THAT(text, Not(HasSubstr(row.model + "  ")));
 }
 
 TEST(SummaryText, GivesTheVerdictOfAgreementOfSeveralRecordings) {

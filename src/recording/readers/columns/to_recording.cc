@@ -34,7 +34,7 @@ void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
     warn("host_time",
          "the times are those at which the host received each line; if there is a column of the device's own times, "
          "name it with --time_column",
-         "times at which the computer received each line (--time_column)");
+         "times of arrival at the computer (--time_column)");
   }
   if (!layout.time && RateOf(columns, options) > 0 && lost.find_first_of("123456789") != std::string::npos) {
     warn("lost_samples",
