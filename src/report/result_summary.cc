@@ -19,6 +19,7 @@
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
+#include "pendulum/report/layout.h"
 #include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 
@@ -277,7 +278,7 @@ std::string DataText(const DataSummary& data) {
   }
   const auto [from, to] = WindowTexts(data.from, data.to);
   const auto end = [](const std::string& time, const std::string& why) {
-    return time + std::string(kNoBreak) + "s" + (why.empty() ? "" : " (" + why + ")");
+    return time + " s" + (why.empty() ? "" : " (" + why + ")");
   };
   const bool is_whole = data.used_samples == data.samples;  // ends where the recording does
   return text + ", " + end(from, data.begins) + " to " + end(to, is_whole ? "" : data.ends) + ".";
@@ -702,7 +703,7 @@ namespace {
 nlohmann::ordered_json QuantitiesJson(const std::vector<SummaryQuantity>& quantities) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const SummaryQuantity& quantity : quantities) {
-    array.push_back({{"name", quantity.name},
+    array.push_back({{"name", WithBlanks(quantity.name)},
                      {"symbol", quantity.symbol},
                      {"value", quantity.value},
                      {"error", quantity.error},
@@ -728,7 +729,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"equation", summary.equation},
           {"units", summary.units},
           {"textbook", summary.textbook},
-          {"remarks", summary.remarks},
+          {"remarks", WithBlanks(summary.remarks)},
           {"assumptions", summary.assumptions},
           {"warnings", messages}};
 }

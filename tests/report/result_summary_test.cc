@@ -237,9 +237,9 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
-              ElementsAre("the recording has 3 gaps", "coulomb is at its bound 0"));
+              ElementsAre("coulomb is at its bound 0", "the recording has 3 gaps"));
   EXPECT_THAT(Messages(SummarizeFit(identification, 1)),
-              ElementsAre("the recording has 3 gaps", "the residuals are not white"));
+              ElementsAre("the residuals are not white", "the recording has 3 gaps"));
 }
 
 // The flag that helps belongs to a warning.
