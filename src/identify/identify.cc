@@ -441,19 +441,6 @@ Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecord
   return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig->models);
 }
 
-namespace {
-
-/// The error with the path of the recording that it is about, which the message may have already.
-tl::unexpected<Status> WithPath(const std::string& path, Status error) {
-  const bool is_of_data = error.code == StatusCode::kDataLoss || error.code == StatusCode::kFailedPrecondition;
-  if (!is_of_data || path.empty() || error.message.find(path) != std::string::npos)
-    return tl::unexpected(std::move(error));
-  const std::string message = path + ": " + error.message;
-  return WithMessage(std::move(error), message);
-}
-
-}  // namespace
-
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
   std::vector<Result<Identification>> all;
   const std::vector<int> chosen = recording.swings.chosen;
@@ -463,7 +450,6 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
     // A stop may have caused another error.
     if (!identification && options.fit.stop.stop_requested()) identification = FitStopped();
     if (!identification && chosen.size() > 1) identification = ErrorOfRun(identification.error(), path, release);
-    if (!identification) identification = WithPath(path, std::move(identification).error());
     all.push_back(std::move(identification));
   }
   return all;

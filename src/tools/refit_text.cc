@@ -2,7 +2,6 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,6 @@
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
-#include "pendulum/model/parameter.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
 #include "tools/progress_line.h"
@@ -109,16 +107,16 @@ std::string SpreadText(const Json& number) {
   return size > 0 ? RoundedText(size, SignificantRounding(size, kDigits)) : "0";
 }
 
-/// A median with the decimals of the smaller of the spread and the error of repeats: one outlier makes the spread
-/// large, but leaves the median as it is.
-std::string MedianText(const Json& median, const Json& spread, const Json& error) {
+/// A median with the decimals of the spread, but with three digits or more: one outlier makes the spread large and
+/// leaves the median as it is.
+std::string MedianText(const Json& median, const Json& spread) {
+  constexpr int kFewest = 3;
   if (!median.is_number()) return "-";
   const auto value = median.get<double>();
-  double least = kUnbounded;
-  for (const Json& size : {spread, error}) {
-    if (size.is_number() && size.get<double>() > 0) least = std::min(least, size.get<double>());
-  }
-  return std::isfinite(least) ? RoundedText(value, PdgRounding(value, least)) : NumberText(value, kTextDigits);
+  if (value == 0 || !spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value, kTextDigits);
+  const Rounding rounding = PdgRounding(value, spread.get<double>());
+  const bool is_enough = SignificantDigits(value, rounding) >= kFewest;
+  return RoundedText(value, is_enough ? rounding : SignificantRounding(value, kFewest));
 }
 
 /// The law of the table, and how often it was recommended.
@@ -151,8 +149,7 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
     if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
     const Json& found = parameter["repeatability"];
     rows.push_back(
-        {parameter["name"].get<std::string>(),
-         MedianText(parameter["median"], parameter["std_dev"], parameter["median_repeat_error"]),
+        {parameter["name"].get<std::string>(), MedianText(parameter["median"], parameter["std_dev"]),
          parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_repeat_error"]),
          found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
                                                                  : "",
