@@ -13,6 +13,7 @@
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
@@ -96,10 +97,8 @@ std::string Join(const std::string& first, const std::string& second, const std:
 }
 
 std::string EstimateText(double value, double error) {
-  const auto power = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
-  const bool is_number = value != 0 && error > 0 && std::isfinite(error);
-  const int digits = is_number ? std::clamp(power(value) - power(error) + 2, 2, 15) : 3;
-  return NumberText(value, digits) + " ± " + NumberText(error, 2);
+  const ValueAndError text = PdgText(value, error);
+  return text.value + " ± " + text.error;
 }
 
 /// Names the parameter that differs most between the halves.
@@ -110,8 +109,15 @@ std::string DescribeHalves(const Constancy& result) {
   const std::string what =
       alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
   return what + " between the halves: " + EstimateText(row->first, row->first_std_error) + " then " +
-         EstimateText(row->second, row->second_std_error) + " " + row->unit + " (p " +
+         EstimateText(row->second, row->second_std_error) + (row->unit == "1" ? "" : " " + row->unit) + " (p " +
          ProbabilityText(*result.halves_p) + ")";
+}
+
+/// "230": the size of a relative change in percent.
+std::string PercentText(double change) {
+  constexpr int kDigits = 2;
+  const double percent = 100 * std::abs(change);
+  return RoundedText(percent, SignificantRounding(percent, kDigits));
 }
 
 std::string DescribeTrend(const AmplitudeTrend& trend) {
@@ -119,8 +125,7 @@ std::string DescribeTrend(const AmplitudeTrend& trend) {
   const std::string why = trend.name == kInertia.name
                               ? "the period does not depend on amplitude as in the model"
                               : "friction does not depend on amplitude as in the model, or depends on time";
-  return trend.name + change + NumberText(100 * std::abs(trend.span), 2) +
-         " % from the largest to the smallest swings, in a straight line over amplitude² (p " +
+  return trend.name + change + PercentText(trend.span) + " % from the largest to the smallest swings (p " +
          ProbabilityText(trend.p) + "): " + why;
 }
 

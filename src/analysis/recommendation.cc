@@ -189,8 +189,8 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   const std::size_t next = ranked.RunnerUp();
   const std::vector<std::string> undecided = ranked.UndecidedModels(chosen);
   if (!undecided.empty()) {
-    comparison.reason += "the simplest of the models that the readings do not distinguish (also " +
-                         NameList(undecided) + ", within " + NumberText(kWithinBic) + " of the smallest BIC)";
+    comparison.reason += "the simplest of the laws that the readings do not distinguish; the others are " +
+                         NameList(undecided) + " (their BIC differs by less than " + NumberText(kWithinBic) + ")";
   }
   if (next != comparison.rows.size()) {
     const ComparisonRow& other = comparison.rows[next];
@@ -210,7 +210,8 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
                          " a smaller BIC, but residuals that are more than noise, and a prediction of the last 40 % "
                          "that is missing or not better";
   }
-  if (const std::string other = ranked.ByAicc(); !other.empty()) comparison.reason += "; AICc would choose " + other;
+  if (const std::string other = ranked.ByAicc(); !other.empty())
+    comparison.reason += "; by the criterion AICc, which counts parameters less, " + other + " is better";
   comparison.reason += DescribeDoubts(row, fits[chosen]);
 }
 

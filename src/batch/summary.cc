@@ -18,6 +18,7 @@
 #include "batch/summary_verdict.h"
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
@@ -192,8 +193,8 @@ Json PointsJson(const QuantityRuns& runs, const Context& context) {
 
 std::string TrendText(const Trend& trend, const std::string& unit, const std::string& per) {
   constexpr double kLevel = 0.01;
-  const std::string slope =
-      NumberText(trend.slope, 3) + " ± " + NumberText(trend.std_error, 2) + Spaced(unit) + " " + per;
+  const ValueAndError text = PdgText(trend.slope, trend.std_error);
+  const std::string slope = text.value + " ± " + text.error + Spaced(unit) + " " + per;
   return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 

@@ -13,6 +13,11 @@ bool ContainsWarning(const std::vector<Warning>& warnings, const Warning& warnin
       warnings, [&](const Warning& other) { return other.code == warning.code && other.message == warning.message; });
 }
 
+/// Whether the same was assumed; the messages may name different files.
+bool Assumes(const std::vector<Warning>& warnings, const Warning& warning) {
+  return std::ranges::find(warnings, warning.assumed, &Warning::assumed) != warnings.end();
+}
+
 void AddOnce(const std::vector<Warning>& warnings, std::vector<Warning>& all) {
   for (const Warning& warning : warnings) {
     if (!ContainsWarning(all, warning)) all.push_back(warning);
@@ -35,6 +40,9 @@ std::vector<Warning> WarningsOfRuns(const Identification& identification, const 
       const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return ContainsWarning(run, warning); });
       warning.message =
           (of_each ? std::string("each recording") : RecordingLabel(identification, k)) + ": " + warning.message;
+      if (!warning.assumed.empty() &&
+          !std::ranges::all_of(runs, [&](const auto& run) { return Assumes(run, warning); }))
+        warning.assumed = RecordingLabel(identification, k) + ": " + warning.assumed;
       AddOnce({warning}, all);
     }
   }

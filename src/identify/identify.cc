@@ -151,12 +151,14 @@ void QuestionUnit(const Recording& used, double half_period, bool is_spring, con
   if (!is_odd) return;
   const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
   identification.warnings.push_back(
-      {"unit_questioned", "the pendulum swings by only " + degrees + " deg; if the readings are in " +
-                              (is_rate ? "rad/s" : "rad") + " (" +
-                              NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
-                              " deg), correct the unit (--unit " + (is_rate ? "rad_s" : "rad") +
-                              ", or in the column's name): the period stays, but "
-                              "angles and dry friction are 57.3 times larger"});
+      {"unit_questioned",
+       "the pendulum swings by only " + degrees + " deg; if the readings are in " + (is_rate ? "rad/s" : "rad") + " (" +
+           NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) + " deg), correct the unit (--unit " +
+           (is_rate ? "rad_s" : "rad") +
+           ", or in the column's name): the period stays, but "
+           "angles and dry friction are 57.3 times larger",
+       "readings in deg" + std::string(is_rate ? "/s" : "") + ", though the swing is only " + degrees +
+           " deg (--unit " + (is_rate ? "rad_s" : "rad") + ")"});
 }
 
 /// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
@@ -216,7 +218,8 @@ void WarnOfSpring(const IdentifyOptions& asked, const IdentifyOptions& options, 
   identification.warnings.push_back({"linear_restoring_torque",
                                      "the rig gives a stiffness, so a restoring torque proportional to the angle is "
                                      "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
-                                     "masses and lengths, or gravity_torque"});
+                                     "masses and lengths, or gravity_torque",
+                                     "a spring, as the rig gives a stiffness (--gravity)"});
 }
 
 /// Adds what the rig makes known to the fits, and compares the rig with the first converged fit. kDataLoss: the rig

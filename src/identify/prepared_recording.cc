@@ -46,9 +46,12 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   std::ranges::move(notes, std::back_inserter(prepared.known.warnings));
   if (!prepared.recording.calibration) return prepared;
   prepared.known.calibration = prepared.recording.calibration->source;
-  if (const std::string& note = prepared.recording.calibration->note; !note.empty()) {
-    prepared.known.warnings.push_back({"calibration_from_table", note});
+  const Calibration& calibration = *prepared.recording.calibration;
+  if (!calibration.note.empty()) {
+    prepared.known.warnings.push_back(
+        {"calibration_from_table", calibration.note, "a straight line through the points of --calibration"});
   }
+  if (!calibration.doubt.empty()) prepared.known.warnings.push_back({"calibration_bent", calibration.doubt});
   return prepared;
 }
 

@@ -122,11 +122,15 @@ bool IsConverting(const RigKey& key, bool by_masses_and_lengths) {
   return by_masses_and_lengths == (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength);
 }
 
+/// A value with a standard deviation, as it is given in the rig file or by flags.
+std::string ErrorExample(const RigKey& key, const Rig& rig) {
+  if (!IsGivenByFlags(rig.name)) return Quoted(key.name) + R"(: {"value": ..., "std_dev": ...})";
+  return KeyText(key, rig.name) + " " + NumberText(ValueOfEntry(rig.source.at(std::string(key.name)))) + "+-...";
+}
+
 /// How to give a standard deviation.
 std::string HowToGiveError(const RigKey& key, const Rig& rig) {
-  if (!IsGivenByFlags(rig.name)) return "Write " + Quoted(key.name) + R"(: {"value": ..., "std_dev": ...})";
-  return "Give it after the value: " + KeyText(key, rig.name) + " " +
-         NumberText(ValueOfEntry(rig.source.at(std::string(key.name)))) + "+-...";
+  return (IsGivenByFlags(rig.name) ? "Give it after the value: " : "Write ") + ErrorExample(key, rig);
 }
 
 void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
@@ -149,10 +153,14 @@ void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
   if (!(converting.std_dev > 0)) return;
   const std::string errors =
       is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + std::string(example->name);
-  warnings.push_back({"rig_taken_as_exact", "the rig's values have no standard deviation, so they count as exact; " +
-                                                errors + " would add a systematic error of " +
-                                                NumberText(100 * converting.std_dev / converting.value, 2) + " % to " +
-                                                Converted(rig) + ". " + HowToGiveError(*example, rig)});
+  warnings.push_back(
+      {"rig_taken_as_exact",
+       "the rig's values have no standard deviation, so they count as exact; " + errors +
+           " would add a systematic error of " + NumberText(100 * converting.std_dev / converting.value, 2) + " % to " +
+           Converted(rig) + ". " + HowToGiveError(*example, rig),
+       "rig exact (" + std::string(is_direct ? "±1 g, ±1 mm" : "1 % in " + std::string(example->name)) + " add " +
+           NumberText(100 * converting.std_dev / converting.value, 2) +
+           " %: " + (IsGivenByFlags(rig.name) ? ErrorExample(*example, rig) : R"("std_dev" in the rig)") + ")"});
 }
 
 // ---- With the swing ------------------------------------------------------------------------------------------------

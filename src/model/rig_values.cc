@@ -30,9 +30,10 @@ Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<W
   if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
   Result<Rig> rig = ParseRig(JsonText(values), name);
   if (rig && lacks_gravity) {
-    warnings.push_back({"gravity_assumed", "g was taken as " + NumberText(kMeanGravity) + " +- " +
-                                               NumberText(kGravityStdDev) +
-                                               " m/s^2, as at sea level; give the local value with --g"});
+    warnings.push_back({"gravity_assumed",
+                        "g was taken as " + NumberText(kMeanGravity) + " +- " + NumberText(kGravityStdDev) +
+                            " m/s^2, as at sea level; give the local value with --g",
+                        "g " + NumberText(kMeanGravity) + " ± " + NumberText(kGravityStdDev) + " m/s^2 (--g)"});
   }
   return rig;
 }
@@ -60,7 +61,8 @@ Warning OverrideWarning(const Json& values) {
   for (const RigKey& key : RigKeys()) {
     if (values.contains(key.name)) flags.push_back("--" + std::string(key.flag));
   }
-  return {"rig_overridden", "the values of the rig file were replaced by " + NameList(flags)};
+  return {"rig_overridden", "the values of the rig file were replaced by " + NameList(flags),
+          NameList(flags) + " instead of the rig file's"};
 }
 
 }  // namespace pendulum

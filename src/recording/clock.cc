@@ -88,8 +88,8 @@ class ClockRepair {
   tl::unexpected<Status> Fault(Index row, const std::string& sentence) const {
     return Error(StatusCode::kDataLoss, LineText(row) + ": " + sentence);
   }
-  void Warn(const std::string& code, Index row, const std::string& sentence) {
-    samples_.warnings.push_back({code, LineText(row) + ": " + sentence});
+  void Warn(const std::string& code, Index row, const std::string& sentence, const std::string& assumed = "") {
+    samples_.warnings.push_back({code, LineText(row) + ": " + sentence, assumed});
   }
 
   bool IsUniform() const;
@@ -108,6 +108,7 @@ class ClockRepair {
   bool IsEventDriven() const;
   Result<bool> MakeUniformFromPackets();
   double RateHz(double interval) const;
+  std::string EvenText(double interval, const std::string& why) const;
   std::string ReplacementText(double interval, double tolerance) const;
   void UseClock(double start, double interval, double std_dev);
   std::string UnevenText(const PacketClockSearch& found) const;
@@ -255,7 +256,8 @@ bool ClockRepair::MakeUniform(double grid) {
        "the times are rounded to " + TimeText(grid) + ", which is coarse compared with the sampling interval. " +
            ReplacementText(clock->slope * grid, clock->slope_tolerance / clock->slope) +
            ". If the times were truncated instead of rounded, the new times and release_time are " +
-           TimeText(grid / 2) + " too early");
+           TimeText(grid / 2) + " too early",
+       EvenText(clock->slope * grid, "the times are rounded"));
   UseClock(first + clock->start * grid, clock->slope * grid, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
   return true;
 }
@@ -280,7 +282,8 @@ bool ClockRepair::MakeUniformFromDigits() {
   Warn("time_rounded", 0,
        "the times are " + rounded + " to " + std::to_string(*digits) + " significant digits, so their steps grow to " +
            TimeText(unit) + ", which is coarse compared with the sampling interval. " +
-           ReplacementText(clock->slope, clock->slope_tolerance / clock->slope));
+           ReplacementText(clock->slope, clock->slope_tolerance / clock->slope),
+       EvenText(clock->slope, "the times are rounded"));
   UseClock(clock->start, clock->slope, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
   return true;
 }
@@ -291,6 +294,11 @@ std::string ClockRepair::ReplacementText(double interval, double tolerance) cons
   return "They were replaced by a uniform clock of " + NumberText(RateHz(interval), 6) +
          " Hz, which assumes uniform sampling. Clocks within +- " + NumberText(tolerance * RateHz(interval), 2) +
          " Hz agree with all times: " + ErrorText(tolerance);
+}
+
+std::string ClockRepair::EvenText(double interval, const std::string& why) const {
+  return "even sampling at " + NumberText(RateHz(interval), 6) + " Hz, as " + why +
+         " (--time_column none --sample_rate_hz)";
 }
 
 void ClockRepair::UseClock(double start, double interval, double std_dev) {
@@ -333,7 +341,8 @@ Result<bool> ClockRepair::MakeUniformFromPackets() {
            NumberText(RateHz(clock.interval), 6) + " Hz +- " + NumberText(clock.std_dev * RateHz(clock.interval), 2) +
            " Hz, which assumes that no rows are missing: " + ErrorText(clock.std_dev) +
            ". The shortest delay of the packets remains in release_time. If you know the sampling rate, give "
-           "--sample_rate_hz with --time_column none");
+           "--sample_rate_hz with --time_column none",
+       EvenText(clock.interval, "the rows come in packets"));
   UseClock(clock.start, clock.interval, clock.std_dev);
   return true;
 }

@@ -162,7 +162,8 @@ SensorErrors SensorErrorsOf(const Recording& recording, double from, double to,
                             const std::optional<SensorStatement>& given) {
   const std::optional<SensorStatement>& statement = given ? given : recording.stated_sensor;
   SensorErrors errors;
-  errors.kind = statement && !statement->kind.empty() ? statement->kind : SensorKindOf(recording);
+  errors.is_kind_assumed = !statement || statement->kind.empty();
+  errors.kind = errors.is_kind_assumed ? SensorKindOf(recording) : statement->kind;
   const auto* const defaults = std::ranges::find(kDefaults, errors.kind, &KindDefaults::kind);
   if (defaults != kDefaults.end()) {
     SetAssumed(*defaults, recording, AmplitudeOf(recording, from, to), errors);

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/layout.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {

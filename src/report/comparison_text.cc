@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/model/friction/asymmetric.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -54,9 +54,9 @@ Table CriteriaTable(const Comparison& comparison, const Conversion& shown) {
   for (const ComparisonRow& row : comparison.rows) {
     const bool has_weight = row.akaike_weight && std::isfinite(*row.akaike_weight);
     table.rows.push_back({row.model, row.judged ? std::to_string(row.parameters) : "-",
-                          SizeText(shown.factor * row.rms), FixedOrDash(row.delta_bic, 1),
+                          row.judged ? SizeText(shown.factor * row.rms) : "-", FixedOrDash(row.delta_bic, 1),
                           has_weight ? NumberText(*row.akaike_weight, kWeightDigits) : "-",
-                          FixedText(row.lag1_correlation, 2),
+                          row.judged ? FixedText(row.lag1_correlation, 2) : "-",
                           row.lack_of_fit ? kLackOfFit
                           : row.judged    ? ""
                                           : "not compared"});

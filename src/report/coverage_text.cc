@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/report/layout.h"
-#include "pendulum/report/rounding.h"
 
 namespace pendulum {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
+#include "pendulum/base/rounding.h"
 #include "pendulum/model/friction/registry.h"
-#include "pendulum/report/rounding.h"
 
 namespace pendulum {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/identify/identification.h"
 #include "pendulum/report/equation.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pendulum/report/fit_sections.h"
-#include "pendulum/report/result_summary.h"
+#include "pendulum/report/summary_text.h"
 #include "pendulum/report/text.h"
 #include "pendulum/report/text_parts.h"
 

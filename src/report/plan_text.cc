@@ -8,8 +8,8 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/report/layout.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {

@@ -13,12 +13,13 @@
 #include "pendulum/analysis/rig_verdict.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/model/friction/dahl.h"
 #include "pendulum/model/friction/stribeck.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
-#include "pendulum/report/rounding.h"
+#include "pendulum/report/layout.h"
 #include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 
@@ -32,7 +33,7 @@ std::string RigWords(const std::optional<Rig>& rig) {
   if (!rig || !rig->source.is_object()) return "rig";
   const auto has = [&](const char* key) { return rig->source.contains(key); };
   if (has("bob_mass")) return "masses and length";
-  if (has("center_of_mass")) return "mass and center of mass";
+  if (has("center_of_mass")) return "mass, center";
   if (has("gravity_torque")) return "gravity torque";
   if (has("stiffness")) return "stiffness";
   if (has("length")) return "length";
@@ -45,8 +46,8 @@ std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
     case ErrorSource::kCalibration: return "calibration";
     case ErrorSource::kClock: return "clock";
     case ErrorSource::kSensor: return "sensor";
-    case ErrorSource::kInconstancy: return "change during the recording";
-    case ErrorSource::kFrictionLaw: return "another friction law";
+    case ErrorSource::kInconstancy: return "change in time";
+    case ErrorSource::kFrictionLaw: return "another law";
   }
   return "";
 }
@@ -72,6 +73,11 @@ std::string MainSources(double std_error, const SystematicErrors& systematic, co
 }
 
 // ---- Quantities -----------------------------------------------------------------------------------------------------
+
+/// x with its trailing zeros, so that its digits say how precise it is.
+std::string SignificantText(double x, int digits) {
+  return x == 0 || !std::isfinite(x) ? NumberText(x, digits) : RoundedText(x, SignificantRounding(x, digits));
+}
 
 constexpr double kMuchWider = 1.5;  // than ± 2 errors is an interval that must be said
 
@@ -148,8 +154,9 @@ bool HasWideInterval(const DerivedQuantity& quantity) {
 SummaryQuantity IntervalOf(const DerivedQuantity& quantity, std::string name) {
   constexpr int kDigits = 3;
   const Interval interval = TotalIntervalOf(quantity).value();
-  std::string value = NumberText(interval.lower, kDigits) + " to " + NumberText(interval.upper, kDigits);
-  return {std::move(name) + " (95 %)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
+  std::string value = SignificantText(interval.lower, kDigits) + " to " + SignificantText(interval.upper, kDigits);
+  return {
+      std::move(name) + " (95" + std::string(kNoBreak) + "%)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
 }
 
 std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
@@ -166,12 +173,6 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
                               : Quantity(std::string(word), "", found->estimate, total, found->unit));
   }
   return derived;
-}
-
-std::string QuantityText(const SummaryQuantity& quantity) {
-  const std::string blank(kNoBreak);
-  return quantity.name + blank + quantity.value + (quantity.error.empty() ? "" : blank + "±" + blank + quantity.error) +
-         (quantity.unit.empty() ? "" : blank + quantity.unit);
 }
 
 // ---- Remarks on parameters ------------------------------------------------------------------------------------------
@@ -210,15 +211,15 @@ void AddListed(const std::string& item, std::string& list) {
   if (!item.empty()) list += (list.empty() ? "" : ", ") + item;
 }
 
-/// "viscous by 40 %": how far friction of another law that the readings do not show would change an estimate.
+/// "viscous 40 %": how far friction of another law that the readings do not show would change an estimate.
 std::string UnseenText(const ParameterEstimate& parameter) {
   constexpr int kDigits = 2;
+  constexpr double kMost = 10;  // of the estimate: more than this is said as a size, since the estimate may be 0
   const double unseen = *parameter.unseen_friction, size = std::abs(parameter.estimate);
-  const double percent = 100 * unseen / size;
-  const std::string share = percent < 100 ? NumberText(percent, kDigits) : std::to_string(std::lround(percent));
-  const std::string by =
-      unseen < 10 * size ? share + " %" : NumberText(unseen, kDigits) + " " + std::string(parameter.unit);
-  return std::string(parameter.info.name) + " by " + by;
+  const std::string blank(kNoBreak), name = std::string(parameter.info.name) + blank;
+  if (unseen < kMost * size) return name + SignificantText(100 * unseen / size, kDigits) + blank + "%";
+  const std::string unit = ShownUnit(std::string(parameter.unit));
+  return name + "by" + blank + SignificantText(unseen, kDigits) + (unit.empty() ? "" : blank + unit);
 }
 
 /// What a value ± error does not say.
@@ -238,19 +239,19 @@ std::string RemarksText(const FitReport& fit) {
   }
   std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
   if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";
-  if (!wide.empty()) text += "Quote the 95 % intervals that are wider than ± 2 errors: " + wide + ". ";
+  if (!wide.empty()) text += "Quote as a 95 % interval: " + wide + ". ";
   std::string unseen;
   for (const ParameterEstimate* const parameter : ChangedByUnseenFriction(fit))
     AddListed(UnseenText(*parameter), unseen);
-  if (!unseen.empty()) text += "Another, unseen friction law may change " + unseen + ". ";
+  if (!unseen.empty()) text += "Unseen friction may change: " + unseen + ". ";
   if (!text.empty()) text.pop_back();
   return text;
 }
 
 // ---- Sentences ------------------------------------------------------------------------------------------------------
 
-/// "50490.1 s to 50510.1 s": as many decimals as the duration needs for four digits, however large the times are.
-std::string WindowText(double from, double to) {
+/// "50490.1" and "50510.1": as many decimals as the duration needs for four digits, however large the times are.
+std::pair<std::string, std::string> WindowTexts(double from, double to) {
   constexpr int kDigits = 4;
   const Rounding rounding = SignificantRounding(to - from, kDigits);
   const int decimals = std::max(0, rounding.decimals - rounding.exponent);
@@ -260,17 +261,27 @@ std::string WindowText(double from, double to) {
     if (number.ends_with('.')) number.pop_back();
     return number;
   };
-  return text(from) + " s to " + text(to) + " s";
+  return {text(from), text(to)};
 }
 
+std::string SamplesText(Eigen::Index used, Eigen::Index all) {
+  return used == all ? "all " + std::to_string(all) + " samples"
+                     : std::to_string(used) + " of " + std::to_string(all) + " samples";
+}
+
+/// "All 2000 samples, 0 s (held, then released) to 19.99 s.", "600 of 1400 samples, 0 s (in motion) to 5.99 s (at
+/// rest)."
 std::string DataText(const DataSummary& data) {
-  std::string text = std::to_string(data.used_samples) + " of " + std::to_string(data.samples) + " samples, " +
-                     WindowText(data.from, data.to);
+  std::string text = Capitalized(SamplesText(data.used_samples, data.samples));
   if (data.releases.size() > 1 && data.release > 0) {
-    text += ", free swing " + std::to_string(data.release) + " of " + std::to_string(data.releases.size());
+    text += " (free swing " + std::to_string(data.release) + " of " + std::to_string(data.releases.size()) + ")";
   }
-  if (!data.begins.empty()) text += ". Begins: " + data.begins + ". Ends: " + data.ends;
-  return text + ".";
+  const auto [from, to] = WindowTexts(data.from, data.to);
+  const auto end = [](const std::string& time, const std::string& why) {
+    return time + " s" + (why.empty() ? "" : " (" + why + ")");
+  };
+  const bool is_whole = data.used_samples == data.samples;  // ends where the recording does
+  return text + ", " + end(from, data.begins) + " to " + end(to, is_whole ? "" : data.ends) + ".";
 }
 
 std::string JointDataText(const Identification& identification) {
@@ -284,51 +295,72 @@ std::string JointDataText(const Identification& identification) {
     names += (names.empty() ? "" : ", ") + Printable(data.path);
     if (IsOneOfSeveral(identification, k)) names += " (free swing " + std::to_string(data.release) + ")";
   }
-  const std::string samples = std::to_string(used) + " of " + std::to_string(all) + " samples";
-  return names.empty() ? samples + "." : names + ": " + samples + ".";
-}
-
-std::string Capitalized(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
+  const std::string samples = Capitalized(SamplesText(used, all));
+  return names.empty() ? samples + "." : samples + ": " + names + ".";
 }
 
 std::string WithFullStop(const std::string& text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
 
 constexpr int kRmsDigits = 3;
 
-/// "residuals of 0.285 deg (rms)"; recordings in different units have no common residual.
-std::string ResidualsText(const FitReport& fit) {
-  if (fit.reading_unit.empty()) return "residuals";
+/// " of 0.285 deg (rms)"; recordings in different units have no common residual.
+std::string RmsText(const FitReport& fit) {
+  if (fit.reading_unit.empty()) return "";
   const Conversion shown = Degrees(fit.reading_unit).value_or(Conversion{fit.reading_unit});
-  return "residuals of " + NumberText(shown.factor * fit.statistics.rms_residual, kRmsDigits) + " " +
+  return " of " + SignificantText(shown.factor * fit.statistics.rms_residual, kRmsDigits) + " " +
          std::string(shown.unit) + " (rms)";
 }
 
-/// Whether the law describes the readings.
-void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit, FitSummary& summary) {
+/// Why the residuals are more than noise, or where to look for the reason.
+std::string MisfitText(const FitReport& fit, bool is_one_of_several) {
+  if (const std::string suspected = SuspectedText(fit, false); !suspected.empty())
+    return "Suspected: " + suspected + ".";
+  return std::string("Look at them (--report), or try ") + (is_one_of_several ? "" : "other laws (--models all) or ") +
+         "another window (--from, --to).";
+}
+
+bool HasWarning(std::string_view code, const FitSummary& summary) {
+  return std::ranges::find(summary.warnings, code, &Warning::code) != summary.warnings.end();
+}
+
+/// Erases the warnings whose code begins with `code`, since the summary says otherwise what they say.
+void EraseWarnings(std::string_view code, FitSummary& summary) {
+  std::erase_if(summary.warnings, [&](const Warning& warning) { return warning.code.starts_with(code); });
+}
+
+/// Whether the law describes the readings. What it says is no warning any more.
+void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit, bool is_one_of_several,
+                FitSummary& summary) {
+  const auto is_said = [&](std::string_view code) { EraseWarnings(code, summary); };
   const std::string law = "The law " + std::string(fit.model.name);
   if (fit.termination != Termination::kConverged) {
     summary.verdict = "No result with " + std::string(fit.model.name) + " (" +
                       std::string(TerminationName(fit.termination)) + "): " + WithFullStop(Printable(fit.reason));
     summary.emphasis = Emphasis::kAlarm;
+    std::erase_if(summary.warnings, [&](const Warning& warning) {
+      return warning.code == "at_bound" || fit.reason.starts_with(warning.message);
+    });
     return;
   }
-  const std::string rms = ResidualsText(fit);
-  const std::string suspected = SuspectedText(fit, false), corrected = SuspectedText(fit, true);
-  if (lacks_fit || !suspected.empty()) {
-    summary.verdict = law + " does not describe all of the readings: " + rms + " are more than noise." +
-                      (suspected.empty() ? "" : " Suspected: " + suspected + ".");
+  if (lacks_fit || !SuspectedText(fit, false).empty()) {
+    summary.verdict = law + " does not describe all readings: residuals" + RmsText(fit) + " exceed the noise. " +
+                      MisfitText(fit, is_one_of_several);
     summary.emphasis = Emphasis::kCaution;
+    is_said("lack_of_fit");
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
     summary.verdict = law + " describes the readings, but not with constant parameters: " +
                       WithFullStop(Printable(constancy->verdict));
     summary.emphasis = Emphasis::kCaution;
+    is_said("not_constant");
   } else if (fit.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite) {
-    summary.verdict = law + " describes the readings: " + rms + " are autocorrelated noise; the errors allow for that.";
+    summary.verdict = law + " describes the readings; autocorrelated noise" + RmsText(fit) +
+                      " remains, and the errors allow for that.";
   } else {
-    summary.verdict = law + " describes the readings: " + rms + " are noise.";
+    summary.verdict = law + " describes the readings; noise" + RmsText(fit) + " remains.";
   }
+  is_said("suspected_");
+  if (fit.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite) is_said("correlated_residuals");
+  const std::string corrected = SuspectedText(fit, true);
   if (corrected.empty()) return;
   summary.verdict += " The readings were corrected for " + corrected + ".";
   summary.emphasis = Emphasis::kCaution;
@@ -349,8 +381,17 @@ std::string UntestedText(const Constancy* constancy, const FitReport& fit) {
     return parameter.systematic.Of(ErrorSource::kFrictionLaw) > 0;
   });
   return "Constancy is not tested (" + std::to_string(*constancy->half_swings) + " half swings are too few)" +
-         (has_law_error ? "; the errors allow for the friction of another law that the readings suggest."
+         (has_law_error ? "; the errors allow for another friction law."
                         : ": another recording may differ by more than these errors.");
+}
+
+/// The parameters that change by more than their standard errors; the total errors include that.
+std::string ChangingText(const FitReport& fit) {
+  std::string names;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.systematic.Of(ErrorSource::kInconstancy) > 0) AddListed(std::string(parameter.info.name), names);
+  }
+  return names.empty() ? "" : "Not constant (the errors include that): " + names + ".";
 }
 
 /// Whether several recordings agree. Without a test nothing is known of that.
@@ -364,6 +405,22 @@ void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
                     (has_doubts ? " " + summary.verdict : std::string());
   std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "recordings_disagree"; });
   summary.emphasis = homogeneity.disagreeing.empty() ? Emphasis::kCaution : Emphasis::kAlarm;
+}
+
+/// Names the recordings that the law does not describe in one warning.
+void CollectMisfits(const Identification& identification, std::size_t index, FitSummary& summary) {
+  std::string list;
+  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
+    if (identification.runs[k].fits[index].HasWarning("lack_of_fit")) AddListed(std::to_string(k + 1), list);
+  }
+  if (list.empty()) return;
+  EraseWarnings("lack_of_fit", summary);
+  if (identification.joint[index].lacks_fit) return;  // the verdict says it
+  summary.warnings.insert(
+      summary.warnings.begin(),
+      {"lack_of_fit", "the law does not describe " +
+                          std::string(list.find(',') == std::string::npos ? "recording " : "recordings ") + list +
+                          " (--models all)"});
 }
 
 /// What the formula assumes, or what disturbs it.
@@ -382,7 +439,7 @@ std::string CauseWords(DifferenceCause cause) {
 /// "I_O 0.0445 (1.6 % more: it assumes small angles)".
 std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
   constexpr int kDigits = 4;
-  std::string text = std::string(symbol) + " " + NumberText(row.closed_form, kDigits);
+  const std::string text = std::string(symbol) + " " + SignificantText(row.closed_form, kDigits);
   const double ratio = row.closed_form / row.fit;
   constexpr double kNear = 0.1;
   if (row.agrees.value_or(true)) {
@@ -391,8 +448,8 @@ std::string FormulaText(const ClosedFormRow& row, std::string_view symbol) {
   constexpr double kTimes = 1.5, kMost = 100;  // more is said as a factor, far more only as "far more"
   const std::string size = !(ratio > 0 && ratio < kMost) ? "far from the fit's value"
                            : ratio > kTimes
-                               ? NumberText(ratio, 2) + " times as large"
-                               : NumberText(100 * std::abs(ratio - 1), 2) + (ratio > 1 ? " % more" : " % less");
+                               ? SignificantText(ratio, 2) + " times as large"
+                               : SignificantText(100 * std::abs(ratio - 1), 2) + (ratio > 1 ? " % more" : " % less");
   return text + " (" + size + (row.cause ? ": " + CauseWords(*row.cause) : "") + ")";
 }
 
@@ -439,35 +496,53 @@ std::string ShortMessage(const std::string& message) {
   return text;
 }
 
-/// Whether a warning says what was assumed of the recording or the rig.
-bool IsAssumption(const Warning& warning) {
-  return warning.code.ends_with("_assumed") || warning.code.ends_with("_questioned") ||
-         warning.code == "linear_restoring_torque" || warning.code == "ambiguous_frequency";
+/// A message about the recording at `path` without the path, which is the title: "line 118: ..." if it names a line.
+std::string WithoutPath(const std::string& message, const std::string& path) {
+  if (path.empty() || !message.starts_with(path + ":")) return message;
+  const std::string rest = message.substr(path.size() + 1);
+  if (rest.starts_with(" ")) return rest.substr(1);
+  return (rest.find_first_of("0123456789") == 0 ? "line " : "") + rest;
 }
 
-/// Whether a warning says that the numbers or their errors may be wrong, beyond what the verdict says.
-bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 14> kSerious = {
-      "ambiguous_frequency", "inertia_differs_from_rig", "another_minimum",     "frequency_differs_from_rig",
-      "hold_disagrees",      "noise_below_resolution",   "offset_unsteady",     "prior_conflict",
-      "rate_disagrees",      "rig_implausible",          "trajectory_accuracy", "unequal_columns",
-      "closed_forms_differ", "gravity_in_readings"};
-  return std::ranges::find(kSerious, warning.code) != kSerious.end();
-}
-
-/// The warnings in short: serious ones first, then assumptions.
-std::vector<Warning> Shortened(std::vector<Warning> warnings) {
-  for (Warning& warning : warnings) warning.message = ShortMessage(warning.message);
-  const auto others = std::ranges::stable_partition(warnings, IsSerious);
-  std::ranges::stable_partition(others, IsAssumption);
+/// The warnings in short, serious ones first. An assumption is none of them.
+std::vector<Warning> Shortened(std::vector<Warning> warnings, const std::string& path) {
+  std::erase_if(warnings, [](const Warning& warning) { return !warning.assumed.empty(); });
+  for (Warning& warning : warnings) warning.message = ShortMessage(WithoutPath(warning.message, path));
+  std::ranges::stable_partition(warnings, IsSerious);
   return warnings;
+}
+
+// ---- Assumptions ----------------------------------------------------------------------------------------------------
+
+/// "an encoder".
+std::string WithArticle(const std::string& noun) {
+  return (std::string_view("aeio").find(noun.front()) < 4 ? "an " : "a ") + noun;
+}
+
+/// What was assumed of the sensors, if errors follow from it.
+void AddSensors(const Identification& identification, std::vector<std::string>& assumptions) {
+  for (const Identification* const part : identification.Parts()) {
+    const SensorErrors& sensor = part->data.sensor;
+    if (!sensor.is_kind_assumed || sensor.kind.empty()) continue;
+    std::string text = WithArticle(sensor.kind) + " (--sensor)";
+    if (std::ranges::find(assumptions, text) == assumptions.end()) assumptions.push_back(std::move(text));
+  }
+}
+
+std::vector<std::string> AssumptionsOf(const std::vector<Warning>& warnings) {
+  std::vector<std::string> assumptions;
+  for (const Warning& warning : warnings) {
+    std::string text = Printable(warning.assumed);
+    if (text.empty() || std::ranges::find(assumptions, text) != assumptions.end()) continue;
+    assumptions.push_back(std::move(text));
+  }
+  return assumptions;
 }
 
 // ---- Comparison -----------------------------------------------------------------------------------------------------
 
 /// The last cell of a law in the comparison.
 std::string VerdictOf(const ComparisonRow& row, bool is_recommended) {
-  if (!row.judged) return "no result";
   if (is_recommended) return row.lack_of_fit ? "recommended, with lack of fit" : "recommended";
   return row.lack_of_fit ? "lack of fit" : "";
 }
@@ -482,7 +557,12 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
                                    : "Recommended: " + comparison.recommended + ". " + reason;
   const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
   for (const ComparisonRow& row : comparison.rows) {
-    SummaryLaw law{row.model, NumberText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
+    if (!row.judged) {
+      summary.without_result += (summary.without_result.empty() ? "No result with " : " No result with ") + row.model +
+                                ": " + WithFullStop(ShortMessage(row.reason));
+      continue;
+    }
+    SummaryLaw law{row.model, SignificantText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
                    row.delta_bic && std::isfinite(*row.delta_bic) ? FixedText(*row.delta_bic, 1) : "",
                    VerdictOf(row, row.model == comparison.recommended)};
     summary.laws.push_back(std::move(law));
@@ -494,7 +574,8 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 /// What the linear formulas give.
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
-  summary.warnings = Shortened(AllWarnings(identification));
+  summary.assumptions = AssumptionsOf(AllWarnings(identification));
+  summary.warnings = Shortened(AllWarnings(identification), identification.data.path);
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
   if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
   const ClosedForms& forms = *identification.closed_forms;
@@ -506,153 +587,76 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
   return summary;
 }
 
-// ---- Text -----------------------------------------------------------------------------------------------------------
-
-/// What a text leaves out to be short.
-struct Folding {
-  std::size_t warnings = 100;  ///< More than these are only named.
-  bool textbook = true;
-  bool asides = true;  ///< Parentheses of warnings.
-  bool units = true;   ///< What gives SI units.
-  bool minor = true;   ///< Parameters of the sensor (its zero, bias, drift, axis) and the initial rate.
-};
-
-bool IsMinor(const SummaryQuantity& quantity) {
-  constexpr std::array kMinor = {
-      kZeroAngle.name, kRateBias.name,   kRateScale.name,  kAccelerationBias.name, kAccelerationScale.name,
-      kAxis.name,      kRadius.name,     kPivotX.name,     kPivotY.name,           kZeroDrift.name,
-      kBiasDrift.name, kHysteresis.name, kInitialRate.name};
-  return std::ranges::find(kMinor, quantity.name) != kMinor.end();
-}
-
-Table LawTable(const ResultSummary& summary) {
-  Table table{{{"law"}, {"rms residual", true}, {"ΔBIC", true}, {""}}};
-  table.caution = "lack of fit";
-  for (const SummaryLaw& law : summary.laws) {
-    table.rows.push_back({law.name, law.rms, law.delta.empty() ? "-" : law.delta, law.verdict});
-  }
-  return table;
-}
-
-Table ParameterTable(const FitSummary& summary, const Folding& folding) {
-  Table table{{{summary.law.empty() ? "formulas" : summary.law},
-               {"value", true},
-               {summary.has_systematic ? "± total error" : "± std error", false, 1},
-               {"unit"},
-               {"error from"}}};
-  for (const SummaryQuantity& quantity : summary.parameters) {
-    if (!folding.minor && IsMinor(quantity)) continue;
-    table.rows.push_back({quantity.name, quantity.value, quantity.error.empty() ? "" : "± " + quantity.error,
-                          quantity.unit, quantity.source});
-  }
-  return table;
-}
-
-std::string DerivedText(const FitSummary& summary) {
-  std::string text;
-  for (const SummaryQuantity& quantity : summary.derived) {
-    text += (text.empty() ? "" : ", ") + QuantityText(quantity);
-  }
-  return text;
-}
-
-/// "lack of fit, zero drift" for the warnings from number `first` on: their codes in words, each once.
-std::string WarningNames(const std::vector<Warning>& warnings, std::size_t first) {
-  std::vector<std::string> names;
-  for (std::size_t k = first; k < warnings.size(); ++k) {
-    std::string name = warnings[k].code;
-    std::ranges::replace(name, '_', ' ');
-    if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
-  }
-  std::string text;
-  for (const std::string& name : names) AddListed(name, text);
-  return text;
-}
-
-/// The place of the parenthesis that closes the one at `open`; npos if there is none.
-std::size_t ClosingOf(const std::string& text, std::size_t open) {
-  int depth = 0;
-  for (std::size_t k = open; k < text.size(); ++k) {
-    if (text[k] == '(') ++depth;
-    if (text[k] == ')' && --depth == 0) return k;
-  }
-  return std::string::npos;
-}
-
-/// A message without its parentheses, except those with a flag.
-std::string WithoutAsides(std::string text) {
-  std::size_t open = text.find(" (");
-  while (open != std::string::npos) {
-    const std::size_t close = ClosingOf(text, open + 1);
-    if (close == std::string::npos) break;
-    const bool keeps = HasFlag(text.substr(open, close - open));
-    if (!keeps) text.erase(open, close + 1 - open);
-    open = text.find(" (", keeps ? close : open);
-  }
-  return text;
-}
-
-void AddWarnings(const FitSummary& summary, const Folding& folding, Section& section) {
-  const std::size_t count = summary.warnings.size();
-  const auto serious = static_cast<std::size_t>(std::ranges::count_if(summary.warnings, IsSerious));  // never folded
-  const std::size_t shown = std::min(std::max(folding.warnings, serious), count);
-  for (std::size_t k = 0; k < shown; ++k) {
-    const std::string& message = summary.warnings[k].message;
-    section.AddText("Warning: " + (folding.asides ? message : WithoutAsides(message)) + ".", Emphasis::kCaution);
-  }
-  if (shown == count) return;
-  section.AddText((shown == 0 ? "Warnings: " : "More warnings: ") + WarningNames(summary.warnings, shown) + ".",
-                  Emphasis::kCaution);
-}
-
-/// The parameters that the table leaves out.
-std::string OmittedText(const FitSummary& summary, const Folding& folding) {
-  std::string names;
-  for (const SummaryQuantity& quantity : summary.parameters) {
-    if (!folding.minor && IsMinor(quantity) && quantity.source != "fixed") AddListed(quantity.name, names);
-  }
-  return names.empty() ? "" : "Also fitted: " + names + " (--details).";
-}
-
-Section FoldedSection(const ResultSummary& summary, const Folding& folding) {
-  const FitSummary& fit = summary.fit;
-  Section section{summary.title};
-  section.AddText(summary.data).AddText(summary.comparison);
-  if (!summary.laws.empty()) section.Add(LawTable(summary));
-  section.AddText(fit.agreement, fit.emphasis).AddText(fit.verdict, fit.emphasis);
-  if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
-  section.AddText(OmittedText(fit, folding)).AddText(fit.remarks).AddText(DerivedText(fit));
-  if (!fit.equation.empty()) section.Add(Formula{WithUnbrokenTerms(fit.equation)});
-  if (folding.units) section.AddText(fit.units);
-  if (folding.textbook) section.AddText(fit.textbook);
-  AddWarnings(fit, folding, section);
-  return section;
-}
-
 }  // namespace
+
+bool IsSerious(const Warning& warning) {
+  constexpr std::array<std::string_view, 28> kSerious = {"ambiguous_frequency",
+                                                         "inertia_differs_from_rig",
+                                                         "another_minimum",
+                                                         "frequency_differs_from_rig",
+                                                         "hold_disagrees",
+                                                         "noise_below_resolution",
+                                                         "offset_unsteady",
+                                                         "prior_conflict",
+                                                         "rate_disagrees",
+                                                         "rig_implausible",
+                                                         "unequal_columns",
+                                                         "trajectory_accuracy",
+                                                         "closed_forms_differ",
+                                                         "gravity_in_readings",
+                                                         "at_bound",
+                                                         "averaging_disagrees",
+                                                         "aliased",
+                                                         "resolution_disagrees",
+                                                         "calibration_bent",
+                                                         "correlated_residuals",
+                                                         "lack_of_fit",
+                                                         "lost_counts",
+                                                         "lost_samples",
+                                                         "recordings_disagree",
+                                                         "not_constant",
+                                                         "samples_near_period",
+                                                         "uncertain_stop",
+                                                         "zero_drift"};
+  return std::ranges::find(kSerious, warning.code) != kSerious.end();
+}
+
+std::string Capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
 
 FitSummary SummarizeFit(const Identification& identification, std::size_t index) {
   FitSummary summary;
   const FitReport& fit = identification.fits[index];
-  summary.warnings = Shortened(WarningsOfFit(identification, index));
+  const std::vector<Warning> warnings = WarningsOfFit(identification, index);
+  summary.assumptions = AssumptionsOf(warnings);
+  summary.warnings = Shortened(warnings, identification.data.path);
   summary.law = fit.model.name;
+  if (!identification.is_joint()) {  // the ends of the window say it
+    for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
+  }
   const bool lacks_fit =
       fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[index].lacks_fit);
-  SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, summary);
-  // The verdict names the causes of the misfit that remains.
-  if (std::ranges::any_of(fit.suspicions, [](const Suspicion& suspicion) { return !suspicion.is_corrected; })) {
-    std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "lack_of_fit"; });
+  SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, identification.fits.size() > 1, summary);
+  if (identification.is_joint()) {
+    SetAgreement(identification.joint[index].homogeneity, summary);
+    CollectMisfits(identification, index, summary);
   }
-  if (identification.is_joint()) SetAgreement(identification.joint[index].homogeneity, summary);
   if (fit.termination != Termination::kConverged) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
     summary.parameters.push_back(QuantityOf(parameter, identification.rig));
     summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
   }
+  if (summary.has_systematic) AddSensors(identification, summary.assumptions);
   if (!identification.is_joint()) SetRigVerdict(JudgeInertia(identification.rig, fit), summary);
   summary.remarks = RemarksText(fit);
   if (const std::string untested = UntestedText(identification.ConstancyOf(index), fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
+  }
+  if (const std::string changing = ChangingText(fit); !changing.empty() && HasWarning("not_constant", summary)) {
+    summary.remarks += (summary.remarks.empty() ? "" : " ") + changing;
+    EraseWarnings("not_constant", summary);
   }
   summary.derived = DerivedOf(fit);
   const bool has_all =
@@ -662,8 +666,8 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   }
   if (!identification.si_rig()) {
     summary.units = fit.model.gravity.is_linear()
-                        ? "In units of the stiffness k. A known stiffness (--stiffness) gives SI units."
-                        : "In units of the gravity torque G. Masses and length (--rig) give SI units.";
+                        ? "In units of the stiffness k; a known stiffness (--stiffness) gives SI."
+                        : "In units of the gravity torque G; masses and length (--rig) give SI.";
   }
   summary.textbook = TextbookText(identification.CheckOf(index));
   return summary;
@@ -680,30 +684,6 @@ ResultSummary SummarizeResult(const Identification& identification) {
   summary.fit = identification.fits.empty() ? SummarizeClosedForms(identification)
                                             : SummarizeFit(identification, identification.MainFit());
   return summary;
-}
-
-Section SummarySection(const ResultSummary& summary) { return FoldedSection(summary, {}); }
-
-std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style) {
-  constexpr std::ptrdiff_t kMostLines = 20;
-  constexpr std::array kFoldings = {
-      Folding{},
-      Folding{.warnings = 2},
-      Folding{.warnings = 2, .textbook = false},
-      Folding{.warnings = 2, .textbook = false, .minor = false},
-      Folding{.warnings = 2, .textbook = false, .asides = false, .minor = false},
-      Folding{.warnings = 1, .textbook = false, .asides = false, .minor = false},
-      Folding{.warnings = 1, .textbook = false, .asides = false, .units = false, .minor = false},
-      Folding{.warnings = 0, .textbook = false, .asides = false, .units = false, .minor = false}};
-  std::string text;
-  for (const Folding& folding : kFoldings) {
-    Section section = FoldedSection(summary, folding);
-    text = ToText(Sections{section.AddText(more)}, style);
-    constexpr std::ptrdiff_t kRecommendation = 2;  // lines of a comparison besides one for each law
-    const auto laws = static_cast<std::ptrdiff_t>(summary.laws.size());
-    if (std::ranges::count(text, '\n') <= kMostLines + (laws > 0 ? laws + kRecommendation : 0)) break;
-  }
-  return text;
 }
 
 std::string QuietText(const Identification& identification) {
@@ -723,7 +703,7 @@ namespace {
 nlohmann::ordered_json QuantitiesJson(const std::vector<SummaryQuantity>& quantities) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const SummaryQuantity& quantity : quantities) {
-    array.push_back({{"name", quantity.name},
+    array.push_back({{"name", WithBlanks(quantity.name)},
                      {"symbol", quantity.symbol},
                      {"value", quantity.value},
                      {"error", quantity.error},
@@ -749,7 +729,8 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"equation", summary.equation},
           {"units", summary.units},
           {"textbook", summary.textbook},
-          {"remarks", summary.remarks},
+          {"remarks", WithBlanks(summary.remarks)},
+          {"assumptions", summary.assumptions},
           {"warnings", messages}};
 }
 

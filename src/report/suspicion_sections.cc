@@ -31,7 +31,7 @@ Section SuggestedSection(const FitReport& fit) {
   for (const Suspicion& suspicion : fit.suspicions) {
     table.rows.push_back({InWords(CauseName(suspicion.cause)), SizeText(suspicion),
                           NumberText(suspicion.significance, 2), suspicion.is_corrected ? "corrected" : "not corrected",
-                          std::string(AdviceFor(suspicion.cause))});
+                          AdviceFor(suspicion.cause)});
   }
   section.Add(std::move(table));
   return section;
@@ -86,7 +86,9 @@ std::string SuspectedText(const FitReport& fit, bool corrected) {
   std::string text;
   for (const Suspicion& suspicion : fit.suspicions) {
     if (suspicion.is_corrected != corrected) continue;
-    text += (text.empty() ? "" : ", ") + InWords(CauseName(suspicion.cause)) + " " + SizeText(suspicion);
+    const std::string flag(corrected ? "" : FlagFor(suspicion.cause));
+    text += (text.empty() ? "" : ", ") + InWords(CauseName(suspicion.cause)) + " " + SizeText(suspicion) +
+            (flag.empty() ? "" : " (" + flag + ")");
   }
   return text;
 }

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/report/ambiguity_sections.h"
 #include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/joint_sections.h"
-#include "pendulum/report/result_summary.h"
-#include "pendulum/report/rounding.h"
+#include "pendulum/report/summary_text.h"
 #include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 

@@ -128,8 +128,10 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
   }
   if (!without_unit.empty()) {
-    warnings.push_back({"rig_unit_assumed", "values without a unit were taken in SI units: " + NameList(without_unit) +
-                                                "; write the unit after the number, such as 380g or 43cm"});
+    warnings.push_back({"rig_unit_assumed",
+                        "values without a unit were taken in SI units: " + NameList(without_unit) +
+                            "; write the unit after the number, such as 380g or 43cm",
+                        NameList(without_unit) + " in SI units (380g, 43cm say otherwise)"});
   }
   return values;
 }

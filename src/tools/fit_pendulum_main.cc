@@ -14,6 +14,7 @@
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/result_summary.h"
 #include "pendulum/report/series.h"
+#include "pendulum/report/summary_text.h"
 #include "pendulum/report/terminal_plot.h"
 #include "pendulum/report/text.h"
 #include "pendulum/report/text_parts.h"
@@ -117,11 +118,28 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   return text + (options.details ? ToText(run, style) : SummaryText(SummarizeResult(run), kMore, style));
 }
 
+/// A message about a recording that names its file.
+std::string WithPath(const Identification& run, const std::string& message) {
+  const std::string& path = run.data.path;
+  return path.empty() || message.find(path) != std::string::npos ? message : path + ": " + message;
+}
+
 /// What must not be overlooked where only numbers are shown: that they should not be quoted, or not without a doubt.
 void PrintVerdict(const Identification& run) {
   if (run.fits.empty() || run.fits[run.MainFit()].termination != Termination::kConverged) return;
   const FitSummary summary = SummarizeFit(run, run.MainFit());
-  if (summary.emphasis != Emphasis::kNone) PrintMessage(kName, "warning: " + summary.verdict);
+  if (summary.emphasis != Emphasis::kNone) PrintMessage(kName, "warning: " + WithPath(run, summary.verdict));
+}
+
+/// Says which laws have no result. The summary says why, if it is shown.
+void PrintFailures(const Identification& run, bool is_summarized) {
+  for (std::size_t i = 0; i < run.fits.size(); ++i) {
+    const FitReport& fit = run.fits[i];
+    if (fit.termination == Termination::kConverged || (is_summarized && i != run.MainFit())) continue;
+    const std::string outcome =
+        "no result with " + std::string(fit.model.name) + " (" + std::string(TerminationName(fit.termination)) + ")";
+    PrintMessage(kName, WithPath(run, is_summarized ? outcome : outcome + ": " + fit.reason));
+  }
 }
 
 /// All outputs of all runs. Text tables are joined on standard output unless data go there. Runs that could not be
@@ -144,13 +162,10 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     text += (text.empty() ? "" : "\n") + *part;
     if (options.quiet) PrintVerdict(*run);
     if (data_on_stdout) {
-      for (const Warning& warning : AllWarnings(*run)) PrintMessage(kName, "warning: " + warning.message);
+      for (const Warning& warning : AllWarnings(*run))
+        PrintMessage(kName, "warning: " + WithPath(*run, warning.message));
     }
-    for (const FitReport& fit : run->fits) {
-      if (fit.termination == Termination::kConverged) continue;
-      const std::string model = options.models.size() > 1 ? std::string(fit.model.name) + ": " : "";
-      PrintMessage(kName, model + std::string(TerminationName(fit.termination)) + ": " + fit.reason);
-    }
+    PrintFailures(*run, !options.quiet && !data_on_stdout);
   }
   if (!data_on_stdout && !text.empty()) outputs.push_back({"-", text});
   return outputs;

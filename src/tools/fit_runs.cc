@@ -79,6 +79,11 @@ Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup
   return IdentifyJointly(options, std::move(recordings));
 }
 
+/// Whether an error is about the readings, not about a flag.
+bool IsOfData(const Status& error) {
+  return error.code == StatusCode::kDataLoss || error.code == StatusCode::kFailedPrecondition;
+}
+
 }  // namespace
 
 Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
@@ -104,7 +109,7 @@ Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& opt
       }
     }
     for (Result<Identification>& run : IdentifyEach(options, *std::move(one))) {
-      if (!run && files > 1) run = ErrorOfRun(run.error(), path, 0);
+      if (!run && (files > 1 || IsOfData(run.error()))) run = ErrorOfRun(run.error(), path, 0);
       runs.push_back(std::move(run));
     }
   }

@@ -19,7 +19,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
-#include "pendulum/report/result_summary.h"
+#include "pendulum/report/summary_text.h"
 #include "tools/fit_runs.h"
 #include "tools/output.h"
 #include "tools/record_pendulum_options.h"

@@ -8,11 +8,11 @@
 #include <unistd.h>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
 #include "pendulum/report/layout.h"
-#include "pendulum/report/rounding.h"
 #include "pendulum/report/text_parts.h"
 #include "tools/progress_line.h"
 
@@ -102,14 +102,21 @@ std::size_t LineCount(const std::string& text) { return static_cast<std::size_t>
 /// A standard error or a spread; "-" if there is none.
 std::string SpreadText(const Json& number) {
   constexpr int kDigits = 2;
-  return number.is_number() ? NumberText(number.get<double>(), kDigits) : "-";
+  if (!number.is_number()) return "-";
+  const auto size = number.get<double>();
+  return size > 0 ? RoundedText(size, SignificantRounding(size, kDigits)) : "0";
 }
 
-/// A value with the decimals of its spread.
-std::string ValueText(const Json& value, const Json& spread) {
-  if (!value.is_number()) return "-";
-  if (!spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value.get<double>(), kTextDigits);
-  return RoundedText(value.get<double>(), {PdgRounding(value.get<double>(), spread.get<double>()).decimals, 0});
+/// A median with the decimals of the spread, but with three digits or more: one outlier makes the spread large and
+/// leaves the median as it is.
+std::string MedianText(const Json& median, const Json& spread) {
+  constexpr int kFewest = 3;
+  if (!median.is_number()) return "-";
+  const auto value = median.get<double>();
+  if (value == 0 || !spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value, kTextDigits);
+  const Rounding rounding = PdgRounding(value, spread.get<double>());
+  const bool is_enough = SignificantDigits(value, rounding) >= kFewest;
+  return RoundedText(value, is_enough ? rounding : SignificantRounding(value, kFewest));
 }
 
 /// The law of the table, and how often it was recommended.
@@ -142,7 +149,7 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
     if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
     const Json& found = parameter["repeatability"];
     rows.push_back(
-        {parameter["name"].get<std::string>(), ValueText(parameter["median"], parameter["std_dev"]),
+        {parameter["name"].get<std::string>(), MedianText(parameter["median"], parameter["std_dev"]),
          parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_repeat_error"]),
          found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
                                                                  : "",

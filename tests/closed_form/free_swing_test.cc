@@ -30,11 +30,11 @@ constexpr double kOmega = 5;                  // rad/s
 constexpr double kHalfPeriod = kPi / kOmega;  // s, of a small swing
 constexpr double kNoise = 0.002;              // rad
 constexpr char kHeld[] = "held, then released";
-constexpr char kInMotion[] = "the recording begins in motion";
-constexpr char kAfterAMove[] = "the first turning point after the pendulum was moved";
+constexpr char kInMotion[] = "in motion";
+constexpr char kAfterAMove[] = "first turning point after the pendulum was moved";
 constexpr char kUnsteady[] = "after the release: the hold before it is not steady";
-constexpr char kToTheEnd[] = "the end of the recording";
-constexpr char kBeforeAMove[] = "the last turning point before the pendulum is moved";
+constexpr char kToTheEnd[] = "end of recording";
+constexpr char kBeforeAMove[] = "last turning point before the pendulum is moved";
 
 // ---- Pieces of recordings -----------------------------------------------------------------------------------------
 
@@ -250,7 +250,7 @@ TEST(FindFreeSwings, EndsASwingIfAHandStopsThePendulum) {
   const Recording swing = Swing(0.5, 20);
   const double stop = Crossing(swing, 12);
   const FreeSwing found = OnlySwing(Joined({Part(swing, 0, stop), Still(0, 6)}));
-  EXPECT_EQ(Sentence(found.ends), "the last turning point before the pendulum is stopped");
+  EXPECT_EQ(Sentence(found.ends), "last turning point before the pendulum is stopped");
   EXPECT_THAT(found.to, AllOf(Gt(stop - kHalfPeriod), Lt(stop)));
 }
 

@@ -23,7 +23,7 @@ TEST(ComparisonSections, StartWithTheRecommendation) {
     It is the only one that converged.
     model    parameters  rms [deg]  ΔBIC  AICc weight  lag 1
     coulomb           4      0.200   0.0            1   0.12
-    drag              -       28.6     -            -   0.12  lack of fit
+    drag              -          -     -            -      -  lack of fit
     BIC of independent residuals.
     Prediction of samples that were left out of the fit: block by block, and of
     the last part from the first part. rms: of measured - predicted;

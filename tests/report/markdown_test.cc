@@ -67,16 +67,17 @@ TEST(ToMarkdown, StartsWithTheSummary) {
 
 ## Summary
 
-1801 of 2000 samples, 1.5 s to 19.5 s. Begins: held, then released. Ends: the end of the recording.
+1801 of 2000 samples, 1.5 s (held, then released) to 19.5 s (the end of the recording).
 
 Recommended: coulomb. It is the only one that converged.
 
 | law | rms residual | ΔBIC | |
 | --- | --: | --: | --- |
-| coulomb | 0.2 deg | 0.0 | recommended |
-| drag | 28.6 deg | - | no result |
+| coulomb | 0.200 deg | 0.0 | recommended |
 
-**The law coulomb does not describe all of the readings: residuals of 0.2 deg (rms) are more than noise. The rig disagrees: the fitted inertia is 3.9 % larger than its own (z 4.2), by a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor; swing another mass (--details).**
+No result with drag: 100 iterations were not enough.
+
+**The law coulomb does not describe all readings: residuals of 0.200 deg (rms) exceed the noise. Look at them (--report), or try another window (--from, --to). The rig disagrees: the fitted inertia is 3.9 % larger than its own (z 4.2), by a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor; swing another mass (--details).**
 
 | coulomb | value ± total error | unit | error from |
 | --- | --: | --- | --- |
@@ -86,13 +87,13 @@ Recommended: coulomb. It is the only one that converged.
 | release_angle | 24.236 ± 0.011 | deg | noise |
 | zero_angle | 0.572958 | deg | fixed |
 
-Weakly identifiable: viscous.
-
 ```text
 0.0790 th'' + 0.0030 th' + 1.80 sin th = 0
 ```
 
-The textbook's log decrement gives I_O 0.0802 (1.5 % more), b 0.00306 (agrees).
+Weakly identifiable: viscous.
+
+The textbook's log decrement gives I_O 0.08020 (1.5 % more), b 0.003060 (agrees).
 
 ## Warnings
 
@@ -110,7 +111,7 @@ TEST(ToMarkdown, StartsAJointFitWithTheAgreement) {
 
 ## Summary
 
-run.csv, b c.csv: 2702 of 4000 samples.
+2702 of 4000 samples: run.csv, b c.csv.
 
 The recordings agree on inertia, viscous.
 )"));

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/report/layout.h"
 #include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::result_summary_test {
@@ -103,8 +102,7 @@ TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
               HasSubstr("Constancy is not tested (9 half swings are too few): another recording may differ by more"));
   identification.fits[0].parameters[0].systematic.Add(ErrorSource::kFrictionLaw, 1e-3);
   EXPECT_THAT(SummarizeFit(identification, 0).remarks,
-              HasSubstr("(9 half swings are too few); the errors allow for the friction of another law that the "
-                        "readings suggest."));
+              HasSubstr("(9 half swings are too few); the errors allow for another friction law."));
 }
 
 // 95 % of the decay time: 148 s less sqrt(48² + 196²) s.
@@ -130,15 +128,14 @@ TEST(SummarizeFit, GivesAnglesInDegrees) {
 TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
   Identification identification = ExampleIdentification();
   identification.rig.reset();  // its inertia disagrees
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict,
-              StartsWith("The law coulomb does not describe all of the readings"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, StartsWith("The law coulomb does not describe all readings"));
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
   identification.fits[0].warnings.clear();
   identification.constancy.clear();
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("are autocorrelated noise"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("autocorrelated noise of"));
   identification.fits[0].noise.autocorrelation = {};
   EXPECT_THAT(SummarizeFit(identification, 0).verdict,
-              AllOf(StartsWith("The law coulomb describes"), HasSubstr("are noise")));
+              AllOf(StartsWith("The law coulomb describes"), HasSubstr("; noise of")));
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
   identification.fits[0].termination = Termination::kNotConverged;
   EXPECT_THAT(SummarizeFit(identification, 0).verdict, StartsWith("No result with coulomb (not_converged)"));
@@ -170,8 +167,7 @@ TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
   viscous.std_error = 0.0004;
   viscous.lower95 = 0.001;
   viscous.upper95 = 0.008;
-  EXPECT_THAT(SummarizeFit(identification, 0).remarks,
-              HasSubstr("Quote the 95 % intervals that are wider than ± 2 errors: viscous 0.0010 to 0.0080"));
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Quote as a 95 % interval: viscous 0.0010 to 0.0080"));
 }
 
 TEST(SummarizeFit, NamesTermsThatMayBeZero) {
@@ -212,7 +208,7 @@ TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
   identification.fits[0].warnings.clear();
   identification.joint[0].homogeneity.p = 0.5;
   identification.joint[0].lacks_fit = true;
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all of the readings"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all readings"));
 }
 
 TEST(SummarizeFit, GivesResidualsInTheCommonUnit) {
@@ -228,7 +224,7 @@ TEST(SummarizeFit, ComparesWithTheTextbook) {
   Identification identification = ExampleIdentification();
   identification.checks[0].rows[0].cause = DifferenceCause::kAmplitude;
   const std::string text = SummarizeFit(identification, 0).textbook;
-  EXPECT_THAT(text, HasSubstr("I_O 0.0802 (1.5 % more: it assumes small angles)"));
+  EXPECT_THAT(text, HasSubstr("I_O 0.08020 (1.5 % more: it assumes small angles)"));
   EXPECT_THAT(text, HasSubstr("(agrees)"));
 }
 
@@ -241,78 +237,56 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
-              ElementsAre("the recording has 3 gaps", "coulomb is at its bound 0"));
+              ElementsAre("coulomb is at its bound 0", "the recording has 3 gaps"));
   EXPECT_THAT(Messages(SummarizeFit(identification, 1)),
-              ElementsAre("the recording has 3 gaps", "the residuals are not white"));
+              ElementsAre("the residuals are not white", "the recording has 3 gaps"));
 }
 
-// The flag that says otherwise belongs to an assumption.
+// The flag that helps belongs to a warning.
 TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
   identification.warnings = {
-      {"unit_assumed", "deg is assumed (its period; its size); others are not. Or give --unit rad; and more."}};
+      {"w", "the unit is odd (its period; its size); others are not. Or give --unit rad; and more."}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
-              ElementsAre("deg is assumed (its period; its size). Or give --unit rad"));
+              ElementsAre("the unit is odd (its period; its size). Or give --unit rad"));
 }
 
-// ---- Text ----------------------------------------------------------------------------------------------------------
-
-TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
+// The title is the path.
+TEST(SummarizeFit, OmitsThePathOfTheRecording) {
   Identification identification = ExampleIdentification();
-  for (int i = 0; i < 30; ++i) {
-    identification.warnings.push_back(
-        {"w", "warning number " + std::to_string(i) + " has a first clause; and a second"});
-  }
-  const std::vector<std::string> lines = Lines(SummaryText(SummarizeResult(identification), "More."));
-  EXPECT_LE(lines.size(), 20);
-  for (const std::string& line : lines) EXPECT_LE(DisplayWidth(line), 80) << line;
-  EXPECT_THAT(lines.back(), HasSubstr("More."));
+  identification.data.path = "run.csv";
+  identification.fits[0].warnings.clear();
+  identification.warnings = {{"a", "run.csv: rows were left out"}, {"b", "run.csv:118: the counter restarts"}};
+  EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
+              ElementsAre("rows were left out", "line 118: the counter restarts"));
 }
 
-// Warnings without room are named, not cut.
-TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
+// ---- Assumptions ---------------------------------------------------------------------------------------------------
+
+TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
   Identification identification = ExampleIdentification();
-  identification.fits[0].warnings = {
-      {"gaps", "the recording has gaps, which this long sentence describes in more words than one line has"},
-      {"lack_of_fit", "the residuals are more than noise, which this long sentence says in more words than one line"},
-      {"zero_drift", "the zero drifts, which this long sentence describes in more words than one line has"}};
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
-  EXPECT_THAT(text, HasSubstr("ore warnings: "));
-  EXPECT_THAT(text, HasSubstr("zero drift."));
-  EXPECT_THAT(text, Not(HasSubstr("the zero drifts")));
+  identification.fits[0].warnings.clear();
+  identification.warnings = {{"time_unit_assumed", "a sentence", "times in s (--time_column t:ms)"},
+                             {"gaps", "the recording has 3 gaps"}};
+  identification.data.sensor.kind = "encoder";
+  EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s (--time_column t:ms)"));
+  EXPECT_THAT(Messages(SummarizeFit(identification, 0)), ElementsAre("the recording has 3 gaps"));
+  identification.data.sensor.is_kind_assumed = true;
+  EXPECT_THAT(SummarizeFit(identification, 0).assumptions,
+              ElementsAre("times in s (--time_column t:ms)", "an encoder (--sensor)"));
 }
 
-// A warning that the numbers may be wrong stands before the others and is not reduced to its name.
-TEST(SummaryText, ShowsEachSeriousWarning) {
-  Identification identification = ExampleIdentification();
-  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
-  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
-    identification.warnings.push_back({code, std::string("the reason is ") + code});
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
-  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
-    EXPECT_THAT(text, HasSubstr(std::string("the reason is ") + code));
-}
-
-TEST(SummaryText, LeavesOutWholeParenthesesWhereThereIsNoRoom) {
-  Identification identification = ExampleIdentification();
-  for (int i = 0; i < 10; ++i) identification.warnings.push_back({"prior_conflict", "conflict " + std::to_string(i)});
-  identification.warnings.push_back({"another_minimum", "this is (as AR(1)) short"});
-  const std::string text = SummaryText(SummarizeResult(identification), "More.");
-  EXPECT_THAT(text, HasSubstr("this is short."));
-}
-
-TEST(SummaryText, BeginsAComparisonWithTheRecommendation) {
-  const ResultSummary summary = SummarizeResult(ExampleComparedIdentification());
-  EXPECT_THAT(summary.laws, SizeIs(ExampleComparedIdentification().comparison->rows.size()));
-  const std::string text = SummaryText(summary, "");
-  EXPECT_LT(text.find("Recommended: "), text.find("inertia"));
-}
-
-TEST(SummaryText, GivesTheVerdictOfAgreementOfSeveralRecordings) {
-  const std::string text = SummaryText(SummarizeResult(ExampleJointIdentification()), "");
-  EXPECT_THAT(text, StartsWith("[[2 recordings of one rig]]"));
-  EXPECT_LT(text.find("recordings agree"), text.find("inertia  "));
+// What was assumed of each recording is said once, with the recordings' names only if they differ.
+TEST(SummarizeFit, SaysACommonAssumptionOfSeveralRecordingsOnce) {
+  Identification identification = ExampleJointIdentification();
+  for (Identification& run : identification.runs)
+    run.warnings = {{"time_unit_assumed", run.data.path + ": a sentence", "times in s"}};
+  EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s"));
+  identification.runs[1].warnings[0].assumed = "times in ms";
+  EXPECT_THAT(SummarizeFit(identification, 0).assumptions,
+              ElementsAre(AllOf(StartsWith("recording 1"), HasSubstr(": times in s")),
+                          AllOf(StartsWith("recording 2"), HasSubstr(": times in ms"))));
 }
 
 TEST(QuietText, HasALinePerParameter) {

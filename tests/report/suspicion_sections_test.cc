@@ -22,7 +22,7 @@ TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
   identification.used.sensor_errors.kind = "angle sensor";
   identification.used.sensor_errors.Of(SensorEffect::kGain) = {0.01, "assumed for an angle sensor"};
   const std::string text = ToText(SuspicionSections(identification, 0), TextStyle{});
-  for (const char* part : {"What the residuals suggest", "gain", "1 ± 0.1 %", "friction law", "--models all",
+  for (const char* part : {"What the residuals suggest", "gain", "1.00 ± 0.10 %", "friction law", "--models all",
                            "assumed for an angle sensor"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
@@ -52,8 +52,8 @@ TEST(SuspicionsJson, HasOneObjectForEachCause) {
 }
 
 TEST(SuspectedText, SeparatesWhatIsCorrected) {
-  EXPECT_EQ(SuspectedText(SuspectedFit(), true), "gain 1 ± 0.1 %");
-  EXPECT_EQ(SuspectedText(SuspectedFit(), false), "friction law 0.286 ± 0.03 deg");
+  EXPECT_EQ(SuspectedText(SuspectedFit(), true), "gain 1.00 ± 0.10 %");
+  EXPECT_EQ(SuspectedText(SuspectedFit(), false), "friction law 0.286 ± 0.029 deg (--models all)");
 }
 
 }  // namespace

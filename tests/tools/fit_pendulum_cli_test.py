@@ -346,7 +346,7 @@ class ClosedFormsOnly(CliTest):
         forms, warnings = self.forms("counts.csv")
         self.assertEqual((forms["model"], forms["decrement"]["parameters"]["zero_angle"]["unit"]), ("linear", "counts"))
         self.assertIn("noise_counts", forms)
-        self.assertRegex(warnings, "warning: the readings are in counts.*model linear")
+        self.assertRegex(warnings, "warning: counts.csv: the readings are in counts.*model linear")
         inertia = swing.TRUTH["inertia"] / swing.GRAVITY_TORQUE
         self.assertAlmostEqual(forms["linear"]["inertia"]["estimate"] / inertia, 1, delta=1e-3)
         viscous = swing.TRUTH["viscous"] / swing.GRAVITY_TORQUE

@@ -262,7 +262,8 @@ class Refusals(JointTest):
         self.write("b.csv", OTHER)
         run = self.run_tool("--data", "a.csv,b.csv", "--json", "fit.json")
         self.assertEqual(run.returncode, 1, run.stderr)
-        self.assertRegex(run.stderr, r"\Afit_pendulum: not_converged: these are not swings of one pendulum [^\n]+\n\Z")
+        self.assertRegex(run.stderr, r"\Afit_pendulum: no result with \w+ \(not_converged\)\n\Z")  # the text says why
+        self.assertRegex(" ".join(run.stdout.split()), "No result with .* these are not swings of one pendulum ")
         (fit,) = json.loads(self.read("fit.json"))["fits"]
         self.assertEqual(fit["status"], "not_converged")
         self.assertIs(fit["homogeneity"]["agrees"], False)

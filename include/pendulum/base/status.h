@@ -59,6 +59,9 @@ int ExitCode(StatusCode code);
 struct Warning {
   std::string code;
   std::string message;
+  /// If numbers rest on an assumption: what was assumed and the flag that says otherwise, in a few words:
+  /// "times in s (--time_column t:ms)". Else empty.
+  std::string assumed = {};
 };
 
 }  // namespace pendulum

@@ -28,7 +28,8 @@ struct Calibration {
   std::optional<double> residual_std_dev;  ///< Of the calibration's points about the curve, angle_unit.
   std::optional<SensorRange> input_range;  ///< The sensor's range, in the unit of the reading.
   nlohmann::ordered_json source;           ///< The calibration as read, for the report.
-  std::string note;  ///< How it was made, a sentence for the report, if it was made from a table on the way.
+  std::string note;   ///< How it was made, a sentence for the report, if it was made from a table on the way.
+  std::string doubt;  ///< Why that may be wrong, a sentence; often empty.
 
   /// The angle of a reading [rad], and its derivative there [rad per unit of the reading].
   double Angle(double reading) const;

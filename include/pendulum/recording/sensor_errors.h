@@ -33,6 +33,7 @@ struct EffectSize {
 struct SensorErrors {
   std::string kind;  ///< "potentiometer", "encoder", "gyro", "accelerometer", "camera", "angle sensor" or "ideal";
                      ///< empty if not decided.
+  bool is_kind_assumed = false;                         ///< Nobody stated the kind; the unit and the values suggest it.
   std::array<EffectSize, kSensorEffects.size()> sizes;  ///< In the order of kSensorEffects.
 
   const EffectSize& Of(SensorEffect effect) const { return sizes[static_cast<std::size_t>(effect)]; }

@@ -10,7 +10,6 @@
 #include "pendulum/base/status.h"
 #include "pendulum/identify/identification.h"
 #include "pendulum/report/section.h"
-#include "pendulum/report/section_text.h"
 
 namespace pendulum {
 
@@ -27,7 +26,7 @@ struct SummaryLaw {
   std::string name;
   std::string rms;      ///< Residuals, with unit.
   std::string delta;    ///< BIC less the smallest; empty if not compared.
-  std::string verdict;  ///< "recommended", "lack of fit", "not compared" or empty.
+  std::string verdict;  ///< "recommended", "lack of fit" or empty.
 };
 
 /// What a reader needs to know of one fit, in words and rounded numbers.
@@ -43,7 +42,8 @@ struct FitSummary {
   std::string units;                     ///< What gives SI units, if there are none; else empty.
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
   std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
-  std::vector<Warning> warnings;         ///< Each that concerns this law; messages without explanations.
+  std::vector<std::string> assumptions;  ///< What the numbers rest on that nobody said, each with its flag.
+  std::vector<Warning> warnings;         ///< Others that the verdict does not say; messages without explanations.
 };
 
 /// What a reader of a result needs first. Every front end shows it first.
@@ -52,7 +52,8 @@ struct ResultSummary {
   std::string data;        ///< Samples and window.
   std::string comparison;  ///< Which law is recommended, and why; empty for one law.
   std::vector<SummaryLaw> laws;
-  FitSummary fit;  ///< Of the main fit; if there is none, of closed forms.
+  std::string without_result;  ///< Which laws have no result, and why; often empty.
+  FitSummary fit;              ///< Of the main fit; if there is none, of closed forms.
 };
 
 /// The summary of one fit.
@@ -60,14 +61,11 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
 
 ResultSummary SummarizeResult(const Identification& identification);
 
-/// The summary as a section, with all its lines.
-Section SummarySection(const ResultSummary& summary);
+/// Whether a warning says that the numbers or their errors may be wrong. Such a warning is never shortened to its name.
+bool IsSerious(const Warning& warning);
 
-/// The summary as text for a terminal. One law and one recording need at most 20 lines of 80 columns: if there are
-/// more, all but two warnings are only named, then the textbook's line is left out, parameters of the sensor are only
-/// named, parentheses of warnings are left out, and at last the two warnings are only named. `more`: a last line that
-/// says where to find more.
-std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
+/// A sentence that begins with a capital letter.
+std::string Capitalized(std::string text);
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
 /// separated by blanks, in the result's own units and with 10 digits.

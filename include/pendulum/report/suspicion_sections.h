@@ -19,7 +19,8 @@ Sections SuspicionSections(const Identification& identification, std::size_t fit
 /// [{"name", "size", "std_error", "unit", "significance", "corrected"}, ...], the strongest first.
 nlohmann::ordered_json SuspicionsJson(const FitReport& fit);
 
-/// "gain 1.0 ± 0.1 %, backlash 0.05 ± 0.01 deg" of the suspicions that are corrected, or that are not.
+/// "gain 1.0 ± 0.1 % (--calibration), backlash 0.05 ± 0.01 deg" of the suspicions that are not corrected, or without
+/// flags of those that are.
 std::string SuspectedText(const FitReport& fit, bool corrected);
 
 }  // namespace pendulum

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pendulum/report/rounding.h"
+#include "pendulum/base/rounding.h"
 
 namespace pendulum {
 

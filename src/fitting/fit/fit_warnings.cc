@@ -10,6 +10,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
@@ -208,33 +209,35 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
 
 // ---- Suspicions -----------------------------------------------------------------------------------------------------
 
-/// What a cause does, and what to measure or which flag to set.
+/// What a cause does, what to measure or set, and the flag for it; empty: there is none.
 struct CauseText {
-  std::string_view what, advice;
+  std::string_view what, advice, flag;
 };
 
 CauseText TextOf(Cause cause) {
   switch (cause) {
-    case Cause::kGain: return {"the sensor's gain is wrong", "calibrate the sensor at known angles (--calibration)"};
+    case Cause::kGain: return {"the sensor's gain is wrong", "calibrate the sensor at known angles", "--calibration"};
     case Cause::kNonlinearity:
-      return {"the sensor's curve is bent or the sensor is eccentric",
-              "calibrate the sensor at ten angles or more (--calibration)"};
-    case Cause::kLag: return {"the readings are late", "switch off filters and averaging, or state the lag (--sensor)"};
-    case Cause::kBacklash: return {"the sensor has a play", "tighten the coupling of the sensor"};
+      return {"the sensor's curve is bent or the sensor is eccentric", "calibrate the sensor at ten angles or more",
+              "--calibration"};
+    case Cause::kLag:
+      return {"the readings are late", "switch off filters and averaging, or state the lag", "--sensor"};
+    case Cause::kBacklash: return {"the sensor has a play", "tighten the coupling of the sensor", ""};
     case Cause::kDrift:
-      return {"the zero of the readings drifts", "let the sensor warm up, or fit the drift (--init zero_drift=0)"};
+      return {"the zero of the readings drifts", "let the sensor warm up, or fit the drift", "--init zero_drift=0"};
     case Cause::kPush:
       return {"the pendulum was pushed or let go slowly, as with a rate at the release",
-              "release it with a thread, or begin the window after the release (--from)"};
+              "release it with a thread, or begin the window after the release", "--from"};
     case Cause::kHold:
       return {"the pendulum was not held still at the angle of the release: its hold is off",
-              "hold it at a stop, or begin the window after the release (--from)"};
-    case Cause::kFrictionLaw: return {"friction depends on the rate in another way", "compare the laws (--models all)"};
+              "hold it at a stop, or begin the window after the release", "--from"};
+    case Cause::kFrictionLaw:
+      return {"friction depends on the rate in another way", "compare the laws", "--models all"};
     case Cause::kPositionFriction:
-      return {"dry friction depends on the angle or the load", "look for rubbing cables and bent shafts"};
+      return {"dry friction depends on the angle or the load", "look for rubbing cables and bent shafts", ""};
     case Cause::kPresliding:
       return {"dry friction builds up after each reversal, as bristles do",
-              "fit the law dahl (--model dahl), or leave out small swings (--to)"};
+              "leave out small swings (--to), or fit the law dahl", "--model dahl"};
   }
   return {};
 }
@@ -263,14 +266,13 @@ std::string EffectText(const Suspicion& suspicion) {
 
 /// law: the law that corrects for the cause if it is fitted alone; empty: none.
 Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
-  const auto [what, advice] = TextOf(suspicion.cause);
   std::string consequence =
       suspicion.is_corrected ? "the estimates are those of corrected readings" : "the estimates do not allow for it";
   if (!law.empty()) consequence += " (a fit of this recording with --model " + law + " alone does)";
   return {"suspected_" + std::string(CauseName(suspicion.cause)),
-          "the residuals suggest that " + std::string(what) + EffectText(suspicion) + ", " +
+          "the residuals suggest that " + std::string(TextOf(suspicion.cause).what) + EffectText(suspicion) + ", " +
               NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations; " + consequence + "; " +
-              std::string(advice)};
+              AdviceFor(suspicion.cause)};
 }
 
 }  // namespace
@@ -291,11 +293,17 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
   return warnings;
 }
 
-std::string_view AdviceFor(Cause cause) { return TextOf(cause).advice; }
+std::string_view FlagFor(Cause cause) { return TextOf(cause).flag; }
+
+std::string AdviceFor(Cause cause) {
+  const auto [what, advice, flag] = TextOf(cause);
+  return std::string(advice) + (flag.empty() ? "" : " (" + std::string(flag) + ")");
+}
 
 std::string SizeText(const Suspicion& suspicion) {
   const auto [factor, unit] = ShownUnitOf(suspicion.unit);
-  return NumberText(factor * suspicion.size, 3) + " ± " + NumberText(factor * suspicion.std_error, 1) + " " + unit;
+  const ValueAndError text = PdgText(factor * suspicion.size, factor * suspicion.std_error);
+  return text.value + " ± " + text.error + " " + unit;
 }
 
 std::string PlainSizeText(double size, const std::string& unit) {

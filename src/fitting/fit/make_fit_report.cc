@@ -154,8 +154,9 @@ FitReport FailedReport(const Recording& recording, const FitOptions& options, co
   FitReport report = InitializeReport(recording, problem, cost, solution);
   report.termination = Termination::kFailed;
   report.reason =
-      "no motion can be computed with these values: friction would hold the pendulum, the release would be outside the "
-      "hold, or the period would be impossible; check fixed values and units";
+      "with the values from which the fit begins the pendulum does not swing: friction holds it, the release is "
+      "outside "
+      "the hold, or the period is impossible; check fixed values (--fix, --init) and units";
   SetParameters(recording, options, problem, Optimum{}, solution, report);
   return report;
 }

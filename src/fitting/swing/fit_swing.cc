@@ -442,7 +442,8 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
        "a restoring torque proportional to the angle is assumed, as of a spring or wire (law " + linear.model +
            ", where G is the stiffness k); for a pendulum, give --gravity sin and correct the unit (--unit, or in the "
            "column's name). The reason: " +
-           result->linear_reason + ". The readings are in " + result->used.unit + ": " + *unit});
+           result->linear_reason + ". The readings are in " + result->used.unit + ": " + *unit,
+       "the restoring torque of a spring (--gravity sin for a pendulum)"});
   result = std::move(other);
 }
 

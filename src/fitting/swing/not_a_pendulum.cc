@@ -43,6 +43,12 @@ std::optional<FitReport> FitRichest(const Recording& recording, Gravity gravity,
 
 std::string Percent(double share) { return NumberText(100 * share, 2) + " %"; }
 
+/// "32 % longer", or "3.3 times as long".
+std::string LongerText(double ratio) {
+  constexpr double kTimes = 1.5;
+  return ratio < kTimes ? Percent(ratio - 1) + " longer" : NumberText(ratio, 2) + " times as long";
+}
+
 bool DescribesAll(const FitReport& report) {
   return std::ranges::none_of(report.warnings, [](const Warning& warning) {
     return warning.code == "lack_of_fit" || warning.code == "correlated_residuals";
@@ -98,7 +104,7 @@ std::optional<LinearMotion> CompareWithLinear(const Recording& recording, const 
   if (!(ratio < kMuchLess || (gain > kSurely && DescribesAll(*linear)))) return std::nullopt;
   constexpr double kNearTop = 3.1;
   return LinearMotion{"the period does not depend on the amplitude as in a pendulum, whose period is " +
-                          Percent(SineGravity::PeriodRatio(std::min(amplitude, kNearTop)) - 1) + " longer at " +
+                          LongerText(SineGravity::PeriodRatio(std::min(amplitude, kNearTop))) + " at " +
                           NumberText(amplitude, 3) + " rad: a linear oscillator leaves " +
                           NumberText(linear->statistics.rms_residual, 3) + " rad (rms), a pendulum " +
                           NumberText(left, 3) + " rad",

@@ -18,7 +18,6 @@ bool IsJson(std::string_view text) {
 }
 
 std::string NoteOn(const CalibrationTable& table, const CalibrationFit& fit) {
-  constexpr double kSmallP = 0.001;
   std::string note = "the calibration is a straight line through the " + std::to_string(table.size()) + " points of " +
                      table.path + ": slope " + NumberText(fit.calibration.coefficients[1], 4) + " " + table.angle_unit +
                      " per " + (table.input == "counts" ? "count" : "volt");
@@ -26,11 +25,15 @@ std::string NoteOn(const CalibrationTable& table, const CalibrationFit& fit) {
     note +=
         ", residual standard deviation " + NumberText(*fit.calibration.residual_std_dev, 2) + " " + table.angle_unit;
   }
-  if (fit.higher_order && fit.higher_order->p < kSmallP) {
-    note += ". A parabola fits better (p " + ProbabilityText(fit.higher_order->p) + "): make the calibration with " +
-            "calibrate_sensor --order 2 --json, and give its file";
-  }
   return note;
+}
+
+std::string DoubtOn(const CalibrationTable& table, const CalibrationFit& fit) {
+  constexpr double kSmallP = 0.001;
+  if (!fit.higher_order || !(fit.higher_order->p < kSmallP)) return "";
+  return "a parabola fits the points of " + table.path + " better than the straight line that is used (p " +
+         ProbabilityText(fit.higher_order->p) +
+         "); make the calibration with calibrate_sensor --order 2 --json, and give its file";
 }
 
 }  // namespace
@@ -46,6 +49,7 @@ Result<Calibration> CalibrationFromText(std::string_view text, const std::string
   Result<CalibrationFit> fit = CalibrateSensor(*table, 1);
   if (!fit) return tl::unexpected(std::move(fit).error());
   fit->calibration.note = NoteOn(*table, *fit);
+  fit->calibration.doubt = DoubtOn(*table, *fit);
   return std::move(fit->calibration);
 }
 

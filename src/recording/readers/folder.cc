@@ -197,10 +197,13 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
     }
     return several;
   }
-  warnings.push_back({"member_assumed", folder.name + ": " + folder.member + " " + Quoted(folder.paths[*usual]) +
-                                            " was read, although others have columns of a swing too; "
-                                            "choose another with --value_column " +
-                                            FlagExample(folder)});
+  warnings.push_back(
+      {"member_assumed",
+       folder.name + ": " + folder.member + " " + Quoted(folder.paths[*usual]) +
+           " was read, although others have columns of a swing too; "
+           "choose another with --value_column " +
+           FlagExample(folder),
+       folder.member + " " + Quoted(folder.paths[*usual]) + " (--value_column " + FlagExample(folder) + ")"});
   return usual;
 }
 

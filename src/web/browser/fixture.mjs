@@ -204,6 +204,7 @@ export function makeFailed() {
       equation: '',
       textbook: '',
       remarks: '',
+      assumptions: ['times in s (--time_column t:ms)'],
       warnings: [],
     },
     parameters: {},

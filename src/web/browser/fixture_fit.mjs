@@ -38,7 +38,7 @@ function summaryOf(model) {
   return {
     verdict:
       model === 'viscous'
-        ? 'The law viscous does not describe all of the readings: residuals of 0.172 deg (rms) are more than noise.'
+        ? 'The law viscous does not describe all readings: residuals of 0.172 deg (rms) exceed the noise.'
         : `The law ${model} describes the readings: residuals of 0.172 deg (rms) are noise.`,
     level: model === 'viscous' ? 'caution' : 'good',
     agreement: '',
@@ -51,6 +51,7 @@ function summaryOf(model) {
     units: '',
     textbook: "The textbook's log decrement gives I_O 0.0798 (1 % more: it assumes small angles).",
     remarks: '',
+    assumptions: ['times in s (--time_column t:ms)'],
     warnings: model === 'drag' ? [...warnings, 'at the bound 0: drag'] : warnings,
   };
 }

@@ -147,6 +147,7 @@ export function makeJointFailed() {
       equation: '',
       textbook: '',
       remarks: '',
+      assumptions: ['times in s (--time_column t:ms)'],
     },
     equation: null,
     derived: {},

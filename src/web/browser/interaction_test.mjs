@@ -68,7 +68,7 @@ test('another model can be shown in detail, or drawn over the first model', asyn
   assert.match(await page.locator(kPlot).getAttribute('aria-label'), /^measured and coulomb and drag:/);
   await page.locator('#fit').getByRole('button', { name: 'Zoom in' }).click();
   await page.locator('.models label', { hasText: 'viscous' }).click();
-  assert.match(await page.locator('.banner').textContent(), /The law viscous does not describe all of the readings/);
+  assert.match(await page.locator('.banner').textContent(), /The law viscous does not describe all readings/);
   assert.equal(await page.locator('[data-parameter=coulomb]').count(), 0);
   assertRange(await shownRange(page), [4.9975, 14.9925]);
   await page.locator('.models label', { hasText: 'drag' }).click();

@@ -88,6 +88,11 @@ function derivedList({ derived }: FitSummary): HTMLElement | null {
   return list;
 }
 
+/** What the numbers rest on that neither the file nor the user said. */
+function assumedText({ assumptions = [] }: FitSummary): HTMLElement | null {
+  return assumptions.length === 0 ? null : text(typeset(`Assumed: ${assumptions.join('; ')}.`));
+}
+
 /** Warnings of the law that is shown: in short, and with their explanations. */
 function warningPart(summary: FitSummary, result: Pick<Result, 'fits' | 'warnings'>, model: string): HTMLElement | null {
   if (summary.warnings.length === 0) return null;
@@ -129,6 +134,7 @@ export function answerPart({ fit, result, swing, remark = () => null }: Answer):
     equation !== null && el('p', { class: 'equation' }, equation),
     summary.units !== '' && text(typeset(summary.units), 'quiet'),
     summary.textbook !== '' && withSymbols(typeset(summary.textbook)),
+    assumedText(summary),
     warningPart(summary, result, fit.model),
   );
   const values =

@@ -74,7 +74,7 @@ TEST(MakeFitReport, APointOneStandardErrorAwayIsNotConverged) {
 TEST(MakeFitReport, AnUnusableSolutionIsFailed) {
   const FitReport report = ReportAt(NoisyRun(), Truth(NoisyRun()), false);
   EXPECT_EQ(report.termination, Termination::kFailed);
-  EXPECT_THAT(report.reason, HasSubstr("no motion can be computed"));
+  EXPECT_THAT(report.reason, HasSubstr("the pendulum does not swing"));
   EXPECT_EQ(report.parameters.size(), 6);
   ExpectNoErrors(report);
 }

@@ -72,7 +72,7 @@ TEST(FitSwing, RemovesAFirstHalfSwingGuidedByHand) {
     EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
     EXPECT_EQ(result.swing.to, 19.99);
     EXPECT_EQ(Sentence(result.swing.begins),
-              "the motion before it does not fit the later motion: the pendulum was touched, or follows another law");
+              "the motion before does not fit: the pendulum was touched, or follows another law");
     EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
     ExpectTruthOfThePendulum(result.fit, run);
   }
@@ -86,7 +86,7 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
   EXPECT_EQ(result.swing.from, 0);
   EXPECT_EQ(Sentence(result.swing.ends),
-            "the motion after it does not fit the earlier motion: the pendulum was touched, or follows another law");
+            "the motion after does not fit: the pendulum was touched, or follows another law");
   ExpectTruthOfThePendulum(result.fit, run);
 }
 
@@ -232,7 +232,7 @@ TEST(FitSwing, RemovesWholeTurnsFromTheZero) {
   truth.duration = 40;
   const Recording recording = Must(SimulateRecording(truth));
   const FreeSwing swing = Must(ChooseSwings(recording, {})).found.front();
-  EXPECT_EQ(Sentence(swing.begins), "after its turns over the top");
+  EXPECT_EQ(Sentence(swing.begins), "after its whole turns");
   const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
   EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
   EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "whole_turns_removed")));

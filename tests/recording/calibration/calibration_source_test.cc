@@ -30,6 +30,7 @@ TEST(CalibrationFromText, FitsALineToATable) {
   EXPECT_EQ(calibration->note,
             "the calibration is a straight line through the 4 points of table.csv: slope 54 deg per volt, residual "
             "standard deviation 0.32 deg");
+  EXPECT_EQ(calibration->doubt, "");
 }
 
 TEST(CalibrationFromText, SaysIfACurveFitsBetter) {
@@ -39,8 +40,8 @@ TEST(CalibrationFromText, SaysIfACurveFitsBetter) {
   }
   const auto calibration = CalibrationFromText(table, "table.csv");
   ASSERT_TRUE(calibration) << calibration.error().message;
-  EXPECT_THAT(calibration->note, HasSubstr("A parabola fits better (p "));
-  EXPECT_THAT(calibration->note, HasSubstr("calibrate_sensor --order 2 --json"));
+  EXPECT_THAT(calibration->doubt, HasSubstr("a parabola fits the points"));
+  EXPECT_THAT(calibration->doubt, HasSubstr("calibrate_sensor --order 2 --json"));
 }
 
 TEST(CalibrationFromText, RefusesOtherTexts) {

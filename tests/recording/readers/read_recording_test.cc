@@ -305,6 +305,20 @@ TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
   }
 }
 
+// A header of 100 kB is not read, and the message says so.
+TEST(ParseRecording, SaysThatTheFirstLineIsTooLong) {
+  std::string header = "t_s,theta_deg";
+  while (header.size() < 100000) header += ",note_" + std::to_string(header.size());
+  EXPECT_EQ(ErrorOf(header + "\n" + Rows()).message,
+            "run.csv:1:1: the first line is longer than 64 kB: shorten it to the names of the columns");
+  EXPECT_EQ(ErrorOf("# " + std::string(70000, 'a') + "\n" + kHeader + Rows()).message,
+            "run.csv:1:1: the first line is longer than 64 kB: shorten it to the names of the columns");
+  std::string above;
+  while (above.size() < 70000) above += "# a comment in a line of its own\n";
+  EXPECT_EQ(ErrorOf(above + kHeader + Rows()).message,
+            "run.csv: no row of data begins in the first 64 kB: shorten the text above the table");
+}
+
 // ---- Random bytes ------------------------------------------------------------------------------------------------
 
 /// Changes the text in one to four random places. Uses no distributions of <random>, because the standard does not

@@ -34,8 +34,11 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
 /// the readings were not corrected although they can be.
 void WarnOfSuspicions(bool is_correctable, FitReport& report);
 
-/// What to measure, or which flag to set.
-std::string_view AdviceFor(Cause cause);
+/// What to measure, or which flag to set, with the flag.
+std::string AdviceFor(Cause cause);
+
+/// The flag of the advice, "--calibration"; empty if there is none.
+std::string_view FlagFor(Cause cause);
 
 /// "1.0 ± 0.1 %", "0.30 ± 0.02 deg", "5.0 ± 0.3 ms".
 std::string SizeText(const Suspicion& suspicion);

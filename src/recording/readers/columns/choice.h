@@ -66,8 +66,8 @@ struct Choice {
   const char* PlaceOf(std::size_t index) const;
   tl::unexpected<Status> WrongFlag(std::size_t index, const std::string& sentence) const;
 
-  /// Warns of an assumption.
-  void Assume(const std::string& code, const std::string& sentence);
+  /// Warns of an assumption. `in_short`: as Warning::assumed.
+  void Assume(const std::string& code, const std::string& sentence, const std::string& in_short);
 
   /// Notes what the user must tell, and an example of the flags that tell it. Without an example, `option` is the name
   /// of the flag.

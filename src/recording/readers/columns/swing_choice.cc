@@ -103,7 +103,8 @@ bool CombineAxes(Choice& choice, const Columns& axes, const Eigen::MatrixXd& cov
   }
   choice.Assume("axes_combined",
                 "the axes share the swing, so the rate about the fixed axis of the rotation was computed: " + parts +
-                    "; --value_column " + ShellWord(choice.FlagValueOf(*choice.value)) + " uses this axis alone");
+                    "; --value_column " + ShellWord(choice.FlagValueOf(*choice.value)) + " uses this axis alone",
+                "rate about the axis " + parts + " (--value_column)");
   return true;
 }
 
@@ -209,7 +210,8 @@ std::optional<std::size_t> ChoosePoint(Choice& choice, const Point& point) {
   }
   choice.vertical = point.vertical;
   choice.Assume("value_column_assumed",
-                both + " lie on a circle and were used as the coordinates of a point; " + one + " uses one alone");
+                both + " lie on a circle and were used as the coordinates of a point; " + one + " uses one alone",
+                both + " as a point (" + one + ")");
   return point.horizontal;
 }
 
@@ -230,7 +232,8 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     std::erase(copies, columns.front());
     choice.Assume("value_column_assumed",
                   "column " + choice.NameOf(columns.front()) + " was used; " + ListOf(choice.NamesOf(copies)) +
-                      (copies.size() == 1 ? " shows" : " show") + " the same; --value_column chooses another");
+                      (copies.size() == 1 ? " shows" : " show") + " the same; --value_column chooses another",
+                  "value column " + choice.NameOf(columns.front()) + " (--value_column)");
     return columns.front();
   }
   const Eigen::MatrixXd covariance = all(rows, rows);
@@ -257,7 +260,8 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     choice.Assume("value_column_assumed",
                   "column " + choice.NameOf(columns[best]) + " carries " + Percent(share) +
                       " of the swing and was used, not " + ListOf(others) + "; --value_column chooses another" +
-                      (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""));
+                      (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""),
+                  "value column " + choice.NameOf(columns[best]) + " (--value_column)");
     return columns[best];
   }
   // Whether one axis is enough follows from the unit, which will be asked for.

@@ -28,7 +28,8 @@ Columns TimesByNumbers(Choice& choice) {
   if (times.size() == 1) {
     choice.Assume("time_column_assumed",
                   "column " + choice.NameOf(times[0]) +
-                      " increases and was assumed to be the time; --time_column chooses another");
+                      " increases and was assumed to be the time; --time_column chooses another",
+                  "column " + choice.NameOf(times[0]) + " is the time (--time_column)");
   }
   return times;
 }
@@ -76,7 +77,8 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
     choice.layout.is_clock = choice.layout.is_from_first = true;
     UseTime(choice, index, *UnitOfSuffix("s"));
     choice.Assume("times_of_day",
-                  "column " + choice.NameOf(index) + " holds times of day; times count from the first row");
+                  "column " + choice.NameOf(index) + " holds times of day; times count from the first row",
+                  "column " + choice.NameOf(index) + " holds times of day (--time_column)");
     return {};
   }
   const TimeGuess guess = GuessTimeUnit(choice.NumbersOf(index), SwingBeside(choice));
@@ -92,11 +94,12 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   const std::string column = choice.FlagValueOf(index);
   const bool is_s = guess.unit == "s";
   const std::string others = ShellWord(column + (is_s ? ":ms" : ":s")) + (is_s ? " or :us" : "");
-  choice.Assume("time_unit_assumed", "column " + choice.NameOf(index) +
-                                         " does not give its unit and was assumed to be in " + std::string(guess.unit) +
-                                         guess.reason +
-                                         (guess.has_calendar_origin ? "; times count from the first row" : "") +
-                                         "; --time_column " + others + " says otherwise");
+  choice.Assume("time_unit_assumed",
+                "column " + choice.NameOf(index) + " does not give its unit and was assumed to be in " +
+                    std::string(guess.unit) + guess.reason +
+                    (guess.has_calendar_origin ? "; times count from the first row" : "") + "; --time_column " +
+                    others + " says otherwise",
+                "times in " + std::string(guess.unit) + " (--time_column " + others + ")");
   return {};
 }
 
@@ -125,8 +128,10 @@ Result<void> FindNamedTime(Choice& choice) {
   if (!index) return tl::unexpected(index.error());
   const Unit* own = *index < choice.names.size() ? FindTimeUnit(choice.names[*index].text) : nullptr;
   if (unit != nullptr && own != nullptr && unit != own) {
-    choice.Assume("unit_overridden", "column " + choice.NameOf(*index) + " names " + std::string(own->name) +
-                                         ", but --time_column says " + std::string(unit->name) + ", which was used");
+    choice.Assume("unit_overridden",
+                  "column " + choice.NameOf(*index) + " names " + std::string(own->name) + ", but --time_column says " +
+                      std::string(unit->name) + ", which was used",
+                  "times in " + std::string(unit->name) + ", as --time_column says, not in " + std::string(own->name));
   }
   choice.time = *index;
   if (unit == nullptr) unit = own;
@@ -168,9 +173,10 @@ Result<void> ChooseTime(Choice& choice) {
   const auto known = std::ranges::find_if(times, has_unit);
   const std::size_t chosen = known != times.end() ? *known : times.front();
   if (times.size() > 1) {
-    choice.Assume("time_column_assumed", "column " + choice.NameOf(chosen) + " was taken as the time, not " +
-                                             choice.NameOf(times[chosen == times.front() ? 1 : 0]) +
-                                             "; --time_column chooses another");
+    choice.Assume("time_column_assumed",
+                  "column " + choice.NameOf(chosen) + " was taken as the time, not " +
+                      choice.NameOf(times[chosen == times.front() ? 1 : 0]) + "; --time_column chooses another",
+                  "column " + choice.NameOf(chosen) + " is the time (--time_column)");
   }
   return SetTime(choice, chosen, choice.Meaning(chosen).unit);
 }

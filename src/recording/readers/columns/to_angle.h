@@ -33,10 +33,11 @@ inline Result<void> CheckCalibration(const Line& header, const Column& column, c
   const bool is_raw = column.unit->kind == Kind::kRaw;
   const std::string unit(column.unit->name);
   if (!is_raw && !options.calibration) {
-    warnings.push_back({"metadata_not_applied", std::string(header.file) + ":" +
-                                                    std::to_string(metadata.calibration_line) +
-                                                    ": the metadata calibration is not applied to column " +
-                                                    column.name + ", which is in " + unit + " already"});
+    warnings.push_back({"metadata_not_applied",
+                        std::string(header.file) + ":" + std::to_string(metadata.calibration_line) +
+                            ": the metadata calibration is not applied to column " + column.name + ", which is in " +
+                            unit + " already",
+                        "the file's calibration does not apply, as readings are in " + unit});
     return {};
   }
   return header.Fault(header.text.data(),

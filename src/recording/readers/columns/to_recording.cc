@@ -25,15 +25,16 @@ TimeSource TimeSourceOf(const ReadColumns& columns) {
 }
 
 void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
-  const auto warn = [&](const std::string& code, const std::string& sentence) {
-    columns.samples.warnings.push_back({code, columns.samples.name + ": " + sentence});
+  const auto warn = [&](const std::string& code, const std::string& sentence, const std::string& in_short = "") {
+    columns.samples.warnings.push_back({code, columns.samples.name + ": " + sentence, in_short});
   };
   const Layout& layout = columns.layout;
   const std::string& lost = columns.metadata.lost_samples;
   if (columns.is_host_time) {
     warn("host_time",
          "the times are those at which the host received each line; if there is a column of the device's own times, "
-         "name it with --time_column");
+         "name it with --time_column",
+         "times of arrival at the computer (--time_column)");
   }
   if (!layout.time && RateOf(columns, options) > 0 && lost.find_first_of("123456789") != std::string::npos) {
     warn("lost_samples",

@@ -83,6 +83,7 @@ class Reader {
   enum Slot : int { kNotRead = -1, kTime, kValue, kSecond, kAxis };
 
   Check ParseHead();
+  Check HeadTooLong(std::size_t last_line_end) const;
   Check ReadLine();
   Check ReadComments();
   Check ChooseColumns();
@@ -102,7 +103,7 @@ class Reader {
   const csv::Column& ColumnOf(int slot) const;
   std::size_t LastIndex() const;
   Check Append(double time, double value, double second = 0);
-  void Warn(const std::string& code, std::size_t line, const std::string& sentence);
+  void Warn(const std::string& code, std::size_t line, const std::string& sentence, const std::string& assumed = "");
   void WarnOfIncompleteRow(const Line& line);
   void WarnOfNote(std::string_view text);
   Check CheckEnd();
@@ -178,6 +179,16 @@ Check Reader::ReadLine() {
 
 // ---- Columns -----------------------------------------------------------------------------------------------------
 
+/// The error for a text whose first kHeadBytes hold no row of data.
+Check Reader::HeadTooLong(std::size_t last_line_end) const {
+  const bool has_line = last_line_end != std::string::npos;
+  const Line first{lines_.name(), "", has_line ? Line::kNoNumber : 1};
+  const std::string size = std::to_string(kHeadBytes / 1024) + " kB";
+  return first.Fault(first.text.data(),
+                     has_line ? "no row of data begins in the first " + size + ": shorten the text above the table"
+                              : "the first line is longer than " + size + ": shorten it to the names of the columns");
+}
+
 /// Finds the names of the columns and the first row.
 Check Reader::ParseHead() {
   Result<std::string> bytes = lines_.Peek(kHeadBytes);
@@ -187,6 +198,7 @@ Check Reader::ParseHead() {
   const std::size_t last_line_end = begin.rfind('\n');
   if (begin.size() == kHeadBytes && last_line_end != std::string_view::npos) begin = begin.substr(0, last_line_end + 1);
   head_ = csv::ParseHead(begin, layout_);
+  if (first_bytes_.size() == kHeadBytes && head_.first_row.number == 0) return HeadTooLong(last_line_end);
   csv::NamePhoneSensor(lines_.name(), head_.columns);
   line_ = {lines_.name(), head_.names.text, head_.names.number};
   if (head_.columns.empty() || head_.first_row.number == 0) return {};
@@ -210,7 +222,8 @@ Check Reader::ChooseColumns() {
   if (needs_rate && head_.rate_line.number > 0) {
     Warn("sample_rate_from_text", head_.rate_line.number,
          "the rows have no times, so the rate of " + NumberText(head_.sample_rate_hz) + " Hz was taken from " +
-             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise");
+             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise",
+         NumberText(head_.sample_rate_hz) + " Hz, from a line above the rows (--sample_rate_hz)");
   }
   const auto& calibration = csv::ChosenCalibration(options_, metadata_);
   const csv::TableView table{
@@ -354,8 +367,9 @@ bool Reader::BeginsSecondTable(double time) const {
   return header_again_ > 0 && rows_ > 0 && !(layout_.time && time > samples_.time[rows_ - 1]);
 }
 
-void Reader::Warn(const std::string& code, std::size_t line, const std::string& sentence) {
-  samples_.warnings.push_back({code, std::string(lines_.name()) + ":" + std::to_string(line) + ": " + sentence});
+void Reader::Warn(const std::string& code, std::size_t line, const std::string& sentence, const std::string& assumed) {
+  samples_.warnings.push_back(
+      {code, std::string(lines_.name()) + ":" + std::to_string(line) + ": " + sentence, assumed});
 }
 
 void Reader::WarnOfIncompleteRow(const Line& line) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/report/rounding.h"
+#include "pendulum/base/rounding.h"
 
 #include <algorithm>
 #include <array>
