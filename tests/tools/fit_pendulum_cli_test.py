@@ -93,7 +93,8 @@ class BadData(CliTest):
         self.write("nan.csv", "\n".join(lines) + "\n")
         run = self.run_tool("--data", "nan.csv")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("1 row was left out", run.stdout)
+        self.assertIn("empty cells", run.stdout)
+        self.assertIn("1 row was left out", self.run_tool("--data", "nan.csv", "--details").stdout)
 
     def test_three_samples(self):
         self.assert_data_refused(5, "bad.csv", "time_s,angle_deg\n0,1\n0.1,2\n0.2,1\n")

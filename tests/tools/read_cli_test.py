@@ -225,14 +225,14 @@ class RefusedFiles(ReadTest):
         self.assert_data_refused(5, "bad.csv:1:1: rows of data found: 0; at least 8 are needed: record for longer", "time_s,angle_deg\n".encode("utf-16"))
 
     def test_an_endless_line_from_standard_input(self):
-        """2 GB of the letter a are refused after the first MiB, with little memory."""
+        """2 GB of the letter a are refused after the first line's first bytes, with little memory."""
         producer = subprocess.Popen("head -c 2000000000 /dev/zero | tr '\\0' a", shell=True, stdout=subprocess.PIPE,
                                     stderr=subprocess.DEVNULL)
         self.addCleanup(producer.wait)
         self.addCleanup(producer.stdout.close)
         began = time.monotonic()
-        self.assert_refused(4, 'standard input:1:1: this line is longer than 1 MiB and begins with "' + 40 * "a" +
-                            '...", so this is not CSV text; name a CSV file', "--data", "-", stdin=producer.stdout,
+        self.assert_refused(4, 'standard input:1:1: the first line is longer than 64 kB and begins with "' + 40 * "a" +
+                            '...": shorten it to the names of the columns, or name a CSV file', "--data", "-", stdin=producer.stdout,
                             preexec_fn=memory_limit(TOOL, 100_000_000))
         self.assertLess(time.monotonic() - began, 30)  # Reading everything would take as long as the producer needs.
 

@@ -194,8 +194,8 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
         return minimum.sum - solution.sum <= kNearlyAsWell && std::abs(distance) >= error;
       });
   if (other != solution.other_minima.end()) {
-    warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) + " " +
-                                               std::string(friction.unit) +
+    warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) +
+                                               (friction.unit.empty() ? "" : " " + std::string(friction.unit)) +
                                                " and another number of half swings the fit is nearly as good; the "
                                                "error bars apply to the best minimum only"});
   }

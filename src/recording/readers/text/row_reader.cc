@@ -186,7 +186,8 @@ Check Reader::HeadTooLong(std::size_t last_line_end) const {
   const std::string size = std::to_string(kHeadBytes / 1024) + " kB";
   return first.Fault(first.text.data(),
                      has_line ? "no row of data begins in the first " + size + ": shorten the text above the table"
-                              : "the first line is longer than " + size + ": shorten it to the names of the columns");
+                              : "the first line is longer than " + size + " and begins with " + Quoted(first_bytes_) +
+                                    ": shorten it to the names of the columns, or name a CSV file");
 }
 
 /// Finds the names of the columns and the first row.
