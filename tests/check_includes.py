@@ -56,6 +56,7 @@ STANDARD = {
     "iostream": "cerr cin clog cout",
     "istream": "istream ws",
     "iterator": "back_inserter distance istreambuf_iterator make_move_iterator next prev size ssize",
+    "barrier": "barrier",
     "latch": "latch",
     "limits": "numeric_limits",
     "list": "erase erase_if list",

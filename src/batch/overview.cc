@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "batch/run_kinds.h"
 #include "batch/sqlite.h"
 
 namespace pendulum {
@@ -21,7 +22,8 @@ Json ModelsJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) FILTER (WHERE status = 'not_converged'),
     count(*) FILTER (WHERE status = 'not_identifiable'), count(*) FILTER (WHERE status = 'failed')
-  FROM fits GROUP BY model ORDER BY model)sql");
+  FROM fits JOIN runs USING(run) WHERE )sql" +
+                                       kIsLive + " GROUP BY model ORDER BY model");
   Json models = Json::array();
   while (rows.executeStep()) {
     models.push_back({{"model", sqlite::Text(rows, 0)},
@@ -38,8 +40,8 @@ SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) F
 Json RecommendationsJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT recommended, count(*) FROM runs
-  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits GROUP BY run HAVING count(*) > 1)
-  GROUP BY recommended ORDER BY count(*) DESC, recommended)sql");
+  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits GROUP BY run HAVING count(*) > 1) AND )sql" +
+                                       kIsLive + " GROUP BY recommended ORDER BY count(*) DESC, recommended");
   Json list = Json::array();
   while (rows.executeStep()) {
     const bool none = rows.getColumn(0).isNull();
@@ -78,7 +80,8 @@ struct Failures {
 Json FailuresJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
-  WHERE fits.status <> 'converged' ORDER BY position, id)sql");
+  WHERE fits.status <> 'converged' AND )sql" +
+                                       kIsLive + " ORDER BY position, id");
   std::map<std::tuple<std::string, int, std::string>, Failures> kinds;
   while (rows.executeStep()) {
     const std::string why = ReasonOf(sqlite::Text(rows, 2), sqlite::Text(rows, 3));

@@ -88,6 +88,13 @@ Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
   return *bytes ? Sha256(**bytes) : std::string();
 }
 
+/// What an attempt was made with, as one hash.
+std::string AttemptOf(const Provenance& provenance) {
+  return Sha256(JsonText({provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256,
+                          provenance.options_sha256, provenance.version}))
+      .value_or("");
+}
+
 /// The names of a run's files, which appear in its result and reasons.
 std::string PathsOf(const ManifestEntry& entry) { return JsonText({entry.path, entry.rig, entry.calibration, 0}); }
 
@@ -179,10 +186,11 @@ class Refitter {
   void Work() {
     try {
       while (std::optional<StoredRun> run = NextRun()) {
-        const std::optional<RunOutcome> outcome = TryOne(*run);
+        const Attempt attempt = TryOne(*run);
+        const auto& outcome = attempt.outcome;
         const bool is_cut_off = outcome && IsStopped() && outcome->exit_code == ExitCode(StatusCode::kTryAgain);
         if (is_cut_off) return;
-        Record(*run, outcome ? &*outcome : nullptr);
+        Record(*run, attempt);
       }
     } catch (const std::exception& error) {  // out of memory between two runs
       const std::scoped_lock lock(mutex_);
@@ -207,25 +215,39 @@ class Refitter {
   static constexpr int kPage = 256;
   static constexpr std::chrono::seconds kCommitInterval{1};
 
-  /// The outcome of a run; std::nullopt if its rows are current. An exception, from a bug or lack of memory, fails only
-  /// this run. The next refit tries it again.
-  std::optional<RunOutcome> TryOne(const StoredRun& run) {
+  struct Attempt {
+    std::optional<RunOutcome> outcome;  ///< std::nullopt: the rows of the run need no other.
+    std::string inputs;                 ///< Hash of what it was made with; empty: unknown.
+    bool is_result_current = false;     ///< The inputs are those of the stored rows.
+  };
+
+  /// Fits a run unless its rows need no other. An exception, from a bug or lack of memory, fails only this run. The
+  /// next refit tries it again.
+  Attempt TryOne(const StoredRun& run) {
+    Attempt attempt;
     try {
-      return RefitUnless(
-          source_, run.entry, options_, [&](const Provenance& provenance) { return IsCurrent(run, provenance); },
-          &limit_);
+      const auto is_current = [&](const Provenance& provenance) {
+        attempt.inputs = AttemptOf(provenance);
+        attempt.is_result_current = run.provenance.Agrees(provenance);
+        return IsCurrent(run, provenance, attempt.inputs);
+      };
+      attempt.outcome = RefitUnless(source_, run.entry, options_, is_current, &limit_);
     } catch (const std::exception& error) {
-      return Failure(run.entry, options_, {StatusCode::kInternal, std::string("internal error: ") + error.what()});
+      attempt.outcome =
+          Failure(run.entry, options_, {StatusCode::kInternal, std::string("internal error: ") + error.what()});
     }
+    return attempt;
   }
 
   bool IsStopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  bool IsCurrent(const StoredRun& run, const Provenance& provenance) const {
+  /// Whether the rows of a run need no attempt with these inputs.
+  bool IsCurrent(const StoredRun& run, const Provenance& provenance, const std::string& attempt) const {
     if (!run.exit_code || options_.force || *run.exit_code == ExitCode(StatusCode::kInternal) ||
         (options_.retry_failed && *run.exit_code > 1))
       return false;
-    return run.provenance.Agrees(provenance);
+    if (run.provenance.Agrees(provenance)) return true;
+    return attempt == run.attempt && !attempt.empty() && !options_.retry_failed && !options_.replace_by_failures;
   }
 
   std::optional<StoredRun> NextRun() {
@@ -247,12 +269,29 @@ class Refitter {
     return run;
   }
 
-  /// Counts a run, and stores its outcome unless its rows are current.
-  void Record(const StoredRun& run, const RunOutcome* outcome) {
+  /// Stores the outcome of an attempt, if there is one and it may replace the rows of the run. Returns whether the rows
+  /// are of a former state.
+  Result<bool> Keep(const StoredRun& run, const Attempt& attempt) {
+    const std::string& id = run.entry.id;
+    if (!attempt.outcome) {
+      if (run.stale.empty() || !attempt.is_result_current) return !run.stale.empty();
+      auto marked = store_.MarkCurrent(id);
+      return marked ? Result<bool>(false) : tl::unexpected(std::move(marked).error());
+    }
+    if (options_.replace_by_failures) {
+      auto put = store_.Put(id, *attempt.outcome);
+      return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
+    }
+    auto why = store_.PutUnlessWorse(id, *attempt.outcome, attempt.inputs);
+    return why ? Result<bool>(!why->empty()) : tl::unexpected(std::move(why).error());
+  }
+
+  /// Counts a run, and stores the outcome of its attempt.
+  void Record(const StoredRun& run, const Attempt& attempt) {
     const std::scoped_lock lock(mutex_);
     if (error_) return;
-    Result<void> stored;
-    if (outcome != nullptr) stored = store_.Put(run.entry.id, *outcome);
+    const Result<bool> is_stale = Keep(run, attempt);
+    Result<void> stored = is_stale ? Result<void>() : tl::unexpected(is_stale.error());
     const auto now = std::chrono::steady_clock::now();
     if (stored && now - last_commit_ >= kCommitInterval) {
       stored = Commit();
@@ -262,9 +301,13 @@ class Refitter {
       error_ = stored.error();
       return;
     }
-    (outcome == nullptr ? counts_.current : counts_.refitted) += 1;
-    const int exit_code = outcome == nullptr ? run.exit_code.value_or(0) : outcome->exit_code;
-    if (exit_code > 1) counts_.unfitted += 1;
+    (attempt.outcome ? counts_.refitted : counts_.current) += 1;
+    const int exit_code = attempt.outcome ? attempt.outcome->exit_code : run.exit_code.value_or(0);
+    if (*is_stale) {
+      counts_.stale += 1;
+    } else if (exit_code > 1) {
+      counts_.unfitted += 1;
+    }
     if (options_.progress) options_.progress(counts_);
   }
 

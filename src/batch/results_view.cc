@@ -50,11 +50,13 @@ std::string ResultsView() {
   SELECT main.id, main.position, main.path AS file, main.rig, main.law,
     coalesce(fits.status, iif(main.reason IS NULL, 'no_law_recommended', main.refusal)) AS status,
     coalesce(main.reason, fits.verdict, iif(main.law IS NULL, 'no law is recommended', nullif(fits.reason, ''))) AS verdict,
-    fits.used_samples, fits.rms_residual, fits.residual_unit)sql";
+    main.stale, fits.used_samples, fits.rms_residual, fits.residual_unit)sql";
   for (const std::string_view name : ViewedQuantities()) sql += ColumnsOf(name);
   return sql + R"sql(
-  FROM (SELECT run, id, position, path, rig, reason, iif()sql" +
-         kIsMissing + R"sql(, 'missing', 'refused') AS refusal, coalesce(recommended,
+  FROM (SELECT run, id, position, path, rig, reason,
+          coalesce(stale, iif()sql" +
+         kIsFormer + R"sql(, 'not in the last manifest', NULL)) AS stale, iif()sql" + kIsMissing +
+         R"sql(, 'missing', 'refused') AS refusal, coalesce(recommended,
           (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law
         FROM runs WHERE exit_code IS NOT NULL) AS main
   LEFT JOIN fits ON fits.run = main.run AND fits.model = main.law)sql";

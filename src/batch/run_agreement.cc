@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "batch/run_kinds.h"
 #include "pendulum/analysis/agreement.h"
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/model/motion_model.h"
@@ -203,9 +204,10 @@ class Group {
 RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& model, const RunGroups& groups) {
   RunAgreement agreement;
   if (!groups.compares() || groups.runs > kMaxBatch) return agreement;
-  SQLite::Statement rows(database,
-                         "SELECT " + groups.sql + R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
-  WHERE model = ? AND status = 'converged' AND result IS NOT NULL ORDER BY pendulum, position, id)sql");
+  SQLite::Statement rows(database, "SELECT " + groups.sql +
+                                       R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
+  WHERE model = ? AND status = 'converged' AND result IS NOT NULL AND )sql" +
+                                       kIsLive + " ORDER BY pendulum, position, id");
   sqlite::Bind(rows, model);
   std::vector<Json> tested;
   std::optional<Group> group;

@@ -172,15 +172,15 @@ RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   SQLite::Statement sizes(database,
                           "SELECT coalesce(sum(n), 0), count(*), coalesce(min(n), 0), coalesce(max(n), 0) FROM (SELECT "
                           "count(*) AS n FROM runs WHERE " +
-                              std::string(kIsFitted) + " GROUP BY " + groups.sql + ")");
+                              kIsFitted + " GROUP BY " + groups.sql + ")");
   sizes.executeStep();
   groups.runs = sizes.getColumn(0).getInt64();
   groups.groups = sizes.getColumn(1).getInt64();
   groups.smallest = sizes.getColumn(2).getInt64();
   groups.largest = sizes.getColumn(3).getInt64();
   const std::vector<std::string> own = sqlite::Texts(
-      database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE run IN " +
-                    "(SELECT run FROM fits WHERE status = 'converged')) GROUP BY pendulum HAVING "
+      database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive +
+                    " AND run IN (SELECT run FROM fits WHERE status = 'converged')) GROUP BY pendulum HAVING "
                     "count(DISTINCT sources) > 1");
   groups.own_sources.insert(own.begin(), own.end());
   return groups;

@@ -153,20 +153,33 @@ std::string AssignmentsOf(SQLite::Database& database, const std::string& table) 
   return sqlite::Text(columns, 0);
 }
 
-/// Replaces the rows of a table by the rows of the attached store `shard`, for the runs in `shard`.
+/// Replaces the rows of a table by the rows of the attached store `shard`, for the runs in `shard` that are not kept.
 void ReplaceRows(SQLite::Database& database, const std::string& table) {
   database.exec("DELETE FROM main." + table +
-                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id))");
+                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id) WHERE id NOT IN kept)");
   database.exec("INSERT INTO main." + table + "(run, " + ColumnsOf(database, table) + ") SELECT mine.run, " +
                 ColumnsOf(database, table, "theirs.") + " FROM shard." + table +
-                " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id");
+                " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id "
+                "WHERE mine.id NOT IN kept");
 }
 
-/// Copies the rows of the attached store `shard` into this store. Rows of the same runs are replaced.
+/// Lists the runs whose result stays, because the attached store `shard` has only a reason for them; they become stale.
+void KeepFormerResults(SQLite::Database& database) {
+  database.exec(R"sql(
+DROP TABLE IF EXISTS temp.kept;
+CREATE TEMP TABLE kept AS SELECT id FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
+  WHERE mine.result IS NOT NULL AND theirs.result IS NULL AND theirs.exit_code IS NOT NULL;
+UPDATE main.runs SET (position, stale) = (SELECT position, reason FROM shard.runs AS theirs WHERE theirs.id = main.runs.id)
+  WHERE id IN kept)sql");
+}
+
+/// Copies the rows of the attached store `shard` into this store. Rows of the same runs are replaced, except a result
+/// by a failure.
 void CopyAttachedShard(SQLite::Database& database) {
+  KeepFormerResults(database);
   const std::string runs = ColumnsOf(database, "runs");
   database.exec("INSERT INTO main.runs(" + runs + ") SELECT " + runs +
-                " FROM shard.runs WHERE true ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
+                " FROM shard.runs WHERE id NOT IN kept ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
                 AssignmentsOf(database, "runs"));
   ReplaceRows(database, "quantities");
   ReplaceRows(database, "fits");

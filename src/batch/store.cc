@@ -45,6 +45,8 @@ StoredRun RunOf(const SQLite::Statement& row) {
   if (!row.getColumn(9).isNull()) run.exit_code = row.getColumn(9).getInt();
   const auto text = [&](int column) { return sqlite::Text(row, column); };
   run.provenance = {text(10), text(11), text(12), text(13), text(14), ""};
+  run.stale = text(15);
+  run.attempt = text(16);
   return run;
 }
 
@@ -93,9 +95,12 @@ void UpdateResultsView(SQLite::Database& database) {
   database.exec(ResultsView());
 }
 
-/// Updates the tables in one transaction; creates them in a new file.
-void Migrate(SQLite::Database& database, int version) {
+/// Updates the tables in one transaction; creates them in a new file. The version is read within the transaction,
+/// because another process may update the file at the same time.
+void Migrate(SQLite::Database& database) {
   SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  if (version >= static_cast<int>(kStoreMigrations.size())) return;
   for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
@@ -173,6 +178,11 @@ struct Store::State {
     return sqlite::Bind(get, key).executeStep() ? sqlite::Text(get, 0) : "";
   }
 
+  /// The number of the run with this id, in a transaction. kInternal: there is none.
+  Result<std::int64_t> Find(const std::string& id);
+  /// Why an outcome must not replace the result of a run; empty if it may.
+  std::string WhyWorse(const RunOutcome& outcome, std::int64_t run);
+  void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
@@ -185,8 +195,40 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, add_run, put_run, drop_fits, drop_quantities, put_fit, put_quantity;
+  std::unique_ptr<SQLite::Statement> run_of, former, set_stale, add_run, put_run, drop_fits, drop_quantities, put_fit,
+      put_quantity;
 };
+
+Result<std::int64_t> Store::State::Find(const std::string& id) {
+  BeginIfNone();
+  SQLite::Statement& find = Prepared(run_of, "SELECT run FROM runs WHERE id = ?");
+  if (!sqlite::Bind(find, id).executeStep()) return Error(StatusCode::kInternal, "no run " + id);
+  const std::int64_t run = find.getColumn(0).getInt64();
+  find.reset();
+  return run;
+}
+
+std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) {
+  SQLite::Statement& before = Prepared(former, R"sql(
+SELECT path, data_sha256, json_extract(result, '$.data.samples') FROM runs WHERE run = ? AND result IS NOT NULL)sql");
+  if (!sqlite::Bind(before, run).executeStep()) {
+    before.reset();
+    return "";
+  }
+  const std::string path = sqlite::Text(before, 0), hash = sqlite::Text(before, 1);
+  const std::int64_t samples = before.getColumn(2).getInt64();
+  before.reset();
+  if (outcome.result.is_null()) return outcome.reason;
+  const auto now = outcome.result["data"]["samples"].get<std::int64_t>();
+  if (hash == outcome.provenance.data_sha256 || now >= samples) return "";
+  return path + ": the recording has become shorter: " + std::to_string(now) + " samples instead of " +
+         std::to_string(samples);
+}
+
+void Store::State::SetStale(std::int64_t run, const std::optional<std::string>& stale,
+                            const std::optional<std::string>& attempt) {
+  sqlite::Bind(Prepared(set_stale, "UPDATE runs SET stale = ?, attempt = ? WHERE run = ?"), stale, attempt, run).exec();
+}
 
 /// Fills the temporary table `batch` with all entries; returns their hash.
 Result<std::string> Store::State::FillBatchTable(const Source& source) {
@@ -309,9 +351,9 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
     const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
     if (!is_current && can_read && sqlite::IsReadOnly(name)) {
-      state->database.exec(kViewsOfVersion3);
+      state->database.exec(kViewsOfFormerVersions.at(version - kLastFormerResults - 1));
     } else if (!is_current) {
-      Migrate(state->database, version);
+      Migrate(state->database);
     }
     if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
@@ -361,13 +403,35 @@ Result<std::vector<StoredRun>> Store::Next(std::int64_t position, int max_runs) 
 
 Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
   return sqlite::Guard(name(), [&]() -> Result<void> {
-    state_->BeginIfNone();
-    SQLite::Statement& find = state_->Prepared(state_->run_of, "SELECT run FROM runs WHERE id = ?");
-    if (!sqlite::Bind(find, id).executeStep()) return Error(StatusCode::kInternal, "no run " + id);
-    const std::int64_t run = find.getColumn(0).getInt64();
-    find.reset();
-    state_->PutRun(outcome, run);
-    state_->PutFits(outcome, run);
+    const auto run = state_->Find(id);
+    if (!run) return tl::unexpected(run.error());
+    state_->PutRun(outcome, *run);
+    state_->PutFits(outcome, *run);
+    return {};
+  });
+}
+
+Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcome& outcome,
+                                          const std::string& attempt) {
+  return sqlite::Guard(name(), [&]() -> Result<std::string> {
+    const auto run = state_->Find(id);
+    if (!run) return tl::unexpected(run.error());
+    std::string stale = state_->WhyWorse(outcome, *run);
+    if (stale.empty()) {
+      state_->PutRun(outcome, *run);
+      state_->PutFits(outcome, *run);
+    } else {
+      state_->SetStale(*run, stale, attempt);
+    }
+    return stale;
+  });
+}
+
+Result<void> Store::MarkCurrent(const std::string& id) {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    const auto run = state_->Find(id);
+    if (!run) return tl::unexpected(run.error());
+    state_->SetStale(*run, std::nullopt, std::nullopt);
     return {};
   });
 }
@@ -435,7 +499,8 @@ Result<StoreCounts> Store::Count() {
     counts.pending = runs.getColumn(1).getInt64();
     counts.unfitted = runs.getColumn(2).getInt64();
     counts.missing = runs.getColumn(3).getInt64();
-    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE position < 0").getInt64();
+    counts.stale = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsStale).getInt64();
+    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsFormer).getInt64();
     SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();

@@ -17,7 +17,8 @@ INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, col
 
 inline constexpr const char* kNextRuns = R"sql(
 SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_s, batch.to_s, batch.models,
-    batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version
+    batch.columns, exit_code, data_sha256, rig_sha256, calibration_sha256, options_sha256, version, stale,
+    attempt
   FROM batch JOIN runs USING(id) WHERE batch.position >= ? ORDER BY batch.position LIMIT ?)sql";
 
 // Runs are numbered in the order of their arrival.
@@ -27,6 +28,7 @@ INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, col
 
 inline constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
-  options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ? WHERE run = ?)sql";
+  options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ?, stale = NULL, attempt = NULL
+  WHERE run = ?)sql";
 
 }  // namespace pendulum

@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended. The view `results` is replaced after them (ResultsView).
 /// SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 4> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 5> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -101,14 +101,22 @@ ALTER TABLE runs ADD COLUMN sources TEXT;  -- clock and calibration: runs with t
 ALTER TABLE quantities ADD COLUMN inconstancy_std_error REAL;  -- the part of systematic_std_error from parameters that
                                                                -- are not constant; it differs between runs
 ALTER TABLE quantities ADD COLUMN source_std_error REAL;       -- the part from clock and calibration
+)sql",
+                                                                     R"sql(
+ALTER TABLE runs ADD COLUMN stale TEXT;    -- why the last attempt left the former result in place; NULL: it is current
+ALTER TABLE runs ADD COLUMN attempt TEXT;  -- hash of what that attempt was made with; NULL: the result is current
 )sql"};
 
-/// Lets queries read a store of version 3 that cannot be updated: views of the connection with the newer columns.
-inline constexpr const char* kViewsOfVersion3 = R"sql(
-CREATE TEMP VIEW runs AS SELECT *, NULL AS sources FROM main.runs;
+/// Let queries read a store that cannot be updated: views of the connection with the columns of newer versions. The
+/// first element is for version 3, which has fewer columns.
+inline constexpr std::array<const char*, 2> kViewsOfFormerVersions = {R"sql(
+CREATE TEMP VIEW runs AS SELECT *, NULL AS sources, NULL AS stale, NULL AS attempt FROM main.runs;
 CREATE TEMP VIEW quantities AS
   SELECT *, NULL AS total_std_error, NULL AS inconstancy_std_error, NULL AS source_std_error FROM main.quantities;
-)sql";
+)sql",
+                                                                      R"sql(
+CREATE TEMP VIEW runs AS SELECT *, NULL AS stale, NULL AS attempt FROM main.runs;
+)sql"};
 
 /// The last version that stored results in schema version 1 of the result JSON.
 inline constexpr int kLastFormerResults = 2;

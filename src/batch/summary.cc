@@ -84,12 +84,12 @@ double RepeatError(const SQLite::Statement& row, bool own_sources) {
 
 QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const Context& context) {
   const std::string trend = context.trend_by.empty() ? "NULL" : ColumnSql(context.trend_by);
-  SQLite::Statement rows(database,
-                         "SELECT id, position, estimate, std_error, " + context.groups.sql + ", " + trend + R"sql(,
+  SQLite::Statement rows(database, "SELECT id, position, estimate, std_error, " + context.groups.sql + ", " + trend +
+                                       R"sql(,
     (upper95 - lower95) / 2, inconstancy_std_error, source_std_error
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
-  WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL
-  ORDER BY position, id)sql");
+  WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND )sql" +
+                                       kIsLive + " ORDER BY position, id");
   sqlite::Bind(rows, quantity.model, quantity.name, quantity.unit);
   QuantityRuns runs;
   std::map<std::string, std::size_t> groups;
@@ -356,14 +356,18 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
     warnings.push_back({{"code", code}, {"message", message}});
   };
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
+  if (counts.stale > 0) {
+    add("stale", std::to_string(counts.stale) +
+                     " runs keep a former result, because the last attempt gave none; statistics leave them out, and "
+                     "--replace_by_failures gives them up");
+  }
   if (counts.earlier > 0) {
     add("not_in_the_manifest",
-        std::to_string(counts.earlier) + " runs are not in the last manifest; their results belong to earlier ones");
+        std::to_string(counts.earlier) + " runs are not in the last manifest; statistics leave their results out");
   }
-  const std::int64_t same = database
-                                .execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " +
-                                            std::string(kIsFitted))
-                                .getInt64();
+  const std::int64_t same =
+      database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " + kIsFitted)
+          .getInt64();
   if (same > 0) {
     add("same_data",
         std::to_string(same) +

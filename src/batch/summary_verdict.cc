@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kExamples = 10;
 
 std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
-  SQLite::Statement rows(database, "SELECT id, reason, path FROM runs WHERE " + condition +
+  SQLite::Statement rows(database, "SELECT id, coalesce(stale, reason), path FROM runs WHERE " + condition +
                                        " ORDER BY position, id LIMIT " + std::to_string(kExamples));
   std::vector<RunCounts::Run> runs;
   while (rows.executeStep()) {
@@ -48,23 +48,24 @@ Json Verdict(const std::string& model, const char* verdict, const char* level, c
 }  // namespace
 
 RunCounts CountRuns(SQLite::Database& database) {
-  const std::string missing = kIsMissing;
-  const std::string refused = "exit_code > 1 AND NOT (" + missing + ")";
-  SQLite::Statement row(database, "SELECT count(*), count(*) FILTER (WHERE " + std::string(kIsFitted) +
-                                      "), count(*) FILTER (WHERE exit_code = 1), count(*) FILTER (WHERE " + missing +
-                                      "), count(*) FILTER (WHERE " + refused +
-                                      "), count(*) - count(exit_code) FROM runs");
-  row.executeStep();
-  RunCounts counts{row.getColumn(0).getInt64(),
-                   row.getColumn(1).getInt64(),
-                   row.getColumn(2).getInt64(),
-                   row.getColumn(3).getInt64(),
-                   row.getColumn(4).getInt64(),
-                   row.getColumn(5).getInt64(),
-                   {},
-                   {}};
+  const std::string live = " AND " + kIsLive;
+  const std::string missing = kIsMissing + live;
+  const std::string refused = std::string("exit_code > 1 AND NOT ") + kIsMissing + live;
+  const auto count = [&](const std::string& condition) {
+    return database.execAndGet("SELECT count(*) FROM runs WHERE " + condition).getInt64();
+  };
+  RunCounts counts;
+  counts.runs = count("NOT " + kIsFormer);
+  counts.fitted = count(kIsFitted);
+  counts.not_converged = count("exit_code = 1" + live);
+  counts.missing = count(missing);
+  counts.refused = count(refused);
+  counts.pending = count("exit_code IS NULL" + live);
+  counts.stale = count(kIsStale);
+  counts.former = count(kIsFormer);
   counts.missing_runs = ExamplesOf(database, missing);
   counts.refused_runs = ExamplesOf(database, refused);
+  counts.stale_runs = ExamplesOf(database, kIsStale);
   return counts;
 }
 
@@ -74,7 +75,9 @@ std::string CountsText(const RunCounts& counts) {
   std::string rest;
   for (const auto& [count, words] :
        {std::pair{counts.missing, "missing"}, std::pair{counts.refused, "refused"},
-        std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"}}) {
+        std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"},
+        std::pair{counts.stale, "with a former result only"},
+        std::pair{counts.former, "more left out, not in the last manifest"}}) {
     if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
   }
   return text + rest;
@@ -88,8 +91,11 @@ Json CountsJson(const RunCounts& counts) {
           {"missing", counts.missing},
           {"refused", counts.refused},
           {"pending", counts.pending},
+          {"stale", counts.stale},
+          {"former", counts.former},
           {"missing_runs", ExamplesJson(counts.missing_runs)},
-          {"refused_runs", ExamplesJson(counts.refused_runs)}};
+          {"refused_runs", ExamplesJson(counts.refused_runs)},
+          {"stale_runs", ExamplesJson(counts.stale_runs)}};
 }
 
 std::string MainModel(SQLite::Database& database, const Json& overview, const RunGroups& groups) {

@@ -20,15 +20,17 @@ struct RunCounts {
   std::int64_t missing = 0;        ///< There is no such recording.
   std::int64_t refused = 0;        ///< Could not be read or fitted.
   std::int64_t pending = 0;        ///< Not fitted yet.
+  std::int64_t stale = 0;          ///< Only a former result is there; the last attempt failed.
+  std::int64_t former = 0;         ///< Not in the last manifest; not among `runs`.
   struct Run {
     std::string id, reason;
   };
-  std::vector<Run> missing_runs, refused_runs;  ///< At most ten each, in the order of the manifest.
+  std::vector<Run> missing_runs, refused_runs, stale_runs;  ///< At most ten each, in the order of the manifest.
 };
 
 RunCounts CountRuns(SQLite::Database& database);
 
-/// "198 of 200 recordings fitted; 1 missing, 1 refused".
+/// "197 of 200 recordings fitted; 1 missing, 1 refused, 1 with a former result only".
 std::string CountsText(const RunCounts& counts);
 
 nlohmann::ordered_json CountsJson(const RunCounts& counts);

@@ -131,9 +131,14 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
 Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& options) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
+  if (counts.stale > 0) {
+    text += "; " + std::to_string(counts.stale) +
+            " keep a former result, because they can no longer be read or fitted (--replace_by_failures gives it up)";
+  }
   if (!counts.stopped) {
     PrintMessage(kRefitToolName, text);
-    return ShowStatus(options);
+    const auto shown = ShowStatus(options);
+    return shown && counts.stale > 0 ? ExitCode(StatusCode::kNotFound) : shown;
   }
   PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
                                    " are left; run the same command to continue" +

@@ -30,7 +30,8 @@ constexpr const char* kUsage =
     "\n"
     "A run that cannot be read or fitted gets a row that says why. After an interruption, repeat the same command.\n"
     "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another\n"
-    "status or is missing, 2 wrong flags, 3 a file or shard does not exist, 4 the manifest or store cannot be read,\n"
+    "status or is missing, 2 wrong flags, 3 a file or shard does not exist, or a run has a former result only, 4 the "
+    "manifest or store cannot be read,\n"
     "5 there is no run, 70 a bug, 73 the store or an output cannot be written, 75 terminated, or the store is in use:\n"
     "try again, 130 interrupted.\n"
     "\n";
@@ -62,6 +63,9 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},
       {"retry_failed", &Flags::retry_failed,
        "Also refits runs that could not be fitted; default off, because the same files fail again."},
+      {"replace_by_failures", &Flags::replace_by_failures,
+       "Also replaces results of runs that can no longer be read or fitted, or whose recordings have become shorter; "
+       "default off: such a run keeps its former result, which is marked stale and left out of statistics."},
       {"fit_seconds", &Flags::fit_seconds,
        "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason; default 600."},
       {"details", &Flags::details,

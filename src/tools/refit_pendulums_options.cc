@@ -158,6 +158,7 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
   options.refit.fit_time = std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1e3 * flags.fit_seconds)));
   options.refit.force = flags.force;
   options.refit.retry_failed = flags.retry_failed;
+  options.refit.replace_by_failures = flags.replace_by_failures;
   options.summary.group_by = flags.group_by;
   options.rig = flags.rig;
   options.calibration = flags.calibration;

@@ -29,6 +29,7 @@ struct RefitFlags : RunFlags {
   double fit_seconds = 600;
   bool force = false;
   bool retry_failed = false;
+  bool replace_by_failures = false;
   bool details = false;
   bool quiet = false;
   std::vector<std::string> positional;  ///< The command and its arguments, or the runs of a refit.

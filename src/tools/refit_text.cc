@@ -234,8 +234,10 @@ std::string SummaryText(const Json& summary, const std::string& store, int foldi
       ExamplesText("Missing", headline["missing_runs"], headline["missing"].get<std::int64_t>(), false);
   const std::string refused =
       ExamplesText("Refused", headline["refused_runs"], headline["refused"].get<std::int64_t>(), true);
+  const std::string stale =
+      ExamplesText("With a former result only", headline["stale_runs"], headline["stale"].get<std::int64_t>(), true);
   for (const std::string& line :
-       {OutliersText(summary), grouping["is_compared"].get<bool>() ? VerdictText(summary) : std::string(),
+       {stale, OutliersText(summary), grouping["is_compared"].get<bool>() ? VerdictText(summary) : std::string(),
         folding < 2 ? missing : "", folding < 2 ? refused : "", folding < 1 ? LawText(summary) : ""}) {
     if (!line.empty()) text += Prose(line);
   }
@@ -279,6 +281,7 @@ Result<std::string> StatusText(Store& store) {
   if (!counts) return tl::unexpected(counts.error());
   std::string text = Heading("Runs") + Row("in the store", counts->runs) + Row("not refitted yet", counts->pending) +
                      Row("recording missing", counts->missing) + Row("refused", counts->unfitted - counts->missing);
+  if (counts->stale > 0) text += Row("with a former result only", counts->stale);
   if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
   if (counts->fits == 0) return text;
   const auto overview = Overview(store);

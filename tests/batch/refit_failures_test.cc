@@ -107,7 +107,9 @@ TEST_F(RefitTest, DetectsAMissingFile) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);
   fs::remove(folder_ / "0.csv");
-  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a"));
+  RefitOptions replace = coulomb_;
+  replace.replace_by_failures = true;
+  EXPECT_THAT(Refitted(replace), ElementsAre("a"));
   EXPECT_EQ(FailureOf("a"), "3 0.csv: there is no such file; check the path");
   EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities JOIN runs USING(run) WHERE id = 'a'"), "0");
 }
@@ -117,7 +119,9 @@ TEST_F(RefitTest, DetectsAMissingNamedRig) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
   folder_.Write("runs.csv", "path,id,rig\n0.csv,a,nowhere.json\n");
-  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a"));
+  RefitOptions replace = coulomb_;
+  replace.replace_by_failures = true;
+  EXPECT_THAT(Refitted(replace), ElementsAre("a"));
   EXPECT_EQ(FailureOf("a"), "3 nowhere.json: there is no such file; check the path");
   folder_.Write("runs.csv", "path,id,rig\n0.csv,a,\n");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a"));

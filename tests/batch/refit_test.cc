@@ -263,6 +263,84 @@ TEST_F(RefitTest, RetriesFailuresOnRequest) {
   EXPECT_THAT(Refitted(again), ElementsAre("bad", "none"));
 }
 
+// ---- Results that stay ---------------------------------------------------------------------------------------------
+
+TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGone) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::string fits = "SELECT model, status FROM fits", quantities = "SELECT * FROM quantities";
+  const std::vector<std::string> before = Rows(store_, quantities);
+  fs::rename(folder_ / "0.csv", folder_ / "elsewhere");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"),
+              ElementsAre(StartsWith("a|0|0.csv: there is no such file"), "b|0|NULL"));
+  EXPECT_EQ(Rows(store_, quantities), before);
+  for (const bool force : {false, true}) {
+    RefitOptions again = coulomb_;
+    again.force = force;
+    const RefitCounts counts = RefitAll(again);
+    EXPECT_EQ(counts.stale, 1);
+    EXPECT_EQ(counts.unfitted, 0);
+    EXPECT_EQ(counts.current, force ? 0 : 2);
+    EXPECT_EQ(Rows(store_, quantities), before);
+  }
+  fs::rename(folder_ / "elsewhere", folder_ / "0.csv");
+  const RefitCounts counts = RefitAll(coulomb_);
+  EXPECT_EQ(counts.stale, 0);
+  EXPECT_EQ(counts.current, 2);
+  EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"), ElementsAre("a|0|NULL", "b|0|NULL"));
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARecordingOrRigThatIsDamaged) {
+  folder_.Write("rig.json", small_batch::kRigText);
+  folder_.Write("a.csv", RecordingText(1));
+  folder_.Write("b.csv", RecordingText(2));
+  folder_.Write("runs.csv", "path,id,rig\na.csv,a,rig.json\nb.csv,b,\n");
+  RefitAll(coulomb_);
+  const std::vector<std::string> before = Rows(store_, "SELECT id, result FROM runs");
+  folder_.Write("rig.json", "{");
+  folder_.Write("b.csv", "time_s,angle_rad\n0,nonsense\n");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 2);
+  EXPECT_EQ(Rows(store_, "SELECT id, result FROM runs"), before);
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());
+  folder_.Write("b.csv", RecordingText(3));
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), ElementsAre("a"));
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARecordingThatBecameShorter) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::string result = ValueOf("SELECT result FROM runs WHERE id = 'a'");
+  const std::string text = folder_.Read("0.csv");
+  folder_.Write("0.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
+  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
+  EXPECT_THAT(ValueOf("SELECT stale FROM runs WHERE id = 'a'"),
+              AllOf(StartsWith("0.csv: the recording has become shorter: "), HasSubstr(" samples instead of ")));
+  folder_.Write("0.csv", RecordingText(7));  // another one of the same length
+  EXPECT_EQ(RefitAll(coulomb_).stale, 0);
+  EXPECT_NE(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
+}
+
+TEST_F(RefitTest, ReplacesResultsByFailuresOnRequest) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::string text = folder_.Read("0.csv");
+  folder_.Write("0.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
+  fs::remove(folder_ / "1.csv");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 2);
+  RefitOptions replace = coulomb_;
+  replace.replace_by_failures = true;
+  const RefitCounts counts = RefitAll(replace);
+  EXPECT_EQ(counts.stale, 0);
+  EXPECT_EQ(counts.unfitted, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale, result IS NULL FROM runs ORDER BY id"),
+              ElementsAre("a|0|NULL|0", "b|3|NULL|1"));
+}
+
+// ---- Limits and stops ----------------------------------------------------------------------------------------------
+
 /// Options whose fit calls `begun` and waits in each of the first steps of a bootstrap, two seconds in all.
 RefitOptions SlowOptions(const RefitOptions& options, const std::function<void()>& begun) {
   RefitOptions slow = options;

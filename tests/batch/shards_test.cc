@@ -104,6 +104,21 @@ TEST_F(ShardsTest, ReplaceOnlyTheirOwnRuns) {
   EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
 }
 
+TEST_F(ShardsTest, LeaveAResultThatTheyCouldNotRepeat) {
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  const std::string result = "SELECT result FROM runs WHERE id = 'b'", count = "SELECT count(*) FROM quantities";
+  const std::string before = Value(store_, result), quantities = Value(store_, count);
+  std::filesystem::remove(folder_ / "1.csv");
+  for (int k = 0; k < 2; ++k) std::filesystem::remove(ShardPath(out_, k));  // an array of jobs on empty disks
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_EQ(Value(store_, result), before);
+  EXPECT_EQ(Value(store_, count), quantities);
+  EXPECT_THAT(Rows(store_, "SELECT id, stale FROM runs WHERE stale IS NOT NULL"),
+              ElementsAre(testing::StartsWith("b|1.csv: there is no such file")));
+}
+
 TEST_F(ShardsTest, AreNotMergedIntoTheStoreOfAShard) {
   AllShards(2);
   const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of Store: durability, several processes, damaged files, and files that are not stores.
+#include <array>
 #include <atomic>
+#include <barrier>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "batch/store_schema.h"
 #include "pendulum/batch/store.h"
 #include "tests/batch/example_runs.h"
 
@@ -167,8 +170,36 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 4);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 5);
   EXPECT_EQ(Reopen().Count()->runs, 1);
+}
+
+// A program that reads the version before it has the lock would repeat the other's update.
+TEST_F(StoreFileTest, IsUpdatedByTwoProgramsAtOnce) {
+  constexpr int kPrograms = 4;
+  for (std::size_t version = 1; version < kStoreMigrations.size(); ++version) {
+    fs::remove(path_);
+    {
+      SQLite::Database former(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+      for (std::size_t step = 0; step < version; ++step) former.exec(std::string(kStoreMigrations.at(step)));
+      former.exec("PRAGMA application_id = " + std::to_string(kStoreId) +
+                  "; PRAGMA user_version = " + std::to_string(version));
+    }
+    std::barrier ready(kPrograms);
+    std::array<std::string, kPrograms> faults;
+    {
+      std::vector<std::jthread> programs;
+      for (std::string& fault : faults) {
+        programs.emplace_back([&] {
+          ready.arrive_and_wait();
+          const auto store = Store::Open(path_, Store::Mode::kRead);
+          if (!store) fault = store.error().message;
+        });
+      }
+    }
+    EXPECT_THAT(faults, testing::Each("")) << "version " << version;
+    EXPECT_EQ(SQLite::Database(path_).execAndGet("PRAGMA user_version").getInt(), kStoreMigrations.size());
+  }
 }
 
 TEST_F(StoreFileTest, RefusesFoldersAndTexts) {
@@ -199,7 +230,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message, path_ +
                                          ": the store has version 99 of a newer program, but this program reads "
-                                         "versions up to 4; use the newer program");
+                                         "versions up to 5; use the newer program");
   }
 }
 

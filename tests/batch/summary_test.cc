@@ -303,7 +303,23 @@ TEST_F(SummaryTest, WarnsOfEarlierManifestsAndDuplicateSwings) {
   Store store = StoreOf(PlainManifest(4), make);
   EXPECT_THAT(WarningsOf(SummaryOf(store)), ElementsAre("same_data"));
   Store shorter = StoreOf(PlainManifest(3), make);  // the same file with fewer runs
-  EXPECT_THAT(WarningsOf(SummaryOf(shorter)), ElementsAre("not_in_the_manifest", "same_data"));
+  const Json summary = SummaryOf(shorter);
+  EXPECT_THAT(WarningsOf(summary), ElementsAre("not_in_the_manifest", "same_data"));
+  EXPECT_EQ(summary["headline"]["text"], "3 of 3 recordings fitted; 1 more left out, not in the last manifest");
+  EXPECT_EQ(summary["parameters"][0]["runs"], 3);
+}
+
+TEST_F(SummaryTest, LeavesFormerResultsOut) {
+  Store store =
+      StoreOf(PlainManifest(4), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 0 ? 100 : 10)}); });
+  RunOutcome failure = FailureOf("run0.csv: there is no such file; check the path", 3);
+  ASSERT_EQ(store.PutUnlessWorse("run0.csv", failure, "inputs").value(), failure.reason);
+  const Json summary = SummaryOf(store);
+  EXPECT_EQ(summary["headline"]["text"], "3 of 4 recordings fitted; 1 with a former result only");
+  EXPECT_EQ(summary["headline"]["stale_runs"][0]["reason"], "there is no such file; check the path");
+  EXPECT_EQ(summary["parameters"][0]["runs"], 3);
+  EXPECT_EQ(summary["parameters"][0]["median"], 10);
+  EXPECT_THAT(WarningsOf(summary), testing::Contains("stale"));
 }
 
 // ---- What is taken for one pendulum --------------------------------------------------------------------------------

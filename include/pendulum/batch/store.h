@@ -50,6 +50,8 @@ struct StoredRun {
   ManifestEntry entry;           ///< Without `place`.
   std::optional<int> exit_code;  ///< std::nullopt: not refitted yet.
   Provenance provenance;         ///< Provenance of its rows, if there are any.
+  std::string stale;             ///< Why the last attempt left these rows in place; empty: they are current.
+  std::string attempt;           ///< What that attempt was made with.
 };
 
 /// Data about the whole store.
@@ -64,6 +66,7 @@ struct StoreMeta {
 struct StoreCounts {
   /// All runs, those not refitted yet, those that could not be fitted, and of these the ones without a recording.
   std::int64_t runs = 0, pending = 0, unfitted = 0, missing = 0;
+  std::int64_t stale = 0;             ///< Runs of the last manifest that keep a former result.
   std::int64_t earlier = 0;           ///< Runs that are not in the last manifest.
   std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
 };
@@ -99,6 +102,14 @@ class Store {
 
   /// Replaces all rows of a run.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);
+
+  /// As Put, but keeps the result of a run if the outcome has none, or is of the same recording with fewer samples; the
+  /// rows are then marked stale. `attempt`: what the outcome was made with. Returns why the rows were kept; empty if
+  /// they were replaced.
+  Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt);
+
+  /// Marks the rows of a run as current: the inputs of its result have come back.
+  Result<void> MarkCurrent(const std::string& id);
 
   Result<void> Commit();
 

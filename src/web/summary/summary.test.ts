@@ -90,8 +90,11 @@ function summary(models: ModelCounts[], parameters: ParameterSummary[], more: Pa
       missing: 1,
       refused: 1,
       pending: 0,
+      stale: 0,
+      former: 0,
       missing_runs: [],
       refused_runs: [],
+      stale_runs: [],
     },
     grouping: {
       by: 'all',

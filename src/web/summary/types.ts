@@ -34,8 +34,11 @@ export interface RunCounts {
   missing: number;
   refused: number;
   pending: number;
+  stale: number;
+  former: number;
   missing_runs: { id: string; reason: string }[];
   refused_runs: { id: string; reason: string }[];
+  stale_runs: { id: string; reason: string }[];
 }
 
 /** Which runs are taken for repeats of one pendulum. text: why; otherwise: how to say otherwise. */
