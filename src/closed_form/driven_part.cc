@@ -2,10 +2,12 @@
 #include "closed_form/driven_part.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "pendulum/base/median.h"
+#include "pendulum/base/physics.h"
 
 namespace pendulum {
 namespace {
@@ -40,14 +42,26 @@ bool IsKnee(const std::vector<double>& pairs, std::size_t k, double noise) {
   return loss_before < kKept * loss && loss - loss_before > kClear * noise;
 }
 
+/// What the curvature of a swing adds to the noise between neighbouring samples (SuccessiveDifferenceNoise): the 68 %
+/// quantile of A |cos φ| (1 - cos ωh), divided by sqrt(1.5).
+double CurvatureNoise(const TurningPointTable& table, const std::vector<double>& amplitudes) {
+  constexpr double kQuantile = 0.715;
+  const std::vector<TurningPoint>& points = table.points;
+  const auto samples = static_cast<double>(points.back().sample - points.front().sample);
+  if (!(samples > 0)) return 0;
+  return kQuantile * Median(amplitudes) * (1 - std::cos(kPi * static_cast<double>(points.size() - 1) / samples));
+}
+
 }  // namespace
 
 std::size_t EndOfDrive(const TurningPointTable& table, const TurningPointRun& run) {
   constexpr double kDecayed = 0.7, kSame = 0.99;
   const std::vector<double> pairs = PairAmplitudes(table, run);
   if (pairs.empty()) return run.first;
+  constexpr double kLeast = 0.2;  // of the noise, because its curvature is known only roughly
+  const double noise = std::max(table.noise - CurvatureNoise(table, pairs), kLeast * table.noise) + table.resolution;
   for (std::size_t k = pairs.size() - 1; k > 0; --k) {
-    if (pairs.back() > kDecayed * pairs[k] || !IsKnee(pairs, k, table.noise + table.resolution)) continue;
+    if (pairs.back() > kDecayed * pairs[k] || !IsKnee(pairs, k, noise)) continue;
     const auto decays = std::find_if(pairs.begin() + static_cast<std::ptrdiff_t>(k), pairs.end(),
                                      [&](double pair) { return pair < kSame * pairs[k]; });
     // The drive may still act on the first turning point of this pair.

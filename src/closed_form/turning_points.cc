@@ -141,18 +141,6 @@ double LongestGap(const Eigen::VectorXd& time, double from, double to) {
   return gap;
 }
 
-/// Whether the readings may be the maxima of a swing on one side: few of them, and nearly all are smaller than the one
-/// before. Those of a hold are not.
-bool AreMaxima(const Recording& recording) {
-  constexpr Index kMostMaxima = 500;
-  constexpr double kNearZero = 0.05, kNearlyAll = 0.9;
-  const Index count = recording.size();
-  const Eigen::ArrayXd share = recording.value / recording.value[0];
-  const auto falls = static_cast<double>((share.tail(count - 1) < share.head(count - 1)).count());
-  return count <= kMostMaxima && share.minCoeff() > -kNearZero && share[count - 1] < 0.5 &&
-         falls > kNearlyAll * static_cast<double>(count - 1);
-}
-
 tl::unexpected<Status> TooFewFound(const Recording& recording, std::size_t found) {
   if (recording.value.maxCoeff() == recording.value.minCoeff()) {
     return Error(StatusCode::kFailedPrecondition,
@@ -171,6 +159,16 @@ tl::unexpected<Status> TooFewFound(const Recording& recording, std::size_t found
 }
 
 }  // namespace
+
+bool AreMaxima(const Recording& recording) {
+  constexpr Index kMostMaxima = 500;
+  constexpr double kNearZero = 0.05, kNearlyAll = 0.9;
+  const Index count = recording.size();
+  const Eigen::ArrayXd share = recording.value / recording.value[0];
+  const auto falls = static_cast<double>((share.tail(count - 1) < share.head(count - 1)).count());
+  return count <= kMostMaxima && share.minCoeff() > -kNearZero && share[count - 1] < 0.5 &&
+         falls > kNearlyAll * static_cast<double>(count - 1);
+}
 
 /// The 68 % quantile of the distances divided by sqrt(1 + w² + (1-w)²), where w is the interpolation's weight.
 double SuccessiveDifferenceNoise(const Recording& recording) {

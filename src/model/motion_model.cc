@@ -2,6 +2,7 @@
 #include "pendulum/model/motion_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -61,6 +62,14 @@ Result<MotionModel> ChangeGravity(const MotionModel& model, Gravity gravity) {
                    "--model coulomb");
 }
 
+/// A usual word for a friction law.
+struct Synonym {
+  std::string_view word, friction;
+};
+
+constexpr std::array kSynonyms = {Synonym{"dry", CoulombFriction::kName}, Synonym{"quadratic", DragFriction::kName},
+                                  Synonym{"air", DragFriction::kName}, Synonym{"stiction", StribeckFriction::kName}};
+
 }  // namespace
 
 std::vector<MotionModel> MotionModels() {
@@ -72,8 +81,10 @@ std::vector<MotionModel> MotionModels() {
 std::string MotionModelNames() { return NameList(MotionModels()); }
 
 Result<MotionModel> FindMotionModel(std::string_view name) {
+  const auto* const synonym = std::ranges::find(kSynonyms, name, &Synonym::word);
+  const std::string_view known = synonym == kSynonyms.end() ? name : synonym->friction;
   for (const MotionModel& model : MotionModels()) {
-    if (model.name == name) return model;
+    if (model.name == known) return model;
   }
   return Error(StatusCode::kInvalidArgument,
                "there is no model '" + std::string(name) + "'; the models are " + MotionModelNames());

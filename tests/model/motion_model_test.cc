@@ -75,6 +75,12 @@ TEST(FindMotionModels, GiveEachFrictionLawTheRequestedGravity) {
               ElementsAre("linear", "linear_coulomb", "linear_drag", "linear_stribeck", "linear_dahl"));
 }
 
+TEST(FindMotionModels, KnowUsualWordsForFriction) {
+  EXPECT_THAT(Names(*FindMotionModels("dry,quadratic", {})), ElementsAre("coulomb", "drag"));
+  EXPECT_THAT(Names(*FindMotionModels("dry", Gravity::kLinear)), ElementsAre("linear_coulomb"));
+  EXPECT_FALSE(FindMotionModels("coulomb,dry", {}));
+}
+
 TEST(FindMotionModels, RefuseAModelThatContradictsTheGravity) {
   const auto linear = FindMotionModels("linear_coulomb", Gravity::kSine);
   ASSERT_FALSE(linear);

@@ -94,4 +94,8 @@ Result<TurningPointTable> FindTurningPoints(const Recording& recording);
 /// or more, local zeros and the half period of small swings are set. `continues` is never set.
 TurningPointTable FindAllTurningPoints(const Recording& recording);
 
+/// Whether the readings may be the maxima of a swing on one side: few of them, and nearly all are smaller than the one
+/// before. Those of a hold are not.
+bool AreMaxima(const Recording& recording);
+
 }  // namespace pendulum

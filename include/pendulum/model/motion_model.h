@@ -26,7 +26,8 @@ struct MotionModel {
 /// as linear_coulomb; GRAVITY alone means viscous friction.
 std::vector<MotionModel> MotionModels();
 
-/// The model with this name. kInvalidArgument: there is none; the message lists the existing names.
+/// The model with this name or a usual word for its friction law, such as "dry" for coulomb. kInvalidArgument: there is
+/// none; the message lists the existing names.
 Result<MotionModel> FindMotionModel(std::string_view name);
 
 /// The models of a comma-separated list such as "viscous,coulomb", in its order. "all" means one model for each

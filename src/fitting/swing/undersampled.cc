@@ -250,7 +250,7 @@ bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig) {
   const auto expected = ExpectedFrequency(rig);
   const double rate = SampleRateOf(recording);
   if (expected) return rate < kMinPerPeriod * (1 + kExpectedWithin) * *expected;
-  if (rate >= 2 * kFastestHz) return false;
+  if (rate >= 2 * kFastestHz || AreMaxima(recording)) return false;
   const Result<std::vector<FreeSwing>> swings = FindFreeSwings(recording);
   if (!swings) return SeenPerPeriod(recording) < kSurelyShown;
   return std::ranges::any_of(*swings, [&](const FreeSwing& swing) {

@@ -173,6 +173,16 @@ TEST(FitUndersampled, IsNotIdentifiableAtOneOrTwoSamplesPerCycle) {
   }
 }
 
+// Once a period, which is a rate that the swing itself determines.
+TEST(FitUndersampled, IsNotTriedWithATableOfMaxima) {
+  Recording maxima;
+  maxima.time = Eigen::VectorXd::LinSpaced(40, 0, 39 * 1.43);
+  maxima.value = 0.5 * (-0.05 * maxima.time.array()).exp();
+  const auto chosen = ChooseSwings(maxima, {}, std::nullopt);
+  ASSERT_FALSE(chosen);
+  EXPECT_THAT(chosen.error().message, testing::HasSubstr("the maxima of a swing, one of each period"));
+}
+
 TEST(FitUndersampled, RejectsReadingsWithNoiseOnly) {
   Recording noise = Must(SimulateRecording(Swing(1, 0.423, 1)));
   std::mt19937_64 generator(5);

@@ -309,10 +309,10 @@ TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
 TEST(ParseRecording, SaysThatTheFirstLineIsTooLong) {
   std::string header = "t_s,theta_deg";
   while (header.size() < 100000) header += ",note_" + std::to_string(header.size());
-  EXPECT_EQ(ErrorOf(header + "\n" + Rows()).message,
-            "run.csv:1:1: the first line is longer than 64 kB: shorten it to the names of the columns");
-  EXPECT_EQ(ErrorOf("# " + std::string(70000, 'a') + "\n" + kHeader + Rows()).message,
-            "run.csv:1:1: the first line is longer than 64 kB: shorten it to the names of the columns");
+  EXPECT_THAT(ErrorOf(header + "\n" + Rows()).message,
+              StartsWith("run.csv:1:1: the first line is longer than 64 kB and begins with \"t_s,theta_deg,note"));
+  EXPECT_THAT(ErrorOf("# " + std::string(70000, 'a') + "\n" + kHeader + Rows()).message,
+              StartsWith("run.csv:1:1: the first line is longer than 64 kB and begins with \"# aaa"));
   std::string above;
   while (above.size() < 70000) above += "# a comment in a line of its own\n";
   EXPECT_EQ(ErrorOf(above + kHeader + Rows()).message,

@@ -56,6 +56,12 @@ std::optional<std::array<std::size_t, 3>> FindAxes(const std::vector<NameMeaning
   return axes;
 }
 
+bool IsShortAcceleration(const NameMeaning& meaning) {
+  std::string letters = meaning.stem;
+  std::erase_if(letters, [](char c) { return c < 'a' || c > 'z'; });
+  return meaning.unit == nullptr && meaning.kind == Kind::kAcceleration && letters.size() == 2 && letters[0] == 'a';
+}
+
 std::string Choice::NameOf(std::size_t index) const {
   return index < names.size() ? Quoted(names[index].written) : std::to_string(index + 1);
 }

@@ -25,6 +25,10 @@ std::vector<NameMeaning> MeaningsOf(const std::vector<Name>& names, std::size_t 
 /// The columns x, y and z, if all have no unit: the axes of a gyro or an accelerometer, or the coordinates of a point.
 std::optional<std::array<std::size_t, 3>> FindAxes(const std::vector<NameMeaning>& meanings);
 
+/// Whether a name without a unit is no more than `ax`, `a_y` or `aZ`: an acceleration, but perhaps the point or the
+/// azimuth `a`.
+bool IsShortAcceleration(const NameMeaning& meaning);
+
 /// A choice of columns that is being made: the table, what has been chosen and assumed, and what the user must tell.
 struct Choice {
   const TableView& table;

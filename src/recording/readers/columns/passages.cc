@@ -2,6 +2,7 @@
 #include "recording/readers/columns/passages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -24,7 +25,8 @@ bool MayHoldPassages(const Choice& choice) {
 std::optional<std::size_t> OnlyColumn(const Choice& choice) {
   std::optional<std::size_t> only;
   for (std::size_t i = 0; i < choice.layout.width; ++i) {
-    if (choice.IsNumeric(i) && choice.IsRowNumber(i)) continue;
+    const bool is_empty = choice.NumbersOf(i).array().isNaN().all() && i + 1 == choice.layout.width;
+    if (is_empty || (choice.IsNumeric(i) && choice.IsRowNumber(i))) continue;
     if (only || !choice.IsNumeric(i)) return std::nullopt;
     only = i;
   }
@@ -41,17 +43,30 @@ bool ArePassages(const Eigen::VectorXd& times) {
   return shortest > 0 && longest < kSimilar * shortest && longest > (1 + kUnequal) * shortest;
 }
 
-/// The mean of full periods, each of two steps, in the unit of the column; in s if it has none and only ms are
-/// plausible.
+/// The mean of full periods, each of two steps, in the unit of the column; without a unit, in the first of s, ms and us
+/// with a plausible period. Steps that do not alternate may be whole periods, each of one step.
 std::string PeriodText(const Choice& choice, std::size_t index) {
-  constexpr double kLongest = 100;  // s
+  constexpr double kLongest = 100;     // s
+  constexpr double kAlternates = 0.5;  // of the mean change from step to step: the rest is noise
   const Eigen::VectorXd& times = choice.NumbersOf(index);
   const Index periods = (times.size() - 1) / 2;
-  const double period = (times[2 * periods] - times[0]) / static_cast<double>(periods);
-  const Unit* const unit = choice.Meaning(index).unit;
-  if (unit != nullptr) return NumberText(unit->ToSi(period), 5) + " s";
-  if (period > kLongest) return NumberText(period / 1000, 5) + " s (if the times are in ms)";
-  return NumberText(period, 5) + " s (if the times are in s)";
+  double period = (times[2 * periods] - times[0]) / static_cast<double>(periods);
+  const Unit* unit = choice.Meaning(index).unit;
+  std::string assumed;
+  for (const std::string_view name : {"s", "ms", "us"}) {
+    if (choice.Meaning(index).unit != nullptr) break;
+    unit = UnitOfSuffix(name);
+    assumed = " (if the times are in " + std::string(name) + ")";
+    if (unit->ToSi(period) <= kLongest) break;
+  }
+  period = unit->ToSi(period);
+  const Eigen::ArrayXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
+  const Eigen::ArrayXd changes = steps.tail(steps.size() - 1) - steps.head(steps.size() - 1);
+  double alternating = 0;
+  for (Index i = 0; i < changes.size(); ++i) alternating += i % 2 == 0 ? changes[i] : -changes[i];
+  const bool alternates = std::abs(alternating) > kAlternates * changes.abs().sum();
+  const std::string half = ", or " + NumberText(period / 2, 5) + " s if all passages are in one direction";
+  return NumberText(period, 5) + " s" + assumed + (alternates ? "" : half);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/QR>
+
 #include "pendulum/recording/arc.h"
 #include "recording/swing_signature.h"
 
@@ -45,10 +47,24 @@ bool FollowsBend(const VectorXd& x, const VectorXd& y, double pivot_x, double ro
   return covariance(0, 1) * covariance(0, 1) > kLeastShare * covariance(0, 0) * covariance(1, 1);
 }
 
+/// How much better the circle describes the points than a parabola, in -2 ln L. Another quantity that follows the
+/// square of the angle, such as the tension of the string, lies on a parabola as well.
+double GainOverParabola(const VectorXd& x, const VectorXd& y, const Arc& arc) {
+  const VectorXd distance = (x.array() - arc.x) / arc.radius;
+  Eigen::MatrixXd powers(x.size(), 3);
+  powers << VectorXd::Ones(x.size()), distance, distance.cwiseAbs2();
+  const Eigen::Vector3d coefficients = powers.colPivHouseholderQr().solve(y);
+  const VectorXd slope = (coefficients[1] + 2 * coefficients[2] * distance.array()) / arc.radius;
+  const VectorXd radial = (y - powers * coefficients).array() / (1 + slope.array().square()).sqrt();
+  const auto count = static_cast<double>(x.size());
+  return count * std::log(radial.squaredNorm() / (count * arc.std_dev * arc.std_dev));
+}
+
 /// The point with these coordinates if they lie on an arc.
 std::optional<Point> OnArc(const VectorXd& x, const VectorXd& y, double rows_per_period) {
   constexpr double kLeastAngle = 0.05, kClearAngle = 0.15;  // rad; a shorter arc may be any curve
   constexpr double kSeen = 2.5, kClear = 10;  // height of the arc, in standard deviations of the points about it
+  constexpr double kClearGain = 5;            // over a parabola
   // The centripetal part of accelerations bends their arc as the swing decays, and moves its centre.
   constexpr double kExact = 50, kAtOrigin = 0.05;  // of the radius
   const auto [some_x, some_y] = RowsOfBoth(x, y);
@@ -63,9 +79,13 @@ std::optional<Point> OnArc(const VectorXd& x, const VectorXd& y, double rows_per
   const double half = (high - low) / 2, height = arc->radius * (1 - std::cos(half));
   Point point;
   if (half < kLeastAngle || height < kSeen * arc->std_dev) return std::nullopt;
-  point.is_clear = half > kClearAngle && height > kClear * arc->std_dev;
-  if (!point.is_clear && !FollowsBend(x, y, arc->x, rows_per_period)) return std::nullopt;
-  point.is_no_acceleration = height > kExact * arc->std_dev || std::hypot(arc->x, arc->y) < kAtOrigin * arc->radius;
+  const bool is_long = half > kClearAngle && height > kClear * arc->std_dev;
+  const double gain = GainOverParabola(some_x, some_y, *arc);
+  if (gain < -kClearGain) return std::nullopt;
+  point.is_clear = is_long && gain > kClearGain;
+  if (!is_long && !FollowsBend(x, y, arc->x, rows_per_period)) return std::nullopt;
+  point.is_exact = height > kExact * arc->std_dev;
+  point.is_about_origin = std::hypot(arc->x, arc->y) < kAtOrigin * arc->radius;
   return point;
 }
 
@@ -127,8 +147,10 @@ Result<void> CheckCoordinates(const Choice& choice) {
   if (choice.vertical) {
     for (const std::size_t i : {index, *choice.vertical}) {
       const Unit* unit = UnitOf(choice, i);
-      const bool is_length = unit == nullptr ? choice.Meaning(i).kind.value_or(Kind::kLength) == Kind::kLength
-                                             : unit->kind == Kind::kLength && unit == UnitOf(choice, index);
+      const bool may_be_length =
+          choice.Meaning(i).kind.value_or(Kind::kLength) == Kind::kLength || IsShortAcceleration(choice.Meaning(i));
+      const bool is_length =
+          unit == nullptr ? may_be_length : unit->kind == Kind::kLength && unit == UnitOf(choice, index);
       if (is_length) continue;
       return choice.WrongFlag(i, "columns " + choice.NameOf(index) + " and " + choice.NameOf(*choice.vertical) +
                                      " were chosen as the coordinates of a point, but column " + choice.NameOf(i) +

@@ -13,7 +13,8 @@ namespace pendulum::csv {
 struct Point {
   std::size_t horizontal = 0, vertical = 0;
   bool is_clear = false;
-  bool is_no_acceleration = false;  // Even if both have the size of gravity.
+  bool is_exact = false;         // The noise is small beside the height of the arc.
+  bool is_about_origin = false;  // The coordinates are measured from the pivot.
 };
 
 /// The point that --value_column names as two columns, such as 2,3; std::nullopt if the flag names no two columns.
@@ -26,8 +27,8 @@ std::optional<std::size_t> FindPoint(const Choice& choice, const Columns& candid
 std::optional<std::size_t> FindVertical(const Choice& choice, std::size_t horizontal);
 
 /// Whether two columns of numbers lie on an arc of a circle, as the coordinates of a point do; std::nullopt if not. It
-/// is clear if the arc is long and the points are near it. Otherwise one column must follow the bend of the arc within
-/// the swing, whose period is in rows. Needs the numbers.
+/// is clear if the arc is long, and the points are near it and nearer than to a parabola. On a short arc, one column
+/// must follow the bend of the arc within the swing, whose period is in rows. Needs the numbers.
 std::optional<Point> FindPointOnArc(const Choice& choice, const Columns& two, double rows_per_period);
 
 /// Refuses a vertical coordinate alone, which is the same on both sides, so it oscillates twice as fast as the angle;

@@ -179,6 +179,24 @@ std::string_view GravityUnitOf(const Choice& choice, const Columns& columns) {
   return UnitOfGravity(axes);
 }
 
+/// Of the axes of an accelerometer, the one across the rod, where gravity changes its sign: the one with the largest
+/// share among those that do not hold gravity at rest. Along the rod the swing has half its period.
+Index AxisAcross(const Choice& choice, const Columns& columns, const Eigen::VectorXd& shares) {
+  constexpr double kHolds = 0.5;  // of gravity
+  Eigen::VectorXd medians(shares.size());
+  for (Index i = 0; i < medians.size(); ++i) {
+    medians[i] = std::abs(MedianOf(choice.NumbersOf(columns[static_cast<std::size_t>(i)])));
+  }
+  const Eigen::Array<bool, Eigen::Dynamic, 1> holds = medians.array() >= kHolds * medians.norm();
+  Index best = 0;
+  if (holds.all()) {
+    shares.maxCoeff(&best);
+  } else {
+    holds.select(-1, shares.array()).maxCoeff(&best);
+  }
+  return best;
+}
+
 /// The flag that names both coordinates.
 std::string FlagOf(const Choice& choice, const Point& point) {
   return "--value_column " + choice.FlagValueOf(point.horizontal) + "," + choice.FlagValueOf(point.vertical);
@@ -196,6 +214,16 @@ void AskWhichSwing(Choice& choice, const Columns& columns, std::size_t best, con
                  (point ? ", or " + FlagOf(choice, *point) + " for the coordinates of a point" : "") +
                  ", or choose another quantity with --value_column",
              {column, "--unit " + gravity});
+}
+
+/// Asks whether two columns a_x and a_y are accelerations or the coordinates of a point.
+void AskWhetherPoint(Choice& choice, const Point& point) {
+  const std::string horizontal = choice.FlagValueOf(point.horizontal);
+  choice.Ask("columns " + ListOf(choice.NamesOf({point.horizontal, point.vertical})) +
+                 " lie on a circle, as the coordinates of a point do and accelerations do not: choose the point with " +
+                 FlagOf(choice, point) + ", or give the unit of the accelerations with --value_column " + horizontal +
+                 " --unit (g, m_s2, mg)",
+             {FlagOf(choice, point)});
 }
 
 /// Takes two columns whose names say nothing for the coordinates of a point if that is clear; asks otherwise.
@@ -238,25 +266,37 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   }
   const Eigen::MatrixXd covariance = all(rows, rows);
   const Eigen::VectorXd shares = covariance.diagonal() / covariance.trace();
+  const bool is_unknown = !choice.Meaning(columns.front()).kind;
   Index best = 0;
-  const double share = shares.maxCoeff(&best);
+  shares.maxCoeff(&best);
+  const bool is_gravity = !GravityUnitOf(choice, columns).empty();
+  const bool is_acceleration = KindOf(choice, columns.front()) == Kind::kAcceleration;
+  if (is_gravity && (is_acceleration || is_unknown)) best = AxisAcross(choice, columns, shares);
+  const double share = shares[best];
   std::vector<std::string> others;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto row = static_cast<Index>(i);
     if (row != best) others.push_back(choice.NameOf(columns[i]) + " " + Percent(shares[row]));
   }
-  const bool is_unknown = !choice.Meaning(columns.front()).kind;
-  const auto point = is_unknown && MayBeLengths(choice) ? FindPointOnArc(choice, columns, period) : std::nullopt;
-  if (point && (point->is_no_acceleration || GravityUnitOf(choice, columns).empty()))
-    return ChoosePoint(choice, *point);
-  if (is_unknown && KindOf(choice, columns.front()) != Kind::kAcceleration && HaveSeveralSwings(choice, columns)) {
+  const bool is_short =
+      std::ranges::all_of(columns, [&](std::size_t i) { return IsShortAcceleration(choice.Meaning(i)); });
+  const bool may_be_point = (is_unknown || is_short) && MayBeLengths(choice);
+  const auto point = may_be_point ? FindPointOnArc(choice, columns, period) : std::nullopt;
+  if (point && is_short && point->is_exact && !point->is_about_origin) {
+    AskWhetherPoint(choice, *point);
+    return std::nullopt;
+  }
+  const bool is_no_acceleration = point && (point->is_exact || point->is_about_origin);
+  if (point && is_unknown && (is_no_acceleration || !is_gravity)) return ChoosePoint(choice, *point);
+  const bool may_be_any = is_unknown && !is_acceleration;
+  if (may_be_any && (HaveSeveralSwings(choice, columns) || (is_gravity && !HasStatedUnit(choice)))) {
     AskWhichSwing(choice, columns, columns[best], point);
     return std::nullopt;
   }
   const bool is_rotation = IsRotation(choice, columns) && CombineAxes(choice, columns, covariance);
   if (is_rotation && !choice.axes.empty()) return choice.value;
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.
-  if (is_rotation || share >= (KindOf(choice, columns.front()) == Kind::kAcceleration ? kMost / 2 : kMost)) {
+  if (is_rotation || (is_acceleration && is_gravity) || share >= (is_acceleration ? kMost / 2 : kMost)) {
     choice.Assume("value_column_assumed",
                   "column " + choice.NameOf(columns[best]) + " carries " + Percent(share) +
                       " of the swing and was used, not " + ListOf(others) + "; --value_column chooses another" +

@@ -38,6 +38,17 @@ Eigen::VectorXd SwingBeside(const Choice& choice) {
   return choice.value ? choice.SwingOf(*choice.value) : Eigen::VectorXd();
 }
 
+/// Whether the columns beside the times have together the size of gravity, as those of an accelerometer. It shows no
+/// swing that takes minutes.
+bool HasGravityBeside(const Choice& choice, std::size_t time) {
+  constexpr std::size_t kAxes = 3;
+  std::vector<Eigen::VectorXd> axes;
+  for (std::size_t i = 0; i < choice.layout.width; ++i) {
+    if (i != time && choice.IsNumeric(i) && choice.Meaning(i).unit == nullptr) axes.push_back(choice.NumbersOf(i));
+  }
+  return axes.size() > 1 && axes.size() <= kAxes && !UnitOfGravity(axes).empty();
+}
+
 /// Asks what a column counts whose numbers increase by 1.
 void AskWhatIsCounted(Choice& choice, std::size_t index) {
   const std::string counts = "column " + choice.NameOf(index) + " increases by 1 in each row, so it counts ";
@@ -81,7 +92,8 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
                   "column " + choice.NameOf(index) + " holds times of day (--time_column)");
     return {};
   }
-  const TimeGuess guess = GuessTimeUnit(choice.NumbersOf(index), SwingBeside(choice));
+  TimeGuess guess = GuessTimeUnit(choice.NumbersOf(index), SwingBeside(choice));
+  if (guess.unit.empty() && HasGravityBeside(choice, index)) guess = {"ms", " (an accelerometer shows a fast swing)"};
   if (guess.unit.empty()) {
     const std::string flag = "--time_column " + ShellWord(choice.FlagValueOf(index) + ":s");
     choice.Ask("column " + choice.NameOf(index) + " does not give its unit, and " + guess.reason + ": give it with " +

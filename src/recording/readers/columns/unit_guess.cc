@@ -23,13 +23,6 @@ constexpr double kLeastSwing = 0.02;   // rad
 /// rad; from here on the period shows the amplitude (MODEL.md section 3: 2.3 % at 0.6 rad).
 constexpr double kTellingSwing = 0.6;
 
-/// Of the finite numbers; 0 without any.
-double MedianOf(const Eigen::VectorXd& values) {
-  std::vector<double> numbers;
-  std::ranges::copy_if(values, std::back_inserter(numbers), [](double value) { return std::isfinite(value); });
-  return numbers.empty() ? 0 : Median(std::move(numbers));
-}
-
 /// A unit of acceleration, and what gravity is in it.
 struct GravityUnit {
   std::string_view unit;
@@ -114,6 +107,12 @@ bool IsSlowOrInMs(double period) {
 
 }  // namespace
 
+double MedianOf(const Eigen::VectorXd& values) {
+  std::vector<double> numbers;
+  std::ranges::copy_if(values, std::back_inserter(numbers), [](double value) { return std::isfinite(value); });
+  return numbers.empty() ? 0 : Median(std::move(numbers));
+}
+
 double HalfRange(const Eigen::VectorXd& values) {
   double low = INFINITY, high = -INFINITY;
   for (const double value : values) {
@@ -184,6 +183,13 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
       if (period < kShortestPeriod || period > kLongestPeriod) continue;
       return {scale.unit, " (the period is then " + NumberText(period, 3) + " s)"};
     }
+  }
+  constexpr Index kEnoughRows = 20;  // to see a swing; fewer show nothing
+  constexpr double kLongestReading = 60;  // s between readings by hand
+  const bool may_be_by_hand = step >= 1 && step <= kLongestReading && AreWhole(times);
+  if (!swing && values.size() >= kEnoughRows && may_be_by_hand) {
+    return {"", "the rows are " + NumberText(step, 3) + " s apart if the times are in s, and " + NumberText(step, 3) +
+                    " ms if they are in ms"};
   }
   for (const Scale& scale : kScales) {
     if (step * scale.seconds <= kLongestStep) {

@@ -15,6 +15,9 @@ namespace pendulum::csv {
 
 inline constexpr double kMostDegrees = 400;  ///< A larger amplitude is not an angle in degrees.
 
+/// Of the finite numbers; 0 without any.
+double MedianOf(const Eigen::VectorXd& values);
+
 /// Half the distance between the smallest and the largest finite number; 0 without numbers.
 double HalfRange(const Eigen::VectorXd& values);
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "pendulum/base/physics.h"
 #include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/swing_choice.h"
@@ -176,6 +177,12 @@ std::vector<Eigen::VectorXd> AccelerationsBeside(const Choice& choice, std::size
   return axes.size() > kAxes || axes.empty() ? std::vector{choice.NumbersOf(index)} : axes;
 }
 
+/// Whether `az` stands without `ax` and `ay`, so that it may be the azimuth.
+bool IsLoneAz(const Choice& choice, std::size_t index) {
+  return IsShortAcceleration(choice.Meaning(index)) && choice.Meaning(index).stem.ends_with('z') &&
+         std::ranges::count_if(choice.meanings, IsShortAcceleration) == 1;
+}
+
 /// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
 Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   const NameMeaning& meaning = choice.Meaning(index);
@@ -218,6 +225,11 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (meaning.kind == Kind::kLength && meaning.Has("y") && meaning.stem.find_first_not_of(" y") == std::string::npos) {
     choice.Ask(column + ", and it may be a coordinate or an angle: give it with --unit (deg, rad, px, m, ...)",
                {"--unit " + std::string(HalfRange(choice.NumbersOf(index)) > 60 ? "px" : "deg")});
+    return nullptr;
+  }
+  if (IsLoneAz(choice, index)) {
+    choice.Ask(column + ", and it may be an acceleration or an azimuth: give it with --unit (m_s2, g, deg, rad, ...)",
+               {"--unit " + std::string(HalfRange(choice.NumbersOf(index)) > kStandardGravity ? "deg" : "m_s2")});
     return nullptr;
   }
   if (IsEncoderOfWholeNumbers(choice, index)) {

@@ -70,6 +70,15 @@ struct LinesSetAside {
   std::optional<Status> error;    // Why they must not be left out if a row follows.
 };
 
+/// Whether a program may write this text in place of a reading.
+bool SaysNoReading(std::string_view text) {
+  constexpr std::array<std::string_view, 12> kWords = {"range",     "error",   "fail",     "timeout",
+                                                       "timed out", "invalid", "overflow", "lost",
+                                                       "missing",   "read",    "saturat",  "no data"};
+  const std::string plain = csv::PlainName(text);
+  return std::ranges::any_of(kWords, [&](std::string_view word) { return plain.find(word) != std::string::npos; });
+}
+
 /// Reads one text, line by line.
 class Reader {
  public:
@@ -111,7 +120,7 @@ class Reader {
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
   void WarnOfEmptyCells();
-  void WarnOfUnpairedRows();
+  Check RefuseUnpairedRows() const;
   void WarnOfOtherRate(Recording& recording) const;
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
@@ -301,7 +310,8 @@ std::optional<Status> Reader::FaultOfText() const {
   if (is_header && std::ranges::any_of(names, csv::IsTime, &csv::Name::text)) {
     return fault(" and may be the header of another table; save each table in a file of its own, or delete the line");
   }
-  const bool is_remark = row.find(' ') != std::string_view::npos && (layout_.width == 1 || !has_width);
+  const bool is_remark =
+      row.find(' ') != std::string_view::npos && (layout_.width == 1 || !has_width) && !SaysNoReading(row);
   if (has_times() || is_remark) return std::nullopt;
   return fault(
       " that have no times, and if it stands for a row, all later times are wrong; write a number in its place, or "
@@ -648,7 +658,7 @@ Result<Recording> Reader::Finish() {
   RemoveTruncatedValue();
   RemoveTruncatedStamp();
   WarnOfEmptyCells();
-  WarnOfUnpairedRows();
+  if (Check paired = RefuseUnpairedRows(); !paired) return tl::unexpected(std::move(paired).error());
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);
   if (layout_.second) samples_.second.conservativeResize(rows_);
@@ -660,15 +670,18 @@ Result<Recording> Reader::Finish() {
   return recording;
 }
 
-/// Lists of different lengths: nothing says which of their numbers belong together.
-void Reader::WarnOfUnpairedRows() {
+/// Refuses lists of different lengths: nothing says which of their numbers belong together.
+Check Reader::RefuseUnpairedRows() const {
   constexpr std::size_t kMostCutOff = 1;
-  if (unpaired_rows_ <= kMostCutOff) return;
-  samples_.warnings.push_back(
-      {"unequal_columns", std::string(lines_.name()) + ": the last " + std::to_string(unpaired_rows_) +
-                              " rows have only one of time and reading: if readings were lost before them, the times "
-                              "after that are wrong; these rows were left out. Look for the missing readings at "
-                              "their source"});
+  if (unpaired_rows_ <= kMostCutOff) return {};
+  const std::string last = std::to_string(unpaired_rows_);
+  return tl::unexpected(
+      Status{StatusCode::kDataLoss,
+             std::string(lines_.name()) + ": the last " + last +
+                 " rows have only one of time and reading (complete rows: " + std::to_string(rows_) +
+                 "): if some were lost before them, the times after that are wrong; look for the missing ones at their "
+                 "source, or delete the last " +
+                 last + " rows if those before are complete"});
 }
 
 /// The times of rows count more than what the text above them says.

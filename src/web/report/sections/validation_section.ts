@@ -47,7 +47,7 @@ function closedFormTraces(report: Report, samples: Samples, fit: Fit): Trace[] {
   const model = samples.models.get(fit.model);
   const candidates: [string, Float64Array | null | undefined, Trace['mark']][] = [
     ['linear closed form', model?.linear, kLinear],
-    ['equation of motion with the values of the closed form', model?.nonlinear, kNonlinear],
+    ['full equation, closed-form values', model?.nonlinear, kNonlinear],
     [`fitted ${fit.model}`, model?.fitted, modelMark(rankOf(report.result, report.shown))],
   ];
   return candidates.flatMap(([name, values, mark]) =>

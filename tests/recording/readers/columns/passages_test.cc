@@ -45,6 +45,23 @@ TEST(RefusePassages, GivesTheMeanOfFullPeriods) {
       HasSubstr("column \"time_us\" holds times of passages, not readings: the mean of full periods is 1.6 s; "));
 }
 
+TEST(RefusePassages, NamesTheUnitWithAPlausiblePeriod) {
+  EXPECT_THAT(FaultOf(Text("", Passages(1e-6), false)), HasSubstr("1.6 s (if the times are in us); friction"));
+}
+
+TEST(RefusePassages, SaysThatPassagesInOneDirectionAreWholePeriods) {
+  std::string text;
+  for (int i = 0; i < 41; ++i) text += std::to_string(3000 + 800 * i + i * i % 7) + "\n";
+  EXPECT_THAT(FaultOf(text),
+              HasSubstr("1.6002 s (if the times are in ms), or 0.8001 s if all passages are in one direction"));
+}
+
+TEST(RefusePassages, IgnoreATrailingSeparator) {
+  std::string text;
+  for (const std::string& time : Passages(1e-3)) text += time + "\t\n";
+  EXPECT_THAT(FaultOf(text), HasSubstr("mean of full periods is 1.6 s"));
+}
+
 TEST(RefusePassages, TakesNoClockForPassages) {
   std::vector<std::string> even;
   for (int i = 0; i < 40; ++i) even.push_back(std::to_string(20 * i));

@@ -139,6 +139,33 @@ TEST(UnnamedColumns, OfOtherQuantitiesAreNoPoint) {
   EXPECT_THAT(TryOf(Table(swing, rate, 0.1)), ElementsAre("--value_column 2"));
   EXPECT_THAT(TryOf(Table(swing, tension, 0.003)), ElementsAre("--value_column 2"));
   EXPECT_LT(LargestError(RecordingOf(Table(swing, warming, 0.1)), swing), 0.02);
+  // A tension that hardly decays lies on a parabola, which a circle resembles.
+  const Readings parabola = [](const Sample& each) {
+    return std::vector{each.angle, 0.4 - 0.6 * each.angle * each.angle};
+  };
+  EXPECT_THAT(TryOf(Table(swing, parabola, 0.003)), ElementsAre("--value_column 2", "--unit rad"));
+}
+
+// The names are of a point a, which lies on a circle far from the origin, as accelerations do not.
+TEST(UnnamedColumns, OfShortNamesMayBeAPoint) {
+  const std::vector<Sample> swing = Swing(0.53);
+  const std::string rows = Table(swing, PointAt(400, 650, 100, 1), 0.3, ',');
+  for (const std::string names : {"t,a_x,a_y\n", "t,ax,ay\n", "t,aX,aY\n"}) {
+    EXPECT_THAT(FaultOf(names + rows),
+                HasSubstr("lie on a circle, as the coordinates of a point do and accelerations"));
+    const std::vector<std::string> flags = TryOf(names + rows);
+    ASSERT_THAT(flags, SizeIs(1));
+    const Recording recording = RecordingOf(names + rows, TimeAndValue("", flags[0].substr(flags[0].find(' ') + 1)));
+    EXPECT_EQ(recording.quantity, Quantity::kAngle);
+    EXPECT_LT(LargestError(recording, swing), 0.02);
+  }
+}
+
+TEST(UnnamedColumns, AzAloneMayBeAnAzimuth) {
+  const Readings azimuth = [](const Sample& each) { return std::vector{each.angle / kDegree}; };
+  const std::string text = "t,az\n" + Table(Swing(0.53), azimuth, 0.1, ',');
+  EXPECT_THAT(FaultOf(text), HasSubstr("it may be an acceleration or an azimuth"));
+  EXPECT_THAT(TryOf(text), ElementsAre("--unit deg"));
 }
 
 TEST(UnnamedColumns, PairsMustBeLengthsInOneUnit) {
@@ -165,6 +192,14 @@ TEST(UnnamedColumns, OfTheSizeOfGravityMayBeAccelerations) {
       EXPECT_NEAR(recording.value[0], kGravity * std::sin(0.9) - 0.15 * kGravityRate * std::sin(0.9), 0.1);  // m/s^2
     }
   }
+}
+
+// In s, this swing would take ten minutes.
+TEST(UnnamedColumns, BesideAnAccelerometerTimesAreInMs) {
+  std::vector<Sample> swing = Swing(0.9);
+  for (Sample& sample : swing) sample.time *= 500;  // of a period of 1.28 s
+  EXPECT_NEAR(RecordingOf("t,ax,ay\n" + Table(swing, AccelerometerIn(kGravity), 0.02, ',')).time[599], 599 * 0.015,
+              1e-9);
 }
 
 TEST(UnnamedColumns, AxesOfAnAccelerometerHaveTheUnitThatTheirSizeShows) {
