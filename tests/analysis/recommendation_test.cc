@@ -119,7 +119,8 @@ TEST(Recommend, ReportsADifferentChoiceByAicc) {
   made.comparison.rows[1].aicc = 20;
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "coulomb");
-  EXPECT_THAT(made.comparison.reason, HasSubstr("; by the criterion AICc, which counts parameters less, drag is better"));
+  EXPECT_THAT(made.comparison.reason,
+              HasSubstr("; by the criterion AICc, which counts parameters less, drag is better"));
 }
 
 // If a refuted law has by far the smallest AICc, Akaike's weights of all other laws may be 0 in double precision.

@@ -184,7 +184,7 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
       return {scale.unit, " (the period is then " + NumberText(period, 3) + " s)"};
     }
   }
-  constexpr Index kEnoughRows = 20;  // to see a swing; fewer show nothing
+  constexpr Index kEnoughRows = 20;       // to see a swing; fewer show nothing
   constexpr double kLongestReading = 60;  // s between readings by hand
   const bool may_be_by_hand = step >= 1 && step <= kLongestReading && AreWhole(times);
   if (!swing && values.size() >= kEnoughRows && may_be_by_hand) {
