@@ -276,13 +276,15 @@ class Refitter {
     if (!attempt.outcome) {
       if (run.stale.empty() || !attempt.is_result_current) return !run.stale.empty();
       auto marked = store_.MarkCurrent(id);
+      counts_.restored += marked ? 1 : 0;
       return marked ? Result<bool>(false) : tl::unexpected(std::move(marked).error());
     }
     if (options_.replace_by_failures) {
       auto put = store_.Put(id, *attempt.outcome);
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
     }
-    auto why = store_.PutUnlessWorse(id, *attempt.outcome, attempt.inputs);
+    const bool is_bug = attempt.outcome->exit_code == ExitCode(StatusCode::kInternal);  // tried again next time
+    auto why = store_.PutUnlessWorse(id, *attempt.outcome, is_bug ? "" : attempt.inputs);
     return why ? Result<bool>(!why->empty()) : tl::unexpected(std::move(why).error());
   }
 

@@ -55,7 +55,7 @@ std::string ResultsView() {
   return sql + R"sql(
   FROM (SELECT run, id, position, path, rig, reason,
           coalesce(stale, iif()sql" +
-         kIsFormer + R"sql(, 'not in the last manifest', NULL)) AS stale, iif()sql" + kIsMissing +
+         kIsUnlisted + R"sql(, 'not among the recordings of the last refit', NULL)) AS stale, iif()sql" + kIsMissing +
          R"sql(, 'missing', 'refused') AS refusal, coalesce(recommended,
           (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law
         FROM runs WHERE exit_code IS NOT NULL) AS main

@@ -50,7 +50,7 @@ bool HasColumn(SQLite::Database& database, const std::string& column) {
 }
 
 std::int64_t CountDistinct(SQLite::Database& database, const std::string& sql) {
-  return database.execAndGet("SELECT count(DISTINCT " + sql + ") FROM runs").getInt64();
+  return database.execAndGet("SELECT count(DISTINCT " + sql + ") FROM runs WHERE " + kIsLive).getInt64();
 }
 
 constexpr const char* kFolderSql = "rtrim(path, replace(path, '/', ''))";
@@ -71,7 +71,8 @@ std::string TrueValuesSql(SQLite::Database& database) {
 bool HasFoldersOfSeveral(SQLite::Database& database) {
   if (CountDistinct(database, kFolderSql) < 2) return false;
   return database
-             .execAndGet(std::string("SELECT max(n) FROM (SELECT count(*) AS n FROM runs GROUP BY ") + kFolderSql + ")")
+             .execAndGet("SELECT max(n) FROM (SELECT count(*) AS n FROM runs WHERE " + kIsLive + " GROUP BY " +
+                         kFolderSql + ")")
              .getInt64() > 1;
 }
 
@@ -103,15 +104,17 @@ RunGroups Choose(SQLite::Database& database, const std::string& group_by) {
   if (const std::string truth = TrueValuesSql(database); !truth.empty() && CountDistinct(database, truth) > 1) {
     return {.by = RunGroups::By::kTrueValues, .name = "true values", .sql = truth, .is_stated = true};
   }
-  const std::int64_t rigs = database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> ''").getInt64();
+  const std::int64_t rigs =
+      database.execAndGet("SELECT count(DISTINCT rig) FROM runs WHERE rig <> '' AND " + kIsLive).getInt64();
   if (rigs > 1) return ByColumn("rig");
   const bool has_rig =
-      database.execAndGet("SELECT count(*) FROM runs WHERE coalesce(rig_sha256, '') <> ''").getInt() > 0;
+      database.execAndGet("SELECT count(*) FROM runs WHERE coalesce(rig_sha256, '') <> '' AND " + kIsLive).getInt() > 0;
   if (!has_rig && HasFoldersOfSeveral(database)) {
     return {.by = RunGroups::By::kFolder, .name = "folder", .sql = kFolderSql};
   }
   RunGroups groups;
-  if (rigs == 1) groups.one_rig = sqlite::Texts(database, "SELECT DISTINCT rig FROM runs WHERE rig <> ''").front();
+  if (rigs == 1)
+    groups.one_rig = sqlite::Texts(database, "SELECT DISTINCT rig FROM runs WHERE rig <> '' AND " + kIsLive).front();
   return groups;
 }
 
@@ -128,7 +131,8 @@ std::map<std::string, RunValues> ValuesByGroup(SQLite::Database& database, const
                                                std::string_view name, const RunGroups& groups) {
   SQLite::Statement rows(database, "SELECT " + groups.sql + R"sql(, estimate, std_error
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
-  WHERE model = ? AND name = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND std_error > 0)sql");
+  WHERE model = ? AND name = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND std_error > 0
+    AND )sql" + kIsLive);
   sqlite::Bind(rows, model, std::string(name));
   std::map<std::string, RunValues> values;
   while (rows.executeStep()) {

@@ -8,13 +8,13 @@ namespace pendulum {
 /// SQL conditions on a row of table runs: how the run ended.
 
 /// The last manifest does not name the run. Those requested from a service belong to no manifest.
-inline const std::string kIsFormer = "(runs.position < 0 AND runs.run NOT IN (SELECT run FROM requests))";
+inline const std::string kIsUnlisted = "(runs.position < 0 AND runs.run NOT IN (SELECT run FROM requests))";
 
 /// The run keeps the result of a former state of its recording, rig or options.
-inline const std::string kIsStale = "(runs.stale IS NOT NULL AND NOT " + kIsFormer + ")";
+inline const std::string kIsStale = "(runs.stale IS NOT NULL AND NOT " + kIsUnlisted + ")";
 
 /// Neither of these. Statistics leave other runs out.
-inline const std::string kIsLive = "(runs.stale IS NULL AND NOT " + kIsFormer + ")";
+inline const std::string kIsLive = "(runs.stale IS NULL AND NOT " + kIsUnlisted + ")";
 
 /// The fit of the recommended law, or of the only law, converged, and the run is live.
 inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "batch/kept_result.h"
 #include "batch/sqlite.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/store_lock.h"
@@ -85,8 +86,8 @@ Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, 
   auto counts = Attempt(source, shard, options, attempt.path());
   if (!counts || counts->stopped) return counts;
   const auto after = MetaOf(attempt.path());
-  const bool is_new = counts->refitted > 0 || !before || !before->complete || !after || !IsSameBatch(*before, *after) ||
-                      before->shard->index != after->shard->index;
+  const bool is_new = counts->refitted > 0 || counts->restored > 0 || !before || !before->complete || !after ||
+                      !IsSameBatch(*before, *after) || before->shard->index != after->shard->index;
   if (is_new) {
     if (auto published = Publish(attempt.path(), shard.store); !published) return tl::unexpected(published.error());
   }
@@ -156,21 +157,37 @@ std::string AssignmentsOf(SQLite::Database& database, const std::string& table) 
 /// Replaces the rows of a table by the rows of the attached store `shard`, for the runs in `shard` that are not kept.
 void ReplaceRows(SQLite::Database& database, const std::string& table) {
   database.exec("DELETE FROM main." + table +
-                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id) WHERE id NOT IN kept)");
+                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id) WHERE id NOT IN (SELECT "
+                "id FROM kept))");
   database.exec("INSERT INTO main." + table + "(run, " + ColumnsOf(database, table) + ") SELECT mine.run, " +
                 ColumnsOf(database, table, "theirs.") + " FROM shard." + table +
                 " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id "
-                "WHERE mine.id NOT IN kept");
+                "WHERE mine.id NOT IN (SELECT id FROM kept)");
 }
 
-/// Lists the runs whose result stays, because the attached store `shard` has only a reason for them; they become stale.
+/// Lists in the table `kept` the runs whose result stays (WhyKept) instead of that of the attached store `shard`; they
+/// become stale.
 void KeepFormerResults(SQLite::Database& database) {
+  database.exec("DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, reason TEXT)");
+  SQLite::Statement both(database, R"sql(
+SELECT id, mine.path, mine.data_sha256, mine.result, theirs.path, theirs.data_sha256, coalesce(theirs.result, ''),
+    coalesce(theirs.reason, '')
+  FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
+  WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL)sql");
+  SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?)");
+  const auto text = [&](int column) { return sqlite::Text(both, column); };
+  while (both.executeStep()) {
+    const std::string why = WhyKept({text(1), text(2), text(3)}, {text(4), text(5), text(6)}, text(7));
+    if (why.empty()) continue;
+    sqlite::Bind(keep, text(0), why).exec();
+    keep.reset();
+  }
   database.exec(R"sql(
-DROP TABLE IF EXISTS temp.kept;
-CREATE TEMP TABLE kept AS SELECT id FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
-  WHERE mine.result IS NOT NULL AND theirs.result IS NULL AND theirs.exit_code IS NOT NULL;
-UPDATE main.runs SET (position, stale) = (SELECT position, reason FROM shard.runs AS theirs WHERE theirs.id = main.runs.id)
-  WHERE id IN kept)sql");
+UPDATE main.runs SET (position, path, rig, calibration, from_s, to_s, models, columns) =
+    (SELECT position, path, rig, calibration, from_s, to_s, models, columns FROM shard.runs AS theirs
+      WHERE theirs.id = main.runs.id),
+    stale = (SELECT reason FROM kept WHERE kept.id = main.runs.id)
+  WHERE id IN (SELECT id FROM kept))sql");
 }
 
 /// Copies the rows of the attached store `shard` into this store. Rows of the same runs are replaced, except a result
@@ -178,9 +195,10 @@ UPDATE main.runs SET (position, stale) = (SELECT position, reason FROM shard.run
 void CopyAttachedShard(SQLite::Database& database) {
   KeepFormerResults(database);
   const std::string runs = ColumnsOf(database, "runs");
-  database.exec("INSERT INTO main.runs(" + runs + ") SELECT " + runs +
-                " FROM shard.runs WHERE id NOT IN kept ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
-                AssignmentsOf(database, "runs"));
+  database.exec(
+      "INSERT INTO main.runs(" + runs + ") SELECT " + runs +
+      " FROM shard.runs WHERE id NOT IN (SELECT id FROM kept) ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
+      AssignmentsOf(database, "runs"));
   ReplaceRows(database, "quantities");
   ReplaceRows(database, "fits");
   database.exec("INSERT OR IGNORE INTO main.options SELECT * FROM shard.options");

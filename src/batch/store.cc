@@ -8,6 +8,7 @@
 
 #include "batch/entry_row.h"
 #include "batch/former_results.h"
+#include "batch/kept_result.h"
 #include "batch/result_rows.h"
 #include "batch/results_view.h"
 #include "batch/run_kinds.h"
@@ -195,7 +196,7 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, former, set_stale, add_run, put_run, drop_fits, drop_quantities, put_fit,
+  std::unique_ptr<SQLite::Statement> run_of, result_of, set_stale, add_run, put_run, drop_fits, drop_quantities, put_fit,
       put_quantity;
 };
 
@@ -209,20 +210,21 @@ Result<std::int64_t> Store::State::Find(const std::string& id) {
 }
 
 std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) {
-  SQLite::Statement& before = Prepared(former, R"sql(
-SELECT path, data_sha256, json_extract(result, '$.data.samples') FROM runs WHERE run = ? AND result IS NOT NULL)sql");
+  SQLite::Statement& before = Prepared(result_of, R"sql(
+SELECT path, data_sha256, result FROM runs WHERE run = ? AND result IS NOT NULL)sql");
   if (!sqlite::Bind(before, run).executeStep()) {
     before.reset();
     return "";
   }
-  const std::string path = sqlite::Text(before, 0), hash = sqlite::Text(before, 1);
-  const std::int64_t samples = before.getColumn(2).getInt64();
+  if (!outcome.result.is_null() && sqlite::Text(before, 1) == outcome.provenance.data_sha256) {
+    before.reset();
+    return "";
+  }
+  const StoredResult kept{sqlite::Text(before, 0), sqlite::Text(before, 1), sqlite::Text(before, 2)};
   before.reset();
-  if (outcome.result.is_null()) return outcome.reason;
-  const auto now = outcome.result["data"]["samples"].get<std::int64_t>();
-  if (hash == outcome.provenance.data_sha256 || now >= samples) return "";
-  return path + ": the recording has become shorter: " + std::to_string(now) + " samples instead of " +
-         std::to_string(samples);
+  return WhyKept(kept,
+                 {kept.path, outcome.provenance.data_sha256, outcome.result.is_null() ? "" : JsonText(outcome.result)},
+                 outcome.reason);
 }
 
 void Store::State::SetStale(std::int64_t run, const std::optional<std::string>& stale,
@@ -500,7 +502,7 @@ Result<StoreCounts> Store::Count() {
     counts.unfitted = runs.getColumn(2).getInt64();
     counts.missing = runs.getColumn(3).getInt64();
     counts.stale = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsStale).getInt64();
-    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsFormer).getInt64();
+    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsUnlisted).getInt64();
     SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();

@@ -339,7 +339,7 @@ Result<void> CheckGroupBy(const std::string& group_by, const std::vector<std::st
 std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, const std::string& column) {
   std::pair<std::int64_t, std::string> found;
   if (column.empty()) return found;
-  SQLite::Statement rows(database, "SELECT " + ColumnSql(column) + " FROM runs");
+  SQLite::Statement rows(database, "SELECT " + ColumnSql(column) + " FROM runs WHERE " + kIsLive);
   while (rows.executeStep()) {
     bool is_date = false;
     const std::string value = sqlite::Text(rows, 0);
@@ -358,12 +358,12 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
   if (counts.stale > 0) {
     add("stale", std::to_string(counts.stale) +
-                     " runs keep a former result, because the last attempt gave none; statistics leave them out, and "
-                     "--replace_by_failures gives them up");
+                     " runs keep a former result, because the last fit failed or the recording has become shorter; "
+                     "statistics leave them out");
   }
   if (counts.earlier > 0) {
-    add("not_in_the_manifest",
-        std::to_string(counts.earlier) + " runs are not in the last manifest; statistics leave their results out");
+    add("not_in_the_manifest", std::to_string(counts.earlier) +
+                                   " runs are not among the recordings of the last refit; statistics leave them out");
   }
   const std::int64_t same =
       database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " + kIsFitted)

@@ -55,14 +55,14 @@ RunCounts CountRuns(SQLite::Database& database) {
     return database.execAndGet("SELECT count(*) FROM runs WHERE " + condition).getInt64();
   };
   RunCounts counts;
-  counts.runs = count("NOT " + kIsFormer);
+  counts.runs = count("NOT " + kIsUnlisted);
   counts.fitted = count(kIsFitted);
   counts.not_converged = count("exit_code = 1" + live);
   counts.missing = count(missing);
   counts.refused = count(refused);
   counts.pending = count("exit_code IS NULL" + live);
   counts.stale = count(kIsStale);
-  counts.former = count(kIsFormer);
+  counts.unlisted = count(kIsUnlisted);
   counts.missing_runs = ExamplesOf(database, missing);
   counts.refused_runs = ExamplesOf(database, refused);
   counts.stale_runs = ExamplesOf(database, kIsStale);
@@ -77,7 +77,7 @@ std::string CountsText(const RunCounts& counts) {
        {std::pair{counts.missing, "missing"}, std::pair{counts.refused, "refused"},
         std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"},
         std::pair{counts.stale, "with a former result only"},
-        std::pair{counts.former, "more left out, not in the last manifest"}}) {
+        std::pair{counts.unlisted, "more left out, not among the recordings of the last refit"}}) {
     if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
   }
   return text + rest;
@@ -92,7 +92,7 @@ Json CountsJson(const RunCounts& counts) {
           {"refused", counts.refused},
           {"pending", counts.pending},
           {"stale", counts.stale},
-          {"former", counts.former},
+          {"unlisted", counts.unlisted},
           {"missing_runs", ExamplesJson(counts.missing_runs)},
           {"refused_runs", ExamplesJson(counts.refused_runs)},
           {"stale_runs", ExamplesJson(counts.stale_runs)}};

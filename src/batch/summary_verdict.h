@@ -21,7 +21,7 @@ struct RunCounts {
   std::int64_t refused = 0;        ///< Could not be read or fitted.
   std::int64_t pending = 0;        ///< Not fitted yet.
   std::int64_t stale = 0;          ///< Only a former result is there; the last attempt failed.
-  std::int64_t former = 0;         ///< Not in the last manifest; not among `runs`.
+  std::int64_t unlisted = 0;       ///< Not among the recordings of the last refit, nor among `runs`.
   struct Run {
     std::string id, reason;
   };

@@ -590,7 +590,7 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 }  // namespace
 
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 27> kSerious = {"ambiguous_frequency",
+  constexpr std::array<std::string_view, 28> kSerious = {"ambiguous_frequency",
                                                          "inertia_differs_from_rig",
                                                          "another_minimum",
                                                          "frequency_differs_from_rig",
@@ -600,6 +600,7 @@ bool IsSerious(const Warning& warning) {
                                                          "prior_conflict",
                                                          "rate_disagrees",
                                                          "rig_implausible",
+                                                         "unequal_columns",
                                                          "trajectory_accuracy",
                                                          "closed_forms_differ",
                                                          "gravity_in_readings",

@@ -127,18 +127,25 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   return WriteText(options.quiet ? QuietText(*summary) : text + SummaryText(*summary, path));
 }
 
+std::string KeptText(std::int64_t stale) {
+  return std::to_string(stale) +
+         " keep a former result, because the last fit failed or the recording has become shorter "
+         "(--replace_by_failures replaces it)";
+}
+
 /// Prints the summary of a refit and returns its exit code.
 Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& options) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
   if (counts.stale > 0) {
-    text += "; " + std::to_string(counts.stale) +
-            " keep a former result, because they can no longer be read or fitted (--replace_by_failures gives it up)";
+    text += "; " + KeptText(counts.stale);
   }
   if (!counts.stopped) {
     PrintMessage(kRefitToolName, text);
     const auto shown = ShowStatus(options);
-    return shown && counts.stale > 0 ? ExitCode(StatusCode::kNotFound) : shown;
+    // The merge reports for all shards; their jobs have done what they could.
+    const bool is_fault = counts.stale > 0 && !options.refit.shard;
+    return shown && is_fault ? ExitCode(StatusCode::kNotFound) : shown;
   }
   PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
                                    " are left; run the same command to continue" +
@@ -247,11 +254,17 @@ Result<int> RunMissing(const RefitPendulumsOptions& options) {
 }
 
 Result<int> RunMerge(const RefitPendulumsOptions& options) {
-  const auto runs = MergeShards(options.shard_dir, options.shard_count, options.stores.front());
+  const std::string& path = options.stores.front();
+  const auto runs = MergeShards(options.shard_dir, options.shard_count, path);
   if (!runs) return tl::unexpected(runs.error());
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  const auto counts = store->Count();
+  if (!counts) return tl::unexpected(counts.error());
   PrintMessage(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
-                                   " shards merged into " + options.stores.front());
-  return 0;
+                                   " shards merged into " + path +
+                                   (counts->stale > 0 ? "; " + KeptText(counts->stale) : ""));
+  return counts->stale > 0 ? ExitCode(StatusCode::kNotFound) : 0;
 }
 
 }  // namespace

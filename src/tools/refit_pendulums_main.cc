@@ -28,12 +28,12 @@ constexpr const char* kUsage =
     "  refit_pendulums missing --shard_dir out --shard_count 64\n"
     "  refit_pendulums merge   --shard_dir out --shard_count 64 --store results.sqlite\n"
     "\n"
-    "A run that cannot be read or fitted gets a row that says why. After an interruption, repeat the same command.\n"
+    "A run that cannot be read or fitted gets a row that says why, or keeps its former result. After an interruption, "
+    "repeat the same command.\n"
     "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another\n"
-    "status or is missing, 2 wrong flags, 3 a file or shard does not exist, or a run has a former result only, 4 the "
-    "manifest or store cannot be read,\n"
-    "5 there is no run, 70 a bug, 73 the store or an output cannot be written, 75 terminated, or the store is in use:\n"
-    "try again, 130 interrupted.\n"
+    "status or is missing, 2 wrong flags, 3 a file or shard does not exist, or a run has a former result only,\n"
+    "4 the manifest or store cannot be read, 5 there is no run, 70 a bug, 73 the store or an output cannot be\n"
+    "written, 75 terminated, or the store is in use: try again, 130 interrupted.\n"
     "\n";
 
 /// Names of the tool's flags on the command line; the tool sets libraries' flags itself.

@@ -323,6 +323,25 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatBecameShorter) {
   EXPECT_NE(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
 }
 
+TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingWithTheSameId) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  const std::string text = folder_.Read("0.csv");
+  folder_.Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
+  folder_.Write("runs.csv", "path,id\nshorter.csv,a\n");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 0);
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "shorter.csv");
+}
+
+TEST_F(RefitTest, ReplacesADamagedResult) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  SQLite::Database(store_.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET result = '{broken'");
+  folder_.Write("0.csv", RecordingText(7));
+  EXPECT_EQ(RefitAll(coulomb_).stale, 0);
+  EXPECT_EQ(ValueOf("SELECT json_valid(result) FROM runs"), "1");
+}
+
 TEST_F(RefitTest, ReplacesResultsByFailuresOnRequest) {
   WriteBatch(folder_, 2);
   RefitAll(coulomb_);

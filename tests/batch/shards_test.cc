@@ -119,6 +119,31 @@ TEST_F(ShardsTest, LeaveAResultThatTheyCouldNotRepeat) {
               ElementsAre(testing::StartsWith("b|1.csv: there is no such file")));
 }
 
+TEST_F(ShardsTest, LeaveTheResultOfALongerRecording) {
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  const std::string result = "SELECT result FROM runs WHERE id = 'b'";
+  const std::string before = Value(store_, result), text = folder_.Read("1.csv");
+  folder_.Write("1.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
+  for (int k = 0; k < 2; ++k) std::filesystem::remove(ShardPath(out_, k));
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_EQ(Value(store_, result), before);
+  EXPECT_THAT(Rows(store_, "SELECT id, stale FROM runs WHERE stale IS NOT NULL"),
+              ElementsAre(testing::StartsWith("b|1.csv: the recording has become shorter")));
+}
+
+TEST_F(ShardsTest, AreCurrentAgainWhenARecordingComesBack) {
+  AllShards(2);
+  const std::string text = folder_.Read("1.csv");
+  std::filesystem::remove(folder_ / "1.csv");
+  AllShards(2);
+  folder_.Write("1.csv", text);
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), IsEmpty());
+}
+
 TEST_F(ShardsTest, AreNotMergedIntoTheStoreOfAShard) {
   AllShards(2);
   const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));

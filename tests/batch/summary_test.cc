@@ -305,7 +305,8 @@ TEST_F(SummaryTest, WarnsOfEarlierManifestsAndDuplicateSwings) {
   Store shorter = StoreOf(PlainManifest(3), make);  // the same file with fewer runs
   const Json summary = SummaryOf(shorter);
   EXPECT_THAT(WarningsOf(summary), ElementsAre("not_in_the_manifest", "same_data"));
-  EXPECT_EQ(summary["headline"]["text"], "3 of 3 recordings fitted; 1 more left out, not in the last manifest");
+  EXPECT_EQ(summary["headline"]["text"],
+            "3 of 3 recordings fitted; 1 more left out, not among the recordings of the last refit");
   EXPECT_EQ(summary["parameters"][0]["runs"], 3);
 }
 

@@ -155,6 +155,19 @@ class Interruptions(Lab):
         self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile")[1])
         self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile", "--force")[1])
 
+    def test_results_stay_when_their_recordings_are_gone(self):
+        files = self.simulate(4)
+        manifest = self.manifest(files)
+        self.refit(manifest, "a.sqlite")
+        before = self.rows("a.sqlite")
+        (self.folder / files[0]).parent.rename(self.folder / "elsewhere")
+        out, messages = self.refit(manifest, "a.sqlite", code=3)
+        self.assertIn("4 keep a former result", messages)
+        self.assertIn("0 of 4 recordings fitted; 4 with a former result only", " ".join(out.split()))
+        (self.folder / "elsewhere").rename((self.folder / files[0]).parent)
+        self.assertIn("0 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertEqual(self.rows("a.sqlite"), before)
+
     def test_a_full_disk_is_reported_and_the_store_stays_valid(self):
         manifest = self.manifest(self.simulate(60))
         self.refit(manifest, "whole.sqlite")

@@ -19,8 +19,9 @@ namespace pendulum {
 struct RefitCounts {
   std::int64_t runs = 0;      ///< Runs in the batch, or in its shard.
   std::int64_t current = 0;   ///< Runs whose rows already have the same data, rig, calibration, options and version.
-  std::int64_t refitted = 0;  ///< Runs with new rows.
+  std::int64_t refitted = 0;  ///< Runs that were fitted, or tried, again.
   std::int64_t unfitted = 0;  ///< Runs of both kinds that could not be fitted and have no former result.
+  std::int64_t restored = 0;  ///< Current runs whose former result is current again.
   std::int64_t stale = 0;     ///< Runs of both kinds that keep a former result.
   bool stopped = false;       ///< Stopped before all runs were processed.
 

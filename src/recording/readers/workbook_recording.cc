@@ -126,8 +126,9 @@ Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::stri
     return Fault(name, "this " + std::string(words.kind) + " has no cells with numbers; give another file");
   }
   if (options.preview != nullptr) options.preview->format = words.kind;
-  const auto read = [](const std::string& text, const std::string& member, const ReadOptions& rest) {
-    return ReadRows(LineReader(text, member), rest);
+  const bool are_lists = words.sheet != kSheets.sheet;
+  const auto read = [&](const std::string& text, const std::string& member, const ReadOptions& rest) {
+    return are_lists ? ReadLists(LineReader(text, member), rest) : ReadRows(LineReader(text, member), rest);
   };
   Result<Recording> recording = ReadOnlyMember(FolderOfSheets(workbook.sheets, words, name), options, read);
   if (!recording) return recording;

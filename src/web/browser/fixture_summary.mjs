@@ -193,7 +193,7 @@ function answerOf({ runs, fitted, missing = 0, refused = 0, pendulums = 1, group
       refused,
       pending,
       stale: 0,
-      former: 0,
+      unlisted: 0,
       missing_runs: missing > 0 ? [example('run_17', 'there is no such file; check the path')] : [],
       refused_runs: refused > 0 ? [example('run_3', 'it has no swing')] : [],
       stale_runs: [],

@@ -91,7 +91,7 @@ function summary(models: ModelCounts[], parameters: ParameterSummary[], more: Pa
       refused: 1,
       pending: 0,
       stale: 0,
-      former: 0,
+      unlisted: 0,
       missing_runs: [],
       refused_runs: [],
       stale_runs: [],

@@ -35,7 +35,7 @@ export interface RunCounts {
   refused: number;
   pending: number;
   stale: number;
-  former: number;
+  unlisted: number;
   missing_runs: { id: string; reason: string }[];
   refused_runs: { id: string; reason: string }[];
   stale_runs: { id: string; reason: string }[];

@@ -176,23 +176,27 @@ std::string_view GravityUnitOf(const Choice& choice, const Columns& columns) {
   if (columns.size() < 2 || columns.size() > kAxes) return "";
   std::vector<Eigen::VectorXd> axes;
   for (const std::size_t i : columns) axes.push_back(choice.NumbersOf(i));
-  return UnitOfGravity(axes);
+  return UnitOfMovingGravity(axes);
 }
 
+constexpr double kNoticeableShare = 0.2;
+
 /// Of the axes of an accelerometer, the one across the rod, where gravity changes its sign: the one with the largest
-/// share among those that do not hold gravity at rest. Along the rod the swing has half its period.
+/// share, if it is noticeable, among those that do not hold gravity at rest. Along the rod the swing has half its
+/// period.
 Index AxisAcross(const Choice& choice, const Columns& columns, const Eigen::VectorXd& shares) {
   constexpr double kHolds = 0.5;  // of gravity
   Eigen::VectorXd medians(shares.size());
   for (Index i = 0; i < medians.size(); ++i) {
     medians[i] = std::abs(MedianOf(choice.NumbersOf(columns[static_cast<std::size_t>(i)])));
   }
-  const Eigen::Array<bool, Eigen::Dynamic, 1> holds = medians.array() >= kHolds * medians.norm();
+  const Eigen::Array<bool, Eigen::Dynamic, 1> is_across =
+      medians.array() < kHolds * medians.norm() && shares.array() > kNoticeableShare;
   Index best = 0;
-  if (holds.all()) {
-    shares.maxCoeff(&best);
+  if (is_across.any()) {
+    is_across.select(shares.array(), 0).maxCoeff(&best);
   } else {
-    holds.select(-1, shares.array()).maxCoeff(&best);
+    shares.maxCoeff(&best);
   }
   return best;
 }
@@ -282,7 +286,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
       std::ranges::all_of(columns, [&](std::size_t i) { return IsShortAcceleration(choice.Meaning(i)); });
   const bool may_be_point = (is_unknown || is_short) && MayBeLengths(choice);
   const auto point = may_be_point ? FindPointOnArc(choice, columns, period) : std::nullopt;
-  if (point && is_short && point->is_exact && !point->is_about_origin) {
+  if (point && is_short && !is_gravity && point->is_exact && !point->is_about_origin) {
     AskWhetherPoint(choice, *point);
     return std::nullopt;
   }
@@ -296,7 +300,8 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   const bool is_rotation = IsRotation(choice, columns) && CombineAxes(choice, columns, covariance);
   if (is_rotation && !choice.axes.empty()) return choice.value;
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.
-  if (is_rotation || (is_acceleration && is_gravity) || share >= (is_acceleration ? kMost / 2 : kMost)) {
+  const double least = !is_acceleration ? kMost : is_gravity ? kNoticeableShare : kMost / 2;
+  if (is_rotation || share >= least) {
     choice.Assume("value_column_assumed",
                   "column " + choice.NameOf(columns[best]) + " carries " + Percent(share) +
                       " of the swing and was used, not " + ListOf(others) + "; --value_column chooses another" +

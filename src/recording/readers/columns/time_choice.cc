@@ -44,9 +44,12 @@ bool HasGravityBeside(const Choice& choice, std::size_t time) {
   constexpr std::size_t kAxes = 3;
   std::vector<Eigen::VectorXd> axes;
   for (std::size_t i = 0; i < choice.layout.width; ++i) {
-    if (i != time && choice.IsNumeric(i) && choice.Meaning(i).unit == nullptr) axes.push_back(choice.NumbersOf(i));
+    const NameMeaning& meaning = choice.Meaning(i);
+    const bool may_be_axis =
+        meaning.kind.value_or(Kind::kAcceleration) == Kind::kAcceleration && meaning.unit == nullptr;
+    if (i != time && choice.IsNumeric(i) && may_be_axis) axes.push_back(choice.NumbersOf(i));
   }
-  return axes.size() > 1 && axes.size() <= kAxes && !UnitOfGravity(axes).empty();
+  return axes.size() > 1 && axes.size() <= kAxes && !UnitOfMovingGravity(axes).empty();
 }
 
 /// Asks what a column counts whose numbers increase by 1.

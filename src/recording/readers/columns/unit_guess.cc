@@ -184,10 +184,10 @@ TimeGuess GuessTimeUnit(const Eigen::VectorXd& times, const Eigen::VectorXd& val
       return {scale.unit, " (the period is then " + NumberText(period, 3) + " s)"};
     }
   }
-  constexpr Index kEnoughRows = 20;       // to see a swing; fewer show nothing
-  constexpr double kLongestReading = 60;  // s between readings by hand
-  const bool may_be_by_hand = step >= 1 && step <= kLongestReading && AreWhole(times);
-  if (!swing && values.size() >= kEnoughRows && may_be_by_hand) {
+  constexpr Index kEnoughRows = 20, kMostByHand = 200;          // fewer show no swing
+  constexpr double kShortestReading = 2, kLongestReading = 60;  // s between readings by hand
+  const bool is_usual_by_hand = step >= kShortestReading && step <= kLongestReading && AreWhole(times);
+  if (!swing && values.size() >= kEnoughRows && values.size() <= kMostByHand && is_usual_by_hand) {
     return {"", "the rows are " + NumberText(step, 3) + " s apart if the times are in s, and " + NumberText(step, 3) +
                     " ms if they are in ms"};
   }
@@ -209,6 +209,13 @@ std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes) {
     return std::abs(length / each.gravity - 1) < kNear && steady > kLeastSteady * each.gravity;
   });
   return found == kGravityUnits.end() ? std::string_view() : found->unit;
+}
+
+std::string_view UnitOfMovingGravity(const std::vector<Eigen::VectorXd>& axes) {
+  constexpr double kLeastMotion = 0.02;  // of gravity: along the rod, the motion of a swing of 0.2 rad
+  const double length = UsualLength(axes);
+  const auto moves = [&](const Eigen::VectorXd& axis) { return HalfRange(axis) > kLeastMotion * length; };
+  return std::ranges::count_if(axes, moves) < 2 ? std::string_view() : UnitOfGravity(axes);
 }
 
 namespace {

@@ -49,6 +49,9 @@ struct UnitGuess {
 /// The unit of acceleration in which axes of one sensor contain gravity, whose size they have together; empty: none.
 std::string_view UnitOfGravity(const std::vector<Eigen::VectorXd>& axes);
 
+/// As UnitOfGravity, if at least two of the axes move as in a swing. A pressure or a voltage beside an angle does not.
+std::string_view UnitOfMovingGravity(const std::vector<Eigen::VectorXd>& axes);
+
 /// The unit of a quantity of this kind, or of any kind. `seconds` is the sampling interval, 0 if unknown; `axes` are
 /// those of an acceleration's sensor, perhaps this one alone. No unit and no example: none of the known ones is
 /// plausible.

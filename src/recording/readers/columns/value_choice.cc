@@ -180,7 +180,8 @@ std::vector<Eigen::VectorXd> AccelerationsBeside(const Choice& choice, std::size
 /// Whether `az` stands without `ax` and `ay`, so that it may be the azimuth.
 bool IsLoneAz(const Choice& choice, std::size_t index) {
   return IsShortAcceleration(choice.Meaning(index)) && choice.Meaning(index).stem.ends_with('z') &&
-         std::ranges::count_if(choice.meanings, IsShortAcceleration) == 1;
+         std::ranges::count_if(choice.meanings, IsShortAcceleration) == 1 &&
+         UnitOfGravity({choice.NumbersOf(index)}).empty();
 }
 
 /// The unit of the quantity: from its name, the user, the file, or its numbers; nullptr if the user must be asked.
@@ -228,8 +229,9 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     return nullptr;
   }
   if (IsLoneAz(choice, index)) {
+    const bool is_angle = HalfRange(choice.NumbersOf(index)) > kStandardGravity;
     choice.Ask(column + ", and it may be an acceleration or an azimuth: give it with --unit (m_s2, g, deg, rad, ...)",
-               {"--unit " + std::string(HalfRange(choice.NumbersOf(index)) > kStandardGravity ? "deg" : "m_s2")});
+               is_angle ? std::vector<std::string>{"--unit deg"} : std::vector<std::string>(), is_angle ? "" : "unit");
     return nullptr;
   }
   if (IsEncoderOfWholeNumbers(choice, index)) {

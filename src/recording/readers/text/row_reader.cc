@@ -72,17 +72,21 @@ struct LinesSetAside {
 
 /// Whether a program may write this text in place of a reading.
 bool SaysNoReading(std::string_view text) {
-  constexpr std::array<std::string_view, 12> kWords = {"range",     "error",   "fail",     "timeout",
-                                                       "timed out", "invalid", "overflow", "lost",
-                                                       "missing",   "read",    "saturat",  "no data"};
-  const std::string plain = csv::PlainName(text);
-  return std::ranges::any_of(kWords, [&](std::string_view word) { return plain.find(word) != std::string::npos; });
+  constexpr std::array<std::string_view, 14> kWords = {"of range", "error",     "fail",       "failed",   "failure",
+                                                       "timeout",  "timed out", "invalid",    "overflow", "lost",
+                                                       "missing",  "saturated", "saturation", "no data"};
+  std::string words = " " + csv::PlainName(text) + " ";
+  std::ranges::replace_if(
+      words, [](char c) { return c == '_' || c == ':' || c == ',' || c == '.' || c == '!'; }, ' ');
+  return std::ranges::any_of(
+      kWords, [&](std::string_view word) { return words.find(" " + std::string(word) + " ") != std::string::npos; });
 }
 
 /// Reads one text, line by line.
 class Reader {
  public:
-  Reader(LineReader lines, const ReadOptions& options) : lines_(std::move(lines)), options_(options) {}
+  Reader(LineReader lines, const ReadOptions& options, bool are_lists)
+      : lines_(std::move(lines)), options_(options), are_lists_(are_lists) {}
 
   Result<Recording> Read();
   Result<std::vector<csv::TableColumn>> ReadNames();
@@ -120,7 +124,7 @@ class Reader {
   void RemoveTruncatedStamp();
   void RemoveTruncatedValue();
   void WarnOfEmptyCells();
-  Check RefuseUnpairedRows() const;
+  Check CheckUnpairedRows();
   void WarnOfOtherRate(Recording& recording) const;
   Result<Recording> Finish();
   double rate_hz() const { return options_.sample_rate_hz > 0 ? options_.sample_rate_hz : metadata_.sample_rate_hz; }
@@ -129,6 +133,7 @@ class Reader {
 
   LineReader lines_;
   const ReadOptions& options_;
+  bool are_lists_;  // The columns are lists of a file of JSON or NumPy.
   csv::Metadata metadata_;
   std::string first_bytes_;  // head_ refers to them.
   csv::Head head_;
@@ -658,7 +663,7 @@ Result<Recording> Reader::Finish() {
   RemoveTruncatedValue();
   RemoveTruncatedStamp();
   WarnOfEmptyCells();
-  if (Check paired = RefuseUnpairedRows(); !paired) return tl::unexpected(std::move(paired).error());
+  if (Check paired = CheckUnpairedRows(); !paired) return tl::unexpected(std::move(paired).error());
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);
   if (layout_.second) samples_.second.conservativeResize(rows_);
@@ -670,18 +675,23 @@ Result<Recording> Reader::Finish() {
   return recording;
 }
 
-/// Refuses lists of different lengths: nothing says which of their numbers belong together.
-Check Reader::RefuseUnpairedRows() const {
+/// Lists of different lengths: nothing says which of their numbers belong together. In a text, an empty cell stands in
+/// its row, and the logger may have stopped before its clock.
+Check Reader::CheckUnpairedRows() {
   constexpr std::size_t kMostCutOff = 1;
   if (unpaired_rows_ <= kMostCutOff) return {};
-  const std::string last = std::to_string(unpaired_rows_);
-  return tl::unexpected(
-      Status{StatusCode::kDataLoss,
-             std::string(lines_.name()) + ": the last " + last +
-                 " rows have only one of time and reading (complete rows: " + std::to_string(rows_) +
-                 "): if some were lost before them, the times after that are wrong; look for the missing ones at their "
-                 "source, or delete the last " +
-                 last + " rows if those before are complete"});
+  const std::string file(lines_.name()), last = std::to_string(unpaired_rows_);
+  const std::string lost = "the last " + last +
+                           " rows have only one of time and reading: if some were lost before "
+                           "them, the times after that are wrong";
+  if (are_lists_) {
+    return tl::unexpected(
+        Status{StatusCode::kDataLoss, file + ": " + lost +
+                                          "; look for the missing ones at their "
+                                          "source, or shorten the longer list if the others are complete"});
+  }
+  samples_.warnings.push_back({"unequal_columns", file + ": " + lost + "; these rows were left out"});
+  return {};
 }
 
 /// The times of rows count more than what the text above them says.
@@ -703,11 +713,15 @@ void Reader::WarnOfOtherRate(Recording& recording) const {
 }  // namespace
 
 Result<Recording> ReadRows(LineReader lines, const ReadOptions& options) {
-  return Reader(std::move(lines), options).Read();
+  return Reader(std::move(lines), options, false).Read();
+}
+
+Result<Recording> ReadLists(LineReader lines, const ReadOptions& options) {
+  return Reader(std::move(lines), options, true).Read();
 }
 
 Result<std::vector<csv::TableColumn>> ReadColumnNames(LineReader lines) {
-  return Reader(std::move(lines), {}).ReadNames();
+  return Reader(std::move(lines), {}, false).ReadNames();
 }
 
 }  // namespace pendulum

@@ -149,7 +149,7 @@ TEST(UnnamedColumns, OfOtherQuantitiesAreNoPoint) {
 // The names are of a point a, which lies on a circle far from the origin, as accelerations do not.
 TEST(UnnamedColumns, OfShortNamesMayBeAPoint) {
   const std::vector<Sample> swing = Swing(0.53);
-  const std::string rows = Table(swing, PointAt(400, 650, 100, 1), 0.3, ',');
+  const std::string rows = Table(swing, PointAt(400, 1200, 300, 1), 0.3, ',');
   for (const std::string names : {"t,a_x,a_y\n", "t,ax,ay\n", "t,aX,aY\n"}) {
     EXPECT_THAT(FaultOf(names + rows),
                 HasSubstr("lie on a circle, as the coordinates of a point do and accelerations"));

@@ -78,13 +78,21 @@ TEST(AroundTheTable, TimesOfRowsCountMoreThanAnIntervalAbove) {
   }
 }
 
-// Lists of a file of JSON, NumPy or MATLAB become columns of such a table.
-TEST(AroundTheTable, ColumnsOfDifferentLengthsAreRefused) {
+TEST(AroundTheTable, ListsOfDifferentLengthsAreRefused) {
+  const std::string angles = R"("angle_deg": [1, 2, 3, 4, 5, 6, 7, 8, 9])";
+  EXPECT_THAT(FaultOf(R"({"time_s": [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10], )" + angles + "}"),
+              HasSubstr("the last 2 rows have only one of time and reading: if some were lost before them, the times "
+                        "after that are wrong; look for the missing ones at their source"));
+}
+
+TEST(AroundTheTable, RowsWithATimeAloneAtTheEndAreSaid) {
   const std::string others = "time_ms,angle_deg,torque\n" + Rows("{t},{v},1");
   for (const std::string more : {"80,\n90,\n100,\n", ",108\n,109\n,110\n", "\"80\",\"\"\n\"90\",\"\"\n100,\n"}) {
-    EXPECT_THAT(FaultOf(kTable + more),
-                StartsWith("run.csv: the last 3 rows have only one of time and reading (complete rows: 8): if some "
-                           "were lost before them, the times after that are wrong"));
+    const Recording recording = RecordingOf(kTable + more);
+    ExpectTheRows(recording, kDegree);
+    EXPECT_THAT(MessagesOf(recording),
+                ElementsAre("run.csv: the last 3 rows have only one of time and reading: if some were lost before "
+                            "them, the times after that are wrong; these rows were left out"));
   }
   for (const std::string more : {"80,\n", ",\n,\n,\n"}) EXPECT_THAT(MessagesOf(RecordingOf(kTable + more)), IsEmpty());
   EXPECT_THAT(MessagesOf(RecordingOf(others + "80,,1\n90,,1\n")), IsEmpty());  // the other sensor ran on

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/kept_result.h"
+
+#include <cstdint>
+
+#include <nlohmann/json.hpp>
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The member `data` of a result; null if the result is damaged.
+Json DataOf(const std::string& result) {
+  const Json json = Json::parse(result, nullptr, false);
+  const bool is_sound = json.is_object() && json.contains("data") && json["data"].is_object();
+  return is_sound ? json["data"] : Json(nullptr);
+}
+
+}  // namespace
+
+std::string WhyKept(const StoredResult& kept, const StoredResult& outcome, const std::string& reason) {
+  const Json before = DataOf(kept.result);
+  if (before.is_null()) return "";
+  if (outcome.result.empty()) return reason;
+  if (kept.data_sha256 == outcome.data_sha256) return "";
+  const Json now = DataOf(outcome.result);
+  if (now.is_null() || before.value("path", "") != now.value("path", "")) return "";
+  const auto samples = now.value("samples", std::int64_t{0}), former = before.value("samples", std::int64_t{0});
+  if (samples >= former) return "";
+  return outcome.path + ": the recording has become shorter: " + std::to_string(samples) + " samples instead of " +
+         std::to_string(former);
+}
+
+}  // namespace pendulum
