@@ -196,8 +196,8 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, result_of, set_stale, add_run, put_run, drop_fits, drop_quantities, put_fit,
-      put_quantity;
+  std::unique_ptr<SQLite::Statement> run_of, result_of, set_stale, add_run, put_run, drop_fits, drop_quantities,
+      put_fit, put_quantity;
 };
 
 Result<std::int64_t> Store::State::Find(const std::string& id) {
