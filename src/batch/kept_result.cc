@@ -19,16 +19,16 @@ Json DataOf(const std::string& result) {
 
 }  // namespace
 
-std::string WhyKept(const StoredResult& kept, const StoredResult& outcome, const std::string& reason) {
-  const Json before = DataOf(kept.result);
+std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason) {
+  const Json before = DataOf(result);
   if (before.is_null()) return "";
-  if (outcome.result.empty()) return reason;
-  if (kept.data_sha256 == outcome.data_sha256) return "";
-  const Json now = DataOf(outcome.result);
-  if (now.is_null() || before.value("path", "") != now.value("path", "")) return "";
+  if (outcome.empty()) return reason;
+  const Json now = DataOf(outcome);
+  const std::string path = before.value("path", "");
+  if (now.is_null() || now.value("path", "") != path) return "";
   const auto samples = now.value("samples", std::int64_t{0}), former = before.value("samples", std::int64_t{0});
   if (samples >= former) return "";
-  return outcome.path + ": the recording has become shorter: " + std::to_string(samples) + " samples instead of " +
+  return path + ": the recording has become shorter: " + std::to_string(samples) + " samples instead of " +
          std::to_string(former);
 }
 

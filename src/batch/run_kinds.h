@@ -21,7 +21,7 @@ inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";
 
 /// There is no such recording. A run whose reason begins with its own path is about the recording; otherwise it is
 /// about the rig or the calibration.
-inline constexpr const char* kIsMissing =
+inline const std::string kIsMissing =
     "(exit_code = 3 AND substr(coalesce(reason, ''), 1, length(path) + 1) = path || ':')";
 
 }  // namespace pendulum

@@ -170,14 +170,14 @@ void ReplaceRows(SQLite::Database& database, const std::string& table) {
 void KeepFormerResults(SQLite::Database& database) {
   database.exec("DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, reason TEXT)");
   SQLite::Statement both(database, R"sql(
-SELECT id, mine.path, mine.data_sha256, mine.result, theirs.path, theirs.data_sha256, coalesce(theirs.result, ''),
-    coalesce(theirs.reason, '')
+SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, '')
   FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
-  WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL)sql");
+  WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL
+    AND (theirs.result IS NULL OR theirs.data_sha256 IS NOT mine.data_sha256))sql");
   SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?)");
   const auto text = [&](int column) { return sqlite::Text(both, column); };
   while (both.executeStep()) {
-    const std::string why = WhyKept({text(1), text(2), text(3)}, {text(4), text(5), text(6)}, text(7));
+    const std::string why = WhyKept(text(1), text(2), text(3));
     if (why.empty()) continue;
     sqlite::Bind(keep, text(0), why).exec();
     keep.reset();

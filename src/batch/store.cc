@@ -186,6 +186,10 @@ struct Store::State {
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
+  void PutRows(const RunOutcome& outcome, std::int64_t run) {
+    PutRun(outcome, run);
+    PutFits(outcome, run);
+  }
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const RunOutcome& outcome, std::int64_t run);
 
@@ -210,21 +214,18 @@ Result<std::int64_t> Store::State::Find(const std::string& id) {
 }
 
 std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) {
-  SQLite::Statement& before = Prepared(result_of, R"sql(
-SELECT path, data_sha256, result FROM runs WHERE run = ? AND result IS NOT NULL)sql");
-  if (!sqlite::Bind(before, run).executeStep()) {
-    before.reset();
-    return "";
+  SQLite::Statement& before =
+      Prepared(result_of, "SELECT data_sha256, result FROM runs WHERE run = ? AND result IS NOT NULL");
+  std::string why;
+  if (sqlite::Bind(before, run).executeStep()) {
+    const bool has_result = !outcome.result.is_null(),
+               is_same = sqlite::Text(before, 0) == outcome.provenance.data_sha256;
+    if (!has_result || !is_same) {
+      why = WhyKept(sqlite::Text(before, 1), has_result ? JsonText(outcome.result) : "", outcome.reason);
+    }
   }
-  if (!outcome.result.is_null() && sqlite::Text(before, 1) == outcome.provenance.data_sha256) {
-    before.reset();
-    return "";
-  }
-  const StoredResult kept{sqlite::Text(before, 0), sqlite::Text(before, 1), sqlite::Text(before, 2)};
   before.reset();
-  return WhyKept(kept,
-                 {kept.path, outcome.provenance.data_sha256, outcome.result.is_null() ? "" : JsonText(outcome.result)},
-                 outcome.reason);
+  return why;
 }
 
 void Store::State::SetStale(std::int64_t run, const std::optional<std::string>& stale,
@@ -407,8 +408,7 @@ Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     const auto run = state_->Find(id);
     if (!run) return tl::unexpected(run.error());
-    state_->PutRun(outcome, *run);
-    state_->PutFits(outcome, *run);
+    state_->PutRows(outcome, *run);
     return {};
   });
 }
@@ -420,8 +420,7 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
     if (!run) return tl::unexpected(run.error());
     std::string stale = state_->WhyWorse(outcome, *run);
     if (stale.empty()) {
-      state_->PutRun(outcome, *run);
-      state_->PutFits(outcome, *run);
+      state_->PutRows(outcome, *run);
     } else {
       state_->SetStale(*run, stale, attempt);
     }
@@ -495,14 +494,15 @@ Result<StoreCounts> Store::Count() {
     StoreCounts counts;
     SQLite::Statement runs(state_->database,
                            "SELECT count(*), count(*) - count(exit_code), count(reason), count(*) FILTER (WHERE " +
-                               std::string(kIsMissing) + ") FROM runs");
+                               kIsMissing + "), count(*) FILTER (WHERE " + kIsStale + "), count(*) FILTER (WHERE " +
+                               kIsUnlisted + ") FROM runs");
     runs.executeStep();
     counts.runs = runs.getColumn(0).getInt64();
     counts.pending = runs.getColumn(1).getInt64();
     counts.unfitted = runs.getColumn(2).getInt64();
     counts.missing = runs.getColumn(3).getInt64();
-    counts.stale = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsStale).getInt64();
-    counts.earlier = state_->database.execAndGet("SELECT count(*) FROM runs WHERE " + kIsUnlisted).getInt64();
+    counts.stale = runs.getColumn(4).getInt64();
+    counts.earlier = runs.getColumn(5).getInt64();
     SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();

@@ -2,6 +2,8 @@
 #include "batch/summary_verdict.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <utility>
 
 #include "batch/run_kinds.h"
@@ -50,19 +52,23 @@ Json Verdict(const std::string& model, const char* verdict, const char* level, c
 RunCounts CountRuns(SQLite::Database& database) {
   const std::string live = " AND " + kIsLive;
   const std::string missing = kIsMissing + live;
-  const std::string refused = std::string("exit_code > 1 AND NOT ") + kIsMissing + live;
-  const auto count = [&](const std::string& condition) {
-    return database.execAndGet("SELECT count(*) FROM runs WHERE " + condition).getInt64();
-  };
+  const std::string refused = "exit_code > 1 AND NOT " + kIsMissing + live;
   RunCounts counts;
-  counts.runs = count("NOT " + kIsUnlisted);
-  counts.fitted = count(kIsFitted);
-  counts.not_converged = count("exit_code = 1" + live);
-  counts.missing = count(missing);
-  counts.refused = count(refused);
-  counts.pending = count("exit_code IS NULL" + live);
-  counts.stale = count(kIsStale);
-  counts.unlisted = count(kIsUnlisted);
+  const std::array<std::pair<std::string, std::int64_t*>, 8> all = {{{"NOT " + kIsUnlisted, &counts.runs},
+                                                                     {kIsFitted, &counts.fitted},
+                                                                     {"exit_code = 1" + live, &counts.not_converged},
+                                                                     {missing, &counts.missing},
+                                                                     {refused, &counts.refused},
+                                                                     {"exit_code IS NULL" + live, &counts.pending},
+                                                                     {kIsStale, &counts.stale},
+                                                                     {kIsUnlisted, &counts.unlisted}}};
+  std::string columns;
+  for (const auto& [condition, count] : all) {
+    columns += (columns.empty() ? "" : ", ") + ("count(*) FILTER (WHERE " + condition + ")");
+  }
+  SQLite::Statement row(database, "SELECT " + columns + " FROM runs");
+  row.executeStep();
+  for (std::size_t i = 0; i < all.size(); ++i) *all.at(i).second = row.getColumn(static_cast<int>(i)).getInt64();
   counts.missing_runs = ExamplesOf(database, missing);
   counts.refused_runs = ExamplesOf(database, refused);
   counts.stale_runs = ExamplesOf(database, kIsStale);

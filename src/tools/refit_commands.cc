@@ -128,9 +128,7 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
 }
 
 std::string KeptText(std::int64_t stale) {
-  return std::to_string(stale) +
-         " keep a former result, because the last fit failed or the recording has become shorter "
-         "(--replace_by_failures replaces it)";
+  return std::to_string(stale) + " keep a former result (--replace_by_failures replaces it)";
 }
 
 /// Prints the summary of a refit and returns its exit code.
