@@ -20,6 +20,7 @@ std::string Sentence(const WindowBegin& begin) {
       return "after the fall from " + NumberText(begin.angle_deg, 3) +
              " deg: so near the top the smallest push determines when it falls, so the release is not used";
     case kAfterTurns: return "after its whole turns";
+    case kAfterGap: return "after a gap that hides too many swings to bridge";
     case kAfterMove: return "first turning point after the pendulum was moved";
     case kAfterDrive: return "after a drive that kept the amplitude; --from 0 fits that too";
     case kAfterVibration:
@@ -42,6 +43,8 @@ std::string Sentence(const WindowEnd& end) {
     case kAsked: return "as asked";
     case kEndOfRecording: return "end of recording";
     case kAtRest: return "at rest from about " + NumberText(end.time, 4) + " s";
+    case kBeforeGap:
+      return "a gap of " + NumberText(end.gap_to - end.time, 3) + " s follows, which hides too many swings to bridge";
     case kBeforeMove: return "last turning point before the pendulum is moved";
     case kBeforeStop: return "last turning point before the pendulum is stopped";
     case kDisturbed: return "the motion after does not fit: the pendulum was touched, or follows another law";

@@ -121,6 +121,7 @@ class ClockRepair {
            (samples_.second.size() == 0 || samples_.second[a] == samples_.second[b]);
   }
   Check RemoveRowsWithSharedStamps();
+  void RemoveStrayStamps();
   Check RemoveBackwardRows();
   void KeepRows(const std::vector<bool>& keep);
   void WarnOfScatter();
@@ -174,6 +175,7 @@ bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wra
   const bool is_short = counter.range < kCounters.front().range;
   double largest = 0;
   for (Index i = 1; i < size(); ++i) largest = std::max(largest, time()[i] - time()[i - 1]);
+  if (largest > counter.range / 2) return false;  // a stamp that lost a digit, and the return from it
   const double limit = is_short ? kAlike * usual + 1 : std::max(largest, kUsualSteps * usual);
   for (const Index i : wraps) {
     if (time()[i] + counter.range - time()[i - 1] > limit) return false;
@@ -501,6 +503,37 @@ void ClockRepair::RemoveRepeatedEnds() {
 
 // ---- Stamps that go back -----------------------------------------------------------------------------------------
 
+/// Leaves out single rows, or a few in succession, whose stamps are far from those of the rows around them, as after a
+/// lost or doubled digit. The rows around them are as far apart as the number of rows between them says, so the clock
+/// was not set back.
+void ClockRepair::RemoveStrayStamps() {
+  constexpr double kMaxShare = 0.05, kAlike = 1.5;
+  if (IsNotDecreasing()) return;
+  const double step = MedianStep();
+  std::vector<bool> keep(size(), true), all(size(), true);
+  Index removed = 0, first = 0;
+  for (const UnorderedRows& rows : FindUnorderedRows(time())) DropOutOfOrderRows(time(), rows, keep);
+  for (Index begin = 1, end = 1; begin + 1 < size(); begin = std::max(begin + 1, end)) {
+    for (end = begin; end + 1 < size() && !keep[end]; ++end) {}
+    const Index count = end - begin;
+    if (count == 0 || count > kMaxStepsBack || !keep[begin - 1] || !keep[end]) continue;
+    const double expected = step * static_cast<double>(count + 1), across = time()[end] - time()[begin - 1];
+    const auto is_far = [&](Index row) {
+      return std::max(time()[begin - 1] - time()[row], time()[row] - time()[end]) > kMaxStepsBack * step;
+    };
+    if (across > kAlike * expected || kAlike * across < expected || !is_far(begin) || !is_far(end - 1)) continue;
+    std::fill(all.begin() + begin, all.begin() + end, false);
+    if (removed == 0) first = begin;
+    removed += count;
+  }
+  if (removed == 0 || static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) return;
+  Warn("time_not_increasing", first,
+       "time " + TimeText(time()[first]) + " is far from " + TimeText(time()[first - 1]) + " of line " +
+           std::to_string(samples_.lines.LineOf(first - 1)) + "; " + Count(removed, "row") +
+           (removed == 1 ? " with such a time was" : " with such times were") + " left out");
+  KeepRows(all);
+}
+
 Check ClockRepair::RemoveBackwardRows() {
   constexpr double kMaxShare = 0.05;
   const double reach = kMaxStepsBack * MedianStep();
@@ -539,6 +572,8 @@ void ClockRepair::KeepOnly(const RowRange& rows) {
 Result<RawSamples> ClockRepair::Repair() {
   if (IsUniform()) return std::move(samples_);
   RemoveRepeatedEnds();
+  if (IsUniform()) return std::move(samples_);
+  RemoveStrayStamps();
   if (IsUniform()) return std::move(samples_);
   Unwrap();
   if (IsUniform()) return std::move(samples_);

@@ -280,6 +280,27 @@ TEST(FindFreeSwings, KeepsASwingAcrossGaps) {
   }
 }
 
+TEST(FindFreeSwings, EndsASwingAtAGapOfManySwings) {
+  // The gap begins while it moves, and lasts for longer than the readings and for more than 20 half swings.
+  Recording recording = Joined({Still(0.5, 2), Swing(0.5, 25)});
+  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.time[i] += recording.time[i] > 15.3 ? 36000 : 0;
+  const std::vector<FreeSwing> swings = Must(FindFreeSwings(recording));
+  ASSERT_THAT(swings, SizeIs(2));
+  EXPECT_THAT(swings[0].to, DoubleNear(15.3, 0.02));
+  EXPECT_EQ(Sentence(swings[0].ends), "a gap of 3.6e+04 s follows, which hides too many swings to bridge");
+  EXPECT_THAT(swings[1].from, DoubleNear(36015.3, 0.02));
+  EXPECT_EQ(swings[1].begins.reason, WindowBegin::Reason::kAfterGap);
+  EXPECT_EQ(swings[1].to, LastTime(recording));
+}
+
+TEST(FindFreeSwings, EndsASwingAtAGapOfManySwings_AlsoWithoutATurningPointAfterIt) {
+  Recording recording = Joined({Still(0.5, 2), Swing(0.5, 25)});
+  recording.time.tail(20).array() += 36000;
+  const FreeSwing swing = OnlySwing(recording);
+  EXPECT_EQ(swing.ends.reason, WindowEnd::Reason::kBeforeGap);
+  EXPECT_EQ(swing.to, recording.time[recording.size() - 21]);
+}
+
 TEST(FindFreeSwings, EndsASwingAtATimeSlip) {
   // Between two turning points, two samples are lost without a gap in the time stamps: a thirtieth of a half swing.
   const Recording swing = Joined({Still(0.5, 2), Swing(0.5, 25)}, 0.0005);

@@ -628,6 +628,33 @@ TEST(RepairClock, RemovesTheFewestRowsIfStampsGoBack) {
       "out to make times increase, 2 of 100 rows");
 }
 
+TEST(RepairClock, LeavesOutStampsFarFromThoseAroundThem) {
+  for (const double wrong : {0.04, 40.4, -1e6}) {  // of 0.4 s: a lost digit, a doubled one, anything
+    std::vector<double> time = Stamps(100, Hundredth);
+    time[40] = wrong;
+    const RawSamples repaired = Repaired(Rows(time));
+    EXPECT_EQ(repaired.time.size(), 99) << wrong;
+    EXPECT_EQ(repaired.value[40], 41) << wrong;
+    EXPECT_THAT(WarningOf(repaired), testing::AllOf(testing::StartsWith("time_not_increasing: run.csv:42: time "),
+                                                    testing::EndsWith(" s is far from 0.39 s of line 41; 1 row with "
+                                                                      "such a time was left out")));
+  }
+  // Where the clock was set back, the rows around are not as far apart as their number says.
+  std::vector<double> set_back = Stamps(100, Hundredth);
+  for (int i = 50; i < 100; ++i) set_back[static_cast<std::size_t>(i)] -= 0.2;
+  EXPECT_THAT(FaultOf(Rows(set_back)), testing::HasSubstr("so the clock was set back"));
+}
+
+/// The counter does not overflow where a stamp of 4.28e9 us loses a digit.
+TEST(RepairClock, TakesNoLostDigitForAnOverflow) {
+  std::vector<double> time = Stamps(1000, [](int i) { return 4280000000.0 + 10000.0 * i; });
+  time[300] = 428300000;
+  const RawSamples repaired = Repaired(Rows(time, "us"));
+  EXPECT_EQ(repaired.time.size(), 999);
+  EXPECT_EQ(repaired.time[998], time[999]);
+  EXPECT_THAT(WarningOf(repaired), testing::StartsWith("time_not_increasing: "));
+}
+
 TEST(RepairClock, DetectsNonAdjacentUnorderedStamps) {
   std::vector<double> time = Stamps(100, [](int i) { return i; });
   for (const auto& [row, stamp] : {std::pair{11, 13.0}, {12, 12.0}, {13, 14.0}, {14, 12.5}}) time[row] = stamp;

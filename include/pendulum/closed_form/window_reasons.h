@@ -18,6 +18,7 @@ struct WindowBegin {
     kAccelerationJump,        ///< After the release, at which an acceleration jumps.
     kAfterFall,               ///< After a fall from near the upright, from `angle_deg`.
     kAfterTurns,              ///< After turns over the top.
+    kAfterGap,                ///< After a long gap.
     kAfterMove,               ///< The first turning point after the pendulum was moved.
     kAfterDrive,              ///< After a drive has kept the amplitude.
     kAfterVibration,          ///< After a vibration with `frequency_hz` has died away.
@@ -38,6 +39,7 @@ struct WindowEnd {
     kAsked,  ///< The user gave it.
     kEndOfRecording,
     kAtRest,         ///< The pendulum is at rest from about `time`.
+    kBeforeGap,      ///< A long gap follows, from `time` to `gap_to`.
     kBeforeMove,     ///< The last turning point before the pendulum is moved.
     kBeforeStop,     ///< The last turning point before the pendulum is stopped.
     kDisturbed,      ///< The motion after the window does not fit the earlier motion.
@@ -46,7 +48,7 @@ struct WindowEnd {
     kCountsLost,     ///< After the window an unknown number of counts was lost.
   };
   Reason reason = Reason::kUnknown;
-  double time = 0;  ///< s, file's clock
+  double time = 0, gap_to = 0;  ///< s, file's clock
 };
 
 /// The reason in words, after "begins: " or "ends: "; empty for kUnknown.

@@ -67,7 +67,8 @@ struct ClockWindow {
 /// that increase within packets are kept although they are wrong, and the warning says so. rows_repeated: at least 3
 /// rows at the start or the end that repeat one row, time and value, are left out. time_repeated: rows that share a
 /// time stamp are left out, up to a fifth of all; of identical rows one is kept. time_not_increasing: stamps go back by
-/// at most kMaxStepsBack sampling intervals. As few rows as possible are left out, up to a twentieth of all. Gaps and
+/// at most kMaxStepsBack sampling intervals, or a few rows in succession have stamps far from those around them. As few
+/// rows as possible are left out, up to a twentieth of all. Gaps and
 /// uneven sampling cause no warning. kDataLoss: any other stamps that do not increase, one or two rows at an end whose
 /// distance from the others is ten times the time of all others and a million sampling intervals, and a gap of 1e9
 /// intervals; the message has the line, the times and what to do. Cost: one pass, about twenty if the stamps are not

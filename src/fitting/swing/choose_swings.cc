@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "pendulum/fitting/swing/clock_change.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
 
@@ -43,6 +44,10 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   const Recording* const part = selected ? &*selected : &recording;
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  if (!from_given || !to_given) {
+    if (const Result<void> clock = CheckClock(*part); !clock)
+      return WithMessage(clock.error(), where + clock.error().message);
+  }
   if (IsUndersampled(*part, rig)) {
     if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
     return ChosenSwings{{WholeRecording(*part)}, {1}};

@@ -107,13 +107,15 @@ class TemporaryFile {
   int error_ = 0;
 };
 
-/// A second is enough for a hundred megabytes, but some damaged files would take forever. Several copies of the numbers
-/// exist until the answer is complete.
+/// A second is enough for a hundred megabytes, but some damaged files would take forever, or as much memory as a damaged
+/// length says. Several copies of the numbers exist until the answer is complete.
 ChildLimits LimitsFor(std::size_t bytes, std::size_t max_unpacked) {
   constexpr std::size_t kCopies = 8, kMinBytes = std::size_t{1} << 26;
+  constexpr std::size_t kMaxRatio = 1032;  // zlib packs no better
   ChildLimits limits;
   limits.answer_bytes = max_unpacked;
-  limits.memory_bytes = std::min(limits.memory_bytes, kMinBytes + kCopies * std::max(max_unpacked, bytes));
+  const std::size_t unpacked = std::max(std::min(max_unpacked, kMaxRatio * bytes), bytes);
+  limits.memory_bytes = std::min(limits.memory_bytes, kMinBytes + kCopies * unpacked);
   limits.processor_seconds = 2 + static_cast<int>(bytes >> 25);
   limits.time = std::chrono::seconds(5 + 5 * limits.processor_seconds);  // Other processes also use the processors.
   return limits;
