@@ -590,7 +590,7 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 }  // namespace
 
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 28> kSerious = {"ambiguous_frequency",
+  constexpr std::array<std::string_view, 29> kSerious = {"ambiguous_frequency",
                                                          "inertia_differs_from_rig",
                                                          "another_minimum",
                                                          "frequency_differs_from_rig",
@@ -616,6 +616,7 @@ bool IsSerious(const Warning& warning) {
                                                          "recordings_disagree",
                                                          "not_constant",
                                                          "samples_near_period",
+                                                         "stale_values",
                                                          "uncertain_stop",
                                                          "zero_drift"};
   return std::ranges::find(kSerious, warning.code) != kSerious.end();
