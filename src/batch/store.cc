@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include <SQLiteCpp/Backup.h>
+
 #include "batch/entry_row.h"
 #include "batch/former_results.h"
 #include "batch/kept_result.h"
@@ -111,6 +113,21 @@ void Migrate(SQLite::Database& database) {
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
   database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
   transaction.commit();
+}
+
+/// Updates the tables of a store that is only read. If that is impossible, as on a full or read-only disk, a temporary
+/// copy takes its place and is updated.
+Result<void> MigrateOrCopy(const std::string& name, SQLite::Database& database) {
+  const auto migrate = [](SQLite::Database& tables) -> Result<void> {
+    Migrate(tables);
+    return {};
+  };
+  auto migrated = sqlite::Guard(name, [&] { return migrate(database); });
+  if (migrated || migrated.error().code != StatusCode::kCannotWrite) return migrated;
+  SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // SQLite removes it when it is closed
+  SQLite::Backup(copy, database).executeStep();
+  database = std::move(copy);
+  return migrate(database);
 }
 
 /// Checks that the file is a store of a known version; a file without tables may become one.
@@ -352,11 +369,9 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     }
     const int version = state->database.execAndGet("PRAGMA user_version").getInt();
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
-    const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
-    if (!is_current && can_read && sqlite::IsReadOnly(name)) {
-      state->database.exec(kViewsOfFormerVersions.at(version - kLastFormerResults - 1));
-    } else if (!is_current) {
-      Migrate(state->database);
+    if (!is_current && mode != Mode::kRead) Migrate(state->database);
+    if (!is_current && mode == Mode::kRead) {
+      if (auto migrated = MigrateOrCopy(name, state->database); !migrated) return tl::unexpected(migrated.error());
     }
     if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);

@@ -107,17 +107,6 @@ ALTER TABLE runs ADD COLUMN stale TEXT;    -- why the last attempt left the form
 ALTER TABLE runs ADD COLUMN attempt TEXT;  -- hash of what that attempt was made with; NULL: the result is current
 )sql"};
 
-/// Let queries read a store that cannot be updated: views of the connection with the columns of newer versions. The
-/// first element is for version 3, which has fewer columns.
-inline constexpr std::array<const char*, 2> kViewsOfFormerVersions = {R"sql(
-CREATE TEMP VIEW runs AS SELECT *, NULL AS sources, NULL AS stale, NULL AS attempt FROM main.runs;
-CREATE TEMP VIEW quantities AS
-  SELECT *, NULL AS total_std_error, NULL AS inconstancy_std_error, NULL AS source_std_error FROM main.quantities;
-)sql",
-                                                                      R"sql(
-CREATE TEMP VIEW runs AS SELECT *, NULL AS stale, NULL AS attempt FROM main.runs;
-)sql"};
-
 /// The last version that stored results in schema version 1 of the result JSON.
 inline constexpr int kLastFormerResults = 2;
 

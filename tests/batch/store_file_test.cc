@@ -174,17 +174,46 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
+/// Makes a store of an earlier version.
+void MakeFormer(const std::string& path, std::size_t version) {
+  SQLite::Database former(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  for (std::size_t step = 0; step < version; ++step) former.exec(std::string(kStoreMigrations.at(step)));
+  former.exec(
+      "INSERT INTO runs(id, position, path, rig, calibration, models, columns) VALUES('a', 0, 'a', '', '', '', '{}');"
+      "PRAGMA application_id = " +
+      std::to_string(kStoreId) + "; PRAGMA user_version = " + std::to_string(version));
+}
+
+TEST_F(StoreFileTest, ReadsAnOlderStoreThatCannotBeChanged) {
+  const uid_t self = ::geteuid();
+  constexpr uid_t kNobody = 65534;  // root can write every file
+  for (std::size_t version = 1; version < kStoreMigrations.size(); ++version) {
+    fs::remove(path_);
+    MakeFormer(path_, version);
+    fs::permissions(path_, fs::perms(0444));
+    fs::permissions(folder_, fs::perms(0555));
+    if (self == 0) {
+      ASSERT_EQ(::seteuid(kNobody), 0);
+    }
+    const auto counts = Store::Open(path_, Store::Mode::kRead).and_then([](Store store) { return store.Count(); });
+    const Status fault = FaultOf(Store::Mode::kWrite);
+    if (self == 0) {
+      ASSERT_EQ(::seteuid(self), 0);
+    }
+    fs::permissions(folder_, fs::perms::all);
+    ASSERT_TRUE(counts) << version << ": " << counts.error().message;
+    EXPECT_EQ(counts->pending, 1);
+    EXPECT_EQ(fault.code, StatusCode::kCannotWrite) << fault.message;
+    EXPECT_EQ(SQLite::Database(path_).execAndGet("PRAGMA user_version").getInt(), version);
+  }
+}
+
 // A program that reads the version before it has the lock would repeat the other's update.
 TEST_F(StoreFileTest, IsUpdatedByTwoProgramsAtOnce) {
   constexpr int kPrograms = 4;
   for (std::size_t version = 1; version < kStoreMigrations.size(); ++version) {
     fs::remove(path_);
-    {
-      SQLite::Database former(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-      for (std::size_t step = 0; step < version; ++step) former.exec(std::string(kStoreMigrations.at(step)));
-      former.exec("PRAGMA application_id = " + std::to_string(kStoreId) +
-                  "; PRAGMA user_version = " + std::to_string(version));
-    }
+    MakeFormer(path_, version);
     std::barrier ready(kPrograms);
     std::array<std::string, kPrograms> faults;
     {
