@@ -67,7 +67,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Also replaces results of runs that can no longer be read or fitted, or whose recordings have become shorter; "
        "default off: such a run keeps its former result, which is marked stale and left out of statistics."},
       {"fit_seconds", &Flags::fit_seconds,
-       "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason; default 600."},
+       "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason, and another "
+       "time tries it again; default 600."},
       {"details", &Flags::details,
        "Prints counts of fits, recommendations and failures, and the summary last; default: the summary alone."},
       {"quiet", &Flags::quiet,

@@ -387,9 +387,40 @@ TEST_F(RefitTest, GivesUpARunThatTakesTooLong) {
   EXPECT_EQ(ValueOf("SELECT exit_code FROM runs WHERE id = 'a'"), std::to_string(ExitCode(StatusCode::kTryAgain)));
   RefitOptions again = coulomb_;
   again.run.fit.interval = IntervalMethod::kBootstrap;
+  again.fit_time = options.fit_time;
   EXPECT_THAT(Refitted(again), IsEmpty());
   again.retry_failed = true;
   EXPECT_THAT(Refitted(again), ElementsAre("a", "b", "bad"));
+}
+
+TEST_F(RefitTest, TriesARunThatTookTooLongAgainWithMoreTime) {
+  WriteBatch(folder_, 2);
+  RefitOptions options = SlowOptions(coulomb_, [] {});
+  options.fit_time = std::chrono::milliseconds(200);
+  EXPECT_EQ(RefitAll(options).unfitted, 2);
+  EXPECT_THAT(Refitted(options), IsEmpty());
+  options.fit_time = std::chrono::milliseconds(201);
+  EXPECT_THAT(Refitted(options), ElementsAre("a", "b"));
+  options.run.fit.progress = nullptr;
+  options.fit_time = std::chrono::minutes(10);
+  EXPECT_EQ(RefitAll(options).unfitted, 0);
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARunThatTakesTooLongUntilItHasMoreTime) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  RefitOptions options = SlowOptions(coulomb_, [] {});
+  options.fit_time = std::chrono::milliseconds(200);
+  RefitCounts counts = RefitAll(options);
+  EXPECT_EQ(counts.stale, 1);
+  EXPECT_EQ(counts.refitted, 1);
+  EXPECT_THAT(ValueOf("SELECT stale FROM runs"), StartsWith("0.csv: the fit took longer than 0.2 s; "));
+  EXPECT_EQ(RefitAll(options).current, 1);
+  options.run.fit.progress = nullptr;
+  options.fit_time = std::chrono::minutes(10);
+  counts = RefitAll(options);
+  EXPECT_EQ(counts.stale, 0);
+  EXPECT_EQ(counts.refitted, 1);
 }
 
 TEST_F(RefitTest, LeavesTheRunInProgressForTheNextRefitWhenStopped) {
