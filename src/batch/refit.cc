@@ -290,6 +290,11 @@ class Refitter {
       counts_.restored += marked ? 1 : 0;
       return marked ? Result<bool>(false) : tl::unexpected(std::move(marked).error());
     }
+    if (!run.exit_code) {
+      auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256);
+      if (!renamed) return tl::unexpected(std::move(renamed).error());
+      counts_.renamed += *renamed ? 1 : 0;
+    }
     if (options_.replace_by_failures) {
       auto put = store_.Put(id, *attempt.outcome);
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
@@ -343,6 +348,19 @@ class Refitter {
   std::optional<Status> error_;
 };
 
+/// What is asked of all fits of a batch.
+Result<std::string> BatchJson(const RefitOptions& options) {
+  auto json = nlohmann::ordered_json::parse(OptionsJson(options.run));
+  for (const auto& [key, file] :
+       {std::pair{"rig_sha256", &options.rig}, {"calibration_sha256", &options.calibration}}) {
+    if (!*file) continue;
+    auto hash = Sha256(**file);
+    if (!hash) return tl::unexpected(hash.error());
+    json[key] = *std::move(hash);
+  }
+  return JsonText(json);
+}
+
 }  // namespace
 
 RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const RefitOptions& options) {
@@ -351,7 +369,9 @@ RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const Refi
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
   store.ShortenWaitsOnStop(options.stop);
-  const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
+  const auto batch = BatchJson(options);
+  if (!batch) return tl::unexpected(batch.error());
+  const auto meta = store.Begin(source, options.shard, *batch);
   if (!meta) return tl::unexpected(meta.error());
   if (const auto checked = CheckGroupBy(store, options.group_by); !checked) return tl::unexpected(checked.error());
   RefitCounts counts;

@@ -108,7 +108,7 @@ void Migrate(SQLite::Database& database) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
   if (version > 0 && version <= kLastFormerResults) RenameInResults(database);
-  if (version > 0) FillNewColumns(database);
+  if (version > 0 && version < kFirstWithTotalErrors) FillNewColumns(database);
   UpdateResultsView(database);
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
   database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
@@ -203,12 +203,9 @@ struct Store::State {
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
-  void PutRows(const RunOutcome& outcome, std::int64_t run) {
-    PutRun(outcome, run);
-    PutFits(outcome, run);
-  }
+  void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
-  void PutFits(const RunOutcome& outcome, std::int64_t run);
+  void PutFits(const std::vector<FitRow>& rows, std::int64_t run);
 
   static constexpr int kReaderTimeoutMs = 10000, kWriterTimeoutMs = 600000, kStoppedTimeoutMs = 2000,
                        kServerTimeoutMs = 2000, kStepMs = 20;
@@ -217,8 +214,8 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, result_of, set_stale, add_run, put_run, drop_fits, drop_quantities,
-      put_fit, put_quantity;
+  std::unique_ptr<SQLite::Statement> run_of, result_of, renamed_run, set_stale, add_run, put_run, keep_fits, drop_fits,
+      drop_quantities, put_fit, put_quantity;
 };
 
 Result<std::int64_t> Store::State::Find(const std::string& id) {
@@ -314,14 +311,24 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
       .exec();
 }
 
-void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
-  sqlite::Bind(Prepared(drop_quantities, "DELETE FROM quantities WHERE run = ?"), run).exec();
-  sqlite::Bind(Prepared(drop_fits, "DELETE FROM fits WHERE run = ?"), run).exec();
-  SQLite::Statement& fit =
-      Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+void Store::State::PutRows(const RunOutcome& outcome, std::int64_t run) {
+  const std::vector<FitRow> rows = FitRows(outcome);
+  Json models = Json::array();
+  for (const FitRow& row : rows) models.push_back(row.model);
+  const std::string asked = JsonText(models);
+  sqlite::Bind(Prepared(keep_fits, kKeepFits), run, asked).exec();
+  sqlite::Bind(Prepared(drop_quantities, kDropQuantities), run, asked).exec();
+  sqlite::Bind(Prepared(drop_fits, kDropFits), run, asked).exec();
+  PutRun(outcome, run);
+  PutFits(rows, run);
+}
+
+void Store::State::PutFits(const std::vector<FitRow>& rows, std::int64_t run) {
+  SQLite::Statement& fit = Prepared(
+      put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL)");
   SQLite::Statement& quantity =
       Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  for (const FitRow& row : FitRows(outcome)) {
+  for (const FitRow& row : rows) {
     sqlite::Bind(fit, run, row.model, row.status, row.reason, row.used_samples, row.effective_samples,
                  row.residual_unit, row.rms_residual, row.sigma, row.noise_model, row.lag1_correlation,
                  row.log_likelihood, row.aic, row.aicc, row.bic, row.durbin_watson, row.ljung_box_p, row.runs_p,
@@ -394,6 +401,8 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     meta.manifest_sha256 = *std::move(manifest);
     meta.options_sha256 = *std::move(options);
     state_->RestrictToShard(shard, meta);
+    const std::string former_options = state_->GetMeta("options_sha256");
+    if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(kMarkFormerOptions);
     state_->database.exec(kUpdateRuns);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
@@ -440,6 +449,21 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
       state_->SetStale(*run, stale, attempt);
     }
     return stale;
+  });
+}
+
+Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256) {
+  return sqlite::Guard(name(), [&]() -> Result<bool> {
+    const auto added = state_->Find(id);
+    if (!added) return tl::unexpected(added.error());
+    SQLite::Statement& find = state_->Prepared(state_->renamed_run, kRenamedRun.c_str());
+    if (!sqlite::Bind(find, data_sha256).executeStep()) return false;
+    const std::int64_t renamed = find.getColumn(0).getInt64();
+    find.reset();
+    SQLite::Statement drop(state_->database, "DELETE FROM runs WHERE run = ?"), rename(state_->database, kRenameRun);
+    sqlite::Bind(drop, *added).exec();
+    sqlite::Bind(rename, id, renamed).exec();
+    return true;
   });
 }
 
@@ -518,10 +542,13 @@ Result<StoreCounts> Store::Count() {
     counts.missing = runs.getColumn(3).getInt64();
     counts.stale = runs.getColumn(4).getInt64();
     counts.earlier = runs.getColumn(5).getInt64();
-    SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
+    SQLite::Statement fits(state_->database,
+                           "SELECT count(*) - count(stale), count(*) FILTER (WHERE status = 'failed'), count(stale) "
+                           "FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();
     counts.failed = fits.getColumn(1).getInt64();
+    counts.former_fits = fits.getColumn(2).getInt64();
     return counts;
   });
 }
