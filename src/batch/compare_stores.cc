@@ -11,28 +11,37 @@ namespace pendulum {
 namespace {
 
 constexpr const char* kFits = R"sql(
-SELECT id, mine.model, mine.status, theirs.status
-  FROM main.runs JOIN other.runs AS their_runs USING(id)
-  JOIN main.fits AS mine ON mine.run = main.runs.run
-  JOIN other.fits AS theirs ON theirs.run = their_runs.run AND theirs.model = mine.model
-  ORDER BY main.runs.position, id, mine.model)sql";
+SELECT id, model, mine.status, theirs.status FROM fits_before AS mine JOIN fits_after AS theirs USING(id, model)
+  ORDER BY mine.position, id, model)sql";
 
 constexpr const char* kRemovedFits = R"sql(
-SELECT id, model FROM main.runs JOIN main.fits USING(run)
-  WHERE NOT EXISTS (SELECT * FROM other.runs AS their_runs JOIN other.fits AS theirs USING(run)
-                      WHERE their_runs.id = main.runs.id AND theirs.model = main.fits.model)
-  ORDER BY main.runs.position, id, model LIMIT ?)sql";
+SELECT id, model FROM fits_before AS mine
+  WHERE NOT EXISTS (SELECT * FROM fits_after AS theirs WHERE theirs.id = mine.id AND theirs.model = mine.model)
+  ORDER BY position, id, model LIMIT ?)sql";
 
 constexpr const char* kParameters = R"sql(
 SELECT id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, mine.std_error, theirs.std_error, theirs.unit
-  FROM main.runs JOIN other.runs AS their_runs USING(id)
-  JOIN main.quantities AS mine ON mine.run = main.runs.run
+  FROM fits_before JOIN fits_after USING(id, model)
+  JOIN main.quantities AS mine ON mine.run = fits_before.run AND mine.model = fits_before.model
   JOIN other.quantities AS theirs
-    ON theirs.run = their_runs.run AND theirs.model = mine.model AND theirs.name = mine.name
+    ON theirs.run = fits_after.run AND theirs.model = mine.model AND theirs.name = mine.name
   WHERE mine.derived = 0)sql";
 
-std::int64_t CountOf(SQLite::Database& database, const std::string& schema) {
-  return database.execAndGet("SELECT count(*) FROM " + schema + ".fits").getInt64();
+/// Creates a view of the fits in a store that are not stale. A store of a former version on a read-only disk has no
+/// stale ones.
+void CreateView(SQLite::Database& database, const std::string& view, const std::string& schema) {
+  SQLite::Statement columns(database, "SELECT count(*) FROM pragma_table_info('fits', ?) WHERE name = 'stale'");
+  sqlite::Bind(columns, schema).executeStep();
+  const bool has_marks = columns.getColumn(0).getInt() > 0;
+  database.exec("CREATE TEMP VIEW " + view +
+                " AS SELECT runs.id, runs.position, fits.run, fits.model, fits.status FROM " + schema +
+                ".runs AS runs JOIN " + schema + ".fits AS fits USING(run) WHERE (runs.position >= 0 OR runs.run IN " +
+                "(SELECT run FROM " + schema + ".requests))" +
+                (has_marks ? " AND runs.stale IS NULL AND fits.stale IS NULL" : ""));
+}
+
+std::int64_t CountOf(SQLite::Database& database, const std::string& table) {
+  return database.execAndGet("SELECT count(*) FROM " + table).getInt64();
 }
 
 std::vector<std::string> CpusOf(SQLite::Database& database, const std::string& schema) {
@@ -47,8 +56,11 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
     if (status.before == status.after) continue;
     if (comparison.changed_status++ < StoreComparison::kMaxListed) comparison.status_changes.push_back(status);
   }
-  comparison.only_before = CountOf(database, "main") - comparison.fits;
-  comparison.only_after = CountOf(database, "other") - comparison.fits;
+  const std::int64_t before = CountOf(database, "fits_before"), after = CountOf(database, "fits_after");
+  comparison.only_before = before - comparison.fits;
+  comparison.only_after = after - comparison.fits;
+  comparison.stale_before = CountOf(database, "main.fits") - before;
+  comparison.stale_after = CountOf(database, "other.fits") - after;
   SQLite::Statement removed(database, kRemovedFits);
   sqlite::Bind(removed, StoreComparison::kMaxListed);
   while (removed.executeStep()) comparison.removed.push_back({sqlite::Text(removed, 0), sqlite::Text(removed, 1)});
@@ -108,6 +120,8 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     SQLite::Database& database = before.database();
     SQLite::Statement attach(database, "ATTACH ? AS other");
     sqlite::Bind(attach, sqlite::FileName(after.name())).exec();
+    CreateView(database, "fits_before", "main");
+    CreateView(database, "fits_after", "other");
     StoreComparison comparison;
     CompareFits(database, comparison);
     {
@@ -117,7 +131,7 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     std::ranges::sort(comparison.most_moved, std::greater(), &MovedParameter::errors);
     comparison.cpus_before = CpusOf(database, "main");
     comparison.cpus_after = CpusOf(database, "other");
-    database.exec("DETACH other");
+    database.exec("DROP VIEW fits_before; DROP VIEW fits_after; DETACH other");
     return comparison;
   });
 }

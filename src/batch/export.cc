@@ -10,6 +10,7 @@
 #include <csv.h>
 #include <nlohmann/json.hpp>
 
+#include "batch/run_kinds.h"
 #include "batch/sqlite.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
@@ -20,9 +21,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Columns of this query: 0 id, 1 path, 2 rig, 3 calibration, 4 from_s, 5 to_s, 6 models, 7 columns, 8 exit_code, 9
-/// reason, 10 result.
-constexpr const char* kRuns = R"sql(
-SELECT id, path, rig, calibration, from_s, to_s, models, columns, exit_code, reason, result
+/// reason, 10 result, 11 stale, 12 former fits.
+const std::string kRuns = R"sql(
+SELECT id, path, rig, calibration, from_s, to_s, models, columns, exit_code, reason, result, )sql" +
+                          kWhyStale + R"sql(,
+    (SELECT json_group_array(json(json)) FROM fits WHERE fits.run = runs.run AND fits.stale IS NOT NULL
+      HAVING count(*) > 0)
   FROM runs WHERE exit_code IS NOT NULL ORDER BY position, id)sql";
 
 /// The manifest's data of a run, without missing columns.
@@ -39,8 +43,10 @@ Json ManifestJson(const SQLite::Statement& row) {
 }
 
 std::string JsonLine(const SQLite::Statement& row) {
-  std::string line =
-      "{\"id\":" + JsonText(sqlite::Text(row, 0)) + ",\"manifest\":" + JsonText(ManifestJson(row)) + ",\"result\":";
+  std::string line = "{\"id\":" + JsonText(sqlite::Text(row, 0)) + ",\"manifest\":" + JsonText(ManifestJson(row));
+  if (!row.getColumn(11).isNull()) line += ",\"stale\":" + JsonText(sqlite::Text(row, 11));
+  if (!row.getColumn(12).isNull()) line += ",\"former_fits\":" + sqlite::Text(row, 12);
+  line += ",\"result\":";
   if (!row.getColumn(10).isNull()) return line + sqlite::Text(row, 10) + "}\n";
   const Json error = {{"exit_code", row.getColumn(8).getInt()}, {"message", sqlite::Text(row, 9)}};
   return line + "null,\"error\":" + JsonText(error) + "}\n";
@@ -76,7 +82,7 @@ class CsvTable {
   }
 
   std::string Header() const {
-    std::vector<std::string> ours = {"id", "path", "rig", "calibration", "model", "recommended"};
+    std::vector<std::string> ours = {"id", "path", "rig", "calibration", "model", "recommended", "stale"};
     ours.insert(ours.end(), kStatistics.begin(), kStatistics.end());
     for (const std::string& name : quantities_) {
       for (const char* member : kMembers) ours.push_back(NameOf(name, member));
@@ -98,7 +104,9 @@ class CsvTable {
 
   /// Writes one row per fit.
   Result<void> Rows(const TextSink& take) {
-    std::string query = "SELECT fits.run, id, path, rig, calibration, columns, fits.model, recommended = fits.model";
+    std::string query =
+        "SELECT fits.run, id, path, rig, calibration, columns, fits.model, recommended = fits.model, coalesce(" +
+        kWhyStale + ", fits.stale)";
     for (const char* name : kStatistics) query += std::string(", fits.") + name;
     SQLite::Statement fits(database_, query + " FROM runs JOIN fits USING(run) ORDER BY position, id, fits.model");
     while (fits.executeStep()) {

@@ -23,7 +23,7 @@ Json ModelsJson(SQLite::Database& database) {
 SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) FILTER (WHERE status = 'not_converged'),
     count(*) FILTER (WHERE status = 'not_identifiable'), count(*) FILTER (WHERE status = 'failed')
   FROM fits JOIN runs USING(run) WHERE )sql" +
-                                       kIsLive + " GROUP BY model ORDER BY model");
+                                       kIsLiveFit + " GROUP BY model ORDER BY model");
   Json models = Json::array();
   while (rows.executeStep()) {
     models.push_back({{"model", sqlite::Text(rows, 0)},
@@ -40,7 +40,7 @@ SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) F
 Json RecommendationsJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT recommended, count(*) FROM runs
-  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits GROUP BY run HAVING count(*) > 1) AND )sql" +
+  WHERE result IS NOT NULL AND run IN (SELECT run FROM fits WHERE stale IS NULL GROUP BY run HAVING count(*) > 1) AND )sql" +
                                        kIsLive + " GROUP BY recommended ORDER BY count(*) DESC, recommended");
   Json list = Json::array();
   while (rows.executeStep()) {
@@ -81,7 +81,7 @@ Json FailuresJson(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
   WHERE fits.status <> 'converged' AND )sql" +
-                                       kIsLive + " ORDER BY position, id");
+                                       kIsLiveFit + " ORDER BY position, id");
   std::map<std::tuple<std::string, int, std::string>, Failures> kinds;
   while (rows.executeStep()) {
     const std::string why = ReasonOf(sqlite::Text(rows, 2), sqlite::Text(rows, 3));

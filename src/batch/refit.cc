@@ -88,11 +88,18 @@ Result<std::string> HashOf(const Result<std::optional<std::string>>& bytes) {
   return *bytes ? Sha256(**bytes) : std::string();
 }
 
-/// What an attempt was made with, as one hash.
+/// What an attempt was made with, as one hash; empty if that is unknown.
 std::string AttemptOf(const Provenance& provenance) {
+  if (provenance.version.empty()) return "";
   return Sha256(JsonText({provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256,
                           provenance.options_sha256, provenance.version}))
       .value_or("");
+}
+
+/// The provenance of a run that was given up after this time: more time may give it a result.
+Provenance GivenUp(Provenance provenance, std::chrono::milliseconds limit) {
+  provenance.options_sha256 = Sha256(provenance.options_sha256 + std::to_string(limit.count())).value_or("");
+  return provenance;
 }
 
 /// The names of a run's files, which appear in its result and reasons.
@@ -133,7 +140,7 @@ std::string TooLong(std::chrono::milliseconds limit) {
   const double seconds = std::chrono::duration<double>(limit).count();
   return "the fit took longer than " + NumberText(seconds, 4) +
          " s; look at the recording with fit_pendulum, shorten it (from_s and to_s in the manifest), or give more time "
-         "with --fit_seconds and --retry_failed";
+         "with --fit_seconds";
 }
 
 /// `limit`: of the fit's time; nullptr: none.
@@ -151,7 +158,10 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
     outcome.exit_code = ExitCode(run.error().code);
     outcome.reason = run.error().message;
     const bool is_stopped = watch && watch->token().stop_requested() && run.error().code == StatusCode::kTryAgain;
-    if (is_stopped) outcome.reason = entry.path + ": " + TooLong(limit->limit());
+    if (is_stopped) {
+      outcome.reason = entry.path + ": " + TooLong(limit->limit());
+      outcome.provenance = GivenUp(std::move(outcome.provenance), limit->limit());
+    }
   }
   return outcome;
 }
@@ -217,7 +227,6 @@ class Refitter {
 
   struct Attempt {
     std::optional<RunOutcome> outcome;  ///< std::nullopt: the rows of the run need no other.
-    std::string inputs;                 ///< Hash of what it was made with; empty: unknown.
     bool is_result_current = false;     ///< The inputs are those of the stored rows.
   };
 
@@ -227,9 +236,8 @@ class Refitter {
     Attempt attempt;
     try {
       const auto is_current = [&](const Provenance& provenance) {
-        attempt.inputs = AttemptOf(provenance);
         attempt.is_result_current = run.provenance.Agrees(provenance);
-        return IsCurrent(run, provenance, attempt.inputs);
+        return IsCurrent(run, provenance);
       };
       attempt.outcome = RefitUnless(source_, run.entry, options_, is_current, &limit_);
     } catch (const std::exception& error) {
@@ -242,12 +250,15 @@ class Refitter {
   bool IsStopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   /// Whether the rows of a run need no attempt with these inputs.
-  bool IsCurrent(const StoredRun& run, const Provenance& provenance, const std::string& attempt) const {
+  bool IsCurrent(const StoredRun& run, const Provenance& provenance) const {
     if (!run.exit_code || options_.force || *run.exit_code == ExitCode(StatusCode::kInternal) ||
         (options_.retry_failed && *run.exit_code > 1))
       return false;
-    if (run.provenance.Agrees(provenance)) return true;
-    return attempt == run.attempt && !attempt.empty() && !options_.retry_failed && !options_.replace_by_failures;
+    const Provenance given_up = GivenUp(provenance, options_.fit_time);
+    const bool is_given_up = *run.exit_code == ExitCode(StatusCode::kTryAgain);
+    if (run.provenance.Agrees(is_given_up ? given_up : provenance)) return true;
+    if (run.attempt.empty() || options_.retry_failed || options_.replace_by_failures) return false;
+    return run.attempt == AttemptOf(provenance) || run.attempt == AttemptOf(given_up);
   }
 
   std::optional<StoredRun> NextRun() {
@@ -279,12 +290,17 @@ class Refitter {
       counts_.restored += marked ? 1 : 0;
       return marked ? Result<bool>(false) : tl::unexpected(std::move(marked).error());
     }
+    if (!run.exit_code) {
+      auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256);
+      if (!renamed) return tl::unexpected(std::move(renamed).error());
+      counts_.renamed += *renamed ? 1 : 0;
+    }
     if (options_.replace_by_failures) {
       auto put = store_.Put(id, *attempt.outcome);
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
     }
     const bool is_bug = attempt.outcome->exit_code == ExitCode(StatusCode::kInternal);  // tried again next time
-    auto why = store_.PutUnlessWorse(id, *attempt.outcome, is_bug ? "" : attempt.inputs);
+    auto why = store_.PutUnlessWorse(id, *attempt.outcome, is_bug ? "" : AttemptOf(attempt.outcome->provenance));
     return why ? Result<bool>(!why->empty()) : tl::unexpected(std::move(why).error());
   }
 
@@ -332,6 +348,19 @@ class Refitter {
   std::optional<Status> error_;
 };
 
+/// What is asked of all fits of a batch.
+Result<std::string> BatchJson(const RefitOptions& options) {
+  auto json = nlohmann::ordered_json::parse(OptionsJson(options.run));
+  for (const auto& [key, file] :
+       {std::pair{"rig_sha256", &options.rig}, {"calibration_sha256", &options.calibration}}) {
+    if (!*file) continue;
+    auto hash = Sha256(**file);
+    if (!hash) return tl::unexpected(hash.error());
+    json[key] = *std::move(hash);
+  }
+  return JsonText(json);
+}
+
 }  // namespace
 
 RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const RefitOptions& options) {
@@ -340,7 +369,9 @@ RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const Refi
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
   store.ShortenWaitsOnStop(options.stop);
-  const auto meta = store.Begin(source, options.shard, OptionsJson(options.run));
+  const auto batch = BatchJson(options);
+  if (!batch) return tl::unexpected(batch.error());
+  const auto meta = store.Begin(source, options.shard, *batch);
   if (!meta) return tl::unexpected(meta.error());
   if (const auto checked = CheckGroupBy(store, options.group_by); !checked) return tl::unexpected(checked.error());
   RefitCounts counts;

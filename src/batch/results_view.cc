@@ -54,10 +54,10 @@ std::string ResultsView() {
   for (const std::string_view name : ViewedQuantities()) sql += ColumnsOf(name);
   return sql + R"sql(
   FROM (SELECT run, id, position, path, rig, reason,
-          coalesce(stale, iif()sql" +
-         kIsUnlisted + R"sql(, 'not among the recordings of the last refit', NULL)) AS stale, iif()sql" + kIsMissing +
+          )sql" +
+         kWhyStale + R"sql( AS stale, iif()sql" + kIsMissing +
          R"sql(, 'missing', 'refused') AS refusal, coalesce(recommended,
-          (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law
+          (SELECT min(model) FROM fits WHERE fits.run = runs.run AND fits.stale IS NULL HAVING count(*) = 1)) AS law
         FROM runs WHERE exit_code IS NOT NULL) AS main
   LEFT JOIN fits ON fits.run = main.run AND fits.model = main.law)sql";
 }

@@ -207,7 +207,7 @@ RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& mod
   SQLite::Statement rows(database, "SELECT " + groups.sql +
                                        R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
   WHERE model = ? AND status = 'converged' AND result IS NOT NULL AND )sql" +
-                                       kIsLive + " ORDER BY pendulum, position, id");
+                                       kIsLiveFit + " ORDER BY pendulum, position, id");
   sqlite::Bind(rows, model);
   std::vector<Json> tested;
   std::optional<Group> group;

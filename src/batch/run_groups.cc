@@ -132,7 +132,7 @@ std::map<std::string, RunValues> ValuesByGroup(SQLite::Database& database, const
   SQLite::Statement rows(database, "SELECT " + groups.sql + R"sql(, estimate, std_error
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND std_error > 0
-    AND )sql" + kIsLive);
+    AND )sql" + kIsLiveFit);
   sqlite::Bind(rows, model, std::string(name));
   std::map<std::string, RunValues> values;
   while (rows.executeStep()) {
@@ -183,9 +183,10 @@ RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   groups.smallest = sizes.getColumn(2).getInt64();
   groups.largest = sizes.getColumn(3).getInt64();
   const std::vector<std::string> own = sqlite::Texts(
-      database, "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive +
-                    " AND run IN (SELECT run FROM fits WHERE status = 'converged')) GROUP BY pendulum HAVING "
-                    "count(DISTINCT sources) > 1");
+      database,
+      "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive +
+          " AND run IN (SELECT run FROM fits WHERE status = 'converged' AND stale IS NULL)) GROUP BY pendulum HAVING "
+          "count(DISTINCT sources) > 1");
   groups.own_sources.insert(own.begin(), own.end());
   return groups;
 }

@@ -10,11 +10,18 @@ namespace pendulum {
 /// The last manifest does not name the run. Those requested from a service belong to no manifest.
 inline const std::string kIsUnlisted = "(runs.position < 0 AND runs.run NOT IN (SELECT run FROM requests))";
 
+/// Why statistics leave the result of a run out; NULL if they do not.
+inline const std::string kWhyStale =
+    "coalesce(runs.stale, iif(" + kIsUnlisted + ", 'not among the recordings of the last refit', NULL))";
+
 /// The run keeps the result of a former state of its recording, rig or options.
 inline const std::string kIsStale = "(runs.stale IS NOT NULL AND NOT " + kIsUnlisted + ")";
 
 /// Neither of these. Statistics leave other runs out.
 inline const std::string kIsLive = "(runs.stale IS NULL AND NOT " + kIsUnlisted + ")";
+
+/// A row of table fits, joined with that of its run, is of the result of a live run.
+inline const std::string kIsLiveFit = "(fits.stale IS NULL AND " + kIsLive + ")";
 
 /// The fit of the recommended law, or of the only law, converged, and the run is live.
 inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";

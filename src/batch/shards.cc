@@ -9,6 +9,7 @@
 
 #include "batch/kept_result.h"
 #include "batch/sqlite.h"
+#include "batch/store_queries.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
@@ -154,11 +155,8 @@ std::string AssignmentsOf(SQLite::Database& database, const std::string& table) 
   return sqlite::Text(columns, 0);
 }
 
-/// Replaces the rows of a table by the rows of the attached store `shard`, for the runs in `shard` that are not kept.
-void ReplaceRows(SQLite::Database& database, const std::string& table) {
-  database.exec("DELETE FROM main." + table +
-                " WHERE run IN (SELECT main.runs.run FROM main.runs JOIN shard.runs USING(id) WHERE id NOT IN (SELECT "
-                "id FROM kept))");
+/// Copies the rows of a table of the attached store `shard`, for the runs in `shard` that are not kept.
+void CopyRows(SQLite::Database& database, const std::string& table) {
   database.exec("INSERT INTO main." + table + "(run, " + ColumnsOf(database, table) + ") SELECT mine.run, " +
                 ColumnsOf(database, table, "theirs.") + " FROM shard." + table +
                 " AS theirs JOIN shard.runs AS their_run USING(run) JOIN main.runs AS mine ON mine.id = their_run.id "
@@ -190,17 +188,34 @@ UPDATE main.runs SET (position, path, rig, calibration, from_s, to_s, models, co
   WHERE id IN (SELECT id FROM kept))sql");
 }
 
+/// Marks the fits of the models that the attached store `shard` does not have for the same run, as Store::Put does.
+void KeepOtherModels(SQLite::Database& database) {
+  SQLite::Statement runs(database, R"sql(
+SELECT mine.run, (SELECT json_group_array(model) FROM shard.fits AS theirs WHERE theirs.run = other.run)
+  FROM main.runs AS mine JOIN shard.runs AS other USING(id) WHERE mine.id NOT IN (SELECT id FROM kept))sql");
+  std::array<SQLite::Statement, 3> steps = {SQLite::Statement(database, kKeepFits),
+                                            SQLite::Statement(database, kDropQuantities),
+                                            SQLite::Statement(database, kDropFits)};
+  while (runs.executeStep()) {
+    for (SQLite::Statement& step : steps) {
+      sqlite::Bind(step, runs.getColumn(0).getInt64(), sqlite::Text(runs, 1)).exec();
+      step.reset();
+    }
+  }
+}
+
 /// Copies the rows of the attached store `shard` into this store. Rows of the same runs are replaced, except a result
 /// by a failure.
 void CopyAttachedShard(SQLite::Database& database) {
   KeepFormerResults(database);
+  KeepOtherModels(database);
   const std::string runs = ColumnsOf(database, "runs");
   database.exec(
       "INSERT INTO main.runs(" + runs + ") SELECT " + runs +
       " FROM shard.runs WHERE id NOT IN (SELECT id FROM kept) ORDER BY position ON CONFLICT(id) DO UPDATE SET " +
       AssignmentsOf(database, "runs"));
-  ReplaceRows(database, "quantities");
-  ReplaceRows(database, "fits");
+  CopyRows(database, "quantities");
+  CopyRows(database, "fits");
   database.exec("INSERT OR IGNORE INTO main.options SELECT * FROM shard.options");
   database.exec(
       "INSERT INTO main.meta SELECT * FROM shard.meta WHERE true "

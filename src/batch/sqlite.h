@@ -47,9 +47,6 @@ inline Result<void> CheckReadable(const std::string& name) {
   return Fault(name, "the file cannot be read; check its permissions");
 }
 
-/// Whether this process may not change the file.
-inline bool IsReadOnly(const std::string& name) { return ::faccessat(AT_FDCWD, name.c_str(), W_OK, AT_EACCESS) != 0; }
-
 /// The result of `work`, or SQLite's error about the file `name`. Content that cannot be parsed means a damaged file.
 template <typename Work>
 auto Guard(const std::string& name, const Work& work) -> decltype(work()) {

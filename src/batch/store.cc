@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include <SQLiteCpp/Backup.h>
+
 #include "batch/entry_row.h"
 #include "batch/former_results.h"
 #include "batch/kept_result.h"
@@ -106,11 +108,26 @@ void Migrate(SQLite::Database& database) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
   if (version > 0 && version <= kLastFormerResults) RenameInResults(database);
-  if (version > 0) FillNewColumns(database);
+  if (version > 0 && version < kFirstWithTotalErrors) FillNewColumns(database);
   UpdateResultsView(database);
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
   database.exec("PRAGMA user_version = " + std::to_string(kStoreMigrations.size()));
   transaction.commit();
+}
+
+/// Updates the tables of a store that is only read. If that is impossible, as on a full or read-only disk, a temporary
+/// copy takes its place and is updated.
+Result<void> MigrateOrCopy(const std::string& name, SQLite::Database& database) {
+  const auto migrate = [](SQLite::Database& tables) -> Result<void> {
+    Migrate(tables);
+    return {};
+  };
+  auto migrated = sqlite::Guard(name, [&] { return migrate(database); });
+  if (migrated || migrated.error().code != StatusCode::kCannotWrite) return migrated;
+  SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // SQLite removes it when it is closed
+  SQLite::Backup(copy, database).executeStep();
+  database = std::move(copy);
+  return migrate(database);
 }
 
 /// Checks that the file is a store of a known version; a file without tables may become one.
@@ -186,12 +203,9 @@ struct Store::State {
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
-  void PutRows(const RunOutcome& outcome, std::int64_t run) {
-    PutRun(outcome, run);
-    PutFits(outcome, run);
-  }
+  void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
-  void PutFits(const RunOutcome& outcome, std::int64_t run);
+  void PutFits(const std::vector<FitRow>& rows, std::int64_t run);
 
   static constexpr int kReaderTimeoutMs = 10000, kWriterTimeoutMs = 600000, kStoppedTimeoutMs = 2000,
                        kServerTimeoutMs = 2000, kStepMs = 20;
@@ -200,8 +214,8 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, result_of, set_stale, add_run, put_run, drop_fits, drop_quantities,
-      put_fit, put_quantity;
+  std::unique_ptr<SQLite::Statement> run_of, result_of, renamed_run, set_stale, add_run, put_run, keep_fits, drop_fits,
+      drop_quantities, put_fit, put_quantity;
 };
 
 Result<std::int64_t> Store::State::Find(const std::string& id) {
@@ -297,14 +311,24 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
       .exec();
 }
 
-void Store::State::PutFits(const RunOutcome& outcome, std::int64_t run) {
-  sqlite::Bind(Prepared(drop_quantities, "DELETE FROM quantities WHERE run = ?"), run).exec();
-  sqlite::Bind(Prepared(drop_fits, "DELETE FROM fits WHERE run = ?"), run).exec();
-  SQLite::Statement& fit =
-      Prepared(put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+void Store::State::PutRows(const RunOutcome& outcome, std::int64_t run) {
+  const std::vector<FitRow> rows = FitRows(outcome);
+  Json models = Json::array();
+  for (const FitRow& row : rows) models.push_back(row.model);
+  const std::string asked = JsonText(models);
+  sqlite::Bind(Prepared(keep_fits, kKeepFits), run, asked).exec();
+  sqlite::Bind(Prepared(drop_quantities, kDropQuantities), run, asked).exec();
+  sqlite::Bind(Prepared(drop_fits, kDropFits), run, asked).exec();
+  PutRun(outcome, run);
+  PutFits(rows, run);
+}
+
+void Store::State::PutFits(const std::vector<FitRow>& rows, std::int64_t run) {
+  SQLite::Statement& fit = Prepared(
+      put_fit, "INSERT INTO fits VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL)");
   SQLite::Statement& quantity =
       Prepared(put_quantity, "INSERT INTO quantities VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  for (const FitRow& row : FitRows(outcome)) {
+  for (const FitRow& row : rows) {
     sqlite::Bind(fit, run, row.model, row.status, row.reason, row.used_samples, row.effective_samples,
                  row.residual_unit, row.rms_residual, row.sigma, row.noise_model, row.lag1_correlation,
                  row.log_likelihood, row.aic, row.aicc, row.bic, row.durbin_watson, row.ljung_box_p, row.runs_p,
@@ -352,11 +376,9 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     }
     const int version = state->database.execAndGet("PRAGMA user_version").getInt();
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
-    const bool can_read = mode == Mode::kRead && version > kLastFormerResults;  // without the view `results`
-    if (!is_current && can_read && sqlite::IsReadOnly(name)) {
-      state->database.exec(kViewsOfFormerVersions.at(version - kLastFormerResults - 1));
-    } else if (!is_current) {
-      Migrate(state->database);
+    if (!is_current && mode != Mode::kRead) Migrate(state->database);
+    if (!is_current && mode == Mode::kRead) {
+      if (auto migrated = MigrateOrCopy(name, state->database); !migrated) return tl::unexpected(migrated.error());
     }
     if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
@@ -379,6 +401,8 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     meta.manifest_sha256 = *std::move(manifest);
     meta.options_sha256 = *std::move(options);
     state_->RestrictToShard(shard, meta);
+    const std::string former_options = state_->GetMeta("options_sha256");
+    if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(kMarkFormerOptions);
     state_->database.exec(kUpdateRuns);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
@@ -425,6 +449,21 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
       state_->SetStale(*run, stale, attempt);
     }
     return stale;
+  });
+}
+
+Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256) {
+  return sqlite::Guard(name(), [&]() -> Result<bool> {
+    const auto added = state_->Find(id);
+    if (!added) return tl::unexpected(added.error());
+    SQLite::Statement& find = state_->Prepared(state_->renamed_run, kRenamedRun.c_str());
+    if (!sqlite::Bind(find, data_sha256).executeStep()) return false;
+    const std::int64_t renamed = find.getColumn(0).getInt64();
+    find.reset();
+    SQLite::Statement drop(state_->database, "DELETE FROM runs WHERE run = ?"), rename(state_->database, kRenameRun);
+    sqlite::Bind(drop, *added).exec();
+    sqlite::Bind(rename, id, renamed).exec();
+    return true;
   });
 }
 
@@ -503,10 +542,13 @@ Result<StoreCounts> Store::Count() {
     counts.missing = runs.getColumn(3).getInt64();
     counts.stale = runs.getColumn(4).getInt64();
     counts.earlier = runs.getColumn(5).getInt64();
-    SQLite::Statement fits(state_->database, "SELECT count(*), count(*) FILTER (WHERE status = 'failed') FROM fits");
+    SQLite::Statement fits(state_->database,
+                           "SELECT count(*) - count(stale), count(*) FILTER (WHERE status = 'failed'), count(stale) "
+                           "FROM fits");
     fits.executeStep();
     counts.fits = fits.getColumn(0).getInt64();
     counts.failed = fits.getColumn(1).getInt64();
+    counts.former_fits = fits.getColumn(2).getInt64();
     return counts;
   });
 }

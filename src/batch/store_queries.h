@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
+#include "batch/run_kinds.h"
+
 /// Queries of a Store on its tables (store_schema.h).
 namespace pendulum {
 
@@ -25,6 +29,34 @@ SELECT batch.position, id, batch.path, batch.rig, batch.calibration, batch.from_
 inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
+
+inline const std::string kRenamedRun =
+    "SELECT run FROM runs WHERE position < 0 AND data_sha256 = ? AND result IS NOT NULL AND " + kIsUnlisted +
+    " ORDER BY run LIMIT 1";
+
+inline constexpr const char* kRenameRun = R"sql(
+UPDATE runs SET (id, position, path, rig, calibration, from_s, to_s, models, columns) =
+    (SELECT id, position, path, rig, calibration, from_s, to_s, models, columns FROM batch WHERE id = ?)
+  WHERE run = ?)sql";
+
+/// Marks the fits of a run whose models, a JSON array, are not among those of its next result.
+inline constexpr const char* kKeepFits = R"sql(
+UPDATE fits SET stale = 'the last refit did not ask for this model',
+    json = (SELECT fit.value FROM runs, json_each(iif(json_valid(result), result, '{}'), '$.fits') AS fit
+              WHERE runs.run = fits.run AND json_extract(fit.value, '$.model') = fits.model)
+  WHERE run = ?1 AND stale IS NULL AND status <> 'failed' AND model NOT IN (SELECT value FROM json_each(?2)))sql";
+
+/// Deletes the fits of a run that are neither marked nor of other models than these, a JSON array.
+inline constexpr const char* kDropQuantities = R"sql(
+DELETE FROM quantities WHERE run = ?1 AND model IN
+  (SELECT model FROM fits WHERE run = ?1 AND (stale IS NULL OR model IN (SELECT value FROM json_each(?2)))))sql";
+inline constexpr const char* kDropFits = R"sql(
+DELETE FROM fits WHERE run = ?1 AND (stale IS NULL OR model IN (SELECT value FROM json_each(?2))))sql";
+
+/// Marks the results of manifests' runs, because the options of a new batch differ from those of the last one.
+inline constexpr const char* kMarkFormerOptions = R"sql(
+UPDATE runs SET stale = 'the last refit asked for other options, and did not fit this run yet'
+  WHERE result IS NOT NULL AND stale IS NULL AND run NOT IN (SELECT run FROM requests))sql";
 
 inline constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,

@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended. The view `results` is replaced after them (ResultsView).
 /// SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 5> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 6> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -105,18 +105,15 @@ ALTER TABLE quantities ADD COLUMN source_std_error REAL;       -- the part from 
                                                                      R"sql(
 ALTER TABLE runs ADD COLUMN stale TEXT;    -- why the last attempt left the former result in place; NULL: it is current
 ALTER TABLE runs ADD COLUMN attempt TEXT;  -- hash of what that attempt was made with; NULL: the result is current
+)sql",
+                                                                     R"sql(
+ALTER TABLE fits ADD COLUMN stale TEXT;  -- why the result of the run does not have this fit; NULL: it has
+ALTER TABLE fits ADD COLUMN json TEXT;   -- the fit as the former result had it; NULL where stale is
+CREATE INDEX unlisted_by_data ON runs(data_sha256) WHERE position < 0;
 )sql"};
 
-/// Let queries read a store that cannot be updated: views of the connection with the columns of newer versions. The
-/// first element is for version 3, which has fewer columns.
-inline constexpr std::array<const char*, 2> kViewsOfFormerVersions = {R"sql(
-CREATE TEMP VIEW runs AS SELECT *, NULL AS sources, NULL AS stale, NULL AS attempt FROM main.runs;
-CREATE TEMP VIEW quantities AS
-  SELECT *, NULL AS total_std_error, NULL AS inconstancy_std_error, NULL AS source_std_error FROM main.quantities;
-)sql",
-                                                                      R"sql(
-CREATE TEMP VIEW runs AS SELECT *, NULL AS stale, NULL AS attempt FROM main.runs;
-)sql"};
+/// The first version whose quantities have total_std_error, and runs have sources.
+inline constexpr int kFirstWithTotalErrors = 4;
 
 /// The last version that stored results in schema version 1 of the result JSON.
 inline constexpr int kLastFormerResults = 2;

@@ -89,7 +89,7 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
     (upper95 - lower95) / 2, inconstancy_std_error, source_std_error
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND )sql" +
-                                       kIsLive + " ORDER BY position, id");
+                                       kIsLiveFit + " ORDER BY position, id");
   sqlite::Bind(rows, quantity.model, quantity.name, quantity.unit);
   QuantityRuns runs;
   std::map<std::string, std::size_t> groups;
@@ -364,6 +364,10 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
   if (counts.earlier > 0) {
     add("not_in_the_manifest", std::to_string(counts.earlier) +
                                    " runs are not among the recordings of the last refit; statistics leave them out");
+  }
+  if (counts.former_fits > 0) {
+    add("former_models", std::to_string(counts.former_fits) +
+                             " fits are of models that the last refit did not ask for; statistics leave them out");
   }
   const std::int64_t same =
       database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " + kIsFitted)

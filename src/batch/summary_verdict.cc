@@ -106,7 +106,7 @@ Json CountsJson(const RunCounts& counts) {
 
 std::string MainModel(SQLite::Database& database, const Json& overview, const RunGroups& groups) {
   SQLite::Statement laws(database, "WITH laws AS (SELECT " + groups.sql + R"sql( AS pendulum, coalesce(recommended,
-    (SELECT min(model) FROM fits WHERE fits.run = runs.run HAVING count(*) = 1)) AS law FROM runs WHERE )sql" +
+    (SELECT min(model) FROM fits WHERE fits.run = runs.run AND fits.stale IS NULL HAVING count(*) = 1)) AS law FROM runs WHERE )sql" +
                                        kIsFitted + R"sql()
 SELECT law FROM laws WHERE law IS NOT NULL AND
     (?1 < 2 OR pendulum IN (SELECT pendulum FROM laws GROUP BY pendulum HAVING count(*) > 1))

@@ -115,7 +115,9 @@ Result<std::vector<MotionModel>> FindMotionModels(std::string_view names, std::o
     if (gravity) found = ChangeGravity(*found, *gravity);
     if (!found) return tl::unexpected(found.error());
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
-      return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + name + " twice");
+      const std::string model(found->name);
+      const std::string other = name == model || gravity ? "" : "; " + name + " is another name of it";
+      return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + model + " twice" + other);
     }
     models.push_back(*found);
   }

@@ -16,6 +16,7 @@
 #include "pendulum/base/staged_file.h"
 #include "pendulum/batch/compare_stores.h"
 #include "pendulum/batch/export.h"
+#include "pendulum/batch/prune.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/rig_values.h"
@@ -135,9 +136,8 @@ std::string KeptText(std::int64_t stale) {
 Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& options) {
   std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
                      " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
-  if (counts.stale > 0) {
-    text += "; " + KeptText(counts.stale);
-  }
+  if (counts.renamed > 0) text += "; " + std::to_string(counts.renamed) + " have another name than before";
+  if (counts.stale > 0) text += "; " + KeptText(counts.stale);
   if (!counts.stopped) {
     PrintMessage(kRefitToolName, text);
     const auto shown = ShowStatus(options);
@@ -244,6 +244,21 @@ Result<int> RunPack(const RefitPendulumsOptions& options) {
   return 0;
 }
 
+Result<int> RunPrune(const RefitPendulumsOptions& options) {
+  const std::string& path = options.stores.front();
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  auto prunable = FindPrunable(*store);
+  if (!prunable) return tl::unexpected(prunable.error());
+  if (options.dry_run) return WriteText(PruneText(*prunable, true));
+  const auto lock = StoreLock::Take(path);
+  if (!lock) return tl::unexpected(lock.error());
+  store = Store::Open(path, Store::Mode::kWrite);
+  if (store) prunable = Prune(*store);
+  if (!store || !prunable) return tl::unexpected(store ? prunable.error() : store.error());
+  return WriteText(PruneText(*prunable, false));
+}
+
 Result<int> RunMissing(const RefitPendulumsOptions& options) {
   const auto missing = MissingShards(options.shard_dir, options.shard_count);
   if (!missing) return tl::unexpected(missing.error());
@@ -275,6 +290,7 @@ Result<int> RunRefitCommand(const RefitPendulumsOptions& options) {
     case RefitCommand::kCompare: return RunCompare(options);
     case RefitCommand::kReport: return MakeReport(options);
     case RefitCommand::kPack: return RunPack(options);
+    case RefitCommand::kPrune: return RunPrune(options);
     case RefitCommand::kMissing: return RunMissing(options);
     case RefitCommand::kMerge: return RunMerge(options);
   }

@@ -23,6 +23,7 @@ constexpr const char* kUsage =
     "  refit_pendulums report  --store results.sqlite --out summary.html [--group_by rig] [--trend_by date]\n"
     "  refit_pendulums export  --store results.sqlite --out results.csv|results.jsonl\n"
     "  refit_pendulums compare before.sqlite after.sqlite\n"
+    "  refit_pendulums prune   --store results.sqlite [--dry_run]\n"
     "  refit_pendulums pack    runs.csv --out runs.pack\n"
     "  refit_pendulums runs.csv --store out/shard-3.sqlite --shard 3/64\n"
     "  refit_pendulums missing --shard_dir out --shard_count 64\n"
@@ -67,7 +68,11 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Also replaces results of runs that can no longer be read or fitted, or whose recordings have become shorter; "
        "default off: such a run keeps its former result, which is marked stale and left out of statistics."},
       {"fit_seconds", &Flags::fit_seconds,
-       "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason; default 600."},
+       "Longest time of the fit of one recording, s; one that takes longer gets a row with this reason, and another "
+       "time tries it again; default 600."},
+      {"dry_run", &Flags::dry_run,
+       "For prune: only says what would be removed, which is what statistics leave out: fits of models that the last "
+       "refit did not ask for, runs that keep a former result, and runs that it was not given."},
       {"details", &Flags::details,
        "Prints counts of fits, recommendations and failures, and the summary last; default: the summary alone."},
       {"quiet", &Flags::quiet,

@@ -34,6 +34,7 @@ const std::vector<CommandFlags>& Commands() {
       {"compare", RefitCommand::kCompare, {}, {}},
       {"report", RefitCommand::kReport, {"store", "out"}, {"group_by", "trend_by"}},
       {"pack", RefitCommand::kPack, {"out"}, {"manifest", "data"}},
+      {"prune", RefitCommand::kPrune, {"store"}, {"dry_run"}},
       {"missing", RefitCommand::kMissing, {"shard_dir", "shard_count"}, {}},
       {"merge", RefitCommand::kMerge, {"shard_dir", "shard_count", "store"}, {}},
   };
@@ -43,7 +44,7 @@ const std::vector<CommandFlags>& Commands() {
 bool Contains(const auto& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
 /// Flags that a refit does not have.
-constexpr std::array<std::string_view, 4> kNotForRefit = {"out", "shard_dir", "shard_count", "trend_by"};
+constexpr std::array<std::string_view, 5> kNotForRefit = {"out", "shard_dir", "shard_count", "trend_by", "dry_run"};
 
 Result<void> CheckFlagsOf(const CommandFlags& command, const RefitFlags& flags) {
   for (const std::string_view name : command.needed) {
@@ -194,6 +195,7 @@ Result<RefitPendulumsOptions> MakeRefitPendulumsOptions(const RefitFlags& flags)
   if (flags.details && flags.quiet) {
     return BadFlag("--details and --quiet contradict each other; give one of them");
   }
+  options.dry_run = flags.dry_run;
   options.details = flags.details;
   options.quiet = flags.quiet;
   const auto& commands = Commands();

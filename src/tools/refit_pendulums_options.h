@@ -30,6 +30,7 @@ struct RefitFlags : RunFlags {
   bool force = false;
   bool retry_failed = false;
   bool replace_by_failures = false;
+  bool dry_run = false;
   bool details = false;
   bool quiet = false;
   std::vector<std::string> positional;  ///< The command and its arguments, or the runs of a refit.
@@ -37,7 +38,7 @@ struct RefitFlags : RunFlags {
 };
 
 /// The commands of refit_pendulums.
-enum class RefitCommand { kRefit, kStatus, kExport, kCompare, kReport, kPack, kMissing, kMerge };
+enum class RefitCommand { kRefit, kStatus, kExport, kCompare, kReport, kPack, kPrune, kMissing, kMerge };
 
 /// The task of refit_pendulums.
 struct RefitPendulumsOptions {
@@ -52,6 +53,7 @@ struct RefitPendulumsOptions {
   RefitOptions refit;  ///< The caller reads rig and calibration.
   ShardOptions shard;  ///< Options of a shard; the caller names its attempt.
   SummaryOptions summary;
+  bool dry_run = false;  ///< Prune only says what it would remove.
   bool details = false;  ///< Also prints counts of fits, recommendations and failures.
   bool quiet = false;    ///< Prints the parameters alone.
 };

@@ -2,6 +2,7 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -90,7 +91,7 @@ std::string RemovedFitsText(const StoreComparison& comparison) {
   if (comparison.removed.empty()) return "";
   std::vector<Cells> rows;
   for (const RemovedFit& fit : comparison.removed) rows.push_back({Printable(fit.id), fit.model});
-  return Heading("Missing in the second store") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
+  return Heading("Missing or stale in the second store") + AlignedTable({{"run"}, {"model"}}, rows, kTextIndent);
 }
 
 // ---- The summary ----------------------------------------------------------------------------------------------------
@@ -283,6 +284,7 @@ Result<std::string> StatusText(Store& store) {
                      Row("recording missing", counts->missing) + Row("refused", counts->unfitted - counts->missing);
   if (counts->stale > 0) text += Row("with a former result only", counts->stale);
   if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
+  if (counts->former_fits > 0) text += Row("fits of models not asked for", counts->former_fits);
   if (counts->fits == 0) return text;
   const auto overview = Overview(store);
   if (!overview) return tl::unexpected(overview.error());
@@ -290,10 +292,34 @@ Result<std::string> StatusText(Store& store) {
          FailuresText((*overview)["failures"]);
 }
 
+std::string PruneText(const Prunable& prunable, bool dry_run) {
+  std::int64_t fits = 0;
+  std::vector<std::string> models;
+  for (const auto& [model, count] : prunable.models) {
+    fits += count;
+    models.push_back(model);
+  }
+  std::string text;
+  const auto add = [&](std::int64_t count, const char* what, const std::vector<std::string>& names) {
+    if (count == 0) return;
+    std::vector<std::string> printable;
+    std::ranges::transform(names, std::back_inserter(printable), [](const auto& name) { return Printable(name); });
+    text += Prose(std::to_string(count) + " " + what + ": " + NameList(printable));
+  };
+  add(fits, "fits of models that the last refit did not ask for", models);
+  add(std::ssize(prunable.stale_runs), "runs with a former result only", prunable.stale_runs);
+  add(std::ssize(prunable.unlisted_runs), "runs that are not among the recordings of the last refit",
+      prunable.unlisted_runs);
+  if (text.empty()) return "Nothing to remove.\n";
+  return Heading(dry_run ? "Would be removed" : "Removed") + text;
+}
+
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after) {
   std::string text =
       Heading("Fits") + Row("in both", comparison.fits) + Row("in " + before + " only", comparison.only_before) +
       Row("in " + after + " only", comparison.only_after) +
+      (comparison.stale_before > 0 ? Row("left out as stale in " + before, comparison.stale_before) : "") +
+      (comparison.stale_after > 0 ? Row("left out as stale in " + after, comparison.stale_after) : "") +
       Row("ended with another status", comparison.changed_status) + Row("runs with other data", comparison.other_data);
   text += Heading("Parameters") + Row("identical", comparison.identical) +
           Row("moved by less than 1e-9 errors", comparison.rounding) +

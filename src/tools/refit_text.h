@@ -8,6 +8,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/compare_stores.h"
+#include "pendulum/batch/prune.h"
 #include "pendulum/batch/refit.h"
 #include "pendulum/batch/store.h"
 
@@ -24,6 +25,9 @@ std::string QuietText(const nlohmann::ordered_json& summary);
 
 /// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);
+
+/// What a prune of a store removes, or would remove.
+std::string PruneText(const Prunable& prunable, bool dry_run);
 
 /// The differences between two stores as text.
 std::string ComparisonText(const StoreComparison& comparison, const std::string& before, const std::string& after);

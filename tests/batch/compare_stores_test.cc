@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -184,6 +185,25 @@ TEST_F(CompareStoresTest, CountsFitsInOnlyOneOfTheStores) {
   ASSERT_EQ(comparison.removed.size(), 1);
   EXPECT_EQ(comparison.removed[0].id + " " + comparison.removed[0].model, "a coulomb");
   EXPECT_EQ(comparison.identical, 1);
+}
+
+TEST_F(CompareStoresTest, LeavesOutFitsThatStatisticsLeaveOut) {
+  const std::vector<Fit> fits = {{"a", 1.0, 0.1}, {"b", 1.0, 0.1}, {"c", 1.0, 0.1}, {"d", 1.0, 0.1}};
+  Store before = Make("before.sqlite", fits), after = Make("after.sqlite", fits);
+  before.database().exec("UPDATE runs SET stale = 'gone' WHERE id = 'd'");
+  after.database().exec(
+      "UPDATE runs SET stale = 'gone' WHERE id IN ('a', 'd'); UPDATE runs SET position = -1 WHERE id = 'b';"
+      "UPDATE fits SET stale = 'not asked for' WHERE run IN (SELECT run FROM runs WHERE id = 'c')");
+  const StoreComparison comparison = CompareStores(before, after).value();
+  EXPECT_EQ(comparison.fits, 0);
+  EXPECT_EQ(comparison.only_before, 3);
+  EXPECT_EQ(comparison.stale_before, 1);
+  EXPECT_EQ(comparison.stale_after, 4);
+  ASSERT_EQ(comparison.removed.size(), 3);
+  EXPECT_EQ(comparison.removed[0].id + comparison.removed[1].id + comparison.removed[2].id, "abc");
+  const StoreComparison back = CompareStores(after, before).value();
+  EXPECT_EQ(back.only_before, 0);
+  EXPECT_EQ(back.only_after, 3);
 }
 
 TEST_F(CompareStoresTest, DetectsOtherDataAndProcessors) {

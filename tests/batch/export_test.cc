@@ -157,6 +157,31 @@ TEST_F(ExportTest, ContainsTheErrorOfARunWithoutAResult) {
   EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason}}));
 }
 
+TEST_F(ExportTest, SaysWhichFitsAreStale) {
+  Store store = Make({EntryOf("a"), EntryOf("b"), EntryOf("c")});
+  RunOutcome fewer = RefittedOutcome();
+  fewer.result["fits"].erase(1);  // coulomb
+  ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("a", fewer) && store.Put("b", RefittedOutcome()) &&
+              store.Put("c", RefittedOutcome()));
+  store.database().exec(
+      "UPDATE runs SET stale = 'it is gone' WHERE id = 'b'; UPDATE runs SET position = -1 WHERE id = 'c'");
+  std::map<std::string, std::string> stale;
+  for (const Row& row : RowsOf(store)) stale[row.at("id") + " " + row.at("model")] = row.at("stale");
+  const std::string unlisted = "not among the recordings of the last refit";
+  EXPECT_THAT(stale, testing::UnorderedElementsAre(
+                         testing::Pair("a viscous", ""),
+                         testing::Pair("a coulomb", "the last refit did not ask for this model"),
+                         testing::Pair("b viscous", "it is gone"), testing::Pair("b coulomb", "it is gone"),
+                         testing::Pair("c viscous", unlisted), testing::Pair("c coulomb", unlisted)));
+  const auto lines = LinesOf(store);
+  ASSERT_EQ(lines.size(), 3);
+  EXPECT_EQ(lines[0]["stale"], unlisted);  // position -1
+  EXPECT_FALSE(lines[1].contains("stale"));
+  EXPECT_EQ(lines[1]["former_fits"], Json::array({RefittedOutcome().result["fits"][1]}));
+  EXPECT_EQ(lines[2]["stale"], "it is gone");
+  EXPECT_FALSE(lines[2].contains("former_fits"));
+}
+
 TEST_F(ExportTest, StopsIfTheSinkReturnsAnError) {
   Store store = Make({EntryOf("a"), EntryOf("b")});
   ASSERT_TRUE(store.Put("a", UnfittedOutcome()) && store.Put("b", UnfittedOutcome()));

@@ -241,6 +241,8 @@ TEST_F(ReadManifestTest, RefusesUnknownModels) {
               StartsWith(":3: column models: there is no model 'magic'; the models are viscous, "));
   EXPECT_EQ(FaultOf("path,models\na.csv,\"viscous,viscous\"\n"),
             ":2: column models: 'viscous,viscous' names viscous twice");
+  EXPECT_EQ(FaultOf("path,models\na.csv,\"coulomb,dry\"\n"),
+            ":2: column models: 'coulomb,dry' names coulomb twice; dry is another name of it");
 }
 
 TEST_F(ReadManifestTest, RefusesUnpairedQuotes) {

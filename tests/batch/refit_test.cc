@@ -230,7 +230,8 @@ TEST_F(RefitTest, DetectsAChangedWindowOrModels) {
   RefitAll(coulomb_);
   folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,1,\n1.csv,b,,\n2.csv,c,,viscous\n");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "c"));
-  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'c'"), ElementsAre("viscous"));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'c' AND fits.stale IS NULL"),
+              ElementsAre("viscous"));
   folder_.Write("runs.csv", "path,id,from_s,models\n0.csv,a,1,coulomb\n1.csv,b,,\n2.csv,c,,viscous\n");
   EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // equivalent options
 }
@@ -358,6 +359,75 @@ TEST_F(RefitTest, ReplacesResultsByFailuresOnRequest) {
               ElementsAre("a|0|NULL|0", "b|3|NULL|1"));
 }
 
+TEST_F(RefitTest, KeepsFitsOfModelsNoLongerRequested) {
+  WriteBatch(folder_, 1);
+  RefitAll(OptionsWith({"viscous", "coulomb", "drag"}));
+  const std::string quantities = "SELECT * FROM quantities WHERE model <> 'viscous'";
+  const std::vector<std::string> before = Rows(store_, quantities);
+  const std::string fit = ValueOf("SELECT json_extract(result, '$.fits[1]') FROM runs");
+  RefitAll(OptionsWith({"viscous"}));
+  EXPECT_THAT(Rows(store_, "SELECT model, stale FROM fits ORDER BY model"),
+              ElementsAre("coulomb|the last refit did not ask for this model",
+                          "drag|the last refit did not ask for this model", "viscous|NULL"));
+  EXPECT_EQ(Rows(store_, quantities), before);
+  EXPECT_EQ(ValueOf("SELECT json FROM fits WHERE model = 'coulomb'"), fit);
+  EXPECT_EQ(ValueOf("SELECT json_array_length(result, '$.fits') FROM runs"), "1");
+  EXPECT_EQ(ValueOf("SELECT law FROM results"), "viscous");
+  fs::rename(folder_ / "0.csv", folder_ / "elsewhere");
+  RefitAll(OptionsWith({"drag"}));  // fails, so all results stay
+  EXPECT_EQ(Rows(store_, quantities), before);
+  fs::rename(folder_ / "elsewhere", folder_ / "0.csv");
+  RefitAll(OptionsWith({"viscous", "coulomb"}));
+  EXPECT_THAT(Rows(store_, "SELECT model, stale IS NULL, json IS NULL FROM fits ORDER BY model"),
+              ElementsAre("coulomb|1|1", "drag|0|0", "viscous|1|1"));
+  EXPECT_EQ(Rows(store_, quantities), before);
+}
+
+TEST_F(RefitTest, DropsFailuresOfModelsNoLongerRequested) {
+  folder_.Write("runs.csv", "path\nnowhere.csv\n");
+  RefitAll(OptionsWith({"viscous", "coulomb"}));
+  RefitAll(OptionsWith({"viscous"}));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits"), ElementsAre("viscous"));
+}
+
+TEST_F(RefitTest, LeavesResultsOfOtherOptionsOutUntilTheyAreReplaced) {
+  WriteBatch(folder_, 2);
+  folder_.Write("runs.csv", "path,id,models\n0.csv,a,\n1.csv,b,viscous\n");
+  RefitAll(coulomb_);
+  const std::string stale = "SELECT id, stale FROM runs ORDER BY id";
+  const std::atomic<bool> stop = true;
+  for (const bool has_rig : {false, true}) {
+    RefitOptions stopped = has_rig ? coulomb_ : OptionsWith({"drag"});
+    if (has_rig) stopped.rig = small_batch::kRigText;
+    stopped.stop = &stop;
+    RefitAll(stopped);
+    EXPECT_THAT(Rows(store_, stale),
+                ElementsAre("a|the last refit asked for other options, and did not fit this run yet",
+                            "b|the last refit asked for other options, and did not fit this run yet"));
+    EXPECT_EQ(RefitAll(coulomb_).current, 2);  // with the former options
+    EXPECT_THAT(Rows(store_, stale), ElementsAre("a|NULL", "b|NULL"));
+  }
+  EXPECT_THAT(Refitted(OptionsWith({"drag"})), ElementsAre("a"));  // b has its own model
+  EXPECT_THAT(Rows(store_, stale), ElementsAre("a|NULL", "b|NULL"));
+}
+
+TEST_F(RefitTest, RecognizesARenamedRecording) {
+  WriteBatch(folder_, 2);
+  folder_.Write("runs.csv", "path\n0.csv\n1.csv\n");
+  RefitAll(OptionsWith({"viscous", "coulomb"}));
+  const std::string estimates = "SELECT run, model, name, estimate FROM quantities ORDER BY run, model, name";
+  const std::vector<std::string> before = Rows(store_, estimates);
+  fs::rename(folder_ / "0.csv", folder_ / "new.csv");
+  folder_.Write("runs.csv", "path\nnew.csv\n1.csv\n");
+  EXPECT_EQ(RefitAll(OptionsWith({"viscous", "coulomb"})).renamed, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, path, position, json_extract(result, '$.data.path') FROM runs ORDER BY id"),
+              ElementsAre("1.csv|1.csv|1|1.csv", "new.csv|new.csv|0|new.csv"));
+  EXPECT_EQ(Rows(store_, estimates), before);
+  folder_.Write("runs.csv", "path\nnew.csv\n1.csv\ncopy.csv\n");
+  fs::copy(folder_ / "1.csv", folder_ / "copy.csv");
+  EXPECT_EQ(RefitAll(OptionsWith({"viscous", "coulomb"})).renamed, 0);  // 1.csv is still there
+}
+
 // ---- Limits and stops ----------------------------------------------------------------------------------------------
 
 /// Options whose fit calls `begun` and waits in each of the first steps of a bootstrap, two seconds in all.
@@ -387,9 +457,40 @@ TEST_F(RefitTest, GivesUpARunThatTakesTooLong) {
   EXPECT_EQ(ValueOf("SELECT exit_code FROM runs WHERE id = 'a'"), std::to_string(ExitCode(StatusCode::kTryAgain)));
   RefitOptions again = coulomb_;
   again.run.fit.interval = IntervalMethod::kBootstrap;
+  again.fit_time = options.fit_time;
   EXPECT_THAT(Refitted(again), IsEmpty());
   again.retry_failed = true;
   EXPECT_THAT(Refitted(again), ElementsAre("a", "b", "bad"));
+}
+
+TEST_F(RefitTest, TriesARunThatTookTooLongAgainWithMoreTime) {
+  WriteBatch(folder_, 2);
+  RefitOptions options = SlowOptions(coulomb_, [] {});
+  options.fit_time = std::chrono::milliseconds(200);
+  EXPECT_EQ(RefitAll(options).unfitted, 2);
+  EXPECT_THAT(Refitted(options), IsEmpty());
+  options.fit_time = std::chrono::milliseconds(201);
+  EXPECT_THAT(Refitted(options), ElementsAre("a", "b"));
+  options.run.fit.progress = nullptr;
+  options.fit_time = std::chrono::minutes(10);
+  EXPECT_EQ(RefitAll(options).unfitted, 0);
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARunThatTakesTooLongUntilItHasMoreTime) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  RefitOptions options = SlowOptions(coulomb_, [] {});
+  options.fit_time = std::chrono::milliseconds(200);
+  RefitCounts counts = RefitAll(options);
+  EXPECT_EQ(counts.stale, 1);
+  EXPECT_EQ(counts.refitted, 1);
+  EXPECT_THAT(ValueOf("SELECT stale FROM runs"), StartsWith("0.csv: the fit took longer than 0.2 s; "));
+  EXPECT_EQ(RefitAll(options).current, 1);
+  options.run.fit.progress = nullptr;
+  options.fit_time = std::chrono::minutes(10);
+  counts = RefitAll(options);
+  EXPECT_EQ(counts.stale, 0);
+  EXPECT_EQ(counts.refitted, 1);
 }
 
 TEST_F(RefitTest, LeavesTheRunInProgressForTheNextRefitWhenStopped) {
@@ -402,15 +503,6 @@ TEST_F(RefitTest, LeavesTheRunInProgressForTheNextRefitWhenStopped) {
   EXPECT_EQ(counts.refitted, 0);
   EXPECT_EQ(ValueOf("SELECT count(*) FROM fits"), "0");
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
-}
-
-TEST_F(RefitTest, RemovesRowsOfModelsNoLongerRequested) {
-  WriteBatch(folder_, 1);
-  RefitAll(OptionsWith({"viscous", "coulomb", "drag"}));
-  EXPECT_THAT(Rows(store_, "SELECT model FROM fits ORDER BY model"), ElementsAre("coulomb", "drag", "viscous"));
-  RefitAll(OptionsWith({"viscous"}));
-  EXPECT_THAT(Rows(store_, "SELECT model FROM fits"), ElementsAre("viscous"));
-  EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities WHERE model <> 'viscous'"), "0");
 }
 
 }  // namespace

@@ -97,7 +97,8 @@ TEST_F(ShardsTest, ReplaceOnlyTheirOwnRuns) {
   ASSERT_TRUE(Merge(2));
   EXPECT_EQ(Value(store_, others), before);
   EXPECT_EQ(Value(store_, "SELECT count(*) FROM runs"), "8");
-  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'b'"), ElementsAre("viscous"));
+  EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'b' AND fits.stale IS NULL"),
+              ElementsAre("viscous"));
   EXPECT_THAT(Rows(store_, "SELECT model FROM fits JOIN runs USING(run) WHERE id = 'other'"), ElementsAre("drag"));
   EXPECT_EQ(Value(store_, "SELECT count(*) FROM options"), "2");
   EXPECT_THAT(Rows(store_, "PRAGMA foreign_key_check"), IsEmpty());
@@ -131,6 +132,19 @@ TEST_F(ShardsTest, LeaveTheResultOfALongerRecording) {
   EXPECT_EQ(Value(store_, result), before);
   EXPECT_THAT(Rows(store_, "SELECT id, stale FROM runs WHERE stale IS NOT NULL"),
               ElementsAre(testing::StartsWith("b|1.csv: the recording has become shorter")));
+}
+
+TEST_F(ShardsTest, LeaveFitsOfOtherModels) {
+  small_batch::RefitInto(store_, folder_ / "runs.csv", small_batch::OptionsWith({"viscous", "coulomb"}));
+  const std::string of_others = "SELECT * FROM quantities WHERE model = 'coulomb'";
+  const auto before = Rows(store_, of_others);
+  AllShards(2);
+  ASSERT_TRUE(Merge(2));
+  EXPECT_EQ(Rows(store_, of_others), before);
+  EXPECT_THAT(Rows(store_,
+                   "SELECT model, status, stale IS NULL, json IS NULL, count(*) FROM fits "
+                   "GROUP BY 1, 2, 3, 4 ORDER BY 1, 2"),
+              testing::ElementsAre("coulomb|converged|0|0|6", "viscous|converged|1|1|6", "viscous|failed|1|1|1"));
 }
 
 TEST_F(ShardsTest, AreCurrentAgainWhenARecordingComesBack) {

@@ -170,8 +170,42 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 5);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 6);
   EXPECT_EQ(Reopen().Count()->runs, 1);
+}
+
+/// Makes a store of an earlier version.
+void MakeFormer(const std::string& path, std::size_t version) {
+  SQLite::Database former(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  for (std::size_t step = 0; step < version; ++step) former.exec(std::string(kStoreMigrations.at(step)));
+  former.exec(
+      "INSERT INTO runs(id, position, path, rig, calibration, models, columns) VALUES('a', 0, 'a', '', '', '', '{}');"
+      "PRAGMA application_id = " +
+      std::to_string(kStoreId) + "; PRAGMA user_version = " + std::to_string(version));
+}
+
+TEST_F(StoreFileTest, ReadsAnOlderStoreThatCannotBeChanged) {
+  const uid_t self = ::geteuid();
+  constexpr uid_t kNobody = 65534;  // root can write every file
+  for (std::size_t version = 1; version < kStoreMigrations.size(); ++version) {
+    fs::remove(path_);
+    MakeFormer(path_, version);
+    fs::permissions(path_, fs::perms(0444));
+    fs::permissions(folder_, fs::perms(0555));
+    if (self == 0) {
+      ASSERT_EQ(::seteuid(kNobody), 0);
+    }
+    const auto counts = Store::Open(path_, Store::Mode::kRead).and_then([](Store store) { return store.Count(); });
+    const Status fault = FaultOf(Store::Mode::kWrite);
+    if (self == 0) {
+      ASSERT_EQ(::seteuid(self), 0);
+    }
+    fs::permissions(folder_, fs::perms::all);
+    ASSERT_TRUE(counts) << version << ": " << counts.error().message;
+    EXPECT_EQ(counts->pending, 1);
+    EXPECT_EQ(fault.code, StatusCode::kCannotWrite) << fault.message;
+    EXPECT_EQ(SQLite::Database(path_).execAndGet("PRAGMA user_version").getInt(), version);
+  }
 }
 
 // A program that reads the version before it has the lock would repeat the other's update.
@@ -179,12 +213,7 @@ TEST_F(StoreFileTest, IsUpdatedByTwoProgramsAtOnce) {
   constexpr int kPrograms = 4;
   for (std::size_t version = 1; version < kStoreMigrations.size(); ++version) {
     fs::remove(path_);
-    {
-      SQLite::Database former(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-      for (std::size_t step = 0; step < version; ++step) former.exec(std::string(kStoreMigrations.at(step)));
-      former.exec("PRAGMA application_id = " + std::to_string(kStoreId) +
-                  "; PRAGMA user_version = " + std::to_string(version));
-    }
+    MakeFormer(path_, version);
     std::barrier ready(kPrograms);
     std::array<std::string, kPrograms> faults;
     {
@@ -230,7 +259,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message, path_ +
                                          ": the store has version 99 of a newer program, but this program reads "
-                                         "versions up to 5; use the newer program");
+                                         "versions up to 6; use the newer program");
   }
 }
 

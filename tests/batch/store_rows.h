@@ -44,7 +44,8 @@ inline std::string Value(const std::filesystem::path& store, const std::string& 
   return rows.size() == 1 ? rows.front() : std::to_string(rows.size()) + " rows";
 }
 
-/// All rows about runs, ordered by id, with a hash of each result. Internal run numbers are left out.
+/// All rows about runs, ordered by id, with a hash of each result. Internal run numbers and fits of models that are no
+/// longer asked for are left out.
 inline std::vector<std::string> AllRows(const std::filesystem::path& store) {
   std::vector<std::string> all = Rows(store,
                                       "SELECT id, position, path, rig, calibration, from_s, to_s, models, columns, "
@@ -56,7 +57,8 @@ inline std::vector<std::string> AllRows(const std::filesystem::path& store) {
   }
   for (const char* table : {"fits", "quantities"}) {
     for (const std::string& row : Rows(store, std::string("SELECT id, theirs.* FROM ") + table +
-                                                  " AS theirs JOIN runs USING(run) ORDER BY id, 3, 4")) {
+                                                  " AS theirs JOIN runs USING(run) JOIN fits AS fit USING(run, model) "
+                                                  "WHERE fit.stale IS NULL ORDER BY id, 3, 4")) {
       // The second value is the run's number.
       const std::size_t begin = row.find('|');
       all.push_back(std::string(table) + "|" + row.substr(0, begin) + row.substr(row.find('|', begin + 1)));

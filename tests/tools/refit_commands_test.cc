@@ -101,7 +101,7 @@ TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = "-";
   EXPECT_EQ(Run(options), 0);
-  EXPECT_THAT(stdout_text_, HasSubstr("id,path,rig,calibration,model,recommended,status,"));
+  EXPECT_THAT(stdout_text_, HasSubstr("id,path,rig,calibration,model,recommended,stale,status,"));
   options.out = folder_ / "a.jsonl";
   EXPECT_EQ(Run(options), 0);
   std::string line;

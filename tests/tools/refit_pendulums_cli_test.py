@@ -407,7 +407,9 @@ class Reports(Lab):
         manifest = self.manifest(self.simulate(2))
         self.refit(manifest, "a.sqlite")
         with sqlite3.connect(self.folder / "a.sqlite") as database:
-            database.executescript("DROP VIEW results; DROP VIEW all_fits; ALTER TABLE fits DROP COLUMN verdict; "
+            database.executescript("DROP VIEW results; DROP VIEW all_fits; DROP INDEX unlisted_by_data; "
+                                   "ALTER TABLE fits DROP COLUMN verdict; ALTER TABLE fits DROP COLUMN stale; "
+                                   "ALTER TABLE fits DROP COLUMN json; "
                                    "ALTER TABLE quantities DROP COLUMN total_std_error; "
                                    "ALTER TABLE quantities DROP COLUMN inconstancy_std_error; "
                                    "ALTER TABLE quantities DROP COLUMN source_std_error; "

@@ -22,6 +22,7 @@ struct RefitCounts {
   std::int64_t refitted = 0;  ///< Runs that were fitted, or tried, again.
   std::int64_t unfitted = 0;  ///< Runs of both kinds that could not be fitted and have no former result.
   std::int64_t restored = 0;  ///< Current runs whose former result is current again.
+  std::int64_t renamed = 0;   ///< Refitted runs that were in the store under another id (Store::TakeOver).
   std::int64_t stale = 0;     ///< Runs of both kinds that keep a former result.
   bool stopped = false;       ///< Stopped before all runs were processed.
 

@@ -69,6 +69,7 @@ struct StoreCounts {
   std::int64_t stale = 0;             ///< Runs of the last manifest that keep a former result.
   std::int64_t earlier = 0;           ///< Runs that are not in the last manifest.
   std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
+  std::int64_t former_fits = 0;       ///< Further rows, of models that the last refit did not ask for.
 };
 
 /// The results of a batch in an SQLite file with self-explaining tables (store_schema.h). Data is durable after the
@@ -93,20 +94,25 @@ class Store {
 
   /// Starts a batch with all entries of a source, or with a shard of them. An entry with a new id is added; an entry
   /// with a known id replaces the manifest's data of that run. Other runs are removed, except runs of a service and,
-  /// without a shard, runs with results. An error changes nothing. `options_json`: the options of all fits. kDataLoss:
-  /// a repeated id; kFailedPrecondition: there is no entry.
+  /// without a shard, runs with results. An error changes nothing. `options_json`: the options of all fits; if they are
+  /// not those of the last batch, all results become stale until they are replaced or MarkCurrent. kDataLoss: a
+  /// repeated id; kFailedPrecondition: there is no entry.
   Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json);
 
   /// Returns up to `max_runs` runs of the batch from `position` on, in order.
   Result<std::vector<StoredRun>> Next(std::int64_t position, int max_runs);
 
-  /// Replaces all rows of a run.
+  /// Replaces the rows of a run. Its fits of models that the outcome does not have stay, and are marked stale.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);
 
   /// As Put, but keeps the result of a run if the outcome has none, or is of the same recording with fewer samples; the
   /// rows are then marked stale. `attempt`: what the outcome was made with. Returns why the rows were kept; empty if
   /// they were replaced.
   Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt);
+
+  /// If a run that the batch does not name has a result of a recording with these bytes, a new run of the batch takes
+  /// its rows over: the recording was renamed. Returns whether there is one.
+  Result<bool> TakeOver(const std::string& id, const std::string& data_sha256);
 
   /// Marks the rows of a run as current: the inputs of its result have come back.
   Result<void> MarkCurrent(const std::string& id);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/batch/prune.h"
+
+#include "batch/run_kinds.h"
+#include "batch/sqlite.h"
+
+namespace pendulum {
+
+Result<Prunable> FindPrunable(Store& store) {
+  return sqlite::Guard(store.name(), [&]() -> Result<Prunable> {
+    SQLite::Database& database = store.database();
+    Prunable found;
+    found.stale_runs = sqlite::Texts(database, "SELECT id FROM runs WHERE " + kIsStale + " ORDER BY position, id");
+    found.unlisted_runs = sqlite::Texts(database, "SELECT id FROM runs WHERE " + kIsUnlisted + " ORDER BY id");
+    SQLite::Statement models(
+        database, "SELECT model, count(*) FROM fits JOIN runs USING(run) WHERE fits.stale IS NOT NULL AND " + kIsLive +
+                      " GROUP BY model ORDER BY model");
+    while (models.executeStep()) {
+      found.models.emplace_back(sqlite::Text(models, 0), models.getColumn(1).getInt64());
+    }
+    return found;
+  });
+}
+
+Result<Prunable> Prune(Store& store) {
+  if (auto begun = store.BeginWrite(); !begun) return tl::unexpected(begun.error());
+  auto found = FindPrunable(store);
+  if (!found) return found;
+  auto removed = sqlite::Guard(store.name(), [&]() -> Result<void> {
+    SQLite::Database& database = store.database();
+    if (!found->stale_runs.empty()) database.exec("UPDATE meta SET value = '0' WHERE key = 'complete'");
+    database.exec("CREATE TEMP TABLE leaving AS SELECT run FROM runs WHERE " + kIsStale + " OR " + kIsUnlisted);
+    database.exec(R"sql(
+DELETE FROM quantities WHERE (run, model) IN
+  (SELECT run, model FROM fits WHERE stale IS NOT NULL OR run IN (SELECT run FROM leaving));
+DELETE FROM fits WHERE stale IS NOT NULL OR run IN (SELECT run FROM leaving);
+DELETE FROM runs WHERE run IN (SELECT run FROM leaving);
+DROP TABLE leaving)sql");
+    return {};
+  });
+  if (removed) removed = store.Commit();
+  return removed ? found : tl::unexpected(removed.error());
+}
+
+}  // namespace pendulum
