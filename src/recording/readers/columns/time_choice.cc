@@ -178,8 +178,12 @@ Result<void> ChooseTime(Choice& choice) {
                 [&](std::size_t i) { return !choice.IsNumeric(i) || (times.size() > 1 && !choice.IsIncreasing(i)); });
   if (times.empty()) times = TimesByNumbers(choice);
   if (times.empty()) {
-    const std::string none = choice.names.empty() ? "no column increases as a time does"
-                                                  : "none of the columns " + choice.ColumnNames() + " is a time";
+    std::string none = choice.names.empty() ? "no column increases as a time does"
+                                            : "none of the columns " + choice.ColumnNames() + " is a time";
+    for (std::size_t i = 0; i < choice.layout.width; ++i) {
+      const bool counts = choice.layout.width > 1 && choice.IsNumeric(i) && choice.IsRowNumber(i);
+      if (counts) none = "column " + choice.NameOf(i) + " counts the rows, and none is a time";
+    }
     choice.Ask(none + ": give the rate of the rows in Hz with --sample_rate_hz, or the column with --time_column", {},
                "sample_rate_hz");
     return {};

@@ -569,8 +569,23 @@ std::optional<char> SeparatorLine(std::string_view line) {
   return line[kKey.size()];
 }
 
+std::string_view RemarkPart(std::string_view line, const Head& head) {
+  const auto after_time_of_day = [](std::string_view row) {
+    const std::size_t end = std::min(row.find_first_not_of("0123456789:."), row.size());
+    const std::string_view stamp = row.substr(0, end);
+    const bool is_time = std::ranges::count(stamp, ':') == 2 && SecondOfDay(stamp);
+    const std::size_t text = row.find_first_not_of(",; \t", end);
+    return is_time && text != std::string_view::npos ? Trim(row.substr(text)) : std::string_view();
+  };
+  const std::string_view row = DevicePart(line, true);
+  const std::string_view rest = after_time_of_day(row);
+  const bool is_remark =
+      !rest.empty() && IsText(rest) && after_time_of_day(DevicePart(head.first_row.text, head.has_host)).empty();
+  return is_remark ? rest : row;
+}
+
 bool IsTextAmongRows(std::string_view line, const Head& head, char separator) {
-  const std::string_view row = DevicePart(line, true);  // A device may stamp its remarks alone.
+  const std::string_view row = RemarkPart(line, head);
   if (!IsText(row) || IsMissing(Unquote(FieldCutter(row, separator).Next()))) return false;
   return head.fields_of_text == 0 || CountFields(row, separator) < head.fields_of_text;
 }

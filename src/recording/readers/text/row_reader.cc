@@ -330,7 +330,7 @@ Check Reader::SetAside(std::optional<Status> error) {
     header_again_ = line_.number;
     return {};
   }
-  const bool is_text = csv::IsText(csv::DevicePart(line_.text, true));
+  const bool is_text = csv::IsText(csv::RemarkPart(line_.text, head_));
   if (is_text && header_again_ > 0) return {};  // units below the names
   const bool is_short = !is_text && !ros_ && HasFewFields();
   const bool is_first = below_.lines.count == 0, is_faulty = !is_text && !is_short && lines_.is_terminated();

@@ -133,6 +133,18 @@ TEST(AroundTheTable, LinesBetweenRowsAreCountedAndNamedOnce) {
               ElementsAre("run.csv:10: 1 line that is no row, \"pause\", was left out"));
 }
 
+TEST(AroundTheTable, RemarksMayBeginWithATimeOfDay) {
+  for (const char separator : {',', '\t', ' '}) {
+    const std::string pattern = std::string("{t}") + separator + "{v}",
+                      header = std::string("time_ms") + separator + "angle_deg\n";
+    const Recording recording = RecordingOf(WithLines(header, pattern, {"12:04:33 temp=23", "12:04:34,battery low"}));
+    ASSERT_EQ(recording.size(), 40);
+    EXPECT_DOUBLE_EQ(recording.time[39], 0.39);
+    EXPECT_THAT(MessagesOf(recording), ElementsAre("run.csv:12: 2 lines that are no rows, the first is \"12:04:33 "
+                                                   "temp=23\", were left out"));
+  }
+}
+
 // One that stood for a row shifts all later times then.
 TEST(AroundTheTable, LinesBetweenRowsWithoutTimesMustBeRemarks) {
   const std::string header = "# sample_rate_hz: 100\nangle_deg\n";
