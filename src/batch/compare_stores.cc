@@ -28,16 +28,18 @@ SELECT id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, min
   WHERE mine.derived = 0)sql";
 
 /// Creates a view of the fits in a store that are not stale. A store of a former version on a read-only disk has no
-/// stale ones.
+/// marks, so the view has all of its fits.
 void CreateView(SQLite::Database& database, const std::string& view, const std::string& schema) {
   SQLite::Statement columns(database, "SELECT count(*) FROM pragma_table_info('fits', ?) WHERE name = 'stale'");
   sqlite::Bind(columns, schema).executeStep();
   const bool has_marks = columns.getColumn(0).getInt() > 0;
   database.exec("CREATE TEMP VIEW " + view +
                 " AS SELECT runs.id, runs.position, fits.run, fits.model, fits.status FROM " + schema +
-                ".runs AS runs JOIN " + schema + ".fits AS fits USING(run) WHERE (runs.position >= 0 OR runs.run IN " +
-                "(SELECT run FROM " + schema + ".requests))" +
-                (has_marks ? " AND runs.stale IS NULL AND fits.stale IS NULL" : ""));
+                ".runs AS runs JOIN " + schema + ".fits AS fits USING(run)" +
+                (has_marks ? " WHERE runs.stale IS NULL AND fits.stale IS NULL AND (runs.position >= 0 OR runs.run IN "
+                             "(SELECT run FROM " +
+                                 schema + ".requests))"
+                           : ""));
 }
 
 std::int64_t CountOf(SQLite::Database& database, const std::string& table) {

@@ -10,6 +10,7 @@
 #include <fnmatch.h>
 
 #include "pendulum/base/file.h"
+#include "pendulum/recording/readers/file_names.h"
 
 namespace pendulum {
 namespace {
@@ -76,30 +77,34 @@ std::pair<fs::path, std::vector<std::string>> Cut(const fs::path& path) {
 
 }  // namespace
 
-Result<std::vector<std::string>> FindRecordings(const std::string& pattern) {
+Result<FoundRecordings> FindRecordings(const std::string& pattern) {
   std::error_code error;
-  std::vector<std::string> found;
+  FoundRecordings found;
+  std::vector<std::string>& paths = found.paths;
   Result<void> done;
   std::string what = "there is no such file or folder";
   if (fs::is_directory(pattern, error)) {
-    // Excel keeps a file ~$run.xlsx while run.xlsx is open.
-    for (const char* const kind : {"*.[cC][sS][vV]", "*.[mM][aA][tT]", "*.[zZ][iI][pP]", "[!~]*.[xX][lL][sS]",
-                                   "[!~]*.[xX][lL][sS][xX]", "*.[oO][dD][sS]", "*.[nN][pP][zZ]"}) {
-      if (done) done = Find(pattern, std::vector<std::string>{kAnyFolders, kind}, found);
-    }
-    what = "there is no *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx or *.zip file in this folder or below it";
+    done = Find(pattern, std::vector<std::string>{kAnyFolders, "*"}, paths);
+    std::erase_if(paths, [&](const std::string& path) {
+      const std::string name = fs::path(path).filename().string();
+      if (name.starts_with("~$")) return true;  // Excel keeps ~$run.xlsx while run.xlsx is open
+      if (HasRecordingName(name)) return false;
+      found.left_out.push_back(path);
+      return true;
+    });
+    what = "there is no " + RecordingNames() + " file in this folder or below it";
   } else if (fs::exists(pattern, error)) {
-    found.push_back(pattern);
+    paths.push_back(pattern);
   } else if (IsPattern(pattern)) {
     auto [folder, parts] = Cut(pattern);
     if (parts.back() == kAnyFolders) parts.emplace_back("*");
-    done = Find(folder, parts, found);
+    done = Find(folder, parts, paths);
     what = "no file matches this pattern";
   }
   if (!done) return tl::unexpected(done.error());
-  std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());  // several ** may match the same file
-  if (!found.empty()) return found;
+  std::ranges::sort(paths);
+  paths.erase(std::unique(paths.begin(), paths.end()), paths.end());  // several ** may match the same file
+  if (!paths.empty()) return found;
   return Error(StatusCode::kNotFound, pattern + ": " + what + "; check the path");
 }
 

@@ -230,10 +230,12 @@ Result<Source> OpenSource(const fs::path& path) {
 Result<Source> FindSource(const std::vector<std::string>& patterns) {
   std::vector<std::string> paths;
   std::set<std::string> known;
+  std::map<std::string, std::int64_t> left_out;
   for (const std::string& pattern : patterns) {
     const auto found = FindRecordings(pattern);
     if (!found) return tl::unexpected(found.error());
-    for (const std::string& path : *found) {
+    for (const std::string& path : found->left_out) ++left_out["*" + fs::path(path).extension().string()];
+    for (const std::string& path : found->paths) {
       if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
     }
   }
@@ -247,7 +249,8 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
     }
     return {};
   };
-  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadFileInFolder({}, file); }};
+  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadFileInFolder({}, file); },
+                std::move(left_out)};
 }
 
 Result<PackCounts> Pack(const Source& source, const fs::path& path) {

@@ -10,8 +10,8 @@ namespace pendulum {
 inline constexpr int kStoreId = 0x50656e64;
 
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
-/// released migration is never changed; a new one is appended. The view `results` is replaced after them (ResultsView).
-/// SQLite keeps the comments, so .schema explains the tables.
+/// released migration is never changed; a new one is appended, and tests/batch/golden_stores.py adds a store with it.
+/// The view `results` is replaced after them (ResultsView). SQLite keeps the comments, so .schema explains the tables.
 inline constexpr std::array<std::string_view, 6> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)

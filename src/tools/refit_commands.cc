@@ -157,6 +157,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   if (auto read = ReadCommon(options, refit); !read) return tl::unexpected(read.error());
   const auto source = SourceOf(options);
   if (!source) return tl::unexpected(source.error());
+  if (!source->left_out.empty()) PrintMessage(kRefitToolName, LeftOutText(source->left_out));
   StopOnSignals();
   RefitProgress progress(std::string(kRefitToolName), STDERR_FILENO);
   refit.stop = &stop;

@@ -5,6 +5,7 @@
 
 #include <gflags/gflags.h>
 
+#include "pendulum/recording/readers/file_names.h"
 #include "tools/flags.h"
 #include "tools/refit_commands.h"
 #include "tools/refit_pendulums_options.h"
@@ -51,14 +52,15 @@ std::vector<std::string> GivenFlags() {
 using Flags = RefitFlags;
 
 std::vector<ToolFlag<Flags>> FlagTable() {
+  static const std::string data_help =
+      "Instead of a manifest: folders (all " + RecordingNames() +
+      " files below), patterns such as 'runs/**/*.json' and files, separated by commas.";
   return {
       {"manifest", &Flags::manifest,
        "Runs to refit; may also be named without a flag: CSV file with the column path (relative to the CSV file) and "
        "optional columns such as id, rig, "
        "calibration, from_s, to_s and models; or a file made by pack; - is standard input."},
-      {"data", &Flags::data,
-       "Instead of a manifest: folders (all *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx and *.zip files below), patterns "
-       "such as 'runs/**/*.txt' and files, separated by commas."},
+      {"data", &Flags::data, data_help.c_str()},
       {"store", &Flags::store, "SQLite file of the results; it is created or updated."},
       {"force", &Flags::force,
        "Also refits runs whose data, rig, calibration, options and version have not changed; default off."},

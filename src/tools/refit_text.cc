@@ -292,6 +292,17 @@ Result<std::string> StatusText(Store& store) {
          FailuresText((*overview)["failures"]);
 }
 
+std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out) {
+  std::int64_t files = 0;
+  std::vector<std::string> kinds;
+  for (const auto& [pattern, count] : left_out) {
+    files += count;
+    kinds.push_back(std::to_string(count) + " " + Printable(pattern));
+  }
+  return std::to_string(files) + (files == 1 ? " file is" : " files are") + " left out because of the name (" +
+         NameList(kinds) + "); a pattern such as 'folder/**/*.json' takes recordings among them";
+}
+
 std::string PruneText(const Prunable& prunable, bool dry_run) {
   std::int64_t fits = 0;
   std::vector<std::string> models;

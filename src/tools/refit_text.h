@@ -26,6 +26,9 @@ std::string QuietText(const nlohmann::ordered_json& summary);
 /// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);
 
+/// "14 files are left out because of their names (13 *.json, 1 *.png); ...".
+std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out);
+
 /// What a prune of a store removes, or would remove.
 std::string PruneText(const Prunable& prunable, bool dry_run);
 

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "pendulum/recording/readers/file_names.h"
+
 namespace pendulum::find_recordings_test {
 namespace {
 
@@ -40,11 +42,11 @@ class FindRecordingsTest : public testing::Test {
     auto found = FindRecordings((folder_ / pattern).string());
     EXPECT_TRUE(found) << found.error().message;
     if (!found) return {};
-    for (std::string& path : *found) {
+    for (std::string& path : found->paths) {
       EXPECT_TRUE(path.starts_with(folder_.string() + "/")) << path;
       path.erase(0, folder_.string().size() + 1);
     }
-    return *found;
+    return found->paths;
   }
 
   Status FaultOf(const std::string& pattern) const {
@@ -57,12 +59,12 @@ class FindRecordingsTest : public testing::Test {
 };
 
 TEST_F(FindRecordingsTest, FindsCsvFilesInSubfoldersInOrder) {
-  Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.txt", "d.CSV", "e.csv.bak", "csv"});
+  Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.json", "d.CSV", "e.csv.bak", "csv"});
   EXPECT_THAT(Find(""), ElementsAre("B.csv", "a/10.csv", "a/2.csv", "a/deep/er/x.csv", "b.csv", "d.CSV"));
 }
 
 TEST_F(FindRecordingsTest, IncludesPackedRecordingsAndMatFiles) {
-  Make({"b.mat", "a/phone.zip", "a/R.MAT", "c.ZIP", "c.txt", "zip", "x.mat.bak"});
+  Make({"b.mat", "a/phone.zip", "a/R.MAT", "c.ZIP", "c.json", "zip", "x.mat.bak"});
   EXPECT_THAT(Find(""), ElementsAre("a/R.MAT", "a/phone.zip", "b.mat", "c.ZIP"));
 }
 
@@ -71,15 +73,26 @@ TEST_F(FindRecordingsTest, IncludesWorkbooksButNotTheirLocks) {
   EXPECT_THAT(Find(""), ElementsAre("a.xlsx", "b.XLS", "c.ods", "d.npz"));
 }
 
+// The endings are those of the page will_it_read_my_file; each format has a test of its reader.
+TEST_F(FindRecordingsTest, FindsWhatFitPendulumReadsAndListsTheRest) {
+  Make({"a.txt", "b.tsv", "c.DAT", "d.log", "e.lvm", "f.mot", "g.npy", "h.phyphox", "i.fods", "rig.json", "x/y.png",
+        "none", "~$a.xlsx"});
+  EXPECT_THAT(Find(""),
+              ElementsAre("a.txt", "b.tsv", "c.DAT", "d.log", "e.lvm", "f.mot", "g.npy", "h.phyphox", "i.fods"));
+  EXPECT_THAT(FindRecordings(folder_.string()).value().left_out,
+              ElementsAre(folder_ / "none", folder_ / "rig.json", folder_ / "x/y.png"));
+  EXPECT_THAT(FindRecordings((folder_ / "*.json").string()).value().left_out, ElementsAre());
+}
+
 TEST_F(FindRecordingsTest, IgnoresATrailingSlash) {
   Make({"a.csv", "b/c.csv"});
-  EXPECT_EQ(FindRecordings(folder_.string()).value(), FindRecordings(folder_.string() + "/").value());
+  EXPECT_EQ(FindRecordings(folder_.string()).value().paths, FindRecordings(folder_.string() + "/").value().paths);
 }
 
 TEST_F(FindRecordingsTest, ReturnsPathsWithTheFolderAsGiven) {
-  EXPECT_THAT(FindRecordings("datasets/runs_?.csv").value(),
+  EXPECT_THAT(FindRecordings("datasets/runs_?.csv").value().paths,
               ElementsAre("datasets/runs_1.csv", "datasets/runs_2.csv", "datasets/runs_3.csv", "datasets/runs_4.csv"));
-  EXPECT_THAT(FindRecordings("datasets").value(), Contains("datasets/coulomb.csv"));
+  EXPECT_THAT(FindRecordings("datasets").value().paths, Contains("datasets/coulomb.csv"));
 }
 
 // glob(3) has the same patterns except **.
@@ -118,7 +131,7 @@ TEST_F(FindRecordingsTest, DistinguishesUpperAndLowerCaseInPatterns) {
 
 TEST_F(FindRecordingsTest, SkipsHiddenFilesAndFolders) {
   Make({"a.csv", ".b.csv", ".c/d.csv", "e/.f.csv", "e/.g/h.csv"});
-  EXPECT_EQ(FindRecordings(folder_.string()).value().size(), 1);
+  EXPECT_EQ(FindRecordings(folder_.string()).value().paths.size(), 1);
   EXPECT_THAT(Find("**/*"), ElementsAre("a.csv"));
   EXPECT_THAT(Find(".c"), ElementsAre(".c/d.csv"));  // a named hidden folder
   EXPECT_THAT(Find("**/.g/*.csv"), ElementsAre("e/.g/h.csv"));
@@ -126,7 +139,7 @@ TEST_F(FindRecordingsTest, SkipsHiddenFilesAndFolders) {
 
 TEST_F(FindRecordingsTest, AcceptsNamesOfAnyBytes) {
   Make({"a b.csv", " .csv", "new\nline.csv", "quote\".csv", "\xFF.csv", "π/振.csv"});
-  EXPECT_THAT(FindRecordings(folder_.string()).value().size(), 6);
+  EXPECT_THAT(FindRecordings(folder_.string()).value().paths.size(), 6);
   EXPECT_THAT(Find("new*line.csv"), ElementsAre("new\nline.csv"));
   EXPECT_THAT(Find("* *"), ElementsAre(" .csv", "a b.csv"));
 }
@@ -161,15 +174,13 @@ TEST_F(FindRecordingsTest, FollowsANamedLinkToAFolder) {
 }
 
 TEST_F(FindRecordingsTest, ReportsPathsAndPatternsThatAreNotFound) {
-  Make({"a/b.txt"});
+  Make({"a/b.json"});
   const std::string folder = folder_.string();
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("none.csv").message, folder + "/none.csv: there is no such file or folder; check the path");
   EXPECT_EQ(FaultOf("a").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("a").message, folder +
-                                      "/a: there is no *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx or *.zip file in this "
-                                      "folder or below it; check the "
-                                      "path");
+  EXPECT_EQ(FaultOf("a").message,
+            folder + "/a: there is no " + RecordingNames() + " file in this folder or below it; check the path");
   EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
   EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file matches this pattern; check the path");
   EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file matches this pattern; check the path");

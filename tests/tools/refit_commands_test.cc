@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/refit_commands.h"
 
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
@@ -75,6 +76,40 @@ TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunIsStored) {
   EXPECT_THAT(stdout_text_, HasSubstr("in the store                    2\n"));
   EXPECT_THAT(stdout_text_, HasSubstr("    coulomb     2          1              0                 0       1\n"));
   EXPECT_THAT(stdout_text_, HasSubstr("    1 of 2 recordings fitted; 1 "));
+}
+
+TEST_F(RefitCommandsTest, ExitsWithThreeWhenAResultStaysBecauseAFitTakesTooLong) {
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  RefitPendulumsOptions slow = Options(RefitCommand::kRefit);
+  slow.refit.run.fit.interval = IntervalMethod::kBootstrap;
+  slow.refit.fit_time = std::chrono::milliseconds(1);
+  for (const bool is_tried : {true, false}) {
+    EXPECT_EQ(Run(slow), 3);
+    EXPECT_THAT(stderr_text_, HasSubstr(is_tried ? "2 runs refitted, 0 were current" : "0 runs refitted, 2 were"));
+    EXPECT_THAT(stderr_text_, HasSubstr("; 1 keep a former result (--replace_by_failures replaces it)"));
+    EXPECT_THAT(stdout_text_, HasSubstr("0 of 2 recordings fitted; 1 missing, 1 with a former result only."));
+    EXPECT_THAT(stdout_text_, HasSubstr("the fit took longer than 0.001 s"));
+  }
+}
+
+TEST_F(RefitCommandsTest, PrunesWhatItSaid) {
+  RefitPendulumsOptions options = Options(RefitCommand::kRefit), prune = Options(RefitCommand::kPrune);
+  EXPECT_EQ(Run(prune), 3);  // there is no store
+  EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
+  options.refit.run.models = {"viscous", "coulomb"};
+  ASSERT_EQ(Run(options), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  prune.dry_run = true;
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(Run(prune), 0);
+    EXPECT_EQ(stdout_text_,
+              "[[Would be removed]]\n    1 fits of models that the last refit did not ask for: viscous\n");
+  }
+  prune.dry_run = false;
+  EXPECT_EQ(Run(prune), 0);
+  EXPECT_THAT(stdout_text_, HasSubstr("[[Removed]]\n    1 fits of models"));
+  EXPECT_EQ(Run(prune), 0);
+  EXPECT_EQ(stdout_text_, "Nothing to remove.\n");
 }
 
 TEST_F(RefitCommandsTest, RefusesAWrongCommonRigBeforeAnyFit) {

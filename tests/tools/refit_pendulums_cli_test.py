@@ -19,7 +19,7 @@ from refit_lab import DATASETS, Lab, RIG, SIMULATED, TIMEOUT_S, TOOL, TOOLS, as_
 from sanitizers import is_sanitized, memory_limit
 
 # Number of runs, enough that some are in progress for seconds; and how often a tool is killed.
-MANY, KILLS = (24, 5) if is_sanitized(TOOL) else (120, 20)
+MANY, KILLS = (24, 5) if is_sanitized(TOOL) else (120, 50)
 PENDULUMS = 24 if is_sanitized(TOOL) else 200
 
 
@@ -302,7 +302,8 @@ class HostileManifests(Lab):
         shutil.copy(self.folder / "runs" / "run_001.csv", self.folder / "runs" / "deep" / "er" / "a.csv")
         (self.folder / "runs" / "deep" / "loop").symlink_to("..")
         (self.folder / "runs" / "deep" / "self").symlink_to("self")
-        (self.folder / "runs" / "notes.txt").write_text("no recording")
+        (self.folder / "runs" / "notes.md").write_text("no recording")
+        (self.folder / "runs" / "deep" / "rig.json").write_text("{}")
         for data, ids in {"runs": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"],
                           "runs/**/*.csv": ["runs/deep/er/a.csv", "runs/run_001.csv", "runs/run_002.csv"],
                           "runs/run_00[2-9].csv,runs/*/er": ["runs/run_002.csv"],
@@ -312,7 +313,8 @@ class HostileManifests(Lab):
                               self.run_tool("--data", data, "--store", "b.sqlite", code=3)[1])
                 continue
             store = f"{len(data)}.sqlite"
-            self.run_tool("--data", data, "--store", store)
+            said = self.run_tool("--data", data, "--store", store)[1]
+            self.assertEqual("left out because of the name (1 *, 1 *.json, 1 *.md)" in said, "csv" not in data or "," in data)
             self.assertEqual(sorted(key[1] for key in self.rows(store) if key[0] == "runs"), ids)
 
 

@@ -8,14 +8,19 @@
 
 namespace pendulum {
 
-/// The recordings of a folder or a pattern, in the order of their names.
-/// Folder: all *.csv, *.mat, *.npz, *.ods, *.xls, *.xlsx and *.zip files in it and in its subfolders, in lower or upper
-/// case.
+/// What a search found, in the order of paths.
+struct FoundRecordings {
+  std::vector<std::string> paths;     ///< Recordings.
+  std::vector<std::string> left_out;  ///< Other files of a folder, which were not searched for.
+};
+
+/// The recordings of a folder or a pattern.
+/// Folder: all files in it and in its subfolders whose names recordings have (HasRecordingName).
 /// Pattern ("runs/2026-*/*.csv", "**/pendulum?.csv"): the files whose path matches part by part (fnmatch(3)); a part **
 /// matches any number of folders. Hidden files and folders match only a pattern that begins with a dot. Links to
 /// folders below the named folder are not followed, to avoid loops; links to files are.
 /// The path of an existing file is returned unchanged, even if it looks like a pattern. kNotFound: no file found.
 /// kDataLoss: a folder cannot be read, so its content is unknown.
-Result<std::vector<std::string>> FindRecordings(const std::string& pattern);
+Result<FoundRecordings> FindRecordings(const std::string& pattern);
 
 }  // namespace pendulum

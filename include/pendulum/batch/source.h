@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct Source {
   /// The bytes of a file of an entry (path, rig or calibration), for any thread. kNotFound: no such file. kDataLoss: a
   /// directory, a pipe or a device, unreadable, or larger than kMaxRecordingBytes.
   std::function<Result<std::string>(const std::string& path)> read;
+
+  /// Numbers of the files in searched folders that are no recordings by their names, by pattern ("*.json").
+  std::map<std::string, std::int64_t> left_out = {};
 };
 
 /// Limit for a recording, which is in memory while it is fitted.
