@@ -5,6 +5,7 @@
 import csv
 import http.client
 import json
+import os
 import re
 import resource
 import signal
@@ -16,6 +17,7 @@ import unittest
 from event_stream import EventParser, events
 from service import (DATASETS, IS_SANITIZED, RIG, TIMEOUT_S, Lab, Served, data_part, json_part, query_of, run_tool)
 
+KILLS = 5 if IS_SANITIZED else int(os.environ.get("PENDULUM_KILLS", "50"))
 MANY = 12 if IS_SANITIZED else 24  # runs, enough that some are in progress for a moment
 SLOW = {"model": "viscous,coulomb", "interval": "bootstrap"}  # a few seconds per run
 ENDLESS = {"model": "all", "interval": "bootstrap"}  # many seconds
@@ -245,9 +247,10 @@ class Survival(Batched):
         for client in clients:
             client.start()
         try:
-            for kill in range(5):
+            for kill in range(KILLS):
                 # Different moments: multiples of the golden ratio act as random numbers.
-                batches.append(self.post_batch(server, names[kill * MANY // 10:][:MANY // 2], "?model=viscous,coulomb"))
+                first = kill % 5 * MANY // 10
+                batches.append(self.post_batch(server, names[first:][:MANY // 2], "?model=viscous,coulomb"))
                 time.sleep(0.05 + 0.5 * ((0.618 * (kill + 1)) % 1))
                 server.kill()
                 server.start(server.port)
