@@ -514,7 +514,8 @@ void ClockRepair::RemoveStrayStamps() {
   Index removed = 0, first = 0;
   for (const UnorderedRows& rows : FindUnorderedRows(time())) DropOutOfOrderRows(time(), rows, keep);
   for (Index begin = 1, end = 1; begin + 1 < size(); begin = std::max(begin + 1, end)) {
-    for (end = begin; end + 1 < size() && !keep[end]; ++end) {}
+    for (end = begin; end + 1 < size() && !keep[end]; ++end) {
+    }
     const Index count = end - begin;
     if (count == 0 || count > kMaxStepsBack || !keep[begin - 1] || !keep[end]) continue;
     const double expected = step * static_cast<double>(count + 1), across = time()[end] - time()[begin - 1];

@@ -18,8 +18,8 @@ enum class Verdict {
 };
 
 /// One verdict for each half swing i, from turning point i to i + 1 of FindAllTurningPoints(recording). A single
-/// deviating turning point is an outlier and disturbs no half swing. Next to another gap in the samples, a half swing is
-/// either kGains or kFree.
+/// deviating turning point is an outlier and disturbs no half swing. Next to another gap in the samples, a half swing
+/// is either kGains or kFree.
 std::vector<Verdict> ClassifyHalfSwings(const Recording& recording, const TurningPointTable& table);
 
 }  // namespace pendulum

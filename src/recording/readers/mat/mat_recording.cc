@@ -107,8 +107,8 @@ class TemporaryFile {
   int error_ = 0;
 };
 
-/// A second is enough for a hundred megabytes, but some damaged files would take forever, or as much memory as a damaged
-/// length says. Several copies of the numbers exist until the answer is complete.
+/// A second is enough for a hundred megabytes, but some damaged files would take forever, or as much memory as a
+/// damaged length says. Several copies of the numbers exist until the answer is complete.
 ChildLimits LimitsFor(std::size_t bytes, std::size_t max_unpacked) {
   constexpr std::size_t kCopies = 8, kMinBytes = std::size_t{1} << 26;
   constexpr std::size_t kMaxRatio = 1032;  // zlib packs no better

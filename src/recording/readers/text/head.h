@@ -45,8 +45,8 @@ inline std::string_view DevicePart(std::string_view line, bool has_host) {
   return stamp ? stamp->rest : line;
 }
 
-/// The part of a line without the stamps that a host, or the device itself, puts before its remarks: "14:03:22.123 -> ",
-/// "12:04:33 ". Where rows begin with a time of day, that is no stamp.
+/// The part of a line without the stamps that a host, or the device itself, puts before its remarks: "14:03:22.123 ->
+/// ", "12:04:33 ". Where rows begin with a time of day, that is no stamp.
 std::string_view RemarkPart(std::string_view line, const Head& head);
 
 /// Whether a line from the first row on is text and no row: it begins with text other than a missing number. If rows
