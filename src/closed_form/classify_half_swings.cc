@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "closed_form/long_gap.h"
 #include "pendulum/base/median.h"
 
 namespace pendulum {
@@ -91,8 +90,6 @@ bool IsBraked(const TurningPointTable& table, std::size_t i) {
 }
 
 Verdict Classify(const Recording& recording, const TurningPointTable& table, std::size_t i) {
-  const Index first = table.points[i].sample, last = table.points[i + 1].sample;
-  if (BeforeLongGap(recording, table.half_period, first, last) < last) return Verdict::kLongGap;
   const bool near_gap = HasGap(recording, table, i) || (i > 0 && HasGap(recording, table, i - 1)) ||
                         (i + 1 < table.half_swings() && HasGap(recording, table, i + 1));
   if (near_gap) return GainsAmplitude(table, i, true) ? Verdict::kGains : Verdict::kFree;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <Eigen/QR>
 
 #include "closed_form/driven_part.h"
+#include "closed_form/long_gap.h"
 #include "closed_form/swing_ends.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
@@ -352,15 +354,9 @@ std::optional<std::vector<FreeSwing>> FindHidden(const Recording& recording, con
   return *std::move(swings);
 }
 
-}  // namespace
-
-Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring) {
-  if (HasTurningPointView(recording)) {
-    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording), is_spring);
-    if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
-    return swings;
-  }
-  const TurningPointTable table = FindAllTurningPoints(recording);
+/// The swings of a recording without long gaps.
+Result<std::vector<FreeSwing>> FindWithoutGaps(const Recording& recording, const TurningPointTable& table,
+                                               bool is_spring) {
   if (table.points.size() < 3) {
     const Result<TurningPointTable> found = FindTurningPoints(recording);
     return tl::unexpected(found ? Status{StatusCode::kFailedPrecondition, "no turning points"} : found.error());
@@ -377,6 +373,57 @@ Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool i
     return *std::move(hidden);
   }
   return swings;
+}
+
+/// Samples [first, last].
+Recording PartOf(const Recording& recording, Index first, Index last) {
+  Recording part = recording;
+  part.time = recording.time.segment(first, last - first + 1);
+  part.value = recording.value.segment(first, last - first + 1);
+  return part;
+}
+
+/// The swings of the parts between long gaps. If none has a swing, the error is that of the longest part.
+Result<std::vector<FreeSwing>> FindBetweenGaps(const Recording& recording, std::vector<Index> gaps, bool is_spring) {
+  const Index end = recording.size() - 1;
+  gaps.push_back(end);
+  std::vector<FreeSwing> swings;
+  tl::unexpected<Status> error = NoSwing("the readings between gaps are too few");
+  Index longest = 0;
+  std::size_t i = 0;
+  for (Index first = 0; const Index last : gaps) {
+    const Recording part = PartOf(recording, std::exchange(first, last + 1), last);
+    if (part.size() < kMinimumSamples) continue;
+    Result<std::vector<FreeSwing>> found = FindWithoutGaps(part, FindAllTurningPoints(part), is_spring);
+    if (!found && part.size() > longest) error = tl::unexpected(found.error());
+    longest = std::max(longest, part.size());
+    if (found) std::ranges::move(*found, std::back_inserter(swings));
+    for (; i < swings.size(); ++i) {
+      FreeSwing& swing = swings[i];
+      if (part.time[0] > recording.time[0] && swing.begins.reason == WindowBegin::Reason::kInMotion) {
+        swing.begins = {WindowBegin::Reason::kAfterGap};
+      }
+      if (last < end && swing.ends.reason == WindowEnd::Reason::kEndOfRecording) {
+        swing.ends = {WindowEnd::Reason::kBeforeGap, recording.time[last], recording.time[last + 1]};
+      }
+    }
+  }
+  if (swings.empty()) return error;
+  return swings;
+}
+
+}  // namespace
+
+Result<std::vector<FreeSwing>> FindFreeSwings(const Recording& recording, bool is_spring) {
+  if (HasTurningPointView(recording)) {
+    Result<std::vector<FreeSwing>> swings = FindFreeSwings(TurningPointView(recording), is_spring);
+    if (swings && recording.quantity == Quantity::kAcceleration) RemoveHolds(*swings);
+    return swings;
+  }
+  const TurningPointTable table = FindAllTurningPoints(recording);
+  std::vector<Index> gaps = FindLongGaps(recording, table.half_period);
+  if (gaps.empty()) return FindWithoutGaps(recording, table, is_spring);
+  return FindBetweenGaps(recording, std::move(gaps), is_spring);
 }
 
 }  // namespace pendulum

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "closed_form/long_gap.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/closed_form/steady.h"
 
@@ -54,7 +53,7 @@ std::optional<Beginning> HoldBefore(const Recording& recording, const TurningPoi
     while (end > 0 && std::abs(recording.value[end] - level) > band) --end;
     if (table.points[turn].time - recording.time[end] > table.half_period) return std::nullopt;
   }
-  const Index begin = AfterLongGap(recording, table.half_period, FirstWithin(recording, end, level, band), end);
+  const Index begin = FirstWithin(recording, end, level, band);
   const double natural = 0.25 * table.half_period * table.Stretch(turn);
   const double dwell = recording.time[LastWithin(recording, end, level, band)] - recording.time[begin];
   if (dwell < (rate ? 1.0 : 2.0) * natural || begin == end) return std::nullopt;
@@ -114,33 +113,23 @@ bool IsStopped(const Recording& recording, const TurningPointTable& table, std::
 Beginning FindBeginning(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   if (auto after_fall = BeginAfterFall(table, run.first)) return *after_fall;
   if (auto hold = HoldBefore(recording, table, run.first)) return *hold;
-  const Index turn = table.points[run.first].sample;
-  const Index start = AfterLongGap(recording, table.half_period, 0, turn);
-  const double before = table.points[run.first].time - recording.time[start];
-  const bool near_start = (run.first <= 1 || table.points[run.first - 1].sample <= start) &&
-                          before <= 1.1 * table.half_period * table.Stretch(run.first);
-  const bool within = std::abs(recording.value[start] - table.ZeroAt(run.first)) <=
-                      table.Amplitude(run.first) + table.Tolerance(run.first);
-  if (near_start && within) {
-    return {start, {start == 0 ? WindowBegin::Reason::kInMotion : WindowBegin::Reason::kAfterGap}};
-  }
+  const double before = table.points[run.first].time - recording.time[0];
+  const bool near_start = run.first <= 1 && before <= 1.1 * table.half_period * table.Stretch(run.first);
+  const bool within =
+      std::abs(recording.value[0] - table.ZeroAt(run.first)) <= table.Amplitude(run.first) + table.Tolerance(run.first);
+  if (near_start && within) return {0, {WindowBegin::Reason::kInMotion}};
   return {table.points[run.first].sample, {WindowBegin::Reason::kAfterMove}};
 }
 
 Ending FindEnding(const Recording& recording, const TurningPointTable& table, const TurningPointRun& run) {
   const Index turn = table.points[run.last].sample;
-  const bool is_last = run.last == table.half_swings();
-  const Index next = is_last ? recording.size() - 1 : table.points[run.last + 1].sample;
-  const Index limit = BeforeLongGap(recording, table.half_period, turn, next);
-  const bool has_gap = limit < next;
   // The hand that moves the pendulum afterwards may have held it before, so a standstill does not belong to the swing.
-  if (!is_last && !has_gap) return {turn, {WindowEnd::Reason::kBeforeMove}};
+  if (run.last < table.half_swings()) return {turn, {WindowEnd::Reason::kBeforeMove}};
+  const Index limit = recording.size() - 1;
   if (IsStopped(recording, table, run.last, limit)) return {turn, {WindowEnd::Reason::kBeforeStop}};
   const Index end = EndOfMotion(recording, table, turn, limit);
-  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period) {
-    if (has_gap) return {limit, {WindowEnd::Reason::kBeforeGap, recording.time[limit], recording.time[limit + 1]}};
+  if (recording.time[limit] - recording.time[end] <= 6 * table.half_period)
     return {limit, {WindowEnd::Reason::kEndOfRecording}};
-  }
   Index sample = end;
   while (recording.time[sample] - recording.time[end] < 2 * table.half_period) ++sample;
   return {sample, {WindowEnd::Reason::kAtRest, recording.time[end]}};

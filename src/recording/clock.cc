@@ -175,10 +175,12 @@ bool ClockRepair::IsLikely(const Counter& counter, const std::vector<Index>& wra
   const bool is_short = counter.range < kCounters.front().range;
   double largest = 0;
   for (Index i = 1; i < size(); ++i) largest = std::max(largest, time()[i] - time()[i - 1]);
-  if (largest > counter.range / 2) return false;  // a stamp that lost a digit, and the return from it
   const double limit = is_short ? kAlike * usual + 1 : std::max(largest, kUsualSteps * usual);
   for (const Index i : wraps) {
     if (time()[i] + counter.range - time()[i - 1] > limit) return false;
+    for (Index k = i + 1; k < std::min(i + kMaxStepsBack, size()); ++k) {
+      if (time()[k] - time()[k - 1] > counter.range / 2) return false;  // the return from a stamp that lost a digit
+    }
   }
   if (!is_short) return true;
   const double longest = std::max(limit, kShortGap * counter.range);

@@ -281,19 +281,31 @@ TEST(FindFreeSwings, KeepsASwingAcrossGaps) {
 }
 
 TEST(FindFreeSwings, EndsASwingAtAGapOfManySwings) {
-  // The gap begins while it moves, and lasts for longer than the readings and for more than 20 half swings.
-  Recording recording = Joined({Still(0.5, 2), Swing(0.5, 25)});
-  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.time[i] += recording.time[i] > 15.3 ? 36000 : 0;
-  const std::vector<FreeSwing> swings = Must(FindFreeSwings(recording));
-  ASSERT_THAT(swings, SizeIs(2));
-  EXPECT_THAT(swings[0].to, DoubleNear(15.3, 0.02));
-  EXPECT_EQ(Sentence(swings[0].ends), "a gap of 3.6e+04 s follows, which hides too many swings to bridge");
-  EXPECT_THAT(swings[1].from, DoubleNear(36015.3, 0.02));
-  EXPECT_EQ(swings[1].begins.reason, WindowBegin::Reason::kAfterGap);
-  EXPECT_EQ(swings[1].to, LastTime(recording));
+  // The gap begins at any phase and lasts for longer than the readings and for more than 20 half swings.
+  for (double gap = 15; gap < 15 + 2 * kHalfPeriod; gap += 0.1) {
+    SCOPED_TRACE(gap);
+    Recording recording = Joined({Still(0.5, 2), Swing(0.5, 25)});
+    for (Eigen::Index i = 0; i < recording.size(); ++i) recording.time[i] += recording.time[i] > gap ? 36000 : 0;
+    const std::vector<FreeSwing> swings = Must(FindFreeSwings(recording));
+    ASSERT_THAT(swings, SizeIs(2));
+    EXPECT_THAT(swings[0].to, DoubleNear(gap, 0.02));
+    EXPECT_EQ(Sentence(swings[0].ends), "a gap of 3.6e+04 s follows, which hides too many swings to bridge");
+    EXPECT_THAT(swings[1].from, DoubleNear(36000 + gap, 0.02));
+    EXPECT_EQ(swings[1].begins.reason, WindowBegin::Reason::kAfterGap);
+    EXPECT_EQ(swings[1].to, LastTime(recording));
+  }
 }
 
-TEST(FindFreeSwings, EndsASwingAtAGapOfManySwings_AlsoWithoutATurningPointAfterIt) {
+TEST(FindFreeSwings, TreatsEqualGapsAlike) {
+  // Every 60 s the logger records 3 s.
+  Recording recording = Swing(0.5, 40);
+  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.time[i] += 57.02 * std::floor(recording.time[i] / 3);
+  const std::vector<FreeSwing> swings = Must(FindFreeSwings(recording));
+  EXPECT_THAT(swings, SizeIs(Ge(10)));
+  for (const FreeSwing& swing : swings) EXPECT_THAT(swing.to - swing.from, Le(3.0));
+}
+
+TEST(FindFreeSwings, EndsASwingAtAGapOfManySwingsBeforeAFewReadings) {
   Recording recording = Joined({Still(0.5, 2), Swing(0.5, 25)});
   recording.time.tail(20).array() += 36000;
   const FreeSwing swing = OnlySwing(recording);

@@ -113,6 +113,14 @@ TEST(RepairClock, UnwrapsA32BitCounter) {
   }
 }
 
+TEST(RepairClock, UnwrapsACounterAfterAPauseOfMoreThanHalfItsRange) {
+  // 100 s, a pause of 40 min, and 100 s with an overflow after 50 s.
+  const auto stamp = [](int i) { return 1744967296 + 10000.0 * i + (i < 10000 ? 0 : 2.4e9); };
+  const RawSamples repaired =
+      Repaired(Rows(Stamps(20000, [&](int i) { return std::fmod(stamp(i), 4294967296.0); }), "us"));
+  for (int i = 0; i < 20000; ++i) ASSERT_EQ(repaired.time[i], stamp(i));
+}
+
 TEST(RepairClock, UnwrapsACounterRepeatedly) {
   const double step = 1e9;
   const RawSamples repaired =

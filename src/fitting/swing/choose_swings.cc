@@ -45,7 +45,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   const Recording* const part = selected ? &*selected : &recording;
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   if (!from_given || !to_given) {
-    if (const Result<void> clock = CheckClock(*part); !clock)
+    if (const Result<void> clock = CheckClock(*part, choice.is_spring || (rig && rig->is_spring)); !clock)
       return WithMessage(clock.error(), where + clock.error().message);
   }
   if (IsUndersampled(*part, rig)) {

@@ -20,30 +20,9 @@ using Eigen::Index;
 
 constexpr double kLeastChange = 0.004;  // relative: twice this in inertia
 
-/// Before and after sample `at`, the mean sampling interval [s].
-struct StepChange {
-  Index at = 0;
-  double before = 0, after = 0;
-
-  double log_ratio() const { return std::log(after / before); }
-};
-
-/// The mean of steps [begin, end) without those of gaps.
-double MeanStep(const Eigen::VectorXd& steps, Index begin, Index end) {
-  constexpr double kGap = 2;
-  const double usual = Median(std::vector<double>(steps.begin() + begin, steps.begin() + end));
-  double sum = 0, count = 0;
-  for (Index i = begin; i < end; ++i) {
-    if (steps[i] > kGap * usual || kGap * steps[i] < usual) continue;
-    sum += steps[i];
-    ++count;
-  }
-  return sum / count;
-}
-
-/// Where the steps change most clearly; std::nullopt if they do not. Their logarithms are clamped to the middle nine
-/// tenths, so that gaps do not matter.
-std::optional<StepChange> FindStepChange(const Eigen::VectorXd& time) {
+/// The sample after which the steps change most clearly; std::nullopt if they do not. Their logarithms are clamped to
+/// the middle nine tenths, so that gaps do not matter.
+std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
   constexpr Index kMinSteps = 20;
   constexpr double kDeviations = 10;
   const Index count = time.size() - 1;
@@ -71,63 +50,102 @@ std::optional<StepChange> FindStepChange(const Eigen::VectorXd& time) {
   }
   const double within = (centred.square().sum() - clearest) / static_cast<double>(count);
   if (at < kMinSteps || at > count - kMinSteps || clearest < kDeviations * kDeviations * within) return std::nullopt;
-  const StepChange change{at, MeanStep(steps, 0, at), MeanStep(steps, at, count)};
-  if (std::abs(change.log_ratio()) < kLeastChange) return std::nullopt;
-  return change;
+  return at;
 }
 
-/// Logarithm of the median half period of small swings [rows], with its standard error; std::nullopt if there is none.
-std::optional<Estimate> LogHalfPeriod(std::vector<double> rows) {
+/// The median of a logarithm, with its standard error; std::nullopt of nothing.
+std::optional<Estimate> MedianOfLogs(std::vector<double> logs) {
   constexpr double kMedianError = 1.86;  // 1.2533 of a median, times 1.4826 of its deviations
   constexpr double kLeastError = 5e-4, kErrorOfFew = 6e-3;
-  constexpr std::size_t kFew = 3;  // the scatter of so few half swings may be small by chance
-  const std::size_t count = rows.size();
+  constexpr std::size_t kFew = 3;  // the scatter of so few may be small by chance
+  const std::size_t count = logs.size();
   if (count == 0) return std::nullopt;
-  const double typical = Median(rows);
-  for (double& each : rows) each = std::abs(each - typical);
-  const double error = kMedianError * Median(std::move(rows)) / typical / std::sqrt(static_cast<double>(count));
-  return Estimate{std::log(typical), std::max(error, count < kFew ? kErrorOfFew : kLeastError)};
+  const double typical = Median(logs);
+  for (double& each : logs) each = std::abs(each - typical);
+  const double error = kMedianError * Median(std::move(logs)) / std::sqrt(static_cast<double>(count));
+  return Estimate{typical, std::max(error, count < kFew ? kErrorOfFew : kLeastError)};
 }
 
-/// How the half period in rows changes: the difference of its logarithms, with its standard error.
-std::optional<Estimate> ChangeOfRows(const Recording& recording, const StepChange& change) {
+/// Half periods on one side of the change: logarithms of their rows and of their seconds.
+struct HalfPeriods {
+  std::vector<double> rows, seconds;
+};
+
+struct BothSides {
+  HalfPeriods before, after;
+};
+
+/// The time at a fractional row [s].
+double TimeAtRow(const Eigen::VectorXd& time, double row) {
+  const auto below = std::clamp<Index>(static_cast<Index>(std::floor(row)), 0, time.size() - 2);
+  return time[below] + (row - static_cast<double>(below)) * (time[below + 1] - time[below]);
+}
+
+/// Turning points by row, so that no time affects them. is_pendulum: durations are those of small swings.
+BothSides FindHalfPeriods(const Recording& recording, Index change, bool is_pendulum) {
   Recording by_row = recording;
-  by_row.time =
-      Eigen::VectorXd::LinSpaced(recording.size(), 0, change.before * static_cast<double>(recording.size() - 1));
+  const double step = (recording.time[change] - recording.time[0]) / static_cast<double>(change);
+  const double last = static_cast<double>(recording.size() - 1);
+  by_row.time = Eigen::VectorXd::LinSpaced(recording.size(), 0, step * last);
   if (HasTurningPointView(by_row)) by_row = TurningPointView(by_row);
   const TurningPointTable table = FindAllTurningPoints(by_row);
-  std::vector<double> before, after;
+  BothSides sides;
   for (std::size_t i = 1; i < table.half_swings(); ++i) {  // point 0 may be the start or lie in a hold
     const TurningPoint &from = table.points[i], &to = table.points[i + 1];
-    const double duration = (to.time - from.time) / (0.5 * (table.Stretch(i) + table.Stretch(i + 1)));
-    if (to.sample <= change.at) before.push_back(duration);
-    if (from.sample >= change.at) after.push_back(duration);
+    if (from.sample < change && to.sample > change) continue;
+    const double stretch = is_pendulum ? 0.5 * (table.Stretch(i) + table.Stretch(i + 1)) : 1;
+    const double rows = (to.time - from.time) / step;
+    const double seconds = TimeAtRow(recording.time, to.time / step) - TimeAtRow(recording.time, from.time / step);
+    if (!(rows > 0 && seconds > 0)) continue;
+    HalfPeriods& side = to.sample <= change ? sides.before : sides.after;
+    side.rows.push_back(std::log(rows / stretch));
+    side.seconds.push_back(std::log(seconds / stretch));
   }
-  const std::optional<Estimate> a = LogHalfPeriod(std::move(before)), b = LogHalfPeriod(std::move(after));
+  return sides;
+}
+
+/// How a logarithm changes, with its standard error.
+std::optional<Estimate> ChangeOf(const std::vector<double>& before, const std::vector<double>& after) {
+  const std::optional<Estimate> a = MedianOfLogs(before), b = MedianOfLogs(after);
   if (!a || !b) return std::nullopt;
   return Estimate{b->value - a->value, std::hypot(a->std_error, b->std_error)};
 }
 
+/// Whether a half period takes as many rows on both sides, but not as many seconds.
+bool IsClockOf(const BothSides& sides) {
+  constexpr double kAgrees = 3, kDiffers = 6;  // standard errors
+  constexpr double kNear = 0.2;
+  const std::optional<Estimate> rows = ChangeOf(sides.before.rows, sides.after.rows);
+  const std::optional<Estimate> seconds = ChangeOf(sides.before.seconds, sides.after.seconds);
+  if (!rows || !seconds) return false;
+  const double difference = std::abs(seconds->value);
+  return difference > std::max(kLeastChange, kDiffers * seconds->std_error) &&
+         std::abs(rows->value) < std::max(kAgrees * rows->std_error, kNear * difference);
+}
+
+/// A time with the digits that distinguish samples.
+std::string TimeText(double time, double step) {
+  const double digits = std::ceil(std::log10(std::max(std::abs(time) / step, 1.0))) + 2;
+  return NumberText(time, std::clamp(static_cast<int>(digits), 4, 15));
+}
+
 }  // namespace
 
-Result<void> CheckClock(const Recording& recording) {
-  constexpr double kAgrees = 3, kDiffers = 6;  // standard errors
-  const std::optional<StepChange> change = FindStepChange(recording.time);
+Result<void> CheckClock(const Recording& recording, bool is_spring) {
+  const std::optional<Index> change = FindStepChange(recording.time);
   if (!change) return {};
-  const std::optional<Estimate> rows = ChangeOfRows(recording, *change);
-  if (!rows) return {};
-  const double if_sampling = rows->value + change->log_ratio();
-  const bool clock_changed =
-      std::abs(rows->value) < kAgrees * rows->std_error && std::abs(if_sampling) > kDiffers * rows->std_error;
-  if (!clock_changed) return {};
-  const std::string to = NumberText(recording.time[change->at], 6);
+  const BothSides sides = FindHalfPeriods(recording, *change, false);
+  // The period of a torsion pendulum does not depend on the amplitude, and few recordings say which it is.
+  if (!IsClockOf(sides) || (!is_spring && !IsClockOf(FindHalfPeriods(recording, *change, true)))) return {};
+  const auto step_of = [](const HalfPeriods& side) { return std::exp(Median(side.seconds) - Median(side.rows)); };
+  const double before = step_of(sides.before), after = step_of(sides.after);
+  const std::string at = TimeText(recording.time[*change], std::min(before, after));
   const auto text = [](double step) { return NumberText(1e3 * step, 4) + " ms"; };
   return Error(StatusCode::kDataLoss,
-               "the times change their rate at " + to + " s, from " + text(change->before) + " to " +
-                   text(change->after) +
+               "the times change their rate at " + at + " s, from " + text(before) + " to " + text(after) +
                    " between rows, but a swing takes as many rows as before: the clock changed, not the sampling, and "
                    "the times of one part are wrong; fit the part whose times are right, with --to " +
-                   to + " or --from " + to);
+                   at + " or --from " + at);
 }
 
 }  // namespace pendulum

@@ -69,18 +69,75 @@ TEST(CheckClock, AcceptsSamplingThatChangesItsRate) {
   }
 }
 
-/// As of a log with gaps, of a jittering host and of one that rounds to whole milliseconds.
-TEST(CheckClock, AcceptsUnevenTimes) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Recording uneven = Recorded(seed);
-    for (Eigen::Index i = 0; i < uneven.size(); ++i) {
-      uneven.time[i] += 0.004 * std::sin(0.7 * static_cast<double>(i * i));
-      uneven.time[i] += i > 700 ? 1.3 : 0;
-      uneven.time[i] = 1e-3 * std::round(1e3 * uneven.time[i]);
-    }
-    const Result<void> checked = CheckClock(uneven);
-    EXPECT_TRUE(checked.has_value()) << checked.error().message;
+/// The sampling becomes slower by `factor`: the readings between the samples, which lie on a parabola.
+Recording Resampled(const Recording& recording, Eigen::Index row, double factor) {
+  Recording slower = recording;
+  Eigen::Index count = row;
+  for (double at = static_cast<double>(row); at < static_cast<double>(recording.size() - 2); at += factor, ++count) {
+    const auto i = static_cast<Eigen::Index>(at);
+    const double w = at - static_cast<double>(i);
+    slower.time[count] = recording.time[i] + w * (recording.time[i + 1] - recording.time[i]);
+    const double a = recording.value[i - 1], b = recording.value[i], c = recording.value[i + 1];
+    slower.value[count] = b + 0.5 * w * (c - a) + 0.5 * w * w * (a - 2 * b + c);
   }
+  slower.time.conservativeResize(count);
+  slower.value.conservativeResize(count);
+  return slower;
+}
+
+/// A torsion pendulum's period does not depend on the amplitude, here 0.8 to 0.4 rad.
+TEST(CheckClock, KnowsTorsionPendulums) {
+  Recording torsion;
+  torsion.time = Eigen::VectorXd::LinSpaced(2300, 0, 22.99);
+  torsion.value = torsion.time.unaryExpr([](double t) { return 0.8 * std::exp(-0.03 * t) * std::cos(5 * t); });
+  for (const bool is_spring : {false, true}) {
+    for (const double factor : {1.01, 1.015, 1.02, 1.1}) {
+      const Result<void> checked = CheckClock(Resampled(torsion, 1000, factor), is_spring);
+      EXPECT_TRUE(checked.has_value()) << factor << ", " << checked.error().message;
+    }
+  }
+  EXPECT_FALSE(CheckClock(WithFasterClock(torsion, 1000, 1.1), true).has_value());
+}
+
+/// As of a log with gaps, of a jittering host and of one that rounds to whole milliseconds.
+Recording Uneven(Recording recording, Eigen::Index from, double jitter) {
+  for (Eigen::Index i = from; i < recording.size(); ++i) {
+    recording.time[i] += jitter * std::sin(0.7 * static_cast<double>(i * i));
+    recording.time[i] += i > 700 ? 1.3 : 0;
+    recording.time[i] = 1e-3 * std::round(1e3 * recording.time[i]);
+  }
+  return recording;
+}
+
+/// From sample `row` on, packets of four rows arrive together, and a hundredth of the rows is lost.
+Recording InPackets(const Recording& recording, Eigen::Index row) {
+  Recording packets = recording;
+  Eigen::Index count = row;
+  for (Eigen::Index i = row; i < recording.size(); ++i) {
+    if (i % 100 == 37) continue;
+    packets.time[count] =
+        recording.time[std::min(i / 4 * 4 + 3, recording.size() - 1)] + 1e-4 * static_cast<double>(i % 4);
+    packets.value[count++] = recording.value[i];
+  }
+  packets.time.conservativeResize(count);
+  packets.value.conservativeResize(count);
+  return packets;
+}
+
+TEST(CheckClock, AcceptsTimesThatAreOrBecomeUneven) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Recording run = Recorded(seed);
+    for (const Recording& uneven : {Uneven(run, 0, 0.004), Uneven(run, 1000, 0.004), InPackets(run, 1000)}) {
+      const Result<void> checked = CheckClock(uneven);
+      EXPECT_TRUE(checked.has_value()) << seed << ", " << checked.error().message;
+    }
+  }
+}
+
+TEST(CheckClock, GivesTimesThatDistinguishSamples) {
+  Recording recording = WithFasterClock(Recorded(1), 1000, 1.1);
+  recording.time.array() += 1700000000;
+  EXPECT_THAT(CheckClock(recording).error().message, testing::EndsWith("with --to 1700000010 or --from 1700000010"));
 }
 
 }  // namespace

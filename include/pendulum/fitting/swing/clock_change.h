@@ -6,10 +6,11 @@
 
 namespace pendulum {
 
-/// Refuses times whose clock changes its rate. If the rows become more or less frequent while a swing still takes as
-/// many rows, the clock changed; if it still takes as many seconds, the sampling did, which is no fault. Without a half
-/// swing on both sides, and if neither is clear, there is no error. kDataLoss: the message has the time of the change
-/// and the two windows to choose from.
-Result<void> CheckClock(const Recording& recording);
+/// Refuses times whose clock changes its rate: the steps between rows change at one row, and from there on a swing
+/// takes as many rows as before, but not as many seconds. If it takes as many seconds, the sampling changed, which is
+/// no fault. is_spring: its period does not depend on the amplitude; otherwise both possibilities must say so. Without
+/// a half swing on both sides there is no error. kDataLoss: the message has the time of the change and the two windows
+/// to choose from.
+Result<void> CheckClock(const Recording& recording, bool is_spring = false);
 
 }  // namespace pendulum
