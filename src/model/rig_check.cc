@@ -68,12 +68,21 @@ double LongestLength(const Json& source) {
   return longest > 0 ? longest : 1;
 }
 
-std::string OddityOf(const RigKey& key, double value, const UsualRange& usual, const std::string& rig_name) {
+/// The smaller unit in which a value that is odd in SI is usual; nullptr if there is none.
+const RigUnit* UsualUnit(const RigKey& key, double value, const UsualRange& usual) {
   for (const RigUnit& unit : kRigUnits) {
     const double in_si = unit.ToSi(value);
-    if (unit.quantity == key.quantity && unit.ToSi(1) < 1 && in_si >= usual.lower && in_si <= usual.upper)
-      return Question(key, value, unit, rig_name);
+    if (unit.quantity == key.quantity && unit.ToSi(1) < 1 && in_si >= usual.lower && in_si <= usual.upper) return &unit;
   }
+  return nullptr;
+}
+
+bool IsOdd(double value, const UsualRange& usual) {
+  return value != 0 && !(value >= usual.lower && value <= usual.upper);
+}
+
+std::string OddityOf(const RigKey& key, double value, const UsualRange& usual, const std::string& rig_name) {
+  if (const RigUnit* unit = UsualUnit(key, value, usual)) return Question(key, value, *unit, rig_name);
   return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) +
          (key.quantity == RigQuantity::kAcceleration ? ", which is not the Earth's (9.78 to 9.83 m/s^2): correct it, "
                                                        "unless the pendulum is elsewhere or tilted"
@@ -85,7 +94,7 @@ void QuestionValues(const Rig& rig, std::vector<Warning>& warnings) {
     if (!rig.source.contains(key.name)) continue;
     const double value = ValueOfEntry(rig.source.at(key.name));
     const UsualRange usual = UsualRangeOf(key.quantity, LongestLength(rig.source));
-    if (value == 0 || (value >= usual.lower && value <= usual.upper)) continue;
+    if (!IsOdd(value, usual)) continue;
     warnings.push_back({"rig_implausible", "the rig: " + OddityOf(key, value, usual, rig.name)});
   }
 }
@@ -256,6 +265,14 @@ std::vector<Warning> QuestionPeriod(const Rig& rig, double predicted, double see
 }
 
 }  // namespace
+
+std::string UnitOfMass(const nlohmann::ordered_json& source, const RigKey& key) {
+  if (key.quantity != RigQuantity::kMass || !source.contains(key.name)) return "";
+  const double value = ValueOfEntry(source.at(key.name));
+  const UsualRange usual = UsualRangeOf(key.quantity, LongestLength(source));
+  const RigUnit* const unit = IsOdd(value, usual) ? UsualUnit(key, value, usual) : nullptr;
+  return unit == nullptr ? "" : std::string(unit->name);
+}
 
 std::vector<Warning> QuestionRig(const Rig& rig) {
   std::vector<Warning> warnings;

@@ -71,6 +71,16 @@ std::vector<Crossing> FindCrossings(const FiniteValues& finite, double middle, d
   return crossings;
 }
 
+/// The value in the middle of a swing, above the middle that was assumed: e of successive extremes gives (e1 + 2 e2 +
+/// e3) / 4, which a decay hardly changes.
+double ZeroOf(const std::vector<Crossing>& crossings) {
+  std::vector<double> zeros;
+  for (std::size_t i = 1; i < crossings.size(); ++i) {
+    zeros.push_back((crossings[i - 1].high + 2 * crossings[i - 1].low + crossings[i].high) / 4);
+  }
+  return zeros.empty() ? 0 : Median(std::move(zeros));
+}
+
 /// Averages over `width` rows; NaN counts as the reading before it.
 Eigen::VectorXd Smooth(const Eigen::VectorXd& values, Index width) {
   Eigen::VectorXd sum(values.size() + 1);
@@ -116,10 +126,19 @@ std::optional<SwingSignature> FindSwingSignature(const Eigen::VectorXd& values) 
   found.rows_per_period = period;
   found.amplitude = amplitude;
   crossings.pop_back();  // its extremes may be cut off
-  found.last_amplitude = swing_of(crossings.back());
+  // Where a swing decays strongly, the middle of its range is not its zero, and times of crossings depend on the decay.
+  std::vector<Crossing> again = FindCrossings(finite, low + amplitude + ZeroOf(crossings), kHysteresis * amplitude);
+  if (again.size() >= kFewest) {
+    intervals.clear();
+    for (std::size_t i = 1; i < again.size(); ++i) intervals.push_back(again[i].row - again[i - 1].row);
+    again.pop_back();
+    crossings = std::move(again);
+  }
   constexpr double kDecay = 0.98;
   const auto largest = std::ranges::max_element(crossings, {}, swing_of);
-  found.decays = found.last_amplitude < kDecay * swing_of(*largest);
+  found.first_amplitude = swing_of(*largest);
+  found.last_amplitude = swing_of(crossings.back());
+  found.decays = found.last_amplitude < kDecay * found.first_amplitude;
   const auto first = static_cast<std::size_t>(largest - crossings.begin());
   const std::size_t ends = std::min<std::size_t>(2, intervals.size() - first);
   const double late = std::accumulate(intervals.end() - static_cast<std::ptrdiff_t>(ends), intervals.end(), 0.0);

@@ -17,7 +17,7 @@ struct SwingSignature {
   bool decays = false;         ///< The last counted amplitude is below 98 % of the largest.
   /// Period at the largest amplitude divided by the period at the smallest counted one; 1 for a linear oscillator.
   double period_ratio = 1;
-  double last_amplitude = 0;  ///< Amplitude at the end of the counted periods.
+  double first_amplitude = 0, last_amplitude = 0;  ///< The amplitudes in these two periods.
 };
 
 /// Finds a swing: rising crossings of the middle at regular intervals. `values` may contain NaN: rows without a reading

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "pendulum/base/format.h"
+#include "pendulum/model/rig_check.h"
 #include "pendulum/model/rig_units.h"
 #include "pendulum/request/flag_values.h"
 
@@ -126,6 +127,22 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     const bool is_zero = value->value == 0 && value->std_dev == 0;
     if (key.quantity == RigQuantity::kAcceleration || is_zero || HasUnit(texts[i])) continue;
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
+  }
+  // No swing tells a mass in g from one in kg: the period does not depend on it, and every result does.
+  std::vector<std::string> odd, with_unit;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (texts[i].empty() || HasUnit(texts[i])) continue;
+    const std::string flag = "--" + std::string(RigKeys()[i].flag) + " " + texts[i];
+    const std::string unit = UnitOfMass(values, RigKeys()[i]);
+    if (unit.empty()) continue;
+    odd.push_back(flag);
+    with_unit.push_back(flag + unit);
+  }
+  if (!odd.empty()) {
+    return WithTry(BadFlag(NameList(odd) + (odd.size() == 1 ? " has" : " have") +
+                           " no unit, and would be too heavy in kg; write the unit after the number, such as " +
+                           with_unit.front() + " (or kg, if it is)"),
+                   with_unit);
   }
   if (!without_unit.empty()) {
     warnings.push_back({"rig_unit_assumed",

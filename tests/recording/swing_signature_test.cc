@@ -30,6 +30,16 @@ TEST(FindSwingSignature, GivesPeriodAndAmplitudeOfADecayingOscillation) {
   EXPECT_NEAR(found->period_ratio, 1, 0.01);
 }
 
+TEST(FindSwingSignature, GivesThePeriodOfAStronglyDecayingOscillation) {
+  // It loses 30 % a period, so the middle of its range is not its zero.
+  for (const double phase : {0.0, 1.0, 2.0, 3.0}) {
+    const auto found = FindSwingSignature(Oscillation(4000, 400, 0.0009, 1, phase));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->period_ratio, 1, 0.005) << phase;
+    EXPECT_LT(found->last_amplitude, found->first_amplitude);
+  }
+}
+
 TEST(FindSwingSignature, IgnoresMissingNumbersAndAHold) {
   Eigen::VectorXd values(1500);
   values.head(500).setConstant(1);

@@ -81,6 +81,25 @@ TEST(MakeIdentifyOptions, TakesTheValuesOfTheRig) {
       "380g or 43cm");
 }
 
+/// The period does not depend on the mass, so no swing shows that it is in g.
+TEST(MakeIdentifyOptions, AsksForTheUnitOfMassesTooHeavyInKg) {
+  const auto options_of = [](const std::string& bob, const std::string& rod) {
+    RunFlags flags;
+    for (const RunFlag& flag : RunFlagTable()) {
+      if (flag.name == "bob_mass") *std::get<std::string*>(flag.In(flags)) = bob;
+      if (flag.name == "rod_mass") *std::get<std::string*>(flag.In(flags)) = rod;
+      if (flag.name == "rod_length") *std::get<std::string*>(flag.In(flags)) = "0.385";
+    }
+    return MakeIdentifyOptions(flags);
+  };
+  const auto refused = options_of("412", "88+-1");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("--bob_mass 412, --rod_mass 88+-1 have no unit"));
+  EXPECT_THAT(refused.error().try_flags, testing::ElementsAre("--bob_mass 412g", "--rod_mass 88+-1g"));
+  EXPECT_TRUE(options_of("412kg", "88g").has_value());
+  EXPECT_TRUE(options_of("9", "0.088").has_value());
+}
+
 // A new key of the rig gets its flag.
 TEST(RunFlagTable, HasAFlagForEachKeyOfTheRig) {
   for (const RigKey& key : RigKeys()) {

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pendulum/base/status.h"
 #include "pendulum/model/rig.h"
 
 namespace pendulum {
+
+/// The unit that a mass without a unit most likely has, if it is odd in kg: "g" for 412 on a rod of less than a metre.
+/// Empty if it is not odd, or no mass. source: the values of the rig in SI, by key.
+std::string UnitOfMass(const nlohmann::ordered_json& source, const RigKey& key);
 
 /// Questions about a rig that do not need its swing. rig_implausible: a value that is odd in its SI unit, such as a bob
 /// of 380 kg; the sentence names the key, the likely unit and the number to write. rig_taken_as_exact: no value, g

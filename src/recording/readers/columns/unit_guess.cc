@@ -45,7 +45,7 @@ enum class Evidence { kNone, kPendulum, kLinear };
 Evidence EvidenceOf(const SwingSignature& swing, double rad_per_unit) {
   constexpr double kLeastExcess = 0.02;  // Smaller differences of the period are not measured well enough.
   constexpr double kNear = 0.4;
-  const double large = PendulumPeriodRatio(swing.amplitude * rad_per_unit);
+  const double large = PendulumPeriodRatio(swing.first_amplitude * rad_per_unit);
   const double expected = large / PendulumPeriodRatio(swing.last_amplitude * rad_per_unit) - 1;
   const double seen = swing.period_ratio - 1;
   if (expected < kLeastExcess) return Evidence::kNone;

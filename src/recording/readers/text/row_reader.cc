@@ -70,6 +70,20 @@ struct LinesSetAside {
   std::optional<Status> error;    // Why they must not be left out if a row follows.
 };
 
+/// The rows of one of several tables.
+struct Table {
+  Eigen::Index rows = 0;
+  Eigen::VectorXd time, value, second;
+  LineNumbers lines;
+  std::size_t inner_gap_rows = 0, unpaired_rows = 0;
+};
+
+/// Where one of several tables begins, and how many rows it has.
+struct TableBegin {
+  std::size_t line = 0;
+  Eigen::Index rows = 0;
+};
+
 /// Whether a program may write this text in place of a reading.
 bool SaysNoReading(std::string_view text) {
   constexpr std::array<std::string_view, 14> kWords = {"of range", "error",     "fail",       "failed",   "failure",
@@ -107,6 +121,9 @@ class Reader {
   Check LeaveOutBetweenRows();
   Check CheckLeftOut();
   bool BeginsSecondTable(double time) const;
+  void BeginTable();
+  void KeepLonger();
+  void TakeLongest();
   Check ReadRow();
   Check ReadRosRow();
   Check SelectJoint();
@@ -150,8 +167,10 @@ class Reader {
   LinesLeftOut between_;              // Between rows.
   std::vector<TextOfLine> comments_;  // After the last row. They may belong to a second table.
   std::size_t header_again_ = 0;      // The line in which the header stands again, after the last row.
-  bool is_over_ = false;              // A second table follows, below that line.
-  std::size_t lines_not_read_ = 0;    // Of the second table.
+  bool is_over_ = false;              // Nothing of what follows is read.
+  bool has_begun_again_ = false;      // The current row is the first of another table.
+  std::optional<Table> longest_;      // Of several tables, the longest before the current one.
+  std::vector<TableBegin> tables_;    // Where each began; empty if there is only one.
   bool has_note_ = false;             // A row has text beyond the columns.
   Eigen::Index rows_ = 0;
   RawSamples samples_;  // Before Finish, time and value may be longer than rows_.
@@ -160,7 +179,13 @@ class Reader {
 Result<Recording> Reader::Read() {
   samples_.name = lines_.name();
   if (Check parsed = ParseHead(); !parsed) return tl::unexpected(std::move(parsed).error());
-  if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
+  const auto read_line = [this]() -> Check {
+    Check read = ReadLine();
+    // A fault in another table than the longest does not matter.
+    if (!read && longest_ && longest_->rows > rows_) is_over_ = true;
+    return is_over_ ? Check() : read;
+  };
+  if (Check read = csv::ForEachLine(lines_, line_, read_line); !read) {
     return tl::unexpected(std::move(read).error());
   }
   return Finish();
@@ -174,7 +199,6 @@ Result<std::vector<csv::TableColumn>> Reader::ReadNames() {
 /// Reads a line: metadata, a row, or a part of the head, which is known already.
 Check Reader::ReadLine() {
   if (csv::IsEmptyRow(line_.text)) return {};
-  lines_not_read_ += is_over_ ? 1 : 0;
   if (is_over_) return {};
   const std::string_view text = Trim(line_.text);
   if (text.front() == '#') {
@@ -362,7 +386,7 @@ Check Reader::LeaveOutBetweenRows() {
   if (below_.lines.count == 0) return {};
   auto [lines, begins_with_text, error] = std::exchange(below_, {});
   const Line first{lines_.name(), lines.first.text, lines.first.number};
-  if (is_over_) {
+  if (std::exchange(has_begun_again_, false)) {
     if (!begins_with_text) WarnOfIncompleteRow(first);
     return {};
   }
@@ -517,11 +541,50 @@ Check Reader::MakeRoom() {
   return {};
 }
 
+/// Sets aside the table that ends here, unless a longer one is set aside, and begins another one.
+void Reader::BeginTable() {
+  if (tables_.empty()) tables_.push_back({head_.first_row.number, 0});
+  tables_.back().rows = rows_;
+  tables_.push_back({line_.number, 0});
+  KeepLonger();
+  has_begun_again_ = true;
+  comments_.clear();
+}
+
+/// Of the current table and the one set aside, sets aside the longer. Then no row is in the current one.
+void Reader::KeepLonger() {
+  if (!longest_ || rows_ > longest_->rows) {
+    longest_ = Table{rows_,
+                     std::move(samples_.time),
+                     std::move(samples_.value),
+                     std::move(samples_.second),
+                     std::move(samples_.lines),
+                     inner_gap_rows_,
+                     unpaired_rows_};
+  }
+  samples_.time = samples_.value = samples_.second = {};
+  samples_.lines = {};
+  rows_ = 0;
+  gap_rows_ = inner_gap_rows_ = unpaired_rows_ = 0;
+}
+
+/// Of several tables, takes the longest.
+void Reader::TakeLongest() {
+  if (tables_.empty()) return;
+  tables_.back().rows = rows_;
+  KeepLonger();
+  rows_ = longest_->rows;
+  samples_.time = std::move(longest_->time);
+  samples_.value = std::move(longest_->value);
+  samples_.second = std::move(longest_->second);
+  samples_.lines = std::move(longest_->lines);
+  inner_gap_rows_ = longest_->inner_gap_rows;
+  unpaired_rows_ = longest_->unpaired_rows;
+}
+
 Check Reader::Append(double time, double value, double second) {
   if (BeginsSecondTable(time)) {
-    is_over_ = true;
-    lines_not_read_ = 1;
-    return {};
+    BeginTable();
   }
   header_again_ = 0;
   if (!comments_.empty()) {
@@ -569,7 +632,7 @@ Check Reader::SelectJoint() {
 // ---- The end -----------------------------------------------------------------------------------------------------
 
 Check Reader::CheckEnd() {
-  if (!is_over_) {
+  if (tables_.empty()) {
     if (Check read = ReadComments(); !read) return read;
   }
   if (below_.error && !below_.begins_with_text && rows_ < kMinimumSamples) return tl::unexpected(*below_.error);
@@ -580,8 +643,9 @@ Check Reader::CheckEnd() {
   WarnOfTheEnd();
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
-  const std::string second =
-      is_over_ ? " before the header stands again in line " + std::to_string(header_again_) : std::string();
+  const std::string second = tables_.empty()
+                                 ? std::string()
+                                 : " in the longest of " + std::to_string(tables_.size()) + " tables with this header";
   const std::string sentence =
       lines_.is_empty() ? "the file is empty; a header and " + least + " rows of data are needed"
       : head_.names.number == 0
@@ -613,10 +677,18 @@ Check Reader::CheckLeftOut() {
 
 /// Warns of what stands below the last row.
 void Reader::WarnOfTheEnd() {
-  if (is_over_) {
-    Warn("second_table", header_again_,
-         "the header stands again, and the times begin again; the " + std::to_string(lines_not_read_) +
-             " lines below it were not read. Save each table in a file of its own to fit the others");
+  if (!tables_.empty()) {
+    const auto longest = std::ranges::max_element(tables_, {}, &TableBegin::rows);
+    std::string others;
+    for (const TableBegin& table : tables_) {
+      if (&table == &*longest) continue;
+      others += (others.empty() ? "" : ", ") + std::to_string(table.rows) + " from line " + std::to_string(table.line);
+    }
+    Warn("second_table", longest->line,
+         "the header stands again, and the times begin again; of these tables the longest was read, " +
+             std::to_string(longest->rows) + " rows from this line on, and not: " + others +
+             ". Save each table in a file of its own to fit the others",
+         "the longest table, of " + std::to_string(longest->rows) + " rows (split the file for the others)");
   }
   if (below_.lines.count == 0) return;
   const TextOfLine& line = below_.lines.first;
@@ -659,6 +731,7 @@ void Reader::WarnOfEmptyCells() {
 
 Result<Recording> Reader::Finish() {
   if (Check selected = SelectJoint(); !selected) return tl::unexpected(std::move(selected).error());
+  TakeLongest();
   if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
   RemoveTruncatedValue();
   RemoveTruncatedStamp();

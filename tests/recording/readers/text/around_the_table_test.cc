@@ -260,10 +260,27 @@ TEST(AroundTheTable, ASecondTableIsLeftOut) {
     EXPECT_FALSE(recording.range) << between;
   }
   EXPECT_THAT(MessagesOf(RecordingOf(kTable + kSecond)),
-              ElementsAre("run.csv:10: the header stands again, and the times begin again; the 8 lines below it were "
-                          "not read. Save each table in a file of its own to fit the others"));
-  EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + kSecond, {}, StatusCode::kFailedPrecondition),
-              HasSubstr("rows of data found: 5 before the header stands again in line 7"));
+              ElementsAre("run.csv:2: the header stands again, and the times begin again; of these tables the longest "
+                          "was read, 8 rows from this line on, and not: 8 from line 11. Save each table in a file of "
+                          "its own to fit the others"));
+  EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + "time_ms,angle_deg\n" + Rows("{t},9", 4), {},
+                      StatusCode::kFailedPrecondition),
+              HasSubstr("rows of data found: 5 in the longest of 2 tables with this header"));
+}
+
+/// As of a logger that was started, and started again.
+TEST(AroundTheTable, TheLongestOfSeveralTablesIsRead) {
+  const std::string header = "time_ms,angle_deg\n", false_start = header + Rows("{t},7", 5);
+  for (const std::string& text : {false_start + kTable, false_start + false_start + kTable,
+                                  false_start + kTable + header + Rows("{t},9", 6) + "80,fault\n"}) {
+    const Recording recording = RecordingOf(text);
+    ExpectTheRows(recording, kDegree);
+    EXPECT_EQ(recording.warnings.at(0).code, "second_table") << text;
+    EXPECT_THAT(recording.warnings.at(0).message, HasSubstr("8 rows from this line on, and not: 5 from line 2"));
+    EXPECT_FALSE(recording.warnings.at(0).assumed.empty());
+  }
+  // A fault in the longest table is none of the others'.
+  EXPECT_THAT(FaultOf(false_start + kTable + "80,fault\n90,1\n"), HasSubstr("\"fault\""));
 }
 
 TEST(AroundTheTable, AHeaderAmongRowsIsSkipped) {
