@@ -68,6 +68,16 @@ TEST(FitArc, HasErrorsThatMatchTheCovariance) {
 
 /// The middle of a sine of amplitude A is J0(A) radii below the pivot (DLMF 10.9.1): 0.28 for 1.9, 0.00 for 2.4. For 3
 /// it is 0.26 radii above the pivot.
+/// As of two columns that never have a number in the same row.
+TEST(FitArc, RefusesTooFewPoints) {
+  for (const Eigen::Index count : {0, 1, 3}) {
+    const Points points(0.3, 0, 1);
+    const Result<Arc> arc = FitArc(points.x.head(count), points.y.head(count));
+    ASSERT_FALSE(arc) << count;
+    EXPECT_THAT(arc.error().message, HasSubstr("there are fewer than 4"));
+  }
+}
+
 TEST(FitArc, RefusesPointsWithoutADownDirection) {
   EXPECT_TRUE(FitArc(Points(1.9, 0, 1).x, Points(1.9, 0, 1).y));
   for (const double half : {2.4, 3.0, 30.0}) {
