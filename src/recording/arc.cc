@@ -69,7 +69,7 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   constexpr int kMaxSteps = 50;
   constexpr double kConverged = 1e-12;
   constexpr double kLargestError = 0.2;  // of the radius; with a larger error no angle can be trusted
-  constexpr Eigen::Index kFewest = 4;  // any three lie on a circle
+  constexpr Eigen::Index kFewest = 4;    // any three lie on a circle
   if (x.size() < kFewest) return NoArc("there are fewer than " + std::to_string(kFewest));
   const double x_mean = x.mean();
   const double y_mean = y.mean();

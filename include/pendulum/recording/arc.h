@@ -22,8 +22,8 @@ struct Arc {
 
 /// The circle nearest to N points by geometric distance (Gauss-Newton, started from G. Taubin's algebraic fit, IEEE
 /// Trans. Pattern Anal. 13 (1991) 1115). The middle of the points is assumed to lie below the centre; this determines
-/// the direction of y. kFailedPrecondition: fewer than four points; the points lie nearly on a line, so the pivot is undetermined, or all round
-/// the pivot, so the downward direction is undetermined.
+/// the direction of y. kFailedPrecondition: fewer than four points; the points lie nearly on a line, so the pivot is
+/// undetermined, or all round the pivot, so the downward direction is undetermined.
 Result<Arc> FitArc(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
 
 }  // namespace pendulum
