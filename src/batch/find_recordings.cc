@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <ios>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -37,6 +39,24 @@ Result<std::vector<fs::directory_entry>> EntriesOf(const fs::path& folder) {
   }
   std::ranges::sort(entries, {}, [](const fs::directory_entry& entry) { return entry.path().filename(); });
   return entries;
+}
+
+/// Whether a file is a manifest or an export of refit_pendulums: text whose first line names columns, with one named
+/// path.
+bool IsList(const std::string& path) {
+  constexpr std::streamsize kLongest = std::streamsize{1} << 16;
+  std::error_code unknown;
+  if (fs::status(path, unknown).type() != fs::file_type::regular) return false;  // a pipe would wait
+  std::string line(static_cast<std::size_t>(kLongest), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(line.data(), kLongest);
+  line.resize(static_cast<std::size_t>(file.gcount()));
+  line.resize(std::min(line.find_first_of("\r\n"), line.size()));
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+  if (line.find('\0') != std::string::npos) return false;
+  std::ranges::replace_if(
+      line, [](char c) { return c == ';' || c == '\t'; }, ',');
+  return line == "path" || ("," + line + ",").find(",path,") != std::string::npos;
 }
 
 /// Appends the paths that match `parts` in `folder` to `found`, in the order of names.
@@ -88,8 +108,9 @@ Result<FoundRecordings> FindRecordings(const std::string& pattern) {
     std::erase_if(paths, [&](const std::string& path) {
       const std::string name = fs::path(path).filename().string();
       if (name.starts_with("~$")) return true;  // Excel keeps ~$run.xlsx while run.xlsx is open
-      if (HasRecordingName(name)) return false;
-      found.left_out.push_back(path);
+      const bool is_list = HasRecordingName(name) && IsList(path);
+      if (HasRecordingName(name) && !is_list) return false;
+      (is_list ? found.lists : found.left_out).push_back(path);
       return true;
     });
     what = "there is no " + RecordingNames() + " file in this folder or below it";

@@ -134,6 +134,56 @@ class CsvRows {
 /// Columns with a meaning; other columns are kept as they are.
 constexpr std::array<std::string_view, 7> kColumns = {"path", "id", "rig", "calibration", "from_s", "to_s", "models"};
 
+/// Spellings that are meant as a column with a meaning, in small letters and digits alone: "rigfile" for "Rig_File".
+/// Other names are labels: rig_id tells pendulums apart.
+struct Misspellings {
+  std::string_view column;
+  std::vector<std::string_view> spellings;
+};
+
+const std::vector<Misspellings>& KnownMisspellings() {
+  static const std::vector<Misspellings> known = {
+      {"path", {"path", "paths", "filepath", "filepaths"}},
+      {"id", {"id", "ids"}},
+      {"rig", {"rig", "rigs", "rigfile", "rigfiles", "rigpath", "rigjson"}},
+      {"calibration",
+       {"calibration", "calibrations", "calibrationfile", "calibrationfiles", "calibrationpath", "calibrationjson",
+        "calib", "calibs", "calibfile", "calibpath", "cal", "calfile", "calpath"}},
+      {"from_s", {"from", "froms", "fromsec", "fromsecond", "fromseconds", "fromtime", "fromtimes"}},
+      {"to_s", {"to", "tos", "tosec", "tosecond", "toseconds", "totime", "totimes"}},
+      {"models", {"model", "models"}}};
+  return known;
+}
+
+/// The column that a name is a misspelling of; empty if it is none.
+std::string_view MisspelledColumn(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) letters += c;
+    if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
+  }
+  for (const auto& [column, spellings] : KnownMisspellings()) {
+    if (name != column && std::ranges::find(spellings, letters) != spellings.end()) return column;
+  }
+  return {};
+}
+
+/// Refuses names that would be labels without a meaning, though they are meant as columns with one. A name is a label
+/// if the header has the right column, too.
+Result<void> CheckSpelling(const std::string& where, const std::vector<std::string>& names) {
+  std::vector<std::string> wrong;
+  for (const std::string& name : names) {
+    const std::string_view column = MisspelledColumn(name);
+    if (column.empty() || std::ranges::find(names, column) != names.end()) continue;
+    wrong.push_back(Quoted(name) + " to " + std::string(column));
+  }
+  if (wrong.empty()) return {};
+  return Fault(where, std::string(wrong.size() == 1 ? "a column has" : "columns have") +
+                          " nearly the name of a column with a meaning; rename " + NameList(wrong) +
+                          (wrong.size() == 1 ? ", or choose another name if it is a label"
+                                             : ", or choose other names if they are labels"));
+}
+
 /// The header, and the conversion of rows to entries.
 class Header {
  public:
@@ -146,6 +196,7 @@ class Header {
         return Fault(where, "the header has the column " + Quoted(name) + " twice; rename one of them");
       }
     }
+    if (auto checked = CheckSpelling(where, header.names_); !checked) return tl::unexpected(checked.error());
     if (std::ranges::find(header.names_, "path") == header.names_.end()) {
       return Fault(where, "the header has no column path, only " + Quoted(NameList(header.names_)) +
                               "; the column path names the recordings");

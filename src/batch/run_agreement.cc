@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,7 +31,8 @@ constexpr std::size_t kMaxRows = 50;
 /// A run of a group.
 struct Member {
   std::string id;
-  FitAloneResult fit;  ///< No names if the run cannot be compared.
+  FitAloneResult fit;                   ///< No names if the run cannot be compared.
+  std::vector<std::string> units = {};  ///< Of the parameters of `fit`.
 };
 
 /// The free parameters of the pendulum in a fit, in the order of the model.
@@ -100,22 +103,25 @@ SystematicParts SystematicOf(const Json& fit, const std::vector<std::string>& na
   return parts;
 }
 
-FitAloneResult FitAloneOf(const std::string& text, const std::string& model) {
+Member MemberOf(std::string id, const std::string& text, const std::string& model) {
+  Member member{std::move(id), {}};
   const Json result = Json::parse(text);
   const auto fit = std::ranges::find_if(result["fits"], [&](const Json& one) { return one["model"] == model; });
-  if (fit == result["fits"].end() || !fit->contains("covariance")) return {};
+  if (fit == result["fits"].end() || !fit->contains("covariance")) return member;
   const std::vector<std::string> names = FreeNames(*fit);
-  if (names.empty() || !IsComparable(result, *fit, names)) return {};
+  if (names.empty() || !IsComparable(result, *fit, names)) return member;
   const auto covariance = MatrixOf((*fit)["covariance"], names);
-  if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return {};
+  if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
   FitAloneResult alone{
       names, Eigen::VectorXd(static_cast<Index>(names.size())), *covariance, {}, SystematicOf(*fit, names)};
   for (Index i = 0; i < alone.value.size(); ++i) {
     const Json& parameter = (*fit)["parameters"][names[static_cast<std::size_t>(i)]];
     alone.value[i] = parameter["estimate"].get<double>();
+    member.units.push_back(parameter["unit"].get<std::string>());
     alone.t95.push_back(HalfInterval(parameter));
   }
-  return alone;
+  member.fit = std::move(alone);
+  return member;
 }
 
 /// A disagreeing run, and the parameter in which it differs most.
@@ -153,7 +159,7 @@ class Group {
   const std::string& name() const { return name_; }
 
   void Add(std::string id, const std::string& result, const std::string& model) {
-    if (++runs_ <= kMaxRuns) members_.push_back({std::move(id), FitAloneOf(result, model)});
+    if (++runs_ <= kMaxRuns) members_.push_back(MemberOf(std::move(id), result, model));
   }
 
   /// The row of the group; null if it cannot be tested. Adds the ids of the outliers if they are few.
@@ -183,14 +189,17 @@ class Group {
   }
 
  private:
-  /// The runs with the parameters of the first comparable one.
+  /// The runs whose parameters and units are those of most runs. Runs with and without a rig have different units.
   std::vector<const Member*> Comparable() const {
-    std::vector<const Member*> members;
+    std::map<std::pair<std::vector<std::string>, std::vector<std::string>>, std::vector<const Member*>> kinds;
     for (const Member& member : members_) {
-      if (member.fit.names.empty()) continue;
-      if (members.empty() || members.front()->fit.names == member.fit.names) members.push_back(&member);
+      if (!member.fit.names.empty()) kinds[{member.fit.names, member.units}].push_back(&member);
     }
-    return members;
+    std::vector<const Member*> most;
+    for (const auto& [kind, members] : kinds) {
+      if (members.size() > most.size()) most = members;
+    }
+    return most;
   }
 
   std::string name_;

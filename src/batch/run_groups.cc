@@ -43,6 +43,9 @@ std::string SqlText(const std::string& text) {
   return quoted + "'";
 }
 
+/// Runs that have no rig, neither of their own nor of the batch. The values of some parameters have other units.
+const std::string kHasNoRig = "(runs.rig = '' AND coalesce(rig_sha256, '') = '')";
+
 bool HasColumn(SQLite::Database& database, const std::string& column) {
   if (std::ranges::find(kOwnColumns, column) != kOwnColumns.end()) return true;
   const std::vector<std::string> known = sqlite::Texts(database, sqlite::kManifestColumns);
@@ -113,6 +116,12 @@ RunGroups Choose(SQLite::Database& database, const std::string& group_by) {
     return {.by = RunGroups::By::kFolder, .name = "folder", .sql = kFolderSql};
   }
   RunGroups groups;
+  const std::string without = "SELECT count(*) FROM runs WHERE rig = '' AND " + kIsFitted;
+  if (rigs == 1 && database.execAndGet(without).getInt64() > 0) {
+    return {.by = RunGroups::By::kRig,
+            .name = "rig",
+            .sql = "iif(" + kHasNoRig + ", 'no rig', coalesce(nullif(runs.rig, ''), '--rig'))"};
+  }
   if (rigs == 1)
     groups.one_rig = sqlite::Texts(database, "SELECT DISTINCT rig FROM runs WHERE rig <> '' AND " + kIsLive).front();
   return groups;
@@ -126,17 +135,18 @@ const Limit* LimitOf(std::string_view parameter) {
   return found == kLimits.end() ? nullptr : found;
 }
 
-/// The values of a parameter by group.
-std::map<std::string, RunValues> ValuesByGroup(SQLite::Database& database, const std::string& model,
-                                               std::string_view name, const RunGroups& groups) {
-  SQLite::Statement rows(database, "SELECT " + groups.sql + R"sql(, estimate, std_error
+/// The values of a parameter by group and unit.
+std::map<std::pair<std::string, std::string>, RunValues> ValuesByGroup(SQLite::Database& database,
+                                                                       const std::string& model, std::string_view name,
+                                                                       const RunGroups& groups) {
+  SQLite::Statement rows(database, "SELECT " + groups.sql + R"sql(, estimate, std_error, unit
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND std_error > 0
     AND )sql" + kIsLiveFit);
   sqlite::Bind(rows, model, std::string(name));
-  std::map<std::string, RunValues> values;
+  std::map<std::pair<std::string, std::string>, RunValues> values;
   while (rows.executeStep()) {
-    RunValues& own = values[sqlite::Text(rows, 0)];
+    RunValues& own = values[{sqlite::Text(rows, 0), sqlite::Text(rows, 3)}];
     own.estimate.push_back(rows.getColumn(1).getDouble());
     own.std_error.push_back(rows.getColumn(2).getDouble());
   }
@@ -182,6 +192,9 @@ RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   groups.groups = sizes.getColumn(1).getInt64();
   groups.smallest = sizes.getColumn(2).getInt64();
   groups.largest = sizes.getColumn(3).getInt64();
+  const std::int64_t without_rig =
+      database.execAndGet("SELECT count(*) FROM runs WHERE " + kHasNoRig + " AND " + kIsFitted).getInt64();
+  if (without_rig < groups.runs) groups.without_rig = without_rig;
   const std::vector<std::string> own = sqlite::Texts(
       database,
       "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive +
@@ -203,7 +216,8 @@ void FindUnlikeGroups(SQLite::Database& database, const std::string& model, RunG
   if (groups.is_stated || groups.largest < 2) return;
   double worst = 0;
   for (const Limit& limit : kLimits) {
-    for (const auto& [group, values] : ValuesByGroup(database, model, limit.name, groups)) {
+    for (const auto& [key, values] : ValuesByGroup(database, model, limit.name, groups)) {
+      const std::string& group = key.first;
       if (!DifferGrossly(std::string(limit.name), values)) continue;
       if (std::ranges::find(groups.unlike, group) == groups.unlike.end()) groups.unlike.push_back(group);
       const double scatter = RelativeScatter(values.estimate);
@@ -215,7 +229,10 @@ void FindUnlikeGroups(SQLite::Database& database, const std::string& model, RunG
   }
 }
 
-std::string GroupsText(const RunGroups& groups) {
+namespace {
+
+/// What was taken for one pendulum, apart from runs without a rig.
+std::string GroupingText(const RunGroups& groups) {
   if (groups.runs == 0) return "No recording is fitted, so there is nothing to compare.";
   if (groups.runs == 1) return "One recording is fitted; repeatability needs several recordings of one pendulum.";
   const std::string all = std::to_string(groups.runs) + " recordings";
@@ -250,6 +267,18 @@ std::string GroupsText(const RunGroups& groups) {
     text += groups.difference + ".";
   }
   return text;
+}
+
+}  // namespace
+
+std::string GroupsText(const RunGroups& groups) {
+  const std::string text = GroupingText(groups);
+  if (groups.without_rig == 0) return text;
+  return text + (groups.without_rig == 1 ? " One recording has no rig, so its values have other units; it is not "
+                                           "compared with the recordings that have a rig."
+                                         : " " + std::to_string(groups.without_rig) +
+                                               " recordings have no rig, so their values have other units; they are "
+                                               "not compared with the recordings that have a rig.");
 }
 
 std::string OtherGroupsText(const RunGroups& groups) {

@@ -29,6 +29,7 @@ struct RunGroups {
   std::int64_t runs = 0;     ///< Fitted runs (kIsFitted); only these are counted here.
   std::int64_t groups = 0;
   std::int64_t smallest = 0, largest = 0;  ///< Runs of a group.
+  std::int64_t without_rig = 0;            ///< Runs without a rig, if others have one.
   std::vector<std::string> unlike = {};    ///< Groups whose runs differ too much for repeats; they are not compared.
   std::string difference = {};  ///< If `unlike` is not empty: "inertia scatters by 49 % between its recordings, ...".
   std::set<std::string> own_sources = {};  ///< Groups whose runs have different clocks or calibrations.

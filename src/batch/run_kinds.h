@@ -31,4 +31,7 @@ inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";
 inline const std::string kIsMissing =
     "(exit_code = 3 AND substr(coalesce(reason, ''), 1, length(path) + 1) = path || ':')";
 
+/// The run has no result, because there is no such recording, rig or calibration.
+inline const std::string kLacksFile = "(exit_code = 3 AND " + kIsLive + ")";
+
 }  // namespace pendulum

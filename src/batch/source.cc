@@ -231,10 +231,12 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
   std::vector<std::string> paths;
   std::set<std::string> known;
   std::map<std::string, std::int64_t> left_out;
+  std::vector<std::string> lists;
   for (const std::string& pattern : patterns) {
     const auto found = FindRecordings(pattern);
     if (!found) return tl::unexpected(found.error());
     for (const std::string& path : found->left_out) ++left_out["*" + fs::path(path).extension().string()];
+    lists.insert(lists.end(), found->lists.begin(), found->lists.end());
     for (const std::string& path : found->paths) {
       if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
     }
@@ -250,7 +252,7 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
     return {};
   };
   return Source{patterns.front(), for_each, [](const std::string& file) { return ReadFileInFolder({}, file); },
-                std::move(left_out)};
+                std::move(left_out), std::move(lists)};
 }
 
 Result<PackCounts> Pack(const Source& source, const fs::path& path) {

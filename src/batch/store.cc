@@ -534,7 +534,8 @@ Result<StoreCounts> Store::Count() {
     SQLite::Statement runs(state_->database,
                            "SELECT count(*), count(*) - count(exit_code), count(reason), count(*) FILTER (WHERE " +
                                kIsMissing + "), count(*) FILTER (WHERE " + kIsStale + "), count(*) FILTER (WHERE " +
-                               kIsUnlisted + ") FROM runs");
+                               kIsUnlisted + "), count(*) FILTER (WHERE " + kIsFitted + "), count(*) FILTER (WHERE " +
+                               kLacksFile + ") FROM runs");
     runs.executeStep();
     counts.runs = runs.getColumn(0).getInt64();
     counts.pending = runs.getColumn(1).getInt64();
@@ -542,6 +543,8 @@ Result<StoreCounts> Store::Count() {
     counts.missing = runs.getColumn(3).getInt64();
     counts.stale = runs.getColumn(4).getInt64();
     counts.earlier = runs.getColumn(5).getInt64();
+    counts.fitted = runs.getColumn(6).getInt64();
+    counts.without_file = runs.getColumn(7).getInt64();
     SQLite::Statement fits(state_->database,
                            "SELECT count(*) - count(stale), count(*) FILTER (WHERE status = 'failed'), count(stale) "
                            "FROM fits");

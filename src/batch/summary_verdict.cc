@@ -54,14 +54,16 @@ RunCounts CountRuns(SQLite::Database& database) {
   const std::string missing = kIsMissing + live;
   const std::string refused = "exit_code > 1 AND NOT " + kIsMissing + live;
   RunCounts counts;
-  const std::array<std::pair<std::string, std::int64_t*>, 8> all = {{{"NOT " + kIsUnlisted, &counts.runs},
-                                                                     {kIsFitted, &counts.fitted},
-                                                                     {"exit_code = 1" + live, &counts.not_converged},
-                                                                     {missing, &counts.missing},
-                                                                     {refused, &counts.refused},
-                                                                     {"exit_code IS NULL" + live, &counts.pending},
-                                                                     {kIsStale, &counts.stale},
-                                                                     {kIsUnlisted, &counts.unlisted}}};
+  const std::array<std::pair<std::string, std::int64_t*>, 9> all = {
+      {{"NOT " + kIsUnlisted, &counts.runs},
+       {kIsFitted, &counts.fitted},
+       {"exit_code = 1" + live, &counts.not_converged},
+       {missing, &counts.missing},
+       {refused, &counts.refused},
+       {kLacksFile + " AND NOT " + kIsMissing, &counts.without_rig_file},
+       {"exit_code IS NULL" + live, &counts.pending},
+       {kIsStale, &counts.stale},
+       {kIsUnlisted, &counts.unlisted}}};
   std::string columns;
   for (const auto& [condition, count] : all) {
     columns += (columns.empty() ? "" : ", ") + ("count(*) FILTER (WHERE " + condition + ")");
@@ -80,7 +82,8 @@ std::string CountsText(const RunCounts& counts) {
                      (counts.runs == 1 ? " recording fitted" : " recordings fitted");
   std::string rest;
   for (const auto& [count, words] :
-       {std::pair{counts.missing, "missing"}, std::pair{counts.refused, "refused"},
+       {std::pair{counts.missing, "missing"}, std::pair{counts.without_rig_file, "with a missing rig or calibration"},
+        std::pair{counts.refused - counts.without_rig_file, "refused"},
         std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"},
         std::pair{counts.stale, "with a former result only"},
         std::pair{counts.unlisted, "more left out, not among the recordings of the last refit"}}) {

@@ -15,13 +15,14 @@ namespace pendulum {
 /// How the runs of a store ended, in numbers and examples.
 struct RunCounts {
   std::int64_t runs = 0;
-  std::int64_t fitted = 0;         ///< The fit of the recommended law converged.
-  std::int64_t not_converged = 0;  ///< It did not.
-  std::int64_t missing = 0;        ///< There is no such recording.
-  std::int64_t refused = 0;        ///< Could not be read or fitted.
-  std::int64_t pending = 0;        ///< Not fitted yet.
-  std::int64_t stale = 0;          ///< Only a former result is there; the last attempt failed.
-  std::int64_t unlisted = 0;       ///< Not among the recordings of the last refit, nor among `runs`.
+  std::int64_t fitted = 0;            ///< The fit of the recommended law converged.
+  std::int64_t not_converged = 0;     ///< It did not.
+  std::int64_t missing = 0;           ///< There is no such recording.
+  std::int64_t refused = 0;           ///< Could not be read or fitted.
+  std::int64_t without_rig_file = 0;  ///< Of these, runs whose rig or calibration is missing.
+  std::int64_t pending = 0;           ///< Not fitted yet.
+  std::int64_t stale = 0;             ///< Only a former result is there; the last attempt failed.
+  std::int64_t unlisted = 0;          ///< Not among the recordings of the last refit, nor among `runs`.
   struct Run {
     std::string id, reason;
   };

@@ -128,27 +128,28 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   return WriteText(options.quiet ? QuietText(*summary) : text + SummaryText(*summary, path));
 }
 
-std::string KeptText(std::int64_t stale) {
-  return std::to_string(stale) + " keep a former result (--replace_by_failures replaces it)";
+/// The counts of the runs in a store.
+Result<StoreCounts> CountRunsOf(const std::string& path) {
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  return store->Count();
 }
 
 /// Prints the summary of a refit and returns its exit code.
 Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& options) {
-  std::string text = std::to_string(counts.refitted) + " runs refitted, " + std::to_string(counts.current) +
-                     " were current; " + std::to_string(counts.unfitted) + " of these could not be fitted";
-  if (counts.renamed > 0) text += "; " + std::to_string(counts.renamed) + " have another name than before";
-  if (counts.stale > 0) text += "; " + KeptText(counts.stale);
-  if (!counts.stopped) {
-    PrintMessage(kRefitToolName, text);
-    const auto shown = ShowStatus(options);
-    // The merge reports for all shards; their jobs have done what they could.
-    const bool is_fault = counts.stale > 0 && !options.refit.shard;
-    return shown && is_fault ? ExitCode(StatusCode::kNotFound) : shown;
+  if (counts.stopped) {
+    PrintMessage(kRefitToolName, RefitText(counts) + "; " + std::to_string(counts.runs - counts.done()) +
+                                     " are left; run the same command to continue" +
+                                     (options.refit.force ? ", without --force" : ""));
+    return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
   }
-  PrintMessage(kRefitToolName, text + "; " + std::to_string(counts.runs - counts.done()) +
-                                   " are left; run the same command to continue" +
-                                   (options.refit.force ? ", without --force" : ""));
-  return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
+  const auto stored = CountRunsOf(options.stores.front());
+  if (!stored) return tl::unexpected(stored.error());
+  PrintMessage(kRefitToolName, RefitText(counts) + WithoutResultText(*stored));
+  const auto shown = ShowStatus(options);
+  // The merge reports for all shards; their jobs have done what they could.
+  const bool is_fault = stored->lacks_results() && !options.refit.shard;
+  return shown && is_fault ? ExitCode(StatusCode::kNotFound) : shown;
 }
 
 Result<int> RunRefit(const RefitPendulumsOptions& options) {
@@ -158,6 +159,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   const auto source = SourceOf(options);
   if (!source) return tl::unexpected(source.error());
   if (!source->left_out.empty()) PrintMessage(kRefitToolName, LeftOutText(source->left_out));
+  if (!source->lists.empty()) PrintMessage(kRefitToolName, ListsText(source->lists));
   StopOnSignals();
   RefitProgress progress(std::string(kRefitToolName), STDERR_FILENO);
   refit.stop = &stop;
@@ -271,14 +273,12 @@ Result<int> RunMerge(const RefitPendulumsOptions& options) {
   const std::string& path = options.stores.front();
   const auto runs = MergeShards(options.shard_dir, options.shard_count, path);
   if (!runs) return tl::unexpected(runs.error());
-  auto store = Store::Open(path, Store::Mode::kRead);
-  if (!store) return tl::unexpected(store.error());
-  const auto counts = store->Count();
+  const auto counts = CountRunsOf(path);
   if (!counts) return tl::unexpected(counts.error());
   PrintMessage(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
-                                   " shards merged into " + path +
-                                   (counts->stale > 0 ? "; " + KeptText(counts->stale) : ""));
-  return counts->stale > 0 ? ExitCode(StatusCode::kNotFound) : 0;
+                                   " shards merged into " + path + KeptText(counts->stale) +
+                                   WithoutResultText(*counts));
+  return counts->lacks_results() ? ExitCode(StatusCode::kNotFound) : 0;
 }
 
 }  // namespace

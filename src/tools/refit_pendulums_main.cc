@@ -32,10 +32,13 @@ constexpr const char* kUsage =
     "\n"
     "A run that cannot be read or fitted gets a row that says why, or keeps its former result. After an interruption, "
     "repeat the same command.\n"
-    "Exit codes: 0 every run has its rows, 1 compare found a result that moved by more than its error, has another\n"
-    "status or is missing, 2 wrong flags, 3 a file or shard does not exist, or a run has a former result only,\n"
-    "4 the manifest or store cannot be read, 5 there is no run, 70 a bug, 73 the store or an output cannot be\n"
-    "written, 75 terminated, or the store is in use: try again, 130 interrupted.\n"
+    "Exit codes: 0 done; a recording that is refused or not fitted is a stored result of a refit, too. 1 compare\n"
+    "found a result that moved by more than its error, has another status, or is missing or stale in the second\n"
+    "store. 2 wrong flags. 3 a file or shard does not exist; or, for a refit and merge, a run that should have a\n"
+    "current result has none: its recording, rig or calibration is missing, it keeps a former result, or no run at\n"
+    "all has one. status says the same in its first line and exits with 0. 4 the manifest or store cannot be read.\n"
+    "5 there is no run. 70 a bug. 73 the store or an output cannot be written. 75 terminated, or the store is in\n"
+    "use: try again. 130 interrupted.\n"
     "\n";
 
 /// Names of the tool's flags on the command line; the tool sets libraries' flags itself.

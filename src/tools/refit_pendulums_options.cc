@@ -130,6 +130,10 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
                                                      std::filesystem::exists(flags.positional[0], unknown));
   if (is_file) {
     TakeSource(flags, 0, options);
+  } else if (!flags.positional.empty() && flags.positional[0].find_first_of("*?[") != std::string::npos) {
+    return WithTry(
+        BadFlag("'" + flags.positional[0] + "' is a pattern and no existing file; give patterns with --data"),
+        {"--data " + flags.positional[0]});
   } else if (!flags.positional.empty()) {
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);

@@ -16,6 +16,7 @@
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
 #include "tools/progress_line.h"
+#include "tools/refit_commands.h"
 
 namespace pendulum {
 namespace {
@@ -301,6 +302,45 @@ std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out) {
   }
   return std::to_string(files) + (files == 1 ? " file is" : " files are") + " left out because of the name (" +
          NameList(kinds) + "); a pattern such as 'folder/**/*.json' takes recordings among them";
+}
+
+std::string ListsText(const std::vector<std::string>& lists) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (const std::string& list : lists) names.push_back(Printable(list));
+  if (lists.size() > kNamed) {
+    names.resize(kNamed - 1);
+    names.push_back(std::to_string(lists.size() - names.size()) + " more");
+  }
+  return std::to_string(lists.size()) + (lists.size() == 1 ? " file is" : " files are") +
+         " left out because of the column path, which manifests and exports of " + std::string(kRefitToolName) +
+         " have (" + NameList(names) + ")";
+}
+
+std::string KeptText(std::int64_t stale) {
+  if (stale == 0) return "";
+  return "; " + std::to_string(stale) + (stale == 1 ? " keeps" : " keep") +
+         " a former result (--replace_by_failures replaces it)";
+}
+
+std::string RefitText(const RefitCounts& counts) {
+  std::string text = std::to_string(counts.refitted) + (counts.refitted == 1 ? " run" : " runs") + " tried, " +
+                     std::to_string(counts.current) + (counts.current == 1 ? " was" : " were") + " current";
+  if (counts.unfitted > 0) text += "; " + std::to_string(counts.unfitted) + " could not be fitted";
+  if (counts.renamed > 0) {
+    text +=
+        "; " + std::to_string(counts.renamed) + (counts.renamed == 1 ? " has" : " have") + " another name than before";
+  }
+  return text + KeptText(counts.stale);
+}
+
+std::string WithoutResultText(const StoreCounts& counts) {
+  std::string text;
+  if (counts.without_file > 0) {
+    text = "; the recording, rig or calibration of " + std::to_string(counts.without_file) +
+           (counts.without_file == 1 ? " run" : " runs") + " is missing";
+  }
+  return text + (counts.runs > counts.earlier && counts.fitted == 0 ? "; no run has a current result" : "");
 }
 
 std::string PruneText(const Prunable& prunable, bool dry_run) {

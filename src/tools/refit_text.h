@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,19 @@ Result<std::string> StatusText(Store& store);
 
 /// "14 files are left out because of their names (13 *.json, 1 *.png); ...".
 std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out);
+
+/// "2 files are left out because of the column path, which manifests and exports ... have (a.csv, b.csv)".
+std::string ListsText(const std::vector<std::string>& lists);
+
+/// "; 2 keep a former result (--replace_by_failures replaces it)"; empty for none.
+std::string KeptText(std::int64_t stale);
+
+/// What a refit did: "3 runs tried, 2 were current; 1 could not be fitted". These counts are of both kinds of runs.
+std::string RefitText(const RefitCounts& counts);
+
+/// Why runs that should have a current result have none, apart from those that keep a former one, as the end of a
+/// sentence: "; no run has a current result"; empty if there is no such reason.
+std::string WithoutResultText(const StoreCounts& counts);
 
 /// What a prune of a store removes, or would remove.
 std::string PruneText(const Prunable& prunable, bool dry_run);

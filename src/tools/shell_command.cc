@@ -43,14 +43,17 @@ std::string ShellCommand(std::span<const std::string> words) {
 std::string CommandToTry(std::span<const std::string> words, std::span<const std::string> try_flags) {
   std::map<std::string, std::size_t> lengths;  // name of each flag to try, and number of its words
   std::vector<std::string> added;
+  std::string data;  // of --data, which the command has named without the flag
   for (const std::string& flag : try_flags) {
     const TryFlag parsed = ParseTryFlag(flag);
     lengths[parsed.name] = parsed.words.size();
+    if (parsed.name == "data") data = parsed.words.back();
     added.insert(added.end(), parsed.words.begin(), parsed.words.end());
   }
   std::vector<std::string> command;
   std::size_t i = 0;
   for (; i < words.size() && words[i] != "--"; ++i) {
+    if (i > 0 && words[i] == data) continue;
     const auto found = lengths.find(FlagName(words[i]));
     if (i == 0 || found == lengths.end()) {
       command.push_back(words[i]);

@@ -49,6 +49,8 @@ class FindRecordingsTest : public testing::Test {
     return found->paths;
   }
 
+  void Write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
   Status FaultOf(const std::string& pattern) const {
     const auto found = FindRecordings((folder_ / pattern).string());
     EXPECT_FALSE(found);
@@ -57,6 +59,19 @@ class FindRecordingsTest : public testing::Test {
 
   const fs::path folder_ = fs::path(testing::TempDir()) / ("find_recordings_test_" + std::to_string(getpid()));
 };
+
+TEST_F(FindRecordingsTest, LeavesOutManifestsAndExportsInAFolder) {
+  Write("run.csv", "time_s,angle_deg\n0,1\n");
+  Write("runs.csv", "id;path;rig\r\n1;run.csv;\r\n");
+  Write("paths.txt", "path\nrun.csv\n");
+  Write("results.csv", "id,path,rig,calibration,model\n");
+  const auto found = FindRecordings(folder_.string());
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_THAT(found->paths, ElementsAre((folder_ / "run.csv").string()));
+  EXPECT_EQ(found->lists.size(), 3U);
+  EXPECT_TRUE(found->left_out.empty());
+  EXPECT_EQ(Find("*.csv").size(), 3U);  // a pattern says what is wanted
+}
 
 TEST_F(FindRecordingsTest, FindsCsvFilesInSubfoldersInOrder) {
   Make({"b.csv", "a/2.csv", "a/10.csv", "a/deep/er/x.csv", "B.csv", "c.json", "d.CSV", "e.csv.bak", "csv"});

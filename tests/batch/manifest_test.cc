@@ -209,8 +209,10 @@ TEST_F(ReadManifestTest, RefusesAHeaderWithoutRecordings) {
   const std::string empty = ": the manifest is empty; its first line names the columns, such as path,id";
   EXPECT_EQ(FaultOf(""), empty);
   EXPECT_EQ(FaultOf("\xEF\xBB\xBF\r\n\n"), empty);
-  EXPECT_EQ(FaultOf("\nid,Path\na,b\n"),
-            ":2: the header has no column path, only \"id, Path\"; the column path names the recordings");
+  EXPECT_EQ(
+      FaultOf("\nid,Path\na,b\n"),
+      ":2: a column has nearly the name of a column with a meaning; rename \"Path\" to path, or choose another name "
+      "if it is a label");
   EXPECT_EQ(FaultOf("path,x,x\n"), ":1: the header has the column \"x\" twice; rename one of them");
   EXPECT_EQ(FaultOf("path,id,path\n"), ":1: the header has the column \"path\" twice; rename one of them");
 }
@@ -234,6 +236,19 @@ TEST_F(ReadManifestTest, RefusesInvalidWindows) {
             ":2: column from_s: \"1,5\" is not a time in seconds on the file's clock");
   EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2.5,1\n"), ":2: from_s 2.5 is not before to_s 1");
   EXPECT_EQ(FaultOf("path,from_s,to_s\na.csv,2,2\n"), ":2: from_s 2 is not before to_s 2");
+}
+
+TEST_F(ReadManifestTest, RefusesNearlyTheNameOfAColumn) {
+  EXPECT_EQ(
+      FaultOf("path,Rig\na.csv,rig.json\n"),
+      ":1: a column has nearly the name of a column with a meaning; rename \"Rig\" to rig, or choose another name "
+      "if it is a label");
+  EXPECT_EQ(
+      FaultOf("Path,rig_file,calib,from,to,model\na.csv,,,,,\n"),
+      ":1: columns have nearly the name of a column with a meaning; rename \"Path\" to path, \"rig_file\" to rig, "
+      "\"calib\" to calibration, \"from\" to from_s, \"to\" to to_s, \"model\" to models, or choose other "
+      "names if they are labels");
+  EXPECT_EQ(Entries("path,rig_id,file,models,model,operator,identity,tool\na.csv,1,2,viscous,4,5,6,7\n").size(), 1U);
 }
 
 TEST_F(ReadManifestTest, RefusesUnknownModels) {

@@ -336,7 +336,9 @@ TEST_F(SummaryTest, CountsMissingAndRefusedRecordingsFirst) {
     return outcome;
   });
   const Json headline = SummaryOf(store)["headline"];
-  EXPECT_EQ(headline["text"], "1 of 6 recordings fitted; 1 missing, 2 refused, 1 not converged, 1 not fitted yet");
+  EXPECT_EQ(headline["text"],
+            "1 of 6 recordings fitted; 1 missing, 1 with a missing rig or calibration, 1 refused, 1 not "
+            "converged, 1 not fitted yet");
   EXPECT_EQ(headline["missing_runs"][0]["id"], "run0.csv");
   EXPECT_EQ(headline["refused_runs"][1]["reason"], "no swing");
 }
@@ -393,6 +395,30 @@ TEST_F(SummaryTest, GroupsByColumnsThatNamePendulumsAndByFolders) {
   Store folders = StoreOf(text, fit);
   EXPECT_EQ(SummaryOf(folders)["grouping"]["by"], "folder");
   EXPECT_EQ(SummaryOf(folders)["grouping"]["pendulums"], 2);
+}
+
+// Without a rig, the inertia is in units of the restoring torque.
+TEST_F(SummaryTest, NeverComparesARecordingWithoutARigWithThoseThatHaveOne) {
+  const auto fit = [](std::size_t i) {
+    Json fit = FitWithCovariance(i == 0 ? 0.5 : 10 + 0.1 * static_cast<double>(i), 1, 5, 0.1);
+    if (i == 0) fit["parameters"]["inertia"]["unit"] = "s^2";
+    RunOutcome outcome = OutcomeOf({fit});
+    outcome.provenance.rig_sha256 = i == 0 ? "" : "1234";
+    return outcome;
+  };
+  Store store = StoreOf(ManifestOf(5, ",rig", [](std::size_t i) { return i == 0 ? "," : ",rig.json"; }), fit);
+  for (const char* group_by : {"", "all"}) {
+    const Json summary = SummaryOf(store, {group_by, ""});
+    const auto text = summary["grouping"]["text"].get<std::string>();
+    EXPECT_THAT(text, HasSubstr(" One recording has no rig, so its values have other units; it is not compared with"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("they have the same rig file")));
+    EXPECT_EQ(summary["grouping"]["unlike"], 0);
+    EXPECT_EQ(summary["agreement"]["rows"][0]["runs"], 4);
+    EXPECT_THAT(summary["agreement"]["rows"][0]["outliers"], IsEmpty());
+  }
+  EXPECT_THAT(
+      SummaryOf(store)["grouping"]["text"].get<std::string>(),
+      StartsWith("Recordings with the same rig file are taken for repeats of one pendulum: 2 pendulums, 1 to 4 "));
 }
 
 /// Two runs of inertia 10 and 10 + `distance` with standard errors of 1.

@@ -66,9 +66,10 @@ class RefitCommandsTest : public testing::Test {
   std::string stdout_text_, stderr_text_;
 };
 
-TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunIsStored) {
-  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
-  EXPECT_THAT(stderr_text_, HasSubstr("2 runs refitted, 0 were current; 1 of these could not be fitted"));
+TEST_F(RefitCommandsTest, ExitsWithThreeWhenARecordingIsMissing) {
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 3);
+  EXPECT_THAT(stderr_text_, HasSubstr("2 runs tried, 0 were current; 1 could not be fitted; the recording, rig or "
+                                      "calibration of 1 run is missing\n"));
   EXPECT_THAT(stdout_text_, HasSubstr("    1 of 2 recordings fitted; 1 "));
   RefitPendulumsOptions details = Options(RefitCommand::kStatus);
   details.details = true;
@@ -78,15 +79,40 @@ TEST_F(RefitCommandsTest, ExitsWithZeroWhenEveryRunIsStored) {
   EXPECT_THAT(stdout_text_, HasSubstr("    1 of 2 recordings fitted; 1 "));
 }
 
+TEST_F(RefitCommandsTest, ExitsWithThreeWhenNoRunHasAResult) {
+  std::ofstream(folder_ / "bad.csv") << "no recording\n";
+  std::ofstream(folder_ / "runs.csv") << "path\nbad.csv\n";
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 3);
+  EXPECT_THAT(stderr_text_,
+              HasSubstr("1 run tried, 0 were current; 1 could not be fitted; no run has a current result\n"));
+  EXPECT_THAT(stdout_text_, HasSubstr("    0 of 1 recording fitted; 1 refused."));
+  EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
+}
+
+TEST_F(RefitCommandsTest, ExitsWithZeroWhenARecordingIsRefused) {
+  std::ofstream(folder_ / "bad.csv") << "no recording\n";
+  std::ofstream(folder_ / "runs.csv") << "path\nbad.csv\n" << fs::absolute("datasets/runs_1.csv").string() << "\n";
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  EXPECT_THAT(stderr_text_, HasSubstr("2 runs tried, 0 were current; 1 could not be fitted\n"));
+}
+
+TEST_F(RefitCommandsTest, ExitsWithThreeWhenARigIsMissing) {
+  const std::string recording = fs::absolute("datasets/runs_1.csv").string();
+  std::ofstream(folder_ / "runs.csv") << "path,id,rig\n" << recording << ",one,\n" << recording << ",two,no.json\n";
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 3);
+  EXPECT_THAT(stderr_text_, HasSubstr("; the recording, rig or calibration of 1 run is missing\n"));
+  EXPECT_THAT(stdout_text_, HasSubstr("1 of 2 recordings fitted; 1 with a missing rig or calibration."));
+}
+
 TEST_F(RefitCommandsTest, ExitsWithThreeWhenAResultStaysBecauseAFitTakesTooLong) {
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   RefitPendulumsOptions slow = Options(RefitCommand::kRefit);
   slow.refit.run.fit.interval = IntervalMethod::kBootstrap;
   slow.refit.fit_time = std::chrono::milliseconds(1);
   for (const bool is_tried : {true, false}) {
     EXPECT_EQ(Run(slow), 3);
-    EXPECT_THAT(stderr_text_, HasSubstr(is_tried ? "2 runs refitted, 0 were current" : "0 runs refitted, 2 were"));
-    EXPECT_THAT(stderr_text_, HasSubstr("; 1 keep a former result (--replace_by_failures replaces it)"));
+    EXPECT_THAT(stderr_text_, HasSubstr(is_tried ? "2 runs tried, 0 were current" : "0 runs tried, 2 were"));
+    EXPECT_THAT(stderr_text_, HasSubstr("; 1 keeps a former result (--replace_by_failures replaces it)"));
     EXPECT_THAT(stdout_text_, HasSubstr("0 of 2 recordings fitted; 1 missing, 1 with a former result only."));
     EXPECT_THAT(stdout_text_, HasSubstr("the fit took longer than 0.001 s"));
   }
@@ -97,8 +123,8 @@ TEST_F(RefitCommandsTest, PrunesWhatItSaid) {
   EXPECT_EQ(Run(prune), 3);  // there is no store
   EXPECT_FALSE(fs::exists(folder_ / "a.sqlite"));
   options.refit.run.models = {"viscous", "coulomb"};
-  ASSERT_EQ(Run(options), 0);
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(options), 3);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   prune.dry_run = true;
   for (int again = 0; again < 2; ++again) {
     EXPECT_EQ(Run(prune), 0);
@@ -132,7 +158,7 @@ TEST_F(RefitCommandsTest, RefusesAnUnknownColumnBeforeAnyFit) {
 }
 
 TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = "-";
   EXPECT_EQ(Run(options), 0);
@@ -147,7 +173,7 @@ TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {
 }
 
 TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   RefitPendulumsOptions options = Options(RefitCommand::kExport);
   options.out = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(options.out.c_str(), 0600), 0);
@@ -160,11 +186,11 @@ TEST_F(RefitCommandsTest, ExportsIntoANamedPipe) {
 }
 
 TEST_F(RefitCommandsTest, ReportsChangesByExitCode) {
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   RefitPendulumsOptions other = Options(RefitCommand::kRefit);
   other.stores = {folder_ / "b.sqlite"};
   other.refit.run.fit.fixed["coulomb"] = 0;  // viscous friction takes over the torque of coulomb
-  ASSERT_EQ(Run(other), 0);
+  ASSERT_EQ(Run(other), 3);
   RefitPendulumsOptions compare = Options(RefitCommand::kCompare);
   compare.stores = {folder_ / "a.sqlite", folder_ / "a.sqlite"};
   EXPECT_EQ(Run(compare), 0);
@@ -200,10 +226,10 @@ TEST_F(RefitCommandsTest, MergesCompleteShards) {
   RefitPendulumsOptions merge = Options(RefitCommand::kMerge);
   merge.shard_dir = folder_;
   merge.shard_count = 2;
-  EXPECT_EQ(Run(merge), 0);
+  EXPECT_EQ(Run(merge), 3);
   EXPECT_THAT(stderr_text_, HasSubstr("2 runs of 2 shards merged into " + merge.stores[0]));
-  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 0);
-  EXPECT_THAT(stderr_text_, HasSubstr("0 runs refitted, 2 were current"));
+  EXPECT_EQ(Run(Options(RefitCommand::kRefit)), 3);
+  EXPECT_THAT(stderr_text_, HasSubstr("0 runs tried, 2 were current"));
   merge.command = RefitCommand::kMissing;
   EXPECT_EQ(Run(merge), 0);
   EXPECT_EQ(stdout_text_, "");
@@ -214,7 +240,7 @@ TEST_F(RefitCommandsTest, ReportsInTheFormatOfTheFileName) {
   options.out = folder_ / "summary.json";
   EXPECT_EQ(Run(options), 3);  // the store does not exist
   EXPECT_THAT(stderr_text_, HasSubstr("a.sqlite: there is no such store"));
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   EXPECT_EQ(Run(options), 0) << stderr_text_;
   std::ifstream file(options.out);
   const auto json = nlohmann::json::parse(file);
@@ -239,11 +265,11 @@ TEST_F(RefitCommandsTest, RefitsNothingFromAPackOfTheSameRuns) {
   RefitPendulumsOptions pack = Options(RefitCommand::kPack);
   pack.out = folder_ / "runs.pack";
   ASSERT_EQ(Run(pack), 0) << stderr_text_;
-  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 0);
+  ASSERT_EQ(Run(Options(RefitCommand::kRefit)), 3);
   RefitPendulumsOptions packed = Options(RefitCommand::kRefit);
   packed.manifest = pack.out;
-  EXPECT_EQ(Run(packed), 0);
-  EXPECT_THAT(stderr_text_, HasSubstr("0 runs refitted, 2 were current"));
+  EXPECT_EQ(Run(packed), 3);
+  EXPECT_THAT(stderr_text_, HasSubstr("0 runs tried, 2 were current"));
   pack.out = pack.manifest;
   EXPECT_EQ(Run(pack), 2);
 }

@@ -79,21 +79,21 @@ class SameAsFitPendulum(Lab):
         paths = self.simulate(9)
         paths.insert(4, "runs/missing.csv")
         manifest = self.manifest(paths)
-        self.refit(manifest, "one.sqlite", "--threads", "1")
+        self.refit(manifest, "one.sqlite", "--threads", "1", code=3)
         expected = self.rows("one.sqlite")
-        self.refit(manifest, "five.sqlite", "--threads", "5")
+        self.refit(manifest, "five.sqlite", "--threads", "5", code=3)
         self.assertEqual(self.rows("five.sqlite"), expected)
         for shard in (2, 0, 1):
             (self.folder / "out").mkdir(exist_ok=True)
             self.refit(manifest, f"out/shard-{shard}.sqlite", "--shard", f"{shard}/3")
-        self.run_tool("merge", "--shard_dir", "out", "--shard_count", "3", "--store", "merged.sqlite")
+        self.run_tool("merge", "--shard_dir", "out", "--shard_count", "3", "--store", "merged.sqlite", code=3)
         self.assertEqual(self.rows("merged.sqlite"), expected)
         self.run_tool("pack", "--manifest", manifest, "--out", "runs.pack")
         shutil.rmtree(self.folder / "runs")
-        self.refit("runs.pack", "packed.sqlite")
+        self.refit("runs.pack", "packed.sqlite", code=3)
         self.assertEqual(self.rows("packed.sqlite"), expected)
         self.simulate(9)
-        self.refit(self.manifest(paths[::-1], "reversed.csv"), "reversed.sqlite")
+        self.refit(self.manifest(paths[::-1], "reversed.csv"), "reversed.sqlite", code=3)
         turned = self.rows("reversed.sqlite")
         for row in (*turned.values(), *expected.values()):
             row.pop("position", None)
@@ -144,17 +144,17 @@ class Interruptions(Lab):
         shutil.copy(RIG, rig)
         entries = [{"path": path, "rig": "rig.json" if i == 1 else str(RIG)} for i, path in enumerate(paths)]
         manifest = self.manifest(entries)
-        self.assertIn("5 runs refitted, 0 were current", self.refit(manifest, "a.sqlite")[1])
-        self.assertIn("0 runs refitted, 5 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("5 runs tried, 0 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("0 runs tried, 5 were current", self.refit(manifest, "a.sqlite")[1])
         with open(self.folder / paths[0], "a", encoding="utf-8") as file:
             file.write("# another byte\n")
-        self.assertIn("1 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("1 run tried, 4 were current", self.refit(manifest, "a.sqlite")[1])
         rig.write_text(rig.read_text() + "\n")
-        self.assertIn("1 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("1 run tried, 4 were current", self.refit(manifest, "a.sqlite")[1])
         entries[2]["to_s"] = "5"
-        self.assertIn("1 runs refitted, 4 were current", self.refit(self.manifest(entries), "a.sqlite")[1])
-        self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile")[1])
-        self.assertIn("5 runs refitted", self.refit(manifest, "a.sqlite", "--interval", "profile", "--force")[1])
+        self.assertIn("1 run tried, 4 were current", self.refit(self.manifest(entries), "a.sqlite")[1])
+        self.assertIn("5 runs tried", self.refit(manifest, "a.sqlite", "--interval", "profile")[1])
+        self.assertIn("5 runs tried", self.refit(manifest, "a.sqlite", "--interval", "profile", "--force")[1])
 
     def test_results_stay_when_their_recordings_are_gone(self):
         files = self.simulate(4)
@@ -166,7 +166,7 @@ class Interruptions(Lab):
         self.assertIn("4 keep a former result", messages)
         self.assertIn("0 of 4 recordings fitted; 4 with a former result only", " ".join(out.split()))
         (self.folder / "elsewhere").rename((self.folder / files[0]).parent)
-        self.assertIn("0 runs refitted, 4 were current", self.refit(manifest, "a.sqlite")[1])
+        self.assertIn("0 runs tried, 4 were current", self.refit(manifest, "a.sqlite")[1])
         self.assertEqual(self.rows("a.sqlite"), before)
 
     def test_a_full_disk_is_reported_and_the_store_stays_valid(self):
@@ -235,8 +235,8 @@ class HostileManifests(Lab):
                                   {"path": good, "id": "no rig", "rig": "nowhere.json"},
                                   {"path": good, "id": "wrong rig", "rig": "text.csv"},
                                   {"path": "/dev/zero"}])
-        _, said = self.refit(manifest, "a.sqlite")
-        self.assertIn("9 of these could not be fitted", said)
+        _, said = self.refit(manifest, "a.sqlite", code=3)
+        self.assertIn("9 could not be fitted; the recording, rig or calibration of 2 runs is missing", said)
         stored = self.rows("a.sqlite")
         codes = {key[1]: row["exit_code"] for key, row in stored.items() if key[0] == "runs"}
         self.assertEqual(codes, {good: codes[good], "missing.csv": 3, "empty.csv": codes["empty.csv"], "binary.csv": 4,
@@ -326,7 +326,7 @@ class Reports(Lab):
         paths = self.simulate(6)
         manifest = self.manifest([{"path": path, "rig": str(RIG), "date": f"2026-03-{i + 1:02}"} for i, path in enumerate(paths)] +
                                  [{"path": "missing.csv", "rig": "", "date": ""}])
-        self.refit(manifest, "a.sqlite")
+        self.refit(manifest, "a.sqlite", code=3)
         self.run_tool("export", "--store", "a.sqlite", "--out", "a.jsonl")
         lines = [json.loads(line) for line in (self.folder / "a.jsonl").read_text().splitlines()]
         self.assertEqual([line["id"] for line in lines], [*paths, "missing.csv"])
@@ -363,7 +363,7 @@ class Reports(Lab):
             shutil.copy(DATASETS / name, self.folder)
         (self.folder / "text.csv").write_text("notes\n")
         paths = ["runs_1.csv", "runs_2.csv", "runs_3.csv", "runs_4.csv", "runs_5.csv", "text.csv"]
-        out, _ = self.refit(self.manifest(paths), "a.sqlite")
+        out, _ = self.refit(self.manifest(paths), "a.sqlite", code=3)
         lines = out.splitlines()
         self.assertLessEqual(len(lines), 20, out)
         self.assertLessEqual(max(map(len, lines)), 80, out)
@@ -391,7 +391,7 @@ class Reports(Lab):
 
     def test_inertia_can_be_selected_from_results(self):
         paths = self.simulate(2) + ["missing.csv"]
-        self.refit(self.manifest(paths), "a.sqlite")
+        self.refit(self.manifest(paths), "a.sqlite", code=3)
         stored = self.rows("a.sqlite")
         with sqlite3.connect(self.folder / "a.sqlite") as database:
             found = database.execute("SELECT id, law, inertia, inertia_std_error, inertia_total_std_error, inertia_unit, status, "

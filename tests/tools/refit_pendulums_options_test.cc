@@ -91,6 +91,8 @@ TEST(MakeRefitPendulumsOptions, NamesTheWrongFlagOfARefit) {
       {"--out is not a flag of a refit", [](RefitFlags& f) { f.given.emplace_back("out"); }},
       {"--scratch is for a shard", [](RefitFlags& f) { f.given.emplace_back("scratch"); }},
       {"--checkpoint_s is for a shard", [](RefitFlags& f) { f.given.emplace_back("checkpoint_s"); }},
+      {"'no-folder-*/*.csv' is a pattern and no existing file; give patterns with --data",
+       [](RefitFlags& f) { f.positional = {"no-folder-*/*.csv"}; }},
       {"'refit' is not a command; the commands are status, export", [](RefitFlags& f) { f.positional = {"refit"}; }},
       {"it must be a positive number of seconds",
        [](RefitFlags& f) {

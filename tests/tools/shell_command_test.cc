@@ -32,6 +32,11 @@ TEST(CommandToTry, ReplacesTheSameFlags) {
             "f run.csv --model viscous");
 }
 
+TEST(CommandToTry, GivesTheDataAFlag) {
+  EXPECT_EQ(CommandToTry(Words{"f", "*/*.csv", "--model", "all"}, Words{"--data */*.csv"}),
+            "f --model all --data '*/*.csv'");
+}
+
 TEST(CommandToTry, PutsFlagsBeforeTheEndOfFlags) {
   EXPECT_EQ(CommandToTry(Words{"f", "--", "-run.csv"}, Words{"--unit deg"}), "f --unit deg -- -run.csv");
 }

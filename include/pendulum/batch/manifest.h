@@ -30,8 +30,8 @@ using EntrySink = std::function<Result<void>(const ManifestEntry&)>;
 /// Reads a manifest: CSV (RFC 4180, also with semicolons or tabs) whose header has the column `path`, and optionally
 /// `id` (default: the path), `rig`, `calibration`, `from_s`, `to_s`, `models`; other columns are kept. The listed files
 /// are not checked here. Only one row is in memory. kNotFound: no such file. kDataLoss: invalid CSV, no column `path`,
-/// a repeated column, a row with too few or too many fields, an empty path, an invalid window or model; the message has
-/// file, line and column.
+/// a repeated column, a column whose name is nearly one of these, a row with too few or too many fields, an empty path,
+/// an invalid window or model; the message has file, line and column.
 Result<void> ReadManifest(const std::filesystem::path& path, const EntrySink& take);
 
 }  // namespace pendulum

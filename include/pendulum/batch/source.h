@@ -26,6 +26,9 @@ struct Source {
 
   /// Numbers of the files in searched folders that are no recordings by their names, by pattern ("*.json").
   std::map<std::string, std::int64_t> left_out = {};
+
+  /// Manifests and exports of refit_pendulums in these folders, which are left out, too.
+  std::vector<std::string> lists = {};
 };
 
 /// Limit for a recording, which is in memory while it is fitted.

@@ -70,6 +70,12 @@ struct StoreCounts {
   std::int64_t earlier = 0;           ///< Runs that are not in the last manifest.
   std::int64_t fits = 0, failed = 0;  ///< Rows (run, model), and those with status failed.
   std::int64_t former_fits = 0;       ///< Further rows, of models that the last refit did not ask for.
+  std::int64_t fitted = 0;            ///< Runs of the last manifest with a current result that converged.
+  std::int64_t without_file = 0;      ///< Runs of the last manifest whose recording, rig or calibration is missing.
+
+  /// Whether a run that should have a current result has none: it keeps a former one, or one of its files is missing,
+  /// or no run at all has one. The content of a single recording may be refused or not be fitted.
+  bool lacks_results() const { return stale > 0 || without_file > 0 || (runs > earlier && fitted == 0); }
 };
 
 /// The results of a batch in an SQLite file with self-explaining tables (store_schema.h). Data is durable after the
