@@ -290,11 +290,13 @@ class Refitter {
       counts_.restored += marked ? 1 : 0;
       return marked ? Result<bool>(false) : tl::unexpected(std::move(marked).error());
     }
-    if (!run.exit_code) {
-      auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256);
-      if (!renamed) return tl::unexpected(std::move(renamed).error());
-      counts_.renamed += *renamed ? 1 : 0;
-    }
+    const auto is_gone = [&](const std::string& path) {
+      const auto bytes = source_.read(path);
+      return !bytes && bytes.error().code == StatusCode::kNotFound;
+    };
+    auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256, is_gone);
+    if (!renamed) return tl::unexpected(std::move(renamed).error());
+    counts_.renamed += *renamed ? 1 : 0;
     if (options_.replace_by_failures) {
       auto put = store_.Put(id, *attempt.outcome);
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
@@ -371,9 +373,8 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   store.ShortenWaitsOnStop(options.stop);
   const auto batch = BatchJson(options);
   if (!batch) return tl::unexpected(batch.error());
-  const auto meta = store.Begin(source, options.shard, *batch);
+  const auto meta = store.Begin(source, options.shard, *batch, [&] { return CheckGroupBy(store, options.group_by); });
   if (!meta) return tl::unexpected(meta.error());
-  if (const auto checked = CheckGroupBy(store, options.group_by); !checked) return tl::unexpected(checked.error());
   RefitCounts counts;
   counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
   Refitter refitter(source, store, options, counts);

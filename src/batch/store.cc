@@ -125,7 +125,10 @@ Result<void> MigrateOrCopy(const std::string& name, SQLite::Database& database) 
   auto migrated = sqlite::Guard(name, [&] { return migrate(database); });
   if (migrated || migrated.error().code != StatusCode::kCannotWrite) return migrated;
   SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // SQLite removes it when it is closed
-  SQLite::Backup(copy, database).executeStep();
+  const int step = SQLite::Backup(copy, database).executeStep();
+  if (step != SQLITE_DONE) {  // SQLITE_BUSY or SQLITE_LOCKED; SQLiteCpp throws other errors
+    return Error(StatusCode::kTryAgain, name + ": another process writes to the store; try again later");
+  }
   database = std::move(copy);
   return migrate(database);
 }
@@ -214,7 +217,7 @@ struct Store::State {
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
   std::unique_ptr<SQLite::Transaction> transaction;
-  std::unique_ptr<SQLite::Statement> run_of, result_of, renamed_run, set_stale, add_run, put_run, keep_fits, drop_fits,
+  std::unique_ptr<SQLite::Statement> run_of, result_of, renamed_runs, set_stale, add_run, put_run, keep_fits, drop_fits,
       drop_quantities, put_fit, put_quantity;
 };
 
@@ -389,8 +392,8 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   });
 }
 
-Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>& shard,
-                               const std::string& options_json) {
+Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json,
+                               const std::function<Result<void>()>& check) {
   return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
     SQLite::Transaction all(state_->database, SQLite::TransactionBehavior::IMMEDIATE);
     StoreMeta meta{std::string(kVersion), "", "", shard, 0, false};
@@ -413,6 +416,9 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     state_->SetMeta("shard", shard ? std::to_string(shard->index) : "");
     state_->SetMeta("shard_count", shard ? std::to_string(shard->count) : "");
     state_->SetMeta("complete", "0");
+    if (check) {
+      if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+    }
     all.commit();
     return meta;
   });
@@ -452,17 +458,28 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
   });
 }
 
-Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256) {
+Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256,
+                             const std::function<bool(const std::string& path)>& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<bool> {
     const auto added = state_->Find(id);
     if (!added) return tl::unexpected(added.error());
-    SQLite::Statement& find = state_->Prepared(state_->renamed_run, kRenamedRun.c_str());
-    if (!sqlite::Bind(find, data_sha256).executeStep()) return false;
-    const std::int64_t renamed = find.getColumn(0).getInt64();
+    SQLite::Statement result(state_->database, "SELECT 1 FROM runs WHERE run = ? AND result IS NOT NULL");
+    if (sqlite::Bind(result, *added).executeStep()) return false;
+    std::vector<std::int64_t> renamed;
+    SQLite::Statement& find = state_->Prepared(state_->renamed_runs, kRenamedRuns.c_str());
+    sqlite::Bind(find, id, data_sha256);
+    while (find.executeStep()) {  // the run of a file that is still there, under another path, is a run of a copy
+      const bool is_same_file = find.getColumn(2).getInt() != 0;
+      if (is_same_file || is_gone(sqlite::Text(find, 1))) renamed.push_back(find.getColumn(0).getInt64());
+    }
     find.reset();
-    SQLite::Statement drop(state_->database, "DELETE FROM runs WHERE run = ?"), rename(state_->database, kRenameRun);
-    sqlite::Bind(drop, *added).exec();
-    sqlite::Bind(rename, id, renamed).exec();
+    if (renamed.size() != 1) return false;
+    for (const char* table : {"quantities", "fits", "runs"}) {  // a failed attempt has rows, too
+      SQLite::Statement drop(state_->database, std::string("DELETE FROM ") + table + " WHERE run = ?");
+      sqlite::Bind(drop, *added).exec();
+    }
+    SQLite::Statement rename(state_->database, kRenameRun);
+    sqlite::Bind(rename, id, renamed.front()).exec();
     return true;
   });
 }

@@ -30,9 +30,12 @@ inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
 
-inline const std::string kRenamedRun =
-    "SELECT run FROM runs WHERE position < 0 AND data_sha256 = ? AND result IS NOT NULL AND " + kIsUnlisted +
-    " ORDER BY run LIMIT 1";
+/// Unlisted runs that may be a run of the batch under its former name: the same data, window, files and models.
+inline const std::string kRenamedRuns =
+    "SELECT runs.run, runs.path, runs.path IS batch.path FROM runs JOIN batch ON batch.id = ? AND runs.from_s IS "
+    "batch.from_s AND runs.to_s IS batch.to_s AND runs.rig IS batch.rig AND runs.calibration IS batch.calibration AND "
+    "runs.models IS batch.models WHERE runs.data_sha256 = ? AND runs.result IS NOT NULL AND " +
+    kIsUnlisted + " ORDER BY runs.run";
 
 inline constexpr const char* kRenameRun = R"sql(
 UPDATE runs SET (id, position, path, rig, calibration, from_s, to_s, models, columns) =
@@ -55,7 +58,7 @@ DELETE FROM fits WHERE run = ?1 AND (stale IS NULL OR model IN (SELECT value FRO
 
 /// Marks the results of manifests' runs, because the options of a new batch differ from those of the last one.
 inline constexpr const char* kMarkFormerOptions = R"sql(
-UPDATE runs SET stale = 'the last refit asked for other options, and did not fit this run yet'
+UPDATE runs SET stale = 'the options, rig or calibration changed, and this run has not been fitted again yet'
   WHERE result IS NOT NULL AND stale IS NULL AND run NOT IN (SELECT run FROM requests))sql";
 
 inline constexpr const char* kPutRun = R"sql(

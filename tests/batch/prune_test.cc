@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/batch/prune.h"
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 
@@ -68,6 +69,19 @@ TEST_F(PruneTest, RemovesOnlyThat) {
   EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities"), std::to_string(before.size()));
   EXPECT_EQ(Summarize(store, {}).value()["parameters"], summary["parameters"]);
   EXPECT_FALSE(store.Meta()->complete);  // b has no rows
+}
+
+TEST_F(PruneTest, RefusesWhileTheLastRefitIsNotComplete) {
+  const std::atomic<bool> stop = true;
+  RefitOptions stopped = OptionsWith({"drag"});
+  stopped.stop = &stop;
+  RefitAll(stopped);
+  Store store = Store::Open(store_, Store::Mode::kWrite).value();
+  const auto pruned = Prune(store);
+  ASSERT_FALSE(pruned);
+  EXPECT_EQ(pruned.error().code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(pruned.error().message, testing::HasSubstr("Finish the refit first: run refit_pendulums"));
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs ORDER BY id"), ElementsAre("a", "b", "c"));
 }
 
 }  // namespace

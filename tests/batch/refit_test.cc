@@ -402,8 +402,8 @@ TEST_F(RefitTest, LeavesResultsOfOtherOptionsOutUntilTheyAreReplaced) {
     stopped.stop = &stop;
     RefitAll(stopped);
     EXPECT_THAT(Rows(store_, stale),
-                ElementsAre("a|the last refit asked for other options, and did not fit this run yet",
-                            "b|the last refit asked for other options, and did not fit this run yet"));
+                ElementsAre("a|the options, rig or calibration changed, and this run has not been fitted again yet",
+                            "b|the options, rig or calibration changed, and this run has not been fitted again yet"));
     EXPECT_EQ(RefitAll(coulomb_).current, 2);  // with the former options
     EXPECT_THAT(Rows(store_, stale), ElementsAre("a|NULL", "b|NULL"));
   }
@@ -426,6 +426,51 @@ TEST_F(RefitTest, RecognizesARenamedRecording) {
   folder_.Write("runs.csv", "path\nnew.csv\n1.csv\ncopy.csv\n");
   fs::copy(folder_ / "1.csv", folder_ / "copy.csv");
   EXPECT_EQ(RefitAll(OptionsWith({"viscous", "coulomb"})).renamed, 0);  // 1.csv is still there
+}
+
+TEST_F(RefitTest, TakesOverOnlyTheSameRun) {
+  WriteBatch(folder_, 1);
+  folder_.Write("runs.csv", "path,id,from_s,to_s\n0.csv,early,0,10\n");
+  RefitAll(coulomb_);
+  folder_.Write("runs.csv", "path,id,from_s,to_s\n0.csv,late,10,20\n");
+  EXPECT_EQ(RefitAll(coulomb_).renamed, 0);
+  EXPECT_THAT(Rows(store_, "SELECT id, cast(from_s AS INTEGER) FROM runs ORDER BY id"),
+              ElementsAre("early|0", "late|10"));
+  folder_.Write("runs.csv", "path,id,from_s,to_s\n0.csv,first,0,10\n");  // only the id is another
+  EXPECT_EQ(RefitAll(coulomb_).renamed, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, cast(from_s AS INTEGER) FROM runs ORDER BY id"),
+              ElementsAre("first|0", "late|10"));
+}
+
+TEST_F(RefitTest, DoesNotTakeACopyForARenamedRecording) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  fs::copy(folder_ / "0.csv", folder_ / "copy.csv");
+  folder_.Write("runs.csv", "path\ncopy.csv\n");
+  EXPECT_EQ(RefitAll(coulomb_).renamed, 0);
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs ORDER BY id"), ElementsAre("a", "copy.csv"));
+}
+
+TEST_F(RefitTest, RecognizesARenamedRecordingAfterAFailedAttempt) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  folder_.Write("runs.csv", "path\nnew.csv\n");
+  EXPECT_EQ(RefitAll(coulomb_).unfitted, 1);  // not renamed yet
+  fs::rename(folder_ / "0.csv", folder_ / "new.csv");
+  EXPECT_EQ(RefitAll(coulomb_).renamed, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs"), ElementsAre("new.csv"));
+}
+
+TEST_F(RefitTest, MarksNothingIfGroupByIsWrong) {
+  WriteBatch(folder_, 1);
+  RefitAll(coulomb_);
+  RefitOptions options = OptionsWith({"drag"});
+  options.group_by = "bensh";
+  const Source source = OpenSource(folder_ / "runs.csv").value();
+  Store store = Store::Open(store_, Store::Mode::kWrite).value();
+  EXPECT_FALSE(Refit(source, store, options));
+  EXPECT_EQ(store.Count()->stale, 0);
+  EXPECT_TRUE(store.Meta()->complete);
 }
 
 // ---- Limits and stops ----------------------------------------------------------------------------------------------

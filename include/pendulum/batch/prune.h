@@ -20,7 +20,8 @@ struct Prunable {
 
 Result<Prunable> FindPrunable(Store& store);
 
-/// Removes it, and returns what it was. Runs with a former result only are new to the next refit. Errors: of the store.
+/// Removes it, and returns what it was. Runs with a former result only are new to the next refit. kFailedPrecondition:
+/// the last refit is not complete. Other errors: of the store.
 Result<Prunable> Prune(Store& store);
 
 }  // namespace pendulum

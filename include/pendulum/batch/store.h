@@ -102,8 +102,9 @@ class Store {
   /// with a known id replaces the manifest's data of that run. Other runs are removed, except runs of a service and,
   /// without a shard, runs with results. An error changes nothing. `options_json`: the options of all fits; if they are
   /// not those of the last batch, all results become stale until they are replaced or MarkCurrent. kDataLoss: a
-  /// repeated id; kFailedPrecondition: there is no entry.
-  Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json);
+  /// repeated id; kFailedPrecondition: there is no entry. `check` is called last; its error is returned.
+  Result<StoreMeta> Begin(const Source& source, const std::optional<Shard>& shard, const std::string& options_json,
+                          const std::function<Result<void>()>& check = {});
 
   /// Returns up to `max_runs` runs of the batch from `position` on, in order.
   Result<std::vector<StoredRun>> Next(std::int64_t position, int max_runs);
@@ -116,9 +117,11 @@ class Store {
   /// they were replaced.
   Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt);
 
-  /// If a run that the batch does not name has a result of a recording with these bytes, a new run of the batch takes
-  /// its rows over: the recording was renamed. Returns whether there is one.
-  Result<bool> TakeOver(const std::string& id, const std::string& data_sha256);
+  /// A run of the batch without a result takes the rows of a run that the batch does not name, if that run is the same
+  /// under another name: it has a result of a recording with these bytes, the same window, rig, calibration and models,
+  /// and the same path or one that `is_gone`. Of several such runs none is taken. Returns whether one was taken.
+  Result<bool> TakeOver(const std::string& id, const std::string& data_sha256,
+                        const std::function<bool(const std::string& path)>& is_gone);
 
   /// Marks the rows of a run as current: the inputs of its result have come back.
   Result<void> MarkCurrent(const std::string& id);
