@@ -272,7 +272,7 @@ std::string GroupingText(const RunGroups& groups) {
 }  // namespace
 
 std::string GroupsText(const RunGroups& groups) {
-  const std::string text = GroupingText(groups);
+  std::string text = GroupingText(groups);
   if (groups.without_rig == 0) return text;
   return text + (groups.without_rig == 1 ? " One recording has no rig, so its values have other units; it is not "
                                            "compared with the recordings that have a rig."

@@ -117,7 +117,8 @@ Result<std::vector<MotionModel>> FindMotionModels(std::string_view names, std::o
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {
       const std::string model(found->name);
       const std::string other = name == model || gravity ? "" : "; " + name + " is another name of it";
-      return Error(StatusCode::kInvalidArgument, "'" + std::string(names) + "' names " + model + " twice" + other);
+      const std::string twice = "'" + std::string(names) + "' names " + model + " twice";
+      return Error(StatusCode::kInvalidArgument, twice + other);
     }
     models.push_back(*found);
   }

@@ -154,7 +154,7 @@ TEST_F(RefitCommandsTest, RefusesAnUnknownColumnBeforeAnyFit) {
   EXPECT_EQ(Run(options), 2);
   EXPECT_THAT(stderr_text_, HasSubstr("--group_by: the manifest has no column 'nonsense'"));
   EXPECT_EQ(Run(Options(RefitCommand::kStatus)), 0);
-  EXPECT_THAT(stderr_text_ + stdout_text_, HasSubstr("not refitted yet                2\n"));
+  EXPECT_THAT(stderr_text_ + stdout_text_, HasSubstr("in the store                    0\n"));
 }
 
 TEST_F(RefitCommandsTest, ExportsInTheFormatOfTheFileName) {

@@ -85,7 +85,7 @@ double TimeAtRow(const Eigen::VectorXd& time, double row) {
 BothSides FindHalfPeriods(const Recording& recording, Index change, bool is_pendulum) {
   Recording by_row = recording;
   const double step = (recording.time[change] - recording.time[0]) / static_cast<double>(change);
-  const double last = static_cast<double>(recording.size() - 1);
+  const auto last = static_cast<double>(recording.size() - 1);
   by_row.time = Eigen::VectorXd::LinSpaced(recording.size(), 0, step * last);
   if (HasTurningPointView(by_row)) by_row = TurningPointView(by_row);
   const TurningPointTable table = FindAllTurningPoints(by_row);
