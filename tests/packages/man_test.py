@@ -71,7 +71,7 @@ class ManTest(packed.DebianFilesTest):
             listed = [int(number) for number in re.findall(r"^ +(\d+) +[A-Z]", "\n".join(section), re.MULTILINE)]
             said = packed.output(self.root / "usr/bin" / name, "--help")
             paragraph = " ".join(said[said.index("Exit codes:"):].split("\n\n")[0].split())
-            codes = re.findall(r"(?:Exit codes:|,) (\d+) [a-z]", paragraph)
+            codes = re.findall(r"(?:Exit codes:|[,.]) (\d+) [a-z]", paragraph)
             self.assertEqual(listed, [int(code) for code in codes], name)
             self.assertLessEqual({0, 2, 70}, set(listed), name)
 
