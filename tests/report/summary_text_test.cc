@@ -77,10 +77,10 @@ TEST(SummaryText, KeepsTheZeroAndTheTextbookBesideWarnings) {
 TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
   const std::string words = " in a sentence that is longer than one line of eighty columns, so that there is no room";
   std::vector<Warning> warnings;
-  for (const char* code : {"gaps", "jitter", "spikes", "stale_values", "unwrapped", "vibration", "event_driven"})
+  for (const char* code : {"gaps", "jitter", "spikes", "stray_lines", "unwrapped", "vibration", "event_driven"})
     warnings.push_back({code, std::string("this is ") + code + words});
   const std::string text = TextWith(warnings);
-  EXPECT_THAT(text, HasSubstr("gaps, jitter, spikes, stale values, unwrapped, vibration, event driven."));
+  EXPECT_THAT(text, HasSubstr("gaps, jitter, spikes, stray lines, unwrapped, vibration, event driven."));
   EXPECT_THAT(text, Not(HasSubstr("this is")));
 }
 
