@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "batch/run_kinds.h"
 #include "batch/sqlite.h"
 
 namespace pendulum {
@@ -36,10 +37,7 @@ void CreateView(SQLite::Database& database, const std::string& view, const std::
   database.exec("CREATE TEMP VIEW " + view +
                 " AS SELECT runs.id, runs.position, fits.run, fits.model, fits.status FROM " + schema +
                 ".runs AS runs JOIN " + schema + ".fits AS fits USING(run)" +
-                (has_marks ? " WHERE runs.stale IS NULL AND fits.stale IS NULL AND (runs.position >= 0 OR runs.run IN "
-                             "(SELECT run FROM " +
-                                 schema + ".requests))"
-                           : ""));
+                (has_marks ? " WHERE " + IsLiveFit(schema + ".requests") : ""));
 }
 
 std::int64_t CountOf(SQLite::Database& database, const std::string& table) {

@@ -7,8 +7,12 @@ namespace pendulum {
 
 /// SQL conditions on a row of table runs: how the run ended.
 
-/// The last manifest does not name the run. Those requested from a service belong to no manifest.
-inline const std::string kIsUnlisted = "(runs.position < 0 AND runs.run NOT IN (SELECT run FROM requests))";
+/// The last manifest does not name the run. Those requested from a service, rows of the table `requests`, belong to no
+/// manifest.
+inline std::string IsUnlisted(const std::string& requests) {
+  return "(runs.position < 0 AND runs.run NOT IN (SELECT run FROM " + requests + "))";
+}
+inline const std::string kIsUnlisted = IsUnlisted("requests");
 
 /// Why statistics leave the result of a run out; NULL if they do not.
 inline const std::string kWhyStale =
@@ -18,10 +22,16 @@ inline const std::string kWhyStale =
 inline const std::string kIsStale = "(runs.stale IS NOT NULL AND NOT " + kIsUnlisted + ")";
 
 /// Neither of these. Statistics leave other runs out.
-inline const std::string kIsLive = "(runs.stale IS NULL AND NOT " + kIsUnlisted + ")";
+inline std::string IsLive(const std::string& requests) {
+  return "(runs.stale IS NULL AND NOT " + IsUnlisted(requests) + ")";
+}
+inline const std::string kIsLive = IsLive("requests");
 
 /// A row of table fits, joined with that of its run, is of the result of a live run.
-inline const std::string kIsLiveFit = "(fits.stale IS NULL AND " + kIsLive + ")";
+inline std::string IsLiveFit(const std::string& requests) {
+  return "(fits.stale IS NULL AND " + IsLive(requests) + ")";
+}
+inline const std::string kIsLiveFit = IsLiveFit("requests");
 
 /// The fit of the recommended law, or of the only law, converged, and the run is live.
 inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";

@@ -21,7 +21,7 @@ namespace pendulum::sqlite {
 /// Converts an exception of SQLite to an error about the file `name`.
 inline tl::unexpected<Status> ErrorFromSqlite(const std::string& name, const SQLite::Exception& error) {
   const std::string words = error.what();
-  switch (error.getErrorCode()) {
+  switch (error.getErrorCode() & 0xff) {  // the primary code; a backup throws extended ones
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return Error(StatusCode::kTryAgain, name + ": another process uses it; try again when that process is done");

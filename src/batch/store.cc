@@ -463,8 +463,6 @@ Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha2
   return sqlite::Guard(name(), [&]() -> Result<bool> {
     const auto added = state_->Find(id);
     if (!added) return tl::unexpected(added.error());
-    SQLite::Statement result(state_->database, "SELECT 1 FROM runs WHERE run = ? AND result IS NOT NULL");
-    if (sqlite::Bind(result, *added).executeStep()) return false;
     std::vector<std::int64_t> renamed;
     SQLite::Statement& find = state_->Prepared(state_->renamed_runs, kRenamedRuns.c_str());
     sqlite::Bind(find, id, data_sha256);

@@ -20,6 +20,7 @@
 #include "pendulum/closed_form/low_band.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
+#include "pendulum/recording/window.h"
 
 namespace pendulum {
 namespace {
@@ -375,14 +376,6 @@ Result<std::vector<FreeSwing>> FindWithoutGaps(const Recording& recording, const
   return swings;
 }
 
-/// Samples [first, last].
-Recording PartOf(const Recording& recording, Index first, Index last) {
-  Recording part = recording;
-  part.time = recording.time.segment(first, last - first + 1);
-  part.value = recording.value.segment(first, last - first + 1);
-  return part;
-}
-
 /// The swings of the parts between long gaps. If none has a swing, the error is that of the longest part.
 Result<std::vector<FreeSwing>> FindBetweenGaps(const Recording& recording, std::vector<Index> gaps, bool is_spring) {
   const Index end = recording.size() - 1;
@@ -392,15 +385,16 @@ Result<std::vector<FreeSwing>> FindBetweenGaps(const Recording& recording, std::
   Index longest = 0;
   std::size_t i = 0;
   for (Index first = 0; const Index last : gaps) {
-    const Recording part = PartOf(recording, std::exchange(first, last + 1), last);
-    if (part.size() < kMinimumSamples) continue;
-    Result<std::vector<FreeSwing>> found = FindWithoutGaps(part, FindAllTurningPoints(part), is_spring);
-    if (!found && part.size() > longest) error = tl::unexpected(found.error());
-    longest = std::max(longest, part.size());
+    const Result<Recording> part =
+        SelectWindow(recording, recording.time[std::exchange(first, last + 1)], recording.time[last]);
+    if (!part) continue;  // too few samples
+    Result<std::vector<FreeSwing>> found = FindWithoutGaps(*part, FindAllTurningPoints(*part), is_spring);
+    if (!found && part->size() > longest) error = tl::unexpected(found.error());
+    longest = std::max(longest, part->size());
     if (found) std::ranges::move(*found, std::back_inserter(swings));
     for (; i < swings.size(); ++i) {
       FreeSwing& swing = swings[i];
-      if (part.time[0] > recording.time[0] && swing.begins.reason == WindowBegin::Reason::kInMotion) {
+      if (part->time[0] > recording.time[0] && swing.begins.reason == WindowBegin::Reason::kInMotion) {
         swing.begins = {WindowBegin::Reason::kAfterGap};
       }
       if (last < end && swing.ends.reason == WindowEnd::Reason::kEndOfRecording) {

@@ -2,7 +2,6 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -225,6 +224,18 @@ std::string ExamplesText(const char* heading, const Json& runs, std::int64_t tot
   return std::string(heading) + ": " + text + (more > 0 ? " and " + std::to_string(more) + " more" : "") + ".";
 }
 
+/// "a.csv, b.csv and 3 more".
+std::string FirstNames(const std::vector<std::string>& all) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (const std::string& name : all) names.push_back(Printable(name));
+  if (all.size() > kNamed) {
+    names.resize(kNamed - 1);
+    names.push_back(std::to_string(all.size() - names.size()) + " more");
+  }
+  return NameList(names);
+}
+
 /// `folding` 1: without the law and the parameters of the start; 2: also without examples of missing and refused files.
 std::string SummaryText(const Json& summary, const std::string& store, int folding) {
   const Json& headline = summary["headline"];
@@ -305,16 +316,9 @@ std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out) {
 }
 
 std::string ListsText(const std::vector<std::string>& lists) {
-  constexpr std::size_t kNamed = 3;
-  std::vector<std::string> names;
-  for (const std::string& list : lists) names.push_back(Printable(list));
-  if (lists.size() > kNamed) {
-    names.resize(kNamed - 1);
-    names.push_back(std::to_string(lists.size() - names.size()) + " more");
-  }
   return std::to_string(lists.size()) + (lists.size() == 1 ? " file is" : " files are") +
          " left out because of the column path, which manifests and exports of " + std::string(kRefitToolName) +
-         " have (" + NameList(names) + ")";
+         " have (" + FirstNames(lists) + ")";
 }
 
 std::string KeptText(std::int64_t stale) {
@@ -351,16 +355,16 @@ std::string PruneText(const Prunable& prunable, bool dry_run) {
     models.push_back(model);
   }
   std::string text;
-  const auto add = [&](std::int64_t count, const char* what, const std::vector<std::string>& names) {
-    if (count == 0) return;
-    std::vector<std::string> printable;
-    std::ranges::transform(names, std::back_inserter(printable), [](const auto& name) { return Printable(name); });
-    text += Prose(std::to_string(count) + " " + what + ": " + NameList(printable));
+  const auto add = [&](std::int64_t count, const std::string& what, const std::vector<std::string>& names) {
+    if (count > 0) text += Prose(std::to_string(count) + " " + what + ": " + FirstNames(names));
   };
-  add(fits, "fits of models that the last refit did not ask for", models);
-  add(std::ssize(prunable.stale_runs), "runs with a former result only", prunable.stale_runs);
-  add(std::ssize(prunable.unlisted_runs), "runs that are not among the recordings of the last refit",
-      prunable.unlisted_runs);
+  const auto runs = [](const std::vector<std::string>& ids) { return ids.size() == 1 ? "run " : "runs "; };
+  add(fits, std::string(fits == 1 ? "fit of a model" : "fits of models") + " that the last refit did not ask for",
+      models);
+  add(std::ssize(prunable.stale_runs), std::string(runs(prunable.stale_runs)) + "with a former result only",
+      prunable.stale_runs);
+  add(std::ssize(prunable.unlisted_runs),
+      std::string(runs(prunable.unlisted_runs)) + "not among the recordings of the last refit", prunable.unlisted_runs);
   if (text.empty()) return "Nothing to remove.\n";
   return Heading(dry_run ? "Would be removed" : "Removed") + text;
 }

@@ -27,7 +27,7 @@ std::string QuietText(const nlohmann::ordered_json& summary);
 /// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);
 
-/// "14 files are left out because of their names (13 *.json, 1 *.png); ...".
+/// "14 files are left out because of the name (13 *.json, 1 *.png); ...".
 std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out);
 
 /// "2 files are left out because of the column path, which manifests and exports ... have (a.csv, b.csv)".

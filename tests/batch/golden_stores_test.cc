@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Upgrades of the stores in tests/batch/golden, one of each schema (golden_stores.py).
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -32,6 +33,7 @@ using store_rows::Rows;
 using store_rows::Value;
 
 constexpr int kVersions = static_cast<int>(kStoreMigrations.size());
+constexpr int kFirstReleased = 5;  // by a released program; the content of those before it was made from it
 constexpr int kKilled = 9;
 
 /// Exits as a killed process would, at the `left`-th event of SQLite in this process.
@@ -59,6 +61,13 @@ int WatchSteps(sqlite3* database, char** /*error*/, const sqlite3_api_routines* 
   return SQLITE_OK;
 }
 
+/// Writing fails in this process from now on, as on a full disk.
+void FillDisk() {
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit nothing{0, 0};
+  ::setrlimit(RLIMIT_FSIZE, &nothing);
+}
+
 using Watch = int (*)(sqlite3*, char**, const sqlite3_api_routines*);
 
 class GoldenStoresTest : public testing::Test {
@@ -74,6 +83,27 @@ class GoldenStoresTest : public testing::Test {
     const fs::path path = folder_ / name;
     fs::remove(path);
     SQLite::Database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(GoldenSql(version));
+    return path;
+  }
+
+  /// A store of the last version before the present one with 1,000 runs.
+  fs::path MakeLarge(const std::string& name) const {
+    const fs::path path = Make(kVersions - 1, name);
+    const auto copies = [](const std::string& table, const std::string& columns) {
+      return "INSERT INTO " + table + "(run, " + columns + ") SELECT run + n, " + columns + " FROM " + table +
+             ", numbers WHERE run = 1;";
+    };
+    const std::string runs =
+        "position, path, rig, calibration, models, columns, exit_code, recommended, data_sha256, options_sha256, "
+        "version, result";
+    SQLite::Database(path.string(), SQLite::OPEN_READWRITE)
+        .exec(
+            "CREATE TEMP TABLE numbers AS WITH RECURSIVE f(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM f WHERE n < "
+            "1006) SELECT n FROM f;"
+            "INSERT INTO runs(run, id, " +
+            runs + ") SELECT run + n, n, " + runs + " FROM runs, numbers WHERE run = 1;" +
+            copies("fits", "model, status, reason, used_samples, rms_residual") +
+            copies("quantities", "model, name, derived, estimate, std_error, unit, fixed, at_bound"));
     return path;
   }
 
@@ -111,11 +141,11 @@ class GoldenStoresTest : public testing::Test {
     return all;
   }
 
-  /// Checks that a store has the present schema and the content of the last golden one.
+  /// Checks that a store of a former version has the present schema and the same content.
   void ExpectPresent(const fs::path& path, int former) const {
     EXPECT_EQ(Value(path, "PRAGMA user_version"), std::to_string(kVersions)) << former;
     EXPECT_EQ(Value(path, "PRAGMA integrity_check"), "ok") << former;
-    EXPECT_EQ(ContentOf(path), ContentOf(last_)) << former;
+    EXPECT_EQ(ContentOf(path), ContentOf(Make(std::max(former, kFirstReleased), "former.sqlite"))) << former;
     EXPECT_EQ(Value(path, "SELECT law || status FROM results WHERE id = 'a'"), "coulombconverged") << former;
     if (former >= 2) {
       EXPECT_EQ(Value(path, "SELECT flags || name FROM requests"), "{}") << former;
@@ -123,7 +153,6 @@ class GoldenStoresTest : public testing::Test {
   }
 
   small_batch::Folder folder_{"golden_stores_test"};
-  const fs::path last_ = Make(5, "last.sqlite");  // the first one that a released program made
 };
 
 TEST_F(GoldenStoresTest, ThereIsOneOfEachSchema) {
@@ -157,9 +186,7 @@ TEST_F(GoldenStoresTest, AreReadFromAFullDisk) {
     const std::vector<std::string> before = ContentOf(path);
     const pid_t child = ::fork();
     if (child == 0) {
-      ::signal(SIGXFSZ, SIG_IGN);
-      const rlimit nothing{0, 0};
-      ::setrlimit(RLIMIT_FSIZE, &nothing);  // writing fails as on a full disk
+      FillDisk();
       auto store = Store::Open(path, Store::Mode::kRead);
       const auto summary = store ? Summarize(*store, {}) : tl::unexpected(store.error());
       ::_exit(summary && (*summary)["headline"]["fitted"] == 1 ? EXIT_SUCCESS : EXIT_FAILURE);
@@ -170,6 +197,23 @@ TEST_F(GoldenStoresTest, AreReadFromAFullDisk) {
     EXPECT_EQ(Value(path, "PRAGMA user_version"), std::to_string(version));
     EXPECT_EQ(ContentOf(path), before) << version;
   }
+}
+
+TEST_F(GoldenStoresTest, AreRefusedAndUnchangedIfThereIsNoRoomForACopyEither) {
+  const fs::path path = MakeLarge("golden.sqlite");
+  const std::vector<std::string> before = ContentOf(path);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    FillDisk();
+    const auto store = Store::Open(path, Store::Mode::kRead);
+    ::_exit(store ? EXIT_SUCCESS : ExitCode(store.error().code));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), ExitCode(StatusCode::kCannotWrite));
+  EXPECT_EQ(Value(path, "PRAGMA user_version"), std::to_string(kVersions - 1));
+  EXPECT_EQ(ContentOf(path), before);
 }
 
 TEST_F(GoldenStoresTest, SurviveAnUpgradeThatIsKilledBeforeAnyOfItsStatements) {
@@ -190,22 +234,7 @@ TEST_F(GoldenStoresTest, SurviveAnUpgradeThatIsKilledBeforeAnyOfItsStatements) {
 
 TEST_F(GoldenStoresTest, SurviveAnUpgradeOfAThousandRunsThatIsKilledTwentyTimes) {
   constexpr int kKills = 20;
-  const fs::path path = Make(kVersions - 1, "golden.sqlite");
-  const auto copies = [](const std::string& table, const std::string& columns) {
-    return "INSERT INTO " + table + "(run, " + columns + ") SELECT run + n, " + columns + " FROM " + table +
-           ", numbers WHERE run = 1;";
-  };
-  const std::string runs =
-      "position, path, rig, calibration, models, columns, exit_code, recommended, data_sha256, options_sha256, "
-      "version, result";
-  SQLite::Database(path.string(), SQLite::OPEN_READWRITE)
-      .exec(
-          "CREATE TEMP TABLE numbers AS WITH RECURSIVE f(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM f WHERE n < "
-          "1006) SELECT n FROM f;"
-          "INSERT INTO runs(run, id, " +
-          runs + ") SELECT run + n, n, " + runs + " FROM runs, numbers WHERE run = 1;" +
-          copies("fits", "model, status, reason, used_samples, rms_residual") +
-          copies("quantities", "model, name, derived, estimate, std_error, unit, fixed, at_bound"));
+  const fs::path path = MakeLarge("golden.sqlite");
   const std::string content =
       "SELECT id, exit_code, json_extract(result, '$.fits[0].parameters.inertia.estimate'), model, name, estimate, "
       "std_error FROM runs LEFT JOIN quantities USING(run) ORDER BY run, name";

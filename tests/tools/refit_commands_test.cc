@@ -129,11 +129,11 @@ TEST_F(RefitCommandsTest, PrunesWhatItSaid) {
   for (int again = 0; again < 2; ++again) {
     EXPECT_EQ(Run(prune), 0);
     EXPECT_EQ(stdout_text_,
-              "[[Would be removed]]\n    1 fits of models that the last refit did not ask for: viscous\n");
+              "[[Would be removed]]\n    1 fit of a model that the last refit did not ask for: viscous\n");
   }
   prune.dry_run = false;
   EXPECT_EQ(Run(prune), 0);
-  EXPECT_THAT(stdout_text_, HasSubstr("[[Removed]]\n    1 fits of models"));
+  EXPECT_THAT(stdout_text_, HasSubstr("[[Removed]]\n    1 fit of a model"));
   EXPECT_EQ(Run(prune), 0);
   EXPECT_EQ(stdout_text_, "Nothing to remove.\n");
 }
