@@ -96,15 +96,18 @@ Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smalles
   return tops;
 }
 
-/// If the file gives no range, uses an extreme at which swings are clipped as an end of the sensor's range.
+/// Uses an extreme at which swings are clipped as an end of the sensor's range. A range from the file may be that of
+/// the converter, of which the sensor reaches only a part.
 void DetectSaturation(double smallest_step, Recording& recording) {
   constexpr Index kMinTops = 3;
-  if (recording.range) return;
   const double high = recording.value.maxCoeff();
   const double low = recording.value.minCoeff();
   const bool at_high = CountFlatTops(recording.value, high, smallest_step) >= kMinTops;
   const bool at_low = CountFlatTops(recording.value, low, smallest_step) >= kMinTops;
-  if (at_high || at_low) recording.range = SensorRange{at_low ? low : 2 * low - high, at_high ? high : 2 * high - low};
+  if (!at_high && !at_low) return;
+  if (!recording.range) recording.range = SensorRange{2 * low - high, 2 * high - low};
+  if (at_low) recording.range->low = low;
+  if (at_high) recording.range->high = high;
 }
 
 /// Warns if there are rows only where the value changes: steps of one size, never zero, at unequal intervals.

@@ -154,8 +154,8 @@ TEST_F(CompareStoresTest, ListsTheHundredLargestChangesInOrder) {
   }
   const StoreComparison comparison = Compare(before, after);
   EXPECT_EQ(comparison.moved, 130);
-  ASSERT_EQ(comparison.most_moved.size(), 100);
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(comparison.most_moved[static_cast<std::size_t>(i)].errors, 131 - i);
+  ASSERT_EQ(comparison.most_moved.size(), 20);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(comparison.most_moved[static_cast<std::size_t>(i)].errors, 131 - i);
 }
 
 TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
@@ -172,7 +172,7 @@ TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
   }
   comparison = Compare(before, after);
   EXPECT_EQ(comparison.changed_status, 121);
-  EXPECT_EQ(comparison.status_changes.size(), 100);
+  EXPECT_EQ(comparison.status_changes.size(), 20);
   EXPECT_EQ(comparison.status_changes[0].id, "b");
 }
 

@@ -268,5 +268,14 @@ TEST(RepairValues, KeepsTheRangeGivenByTheFile) {
   EXPECT_EQ(RepairValues(clipped).range->low, -1);
 }
 
+TEST(RepairValues, TreatsFlatTopsWithinTheRangeOfTheFileAsItsEnd) {
+  Recording clipped = Noisy(Wave(0.6), 0.002, 5);
+  clipped.value = clipped.value.cwiseMax(-0.3);  // a sensor that reaches a part of the converter's range
+  clipped.range = SensorRange{-1, 1};
+  const Recording repaired = RepairValues(clipped);
+  EXPECT_EQ(repaired.range->low, -0.3);
+  EXPECT_EQ(repaired.range->high, 1);
+}
+
 }  // namespace
 }  // namespace pendulum::repair_values_test

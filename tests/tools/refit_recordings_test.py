@@ -34,7 +34,7 @@ class RealRecordings(Lab):
         for name, row in runs.items():
             self.assertTrue(row["result"] or row["reason"], name)
         # These models cannot use volts without a calibration, nor uncalibrated counts.
-        self.assertIn("calibrate first", runs["cubli_PRINT_00"]["reason"])
+        self.assertIn("needs an angle", runs["cubli_PRINT_00"]["reason"])
         self.assertIn("coulomb", self.run_tool("status", "--store", "a.sqlite")[0])
 
 

@@ -46,7 +46,7 @@ struct StoreComparison {
   std::vector<std::string> cpus_before, cpus_after;
 
   static constexpr double kRounding = 1e-9;
-  static constexpr int kMaxListed = 100;
+  static constexpr int kMaxListed = 20;
 };
 
 /// Compares the results of two stores. Errors: of the stores.

@@ -186,8 +186,9 @@ tl::unexpected<Status> NeedsCalibration(const Recording& recording, const Motion
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   return WithTry(Error(StatusCode::kDataLoss, where + "the readings are in " + recording.unit + ", but model " +
                                                   std::string(model.name) +
-                                                  " needs an angle; calibrate first (--calibration), or fit --model "
-                                                  "linear, whose period and damping need no angle"),
+                                                  " needs an angle: give readings at known angles with --calibration "
+                                                  "(a table such as counts,angle_deg), or fit --model linear, whose "
+                                                  "period and damping need no angle"),
                  {"--model linear"});
 }
 

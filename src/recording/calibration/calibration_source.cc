@@ -6,6 +6,7 @@
 #include "pendulum/base/json.h"
 #include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/recording/calibration/calibration_table.h"
+#include "recording/readers/content.h"
 
 namespace pendulum {
 namespace {
@@ -15,6 +16,13 @@ bool IsJson(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == std::string_view::npos || text[first] == '{' || text[first] == '[';
+}
+
+/// Whether the bytes are a text, and not, for example, a workbook.
+bool IsText(std::string_view bytes) {
+  const Content content = ContentOf(bytes.substr(0, kContentBytes));
+  return content == Content::kText || content == Content::kLabelled || content == Content::kReturns ||
+         content == Content::kJson;
 }
 
 std::string NoteOn(const CalibrationTable& table, const CalibrationFit& fit) {
@@ -39,6 +47,7 @@ std::string DoubtOn(const CalibrationTable& table, const CalibrationFit& fit) {
 }  // namespace
 
 Result<Calibration> CalibrationFromText(std::string_view text, const std::string& name) {
+  if (!IsText(text)) return Fault(name, "this is not a text file; save the table of the calibration as CSV");
   if (IsJson(text)) return ParseCalibration(text, name);
   const Result<CalibrationTable> table = ParseCalibrationTable(text, name);
   if (!table) {

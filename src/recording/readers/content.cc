@@ -6,6 +6,7 @@
 #include "pendulum/base/file.h"
 #include "recording/readers/foreign_formats.h"
 #include "recording/readers/mat/mat_version_4.h"
+#include "recording/readers/text/labelled_rows.h"
 
 namespace pendulum {
 namespace {
@@ -97,7 +98,8 @@ Content ContentOf(std::string_view begin) {
   if (!ForeignFormat(begin).empty()) return Content::kForeign;
   if (IsXml(begin)) return Content::kXml;
   if (IsJson(begin)) return Content::kJson;
-  return HasReturnsAlone(begin) ? Content::kReturns : Content::kText;
+  if (HasReturnsAlone(begin)) return Content::kReturns;
+  return csv::HasLabelledRows(begin) ? Content::kLabelled : Content::kText;
 }
 
 tl::unexpected<Status> ForeignContent(std::string_view begin, const std::string& name) {

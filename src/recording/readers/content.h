@@ -12,11 +12,12 @@ namespace pendulum {
 /// The format of a file according to its first bytes; the file name is ignored.
 enum class Content {
   kText,
-  kReturns,  ///< Text whose lines end with a carriage return alone, as spreadsheets on a Macintosh write it.
-  kUtf16,    ///< Text with two bytes per character.
-  kZip,      ///< Also .xlsx, .ods and .npz.
-  kMat,      ///< MATLAB.
-  kNpy,      ///< NumPy.
+  kLabelled,  ///< Text in which each value has its label: t:0,pot:512.
+  kReturns,   ///< Text whose lines end with a carriage return alone, as spreadsheets on a Macintosh write it.
+  kUtf16,     ///< Text with two bytes per character.
+  kZip,       ///< Also .xlsx, .ods and .npz.
+  kMat,       ///< MATLAB.
+  kNpy,       ///< NumPy.
   kJson,
   kXml,       ///< Workbooks of Excel 2003, .fods, states of phyphox, and others that are not read.
   kCompound,  ///< Microsoft's compound file: .xls, and others that are not read.

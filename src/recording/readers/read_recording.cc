@@ -13,6 +13,7 @@
 #include "recording/readers/containers/utf16.h"
 #include "recording/readers/content.h"
 #include "recording/readers/mat/mat_recording.h"
+#include "recording/readers/text/labelled_rows.h"
 #include "recording/readers/text/row_reader.h"
 #include "recording/readers/workbook_recording.h"
 #include "recording/readers/zip_recording.h"
@@ -54,10 +55,8 @@ Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   return ParseRecording(*bytes, file.name(), options);
 }
 
-/// Reads a text that was made from the bytes of a file.
-Result<Recording> ReadConverted(const std::string& text, std::string_view bytes, const std::string& name,
-                                const ReadOptions& options, Nesting nesting) {
-  Result<Recording> recording = ReadBytes(text, name, options, nesting);
+/// A recording that was read from a text made from the bytes of a file.
+Result<Recording> FromConverted(Result<Recording> recording, std::string_view bytes) {
   if (!recording) return recording;
   Result<std::string> sha256 = Sha256(bytes);
   if (!sha256) return tl::unexpected(std::move(sha256).error());
@@ -74,7 +73,7 @@ Result<Recording> ReadUtf16(std::string_view bytes, const std::string& name, con
   if (ContentOf(std::string_view(text).substr(0, kContentBytes)) == Content::kXml) {
     return ReadXml(bytes, name, options);
   }
-  return ReadConverted(text, bytes, name, options, nesting);
+  return FromConverted(ReadBytes(text, name, options, nesting), bytes);
 }
 
 /// Reads text whose lines end with a carriage return alone.
@@ -82,7 +81,12 @@ Result<Recording> ReadLinesWithReturns(std::string_view bytes, const std::string
                                        Nesting nesting) {
   std::string text(bytes);
   std::ranges::replace(text, '\r', '\n');
-  return ReadConverted(text, bytes, name, options, nesting);
+  return FromConverted(ReadBytes(text, name, options, nesting), bytes);
+}
+
+Result<Recording> ReadLabelled(std::string_view bytes, const std::string& name, const ReadOptions& options) {
+  const std::string text = csv::TableOfLabelledRows(bytes);
+  return FromConverted(ReadRows(LineReader(text, name), options), bytes);
 }
 
 }  // namespace
@@ -91,6 +95,7 @@ Result<Recording> ReadBytes(std::string_view bytes, const std::string& name, con
                             Nesting nesting) {
   switch (ContentOf(bytes.substr(0, kContentBytes))) {
     case Content::kText: return ReadRows(LineReader(bytes, name), options);
+    case Content::kLabelled: return ReadLabelled(bytes, name, options);
     case Content::kReturns: return ReadLinesWithReturns(bytes, name, options, nesting);
     case Content::kUtf16: return ReadUtf16(bytes, name, options, nesting);
     case Content::kZip: return ReadZip(bytes, name, options, nesting);

@@ -341,10 +341,13 @@ TEST(Counts, AreRefusedForAModelThatNeedsAnAngle) {
     const auto refused = FitRecording(counts, ModelOptions("coulomb"));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
-    EXPECT_EQ(refused.error().message,
-              (path.empty() ? "" : "run.csv: ") +
-                  std::string("the readings are in counts, but model coulomb needs an angle; calibrate first "
-                              "(--calibration), or fit --model linear, whose period and damping need no angle"));
+    EXPECT_EQ(
+        refused.error().message,
+        (path.empty() ? "" : "run.csv: ") +
+            std::string(
+                "the readings are in counts, but model coulomb needs an angle: give readings at known angles with "
+                "--calibration (a table such as counts,angle_deg), or fit --model linear, whose period "
+                "and damping need no angle"));
   }
 }
 

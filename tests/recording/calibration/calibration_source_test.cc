@@ -47,6 +47,8 @@ TEST(CalibrationFromText, SaysIfACurveFitsBetter) {
 TEST(CalibrationFromText, RefusesOtherTexts) {
   EXPECT_THAT(CalibrationFromText("{", "cal.json").error().message, HasSubstr("cal.json:"));
   EXPECT_THAT(CalibrationFromText("", "cal.json").error().message, HasSubstr("cal.json"));
+  EXPECT_EQ(CalibrationFromText("PK\3\4 of a workbook", "cal.xlsx").error().message,
+            "cal.xlsx: this is not a text file; save the table of the calibration as CSV");
   EXPECT_THAT(CalibrationFromText("time_s,angle_deg\n0,1\n", "run.csv").error().message,
               HasSubstr("A calibration is JSON, or a table with a column of counts or volts"));
 }
