@@ -35,8 +35,16 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
   if (candidates.empty()) return std::nullopt;
   std::vector<std::string> names;
   names.reserve(candidates.size());
-  for (const std::size_t i : candidates) names.push_back(Quoted(columns[i].written));
-  return WithTry(line.Fault(columns[candidates[1]].at, "columns " + SeveralQuantities(names)),
+  const bool is_one_each = runs.size() == candidates.size();
+  for (const std::size_t i : candidates) {
+    if (is_one_each || columns[i].run == columns[candidates.front()].run) names.push_back(Quoted(columns[i].written));
+  }
+  const std::string sentence = is_one_each ? "columns " + SeveralQuantities(names)
+                                           : "columns of " + std::to_string(runs.size()) +
+                                                 " runs could be the quantity; choose one with --value_column, of the "
+                                                 "first run " +
+                                                 ListOf(names);
+  return WithTry(line.Fault(columns[candidates[1]].at, sentence),
                  {"--value_column " + columns[candidates.front()].written});
 }
 

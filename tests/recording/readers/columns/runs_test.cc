@@ -49,6 +49,10 @@ TEST(Runs, SeveralRunsAreRefusedAndNamed) {
       "one with --value_column");
   EXPECT_THAT(FaultOf("A:Time(s),A:Angle(rad),B:Time(s),B:Angle(rad),C:Time(s),C:Angle(rad)\n" + Rows("1,2,3,4,5,6")),
               HasSubstr("columns \"A:Angle(rad)\", \"B:Angle(rad)\" and \"C:Angle(rad)\" could all be the quantity"));
+  EXPECT_THAT(FaultOf("A:Time(s),A:Angle(rad),A:Rate(rad/s),B:Time(s),B:Angle(rad),B:Rate(rad/s)\n" +
+                      Rows("0.0{t},1,2,0.0{t},5,6")),
+              HasSubstr("columns of 2 runs could be the quantity; choose one with --value_column, of the first run "
+                        "\"A:Angle(rad)\" and \"A:Rate(rad/s)\""));
 }
 
 TEST(Runs, TheChosenRunHasItsOwnTime) {
