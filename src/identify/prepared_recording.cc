@@ -41,6 +41,7 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   prepared.swings = *std::move(swings);
   prepared.known.rig = std::move(rig);
   prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
+  std::ranges::move(std::exchange(prepared.swings.warnings, {}), std::back_inserter(prepared.known.warnings));
   if (prepared.known.rig)
     std::ranges::move(QuestionRig(*prepared.known.rig), std::back_inserter(prepared.known.warnings));
   std::ranges::move(notes, std::back_inserter(prepared.known.warnings));

@@ -78,19 +78,22 @@ double SmallestStep(const Recording& recording, double share) {
   return std::max(*least, recording.resolution);
 }
 
-/// Counts runs of at least three readings equal to the extreme of all readings that are entered and left in large
-/// steps: clipped tops of a swing.
+/// Counts runs of at least three readings equal to the extreme of all readings that are entered and left at a similar
+/// speed: clipped tops of a swing. A hold may be entered at speed, but is left slowly.
 Index CountFlatTops(const Eigen::VectorXd& value, double extreme, double smallest_step) {
   constexpr Index kMinReadings = 3;
-  constexpr double kAtSpeed = 3;
+  constexpr double kAtSpeed = 3, kSimilar = 3;
   Index tops = 0;
   for (Index i = 1; i + 1 < value.size(); ++i) {
     if (value[i] != extreme || value[i - 1] == extreme) continue;
     Index end = i;
     while (end < value.size() && value[end] == extreme) ++end;
     if (end == value.size()) break;
-    const double steps = std::abs(value[i - 1] - extreme) + std::abs(value[end] - extreme);
-    if (end - i >= kMinReadings && steps > 2 * kAtSpeed * smallest_step) ++tops;
+    // The step beside the run may be a part of one.
+    const double entry = std::abs(value[std::max<Index>(i - 2, 0)] - extreme);
+    const double exit = std::abs(value[std::min(end + 1, value.size() - 1)] - extreme);
+    const bool is_symmetric = std::max(entry, exit) < kSimilar * std::min(entry, exit);
+    if (end - i >= kMinReadings && is_symmetric && std::min(entry, exit) > kAtSpeed * smallest_step) ++tops;
     i = end;
   }
   return tops;

@@ -224,16 +224,19 @@ std::string ExamplesText(const char* heading, const Json& runs, std::int64_t tot
   return std::string(heading) + ": " + text + (more > 0 ? " and " + std::to_string(more) + " more" : "") + ".";
 }
 
-/// "a.csv, b.csv and 3 more".
-std::string FirstNames(const std::vector<std::string>& all) {
-  constexpr std::size_t kNamed = 3;
-  std::vector<std::string> names;
-  for (const std::string& name : all) names.push_back(Printable(name));
-  if (all.size() > kNamed) {
-    names.resize(kNamed - 1);
-    names.push_back(std::to_string(all.size() - names.size()) + " more");
-  }
+std::string AllNames(std::vector<std::string> names) {
+  for (std::string& name : names) name = Printable(name);
   return NameList(names);
+}
+
+/// "a.csv, b.csv and 3 more".
+std::string FirstNames(std::vector<std::string> names) {
+  constexpr std::size_t kNamed = 3;
+  const std::size_t all = names.size();
+  if (all <= kNamed) return AllNames(std::move(names));
+  names.resize(kNamed - 1);
+  names.push_back(std::to_string(all - names.size()) + " more");
+  return AllNames(std::move(names));
 }
 
 /// `folding` 1: without the law and the parameters of the start; 2: also without examples of missing and refused files.
@@ -356,7 +359,8 @@ std::string PruneText(const Prunable& prunable, bool dry_run) {
   }
   std::string text;
   const auto add = [&](std::int64_t count, const std::string& what, const std::vector<std::string>& names) {
-    if (count > 0) text += Prose(std::to_string(count) + " " + what + ": " + FirstNames(names));
+    if (count > 0)
+      text += Prose(std::to_string(count) + " " + what + ": " + (dry_run ? AllNames(names) : FirstNames(names)));
   };
   const auto runs = [](const std::vector<std::string>& ids) { return ids.size() == 1 ? "run " : "runs "; };
   add(fits, std::string(fits == 1 ? "fit of a model" : "fits of models") + " that the last refit did not ask for",

@@ -146,7 +146,7 @@ TEST_F(CompareStoresTest, SkipsValuesOfDifferentUnits) {
   EXPECT_THAT(comparison.most_moved, IsEmpty());
 }
 
-TEST_F(CompareStoresTest, ListsTheHundredLargestChangesInOrder) {
+TEST_F(CompareStoresTest, ListsTheLargestChangesInOrder) {
   std::vector<Fit> before, after;
   for (int i = 1; i <= 130; ++i) {
     before.push_back({"run " + std::to_string(i), 0.0, 1.0});
@@ -154,8 +154,9 @@ TEST_F(CompareStoresTest, ListsTheHundredLargestChangesInOrder) {
   }
   const StoreComparison comparison = Compare(before, after);
   EXPECT_EQ(comparison.moved, 130);
-  ASSERT_EQ(comparison.most_moved.size(), 20);
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(comparison.most_moved[static_cast<std::size_t>(i)].errors, 131 - i);
+  ASSERT_EQ(comparison.most_moved.size(), StoreComparison::kMaxListed);
+  for (int i = 0; i < StoreComparison::kMaxListed; ++i)
+    EXPECT_EQ(comparison.most_moved[static_cast<std::size_t>(i)].errors, 131 - i);
 }
 
 TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
@@ -172,7 +173,7 @@ TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
   }
   comparison = Compare(before, after);
   EXPECT_EQ(comparison.changed_status, 121);
-  EXPECT_EQ(comparison.status_changes.size(), 20);
+  EXPECT_EQ(comparison.status_changes.size(), StoreComparison::kMaxListed);
   EXPECT_EQ(comparison.status_changes[0].id, "b");
 }
 

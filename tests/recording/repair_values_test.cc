@@ -266,6 +266,21 @@ TEST(RepairValues, KeepsTheRangeGivenByTheFile) {
   clipped.value = clipped.value.cwiseMin(0.4);
   clipped.range = SensorRange{-1, 0.4};
   EXPECT_EQ(RepairValues(clipped).range->low, -1);
+  EXPECT_EQ(RepairValues(clipped).range->high, 0.4);
+}
+
+TEST(RepairValues, KeepsTheRangeIfSwingsBeginAtOneHeldAngle) {
+  Recording held = Wave(0.6);
+  held.range = SensorRange{-1, 1};
+  held.value = held.time.unaryExpr([&](double t) {  // four times: lifted at speed, held, released without speed
+    const double part = std::fmod(4 * t / held.time[held.size() - 1], 1.0);
+    if (part < 0.02) return 30 * part;
+    return part < 0.2 ? 0.6 : 0.6 * std::cos(40 * (part - 0.2)) * (1.2 - part);
+  });
+  held.value = (held.value / 0.001).array().round() * 0.001;
+  const Recording repaired = RepairValues(held);
+  EXPECT_EQ(repaired.range->high, 1);
+  EXPECT_EQ(repaired.range->low, -1);
 }
 
 TEST(RepairValues, TreatsFlatTopsWithinTheRangeOfTheFileAsItsEnd) {

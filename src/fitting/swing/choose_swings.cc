@@ -30,6 +30,16 @@ tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int cou
                                                  " in the recording; it has " + std::to_string(count));
 }
 
+/// Warns of a change of the steps within a chosen swing.
+ChosenSwings WithWarning(ChosenSwings swings, const std::optional<StepChange>& change) {
+  const auto has_change = [&](int k) {
+    const FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
+    return swing.from < change->time && change->time < swing.to;
+  };
+  if (change && std::ranges::any_of(swings.chosen, has_change)) swings.warnings.push_back(change->ToWarning());
+  return swings;
+}
+
 }  // namespace
 
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
@@ -44,9 +54,11 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   const Recording* const part = selected ? &*selected : &recording;
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
+  std::optional<StepChange> change;
   if (!from_given || !to_given) {
-    if (const Result<void> clock = CheckClock(*part, choice.is_spring || (rig && rig->is_spring)); !clock)
-      return WithMessage(clock.error(), where + clock.error().message);
+    const auto clock = CheckClock(*part, choice.is_spring || (rig && rig->is_spring));
+    if (!clock) return WithMessage(clock.error(), where + clock.error().message);
+    change = *clock;
   }
   if (IsUndersampled(*part, rig)) {
     if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
@@ -55,12 +67,12 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));
   if (!found) return WithMessage(found.error(), where + found.error().message);
-  ChosenSwings swings{*std::move(found), {}};
+  ChosenSwings swings{*std::move(found), {}, {}};
   const auto count = static_cast<int>(swings.found.size());
   if (choice.release > count) return NoSuchSwing(where, choice.release, count);
   if (choice.release == SwingChoice::kAll) {
     for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
-    return swings;
+    return WithWarning(std::move(swings), change);
   }
   const auto longest =
       std::ranges::max_element(swings.found, {}, [](const FreeSwing& swing) { return swing.to - swing.from; });
@@ -79,7 +91,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     swing.ends = {WindowEnd::Reason::kAsked};
   }
   swings.chosen = {k};
-  return swings;
+  return WithWarning(std::move(swings), change);
 }
 
 }  // namespace pendulum

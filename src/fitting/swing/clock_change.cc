@@ -111,39 +111,73 @@ std::optional<Estimate> ChangeOf(const std::vector<double>& before, const std::v
   return Estimate{b->value - a->value, std::hypot(a->std_error, b->std_error)};
 }
 
-/// Whether a half period takes as many rows on both sides, but not as many seconds.
-bool IsClockOf(const BothSides& sides) {
+enum class ChangeOfStep { kClock, kSampling, kUnknown };
+
+/// Whether `moved` differs clearly from zero and `kept` does not.
+bool IsOnly(const Estimate& moved, const Estimate& kept) {
   constexpr double kAgrees = 3, kDiffers = 6;  // standard errors
   constexpr double kNear = 0.2;
-  const std::optional<Estimate> rows = ChangeOf(sides.before.rows, sides.after.rows);
-  const std::optional<Estimate> seconds = ChangeOf(sides.before.seconds, sides.after.seconds);
-  if (!rows || !seconds) return false;
-  const double difference = std::abs(seconds->value);
-  return difference > std::max(kLeastChange, kDiffers * seconds->std_error) &&
-         std::abs(rows->value) < std::max(kAgrees * rows->std_error, kNear * difference);
+  const double difference = std::abs(moved.value);
+  return difference > std::max(kLeastChange, kDiffers * moved.std_error) &&
+         std::abs(kept.value) < std::max(kAgrees * kept.std_error, kNear * difference);
 }
 
-/// A time with the digits that distinguish samples.
-std::string TimeText(double time, double step) {
-  const double digits = std::ceil(std::log10(std::max(std::abs(time) / step, 1.0))) + 2;
-  return NumberText(time, std::clamp(static_cast<int>(digits), 4, 15));
+/// The clock if a half period takes as many rows on both sides, but not as many seconds; the sampling if it is the
+/// other way round.
+ChangeOfStep ChangeIn(const BothSides& sides) {
+  const std::optional<Estimate> rows = ChangeOf(sides.before.rows, sides.after.rows);
+  const std::optional<Estimate> seconds = ChangeOf(sides.before.seconds, sides.after.seconds);
+  if (!rows || !seconds) return ChangeOfStep::kUnknown;
+  return IsOnly(*seconds, *rows)   ? ChangeOfStep::kClock
+         : IsOnly(*rows, *seconds) ? ChangeOfStep::kSampling
+                                   : ChangeOfStep::kUnknown;
+}
+
+/// The change that a recording shows after sample `change`.
+StepChange StepChangeAt(const Eigen::VectorXd& time, Index change) {
+  const auto median_step = [&](Index first, Index last) {
+    const Eigen::VectorXd steps = time.segment(first + 1, last - first) - time.segment(first, last - first);
+    return Median(std::vector<double>(steps.begin(), steps.end()));
+  };
+  return {time[change], median_step(0, change), median_step(change, time.size() - 1)};
+}
+
+/// The time of a change [s], with the digits that distinguish samples.
+std::string TimeTextOf(const StepChange& change) {
+  const double samples = std::abs(change.time) / std::min(change.before, change.after);
+  return NumberText(change.time,
+                    std::clamp(static_cast<int>(std::ceil(std::log10(std::max(samples, 1.0)))) + 2, 4, 15));
+}
+
+std::string TextOf(const StepChange& change) {
+  const auto text = [](double step) { return NumberText(1e3 * step, 4) + " ms"; };
+  return "the times change their rate at " + TimeTextOf(change) + " s, from " + text(change.before) + " to " +
+         text(change.after) + " between rows";
 }
 
 }  // namespace
 
-Result<void> CheckClock(const Recording& recording, bool is_spring) {
-  const std::optional<Index> change = FindStepChange(recording.time);
-  if (!change) return {};
-  const BothSides sides = FindHalfPeriods(recording, *change, false);
+Warning StepChange::ToWarning() const {
+  return {"clock_unproven", TextOf(*this) +
+                                ", and the swings do not show whether the clock changed or the "
+                                "sampling; if it was the clock, the times of one part are wrong: fit the other part "
+                                "with --to " +
+                                TimeTextOf(*this) + " or --from " + TimeTextOf(*this)};
+}
+
+Result<std::optional<StepChange>> CheckClock(const Recording& recording, bool is_spring) {
+  const std::optional<Index> row = FindStepChange(recording.time);
+  if (!row) return std::nullopt;
+  const ChangeOfStep cause = ChangeIn(FindHalfPeriods(recording, *row, false));
   // The period of a torsion pendulum does not depend on the amplitude, and few recordings say which it is.
-  if (!IsClockOf(sides) || (!is_spring && !IsClockOf(FindHalfPeriods(recording, *change, true)))) return {};
-  const auto step_of = [](const HalfPeriods& side) { return std::exp(Median(side.seconds) - Median(side.rows)); };
-  const double before = step_of(sides.before), after = step_of(sides.after);
-  const std::string at = TimeText(recording.time[*change], std::min(before, after));
-  const auto text = [](double step) { return NumberText(1e3 * step, 4) + " ms"; };
+  const ChangeOfStep other = is_spring ? cause : ChangeIn(FindHalfPeriods(recording, *row, true));
+  if (cause == ChangeOfStep::kSampling || other == ChangeOfStep::kSampling) return std::nullopt;
+  const StepChange change = StepChangeAt(recording.time, *row);
+  if (cause == ChangeOfStep::kUnknown || other == ChangeOfStep::kUnknown) return change;
+  const std::string at = TimeTextOf(change);
   return Error(StatusCode::kDataLoss,
-               "the times change their rate at " + at + " s, from " + text(before) + " to " + text(after) +
-                   " between rows, but a swing takes as many rows as before: the clock changed, not the sampling, and "
+               TextOf(change) +
+                   ", but a swing takes as many rows as before: the clock changed, not the sampling, and "
                    "the times of one part are wrong; fit the part whose times are right, with --to " +
                    at + " or --from " + at);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/calibration/calibration_source.h"
 
+#include <algorithm>
+
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
@@ -16,13 +18,6 @@ bool IsJson(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == std::string_view::npos || text[first] == '{' || text[first] == '[';
-}
-
-/// Whether the bytes are a text, and not, for example, a workbook.
-bool IsText(std::string_view bytes) {
-  const Content content = ContentOf(bytes.substr(0, kContentBytes));
-  return content == Content::kText || content == Content::kLabelled || content == Content::kReturns ||
-         content == Content::kJson;
 }
 
 std::string NoteOn(const CalibrationTable& table, const CalibrationFit& fit) {
@@ -47,9 +42,14 @@ std::string DoubtOn(const CalibrationTable& table, const CalibrationFit& fit) {
 }  // namespace
 
 Result<Calibration> CalibrationFromText(std::string_view text, const std::string& name) {
-  if (!IsText(text)) return Fault(name, "this is not a text file; save the table of the calibration as CSV");
+  const Content content = ContentOf(text.substr(0, kContentBytes));
+  if (content != Content::kText && content != Content::kReturns && content != Content::kJson) {
+    return Fault(name, "this is neither CSV nor JSON in UTF-8; save the table of the calibration as CSV");
+  }
   if (IsJson(text)) return ParseCalibration(text, name);
-  const Result<CalibrationTable> table = ParseCalibrationTable(text, name);
+  std::string lines(text);
+  if (content == Content::kReturns) std::ranges::replace(lines, '\r', '\n');
+  const Result<CalibrationTable> table = ParseCalibrationTable(lines, name);
   if (!table) {
     return WithMessage(table.error(), table.error().message +
                                           ". A calibration is JSON, or a table with a column of counts or volts and a "

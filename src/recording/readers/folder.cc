@@ -13,6 +13,7 @@
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/swing_choice.h"
 #include "recording/readers/content.h"
+#include "recording/readers/text/labelled_rows.h"
 #include "recording/readers/text/phone_log.h"
 #include "recording/readers/text/row_reader.h"
 
@@ -80,13 +81,18 @@ MemberSummary SummarizeMember(const Folder& folder, std::size_t index, const Rea
   const Content content = ContentOf(std::string_view(*begin).substr(0, kContentBytes));
   if (content == Content::kForeign) return summary;
   if (content == Content::kReturns) std::ranges::replace(*begin, '\r', '\n');
-  if (content != Content::kText && content != Content::kReturns) {
+  if (content != Content::kText && content != Content::kReturns && content != Content::kLabelled) {
     summary.candidates.emplace_back();
     summary.is_examined = content == Content::kMat;
     return summary;
   }
-  const std::string_view lines(begin->data(), begin->size() < kHeadBytes ? begin->size() : begin->rfind('\n') + 1);
-  const auto columns = ReadColumnNames(LineReader(lines, folder.name_of(index)));
+  if (begin->size() >= kHeadBytes) begin->resize(begin->rfind('\n') + 1);
+  if (content == Content::kLabelled) begin = csv::TableOfLabelledRows(*begin, folder.name_of(index));
+  if (!begin) {
+    summary.fault = begin.error();
+    return summary;
+  }
+  const auto columns = ReadColumnNames(LineReader(*begin, folder.name_of(index)));
   if (columns) summary.candidates = CandidatesIn(*columns, options);
   return summary;
 }

@@ -85,8 +85,9 @@ Result<Recording> ReadLinesWithReturns(std::string_view bytes, const std::string
 }
 
 Result<Recording> ReadLabelled(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  const std::string text = csv::TableOfLabelledRows(bytes);
-  return FromConverted(ReadRows(LineReader(text, name), options), bytes);
+  const Result<std::string> text = csv::TableOfLabelledRows(bytes, name);
+  if (!text) return tl::unexpected(text.error());
+  return FromConverted(ReadRows(LineReader(*text, name), options), bytes);
 }
 
 }  // namespace

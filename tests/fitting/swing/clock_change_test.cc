@@ -48,7 +48,7 @@ TEST(CheckClock, RefusesAClockThatChangesItsRate) {
   for (const double factor : {1e-3, 0.5, 0.9, 0.97, 1.03, 1.1, 2.0, 1e3}) {
     for (const Eigen::Index row : {450, 1000, 1700}) {
       if (row != 1000 && std::abs(factor - 1) < 0.05) continue;  // too small for the few half swings beside it
-      const Result<void> checked = CheckClock(WithFasterClock(Recorded(1), row, factor));
+      const auto checked = CheckClock(WithFasterClock(Recorded(1), row, factor));
       ASSERT_FALSE(checked) << factor << ", " << row;
       EXPECT_EQ(checked.error().code, StatusCode::kDataLoss);
       EXPECT_THAT(checked.error().message, HasSubstr("a swing takes as many rows as before: the clock changed"));
@@ -59,12 +59,27 @@ TEST(CheckClock, RefusesAClockThatChangesItsRate) {
                              testing::EndsWith("with --to 10 or --from 10")));
 }
 
+TEST(CheckClock, ReturnsAChangeWithinTheHold) {
+  for (const double factor : {0.97, 1.03, 2.0}) {
+    const auto checked = CheckClock(WithFasterClock(Recorded(1), 150, factor));
+    ASSERT_TRUE(checked) << checked.error().message;
+    ASSERT_TRUE(*checked) << factor;
+    EXPECT_DOUBLE_EQ((*checked)->time, 1.5);
+    EXPECT_NEAR((*checked)->before, 0.01, 1e-9);
+    EXPECT_NEAR((*checked)->after, 0.01 * factor, 1e-9);
+  }
+  EXPECT_THAT((StepChange{1, 0.01, 0.02}).ToWarning().message,
+              testing::AllOf(testing::StartsWith("the times change their rate at 1 s, from 10 ms to 20 ms between"),
+                             testing::EndsWith("with --to 1 or --from 1")));
+}
+
 TEST(CheckClock, AcceptsSamplingThatChangesItsRate) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording recording = Recorded(seed);
     for (const Eigen::Index row : {450, 1000, 1700}) {
-      const Result<void> checked = CheckClock(WithSlowerSampling(recording, row));
-      EXPECT_TRUE(checked.has_value()) << checked.error().message;
+      const auto checked = CheckClock(WithSlowerSampling(recording, row));
+      ASSERT_TRUE(checked) << checked.error().message;
+      EXPECT_FALSE(*checked) << row;
     }
   }
 }
@@ -92,7 +107,7 @@ TEST(CheckClock, KnowsTorsionPendulums) {
   torsion.value = torsion.time.unaryExpr([](double t) { return 0.8 * std::exp(-0.03 * t) * std::cos(5 * t); });
   for (const bool is_spring : {false, true}) {
     for (const double factor : {1.01, 1.015, 1.02, 1.1}) {
-      const Result<void> checked = CheckClock(Resampled(torsion, 1000, factor), is_spring);
+      const auto checked = CheckClock(Resampled(torsion, 1000, factor), is_spring);
       EXPECT_TRUE(checked.has_value()) << factor << ", " << checked.error().message;
     }
   }
@@ -128,7 +143,7 @@ TEST(CheckClock, AcceptsTimesThatAreOrBecomeUneven) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording run = Recorded(seed);
     for (const Recording& uneven : {Uneven(run, 0, 0.004), Uneven(run, 1000, 0.004), InPackets(run, 1000)}) {
-      const Result<void> checked = CheckClock(uneven);
+      const auto checked = CheckClock(uneven);
       EXPECT_TRUE(checked.has_value()) << seed << ", " << checked.error().message;
     }
   }

@@ -33,6 +33,12 @@ TEST(CalibrationFromText, FitsALineToATable) {
   EXPECT_EQ(calibration->doubt, "");
 }
 
+TEST(CalibrationFromText, ReadsLinesThatEndWithReturns) {
+  const auto calibration = CalibrationFromText("pot_volts,angle_deg\r1,-81\r2,-27\r", "table.csv");
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  EXPECT_NEAR(calibration->coefficients[1], 54, 1e-9);
+}
+
 TEST(CalibrationFromText, SaysIfACurveFitsBetter) {
   std::string table = "adc_counts,angle_deg\n";
   for (int i = 0; i < 12; ++i) {
@@ -48,7 +54,7 @@ TEST(CalibrationFromText, RefusesOtherTexts) {
   EXPECT_THAT(CalibrationFromText("{", "cal.json").error().message, HasSubstr("cal.json:"));
   EXPECT_THAT(CalibrationFromText("", "cal.json").error().message, HasSubstr("cal.json"));
   EXPECT_EQ(CalibrationFromText("PK\3\4 of a workbook", "cal.xlsx").error().message,
-            "cal.xlsx: this is not a text file; save the table of the calibration as CSV");
+            "cal.xlsx: this is neither CSV nor JSON in UTF-8; save the table of the calibration as CSV");
   EXPECT_THAT(CalibrationFromText("time_s,angle_deg\n0,1\n", "run.csv").error().message,
               HasSubstr("A calibration is JSON, or a table with a column of counts or volts"));
 }

@@ -27,7 +27,8 @@ struct SwingChoice {
 /// The free swings of a recording, and the numbers of the chosen swings.
 struct ChosenSwings {
   std::vector<FreeSwing> found;
-  std::vector<int> chosen;  ///< Numbers (from 1) of swings in `found`; at least one.
+  std::vector<int> chosen;             ///< Numbers (from 1) of swings in `found`; at least one.
+  std::vector<Warning> warnings = {};  ///< About the clock within the chosen swings.
 };
 
 /// Finds the free swings and chooses among them. A bound given by the user is used as it is; if both are given and no

@@ -31,6 +31,7 @@ struct TableView {
   Line line;                       // The header, for messages.
   const std::vector<Name>& names;  // Empty without a header.
   bool has_rate = false;           // The file gives a sample rate.
+  bool is_rate_weak = false;       // It is from the lines that a program writes above its tables; times count more.
   bool has_host = false;           // Lines begin with the stamp of a serial monitor.
   std::string raw_input;           // The input of the calibration that will be used, counts or volts; empty: none.
   std::string value_unit;          // Suffix of the unit that the file gives outside its header; empty: none.

@@ -168,7 +168,12 @@ Result<void> ChooseTime(Choice& choice) {
                                 NumberText(choice.options.sample_rate_hz) +
                                 " contradicts it; leave the flag out, or add --time_column none to ignore the column");
   }
-  if (has_asked_rate || (times.empty() && (choice.table.has_rate || choice.table.has_host))) return {};
+  const bool has_other = choice.table.has_rate || choice.table.has_host;
+  if (!has_asked_rate && times.empty() && choice.table.has_rate && choice.table.is_rate_weak) {
+    if (Result<void> read = choice.NeedNumbers(); !read) return read;
+    times = TimesByNumbers(choice);
+  }
+  if (has_asked_rate || (times.empty() && has_other)) return {};
   if (times.size() > 1 && AreSeparated(times) && choice.value) times = {TimeBefore(times, *choice.value)};
   if (times.size() == 1 && choice.Meaning(times[0]).unit != nullptr && !choice.names[times[0]].is_hidden) {
     return SetTime(choice, times[0], choice.Meaning(times[0]).unit);

@@ -2,23 +2,33 @@
 #include "recording/readers/text/labelled_rows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
-#include <system_error>
+#include <map>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
+#include "recording/readers/columns/csv.h"
+#include "recording/readers/content.h"
 #include "recording/readers/text/host_stamp.h"
 
 namespace pendulum::csv {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r", kBetween = " \t\r,;|";
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
 struct LabelledValue {
   std::string_view label, value, unit;
 };
 
-bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+using LabelledRow = std::vector<LabelledValue>;
+
+/// A letter of any alphabet: bytes from 0x80 on are those of other characters in UTF-8.
+bool BeginsLabel(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+}
 
 void Skip(std::string_view& text, std::string_view characters) {
   text.remove_prefix(std::min(text.find_first_not_of(characters), text.size()));
@@ -36,107 +46,126 @@ std::string_view TakeLabel(std::string_view& text) {
   std::string_view rest = text;
   const std::string_view label = TakeUpTo(rest, " \t\r,;|:=");
   Skip(rest, kBlanks);
-  if (label.empty() || !IsLetter(label.front()) || rest.empty() || (rest.front() != ':' && rest.front() != '='))
-    return {};
+  if (label.empty() || !BeginsLabel(label.front())) return {};
+  if (rest.empty() || (rest.front() != ':' && rest.front() != '=')) return {};
   rest.remove_prefix(1);
   Skip(rest, kBlanks);
   text = rest;
   return label;
 }
 
+/// Removes and returns a number; empty if there is none, or if more of it follows, as in 12:30:00 and 0x1f.
 std::string_view TakeNumber(std::string_view& text) {
-  const std::size_t sign = text.starts_with('+') ? 1 : 0;
+  const std::string_view taken = text.substr(0, text.find_first_not_of("+-.0123456789eE"));
   double number = 0;
-  const auto [end, error] = std::from_chars(text.data() + sign, text.data() + text.size(), number);
-  if (error != std::errc() || !text.starts_with(std::string_view(text.data(), end))) return {};
-  const std::string_view taken = text.substr(0, static_cast<std::size_t>(end - text.data()));
-  text.remove_prefix(taken.size());
+  const std::string_view rest = text.substr(taken.size());
+  const bool has_more = !rest.empty() && (rest.front() == ':' || rest.front() == 'x' || rest.front() == 'X');
+  if (has_more || !ParseNumber(taken, number)) return {};
+  text = rest;
   return taken;
 }
 
 /// The values of a row; empty if a text has another form.
-std::vector<LabelledValue> ValuesOf(std::string_view row) {
-  std::vector<LabelledValue> values;
-  for (Skip(row, kBetween); !row.empty(); Skip(row, kBetween)) {
+LabelledRow RowOf(std::string_view text) {
+  constexpr std::size_t kMost = 64;
+  LabelledRow row;
+  for (Skip(text, kBetween); !text.empty(); Skip(text, kBetween)) {
     LabelledValue value;
-    value.label = TakeLabel(row);
-    value.value = TakeNumber(row);
-    if (value.label.empty() || value.value.empty()) return {};
-    Skip(row, kBlanks);
-    std::string_view after = row;
-    if (TakeLabel(after).empty()) value.unit = TakeUpTo(row, kBetween);
-    values.push_back(value);
+    value.label = TakeLabel(text);
+    value.value = TakeNumber(text);
+    if (value.label.empty() || value.value.empty() || row.size() == kMost) return {};
+    Skip(text, kBlanks);
+    std::string_view after = text;
+    if (TakeLabel(after).empty()) value.unit = TakeUpTo(text, kBetween);
+    row.push_back(value);
   }
-  return values;
+  return row;
 }
 
-/// A line in two parts: the stamp of a serial monitor, if there is one, and the row.
-struct StampedRow {
-  std::string_view stamp, row;
+/// A line in two parts: the stamp of a serial monitor, if there is one, and the rest.
+struct StampedLine {
+  std::string_view stamp, rest;
 };
 
-StampedRow SplitStamp(std::string_view line) {
+StampedLine SplitStamp(std::string_view line) {
   const auto stamp = FindHostStamp(line);
-  const std::string_view row = stamp ? stamp->rest : line;
-  return {line.substr(0, line.size() - row.size()), row};
+  const std::string_view rest = stamp ? stamp->rest : line;
+  return {line.substr(0, line.size() - rest.size()), rest};
 }
 
-bool HaveSameLabels(const std::vector<LabelledValue>& values, const std::vector<LabelledValue>& others) {
-  return std::ranges::equal(values, others, {}, &LabelledValue::label, &LabelledValue::label);
-}
-
-std::string NamesOf(const std::vector<LabelledValue>& values) {
-  std::string names;
-  for (const LabelledValue& value : values) {
-    names.append(names.empty() ? "" : ",").append(value.label);
-    if (!value.unit.empty()) names.append(" (").append(value.unit).append(")");
+/// The header of the table: the labels, with units in brackets. Rows with the same header belong together.
+std::string HeaderOf(const LabelledRow& row) {
+  std::string header;
+  for (const LabelledValue& value : row) {
+    header.append(header.empty() ? "" : ",").append(value.label);
+    if (!value.unit.empty()) header.append(" (").append(value.unit).append(")");
   }
-  return names;
+  return header;
 }
 
-std::string RowOf(const std::vector<LabelledValue>& values) {
-  std::string row;
-  for (const LabelledValue& value : values) row.append(row.empty() ? "" : ",").append(value.value);
-  return row;
+std::string ValuesOf(const LabelledRow& row) {
+  std::string values;
+  for (const LabelledValue& value : row) values.append(values.empty() ? "" : ",").append(value.value);
+  return values;
 }
 
 /// Calls `take` with each line, without its end.
 template <typename Take>
 void ForEachLineOf(std::string_view text, const Take& take) {
+  if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
   while (!text.empty()) {
     take(TakeUpTo(text, "\n"));
     if (!text.empty()) text.remove_prefix(1);
   }
 }
 
-}  // namespace
-
-bool HasLabelledRows(std::string_view begin) {
+/// A row with the header of most lines at the beginning of a text; empty if they are not rows of this kind, at least
+/// five.
+LabelledRow FindTypicalRow(std::string_view text) {
   constexpr std::size_t kFewest = 5;
-  std::vector<LabelledValue> first;
-  std::size_t rows = 0, others = 0;
-  ForEachLineOf(begin.substr(0, begin.rfind('\n') + 1), [&](std::string_view line) {
-    const std::vector<LabelledValue> values = ValuesOf(SplitStamp(line).row);
-    if (first.empty() && values.size() > 1) first = values;
-    if (first.empty()) return;
-    ++(HaveSameLabels(values, first) ? rows : others);
+  std::string_view begin = text.substr(0, kContentBytes);
+  if (text.size() >= kContentBytes) begin = begin.substr(0, begin.rfind('\n') + 1);
+  std::map<std::string, std::pair<std::size_t, LabelledRow>> kinds;  // number and last one, by header
+  std::size_t lines = 0;
+  ForEachLineOf(begin, [&](std::string_view line) {
+    LabelledRow row = RowOf(SplitStamp(line).rest);
+    lines += line.find_first_not_of(kBlanks) != std::string_view::npos ? 1 : 0;
+    if (row.size() < 2) return;
+    auto& [count, last] = kinds[HeaderOf(row)];
+    ++count;
+    last = std::move(row);
   });
-  return rows >= kFewest && others < rows;
+  for (const auto& [header, kind] : kinds) {
+    if (kind.first >= kFewest && 2 * kind.first > lines) return kind.second;
+  }
+  return {};
 }
 
-std::string TableOfLabelledRows(std::string_view text) {
-  std::vector<LabelledValue> first;
+}  // namespace
+
+bool HasLabelledRows(std::string_view begin) { return !FindTypicalRow(begin).empty(); }
+
+Result<std::string> TableOfLabelledRows(std::string_view text, const std::string& name) {
+  const LabelledRow typical = FindTypicalRow(text);
+  const std::string header = HeaderOf(typical);
   std::string table;
+  std::optional<Status> error;
+  std::size_t number = 0;
+  bool has_header = false;
   ForEachLineOf(text, [&](std::string_view line) {
-    const auto [stamp, row] = SplitStamp(line);
-    const std::vector<LabelledValue> values = ValuesOf(row);
-    if (first.empty() && values.size() > 1) {
-      first = values;
-      table.append(stamp).append(NamesOf(first)).append("\n");
+    ++number;
+    const auto [stamp, rest] = SplitStamp(line);
+    const LabelledRow row = RowOf(rest);
+    const bool is_row = !row.empty() && HeaderOf(row) == header;
+    if (is_row && !std::exchange(has_header, true)) table.append(stamp).append(header).append("\n");
+    const bool has_labels = std::ranges::equal(row, typical, {}, &LabelledValue::label, &LabelledValue::label);
+    if (!is_row && !row.empty() && has_labels && !error) {
+      error = Status{StatusCode::kDataLoss, name + ":" + std::to_string(number) + ": the units of " + Quoted(rest) +
+                                                " are not those of the other rows; give all rows one unit"};
     }
-    const bool is_row = !first.empty() && HaveSameLabels(values, first);
-    table.append(stamp).append(is_row ? RowOf(values) : row).append("\n");
+    table.append(stamp).append(is_row ? ValuesOf(row) : rest).append("\n");
   });
+  if (error) return tl::unexpected(*error);
   return table;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "pendulum/base/status.h"
+
 namespace pendulum::csv {
 
 /// Whether a text has rows in which each of two or more values has its label, as Arduino's serial plotter reads them
@@ -11,7 +13,7 @@ namespace pendulum::csv {
 bool HasLabelledRows(std::string_view begin);
 
 /// The rows of such a text as a table with commas, below a header of the labels and units, which is one line more. The
-/// stamps of a serial monitor and lines of other form stay as they are.
-std::string TableOfLabelledRows(std::string_view text);
+/// stamps of a serial monitor stay as they are, and so do lines of other form. kDataLoss: a row has other units.
+Result<std::string> TableOfLabelledRows(std::string_view text, const std::string& name);
 
 }  // namespace pendulum::csv

@@ -258,17 +258,12 @@ Check Reader::ChooseColumns() {
   const bool has_times = std::ranges::any_of(*names, [](const csv::Name& name) { return csv::IsTime(name.text); });
   const bool needs_rate = !has_times && metadata_.sample_rate_hz == 0 && !(options_.sample_rate_hz > 0);
   if (needs_rate) metadata_.sample_rate_hz = head_.sample_rate_hz;
-  if (needs_rate && head_.rate_line.number > 0) {
-    Warn("sample_rate_from_text", head_.rate_line.number,
-         "the rows have no times, so the rate of " + NumberText(head_.sample_rate_hz) + " Hz was taken from " +
-             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise",
-         NumberText(head_.sample_rate_hz) + " Hz, from a line above the rows (--sample_rate_hz)");
-  }
   const auto& calibration = csv::ChosenCalibration(options_, metadata_);
   const csv::TableView table{
       .line = header,
       .names = *names,
       .has_rate = metadata_.sample_rate_hz > 0,
+      .is_rate_weak = needs_rate,
       .has_host = head_.has_host,
       .raw_input = calibration ? calibration->input : "",
       .value_unit = head_.value_unit,
@@ -282,6 +277,13 @@ Check Reader::ChooseColumns() {
     options.preview->format = "text with columns separated by " + SeparatorWords(layout_.separator);
   }
   if (Check chosen = csv::ChooseColumns(table, options, layout_, samples_.warnings); !chosen) return chosen;
+  if (needs_rate && layout_.time) metadata_.sample_rate_hz = 0;
+  if (needs_rate && !layout_.time && head_.rate_line.number > 0) {
+    Warn("sample_rate_from_text", head_.rate_line.number,
+         "the rows have no times, so the rate of " + NumberText(head_.sample_rate_hz) + " Hz was taken from " +
+             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise",
+         NumberText(head_.sample_rate_hz) + " Hz, from a line above the rows (--sample_rate_hz)");
+  }
   if (Check checked = ros_ ? ros_->CheckSecond(header) : Check(); !checked) return checked;
   if (Check checked = CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings); !checked) {
     return checked;

@@ -24,8 +24,9 @@ TEST(LabelledRows, AreReadAsTheSameRowsWithoutLabels) {
 }
 
 TEST(LabelledRows, GiveTheHeaderTheUnits) {
-  EXPECT_EQ(TableOfLabelledRows("hello\nt=10 ms pot=-6.5e2\nt=20 ms pot=+7\n"),
-            "hello\nt (ms),pot\n10,-6.5e2\n20,+7\n");
+  EXPECT_EQ(
+      TableOfLabelledRows("hello\nt=10 ms pot=-6.5e2\nt=20 ms pot=+7\n" + Rows("t={t} ms  pot = {v}", 3), "run.csv"),
+      "hello\nt (ms),pot\n10,-6.5e2\n20,+7\n" + Rows("{t},{v}", 3));
 }
 
 TEST(LabelledRows, MayHaveOtherLinesAmongThem) {
@@ -37,12 +38,27 @@ TEST(LabelledRows, MayHaveOtherLinesAmongThem) {
   EXPECT_THAT(recording.warnings[0].message, HasSubstr("WARN battery low"));
 }
 
+TEST(LabelledRows, MayBeginWithARowThatIsCutOffOrWithOtherLabels) {
+  for (const char* first : {"ms:99,adc_counts:99\n", "kp:1.0,ki:2.0\n", "\xEF\xBB\xBF"}) {
+    ExpectTheRows(RecordingOf(first + Rows("time_ms:{t},adc_counts:{v}")));
+  }
+  ExpectTheRows(RecordingOf(Rows("t={t} ms θ={v}°\r")), kDegree);
+}
+
+TEST(LabelledRows, WithOtherUnitsAreNotMixed) {
+  const std::string text = Rows("t={t} ms adc={v} counts", 100);
+  const std::size_t middle = text.find("t=500 ms");
+  EXPECT_THAT(FaultOf(text.substr(0, middle) + Rows("t={t} us adc={v} counts", 100)),
+              HasSubstr("run.csv:1: the units of \"t=0 ms adc=100 counts\" are not those of the other rows"));
+}
+
 TEST(LabelledRows, AreNotSeenInOtherTexts) {
   const std::string labelled = Rows("t:{t},v:{v}");
   EXPECT_TRUE(HasLabelledRows(labelled));
-  for (const std::string& text : {std::string(), std::string("t:1,v:2\n"), Rows("{t},{v}"), Rows("12:00:{t} {v}"),
-                                  Rows("v:{v}"), Rows("t:{t},v:"), Rows("t:{t} {v}"),
-                                  "Duration: 10 s, Rate: 5 Hz\n" + Rows("{t},{v}"), Rows("t{t}:{t},v:{v}")}) {
+  for (const std::string& text :
+       {std::string(), std::string("t:1,v:2\n"), Rows("{t},{v}"), Rows("12:00:{t} {v}"), Rows("v:{v}"),
+        Rows("t:{t},v:"), Rows("t:{t} {v}"), Rows("t:12:00:{t} v:{v}"), Rows("t:{t} v:0x{v}"),
+        "Duration: 10 s, Rate: 5 Hz\n" + Rows("{t},{v}"), Rows("t{t}:{t},v:{v}")}) {
     EXPECT_FALSE(HasLabelledRows(text)) << text;
   }
 }

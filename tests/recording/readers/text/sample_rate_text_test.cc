@@ -29,6 +29,16 @@ TEST(SampleRateIn, IsUsedForRowsWithoutTimes) {
     EXPECT_EQ(recording.warnings[0].code, "sample_rate_from_text");
   }
   ExpectTheRows(RecordingOf("# fs: 5 Hz\ntime_ms,angle_deg\n" + Rows("{t},{v}")), kDegree);
+  // An oscilloscope's times, in columns whose names say nothing, count more than its line; a number of the row does
+  // not.
+  for (const std::string name : {"X", "Abscissa", "col1"}) {
+    const Recording recording = RecordingOf("Sample Interval,0.2\n" + name + ",angle_deg\n" + Rows("0.0{t},{v}"));
+    ExpectTheRows(recording, kDegree);
+    EXPECT_EQ(recording.warnings.back().code, "rate_disagrees");
+  }
+  std::string numbered = "Sample Interval,0.01\nX,angle_deg\n";
+  for (int i = 0; i < 8; ++i) numbered += std::to_string(i) + "," + std::to_string(100 + i) + "\n";
+  ExpectTheRows(RecordingOf(numbered), kDegree);
   ExpectTheRows(RecordingOf("{\"fs\": 100, \"angle_rad\": [100, 101, 102, 103, 104, 105, 106, 107]}"));
 }
 
