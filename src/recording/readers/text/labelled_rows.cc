@@ -10,7 +10,6 @@
 
 #include "pendulum/base/format.h"
 #include "recording/readers/columns/csv.h"
-#include "recording/readers/content.h"
 #include "recording/readers/text/host_stamp.h"
 
 namespace pendulum::csv {
@@ -122,9 +121,9 @@ void ForEachLineOf(std::string_view text, const Take& take) {
 /// A row with the header of most lines at the beginning of a text; empty if they are not rows of this kind, at least
 /// five.
 LabelledRow FindTypicalRow(std::string_view text) {
-  constexpr std::size_t kFewest = 5;
-  std::string_view begin = text.substr(0, kContentBytes);
-  if (text.size() >= kContentBytes) begin = begin.substr(0, begin.rfind('\n') + 1);
+  constexpr std::size_t kFewest = 5, kExamined = 4096;  // rows, bytes
+  std::string_view begin = text.substr(0, kExamined);
+  if (text.size() >= kExamined) begin = begin.substr(0, begin.rfind('\n') + 1);
   std::map<std::string, std::pair<std::size_t, LabelledRow>> kinds;  // number and last one, by header
   std::size_t lines = 0;
   ForEachLineOf(begin, [&](std::string_view line) {
