@@ -601,7 +601,8 @@ Head ParseHead(std::string_view begin, Layout& layout) {
   if (IsVernier(first.lines.front().text)) return ParseVernierHead(first.lines, layout);
   Head head = HeadParser(first, layout).Parse();
   const std::string_view row = DevicePart(head.first_row.text, head.has_host);
-  if (IsText(row)) head.fields_of_text = CountFields(row, layout.separator);
+  const std::size_t fields = CountFields(row, layout.separator);
+  if (IsText(row) && fields >= layout.width) head.fields_of_text = fields;  // else it is no row
   return head;
 }
 

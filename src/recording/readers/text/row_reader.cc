@@ -117,7 +117,7 @@ class Reader {
   Check ReadOrSetAsideRow();
   std::optional<Status> FaultOfText() const;
   Check SetAside(std::optional<Status> error);
-  bool HasFewFields() const;
+  bool HasOtherFields() const;
   Check LeaveOutBetweenRows();
   Check CheckLeftOut();
   bool BeginsSecondTable(double time) const;
@@ -358,7 +358,7 @@ Check Reader::SetAside(std::optional<Status> error) {
   }
   const bool is_text = csv::IsText(csv::RemarkPart(line_.text, head_));
   if (is_text && header_again_ > 0) return {};  // units below the names
-  const bool is_short = !is_text && !ros_ && HasFewFields();
+  const bool is_short = !is_text && !ros_ && HasOtherFields();
   const bool is_first = below_.lines.count == 0, is_faulty = !is_text && !is_short && lines_.is_terminated();
   if (is_first && is_faulty) return tl::unexpected(*std::move(error));
   if (is_short && has_times()) error.reset();
@@ -373,13 +373,15 @@ Check Reader::SetAside(std::optional<Status> error) {
   return {};
 }
 
-/// Whether the line ends before the last column that is read.
-bool Reader::HasFewFields() const {
+/// Whether the line ends before the last column that is read, or, after many rows, goes on after the last column: two
+/// rows may have lost what was between them.
+bool Reader::HasOtherFields() const {
+  constexpr Eigen::Index kMany = 20;
   std::size_t count = 0;
   for (FieldCutter fields(csv::DevicePart(line_.text, head_.has_host), layout_.separator); !fields.done(); ++count) {
     fields.Next();
   }
-  return count <= LastIndex();
+  return count <= LastIndex() || (count > layout_.width && rows_ >= kMany);
 }
 
 /// After a row or at the end: leaves out the lines that were set aside.

@@ -56,6 +56,20 @@ TEST(RefusePassages, SaysThatPassagesInOneDirectionAreWholePeriods) {
               HasSubstr("1.6002 s (if the times are in ms), or 0.8001 s if all passages are in one direction"));
 }
 
+TEST(RefusePassages, SaysSoOfNearlyEqualSteps) {
+  std::string text = "n,time_ms\n";
+  for (int i = 0; i < 41; ++i) text += std::to_string(i + 1) + "," + std::to_string((162870 + 19306 * i) / 10) + "\n";
+  EXPECT_THAT(FaultOf(text), HasSubstr("3.8612 s, or 1.9306 s if all passages are in one direction"));
+}
+
+TEST(RefusePassages, KnowsTheTimesForWhichTheGateIsBlocked) {
+  std::string text;
+  const std::vector<std::string> times = Passages(1e-3);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    text += times[i] + "," + std::to_string(0.0057 + 3e-5 * static_cast<double>(i)) + "\n";
+  EXPECT_THAT(FaultOf(text), HasSubstr("mean of full periods is 1.6 s"));
+}
+
 TEST(RefusePassages, IgnoreATrailingSeparator) {
   std::string text;
   for (const std::string& time : Passages(1e-3)) text += time + "\t\n";

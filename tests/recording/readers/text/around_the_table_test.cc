@@ -133,6 +133,24 @@ TEST(AroundTheTable, LinesBetweenRowsAreCountedAndNamedOnce) {
               ElementsAre("run.csv:10: 1 line that is no row, \"pause\", was left out"));
 }
 
+TEST(AroundTheTable, TwoRowsInOneLineAreLeftOut) {
+  for (const char separator : {',', ' '}) {
+    const std::string pattern = std::string("{t}") + separator + "{v}";
+    const std::string merged = std::string("300") + separator + "130310" + separator + "131";
+    const Recording recording =
+        RecordingOf(WithLines(std::string("time_ms") + separator + "angle_deg\n", pattern, {"", "", merged}));
+    ASSERT_EQ(recording.size(), 40);
+    EXPECT_THAT(MessagesOf(recording), ElementsAre(HasSubstr("1 line that is no row, \"" + merged + "\"")));
+  }
+}
+
+TEST(AroundTheTable, ARemarkAboveRowsWithoutAHeaderIsNoRow) {
+  const std::string text = WithLines("Ready v1\n", "{t},{v}", {"OK", "Temp: 23 C"});
+  const Recording recording = RecordingOf(text, TimeAndValue("1:ms", "2", "deg"));
+  ASSERT_EQ(recording.size(), 40);
+  EXPECT_THAT(MessagesOf(recording), testing::Contains(HasSubstr("3 lines that are no rows, the first is \"Ready v1\"")));
+}
+
 TEST(AroundTheTable, RemarksMayBeginWithATimeOfDay) {
   for (const char separator : {',', '\t', ' '}) {
     const std::string pattern = std::string("{t}") + separator + "{v}",
