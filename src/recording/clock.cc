@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "pendulum/base/format.h"
@@ -103,6 +104,7 @@ class ClockRepair {
   Index CountUnusualSteps(double grid) const;
   Index FirstSharedRow() const;
   Index CountSharedRows(std::vector<bool>& keep) const;
+  bool IsOwnGrid(double grid) const;
   bool MakeUniform(double grid);
   bool MakeUniformFromDigits();
   bool IsEventDriven() const;
@@ -249,9 +251,21 @@ Index ClockRepair::CountUnusualSteps(double grid) const {
   return std::ranges::count_if(steps, [usual](double step) { return step != usual; });
 }
 
+/// Whether the grid is the sampling interval itself and rows are missing, even if at equal distances: most steps are
+/// one of the grid, and none is shorter. Printed stamps are rounded to a power of ten, so that such a grid shows
+/// nothing.
+bool ClockRepair::IsOwnGrid(double grid) const {
+  const double decade = std::log10(grid);
+  if (std::abs(decade - std::round(decade)) < 1e-6) return false;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index i = 1; i < size(); ++i) shortest = std::min(shortest, time()[i] - time()[i - 1]);
+  return shortest > 0.5 * grid && MedianStep() < 1.5 * grid;
+}
+
 /// Replaces the stamps by the middle of the uniform clocks that agree with all of them to half a grid step. Returns
 /// false if there is no such clock.
 bool ClockRepair::MakeUniform(double grid) {
+  if (IsOwnGrid(grid)) return false;
   const double first = time()[0];
   const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
   const std::optional<UniformClock> clock = FindUniformClock(IntervalsOfWholeSteps(time().unaryExpr(in_steps)));

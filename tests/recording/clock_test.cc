@@ -199,6 +199,17 @@ TEST(RepairClock, FindsTheUniformClockOfCoarseStamps) {
   }
 }
 
+// As of a logger that loses a row when it empties its buffer.
+TEST(RepairClock, KeepsTheTimesOfRowsThatAreLostAtEqualDistances) {
+  for (const double interval : {0.02, 0.005, 0.05, 20.0}) {
+    for (const int distance : {20, 50, 128}) {
+      const RawSamples samples =
+          Rows(Stamps(900, [&](int i) { return std::round(1e6 * interval * (i + i / (distance - 1))) / 1e6; }));
+      EXPECT_EQ(Repaired(samples).time, samples.time) << interval << ", " << distance;
+    }
+  }
+}
+
 /// Stamps at 100 Hz, rounded to the grid by `round`.
 RawSamples Coarse(int seconds, double grid, double start, const std::function<double(double)>& round) {
   // Whole hundredths are divided, so a stamp halfway between two steps stays halfway: 0.5 s = 50 counts of 0.01 s.
