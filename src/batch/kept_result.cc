@@ -19,12 +19,14 @@ Json DataOf(const std::string& result) {
 
 }  // namespace
 
-std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason) {
+std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason,
+                    bool has_lost_convergence) {
   const Json before = DataOf(result);
   if (before.is_null()) return "";
   if (outcome.empty()) return reason;
   const Json now = DataOf(outcome);
   const std::string path = before.value("path", "");
+  if (has_lost_convergence) return path + ": the fit converged before, and does not converge now";
   if (now.is_null() || now.value("path", "") != path) return "";
   const auto samples = now.value("samples", std::int64_t{0}), former = before.value("samples", std::int64_t{0});
   if (samples >= former) return "";

@@ -5,9 +5,11 @@
 
 namespace pendulum {
 
-/// Why the result of a run stays in place of a newer outcome from other bytes: that has none, or it is of the same
-/// recording, which has become shorter. Empty if the outcome may replace it, as when the result is damaged. `result`
-/// and `outcome` are JSON; the outcome is empty if the recording could not be fitted for this `reason`.
-std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason);
+/// Why the result of a run stays in place of a newer outcome: that has none, it is of the same recording, which has
+/// become shorter, or only the former fit converged. Empty if the outcome may replace it, as when the result is
+/// damaged. `result` and `outcome` are JSON; the outcome is empty if the recording could not be fitted for this
+/// `reason`.
+std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason,
+                    bool has_lost_convergence);
 
 }  // namespace pendulum

@@ -18,6 +18,16 @@ Result<Prunable> FindPrunable(Store& store) {
     while (models.executeStep()) {
       found.models.emplace_back(sqlite::Text(models, 0), models.getColumn(1).getInt64());
     }
+    const auto meta = store.Meta();
+    if (!meta) return tl::unexpected(meta.error());
+    // An interrupted refit has marked results that it has not reached yet, and has not recognized all renamed runs.
+    const bool is_empty = found.stale_runs.empty() && found.unlisted_runs.empty() && found.models.empty();
+    if (!meta->complete && !meta->manifest_sha256.empty() && !is_empty) {
+      return Error(StatusCode::kFailedPrecondition,
+                   store.name() +
+                       ": the last refit is not complete, so results that it has not replaced yet would be "
+                       "lost. Finish the refit first: run refit_pendulums with the same arguments again");
+    }
     return found;
   });
 }
@@ -25,17 +35,9 @@ Result<Prunable> FindPrunable(Store& store) {
 Result<Prunable> Prune(Store& store) {
   if (auto begun = store.BeginWrite(); !begun) return tl::unexpected(begun.error());
   auto found = FindPrunable(store);
-  if (!found) return found;
-  const auto meta = store.Meta();
-  if (!meta) return tl::unexpected(meta.error());
-  // An interrupted refit has marked results that it has not reached yet, and has not recognized all renamed runs.
-  const bool is_empty = found->stale_runs.empty() && found->unlisted_runs.empty() && found->models.empty();
-  if (!meta->complete && !meta->manifest_sha256.empty() && !is_empty) {
+  if (!found) {
     store.Rollback();
-    return Error(StatusCode::kFailedPrecondition,
-                 store.name() +
-                     ": the last refit is not complete, so results that it has not replaced yet would be "
-                     "lost. Finish the refit first: run refit_pendulums with the same arguments again");
+    return found;
   }
   auto removed = sqlite::Guard(store.name(), [&]() -> Result<void> {
     SQLite::Database& database = store.database();

@@ -375,6 +375,9 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   if (!batch) return tl::unexpected(batch.error());
   const auto meta = store.Begin(source, options.shard, *batch, [&] { return CheckGroupBy(store, options.group_by); });
   if (!meta) return tl::unexpected(meta.error());
+  if (options.force) {
+    if (auto marked = store.MarkBatch(); !marked) return tl::unexpected(marked.error());
+  }
   RefitCounts counts;
   counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
   Refitter refitter(source, store, options, counts);

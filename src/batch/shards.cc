@@ -3,7 +3,10 @@
 
 #include <array>
 #include <chrono>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -168,14 +171,15 @@ void CopyRows(SQLite::Database& database, const std::string& table) {
 void KeepFormerResults(SQLite::Database& database) {
   database.exec("DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, reason TEXT)");
   SQLite::Statement both(database, R"sql(
-SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, '')
+SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, ''), mine.exit_code = 0 AND theirs.exit_code = 1
   FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
   WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL
-    AND (theirs.result IS NULL OR theirs.data_sha256 IS NOT mine.data_sha256))sql");
+    AND (theirs.result IS NULL OR theirs.data_sha256 IS NOT mine.data_sha256
+      OR (mine.exit_code = 0 AND theirs.exit_code = 1)))sql");
   SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?)");
   const auto text = [&](int column) { return sqlite::Text(both, column); };
   while (both.executeStep()) {
-    const std::string why = WhyKept(text(1), text(2), text(3));
+    const std::string why = WhyKept(text(1), text(2), text(3), both.getColumn(4).getInt() != 0);
     if (why.empty()) continue;
     sqlite::Bind(keep, text(0), why).exec();
     keep.reset();
@@ -243,6 +247,38 @@ Result<std::int64_t> CopyShards(const fs::path& folder, std::int64_t count, Stor
   });
 }
 
+/// The rigs and calibrations of a shard's current results: path and hash of each.
+Result<std::set<std::pair<std::string, std::string>>> FilesOf(const fs::path& path) {
+  auto store = Store::Open(path, Store::Mode::kRead);
+  if (!store) return tl::unexpected(store.error());
+  return sqlite::Guard(path.string(), [&]() -> Result<std::set<std::pair<std::string, std::string>>> {
+    std::set<std::pair<std::string, std::string>> files;
+    SQLite::Statement rows(store->database(),
+                           "SELECT rig, rig_sha256 FROM runs WHERE result IS NOT NULL AND stale IS NULL AND rig <> '' "
+                           "UNION SELECT calibration, calibration_sha256 FROM runs WHERE result IS NOT NULL AND stale "
+                           "IS NULL AND calibration <> ''");
+    while (rows.executeStep()) files.emplace(sqlite::Text(rows, 0), sqlite::Text(rows, 1));
+    return files;
+  });
+}
+
+/// Checks that no rig or calibration changed between the refits of the shards.
+Result<void> CheckSameFiles(const fs::path& folder, std::int64_t count) {
+  std::map<std::string, std::pair<std::string, fs::path>> known;  // hash and shard by path
+  for (std::int64_t k = 0; k < count; ++k) {
+    const fs::path shard = ShardPath(folder, k);
+    const auto files = FilesOf(shard);
+    if (!files) return tl::unexpected(files.error());
+    for (const auto& [path, hash] : *files) {
+      const auto& first = known.try_emplace(path, hash, shard).first->second;
+      if (first.first == hash) continue;
+      return Fault(shard.string(), path + " changed between the refits of this shard and of " + first.second.string() +
+                                       "; run the shards again");
+    }
+  }
+  return {};
+}
+
 /// Checks that all shards belong to one batch.
 Result<void> CheckOneBatch(const fs::path& folder, std::int64_t count) {
   const auto first = MetaOf(ShardPath(folder, 0));
@@ -292,6 +328,7 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
                                             "; run them and merge again");
   }
   if (auto checked = CheckOneBatch(folder, count); !checked) return tl::unexpected(checked.error());
+  if (auto checked = CheckSameFiles(folder, count); !checked) return tl::unexpected(checked.error());
   if (auto checked = CheckIsNoShard(folder, count, store); !checked) return tl::unexpected(checked.error());
   const auto lock = StoreLock::Take(store);
   if (!lock) return tl::unexpected(lock.error());

@@ -205,6 +205,7 @@ struct Store::State {
   std::string WhyWorse(const RunOutcome& outcome, std::int64_t run);
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
+  Result<void> MarkOtherFiles(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
   void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
@@ -232,13 +233,15 @@ Result<std::int64_t> Store::State::Find(const std::string& id) {
 
 std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) {
   SQLite::Statement& before =
-      Prepared(result_of, "SELECT data_sha256, result FROM runs WHERE run = ? AND result IS NOT NULL");
+      Prepared(result_of, "SELECT data_sha256, result, exit_code FROM runs WHERE run = ? AND result IS NOT NULL");
   std::string why;
   if (sqlite::Bind(before, run).executeStep()) {
     const bool has_result = !outcome.result.is_null(),
-               is_same = sqlite::Text(before, 0) == outcome.provenance.data_sha256;
-    if (!has_result || !is_same) {
-      why = WhyKept(sqlite::Text(before, 1), has_result ? JsonText(outcome.result) : "", outcome.reason);
+               is_same = sqlite::Text(before, 0) == outcome.provenance.data_sha256,
+               has_lost_convergence = before.getColumn(2).getInt() == 0 && outcome.exit_code == 1;
+    if (!has_result || !is_same || has_lost_convergence) {
+      why = WhyKept(sqlite::Text(before, 1), has_result ? JsonText(outcome.result) : "", outcome.reason,
+                    has_lost_convergence);
     }
   }
   before.reset();
@@ -274,6 +277,22 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
   if (!taken) return tl::unexpected(taken.error());
   if (!hash.empty()) return hash;
   return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
+}
+
+/// Marks the results whose rig or calibration is not the file that the manifest names now.
+Result<void> Store::State::MarkOtherFiles(const Source& source) {
+  for (const std::string kind : {"rig", "calibration"}) {
+    SQLite::Statement mark(
+        database, MarkFormer(kind + "_sha256 IS NOT ? AND id IN (SELECT id FROM batch WHERE " + kind + " = ?)"));
+    for (const std::string& path :
+         sqlite::Texts(database, "SELECT DISTINCT " + kind + " FROM batch WHERE " + kind + " <> ''")) {
+      const Result<std::string> bytes = source.read(path);
+      const Result<std::string> hash = bytes ? Sha256(*bytes) : Result<std::string>("");
+      if (!hash) return tl::unexpected(hash.error());
+      sqlite::Bind(mark, *hash, path).exec();
+    }
+  }
+  return {};
 }
 
 /// Removes runs outside the shard from the batch and from the store. Without a shard, removes waiting runs that are no
@@ -405,7 +424,9 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     meta.options_sha256 = *std::move(options);
     state_->RestrictToShard(shard, meta);
     const std::string former_options = state_->GetMeta("options_sha256");
-    if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(kMarkFormerOptions);
+    state_->database.exec(MarkFormer(kHasOtherEntry));
+    if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(MarkFormer("true"));
+    if (auto marked = state_->MarkOtherFiles(source); !marked) return tl::unexpected(marked.error());
     state_->database.exec(kUpdateRuns);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
@@ -479,6 +500,14 @@ Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha2
     SQLite::Statement rename(state_->database, kRenameRun);
     sqlite::Bind(rename, id, renamed.front()).exec();
     return true;
+  });
+}
+
+Result<void> Store::MarkBatch() {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->BeginIfNone();
+    state_->database.exec(kForgetProvenance);
+    return {};
   });
 }
 

@@ -58,10 +58,23 @@ DELETE FROM quantities WHERE run = ?1 AND model IN
 inline constexpr const char* kDropFits = R"sql(
 DELETE FROM fits WHERE run = ?1 AND (stale IS NULL OR model IN (SELECT value FROM json_each(?2))))sql";
 
-/// Marks the results of manifests' runs, because the options of a new batch differ from those of the last one.
-inline constexpr const char* kMarkFormerOptions = R"sql(
-UPDATE runs SET stale = 'the options, rig or calibration changed, and this run has not been fitted again yet'
-  WHERE result IS NOT NULL AND stale IS NULL AND run NOT IN (SELECT run FROM requests))sql";
+/// Marks the results of manifests' runs for which a condition is true, because what is asked of them has changed.
+inline std::string MarkFormer(const std::string& condition) {
+  return "UPDATE runs SET stale = 'the options, rig or calibration changed, and this run has not been fitted again "
+         "yet' WHERE result IS NOT NULL AND stale IS NULL AND run NOT IN (SELECT run FROM requests) AND " +
+         condition;
+}
+
+/// What the manifest says of a run differs from what it said before.
+inline constexpr const char* kHasOtherEntry = R"sql(
+EXISTS (SELECT * FROM batch WHERE batch.id = runs.id AND (batch.path, batch.rig, batch.calibration, batch.from_s,
+    batch.to_s, batch.models) IS NOT (runs.path, runs.rig, runs.calibration, runs.from_s, runs.to_s, runs.models)))sql";
+
+/// Makes the results of the batch former ones, which are not current whatever their inputs are.
+inline constexpr const char* kForgetProvenance = R"sql(
+UPDATE runs SET stale = '--force asked for a new fit, and this run has not been fitted again yet',
+    options_sha256 = '', attempt = NULL
+  WHERE result IS NOT NULL AND id IN (SELECT id FROM batch))sql";
 
 inline constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,

@@ -77,6 +77,7 @@ TEST_F(PruneTest, RefusesWhileTheLastRefitIsNotComplete) {
   stopped.stop = &stop;
   RefitAll(stopped);
   Store store = Store::Open(store_, Store::Mode::kWrite).value();
+  EXPECT_EQ(FindPrunable(store).error().code, StatusCode::kFailedPrecondition);
   const auto pruned = Prune(store);
   ASSERT_FALSE(pruned);
   EXPECT_EQ(pruned.error().code, StatusCode::kFailedPrecondition);

@@ -288,7 +288,8 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGone) {
   fs::rename(folder_ / "elsewhere", folder_ / "0.csv");
   const RefitCounts counts = RefitAll(coulomb_);
   EXPECT_EQ(counts.stale, 0);
-  EXPECT_EQ(counts.current, 2);
+  EXPECT_EQ(counts.current, 1);
+  EXPECT_EQ(counts.refitted, 1);  // a new fit was asked for
   EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"), ElementsAre("a|0|NULL", "b|0|NULL"));
 }
 
@@ -307,6 +308,53 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingOrRigThatIsDamaged) {
   folder_.Write("b.csv", RecordingText(3));
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("b"));
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), ElementsAre("a"));
+}
+
+TEST_F(RefitTest, LeavesResultsOfAnotherRigOrEntryOutUntilTheyAreReplaced) {
+  const std::atomic<bool> stop = true;
+  RefitOptions stopped = coulomb_;
+  stopped.stop = &stop;
+  folder_.Write("rig.json", small_batch::kRigText);
+  for (const char* name : {"a.csv", "b.csv", "c.csv"}) folder_.Write(name, RecordingText(1));
+  const std::string manifest = "path,id,rig,to_s,models\nb.csv,b,,,\n";
+  folder_.Write("runs.csv", manifest + "a.csv,a,rig.json,,\nc.csv,c,,,\n");
+  RefitAll(coulomb_);
+  folder_.Write("rig.json", std::string(small_batch::kRigText) + "\n");
+  folder_.Write("runs.csv", manifest + "a.csv,a,rig.json,,\nc.csv,c,,5,\n");
+  RefitAll(stopped);
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL ORDER BY id"), ElementsAre("a", "c"));
+  folder_.Write("rig.json", small_batch::kRigText);
+  folder_.Write("runs.csv", manifest + "a.csv,a,rig.json,,\nc.csv,c,,,\n");
+  EXPECT_THAT(Refitted(coulomb_), IsEmpty());  // as they were fitted
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), IsEmpty());
+}
+
+TEST_F(RefitTest, ContinuesAStoppedRefitOfAllRuns) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::atomic<bool> stop = true;
+  RefitOptions forced = coulomb_;
+  forced.force = true;
+  forced.stop = &stop;
+  RefitAll(forced);
+  EXPECT_EQ(ValueOf("SELECT count(stale) FROM runs"), "2");
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
+  EXPECT_EQ(ValueOf("SELECT count(stale) FROM runs"), "0");
+}
+
+TEST_F(RefitTest, KeepsAConvergedFitInPlaceOfOneThatDoesNotConverge) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::vector<std::string> before = Rows(store_, "SELECT id, result FROM runs WHERE id = 'a'");
+  std::string steps = "time_s,angle_rad\n";  // of a sensor that only switches
+  for (int i = 0; i < 600; ++i) steps += std::to_string(0.01 * i) + (i / 60 % 2 == 0 ? ",0.2\n" : ",-0.2\n");
+  folder_.Write("0.csv", steps);
+  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  EXPECT_EQ(Rows(store_, "SELECT id, result FROM runs WHERE id = 'a'"), before);
+  RefitOptions replacing = coulomb_;
+  replacing.replace_by_failures = true;
+  EXPECT_EQ(RefitAll(replacing).stale, 0);
+  EXPECT_NE(Rows(store_, "SELECT id, result FROM runs WHERE id = 'a'"), before);
 }
 
 TEST_F(RefitTest, KeepsTheResultOfARecordingThatBecameShorter) {

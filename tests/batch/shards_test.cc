@@ -158,6 +158,21 @@ TEST_F(ShardsTest, AreCurrentAgainWhenARecordingComesBack) {
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), IsEmpty());
 }
 
+TEST_F(ShardsTest, AreNotMergedIfARigChangedBetweenThem) {
+  folder_.Write("rig.json", small_batch::kRigText);
+  folder_.Write("runs.csv", "path,id,rig\n0.csv,a,rig.json\n1.csv,b,rig.json\n");
+  RefitOne(0, 2, options_);
+  folder_.Write("rig.json", std::string(small_batch::kRigText) + "\n");
+  RefitOne(1, 2, options_);
+  const auto merged = Merge(2);
+  ASSERT_FALSE(merged);
+  EXPECT_EQ(merged.error().message, ShardPath(out_, 1).string() +
+                                        ": rig.json changed between the refits of this shard and of " +
+                                        ShardPath(out_, 0).string() + "; run the shards again");
+  RefitOne(0, 2, options_);
+  EXPECT_TRUE(Merge(2));
+}
+
 TEST_F(ShardsTest, AreNotMergedIntoTheStoreOfAShard) {
   AllShards(2);
   const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));

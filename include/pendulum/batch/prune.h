@@ -18,10 +18,11 @@ struct Prunable {
   std::vector<std::pair<std::string, std::int64_t>> models;  ///< Of other runs: models not asked for, numbers of fits.
 };
 
+/// kFailedPrecondition: the last refit is not complete, so nothing may be removed. Other errors: of the store.
 Result<Prunable> FindPrunable(Store& store);
 
-/// Removes it, and returns what it was. Runs with a former result only are new to the next refit. kFailedPrecondition:
-/// the last refit is not complete. Other errors: of the store.
+/// Removes it, and returns what it was. Runs with a former result only are new to the next refit. Errors: as
+/// FindPrunable.
 Result<Prunable> Prune(Store& store);
 
 }  // namespace pendulum

@@ -123,6 +123,9 @@ class Store {
   Result<bool> TakeOver(const std::string& id, const std::string& data_sha256,
                         const std::function<bool(const std::string& path)>& is_gone);
 
+  /// Marks all results of the batch as former ones, which the next refit replaces whatever their inputs are.
+  Result<void> MarkBatch();
+
   /// Marks the rows of a run as current: the inputs of its result have come back.
   Result<void> MarkCurrent(const std::string& id);
 
