@@ -281,11 +281,15 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
 
 /// Marks the results whose rig or calibration is not the file that the manifest names now.
 Result<void> Store::State::MarkOtherFiles(const Source& source) {
-  for (const std::string kind : {"rig", "calibration"}) {
-    SQLite::Statement mark(
-        database, MarkFormer(kind + "_sha256 IS NOT ? AND id IN (SELECT id FROM batch WHERE " + kind + " = ?)"));
-    for (const std::string& path :
-         sqlite::Texts(database, "SELECT DISTINCT " + kind + " FROM batch WHERE " + kind + " <> ''")) {
+  constexpr std::pair<const char*, const char*> kRig{
+      "SELECT DISTINCT rig FROM batch WHERE rig <> ''",
+      "rig_sha256 IS NOT ? AND id IN (SELECT id FROM batch WHERE rig = ?)"};
+  constexpr std::pair<const char*, const char*> kCalibration{
+      "SELECT DISTINCT calibration FROM batch WHERE calibration <> ''",
+      "calibration_sha256 IS NOT ? AND id IN (SELECT id FROM batch WHERE calibration = ?)"};
+  for (const auto& [paths, has_other] : {kRig, kCalibration}) {
+    SQLite::Statement mark(database, MarkFormer(has_other));
+    for (const std::string& path : sqlite::Texts(database, paths)) {
       const Result<std::string> bytes = source.read(path);
       const Result<std::string> hash = bytes ? Sha256(*bytes) : Result<std::string>("");
       if (!hash) return tl::unexpected(hash.error());

@@ -148,7 +148,8 @@ TEST(AroundTheTable, ARemarkAboveRowsWithoutAHeaderIsNoRow) {
   const std::string text = WithLines("Ready v1\n", "{t},{v}", {"OK", "Temp: 23 C"});
   const Recording recording = RecordingOf(text, TimeAndValue("1:ms", "2", "deg"));
   ASSERT_EQ(recording.size(), 40);
-  EXPECT_THAT(MessagesOf(recording), testing::Contains(HasSubstr("3 lines that are no rows, the first is \"Ready v1\"")));
+  EXPECT_THAT(MessagesOf(recording),
+              testing::Contains(HasSubstr("3 lines that are no rows, the first is \"Ready v1\"")));
 }
 
 TEST(AroundTheTable, RemarksMayBeginWithATimeOfDay) {
