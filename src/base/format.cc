@@ -46,7 +46,8 @@ std::string DegreesOfFreedomText(int degrees) {
 std::string Quoted(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown = "\"";
-  for (std::size_t i = 0; i < std::min(text.size(), kShown); ++i) {
+  std::size_t i = 0;
+  for (; i < text.size() && shown.size() <= kShown; ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     if (const std::size_t size = SizeOfLetterBeyondAscii(text.substr(i)); size > 0) {
       shown += text.substr(i, size);
@@ -57,7 +58,7 @@ std::string Quoted(std::string_view text) {
       (shown += "\\x") += {HexDigit(byte >> 4), HexDigit(byte & 15)};
     }
   }
-  return shown + (text.size() > kShown ? "...\"" : "\"");
+  return shown + (i < text.size() ? "...\"" : "\"");
 }
 
 std::string ShellWord(const std::string& word) {

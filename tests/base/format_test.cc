@@ -52,6 +52,7 @@ TEST(Quoted, KeepsPrintableTextAndEscapesOtherBytes) {
 
 TEST(Quoted, ShortensLongText) {
   EXPECT_EQ(Quoted(std::string(40, 'x')), '"' + std::string(40, 'x') + '"');
+  EXPECT_EQ(Quoted(std::string(300, '\x01')).size(), 2 + 40 + 3);  // the limit holds for what is shown
   EXPECT_EQ(Quoted(std::string(41, 'x')), '"' + std::string(40, 'x') + "...\"");
 }
 

@@ -21,8 +21,8 @@ std::string DegreesOfFreedomText(int degrees);
 /// One lower-case hexadecimal digit; `digit` is below 16.
 constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; }
 
-/// Text from a file in double quotes, for a message: at most 40 bytes. Unprintable bytes and bytes that could control a
-/// terminal become \xNN.
+/// Text from a file in double quotes, for a message: about 40 bytes as shown. Unprintable bytes and bytes that could
+/// control a terminal become \xNN.
 std::string Quoted(std::string_view text);
 
 /// A word of a command for a POSIX shell: in single quotes if it has special characters.

@@ -74,7 +74,9 @@ std::vector<std::string> Choice::NamesOf(const Columns& columns) const {
 
 std::string Choice::FlagValueOf(std::size_t index) const {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
+  constexpr std::size_t kLongest = 80;  // bytes; a longer name would hide the command that it stands in
   const bool is_unique = index < names.size() && !names[index].written.empty() &&
+                         names[index].written.size() <= kLongest &&
                          std::ranges::none_of(names[index].written, is_control) && IsUtf8(names[index].written) &&
                          std::ranges::count(names, names[index].written, &Name::written) == 1;
   return is_unique ? std::string(names[index].written) : std::to_string(index + 1);

@@ -50,8 +50,8 @@ struct Choice {
   std::string NameOf(std::size_t index) const;
   std::vector<std::string> NamesOf(const Columns& columns) const;
 
-  /// The column as a flag names it: its name, or its number if it has none of its own or
-  /// one that is not UTF-8, which JSON could not return.
+  /// The column as a flag names it: its name, or its number if it has none of its own, a very
+  /// long one, or one that is not UTF-8, which JSON could not return.
   std::string FlagValueOf(std::size_t index) const;
 
   /// All names, for messages.
