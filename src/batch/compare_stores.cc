@@ -11,18 +11,35 @@
 namespace pendulum {
 namespace {
 
+/// The runs of both stores: those with the same id, and those of recordings that were renamed in between, which have
+/// the same content, window and models.
+constexpr const char* kRunPairs = R"sql(
+CREATE TEMP TABLE pairs AS SELECT mine.run AS before, theirs.run AS after, false AS is_renamed
+  FROM main.runs AS mine JOIN other.runs AS theirs USING(id);
+INSERT INTO pairs SELECT mine.run, theirs.run, true FROM main.runs AS mine JOIN other.runs AS theirs
+    ON theirs.data_sha256 = mine.data_sha256 AND theirs.from_s IS mine.from_s AND theirs.to_s IS mine.to_s
+      AND theirs.models = mine.models
+  WHERE mine.result IS NOT NULL AND mine.run NOT IN (SELECT before FROM pairs)
+    AND theirs.result IS NOT NULL AND theirs.run NOT IN (SELECT after FROM pairs)
+  GROUP BY mine.data_sha256, mine.from_s, mine.to_s, mine.models HAVING count(*) = 1)sql";
+
 constexpr const char* kFits = R"sql(
-SELECT id, model, mine.status, theirs.status FROM fits_before AS mine JOIN fits_after AS theirs USING(id, model)
-  ORDER BY mine.position, id, model)sql";
+SELECT mine.id, mine.model, mine.status, theirs.status
+  FROM fits_before AS mine JOIN pairs ON before = mine.run
+  JOIN fits_after AS theirs ON theirs.run = after AND theirs.model = mine.model
+  ORDER BY mine.position, mine.id, mine.model)sql";
 
 constexpr const char* kRemovedFits = R"sql(
 SELECT id, model FROM fits_before AS mine
-  WHERE NOT EXISTS (SELECT * FROM fits_after AS theirs WHERE theirs.id = mine.id AND theirs.model = mine.model)
+  WHERE NOT EXISTS (SELECT * FROM pairs JOIN fits_after AS theirs ON theirs.run = after
+    WHERE before = mine.run AND theirs.model = mine.model)
   ORDER BY position, id, model LIMIT ?)sql";
 
 constexpr const char* kParameters = R"sql(
-SELECT id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, mine.std_error, theirs.std_error, theirs.unit
-  FROM fits_before JOIN fits_after USING(id, model)
+SELECT fits_before.id, mine.model, mine.name, mine.unit, mine.estimate, theirs.estimate, mine.std_error,
+    theirs.std_error, theirs.unit
+  FROM fits_before JOIN pairs ON before = fits_before.run
+  JOIN fits_after ON fits_after.run = after AND fits_after.model = fits_before.model
   JOIN main.quantities AS mine ON mine.run = fits_before.run AND mine.model = fits_before.model
   JOIN other.quantities AS theirs
     ON theirs.run = fits_after.run AND theirs.model = mine.model AND theirs.name = mine.name
@@ -69,6 +86,7 @@ void CompareFits(SQLite::Database& database, StoreComparison& comparison) {
                                   "SELECT count(*) FROM main.runs AS a JOIN other.runs AS b USING(id) "
                                   "WHERE a.data_sha256 <> b.data_sha256")
                               .getInt64();
+  comparison.renamed = CountOf(database, "pairs WHERE is_renamed");
 }
 
 /// Adds a change to the kMaxListed largest ones, a heap whose front is the smallest of them.
@@ -122,6 +140,7 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     sqlite::Bind(attach, sqlite::FileName(after.name())).exec();
     CreateView(database, "fits_before", "main");
     CreateView(database, "fits_after", "other");
+    database.exec(kRunPairs);
     StoreComparison comparison;
     CompareFits(database, comparison);
     {
@@ -131,7 +150,7 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     std::ranges::sort(comparison.most_moved, std::greater(), &MovedParameter::errors);
     comparison.cpus_before = CpusOf(database, "main");
     comparison.cpus_after = CpusOf(database, "other");
-    database.exec("DROP VIEW fits_before; DROP VIEW fits_after; DETACH other");
+    database.exec("DROP VIEW fits_before; DROP VIEW fits_after; DROP TABLE pairs; DETACH other");
     return comparison;
   });
 }

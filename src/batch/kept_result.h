@@ -5,6 +5,9 @@
 
 namespace pendulum {
 
+/// Whether only the former of two fits converged, by their exit codes.
+constexpr bool HasLostConvergence(int former, int now) { return former == 0 && now == 1; }
+
 /// Why the result of a run stays in place of a newer outcome: that has none, it is of the same recording, which has
 /// become shorter, or only the former fit converged. Empty if the outcome may replace it, as when the result is
 /// damaged. `result` and `outcome` are JSON; the outcome is empty if the recording could not be fitted for this

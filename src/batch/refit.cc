@@ -12,6 +12,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -75,8 +76,10 @@ RunInputs ReadInputs(const Source& source, const ManifestEntry& entry, const Ref
           OptionsOf(entry, options.run)};
 }
 
-/// Stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
-std::string Unreadable(const Status& status) { return "unreadable: " + status.message; }
+/// Begins what stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
+constexpr std::string_view kUnreadable = "unreadable: ";
+
+std::string Unreadable(const Status& status) { return std::string(kUnreadable) + status.message; }
 
 Result<std::string> HashOf(const Result<std::string>& bytes) {
   if (!bytes) return Unreadable(bytes.error());
@@ -294,7 +297,8 @@ class Refitter {
       const auto bytes = source_.read(path);
       return !bytes && bytes.error().code == StatusCode::kNotFound;
     };
-    auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256, is_gone);
+    const std::string& data = attempt.outcome->provenance.data_sha256;
+    auto renamed = store_.TakeOver(id, data.starts_with(kUnreadable) ? "" : data, is_gone);
     if (!renamed) return tl::unexpected(std::move(renamed).error());
     counts_.renamed += *renamed ? 1 : 0;
     if (options_.replace_by_failures) {
@@ -325,6 +329,7 @@ class Refitter {
     const int exit_code = attempt.outcome ? attempt.outcome->exit_code : run.exit_code.value_or(0);
     if (*is_stale) {
       counts_.stale += 1;
+      counts_.stale_before += attempt.outcome ? 0 : 1;
     } else if (exit_code > 1) {
       counts_.unfitted += 1;
     }

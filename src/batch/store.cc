@@ -238,7 +238,7 @@ std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) 
   if (sqlite::Bind(before, run).executeStep()) {
     const bool has_result = !outcome.result.is_null(),
                is_same = sqlite::Text(before, 0) == outcome.provenance.data_sha256,
-               has_lost_convergence = before.getColumn(2).getInt() == 0 && outcome.exit_code == 1;
+               has_lost_convergence = HasLostConvergence(before.getColumn(2).getInt(), outcome.exit_code);
     if (!has_result || !is_same || has_lost_convergence) {
       why = WhyKept(sqlite::Text(before, 1), has_result ? JsonText(outcome.result) : "", outcome.reason,
                     has_lost_convergence);

@@ -349,12 +349,17 @@ std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, co
   return found;
 }
 
-Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const Json& store,
+Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const Json& store, const RunCounts& runs,
                   const SummaryOptions& options) {
   Json warnings = Json::array();
   const auto add = [&](const char* code, const std::string& message) {
     warnings.push_back({{"code", code}, {"message", message}});
   };
+  if (!runs.is_complete) {
+    add("incomplete",
+        "the last refit is not complete, and the results of recordings that it has not reached are of their former "
+        "content; give its command again, unless it is still running");
+  }
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
   if (counts.stale > 0) {
     add("stale", std::to_string(counts.stale) +
@@ -420,10 +425,11 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
     FindUnlikeGroups(database, main, groups);
     RunAgreement agreement;
     if (!options.without_agreement) agreement = TestRunAgreement(database, main, groups);
+    const RunCounts runs = CountRuns(database);
     const Json parameters = QuantitiesJson(database, {groups, agreement.outliers, options.trend_by}, only);
     Json json = {{"schema_version", kSchemaVersion},
                  {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},
-                 {"headline", CountsJson(CountRuns(database))},
+                 {"headline", CountsJson(runs)},
                  {"grouping", GroupingJson(groups)},
                  {"main_model", TextOrNull(main)},
                  {"verdicts", VerdictsJson(*overview, parameters, groups, !agreement.outliers.empty(), only)},
@@ -433,7 +439,7 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
                  {"trend_by", TextOrNull(options.trend_by)}};
     json.update(*overview);
     json["parameters"] = parameters;
-    json["warnings"] = WarningsJson(database, *counts, json["store"], options);
+    json["warnings"] = WarningsJson(database, *counts, json["store"], runs, options);
     return json;
   });
 }

@@ -71,6 +71,7 @@ RunCounts CountRuns(SQLite::Database& database) {
   SQLite::Statement row(database, "SELECT " + columns + " FROM runs");
   row.executeStep();
   for (std::size_t i = 0; i < all.size(); ++i) *all.at(i).second = row.getColumn(static_cast<int>(i)).getInt64();
+  counts.is_complete = sqlite::Texts(database, "SELECT value FROM meta WHERE key = 'complete' AND value = '0'").empty();
   counts.missing_runs = ExamplesOf(database, missing);
   counts.refused_runs = ExamplesOf(database, refused);
   counts.stale_runs = ExamplesOf(database, kIsStale);
@@ -89,7 +90,7 @@ std::string CountsText(const RunCounts& counts) {
         std::pair{counts.unlisted, "more left out, not among the recordings of the last refit"}}) {
     if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
   }
-  return text + rest;
+  return text + rest + (counts.is_complete ? "" : "; the last refit is not complete");
 }
 
 Json CountsJson(const RunCounts& counts) {

@@ -23,6 +23,7 @@ struct RunCounts {
   std::int64_t pending = 0;           ///< Not fitted yet.
   std::int64_t stale = 0;             ///< Only a former result is there; the last attempt failed.
   std::int64_t unlisted = 0;          ///< Not among the recordings of the last refit, nor among `runs`.
+  bool is_complete = true;            ///< No refit was stopped before its end, and none is running.
   struct Run {
     std::string id, reason;
   };

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/recording/readers/file_names.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -135,9 +136,13 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
         BadFlag("'" + flags.positional[0] + "' is a pattern and no existing file; give patterns with --data"),
         {"--data " + flags.positional[0]});
   } else if (!flags.positional.empty()) {
+    const std::string& word = flags.positional.front();
+    if (HasRecordingName(word) || word.find('/') != std::string::npos) {
+      return Error(StatusCode::kNotFound, word + ": there is no such file or folder; check the path");
+    }
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);
-    return BadFlag("'" + flags.positional.front() + "' is not a command; the commands are " + NameList(names) +
+    return BadFlag("'" + word + "' is not a command; the commands are " + NameList(names) +
                    "; to refit, give an existing manifest or folder instead");
   }
   for (const std::string_view name : kNotForRefit) {

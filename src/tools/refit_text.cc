@@ -325,20 +325,19 @@ std::string ListsText(const std::vector<std::string>& lists) {
 }
 
 std::string KeptText(std::int64_t stale) {
-  if (stale == 0) return "";
-  return "; " + std::to_string(stale) + (stale == 1 ? " keeps" : " keep") +
-         " a former result (--replace_by_failures replaces it)";
+  return stale == 0 ? "" : "; " + std::to_string(stale) + (stale == 1 ? " keeps" : " keep") + " a former result";
 }
 
 std::string RefitText(const RefitCounts& counts) {
+  const std::int64_t current = counts.current - counts.stale_before;
   std::string text = std::to_string(counts.refitted) + (counts.refitted == 1 ? " run" : " runs") + " tried, " +
-                     std::to_string(counts.current) + (counts.current == 1 ? " was" : " were") + " current";
+                     std::to_string(current) + (current == 1 ? " was" : " were") + " current";
   if (counts.unfitted > 0) text += "; " + std::to_string(counts.unfitted) + " could not be fitted";
   if (counts.renamed > 0) {
     text +=
         "; " + std::to_string(counts.renamed) + (counts.renamed == 1 ? " has" : " have") + " another name than before";
   }
-  return text + KeptText(counts.stale);
+  return text + KeptText(counts.stale) + (counts.stale > 0 ? " (--replace_by_failures replaces it)" : "");
 }
 
 std::string WithoutResultText(const StoreCounts& counts) {
@@ -379,7 +378,8 @@ std::string ComparisonText(const StoreComparison& comparison, const std::string&
       Row("in " + after + " only", comparison.only_after) +
       (comparison.stale_before > 0 ? Row("left out as stale in " + before, comparison.stale_before) : "") +
       (comparison.stale_after > 0 ? Row("left out as stale in " + after, comparison.stale_after) : "") +
-      Row("ended with another status", comparison.changed_status) + Row("runs with other data", comparison.other_data);
+      Row("ended with another status", comparison.changed_status) + Row("runs with other data", comparison.other_data) +
+      (comparison.renamed > 0 ? Row("runs with another name", comparison.renamed) : "");
   text += Heading("Parameters") + Row("identical", comparison.identical) +
           Row("moved by less than 1e-9 errors", comparison.rounding) +
           Row("moved by less than an error", comparison.within_errors) + Row("moved by more", comparison.moved) +

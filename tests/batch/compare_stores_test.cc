@@ -207,6 +207,21 @@ TEST_F(CompareStoresTest, LeavesOutFitsThatStatisticsLeaveOut) {
   EXPECT_EQ(back.only_after, 3);
 }
 
+TEST_F(CompareStoresTest, RecognizesRenamedRecordings) {
+  const auto fit = [](const std::string& id, const std::string& data) {
+    return Fit{id, 1.0, 0.1, "converged", "rad", data};
+  };
+  const StoreComparison comparison = Compare({fit("a", "1"), fit("b", "2"), fit("c", "3"), fit("d", "3")},
+                                             {fit("new", "1"), fit("b", "2"), fit("e", "3"), fit("f", "3")});
+  EXPECT_EQ(comparison.renamed, 1);  // two copies under two other names each: which is which is unknown
+  EXPECT_EQ(comparison.fits, 2);
+  EXPECT_EQ(comparison.identical, 2);
+  EXPECT_EQ(comparison.only_before, 2);
+  EXPECT_EQ(comparison.only_after, 2);
+  ASSERT_EQ(comparison.removed.size(), 2);
+  EXPECT_EQ(comparison.removed[0].id + comparison.removed[1].id, "cd");
+}
+
 TEST_F(CompareStoresTest, DetectsOtherDataAndProcessors) {
   const StoreComparison comparison =
       Compare({{"a", 1.0, 0.1, "converged", "rad", "one", "new"}, {"b", 1.0, 0.1, "converged", "rad", "two", "old"}},

@@ -31,7 +31,7 @@ inline std::string PlainManifest(std::size_t runs) {
 class MadeStoreTest : public testing::Test {
  protected:
   /// Begins a batch of that manifest. Stores the outcome make(position) of each run; if it is std::nullopt, the run
-  /// stays pending.
+  /// stays pending, and the refit is not complete.
   Store StoreOf(const std::string& manifest, const std::function<std::optional<RunOutcome>(std::size_t)>& make) const {
     folder_.Write("runs.csv", manifest);
     const auto source = OpenSource(folder_ / "runs.csv");
@@ -39,11 +39,13 @@ class MadeStoreTest : public testing::Test {
     const auto begun = store->Begin(*source, std::nullopt, "{}");
     EXPECT_TRUE(begun) << begun.error().message;
     const auto runs = store->Next(0, 100000);
+    bool is_complete = true;
     for (std::size_t i = 0; i < runs->size(); ++i) {
       const auto outcome = make(i);
+      is_complete = is_complete && outcome;
       EXPECT_TRUE(!outcome || store->Put((*runs)[i].entry.id, *outcome));
     }
-    EXPECT_TRUE(store->Commit());
+    EXPECT_TRUE(is_complete ? store->Complete() : store->Commit());
     return *std::move(store);
   }
 

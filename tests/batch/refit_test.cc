@@ -15,6 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/batch/summary.h"
 #include "pendulum/identify/identify.h"
 #include "pendulum/report/json.h"
 #include "tests/batch/refit_folder.h"
@@ -36,6 +37,7 @@ using store_rows::Rows;
 using store_rows::Value;
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -281,6 +283,7 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGone) {
     again.force = force;
     const RefitCounts counts = RefitAll(again);
     EXPECT_EQ(counts.stale, 1);
+    EXPECT_EQ(counts.stale_before, force ? 0 : 1);
     EXPECT_EQ(counts.unfitted, 0);
     EXPECT_EQ(counts.current, force ? 0 : 2);
     EXPECT_EQ(Rows(store_, quantities), before);
@@ -338,8 +341,14 @@ TEST_F(RefitTest, ContinuesAStoppedRefitOfAllRuns) {
   forced.stop = &stop;
   RefitAll(forced);
   EXPECT_EQ(ValueOf("SELECT count(stale) FROM runs"), "2");
+  const auto headline = [&] {
+    auto store = Store::Open(store_, Store::Mode::kRead).value();
+    return Summarize(store, {})->at("headline").at("text").get<std::string>();
+  };
+  EXPECT_THAT(headline(), EndsWith("2 with a former result only; the last refit is not complete"));
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));
   EXPECT_EQ(ValueOf("SELECT count(stale) FROM runs"), "0");
+  EXPECT_EQ(headline(), "2 of 2 recordings fitted");
 }
 
 TEST_F(RefitTest, KeepsAConvergedFitInPlaceOfOneThatDoesNotConverge) {
@@ -507,6 +516,19 @@ TEST_F(RefitTest, RecognizesARenamedRecordingAfterAFailedAttempt) {
   fs::rename(folder_ / "0.csv", folder_ / "new.csv");
   EXPECT_EQ(RefitAll(coulomb_).renamed, 1);
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs"), ElementsAre("new.csv"));
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGoneUnderItsNewId) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::string estimates = "SELECT run, model, name, estimate FROM quantities ORDER BY run, model, name";
+  const std::vector<std::string> before = Rows(store_, estimates);
+  fs::remove(folder_ / "0.csv");
+  folder_.Write("runs.csv", "path,id\n0.csv,first\n1.csv,b\n");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"),
+              ElementsAre("b|0|NULL", StartsWith("first|0|0.csv: there is no such file")));
+  EXPECT_EQ(Rows(store_, estimates), before);
 }
 
 TEST_F(RefitTest, MarksNothingIfGroupByIsWrong) {

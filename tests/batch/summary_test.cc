@@ -338,7 +338,7 @@ TEST_F(SummaryTest, CountsMissingAndRefusedRecordingsFirst) {
   const Json headline = SummaryOf(store)["headline"];
   EXPECT_EQ(headline["text"],
             "1 of 6 recordings fitted; 1 missing, 1 with a missing rig or calibration, 1 refused, 1 not "
-            "converged, 1 not fitted yet");
+            "converged, 1 not fitted yet; the last refit is not complete");
   EXPECT_EQ(headline["missing_runs"][0]["id"], "run0.csv");
   EXPECT_EQ(headline["refused_runs"][1]["reason"], "no swing");
 }

@@ -488,6 +488,7 @@ class Reports(Lab):
             ("missing", "--shard_dir", ".", "--shard_count", "0"): "it must be at least 1",
         }.items():
             self.assertIn(words, self.run_tool(*arguments, code=2)[1])
+        self.assertIn("no.csv: there is no such file", self.run_tool("no.csv", "--store", "a.sqlite", code=3)[1])
 
     def test_files_that_are_no_stores_are_refused_and_unchanged(self):
         manifest = self.manifest(self.simulate(1))

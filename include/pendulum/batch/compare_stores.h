@@ -34,6 +34,7 @@ struct StoreComparison {
   std::int64_t fits = 0;                           ///< Fits in both stores.
   std::int64_t stale_before = 0, stale_after = 0;  ///< Fits that are left out: statistics of their store do so, too.
   std::int64_t other_data = 0;                     ///< Runs whose recording has changed.
+  std::int64_t renamed = 0;                        ///< Runs of the same recording under another id.
   std::int64_t identical = 0;                      ///< Parameters equal bit for bit, including the error.
   std::int64_t rounding = 0;                       ///< Equal within kRounding standard errors; typical of another CPU.
   std::int64_t within_errors = 0;                  ///< Equal within one standard error.

@@ -24,7 +24,8 @@ struct RefitCounts {
   std::int64_t restored = 0;  ///< Current runs whose former result is current again.
   std::int64_t renamed = 0;   ///< Refitted runs that were in the store under another id (Store::TakeOver).
   std::int64_t stale = 0;     ///< Runs of both kinds that keep a former result.
-  bool stopped = false;       ///< Stopped before all runs were processed.
+  std::int64_t stale_before = 0;  ///< Of these, runs that were not tried again.
+  bool stopped = false;           ///< Stopped before all runs were processed.
 
   std::int64_t done() const { return current + refitted; }
 };
