@@ -12,6 +12,7 @@
 #include <fnmatch.h>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/utf8.h"
 #include "pendulum/recording/readers/file_names.h"
 
 namespace pendulum {
@@ -52,7 +53,7 @@ bool IsList(const std::string& path) {
   file.read(line.data(), kLongest);
   line.resize(static_cast<std::size_t>(file.gcount()));
   line.resize(std::min(line.find_first_of("\r\n"), line.size()));
-  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+  line.erase(0, line.size() - WithoutByteOrderMark(line).size());
   if (line.find('\0') != std::string::npos) return false;
   std::ranges::replace_if(
       line, [](char c) { return c == ';' || c == '\t'; }, ',');

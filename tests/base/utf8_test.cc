@@ -15,6 +15,11 @@ TEST(IsUtf8, AcceptsCharactersOfEachLength) {
   }
 }
 
+TEST(WithoutByteOrderMark, RemovesOneMarkAtTheBeginning) {
+  EXPECT_EQ(WithoutByteOrderMark("\xEF\xBB\xBF\xEF\xBB\xBFt"), "\xEF\xBB\xBFt");
+  for (const std::string_view text : {"", "\xEF\xBB", "t\xEF\xBB\xBF"}) EXPECT_EQ(WithoutByteOrderMark(text), text);
+}
+
 TEST(IsUtf8, RefusesOtherEncodingsAndLongForms) {
   for (const std::string_view text : {"W\xE4rme", "\xE2\x89", "\xC0\x80", "\xED\xA1\x8C", "\xF4\x90\x80\x80"}) {
     EXPECT_FALSE(IsUtf8(text)) << text;

@@ -35,6 +35,13 @@ inline std::size_t Utf8Length(std::string_view text) {
   return 0;
 }
 
+/// The text after a byte order mark, if it has one. Windows programs put one at the beginning of text in UTF-8.
+inline std::string_view WithoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  text.remove_prefix(text.starts_with(kMark) ? kMark.size() : 0);
+  return text;
+}
+
 inline bool IsUtf8(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = Utf8Length(text);

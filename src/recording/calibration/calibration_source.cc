@@ -6,6 +6,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/utf8.h"
 #include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/recording/calibration/calibration_table.h"
 #include "recording/readers/content.h"
@@ -15,7 +16,7 @@ namespace {
 
 /// Whether the text is meant as JSON. A table begins with a name of a column or a comment.
 bool IsJson(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = WithoutByteOrderMark(text);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first == std::string_view::npos || text[first] == '{' || text[first] == '[';
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/utf8.h"
 #include "recording/readers/foreign_formats.h"
 #include "recording/readers/mat/mat_version_4.h"
 #include "recording/readers/text/labelled_rows.h"
@@ -30,8 +31,7 @@ bool IsMat(std::string_view begin) {
 
 /// The text without a byte order mark and blanks before it.
 std::string_view WithoutBeginning(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"sv;
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = WithoutByteOrderMark(text);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   return text;
 }

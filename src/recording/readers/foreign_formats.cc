@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "pendulum/base/utf8.h"
+
 namespace pendulum {
 namespace {
 
@@ -107,7 +109,7 @@ bool StartsWithIgnoringCase(std::string_view text, std::string_view lower) {
 }
 
 bool IsHtml(std::string_view begin) {
-  if (begin.starts_with("\xEF\xBB\xBF"sv)) begin.remove_prefix(3);
+  begin = WithoutByteOrderMark(begin);
   begin.remove_prefix(std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
   constexpr std::array kTags = {"<!doctype html"sv, "<html"sv, "<head"sv,  "<body"sv,  "<meta"sv,
                                 "<table"sv,         "<div"sv,  "<style"sv, "<script"sv};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/utf8.h"
 
 namespace pendulum {
 namespace {
@@ -31,14 +32,13 @@ LineReader::LineReader(LineReader&& other) noexcept = default;
 LineReader::~LineReader() = default;
 
 Result<void> LineReader::Begin() {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   has_begun_ = true;
   if (Result<void> checked = HashAndCheck({at_, end_}); !checked) return checked;
   if (file_ != nullptr) {
     if (Result<void> filled = Refill(); !filled) return filled;
   }
   is_empty_ = at_ == end_;
-  if (std::string_view(at_, end_).starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
+  at_ = WithoutByteOrderMark({at_, end_}).data();
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "pendulum/base/utf8.h"
 #include "pendulum/recording/recording.h"
 #include "recording/readers/containers/csv_text.h"
 #include "recording/readers/containers/json_value.h"
@@ -328,8 +329,7 @@ bool HasValueOnEachLine(std::string_view text) {
 }  // namespace
 
 Workbook ReadJsonTables(std::string_view text, std::size_t max_bytes) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = WithoutByteOrderMark(text);
   Workbook workbook;
   JsonKeys keys;
   JsonValue root;

@@ -9,6 +9,7 @@
 #include <ranges>
 #include <utility>
 
+#include "pendulum/base/utf8.h"
 #include "recording/readers/text/sample_rate_text.h"
 #include "recording/readers/text/tracker.h"
 #include "recording/readers/text/vernier.h"
@@ -23,8 +24,6 @@ struct FirstLines {
   std::vector<TextLine> lines, comments;
   char separator = '\0';  // From the line `sep=`.
 };
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Calls take(text, number) for each line, also for a last one without a line end, until it returns false.
 template <typename Take>
@@ -563,7 +562,7 @@ class HeadParser {
 
 std::optional<char> SeparatorLine(std::string_view line) {
   constexpr std::string_view kKey = "sep=";
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  line = WithoutByteOrderMark(line);
   line.remove_prefix(line.starts_with('"') ? 1 : 0);
   if (line.size() <= kKey.size() || !line.starts_with(kKey)) return std::nullopt;
   return line[kKey.size()];

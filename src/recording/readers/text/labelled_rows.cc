@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/utf8.h"
 #include "recording/readers/columns/csv.h"
 #include "recording/readers/text/host_stamp.h"
 
@@ -16,7 +17,6 @@ namespace pendulum::csv {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r", kBetween = " \t\r,;|";
-constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
 struct LabelledValue {
   std::string_view label, value, unit;
@@ -111,7 +111,7 @@ std::string ValuesOf(const LabelledRow& row) {
 /// Calls `take` with each line, without its end.
 template <typename Take>
 void ForEachLineOf(std::string_view text, const Take& take) {
-  if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
+  text = WithoutByteOrderMark(text);
   while (!text.empty()) {
     take(TakeUpTo(text, "\n"));
     if (!text.empty()) text.remove_prefix(1);
@@ -129,7 +129,7 @@ LabelledRow FindTypicalRow(std::string_view text) {
   ForEachLineOf(begin, [&](std::string_view line) {
     LabelledRow row = RowOf(SplitStamp(line).rest);
     lines += line.find_first_not_of(kBlanks) != std::string_view::npos ? 1 : 0;
-    if (row.size() < 2) return;
+    if (row.empty()) return;
     auto& [count, last] = kinds[HeaderOf(row)];
     ++count;
     last = std::move(row);

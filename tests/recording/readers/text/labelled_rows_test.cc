@@ -45,6 +45,11 @@ TEST(LabelledRows, MayBeginWithARowThatIsCutOffOrWithOtherLabels) {
   ExpectTheRows(RecordingOf(Rows("t={t} ms θ={v}°\r")), kDegree);
 }
 
+TEST(LabelledRows, MayHaveOneValueBesideAStamp) {
+  EXPECT_EQ(TableOfLabelledRows(Rows("pot: {v}", 5), "run.csv"), "pot\n" + Rows("{v}", 5));
+  EXPECT_THAT(FaultOf(Rows("adc_counts:{v}")), HasSubstr("give the rate of the rows in Hz with --sample_rate_hz"));
+}
+
 TEST(LabelledRows, WithOtherUnitsAreNotMixed) {
   const std::string text = Rows("t={t} ms adc={v} counts", 100);
   const std::size_t middle = text.find("t=500 ms");
@@ -55,10 +60,9 @@ TEST(LabelledRows, WithOtherUnitsAreNotMixed) {
 TEST(LabelledRows, AreNotSeenInOtherTexts) {
   const std::string labelled = Rows("t:{t},v:{v}");
   EXPECT_TRUE(HasLabelledRows(labelled));
-  for (const std::string& text :
-       {std::string(), std::string("t:1,v:2\n"), Rows("{t},{v}"), Rows("12:00:{t} {v}"), Rows("v:{v}"),
-        Rows("t:{t},v:"), Rows("t:{t} {v}"), Rows("t:12:00:{t} v:{v}"), Rows("t:{t} v:0x{v}"),
-        "Duration: 10 s, Rate: 5 Hz\n" + Rows("{t},{v}"), Rows("t{t}:{t},v:{v}")}) {
+  for (const std::string& text : {std::string(), std::string("t:1,v:2\n"), Rows("{t},{v}"), Rows("12:00:{t} {v}"),
+                                  Rows("t:{t},v:"), Rows("t:{t} {v}"), Rows("t:12:00:{t} v:{v}"), Rows("t:{t} v:0x{v}"),
+                                  "Duration: 10 s, Rate: 5 Hz\n" + Rows("{t},{v}"), Rows("t{t}:{t},v:{v}")}) {
     EXPECT_FALSE(HasLabelledRows(text)) << text;
   }
 }
