@@ -13,15 +13,20 @@ namespace {
 
 /// The runs of both stores: those with the same id, and those of recordings that were renamed in between, which have
 /// the same content, window and models.
+/// Copies of one recording are paired in the order of their runs. Only runs with fits to compare are paired.
 constexpr const char* kRunPairs = R"sql(
 CREATE TEMP TABLE pairs AS SELECT mine.run AS before, theirs.run AS after, false AS is_renamed
-  FROM main.runs AS mine JOIN other.runs AS theirs USING(id);
-INSERT INTO pairs SELECT mine.run, theirs.run, true FROM main.runs AS mine JOIN other.runs AS theirs
-    ON theirs.data_sha256 = mine.data_sha256 AND theirs.from_s IS mine.from_s AND theirs.to_s IS mine.to_s
-      AND theirs.models = mine.models
-  WHERE mine.result IS NOT NULL AND mine.run NOT IN (SELECT before FROM pairs)
-    AND theirs.result IS NOT NULL AND theirs.run NOT IN (SELECT after FROM pairs)
-  GROUP BY mine.data_sha256, mine.from_s, mine.to_s, mine.models HAVING count(*) = 1)sql";
+  FROM main.runs AS mine JOIN other.runs AS theirs USING(id)
+  WHERE mine.run IN (SELECT run FROM fits_before) AND theirs.run IN (SELECT run FROM fits_after);
+INSERT INTO pairs
+  WITH mine AS (SELECT run, data_sha256, from_s, to_s, models,
+        row_number() OVER (PARTITION BY data_sha256, from_s, to_s, models ORDER BY run) AS number FROM main.runs
+      WHERE run IN (SELECT run FROM fits_before) AND run NOT IN (SELECT before FROM pairs)),
+    theirs AS (SELECT run, data_sha256, from_s, to_s, models,
+        row_number() OVER (PARTITION BY data_sha256, from_s, to_s, models ORDER BY run) AS number FROM other.runs
+      WHERE run IN (SELECT run FROM fits_after) AND run NOT IN (SELECT after FROM pairs))
+  SELECT mine.run, theirs.run, true FROM mine JOIN theirs USING(data_sha256, models, number)
+    WHERE mine.from_s IS theirs.from_s AND mine.to_s IS theirs.to_s)sql";
 
 constexpr const char* kFits = R"sql(
 SELECT mine.id, mine.model, mine.status, theirs.status

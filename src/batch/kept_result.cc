@@ -27,11 +27,11 @@ std::string WhyKept(const std::string& result, const std::string& outcome, const
   const Json now = DataOf(outcome);
   const std::string path = before.value("path", "");
   if (has_lost_convergence) return path + ": the fit converged before, and does not converge now";
-  if (now.is_null() || now.value("path", "") != path) return "";
+  if (now.is_null()) return "";
   const auto samples = now.value("samples", std::int64_t{0}), former = before.value("samples", std::int64_t{0});
   if (samples >= former) return "";
-  return path + ": the recording has become shorter: " + std::to_string(samples) + " samples instead of " +
-         std::to_string(former);
+  return now.value("path", path) + ": the recording has become shorter: " + std::to_string(samples) +
+         " samples instead of " + std::to_string(former) + " before";
 }
 
 }  // namespace pendulum

@@ -12,7 +12,6 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -76,10 +75,8 @@ RunInputs ReadInputs(const Source& source, const ManifestEntry& entry, const Ref
           OptionsOf(entry, options.run)};
 }
 
-/// Begins what stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
-constexpr std::string_view kUnreadable = "unreadable: ";
-
-std::string Unreadable(const Status& status) { return std::string(kUnreadable) + status.message; }
+/// Stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
+std::string Unreadable(const Status& status) { return "unreadable: " + status.message; }
 
 Result<std::string> HashOf(const Result<std::string>& bytes) {
   if (!bytes) return Unreadable(bytes.error());
@@ -297,8 +294,7 @@ class Refitter {
       const auto bytes = source_.read(path);
       return !bytes && bytes.error().code == StatusCode::kNotFound;
     };
-    const std::string& data = attempt.outcome->provenance.data_sha256;
-    auto renamed = store_.TakeOver(id, data.starts_with(kUnreadable) ? "" : data, is_gone);
+    auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256, is_gone);
     if (!renamed) return tl::unexpected(std::move(renamed).error());
     counts_.renamed += *renamed ? 1 : 0;
     if (options_.replace_by_failures) {
@@ -393,6 +389,11 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   }
   if (refitter.error()) return tl::unexpected(*refitter.error());
   counts.stopped = counts.done() < counts.runs;
+  if (!counts.stopped) {
+    const auto changed = store.MarkChangedFiles(source);
+    if (!changed) return tl::unexpected(changed.error());
+    counts.stale += *changed;
+  }
   const auto stored = counts.stopped ? store.Commit() : store.Complete();
   if (!stored) return tl::unexpected(stored.error());
   return counts;

@@ -205,7 +205,7 @@ struct Store::State {
   std::string WhyWorse(const RunOutcome& outcome, std::int64_t run);
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
-  Result<void> MarkOtherFiles(const Source& source);
+  Result<std::int64_t> MarkOtherFiles(const Source& source);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
   void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
@@ -280,7 +280,8 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
 }
 
 /// Marks the results whose rig or calibration is not the file that the manifest names now.
-Result<void> Store::State::MarkOtherFiles(const Source& source) {
+Result<std::int64_t> Store::State::MarkOtherFiles(const Source& source) {
+  std::int64_t marked = 0;
   constexpr std::pair<const char*, const char*> kRig{
       "SELECT DISTINCT rig FROM batch WHERE rig <> ''",
       "rig_sha256 IS NOT ? AND id IN (SELECT id FROM batch WHERE rig = ?)"};
@@ -293,10 +294,11 @@ Result<void> Store::State::MarkOtherFiles(const Source& source) {
       const Result<std::string> bytes = source.read(path);
       const Result<std::string> hash = bytes ? Sha256(*bytes) : Result<std::string>("");
       if (!hash) return tl::unexpected(hash.error());
-      sqlite::Bind(mark, *hash, path).exec();
+      marked += sqlite::Bind(mark, *hash, path).exec();
+      mark.reset();
     }
   }
-  return {};
+  return marked;
 }
 
 /// Removes runs outside the shard from the batch and from the store. Without a shard, removes waiting runs that are no
@@ -489,11 +491,15 @@ Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha2
     const auto added = state_->Find(id);
     if (!added) return tl::unexpected(added.error());
     std::vector<std::int64_t> renamed;
+    bool have_data = false;
     SQLite::Statement& find = state_->Prepared(state_->renamed_runs, kRenamedRuns.c_str());
     sqlite::Bind(find, id, data_sha256);
     while (find.executeStep()) {  // the run of a file that is still there, under another path, is a run of a copy
-      const bool is_same_file = find.getColumn(2).getInt() != 0;
-      if (is_same_file || is_gone(sqlite::Text(find, 1))) renamed.push_back(find.getColumn(0).getInt64());
+      const bool is_same_file = find.getColumn(2).getInt() != 0, has_data = find.getColumn(3).getInt() != 0;
+      if (have_data && !has_data) break;
+      if (!is_same_file && !is_gone(sqlite::Text(find, 1))) continue;
+      renamed.push_back(find.getColumn(0).getInt64());
+      have_data = has_data;
     }
     find.reset();
     if (renamed.size() != 1) return false;
@@ -511,7 +517,15 @@ Result<void> Store::MarkBatch() {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     state_->BeginIfNone();
     state_->database.exec(kForgetProvenance);
+    state_->Commit();  // before the first fit, so that the next refit continues even after a crash
     return {};
+  });
+}
+
+Result<std::int64_t> Store::MarkChangedFiles(const Source& source) {
+  return sqlite::Guard(name(), [&]() -> Result<std::int64_t> {
+    state_->BeginIfNone();
+    return state_->MarkOtherFiles(source);
   });
 }
 

@@ -30,15 +30,16 @@ inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
 
-/// Unlisted runs that may be a run of the batch without a result under its former name: the same data (or the same
-/// path, if the data is unknown), window, files and models.
+/// Unlisted runs that may be a run of the batch without a result under its former name: the same data or path, window,
+/// files and models. Those with the same data come first, marked 1.
 inline const std::string kRenamedRuns =
-    "SELECT runs.run, runs.path, runs.path IS batch.path FROM runs JOIN batch ON batch.id = ?1 AND runs.from_s IS "
+    "SELECT runs.run, runs.path, runs.path IS batch.path, runs.data_sha256 IS ?2 AS has_data FROM runs JOIN batch ON "
+    "batch.id = ?1 AND runs.from_s IS "
     "batch.from_s AND runs.to_s IS batch.to_s AND runs.rig IS batch.rig AND runs.calibration IS batch.calibration AND "
-    "runs.models IS batch.models WHERE iif(?2 = '', runs.path = batch.path, runs.data_sha256 = ?2) AND "
+    "runs.models IS batch.models WHERE (runs.data_sha256 = ?2 OR runs.path = batch.path) AND "
     "runs.result IS NOT NULL AND "
     "NOT EXISTS (SELECT * FROM runs AS own WHERE own.id = batch.id AND own.result IS NOT NULL) AND " +
-    kIsUnlisted + " ORDER BY runs.run";
+    kIsUnlisted + " ORDER BY has_data DESC, runs.run";
 
 inline constexpr const char* kRenameRun = R"sql(
 UPDATE runs SET (id, position, path, rig, calibration, from_s, to_s, models, columns) =

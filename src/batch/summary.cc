@@ -363,8 +363,7 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
   if (counts.stale > 0) {
     add("stale", std::to_string(counts.stale) +
-                     " runs keep a former result, because the last fit failed or the recording has become shorter; "
-                     "statistics leave them out");
+                     " runs keep a former result (the column stale says why); statistics leave them out");
   }
   if (counts.earlier > 0) {
     add("not_in_the_manifest", std::to_string(counts.earlier) +
@@ -409,7 +408,7 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
   const auto counts = store.Count();
   if (!counts) return tl::unexpected(counts.error());
   if (counts->fits == 0) {
-    return Error(StatusCode::kFailedPrecondition, store.name() + ": no run is refitted yet; refit some first");
+    return Error(StatusCode::kFailedPrecondition, store.name() + ": no run has a fit; refit some first");
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();

@@ -590,7 +590,8 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 }  // namespace
 
 bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 29> kSerious = {"ambiguous_frequency",
+  constexpr std::array<std::string_view, 30> kSerious = {"ambiguous_frequency",
+                                                         "clock_unproven",
                                                          "inertia_differs_from_rig",
                                                          "another_minimum",
                                                          "frequency_differs_from_rig",

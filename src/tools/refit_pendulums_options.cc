@@ -142,8 +142,8 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
     }
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);
-    return BadFlag("'" + word + "' is not a command; the commands are " + NameList(names) +
-                   "; to refit, give an existing manifest or folder instead");
+    return BadFlag("'" + word + "' is not a command, nor an existing file or folder; the commands are " +
+                   NameList(names) + "; to refit, give a manifest or folder");
   }
   for (const std::string_view name : kNotForRefit) {
     if (Contains(flags.given, name))

@@ -300,6 +300,9 @@ Result<std::string> StatusText(Store& store) {
   if (counts->stale > 0) text += Row("with a former result only", counts->stale);
   if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
   if (counts->former_fits > 0) text += Row("fits of models not asked for", counts->former_fits);
+  const auto meta = store.Meta();
+  if (!meta) return tl::unexpected(meta.error());
+  if (meta->runs > 0 && !meta->complete) text += Prose("The last refit is not complete.");
   if (counts->fits == 0) return text;
   const auto overview = Overview(store);
   if (!overview) return tl::unexpected(overview.error());

@@ -178,8 +178,8 @@ TEST_F(CompareStoresTest, ListsFitsWithAnotherStatus) {
 }
 
 TEST_F(CompareStoresTest, CountsFitsInOnlyOneOfTheStores) {
-  const StoreComparison comparison =
-      Compare({{"a", 1.0, 0.1}, {"b", 1.0, 0.1}}, {{"b", 1.0, 0.1}, {"c", 1.0, 0.1}, {"d", 1.0, 0.1}});
+  const auto fit = [](const std::string& id) { return Fit{id, 1.0, 0.1, "converged", "rad", "data of " + id}; };
+  const StoreComparison comparison = Compare({fit("a"), fit("b")}, {fit("b"), fit("c"), fit("d")});
   EXPECT_EQ(comparison.fits, 1);
   EXPECT_EQ(comparison.only_before, 1);
   EXPECT_EQ(comparison.only_after, 2);
@@ -213,13 +213,20 @@ TEST_F(CompareStoresTest, RecognizesRenamedRecordings) {
   };
   const StoreComparison comparison = Compare({fit("a", "1"), fit("b", "2"), fit("c", "3"), fit("d", "3")},
                                              {fit("new", "1"), fit("b", "2"), fit("e", "3"), fit("f", "3")});
-  EXPECT_EQ(comparison.renamed, 1);  // two copies under two other names each: which is which is unknown
-  EXPECT_EQ(comparison.fits, 2);
-  EXPECT_EQ(comparison.identical, 2);
-  EXPECT_EQ(comparison.only_before, 2);
-  EXPECT_EQ(comparison.only_after, 2);
-  ASSERT_EQ(comparison.removed.size(), 2);
-  EXPECT_EQ(comparison.removed[0].id + comparison.removed[1].id, "cd");
+  EXPECT_EQ(comparison.renamed, 3);
+  EXPECT_EQ(comparison.identical, 4);
+  EXPECT_EQ(comparison.only_before, 0);
+  EXPECT_EQ(comparison.only_after, 0);
+  EXPECT_THAT(comparison.removed, IsEmpty());
+}
+
+TEST_F(CompareStoresTest, RecognizesARenamedRecordingWhoseFormerRunIsStillInTheStore) {
+  Store before = Make("before.sqlite", {{"a", 1.0, 0.1}});
+  Store after = Make("after.sqlite", {{"a", 1.0, 0.1}, {"new", 1.0, 0.1}});
+  after.database().exec("UPDATE runs SET position = -1 WHERE id = 'a'");
+  const StoreComparison comparison = CompareStores(before, after).value();
+  EXPECT_EQ(comparison.renamed, 1);
+  EXPECT_EQ(comparison.only_before, 0);
 }
 
 TEST_F(CompareStoresTest, DetectsOtherDataAndProcessors) {

@@ -381,14 +381,19 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatBecameShorter) {
   EXPECT_NE(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
 }
 
-TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingWithTheSameId) {
+TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingWithTheSameIdUnlessItIsShorter) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
-  const std::string text = folder_.Read("0.csv");
+  folder_.Write("other.csv", RecordingText(7));
+  folder_.Write("runs.csv", "path,id\nother.csv,a\n");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 0);
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "other.csv");
+  const std::string text = folder_.Read("other.csv");  // a copy that has not ended
   folder_.Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
   folder_.Write("runs.csv", "path,id\nshorter.csv,a\n");
-  EXPECT_EQ(RefitAll(coulomb_).stale, 0);
-  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "shorter.csv");
+  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "other.csv");
+  EXPECT_THAT(ValueOf("SELECT stale FROM runs"), StartsWith("shorter.csv: the recording has become shorter: "));
 }
 
 TEST_F(RefitTest, ReplacesADamagedResult) {
@@ -529,6 +534,35 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGoneUnderItsNewId) {
   EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"),
               ElementsAre("b|0|NULL", StartsWith("first|0|0.csv: there is no such file")));
   EXPECT_EQ(Rows(store_, estimates), before);
+}
+
+TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsCutOffUnderItsNewId) {
+  WriteBatch(folder_, 2);
+  RefitAll(coulomb_);
+  const std::string text = folder_.Read("0.csv");
+  folder_.Write("runs.csv", "path,id\n0.csv,first\n1.csv,b\n");
+  for (const std::size_t size : {std::size_t{0}, text.rfind('\n', text.size() * 9 / 10) + 1}) {
+    folder_.Write("0.csv", text.substr(0, size));
+    EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  }
+  folder_.Write("0.csv", text);
+  EXPECT_EQ(RefitAll(coulomb_).restored, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id, stale FROM runs ORDER BY id"), ElementsAre("b|NULL", "first|NULL"));
+}
+
+TEST_F(RefitTest, MarksResultsOfARigThatChangedMeanwhile) {
+  folder_.Write("rig.json", small_batch::kRigText);
+  folder_.Write("a.csv", RecordingText(1));
+  folder_.Write("b.csv", RecordingText(2));
+  folder_.Write("runs.csv", "path,id,rig\na.csv,a,rig.json\nb.csv,b,rig.json\n");
+  RefitOptions options = coulomb_;
+  options.threads = 1;
+  options.progress = [&](const RefitCounts& counts) {
+    if (counts.done() == 1) folder_.Write("rig.json", std::string(small_batch::kRigText) + "\n");
+  };
+  EXPECT_EQ(RefitAll(options).stale, 1);
+  EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), ElementsAre("a"));
+  EXPECT_THAT(Refitted(coulomb_), ElementsAre("a"));
 }
 
 TEST_F(RefitTest, MarksNothingIfGroupByIsWrong) {

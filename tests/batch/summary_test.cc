@@ -530,8 +530,7 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
   const auto summary = Summarize(store, {});
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(summary.error().message,
-            (folder_ / "store.sqlite").string() + ": no run is refitted yet; refit some first");
+  EXPECT_EQ(summary.error().message, (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
 }
 
 TEST_F(SummaryTest, ContainsTheOverview) {

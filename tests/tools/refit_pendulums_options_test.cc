@@ -93,7 +93,8 @@ TEST(MakeRefitPendulumsOptions, NamesTheWrongFlagOfARefit) {
       {"--checkpoint_s is for a shard", [](RefitFlags& f) { f.given.emplace_back("checkpoint_s"); }},
       {"'no-folder-*/*.csv' is a pattern and no existing file; give patterns with --data",
        [](RefitFlags& f) { f.positional = {"no-folder-*/*.csv"}; }},
-      {"'refit' is not a command; the commands are status, export", [](RefitFlags& f) { f.positional = {"refit"}; }},
+      {"'refit' is not a command, nor an existing file or folder; the commands are status, export",
+       [](RefitFlags& f) { f.positional = {"refit"}; }},
       {"it must be a positive number of seconds",
        [](RefitFlags& f) {
          f.shard = "0/2";

@@ -117,10 +117,14 @@ class Store {
   /// they were replaced.
   Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt);
 
+  /// Marks the results of the batch whose rig or calibration is not the file that the source has now, because it
+  /// changed during the refit. Returns their number.
+  Result<std::int64_t> MarkChangedFiles(const Source& source);
+
   /// A run of the batch without a result takes the rows of a run that the batch does not name, if that run is the same
-  /// under another name: it has a result of a recording with these bytes (of the same path, if they are unknown: ""),
-  /// the same window, rig, calibration and models, and the same path or one that `is_gone`. Of several such runs none
-  /// is taken. Returns whether one was taken.
+  /// under another name: it has a result of a recording with these bytes or else of the same path, the same window,
+  /// rig, calibration and models, and the same path or one that `is_gone`. Of several such runs none is taken. Returns
+  /// whether one was taken.
   Result<bool> TakeOver(const std::string& id, const std::string& data_sha256,
                         const std::function<bool(const std::string& path)>& is_gone);
 

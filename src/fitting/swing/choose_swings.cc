@@ -30,13 +30,9 @@ tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int cou
                                                  " in the recording; it has " + std::to_string(count));
 }
 
-/// Warns of a change of the steps within a chosen swing.
+/// Warns of a change of the steps. If it lies outside the chosen swings, their times may still be the wrong ones.
 ChosenSwings WithWarning(ChosenSwings swings, const std::optional<StepChange>& change) {
-  const auto has_change = [&](int k) {
-    const FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
-    return swing.from < change->time && change->time < swing.to;
-  };
-  if (change && std::ranges::any_of(swings.chosen, has_change)) swings.warnings.push_back(change->ToWarning());
+  if (change) swings.warnings.push_back(change->ToWarning());
   return swings;
 }
 

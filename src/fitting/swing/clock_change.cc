@@ -20,21 +20,18 @@ using Eigen::Index;
 
 constexpr double kLeastChange = 0.004;  // relative: twice this in inertia
 
-/// The sample after which the steps change most clearly; std::nullopt if they do not. Their logarithms are clamped to
-/// the middle nine tenths, so that gaps do not matter.
-std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
-  constexpr Index kMinSteps = 20;
+/// The sample after which the steps of so many `rows` change most clearly; std::nullopt if they do not. Their
+/// logarithms are clamped without the kMinSteps largest and smallest, so that gaps do not matter.
+std::optional<Index> FindStepChange(const Eigen::VectorXd& time, Index rows) {
+  constexpr Index kMinSteps = 8;
   constexpr double kDeviations = 10;
-  const Index count = time.size() - 1;
+  const Index count = (time.size() - 1) / rows;
   if (count < 2 * kMinSteps) return std::nullopt;
-  const Eigen::VectorXd steps = time.tail(count) - time.head(count);
+  const Eigen::VectorXd ends = time(Eigen::seqN(0, count + 1, rows));
+  const Eigen::VectorXd steps = ends.tail(count) - ends.head(count);
   std::vector<double> sorted(steps.begin(), steps.end());
-  const auto quantile = [&](double share) {
-    const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count - 1));
-    std::ranges::nth_element(sorted, at);
-    return *at;
-  };
-  const double low = quantile(0.05), high = quantile(0.95);
+  std::ranges::sort(sorted);
+  const double low = sorted[kMinSteps - 1], high = sorted[static_cast<std::size_t>(count - kMinSteps)];
   if (!(low > 0) || std::log(high / low) < kLeastChange) return std::nullopt;
   const Eigen::ArrayXd logs = steps.array().max(low).min(high).log();
   const Eigen::ArrayXd centred = logs - logs.mean();
@@ -50,7 +47,14 @@ std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
   }
   const double within = (centred.square().sum() - clearest) / static_cast<double>(count);
   if (at < kMinSteps || at > count - kMinSteps || clearest < kDeviations * kDeviations * within) return std::nullopt;
-  return at;
+  return at * rows;
+}
+
+/// The change of steps from row to row, otherwise of longer ones, in which the rounding of times counts for less.
+std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
+  constexpr Index kRows = 8;
+  const std::optional<Index> change = FindStepChange(time, 1);
+  return change ? change : FindStepChange(time, kRows);
 }
 
 /// The median of a logarithm, with its standard error; std::nullopt of nothing.
@@ -135,11 +139,13 @@ ChangeOfStep ChangeIn(const BothSides& sides) {
 
 /// The change that a recording shows after sample `change`.
 StepChange StepChangeAt(const Eigen::VectorXd& time, Index change) {
-  const auto median_step = [&](Index first, Index last) {
-    const Eigen::VectorXd steps = time.segment(first + 1, last - first) - time.segment(first, last - first);
-    return Median(std::vector<double>(steps.begin(), steps.end()));
+  const auto mean_step = [&](Index first, Index last) {
+    constexpr double kGap = 1.5;
+    const Eigen::ArrayXd steps = time.segment(first + 1, last - first) - time.segment(first, last - first);
+    const double longest = kGap * Median(std::vector<double>(steps.begin(), steps.end()));
+    return (steps <= longest).select(steps, 0).sum() / static_cast<double>((steps <= longest).count());
   };
-  return {time[change], median_step(0, change), median_step(change, time.size() - 1)};
+  return {time[change], mean_step(0, change), mean_step(change, time.size() - 1)};
 }
 
 /// The time of a change [s], with the digits that distinguish samples.

@@ -61,13 +61,21 @@ TEST(CheckClock, RefusesAClockThatChangesItsRate) {
 
 TEST(CheckClock, ReturnsAChangeWithinTheHold) {
   for (const double factor : {0.97, 1.03, 2.0}) {
-    const auto checked = CheckClock(WithFasterClock(Recorded(1), 150, factor));
-    ASSERT_TRUE(checked) << checked.error().message;
-    ASSERT_TRUE(*checked) << factor;
-    EXPECT_DOUBLE_EQ((*checked)->time, 1.5);
-    EXPECT_NEAR((*checked)->before, 0.01, 1e-9);
-    EXPECT_NEAR((*checked)->after, 0.01 * factor, 1e-9);
+    for (const Eigen::Index row : {10, 150}) {
+      const auto checked = CheckClock(WithFasterClock(Recorded(1), row, factor));
+      ASSERT_TRUE(checked) << checked.error().message;
+      ASSERT_TRUE(*checked) << factor;
+      EXPECT_DOUBLE_EQ((*checked)->time, 0.01 * static_cast<double>(row));
+      EXPECT_NEAR((*checked)->before, 0.01, 1e-9);
+      EXPECT_NEAR((*checked)->after, 0.01 * factor, 1e-9);
+    }
   }
+  Recording rounded = WithFasterClock(Recorded(1), 150, 0.97);  // steps of 9 and 10 ms
+  for (double& time : rounded.time) time = std::floor(1e3 * time) / 1e3;
+  const auto checked = CheckClock(rounded);
+  ASSERT_TRUE(checked && *checked);
+  EXPECT_NEAR((*checked)->time, 1.5, 0.1);
+  EXPECT_NEAR((*checked)->after, 0.0097, 2e-6);
   EXPECT_THAT((StepChange{1, 0.01, 0.02}).ToWarning().message,
               testing::AllOf(testing::StartsWith("the times change their rate at 1 s, from 10 ms to 20 ms between"),
                              testing::EndsWith("with --to 1 or --from 1")));

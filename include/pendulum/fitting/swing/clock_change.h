@@ -11,7 +11,7 @@ namespace pendulum {
 /// A time at which the steps between rows change, although nothing shows whether the clock changed or the sampling.
 struct StepChange {
   double time;           ///< s.
-  double before, after;  ///< s, median steps.
+  double before, after;  ///< s, mean steps without gaps.
 
   /// "clock_unproven".
   Warning ToWarning() const;
