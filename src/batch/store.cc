@@ -434,6 +434,7 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(MarkFormer("true"));
     if (auto marked = state_->MarkOtherFiles(source); !marked) return tl::unexpected(marked.error());
     state_->database.exec(kUpdateRuns);
+    state_->database.exec(kUnlistedTable);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
     state_->SetMeta("version", meta.version);

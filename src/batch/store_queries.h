@@ -10,7 +10,14 @@ namespace pendulum {
 
 inline constexpr const char* kBatchTable = R"sql(
 CREATE TEMP TABLE batch(position INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, path TEXT, rig TEXT, calibration TEXT,
-  from_s REAL, to_s REAL, models TEXT, columns TEXT, place TEXT))sql";
+  from_s REAL, to_s REAL, models TEXT, columns TEXT, place TEXT);
+CREATE INDEX temp.batch_by_rig ON batch(rig);
+CREATE INDEX temp.batch_by_calibration ON batch(calibration))sql";
+
+/// The runs that the batch does not name, by their paths.
+inline const std::string kUnlistedTable =
+    "DROP TABLE IF EXISTS temp.unlisted; CREATE TEMP TABLE unlisted AS SELECT run, path FROM runs WHERE " +
+    kIsUnlisted + "; CREATE INDEX temp.unlisted_by_path ON unlisted(path)";
 
 inline constexpr const char* kUpdateRuns = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
@@ -36,7 +43,9 @@ inline const std::string kRenamedRuns =
     "SELECT runs.run, runs.path, runs.path IS batch.path, runs.data_sha256 IS ?2 AS has_data FROM runs JOIN batch ON "
     "batch.id = ?1 AND runs.from_s IS "
     "batch.from_s AND runs.to_s IS batch.to_s AND runs.rig IS batch.rig AND runs.calibration IS batch.calibration AND "
-    "runs.models IS batch.models WHERE (runs.data_sha256 = ?2 OR runs.path = batch.path) AND "
+    "runs.models IS batch.models WHERE runs.run IN "
+    "(SELECT run FROM runs WHERE position < 0 AND data_sha256 = ?2 UNION "
+    "SELECT run FROM unlisted WHERE path = (SELECT path FROM batch WHERE id = ?1)) AND "
     "runs.result IS NOT NULL AND "
     "NOT EXISTS (SELECT * FROM runs AS own WHERE own.id = batch.id AND own.result IS NOT NULL) AND " +
     kIsUnlisted + " ORDER BY has_data DESC, runs.run";
