@@ -23,7 +23,7 @@ namespace wire = pendulum_logger;
 
 constexpr double kPollSeconds = 0.05, kDrawSeconds = 0.1, kSynchroniseSeconds = 1, kReportSeconds = 10;
 constexpr double kSilenceSeconds = 3, kSilenceFrames = 4;  // the longer one of the two times applies
-constexpr double kStopSeconds = 2, kRepeatSeconds = 0.5;
+constexpr double kStopSeconds = 5, kRepeatSeconds = 0.5;
 
 /// Whether standard output is a pipe whose reader has closed it.
 bool IsOutputClosed() {
@@ -90,9 +90,9 @@ class RunInProgress {
   std::size_t rest_samples_ = 0;  // number of samples until rest; 0: not at rest, or not requested
   PeriodicTimer draw_{kDrawSeconds, Now()}, report_{kReportSeconds, Now()}, synchronise_{kSynchroniseSeconds, Now()},
       repeat_{kRepeatSeconds, Now()};
-  std::size_t written_ = 0;             // samples in the part file
-  double silence_ = 0, last_poll_ = 0;  // s: time without data; time of the last poll
-  double stop_asked_ = 0;
+  std::size_t written_ = 0;            // samples in the part file
+  double silence_ = 0, stopping_ = 0;  // s: time without data; time since the stop was asked for
+  double last_poll_ = 0;
   bool is_stopping_ = false, is_over_ = false;
 };
 
@@ -136,7 +136,9 @@ void RunInProgress::ReceiveUntilOver() {
     const auto received = logger_.Receive(kPollSeconds);
     const double now = Now();
     // The limit keeps the time in which this process was suspended from counting as silence of the logger.
-    silence_ += std::min(now - last_poll_, 2 * kPollSeconds);
+    const double polled = std::min(now - last_poll_, 2 * kPollSeconds);
+    silence_ += polled;
+    stopping_ += is_stopping_ ? polled : 0;
     last_poll_ = now;
     if (!received) {
       EndAsLost(received.error().message);
@@ -200,9 +202,8 @@ void RunInProgress::StopWhenDue(double now) {
     if (!stop_ && !is_long_enough && !is_at_rest) return;
     recorded_.end = is_long_enough ? RunEnd::kSeconds : is_at_rest ? RunEnd::kRest : RunEnd::kStopped;
     is_stopping_ = true;
-    stop_asked_ = now;
     repeat_.Restart(now);
-  } else if (now - stop_asked_ > kStopSeconds) {
+  } else if (stopping_ > kStopSeconds) {
     is_over_ = true;  // the End frame is missing, which the description reports
     return;
   } else if (!repeat_.IsDue(now)) {
