@@ -11,22 +11,29 @@
 namespace pendulum {
 namespace {
 
-/// The runs of both stores: those with the same id, and those of recordings that were renamed in between, which have
-/// the same content, window and models.
-/// Copies of one recording are paired in the order of their runs. Only runs with fits to compare are paired.
-constexpr const char* kRunPairs = R"sql(
-CREATE TEMP TABLE pairs AS SELECT mine.run AS before, theirs.run AS after, false AS is_renamed
-  FROM main.runs AS mine JOIN other.runs AS theirs USING(id)
-  WHERE mine.run IN (SELECT run FROM fits_before) AND theirs.run IN (SELECT run FROM fits_after);
-INSERT INTO pairs
-  WITH mine AS (SELECT run, data_sha256, from_s, to_s, models,
-        row_number() OVER (PARTITION BY data_sha256, from_s, to_s, models ORDER BY run) AS number FROM main.runs
-      WHERE run IN (SELECT run FROM fits_before) AND run NOT IN (SELECT before FROM pairs)),
-    theirs AS (SELECT run, data_sha256, from_s, to_s, models,
-        row_number() OVER (PARTITION BY data_sha256, from_s, to_s, models ORDER BY run) AS number FROM other.runs
-      WHERE run IN (SELECT run FROM fits_after) AND run NOT IN (SELECT after FROM pairs))
-  SELECT mine.run, theirs.run, true FROM mine JOIN theirs USING(data_sha256, models, number)
-    WHERE mine.from_s IS theirs.from_s AND mine.to_s IS theirs.to_s)sql";
+/// Pairs the runs of both stores that have fits to compare: those with the same id, and those of recordings that were
+/// renamed in between, which have the same content, window, rig, calibration and models. Copies of one recording are
+/// paired in the order of their runs.
+constexpr const char* kPairRuns = R"sql(
+CREATE TEMP TABLE runs_before AS SELECT * FROM main.runs WHERE run IN (SELECT run FROM fits_before);
+CREATE TEMP TABLE runs_after AS SELECT * FROM other.runs WHERE run IN (SELECT run FROM fits_after);
+CREATE INDEX temp.runs_after_by_id ON runs_after(id);
+CREATE TEMP TABLE pairs(before INTEGER PRIMARY KEY, after INTEGER UNIQUE, is_renamed INTEGER);
+INSERT INTO pairs SELECT mine.run, theirs.run, 0 FROM runs_before AS mine JOIN runs_after AS theirs USING(id);
+CREATE TEMP TABLE left_before AS
+  SELECT run, key, row_number() OVER (PARTITION BY key ORDER BY run) AS number FROM
+    (SELECT run, json_array(data_sha256, from_s, to_s, rig_sha256, calibration_sha256, models) AS key FROM runs_before
+      WHERE result IS NOT NULL AND run NOT IN (SELECT before FROM pairs));
+CREATE TEMP TABLE left_after AS
+  SELECT run, key, row_number() OVER (PARTITION BY key ORDER BY run) AS number FROM
+    (SELECT run, json_array(data_sha256, from_s, to_s, rig_sha256, calibration_sha256, models) AS key FROM runs_after
+      WHERE result IS NOT NULL AND run NOT IN (SELECT after FROM pairs));
+CREATE INDEX temp.left_after_by_key ON left_after(key, number);
+INSERT INTO pairs SELECT mine.run, theirs.run, 1 FROM left_before AS mine JOIN left_after AS theirs USING(key, number))sql";
+
+constexpr const char* kDropPairs = R"sql(
+DROP TABLE pairs; DROP TABLE left_before; DROP TABLE left_after; DROP TABLE runs_before; DROP TABLE runs_after;
+DROP VIEW fits_before; DROP VIEW fits_after; DETACH other)sql";
 
 constexpr const char* kFits = R"sql(
 SELECT mine.id, mine.model, mine.status, theirs.status
@@ -145,7 +152,7 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     sqlite::Bind(attach, sqlite::FileName(after.name())).exec();
     CreateView(database, "fits_before", "main");
     CreateView(database, "fits_after", "other");
-    database.exec(kRunPairs);
+    database.exec(kPairRuns);
     StoreComparison comparison;
     CompareFits(database, comparison);
     {
@@ -155,7 +162,7 @@ Result<StoreComparison> CompareStores(Store& before, Store& after) {
     std::ranges::sort(comparison.most_moved, std::greater(), &MovedParameter::errors);
     comparison.cpus_before = CpusOf(database, "main");
     comparison.cpus_after = CpusOf(database, "other");
-    database.exec("DROP VIEW fits_before; DROP VIEW fits_after; DROP TABLE pairs; DETACH other");
+    database.exec(kDropPairs);
     return comparison;
   });
 }

@@ -53,7 +53,7 @@ bool IsList(const std::string& path) {
   file.read(line.data(), kLongest);
   line.resize(static_cast<std::size_t>(file.gcount()));
   line.resize(std::min(line.find_first_of("\r\n"), line.size()));
-  line.erase(0, line.size() - WithoutByteOrderMark(line).size());
+  line = std::string(WithoutByteOrderMark(line));
   if (line.find('\0') != std::string::npos) return false;
   std::ranges::replace_if(
       line, [](char c) { return c == ';' || c == '\t'; }, ',');

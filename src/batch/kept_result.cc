@@ -19,19 +19,22 @@ Json DataOf(const std::string& result) {
 
 }  // namespace
 
-std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason,
-                    bool has_lost_convergence) {
+std::string WhyKept(const std::string& result, int exit_code, const NewerOutcome& outcome,
+                    const std::function<bool(const std::string& path)>& is_gone) {
+  const bool has_lost_convergence = exit_code == 0 && outcome.exit_code == 1;
+  if (!outcome.result.empty() && outcome.is_same_data && !has_lost_convergence) return "";
   const Json before = DataOf(result);
   if (before.is_null()) return "";
-  if (outcome.empty()) return reason;
-  const Json now = DataOf(outcome);
+  if (outcome.result.empty()) return outcome.reason;
+  const Json now = DataOf(outcome.result);
   const std::string path = before.value("path", "");
   if (has_lost_convergence) return path + ": the fit converged before, and does not converge now";
   if (now.is_null()) return "";
   const auto samples = now.value("samples", std::int64_t{0}), former = before.value("samples", std::int64_t{0});
-  if (samples >= former) return "";
-  return now.value("path", path) + ": the recording has become shorter: " + std::to_string(samples) +
-         " samples instead of " + std::to_string(former) + " before";
+  const std::string new_path = now.value("path", "");
+  if (samples >= former || (new_path != path && !is_gone(path))) return "";
+  return new_path + ": the recording has become shorter: " + std::to_string(samples) + " samples, fewer than the " +
+         std::to_string(former) + " of " + (new_path == path ? "before" : path);
 }
 
 }  // namespace pendulum

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace pendulum {
 
-/// Whether only the former of two fits converged, by their exit codes.
-constexpr bool HasLostConvergence(int former, int now) { return former == 0 && now == 1; }
+/// A newer outcome of a run that has a result.
+struct NewerOutcome {
+  std::string result;  ///< JSON; empty if the recording could not be fitted.
+  std::string reason;  ///< Why it could not.
+  int exit_code = 0;
+  bool is_same_data = false;  ///< The recording has the bytes of the former one.
+};
 
-/// Why the result of a run stays in place of a newer outcome: that has none, its recording has fewer samples,
-/// under the same path or another, or only the former fit converged. Empty if the outcome may replace it, as when the
-/// result is damaged. `result` and `outcome` are JSON; the outcome is empty if the recording could not be fitted for
-/// this `reason`.
-std::string WhyKept(const std::string& result, const std::string& outcome, const std::string& reason,
-                    bool has_lost_convergence);
+/// Why the result of a run, JSON with its exit code, stays in place of a newer outcome: that has none; it has fewer
+/// samples, of the same path or of another one while the former path `is_gone`; or only the former fit converged. Empty
+/// if the outcome may replace it, as when the result is damaged.
+std::string WhyKept(const std::string& result, int exit_code, const NewerOutcome& outcome,
+                    const std::function<bool(const std::string& path)>& is_gone);
 
 }  // namespace pendulum

@@ -302,7 +302,8 @@ class Refitter {
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
     }
     const bool is_bug = attempt.outcome->exit_code == ExitCode(StatusCode::kInternal);  // tried again next time
-    auto why = store_.PutUnlessWorse(id, *attempt.outcome, is_bug ? "" : AttemptOf(attempt.outcome->provenance));
+    auto why =
+        store_.PutUnlessWorse(id, *attempt.outcome, is_bug ? "" : AttemptOf(attempt.outcome->provenance), is_gone);
     return why ? Result<bool>(!why->empty()) : tl::unexpected(std::move(why).error());
   }
 
@@ -392,7 +393,7 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   if (!counts.stopped) {
     const auto changed = store.MarkChangedFiles(source);
     if (!changed) return tl::unexpected(changed.error());
-    counts.stale += *changed;
+    counts.changed = *changed;
   }
   const auto stored = counts.stopped ? store.Commit() : store.Complete();
   if (!stored) return tl::unexpected(stored.error());

@@ -171,16 +171,18 @@ void CopyRows(SQLite::Database& database, const std::string& table) {
 void KeepFormerResults(SQLite::Database& database) {
   database.exec("DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, reason TEXT)");
   SQLite::Statement both(database, R"sql(
-SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, ''), mine.exit_code, theirs.exit_code
+SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, ''), mine.exit_code, theirs.exit_code,
+    theirs.data_sha256 IS mine.data_sha256
   FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
   WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL
     AND (theirs.result IS NULL OR theirs.data_sha256 IS NOT mine.data_sha256
       OR theirs.exit_code <> mine.exit_code))sql");
   SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?)");
   const auto text = [&](int column) { return sqlite::Text(both, column); };
+  const auto is_gone = [](const std::string&) { return false; };  // a merge does not see the recordings
   while (both.executeStep()) {
-    const bool has_lost_convergence = HasLostConvergence(both.getColumn(4).getInt(), both.getColumn(5).getInt());
-    const std::string why = WhyKept(text(1), text(2), text(3), has_lost_convergence);
+    const NewerOutcome newer{text(2), text(3), both.getColumn(5).getInt(), both.getColumn(6).getInt() != 0};
+    const std::string why = WhyKept(text(1), both.getColumn(4).getInt(), newer, is_gone);
     if (why.empty()) continue;
     sqlite::Bind(keep, text(0), why).exec();
     keep.reset();

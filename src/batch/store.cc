@@ -202,10 +202,10 @@ struct Store::State {
   /// The number of the run with this id, in a transaction. kInternal: there is none.
   Result<std::int64_t> Find(const std::string& id);
   /// Why an outcome must not replace the result of a run; empty if it may.
-  std::string WhyWorse(const RunOutcome& outcome, std::int64_t run);
+  std::string WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone);
   void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
-  Result<std::int64_t> MarkOtherFiles(const Source& source);
+  Result<std::int64_t> MarkOtherFiles(const Source& source, bool marks_unreadable);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
   void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
@@ -231,18 +231,14 @@ Result<std::int64_t> Store::State::Find(const std::string& id) {
   return run;
 }
 
-std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run) {
+std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone) {
   SQLite::Statement& before =
       Prepared(result_of, "SELECT data_sha256, result, exit_code FROM runs WHERE run = ? AND result IS NOT NULL");
   std::string why;
   if (sqlite::Bind(before, run).executeStep()) {
-    const bool has_result = !outcome.result.is_null(),
-               is_same = sqlite::Text(before, 0) == outcome.provenance.data_sha256,
-               has_lost_convergence = HasLostConvergence(before.getColumn(2).getInt(), outcome.exit_code);
-    if (!has_result || !is_same || has_lost_convergence) {
-      why = WhyKept(sqlite::Text(before, 1), has_result ? JsonText(outcome.result) : "", outcome.reason,
-                    has_lost_convergence);
-    }
+    const NewerOutcome newer{outcome.result.is_null() ? "" : JsonText(outcome.result), outcome.reason,
+                             outcome.exit_code, sqlite::Text(before, 0) == outcome.provenance.data_sha256};
+    why = WhyKept(sqlite::Text(before, 1), before.getColumn(2).getInt(), newer, is_gone);
   }
   before.reset();
   return why;
@@ -280,7 +276,7 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
 }
 
 /// Marks the results whose rig or calibration is not the file that the manifest names now.
-Result<std::int64_t> Store::State::MarkOtherFiles(const Source& source) {
+Result<std::int64_t> Store::State::MarkOtherFiles(const Source& source, bool marks_unreadable) {
   std::int64_t marked = 0;
   constexpr std::pair<const char*, const char*> kRig{
       "SELECT DISTINCT rig FROM batch WHERE rig <> ''",
@@ -292,6 +288,7 @@ Result<std::int64_t> Store::State::MarkOtherFiles(const Source& source) {
     SQLite::Statement mark(database, MarkFormer(has_other));
     for (const std::string& path : sqlite::Texts(database, paths)) {
       const Result<std::string> bytes = source.read(path);
+      if (!bytes && !marks_unreadable) continue;
       const Result<std::string> hash = bytes ? Sha256(*bytes) : Result<std::string>("");
       if (!hash) return tl::unexpected(hash.error());
       marked += sqlite::Bind(mark, *hash, path).exec();
@@ -432,9 +429,8 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     const std::string former_options = state_->GetMeta("options_sha256");
     state_->database.exec(MarkFormer(kHasOtherEntry));
     if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(MarkFormer("true"));
-    if (auto marked = state_->MarkOtherFiles(source); !marked) return tl::unexpected(marked.error());
+    if (auto marked = state_->MarkOtherFiles(source, true); !marked) return tl::unexpected(marked.error());
     state_->database.exec(kUpdateRuns);
-    state_->database.exec(kUnlistedTable);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
     state_->SetMeta("version", meta.version);
@@ -471,12 +467,12 @@ Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
   });
 }
 
-Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcome& outcome,
-                                          const std::string& attempt) {
+Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt,
+                                          const IsGone& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<std::string> {
     const auto run = state_->Find(id);
     if (!run) return tl::unexpected(run.error());
-    std::string stale = state_->WhyWorse(outcome, *run);
+    std::string stale = state_->WhyWorse(outcome, *run, is_gone);
     if (stale.empty()) {
       state_->PutRows(outcome, *run);
     } else {
@@ -486,21 +482,16 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
   });
 }
 
-Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256,
-                             const std::function<bool(const std::string& path)>& is_gone) {
+Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256, const IsGone& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<bool> {
     const auto added = state_->Find(id);
     if (!added) return tl::unexpected(added.error());
     std::vector<std::int64_t> renamed;
-    bool have_data = false;
     SQLite::Statement& find = state_->Prepared(state_->renamed_runs, kRenamedRuns.c_str());
     sqlite::Bind(find, id, data_sha256);
     while (find.executeStep()) {  // the run of a file that is still there, under another path, is a run of a copy
-      const bool is_same_file = find.getColumn(2).getInt() != 0, has_data = find.getColumn(3).getInt() != 0;
-      if (have_data && !has_data) break;
-      if (!is_same_file && !is_gone(sqlite::Text(find, 1))) continue;
-      renamed.push_back(find.getColumn(0).getInt64());
-      have_data = has_data;
+      const bool is_same_file = find.getColumn(2).getInt() != 0;
+      if (is_same_file || is_gone(sqlite::Text(find, 1))) renamed.push_back(find.getColumn(0).getInt64());
     }
     find.reset();
     if (renamed.size() != 1) return false;
@@ -526,7 +517,7 @@ Result<void> Store::MarkBatch() {
 Result<std::int64_t> Store::MarkChangedFiles(const Source& source) {
   return sqlite::Guard(name(), [&]() -> Result<std::int64_t> {
     state_->BeginIfNone();
-    return state_->MarkOtherFiles(source);
+    return state_->MarkOtherFiles(source, false);
   });
 }
 

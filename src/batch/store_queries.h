@@ -14,11 +14,6 @@ CREATE TEMP TABLE batch(position INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, p
 CREATE INDEX temp.batch_by_rig ON batch(rig);
 CREATE INDEX temp.batch_by_calibration ON batch(calibration))sql";
 
-/// The runs that the batch does not name, by their paths.
-inline const std::string kUnlistedTable =
-    "DROP TABLE IF EXISTS temp.unlisted; CREATE TEMP TABLE unlisted AS SELECT run, path FROM runs WHERE " +
-    kIsUnlisted + "; CREATE INDEX temp.unlisted_by_path ON unlisted(path)";
-
 inline constexpr const char* kUpdateRuns = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   SELECT id, position, path, rig, calibration, from_s, to_s, models, columns FROM batch WHERE true ORDER BY position
@@ -37,18 +32,14 @@ inline constexpr const char* kAddRun = R"sql(
 INSERT INTO runs(id, position, path, rig, calibration, from_s, to_s, models, columns)
   VALUES(?, (SELECT coalesce(max(run), -1) + 1 FROM runs), ?, ?, ?, ?, ?, ?, ?))sql";
 
-/// Unlisted runs that may be a run of the batch without a result under its former name: the same data or path, window,
-/// files and models. Those with the same data come first, marked 1.
+/// Unlisted runs that may be a run of the batch without a result under its former name: the same data, window, files
+/// and models.
 inline const std::string kRenamedRuns =
-    "SELECT runs.run, runs.path, runs.path IS batch.path, runs.data_sha256 IS ?2 AS has_data FROM runs JOIN batch ON "
-    "batch.id = ?1 AND runs.from_s IS "
+    "SELECT runs.run, runs.path, runs.path IS batch.path FROM runs JOIN batch ON batch.id = ? AND runs.from_s IS "
     "batch.from_s AND runs.to_s IS batch.to_s AND runs.rig IS batch.rig AND runs.calibration IS batch.calibration AND "
-    "runs.models IS batch.models WHERE runs.run IN "
-    "(SELECT run FROM runs WHERE position < 0 AND data_sha256 = ?2 UNION "
-    "SELECT run FROM unlisted WHERE path = (SELECT path FROM batch WHERE id = ?1)) AND "
-    "runs.result IS NOT NULL AND "
+    "runs.models IS batch.models WHERE runs.data_sha256 = ? AND runs.result IS NOT NULL AND "
     "NOT EXISTS (SELECT * FROM runs AS own WHERE own.id = batch.id AND own.result IS NOT NULL) AND " +
-    kIsUnlisted + " ORDER BY has_data DESC, runs.run";
+    kIsUnlisted + " ORDER BY runs.run";
 
 inline constexpr const char* kRenameRun = R"sql(
 UPDATE runs SET (id, position, path, rig, calibration, from_s, to_s, models, columns) =

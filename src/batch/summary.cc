@@ -357,8 +357,9 @@ Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const J
   };
   if (!runs.is_complete) {
     add("incomplete",
-        "the last refit is not complete, and the results of recordings that it has not reached are of their former "
-        "content; give its command again, unless it is still running");
+        "the last refit has not reached all recordings, so some results may be of their former content; give its "
+        "command "
+        "again, unless it is still running");
   }
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
   if (counts.stale > 0) {

@@ -340,6 +340,10 @@ std::string RefitText(const RefitCounts& counts) {
     text +=
         "; " + std::to_string(counts.renamed) + (counts.renamed == 1 ? " has" : " have") + " another name than before";
   }
+  if (counts.changed > 0) {
+    text += "; the rig or calibration of " + std::to_string(counts.changed) + (counts.changed == 1 ? " run" : " runs") +
+            " changed meanwhile: give the same command again";
+  }
   return text + KeptText(counts.stale) + (counts.stale > 0 ? " (--replace_by_failures replaces it)" : "");
 }
 

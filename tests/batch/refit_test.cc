@@ -375,13 +375,13 @@ TEST_F(RefitTest, KeepsTheResultOfARecordingThatBecameShorter) {
   EXPECT_EQ(RefitAll(coulomb_).stale, 1);
   EXPECT_EQ(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
   EXPECT_THAT(ValueOf("SELECT stale FROM runs WHERE id = 'a'"),
-              AllOf(StartsWith("0.csv: the recording has become shorter: "), HasSubstr(" samples instead of ")));
+              AllOf(StartsWith("0.csv: the recording has become shorter: "), HasSubstr(" samples, fewer than the ")));
   folder_.Write("0.csv", RecordingText(7));  // another one of the same length
   EXPECT_EQ(RefitAll(coulomb_).stale, 0);
   EXPECT_NE(ValueOf("SELECT result FROM runs WHERE id = 'a'"), result);
 }
 
-TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingWithTheSameIdUnlessItIsShorter) {
+TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingUnlessTheFormerOneIsGoneAndLonger) {
   WriteBatch(folder_, 1);
   RefitAll(coulomb_);
   folder_.Write("other.csv", RecordingText(7));
@@ -391,9 +391,15 @@ TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingWithTheSameIdUnlessItIsShor
   const std::string text = folder_.Read("other.csv");  // a copy that has not ended
   folder_.Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
   folder_.Write("runs.csv", "path,id\nshorter.csv,a\n");
+  fs::rename(folder_ / "other.csv", folder_ / "elsewhere");
   EXPECT_EQ(RefitAll(coulomb_).stale, 1);
   EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "other.csv");
-  EXPECT_THAT(ValueOf("SELECT stale FROM runs"), StartsWith("shorter.csv: the recording has become shorter: "));
+  EXPECT_THAT(ValueOf("SELECT stale FROM runs"), HasSubstr(" samples, fewer than the "));
+  fs::rename(folder_ / "elsewhere", folder_ / "other.csv");  // another recording: both are there
+  RefitOptions again = coulomb_;
+  again.force = true;
+  EXPECT_EQ(RefitAll(again).stale, 0);
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "shorter.csv");
 }
 
 TEST_F(RefitTest, ReplacesADamagedResult) {
@@ -523,31 +529,14 @@ TEST_F(RefitTest, RecognizesARenamedRecordingAfterAFailedAttempt) {
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs"), ElementsAre("new.csv"));
 }
 
-TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsGoneUnderItsNewId) {
-  WriteBatch(folder_, 2);
+TEST_F(RefitTest, DoesNotTakeAnotherRecordingInTheSameFileForARenamedRun) {
+  WriteBatch(folder_, 1);
   RefitAll(coulomb_);
-  const std::string estimates = "SELECT run, model, name, estimate FROM quantities ORDER BY run, model, name";
-  const std::vector<std::string> before = Rows(store_, estimates);
-  fs::remove(folder_ / "0.csv");
-  folder_.Write("runs.csv", "path,id\n0.csv,first\n1.csv,b\n");
-  EXPECT_EQ(RefitAll(coulomb_).stale, 1);
+  folder_.Write("runs.csv", "path,id\n0.csv,tuesday\n");
+  folder_.Write("0.csv", RecordingText(7));
+  EXPECT_EQ(RefitAll(coulomb_).renamed, 0);
   EXPECT_THAT(Rows(store_, "SELECT id, exit_code, stale FROM runs ORDER BY id"),
-              ElementsAre("b|0|NULL", StartsWith("first|0|0.csv: there is no such file")));
-  EXPECT_EQ(Rows(store_, estimates), before);
-}
-
-TEST_F(RefitTest, KeepsTheResultOfARecordingThatIsCutOffUnderItsNewId) {
-  WriteBatch(folder_, 2);
-  RefitAll(coulomb_);
-  const std::string text = folder_.Read("0.csv");
-  folder_.Write("runs.csv", "path,id\n0.csv,first\n1.csv,b\n");
-  for (const std::size_t size : {std::size_t{0}, text.rfind('\n', text.size() * 9 / 10) + 1}) {
-    folder_.Write("0.csv", text.substr(0, size));
-    EXPECT_EQ(RefitAll(coulomb_).stale, 1);
-  }
-  folder_.Write("0.csv", text);
-  EXPECT_EQ(RefitAll(coulomb_).restored, 1);
-  EXPECT_THAT(Rows(store_, "SELECT id, stale FROM runs ORDER BY id"), ElementsAre("b|NULL", "first|NULL"));
+              ElementsAre("a|0|NULL", "tuesday|0|NULL"));
 }
 
 TEST_F(RefitTest, MarksResultsOfARigThatChangedMeanwhile) {
@@ -560,7 +549,7 @@ TEST_F(RefitTest, MarksResultsOfARigThatChangedMeanwhile) {
   options.progress = [&](const RefitCounts& counts) {
     if (counts.done() == 1) folder_.Write("rig.json", std::string(small_batch::kRigText) + "\n");
   };
-  EXPECT_EQ(RefitAll(options).stale, 1);
+  EXPECT_EQ(RefitAll(options).changed, 1);
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs WHERE stale IS NOT NULL"), ElementsAre("a"));
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a"));
 }

@@ -314,7 +314,7 @@ TEST_F(SummaryTest, LeavesFormerResultsOut) {
   Store store =
       StoreOf(PlainManifest(4), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 0 ? 100 : 10)}); });
   RunOutcome failure = FailureOf("run0.csv: there is no such file; check the path", 3);
-  ASSERT_EQ(store.PutUnlessWorse("run0.csv", failure, "inputs").value(), failure.reason);
+  ASSERT_EQ(store.PutUnlessWorse("run0.csv", failure, "inputs", nullptr).value(), failure.reason);
   const Json summary = SummaryOf(store);
   EXPECT_EQ(summary["headline"]["text"], "3 of 4 recordings fitted; 1 with a former result only");
   EXPECT_EQ(summary["headline"]["stale_runs"][0]["reason"], "there is no such file; check the path");

@@ -25,6 +25,7 @@ struct RefitCounts {
   std::int64_t renamed = 0;   ///< Refitted runs that were in the store under another id (Store::TakeOver).
   std::int64_t stale = 0;     ///< Runs of both kinds that keep a former result.
   std::int64_t stale_before = 0;  ///< Of these, runs that were not tried again.
+  std::int64_t changed = 0;       ///< Runs whose rig or calibration changed during the refit; they need another one.
   bool stopped = false;           ///< Stopped before all runs were processed.
 
   std::int64_t done() const { return current + refitted; }

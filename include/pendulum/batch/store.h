@@ -112,21 +112,25 @@ class Store {
   /// Replaces the rows of a run. Its fits of models that the outcome does not have stay, and are marked stale.
   Result<void> Put(const std::string& id, const RunOutcome& outcome);
 
-  /// As Put, but keeps the result of a run if the outcome has none, or is of the same recording with fewer samples; the
-  /// rows are then marked stale. `attempt`: what the outcome was made with. Returns why the rows were kept; empty if
-  /// they were replaced.
-  Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt);
+  /// Whether there is no file at the path of a recording.
+  using IsGone = std::function<bool(const std::string& path)>;
+
+  /// As Put, but keeps the result of a run if the outcome has none, does not converge as the result does, or has fewer
+  /// samples, of the same path or while the former one `is_gone`; the rows are then marked stale. `attempt`: what the
+  /// outcome was made with. Returns why the rows were kept; empty if they were replaced.
+  Result<std::string> PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt,
+                                     const IsGone& is_gone);
 
   /// Marks the results of the batch whose rig or calibration is not the file that the source has now, because it
   /// changed during the refit. Returns their number.
   Result<std::int64_t> MarkChangedFiles(const Source& source);
 
   /// A run of the batch without a result takes the rows of a run that the batch does not name, if that run is the same
-  /// under another name: it has a result of a recording with these bytes or else of the same path, the same window,
+  /// under another name: it has a result of a recording with these bytes, the same
+  /// window,
   /// rig, calibration and models, and the same path or one that `is_gone`. Of several such runs none is taken. Returns
   /// whether one was taken.
-  Result<bool> TakeOver(const std::string& id, const std::string& data_sha256,
-                        const std::function<bool(const std::string& path)>& is_gone);
+  Result<bool> TakeOver(const std::string& id, const std::string& data_sha256, const IsGone& is_gone);
 
   /// Marks all results of the batch as former ones, which the next refit replaces whatever their inputs are.
   Result<void> MarkBatch();

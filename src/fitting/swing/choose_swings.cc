@@ -30,9 +30,16 @@ tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int cou
                                                  " in the recording; it has " + std::to_string(count));
 }
 
-/// Warns of a change of the steps. If it lies outside the chosen swings, their times may still be the wrong ones.
+/// Warns of a change of the steps. Outside the chosen swings, it says that the clock may be wrong there or here, unless
+/// it is near an end.
 ChosenSwings WithWarning(ChosenSwings swings, const std::optional<StepChange>& change) {
-  if (change) swings.warnings.push_back(change->ToWarning());
+  const auto has_change = [&](int k) {
+    const FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
+    return swing.from < change->time && change->time < swing.to;
+  };
+  if (change && (!change->is_near_end || std::ranges::any_of(swings.chosen, has_change))) {
+    swings.warnings.push_back(change->ToWarning());
+  }
   return swings;
 }
 
@@ -58,7 +65,7 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   }
   if (IsUndersampled(*part, rig)) {
     if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
-    return ChosenSwings{{WholeRecording(*part)}, {1}};
+    return WithWarning(ChosenSwings{{WholeRecording(*part)}, {1}, {}}, change);
   }
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));

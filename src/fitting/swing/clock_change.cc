@@ -20,18 +20,22 @@ using Eigen::Index;
 
 constexpr double kLeastChange = 0.004;  // relative: twice this in inertia
 
+constexpr double kEndShare = 0.05;
+
 /// The sample after which the steps of so many `rows` change most clearly; std::nullopt if they do not. Their
-/// logarithms are clamped without the kMinSteps largest and smallest, so that gaps do not matter.
-std::optional<Index> FindStepChange(const Eigen::VectorXd& time, Index rows) {
-  constexpr Index kMinSteps = 8;
+/// logarithms are clamped to those between the quantiles `share` and 1 - share, so that as many gaps do not matter.
+std::optional<Index> FindStepChange(const Eigen::VectorXd& time, Index rows, double share) {
+  constexpr Index kMinRows = 20;
   constexpr double kDeviations = 10;
+  const Index min_steps = std::max<Index>(kMinRows / rows, 2);
   const Index count = (time.size() - 1) / rows;
-  if (count < 2 * kMinSteps) return std::nullopt;
+  if (count < 2 * min_steps) return std::nullopt;
   const Eigen::VectorXd ends = time(Eigen::seqN(0, count + 1, rows));
   const Eigen::VectorXd steps = ends.tail(count) - ends.head(count);
   std::vector<double> sorted(steps.begin(), steps.end());
   std::ranges::sort(sorted);
-  const double low = sorted[kMinSteps - 1], high = sorted[static_cast<std::size_t>(count - kMinSteps)];
+  const auto left_out = static_cast<std::size_t>(share * static_cast<double>(count - 1));
+  const double low = sorted[left_out], high = sorted[sorted.size() - 1 - left_out];
   if (!(low > 0) || std::log(high / low) < kLeastChange) return std::nullopt;
   const Eigen::ArrayXd logs = steps.array().max(low).min(high).log();
   const Eigen::ArrayXd centred = logs - logs.mean();
@@ -46,15 +50,18 @@ std::optional<Index> FindStepChange(const Eigen::VectorXd& time, Index rows) {
     at = left;
   }
   const double within = (centred.square().sum() - clearest) / static_cast<double>(count);
-  if (at < kMinSteps || at > count - kMinSteps || clearest < kDeviations * kDeviations * within) return std::nullopt;
+  if (at < min_steps || at > count - min_steps || clearest < kDeviations * kDeviations * within) return std::nullopt;
   return at * rows;
 }
 
-/// The change of steps from row to row, otherwise of longer ones, in which the rounding of times counts for less.
+/// The change of steps from row to row, of longer ones, in which the rounding of times counts for less, or of few steps
+/// near an end.
 std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
   constexpr Index kRows = 8;
-  const std::optional<Index> change = FindStepChange(time, 1);
-  return change ? change : FindStepChange(time, kRows);
+  constexpr double kFew = 0.01;
+  std::optional<Index> change = FindStepChange(time, 1, kEndShare);
+  if (!change) change = FindStepChange(time, kRows, kEndShare);
+  return change ? change : FindStepChange(time, 1, kFew);
 }
 
 /// The median of a logarithm, with its standard error; std::nullopt of nothing.
@@ -139,13 +146,16 @@ ChangeOfStep ChangeIn(const BothSides& sides) {
 
 /// The change that a recording shows after sample `change`.
 StepChange StepChangeAt(const Eigen::VectorXd& time, Index change) {
-  const auto mean_step = [&](Index first, Index last) {
-    constexpr double kGap = 1.5;
-    const Eigen::ArrayXd steps = time.segment(first + 1, last - first) - time.segment(first, last - first);
-    const double longest = kGap * Median(std::vector<double>(steps.begin(), steps.end()));
-    return (steps <= longest).select(steps, 0).sum() / static_cast<double>((steps <= longest).count());
+  const Index last = time.size() - 1;
+  const auto mean_step = [&](Index from, Index to) {  // of the steps between the quantiles, so that gaps do not matter
+    const Eigen::VectorXd steps = time.segment(from + 1, to - from) - time.segment(from, to - from);
+    std::vector<double> sorted(steps.begin(), steps.end());
+    std::ranges::sort(sorted);
+    const auto left_out = static_cast<std::size_t>(kEndShare * static_cast<double>(sorted.size()));
+    return steps.array().max(sorted[left_out]).min(sorted[sorted.size() - 1 - left_out]).mean();
   };
-  return {time[change], mean_step(0, change), mean_step(change, time.size() - 1)};
+  const auto share = static_cast<double>(std::min(change, last - change)) / static_cast<double>(last);
+  return {time[change], mean_step(0, change), mean_step(change, last), share < kEndShare};
 }
 
 /// The time of a change [s], with the digits that distinguish samples.

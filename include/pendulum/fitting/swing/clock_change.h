@@ -10,8 +10,9 @@ namespace pendulum {
 
 /// A time at which the steps between rows change, although nothing shows whether the clock changed or the sampling.
 struct StepChange {
-  double time;           ///< s.
-  double before, after;  ///< s, mean steps without gaps.
+  double time;               ///< s.
+  double before, after;      ///< s, mean steps without gaps.
+  bool is_near_end = false;  ///< Less than a twentieth of the samples is on one side.
 
   /// "clock_unproven".
   Warning ToWarning() const;

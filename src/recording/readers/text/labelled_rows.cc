@@ -135,7 +135,9 @@ LabelledRow FindTypicalRow(std::string_view text) {
     last = std::move(row);
   });
   for (const auto& [header, kind] : kinds) {
-    if (kind.first >= kFewest && 2 * kind.first > lines) return kind.second;
+    // Lines with one label each may be two halves of a row.
+    const bool is_usual = kind.second.size() == 1 ? 10 * kind.first > 9 * lines : 2 * kind.first > lines;
+    if (kind.first >= kFewest && is_usual) return kind.second;
   }
   return {};
 }

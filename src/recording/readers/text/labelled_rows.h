@@ -8,7 +8,7 @@
 
 namespace pendulum::csv {
 
-/// Whether a text has rows in which each of two or more values has its label, as Arduino's serial plotter reads them
+/// Whether a text has rows in which each of one value or more has its label, as Arduino's serial plotter reads them
 /// ("t:2310,pot:638") and as people print them ("t=2310 ms  pot=638"). `begin`: the first bytes of a text.
 bool HasLabelledRows(std::string_view begin);
 

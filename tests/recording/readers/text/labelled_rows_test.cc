@@ -46,7 +46,9 @@ TEST(LabelledRows, MayBeginWithARowThatIsCutOffOrWithOtherLabels) {
 }
 
 TEST(LabelledRows, MayHaveOneValueBesideAStamp) {
-  EXPECT_EQ(TableOfLabelledRows(Rows("pot: {v}", 5), "run.csv"), "pot\n" + Rows("{v}", 5));
+  EXPECT_EQ(TableOfLabelledRows(Rows("14:03:22.123 -> pot: {v}", 5), "run.csv").value(),
+            "14:03:22.123 ->pot\n" + Rows("14:03:22.123 ->{v}", 5));
+  EXPECT_FALSE(HasLabelledRows("t: 0\n" + Rows("v: {v}\nt: {t}", 20)));
   EXPECT_THAT(FaultOf(Rows("adc_counts:{v}")), HasSubstr("give the rate of the rows in Hz with --sample_rate_hz"));
 }
 
