@@ -113,6 +113,8 @@ def check_include(root, path, header, quoted):
     """The error if this file includes this header, or None."""
     floor = floor_of(path)
     in_tests = path.parts[0] == "tests"
+    if header == "pendulum/base/try.h" and path.parts[0] == "include":
+        return "its macros would reach the programs that use the library"
     if in_tests and floor in FREE_TEST_FOLDERS:
         return None
     ours = re.fullmatch(r"(?:pendulum|tests)/(\w+)/.*", header)
@@ -279,6 +281,7 @@ BAD_TREE = {
     "include/pendulum/base/cout.h": ("auto& s = std::cout;\n", "a stream of the process has no place"),
     "include/pendulum/base/cerr.h": ("auto& s = std::cerr;\n", "a stream of the process has no place"),
     "include/pendulum/base/printf.h": ('void f() { fprintf(stderr, "x"); }\n', "printf has no place"),
+    "include/pendulum/base/macros.h": ('#include "pendulum/base/try.h"\n', "its macros would reach the programs"),
     "include/pendulum/base/exit.h": ("void f() { std::exit(1); }\n", "exit has no place"),
     "include/pendulum/base/throw.h": ("void f() { throw 1; }\n", "throw has no place"),
     "include/pendulum/base/new.h": ("int* p = new int;\n", "a naked new has no place"),

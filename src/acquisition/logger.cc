@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -40,11 +41,10 @@ std::string RefusalReason(std::uint8_t status) {
 Result<std::optional<TimedMessage>> Logger::Receive(double seconds) {
   const double until = port_.Time() + seconds;
   while (pending_.empty()) {
-    const auto bytes = port_.Read(until - port_.Time());
-    if (!bytes) return tl::unexpected(bytes.error());
+    ASSIGN_OR_RETURN(const auto bytes, port_.Read(until - port_.Time()));
     const double now = port_.Time();
-    bytes_ += bytes->size();
-    for (const LoggerMessage& message : decoder_.Decode(*bytes)) pending_.push_back({message, now});
+    bytes_ += bytes.size();
+    for (const LoggerMessage& message : decoder_.Decode(bytes)) pending_.push_back({message, now});
     if (pending_.empty() && (stop_ || now >= until)) return std::nullopt;
   }
   const TimedMessage next = pending_.front();
@@ -93,10 +93,10 @@ Result<wire::Info> Logger::Connect(double timeout_seconds) {
     const auto* info = std::get_if<wire::Info>(&received.message);
     return info != nullptr && info->is_running == 0 ? std::optional(CheckInfo(*info)) : std::nullopt;
   };
-  const auto answer = Exchange(commands, static_cast<int>(std::ceil(timeout_seconds / kRepeatSeconds)), pick);
-  if (!answer) return tl::unexpected(answer.error());
-  if (!*answer) return NoAnswer(timeout_seconds);
-  return **answer;
+  ASSIGN_OR_RETURN(const auto answer,
+                   Exchange(commands, static_cast<int>(std::ceil(timeout_seconds / kRepeatSeconds)), pick));
+  if (!answer) return NoAnswer(timeout_seconds);
+  return *answer;
 }
 
 tl::unexpected<Status> Logger::OtherProtocolError(const OtherProtocol& other) const {
@@ -128,11 +128,11 @@ tl::unexpected<Status> Logger::NoAnswerTo(std::uint8_t kind) const {
 }
 
 Result<void> Logger::Ask(const std::vector<std::uint8_t>& command, std::uint8_t kind, const std::string& what) {
-  const auto ack = Exchange(command, kTries, [kind](const TimedMessage& received) { return AckOf(kind, received); });
-  if (!ack) return tl::unexpected(ack.error());
-  if (!*ack) return NoAnswerTo(kind);
-  if ((*ack)->status == wire::kDone) return {};
-  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + RefusalReason((*ack)->status));
+  ASSIGN_OR_RETURN(const auto ack,
+                   Exchange(command, kTries, [kind](const TimedMessage& received) { return AckOf(kind, received); }));
+  if (!ack) return NoAnswerTo(kind);
+  if (ack->status == wire::kDone) return {};
+  return Error(StatusCode::kDataLoss, "the logger refuses " + what + ": " + RefusalReason(ack->status));
 }
 
 Result<void> Logger::SetRate(const SamplingRate& rate) {

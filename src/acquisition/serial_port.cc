@@ -19,6 +19,7 @@
 
 #include "pendulum/acquisition/device_clock.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -89,7 +90,7 @@ Result<SerialPort> SerialPort::Open(const std::string& path, unsigned baud) {
     return Error(StatusCode::kDataLoss, "cannot open " + path + ": " + SystemErrorText(error) + remedy);
   }
   SerialPort port(descriptor, path);
-  if (auto configured = port.Configure(baud); !configured) return tl::unexpected(configured.error());
+  RETURN_IF_ERROR(port.Configure(baud));
   return port;
 }
 

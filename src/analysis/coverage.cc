@@ -10,6 +10,7 @@
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/parallel.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/fitting/joint/fit_jointly.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
@@ -90,10 +91,9 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
   const DrawnErrors drawn = DrawErrors(scenario, seed);  // one rig, clock and calibration for the whole set
   for (int k = 0; k < runs; ++k) {
     SyntheticOptions run = RunOfSet(scenario, seed, k, runs);
-    Result<Recording> recording = SimulateRecording(run);
-    if (!recording) return tl::unexpected(recording.error());
-    simulated.push_back({std::move(run), recording->time});
-    recordings.push_back(WithEdges(WithErrors(*std::move(recording), scenario, drawn), scenario.fit.noise));
+    ASSIGN_OR_RETURN(Recording recording, SimulateRecording(run));
+    simulated.push_back({std::move(run), recording.time});
+    recordings.push_back(WithEdges(WithErrors(std::move(recording), scenario, drawn), scenario.fit.noise));
     if (Result<FitReport> fit = FitRecording(recordings.back(), scenario.fit)) alone.push_back(*std::move(fit));
   }
   const std::vector<double> truth = TrueParameters(simulated.front().truth);
@@ -108,12 +108,11 @@ Result<RunOutcome> RunSet(const CoverageScenario& scenario, std::uint64_t seed, 
 
 Result<RunOutcome> RunOne(const CoverageScenario& scenario, std::uint64_t seed) {
   const SyntheticOptions run = ScenarioRun(scenario, seed);
-  const Result<Recording> recording = SimulateRecording(run);
-  if (!recording) return tl::unexpected(recording.error());
+  ASSIGN_OR_RETURN(const Recording recording, SimulateRecording(run));
   const DrawnErrors drawn = DrawErrors(scenario, seed);
-  const Recording known = WithEdges(WithErrors(*recording, scenario, drawn), scenario.fit.noise);
+  const Recording known = WithEdges(WithErrors(recording, scenario, drawn), scenario.fit.noise);
   const Result<FitReport> report = FitRecording(known, scenario.fit);
-  const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording->time);
+  const std::vector<std::optional<double>> bounds = CramerRaoBounds(run, recording.time);
   return OutcomeOf(scenario, drawn, TrueParameters(run), bounds, report ? &*report : nullptr);
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/swing/fit_swing.h"
 #include "pendulum/model/nesting.h"
 
@@ -174,9 +175,8 @@ Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, cons
   const std::size_t richest_index = Richest(models);
   const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
   ReportFit(options, models, richest_index, 0);
-  Result<SwingFit> richest_fit = FitSwing(std::move(recording), swing, richest_options);
-  if (!richest_fit) return tl::unexpected(richest_fit.error());
-  return SharedFits(*std::move(richest_fit), richest_index, options, models).Take();
+  ASSIGN_OR_RETURN(SwingFit richest_fit, FitSwing(std::move(recording), swing, richest_options));
+  return SharedFits(std::move(richest_fit), richest_index, options, models).Take();
 }
 
 void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedModels& fitted) {

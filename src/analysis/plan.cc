@@ -9,6 +9,7 @@
 
 #include "pendulum/analysis/cramer_rao.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/model/friction/registry.h"
@@ -178,8 +179,7 @@ Result<Plan> MakePlan(const SyntheticOptions& base) {
     return Error(StatusCode::kInvalidArgument,
                  "noise and resolution are both 0, so the standard errors would be 0; give one of them");
   }
-  const Result<Recording> recording = SimulateRecording(base);
-  if (!recording) return tl::unexpected(recording.error());
+  ASSIGN_OR_RETURN(const Recording recording, SimulateRecording(base));
   Plan plan;
   plan.parameters = ParametersOf(base);
   plan.truth = TrueParameters(base);
@@ -189,7 +189,7 @@ Result<Plan> MakePlan(const SyntheticOptions& base) {
     Predict(one.run, one.row);
     plan.rows.push_back(std::move(one.row));
   }
-  plan.amplitude_of_equal_bias = AmplitudeOfEqualBias(base, recording->time);
+  plan.amplitude_of_equal_bias = AmplitudeOfEqualBias(base, recording.time);
   return plan;
 }
 

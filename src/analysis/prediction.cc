@@ -12,6 +12,7 @@
 #include "pendulum/analysis/linear_fit.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/undersampled.h"
 
@@ -73,11 +74,10 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
     return Error(StatusCode::kFailedPrecondition, "the samples are too far apart to leave some of them out");
   }
   options = OptionsLike(fit, std::move(options));
-  const Result<FitProblem> problem = MakeFitProblem(used, options);
-  if (!problem) return tl::unexpected(problem.error());
-  options = OptionsAtEstimates(*problem, fit, std::move(options));
+  ASSIGN_OR_RETURN(const FitProblem problem, MakeFitProblem(used, options));
+  options = OptionsAtEstimates(problem, fit, std::move(options));
   const FittedMotion motion(used, fit, options.rig, options.stop);
-  const int release = problem->solve.release_time;
+  const int release = problem.solve.release_time;
   const double begin = release < 0 ? 0.0 : options.search.start_values->parameters[static_cast<std::size_t>(release)];
   const double end = motion.instants()[used.size() - 1];
   const double period = motion.small_angle_period();
@@ -86,7 +86,7 @@ Result<Task> MakeTask(const Recording& used, const FitReport& fit, FitOptions op
                                                       " periods; at least " + NumberText(kMinPeriods) +
                                                       " are needed to leave some of them out");
   }
-  return Task{used, std::move(options), motion.instants(), begin, end, period, problem->noise};
+  return Task{used, std::move(options), motion.instants(), begin, end, period, problem.noise};
 }
 
 Recording Without(const Recording& used, const Part& part) {
@@ -154,16 +154,15 @@ Result<void> PredictPart(const Task& task, const Part& part, Sums& sums) {
   if (rest.size() < std::max<Index>(kMinimumSamples, 2 * parameters)) {
     return Error(StatusCode::kFailedPrecondition, "too few samples are left");
   }
-  const Result<FitReport> fit = FitRecording(rest, task.options);
-  if (!fit) return tl::unexpected(fit.error());
-  const auto untraced = [&] { return Error(StatusCode::kFailedPrecondition, fit->reason); };
-  if (fit->termination == Termination::kFailed) return untraced();
+  ASSIGN_OR_RETURN(const FitReport fit, FitRecording(rest, task.options));
+  const auto untraced = [&] { return Error(StatusCode::kFailedPrecondition, fit.reason); };
+  if (fit.termination == Termination::kFailed) return untraced();
   Eigen::MatrixXd jacobian;
   const auto predicted =
-      FittedMotion(rest, *fit, task.options.rig, task.options.stop).Readings(task.instants, &jacobian);
+      FittedMotion(rest, fit, task.options.rig, task.options.stop).Readings(task.instants, &jacobian);
   if (!predicted) return untraced();
-  if (fit->termination != Termination::kConverged) sums.without_errors = fit->reason;
-  const Eigen::VectorXd variance = TrajectoryVariance(*fit, jacobian).array() + ReadingVariance(*fit);
+  if (fit.termination != Termination::kConverged) sums.without_errors = fit.reason;
+  const Eigen::VectorXd variance = TrajectoryVariance(fit, jacobian).array() + ReadingVariance(fit);
   AddPart(task, part, *predicted, variance, sums);
   return {};
 }

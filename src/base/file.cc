@@ -9,6 +9,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "pendulum/base/try.h"
+
 namespace pendulum {
 namespace {
 
@@ -68,9 +70,8 @@ Result<std::string> ReadFile(const std::filesystem::path& path, std::string_view
   std::string bytes(std::min(unknown ? kBlock : size, max_bytes) + 1, '\0');  // One more byte detects the end.
   std::size_t used = 0;
   while (true) {
-    const Result<std::size_t> got = file->Read(std::span(bytes).subspan(used));
-    if (!got) return tl::unexpected(got.error());
-    used += *got;
+    ASSIGN_OR_RETURN(const std::size_t got, file->Read(std::span(bytes).subspan(used)));
+    used += got;
     if (used < bytes.size() || used > max_bytes) break;
     bytes.resize(std::min<std::uintmax_t>(2 * used, max_bytes + 1));
   }

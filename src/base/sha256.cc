@@ -6,6 +6,7 @@
 #include <openssl/evp.h>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -37,7 +38,7 @@ Result<std::string> Sha256Digest::Text() {
 
 Result<std::string> Sha256(std::string_view bytes) {
   Sha256Digest digest;
-  if (auto added = digest.Add(bytes); !added) return tl::unexpected(added.error());
+  RETURN_IF_ERROR(digest.Add(bytes));
   return digest.Text();
 }
 

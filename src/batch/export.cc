@@ -14,6 +14,7 @@
 #include "batch/sqlite.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -110,7 +111,7 @@ class CsvTable {
     for (const char* name : kStatistics) query += std::string(", fits.") + name;
     SQLite::Statement fits(database_, query + " FROM runs JOIN fits USING(run) ORDER BY position, id, fits.model");
     while (fits.executeStep()) {
-      if (auto taken = take(Row(fits)); !taken) return taken;
+      RETURN_IF_ERROR(take(Row(fits)));
     }
     return {};
   }
@@ -174,7 +175,7 @@ Result<void> ExportJsonLines(Store& store, const TextSink& take) {
   return sqlite::Guard(store.name(), [&]() -> Result<void> {
     SQLite::Statement runs(store.database(), kRuns);
     while (runs.executeStep()) {
-      if (auto taken = take(JsonLine(runs)); !taken) return taken;
+      RETURN_IF_ERROR(take(JsonLine(runs)));
     }
     return {};
   });
@@ -183,7 +184,7 @@ Result<void> ExportJsonLines(Store& store, const TextSink& take) {
 Result<void> ExportCsv(Store& store, const TextSink& take) {
   return sqlite::Guard(store.name(), [&]() -> Result<void> {
     CsvTable table(store.database());
-    if (auto taken = take(table.Header()); !taken) return taken;
+    RETURN_IF_ERROR(take(table.Header()));
     return table.Rows(take);
   });
 }

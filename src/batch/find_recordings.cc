@@ -12,6 +12,7 @@
 #include <fnmatch.h>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/recording/readers/file_names.h"
 
@@ -63,12 +64,11 @@ bool IsList(const std::string& path) {
 /// Appends the paths that match `parts` in `folder` to `found`, in the order of names.
 Result<void> Find(const fs::path& folder, std::span<const std::string> parts, std::vector<std::string>& found) {
   if (parts.front() == kAnyFolders) {  // matches zero folders, too
-    if (auto done = Find(folder, parts.subspan(1), found); !done) return done;
+    RETURN_IF_ERROR(Find(folder, parts.subspan(1), found));
   }
-  const auto entries = EntriesOf(folder);
-  if (!entries) return tl::unexpected(entries.error());
+  ASSIGN_OR_RETURN(const auto entries, EntriesOf(folder));
   std::error_code error;
-  for (const fs::directory_entry& entry : *entries) {
+  for (const fs::directory_entry& entry : entries) {
     const std::string name = entry.path().filename().string();
     const bool any = parts.front() == kAnyFolders;
     if (any ? name.starts_with('.') : !MatchesPattern(name, parts.front())) continue;
@@ -76,7 +76,7 @@ Result<void> Find(const fs::path& folder, std::span<const std::string> parts, st
     if (last && !any) {
       if (!entry.is_directory(error)) found.push_back((folder / name).string());
     } else if (entry.is_directory(error) && !entry.is_symlink(error)) {
-      if (auto done = Find(folder / name, any ? parts : parts.subspan(1), found); !done) return done;
+      RETURN_IF_ERROR(Find(folder / name, any ? parts : parts.subspan(1), found));
     }
   }
   return {};

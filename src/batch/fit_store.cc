@@ -15,6 +15,7 @@
 #include "batch/fit_store_queries.h"
 #include "batch/sqlite.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/store_lock.h"
 
 namespace pendulum {
@@ -45,13 +46,10 @@ Result<FileHashes> HashesOf(const RunFiles& files) {
   const auto hash = [](const SharedFile& file) -> Result<std::string> {
     return file ? Sha256(file->bytes) : Result<std::string>("");
   };
-  auto data = Sha256(files.data.bytes);
-  if (!data) return tl::unexpected(data.error());
-  auto rig = hash(files.rig);
-  if (!rig) return tl::unexpected(rig.error());
-  auto calibration = hash(files.calibration);
-  if (!calibration) return tl::unexpected(calibration.error());
-  return FileHashes{*std::move(data), *std::move(rig), *std::move(calibration)};
+  ASSIGN_OR_RETURN(auto data, Sha256(files.data.bytes));
+  ASSIGN_OR_RETURN(auto rig, hash(files.rig));
+  ASSIGN_OR_RETURN(auto calibration, hash(files.calibration));
+  return FileHashes{std::move(data), std::move(rig), std::move(calibration)};
 }
 
 }  // namespace
@@ -100,7 +98,7 @@ Result<void> FitStore::State::Write(const Work& work) {
   if (!done) return done;
   done = sqlite::Guard(writer.name(), [&]() -> Result<void> {
     SQLite::Savepoint savepoint(writer.database(), "request");
-    if (auto worked = work(writer.database()); !worked) return worked;
+    RETURN_IF_ERROR(work(writer.database()));
     savepoint.release();
     return {};
   });
@@ -186,21 +184,17 @@ FitStore::~FitStore() {
 }
 
 Result<std::unique_ptr<FitStore>> FitStore::Open(const std::filesystem::path& path) {
-  auto lock = StoreLock::Take(path);
-  if (!lock) return tl::unexpected(lock.error());
-  auto writer = Store::Open(path, Store::Mode::kServe);
-  if (!writer) return tl::unexpected(writer.error());
-  auto reader = Store::Open(path, Store::Mode::kRead);
-  if (!reader) return tl::unexpected(reader.error());
-  auto state = std::make_unique<State>(*std::move(lock), *std::move(writer), *std::move(reader));
+  ASSIGN_OR_RETURN(auto lock, StoreLock::Take(path));
+  ASSIGN_OR_RETURN(auto writer, Store::Open(path, Store::Mode::kServe));
+  ASSIGN_OR_RETURN(auto reader, Store::Open(path, Store::Mode::kRead));
+  auto state = std::make_unique<State>(std::move(lock), std::move(writer), std::move(reader));
   return std::make_unique<FitStore>(std::move(state));
 }
 
 Result<void> FitStore::Add(const FitOrder& order, const RunOutcome& outcome, const std::optional<RequestKey>& key) {
-  const auto hashes = HashesOf(order.files);
-  if (!hashes) return tl::unexpected(hashes.error());
+  ASSIGN_OR_RETURN(const auto hashes, HashesOf(order.files));
   return state_->Write([&](SQLite::Database&) -> Result<void> {
-    if (auto added = state_->AddRun(order, *hashes, std::nullopt); !added) return added;
+    RETURN_IF_ERROR(state_->AddRun(order, hashes, std::nullopt));
     state_->StoreAnswer(key, "/v1/fits/" + order.id, order.created);
     return state_->writer.Put(order.id, outcome);
   });
@@ -211,16 +205,15 @@ Result<void> FitStore::AddBatch(const std::string& id, const std::string& create
   std::vector<FileHashes> hashes;
   hashes.reserve(orders.size());
   for (const FitOrder& order : orders) {
-    auto of_one = HashesOf(order.files);
-    if (!of_one) return tl::unexpected(of_one.error());
-    hashes.push_back(*std::move(of_one));
+    ASSIGN_OR_RETURN(auto of_one, HashesOf(order.files));
+    hashes.push_back(std::move(of_one));
   }
   return state_->Write([&](SQLite::Database& database) -> Result<void> {
     SQLite::Statement add(database, "INSERT INTO batches(id, created) VALUES(?, ?)");
     sqlite::Bind(add, id, created).exec();
     const std::int64_t batch = database.getLastInsertRowid();
     for (std::size_t i = 0; i < orders.size(); ++i) {
-      if (auto added = state_->AddRun(orders[i], hashes[i], batch); !added) return added;
+      RETURN_IF_ERROR(state_->AddRun(orders[i], hashes[i], batch));
     }
     state_->StoreAnswer(key, "/v1/batches/" + id, created);
     return {};

@@ -18,6 +18,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 
@@ -52,9 +53,8 @@ class CsvRows {
     row_bytes_ = 0;
     row_.line = lines_.number() + 1;
     while (!complete_) {
-      const Result<bool> next = lines_.Next();
-      if (!next) return tl::unexpected(next.error());
-      if (!*next) return EndOrUnclosedQuote();
+      ASSIGN_OR_RETURN(const bool next, lines_.Next());
+      if (!next) return EndOrUnclosedQuote();
       if (!has_delimiter_ && lines_.line().find_first_not_of(" \t") != std::string::npos)
         ChooseDelimiter(lines_.line());
       if (!Parse(lines_.line()) || !Parse("\n")) return QuoteInFieldError();
@@ -196,7 +196,7 @@ class Header {
         return Fault(where, "the header has the column " + Quoted(name) + " twice; rename one of them");
       }
     }
-    if (auto checked = CheckSpelling(where, header.names_); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(CheckSpelling(where, header.names_));
     if (std::ranges::find(header.names_, "path") == header.names_.end()) {
       return Fault(where, "the header has no column path, only " + Quoted(NameList(header.names_)) +
                               "; the column path names the recordings");
@@ -271,22 +271,19 @@ class Header {
 }  // namespace
 
 Result<void> ReadManifest(const std::filesystem::path& path, const EntrySink& take) {
-  Result<InputFile> file = path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "manifest");
-  if (!file) return tl::unexpected(file.error());
-  CsvRows rows(*std::move(file));
+  ASSIGN_OR_RETURN(InputFile file, path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "manifest"));
+  CsvRows rows(std::move(file));
   Row row;
   auto next = rows.Next(row);
   if (!next) return tl::unexpected(next.error());
   if (!*next) return Fault(rows.name(), "the manifest is empty; its first line names the columns, such as path,id");
-  const auto header = Header::Make(rows.name(), std::move(row));
-  if (!header) return tl::unexpected(header.error());
+  ASSIGN_OR_RETURN(const auto header, Header::Make(rows.name(), std::move(row)));
   for (std::int64_t position = 0;; ++position) {
     next = rows.Next(row);
     if (!next) return tl::unexpected(next.error());
     if (!*next) return {};
-    const auto entry = header->Entry(row, position);
-    if (!entry) return tl::unexpected(entry.error());
-    if (auto taken = take(*entry); !taken) return taken;
+    ASSIGN_OR_RETURN(const auto entry, header.Entry(row, position));
+    RETURN_IF_ERROR(take(entry));
   }
 }
 

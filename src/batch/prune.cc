@@ -3,6 +3,7 @@
 
 #include "batch/run_kinds.h"
 #include "batch/sqlite.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 
@@ -18,11 +19,10 @@ Result<Prunable> FindPrunable(Store& store) {
     while (models.executeStep()) {
       found.models.emplace_back(sqlite::Text(models, 0), models.getColumn(1).getInt64());
     }
-    const auto meta = store.Meta();
-    if (!meta) return tl::unexpected(meta.error());
+    ASSIGN_OR_RETURN(const auto meta, store.Meta());
     // An interrupted refit has marked results that it has not reached yet, and has not recognized all renamed runs.
     const bool is_empty = found.stale_runs.empty() && found.unlisted_runs.empty() && found.models.empty();
-    if (!meta->complete && !meta->manifest_sha256.empty() && !is_empty) {
+    if (!meta.complete && !meta.manifest_sha256.empty() && !is_empty) {
       return Error(StatusCode::kFailedPrecondition,
                    store.name() +
                        ": the last refit is not complete, so results that it has not replaced yet would be "
@@ -33,7 +33,7 @@ Result<Prunable> FindPrunable(Store& store) {
 }
 
 Result<Prunable> Prune(Store& store) {
-  if (auto begun = store.BeginWrite(); !begun) return tl::unexpected(begun.error());
+  RETURN_IF_ERROR(store.BeginWrite());
   auto found = FindPrunable(store);
   if (!found) {
     store.Rollback();

@@ -21,6 +21,7 @@
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/time_limit.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/provenance.h"
 #include "pendulum/batch/summary.h"
@@ -42,9 +43,8 @@ struct RunInputs {
 Result<std::optional<std::string>> ReadNamed(const Source& source, const std::string& path,
                                              const std::optional<std::string>& otherwise) {
   if (path.empty()) return otherwise;
-  auto bytes = source.read(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  return *std::move(bytes);
+  ASSIGN_OR_RETURN(auto bytes, source.read(path));
+  return bytes;
 }
 
 /// The options of a run: the batch's options with the changes of its entry. Runs are parallel, so each fit uses one
@@ -294,9 +294,8 @@ class Refitter {
       const auto bytes = source_.read(path);
       return !bytes && bytes.error().code == StatusCode::kNotFound;
     };
-    auto renamed = store_.TakeOver(id, attempt.outcome->provenance.data_sha256, is_gone);
-    if (!renamed) return tl::unexpected(std::move(renamed).error());
-    counts_.renamed += *renamed ? 1 : 0;
+    ASSIGN_OR_RETURN(auto renamed, store_.TakeOver(id, attempt.outcome->provenance.data_sha256, is_gone));
+    counts_.renamed += renamed ? 1 : 0;
     if (options_.replace_by_failures) {
       auto put = store_.Put(id, *attempt.outcome);
       return put ? Result<bool>(false) : tl::unexpected(std::move(put).error());
@@ -358,9 +357,8 @@ Result<std::string> BatchJson(const RefitOptions& options) {
   for (const auto& [key, file] :
        {std::pair{"rig_sha256", &options.rig}, {"calibration_sha256", &options.calibration}}) {
     if (!*file) continue;
-    auto hash = Sha256(**file);
-    if (!hash) return tl::unexpected(hash.error());
-    json[key] = *std::move(hash);
+    ASSIGN_OR_RETURN(auto hash, Sha256(**file));
+    json[key] = std::move(hash);
   }
   return JsonText(json);
 }
@@ -373,15 +371,14 @@ RunOutcome RefitRun(const Source& source, const ManifestEntry& entry, const Refi
 
 Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions& options) {
   store.ShortenWaitsOnStop(options.stop);
-  const auto batch = BatchJson(options);
-  if (!batch) return tl::unexpected(batch.error());
-  const auto meta = store.Begin(source, options.shard, *batch, [&] { return CheckGroupBy(store, options.group_by); });
-  if (!meta) return tl::unexpected(meta.error());
+  ASSIGN_OR_RETURN(const auto batch, BatchJson(options));
+  ASSIGN_OR_RETURN(const auto meta,
+                   store.Begin(source, options.shard, batch, [&] { return CheckGroupBy(store, options.group_by); }));
   if (options.force) {
-    if (auto marked = store.MarkBatch(); !marked) return tl::unexpected(marked.error());
+    RETURN_IF_ERROR(store.MarkBatch());
   }
   RefitCounts counts;
-  counts.runs = options.shard ? options.shard->End(meta->runs) - options.shard->Begin(meta->runs) : meta->runs;
+  counts.runs = options.shard ? options.shard->End(meta.runs) - options.shard->Begin(meta.runs) : meta.runs;
   Refitter refitter(source, store, options, counts);
   const int threads = ThreadsOrCores(options.threads);
   {
@@ -391,12 +388,10 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   if (refitter.error()) return tl::unexpected(*refitter.error());
   counts.stopped = counts.done() < counts.runs;
   if (!counts.stopped) {
-    const auto changed = store.MarkChangedFiles(source);
-    if (!changed) return tl::unexpected(changed.error());
-    counts.changed = *changed;
+    ASSIGN_OR_RETURN(const auto changed, store.MarkChangedFiles(source));
+    counts.changed = changed;
   }
-  const auto stored = counts.stopped ? store.Commit() : store.Complete();
-  if (!stored) return tl::unexpected(stored.error());
+  RETURN_IF_ERROR(counts.stopped ? store.Commit() : store.Complete());
   return counts;
 }
 

@@ -14,6 +14,7 @@
 #include "batch/sqlite.h"
 #include "batch/store_queries.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
 
@@ -56,8 +57,7 @@ Result<void> CopyBeginning(const ShardOptions& shard, const fs::path& attempt) {
 Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, RefitOptions options,
                             const fs::path& attempt) {
   using Clock = std::chrono::steady_clock;
-  auto store = Store::Open(attempt, Store::Mode::kWrite);
-  if (!store) return tl::unexpected(store.error());
+  ASSIGN_OR_RETURN(auto store, Store::Open(attempt, Store::Mode::kWrite));
   const fs::path checkpoint = WithSuffix(shard.store, ".part");
   auto last = Clock::now();
   options.committed = [&]() -> Result<void> {
@@ -66,9 +66,9 @@ Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, Ref
     last = Clock::now();
     return published;
   };
-  auto counts = Refit(source, *store, options);
+  auto counts = Refit(source, store, options);
   if (!counts || !counts->stopped) return counts;
-  if (auto published = Publish(attempt, checkpoint); !published) return tl::unexpected(published.error());
+  RETURN_IF_ERROR(Publish(attempt, checkpoint));
   return counts;
 }
 
@@ -77,7 +77,7 @@ Result<RefitCounts> Attempt(const Source& source, const ShardOptions& shard, Ref
 Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, const RefitOptions& options) {
   const fs::path folder = shard.scratch.empty() ? shard.store.parent_path() : shard.scratch;
   const TemporaryStore attempt(folder / (shard.store.filename().string() + ".attempt-" + shard.attempt));
-  if (auto checked = CheckFolderOf(shard.store); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckFolderOf(shard.store));
   const auto before = MetaOf(shard.store);
   if (before && !before->shard) {
     return Error(StatusCode::kInvalidArgument, shard.store.string() +
@@ -86,14 +86,14 @@ Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, 
                                                    std::to_string(options.shard ? options.shard->index : 0) +
                                                    ".sqlite");
   }
-  if (auto copied = CopyBeginning(shard, attempt.path()); !copied) return tl::unexpected(copied.error());
+  RETURN_IF_ERROR(CopyBeginning(shard, attempt.path()));
   auto counts = Attempt(source, shard, options, attempt.path());
   if (!counts || counts->stopped) return counts;
   const auto after = MetaOf(attempt.path());
   const bool is_new = counts->refitted > 0 || counts->restored > 0 || !before || !before->complete || !after ||
                       !IsSameBatch(*before, *after) || before->shard->index != after->shard->index;
   if (is_new) {
-    if (auto published = Publish(attempt.path(), shard.store); !published) return tl::unexpected(published.error());
+    RETURN_IF_ERROR(Publish(attempt.path(), shard.store));
   }
   std::error_code unknown;
   fs::remove(WithSuffix(shard.store, ".part"), unknown);
@@ -124,17 +124,16 @@ Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int
     }
     auto store = Store::Open(path, Store::Mode::kRead);
     if (!store) return tl::unexpected(store.error());
-    const auto meta = store->Meta();
-    if (!meta) return tl::unexpected(meta.error());
-    if (!meta->shard || meta->shard->index != k || meta->shard->count != count) {
+    ASSIGN_OR_RETURN(const auto meta, store->Meta());
+    if (!meta.shard || meta.shard->index != k || meta.shard->count != count) {
       const std::string found =
-          meta->shard ? "shard " + std::to_string(meta->shard->index) + "/" + std::to_string(meta->shard->count)
-                      : "a whole batch";
+          meta.shard ? "shard " + std::to_string(meta.shard->index) + "/" + std::to_string(meta.shard->count)
+                     : "a whole batch";
       return Fault(path.string(), "this is the store of " + found + ", not of shard " + std::to_string(k) + "/" +
                                       std::to_string(count) +
                                       "; give the number of shards with which it was made, or another folder");
     }
-    if (!meta->complete || !store->Check()) missing.push_back(k);
+    if (!meta.complete || !store->Check()) missing.push_back(k);
   }
   return missing;
 }
@@ -252,11 +251,10 @@ Result<std::int64_t> CopyShards(const fs::path& folder, std::int64_t count, Stor
 
 /// The rigs and calibrations of a shard's current results: path and hash of each.
 Result<std::set<std::pair<std::string, std::string>>> FilesOf(const fs::path& path) {
-  auto store = Store::Open(path, Store::Mode::kRead);
-  if (!store) return tl::unexpected(store.error());
+  ASSIGN_OR_RETURN(auto store, Store::Open(path, Store::Mode::kRead));
   return sqlite::Guard(path.string(), [&]() -> Result<std::set<std::pair<std::string, std::string>>> {
     std::set<std::pair<std::string, std::string>> files;
-    SQLite::Statement rows(store->database(),
+    SQLite::Statement rows(store.database(),
                            "SELECT rig, rig_sha256 FROM runs WHERE result IS NOT NULL AND stale IS NULL AND rig <> '' "
                            "UNION SELECT calibration, calibration_sha256 FROM runs WHERE result IS NOT NULL AND stale "
                            "IS NULL AND calibration <> ''");
@@ -270,9 +268,8 @@ Result<void> CheckSameFiles(const fs::path& folder, std::int64_t count) {
   std::map<std::string, std::pair<std::string, fs::path>> known;  // hash and shard by path
   for (std::int64_t k = 0; k < count; ++k) {
     const fs::path shard = ShardPath(folder, k);
-    const auto files = FilesOf(shard);
-    if (!files) return tl::unexpected(files.error());
-    for (const auto& [path, hash] : *files) {
+    ASSIGN_OR_RETURN(const auto files, FilesOf(shard));
+    for (const auto& [path, hash] : files) {
       const auto& first = known.try_emplace(path, hash, shard).first->second;
       if (first.first == hash) continue;
       return Fault(shard.string(), path + " changed between the refits of this shard and of " + first.second.string() +
@@ -330,25 +327,23 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
                                             " shards these are missing: " + ShardList(*missing) +
                                             "; run them and merge again");
   }
-  if (auto checked = CheckOneBatch(folder, count); !checked) return tl::unexpected(checked.error());
-  if (auto checked = CheckSameFiles(folder, count); !checked) return tl::unexpected(checked.error());
-  if (auto checked = CheckIsNoShard(folder, count, store); !checked) return tl::unexpected(checked.error());
-  const auto lock = StoreLock::Take(store);
-  if (!lock) return tl::unexpected(lock.error());
+  RETURN_IF_ERROR(CheckOneBatch(folder, count));
+  RETURN_IF_ERROR(CheckSameFiles(folder, count));
+  RETURN_IF_ERROR(CheckIsNoShard(folder, count, store));
+  ASSIGN_OR_RETURN(const auto lock, StoreLock::Take(store));
   const TemporaryStore merged(WithSuffix(store, ".merging"));
   std::error_code unknown;
   if (fs::exists(store, unknown)) {
-    if (const auto old = Store::Open(store, Store::Mode::kRead); !old) return tl::unexpected(old.error());
-    if (auto copied = Publish(store, merged.path()); !copied) return tl::unexpected(copied.error());
+    RETURN_IF_ERROR(Store::Open(store, Store::Mode::kRead));
+    RETURN_IF_ERROR(Publish(store, merged.path()));
   }
   Result<std::int64_t> runs = 0;
   {
-    auto target = Store::Open(merged.path(), Store::Mode::kWrite);
-    if (!target) return tl::unexpected(target.error());
-    runs = CopyShards(folder, count, *target);
+    ASSIGN_OR_RETURN(auto target, Store::Open(merged.path(), Store::Mode::kWrite));
+    runs = CopyShards(folder, count, target);
   }
   if (!runs) return runs;
-  if (auto published = Publish(merged.path(), store); !published) return tl::unexpected(published.error());
+  RETURN_IF_ERROR(Publish(merged.path(), store));
   RemoveLeftovers(folder, count);
   return runs;
 }

@@ -20,6 +20,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/find_recordings.h"
 #include "pendulum/batch/store_lock.h"
 #include "pendulum/batch/temporary_store.h"
@@ -93,8 +94,8 @@ class PackedFile {
     for (std::int64_t position = 0; rows.executeStep(); ++position) {
       ManifestEntry entry = EntryOf(rows);
       entry.position = position;
-      if (auto checked = CheckEntry(entry); !checked) return checked;
-      if (auto taken = take(entry); !taken) return taken;
+      RETURN_IF_ERROR(CheckEntry(entry));
+      RETURN_IF_ERROR(take(entry));
     }
     return {};
   }
@@ -130,14 +131,14 @@ class PackedFile {
 
 Result<Source> OpenPack(const fs::path& path) {
   const std::string name = path.string();
-  if (const auto readable = sqlite::CheckReadable(name); !readable) return tl::unexpected(readable.error());
+  RETURN_IF_ERROR(sqlite::CheckReadable(name));
   return sqlite::Guard(name, [&]() -> Result<Source> {
     SQLite::Database probe(sqlite::FileName(name), SQLite::OPEN_READONLY);
     if (probe.execAndGet("PRAGMA application_id").getInt() != kPackId || !probe.tableExists("files")) {
       return Fault(name, "this SQLite file was not made by refit_pendulums pack; name a packed file");
     }
     const auto pack = std::make_shared<PackedFile>(path);
-    if (const auto checked = pack->Check(); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(pack->Check());
     return Source{
         name, [pack, name](const EntrySink& take) { return sqlite::Guard(name, [&] { return pack->ForEach(take); }); },
         [pack, name](const std::string& file) { return sqlite::Guard(name, [&] { return pack->Read(file); }); }};
@@ -220,7 +221,7 @@ Result<Source> OpenSource(const fs::path& path) {
   std::error_code unknown;
   if (fs::is_regular_file(path, unknown) && IsSqlite(path)) return OpenPack(path);
   if (path != "-" && !fs::is_fifo(path, unknown)) {  // opening a pipe to test it would disturb its writer
-    if (const auto opened = InputFile::Open(path, "manifest"); !opened) return tl::unexpected(opened.error());
+    RETURN_IF_ERROR(InputFile::Open(path, "manifest"));
   }
   const fs::path folder = path == "-" ? fs::path() : path.parent_path();
   return Source{path.string(), [path](const EntrySink& take) { return ReadManifest(path, take); },
@@ -233,11 +234,10 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
   std::map<std::string, std::int64_t> left_out;
   std::vector<std::string> lists;
   for (const std::string& pattern : patterns) {
-    const auto found = FindRecordings(pattern);
-    if (!found) return tl::unexpected(found.error());
-    for (const std::string& path : found->left_out) ++left_out["*" + fs::path(path).extension().string()];
-    lists.insert(lists.end(), found->lists.begin(), found->lists.end());
-    for (const std::string& path : found->paths) {
+    ASSIGN_OR_RETURN(const auto found, FindRecordings(pattern));
+    for (const std::string& path : found.left_out) ++left_out["*" + fs::path(path).extension().string()];
+    lists.insert(lists.end(), found.lists.begin(), found.lists.end());
+    for (const std::string& path : found.paths) {
       if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
     }
   }
@@ -246,7 +246,7 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
     for (const std::string& path : paths) {
       entry.path = path;
       entry.id = fs::path(path).lexically_normal().string();
-      if (auto taken = take(entry); !taken) return taken;
+      RETURN_IF_ERROR(take(entry));
       ++entry.position;
     }
     return {};
@@ -256,15 +256,13 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
 }
 
 Result<PackCounts> Pack(const Source& source, const fs::path& path) {
-  if (const auto checked = CheckFolderOf(path); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckReplaceable(path); !checked) return tl::unexpected(checked.error());
-  const auto lock = StoreLock::Take(path);
-  if (!lock) return tl::unexpected(lock.error());
+  RETURN_IF_ERROR(CheckFolderOf(path));
+  RETURN_IF_ERROR(CheckReplaceable(path));
+  ASSIGN_OR_RETURN(const auto lock, StoreLock::Take(path));
   const TemporaryStore unfinished(WithSuffix(path, ".unfinished"));
   auto packed = sqlite::Guard(path.string(), [&]() -> Result<PackCounts> {
     Packer packer(unfinished.path().string(), source);
-    const auto taken = source.for_each([&](const ManifestEntry& entry) { return packer.Add(entry); });
-    if (!taken) return tl::unexpected(taken.error());
+    RETURN_IF_ERROR(source.for_each([&](const ManifestEntry& entry) { return packer.Add(entry); }));
     packer.Commit();
     return packer.counts();
   });

@@ -21,6 +21,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/temporary_store.h"
 
@@ -255,7 +256,7 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
   database.exec(kBatchTable);
   SQLite::Statement add(database, "INSERT OR IGNORE INTO batch VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   std::string hash;  // a chain: the hash of an entry includes the previous hash
-  auto taken = source.for_each([&](const ManifestEntry& entry) -> Result<void> {
+  RETURN_IF_ERROR(source.for_each([&](const ManifestEntry& entry) -> Result<void> {
     const int added = sqlite::Bind(add, entry.position, entry.id, entry.path, entry.rig, entry.calibration, entry.from,
                                    entry.to, entry.models, entry.columns, entry.place)
                           .exec();
@@ -265,12 +266,10 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
       return Fault(entry.place, "the id " + Quoted(entry.id) + " is also at " + sqlite::Text(other, 0) +
                                     "; give each run its own id");
     }
-    auto next = Sha256(hash + EntryLine(entry));
-    if (!next) return tl::unexpected(next.error());
-    hash = *std::move(next);
+    ASSIGN_OR_RETURN(auto next, Sha256(hash + EntryLine(entry)));
+    hash = std::move(next);
     return {};
-  });
-  if (!taken) return tl::unexpected(taken.error());
+  }));
   if (!hash.empty()) return hash;
   return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
 }
@@ -289,9 +288,8 @@ Result<std::int64_t> Store::State::MarkOtherFiles(const Source& source, bool mar
     for (const std::string& path : sqlite::Texts(database, paths)) {
       const Result<std::string> bytes = source.read(path);
       if (!bytes && !marks_unreadable) continue;
-      const Result<std::string> hash = bytes ? Sha256(*bytes) : Result<std::string>("");
-      if (!hash) return tl::unexpected(hash.error());
-      marked += sqlite::Bind(mark, *hash, path).exec();
+      ASSIGN_OR_RETURN(const std::string hash, bytes ? Sha256(*bytes) : Result<std::string>(""));
+      marked += sqlite::Bind(mark, hash, path).exec();
       mark.reset();
     }
   }
@@ -390,7 +388,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   }
   return sqlite::Guard(name, [&]() -> Result<Store> {
     auto state = std::make_unique<State>(name, mode);
-    if (auto checked = CheckKind(name, state->database, mode); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(CheckKind(name, state->database, mode));
     // A rollback journal needs no shared memory and works on any file system; EXTRA also synchronises the folder. With
     // a write-ahead log writers do not wait for readers, except when the journal mode changes.
     if (mode != Mode::kRead) {
@@ -403,7 +401,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
     const bool is_current = version == static_cast<int>(kStoreMigrations.size());
     if (!is_current && mode != Mode::kRead) Migrate(state->database);
     if (!is_current && mode == Mode::kRead) {
-      if (auto migrated = MigrateOrCopy(name, state->database); !migrated) return tl::unexpected(migrated.error());
+      RETURN_IF_ERROR(MigrateOrCopy(name, state->database));
     }
     if (is_current && mode != Mode::kRead && !HasResultsView(state->database)) {  // looks first: another may be writing
       SQLite::Transaction transaction(state->database, SQLite::TransactionBehavior::IMMEDIATE);
@@ -419,17 +417,16 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
   return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
     SQLite::Transaction all(state_->database, SQLite::TransactionBehavior::IMMEDIATE);
     StoreMeta meta{std::string(kVersion), "", "", shard, 0, false};
-    auto manifest = state_->FillBatchTable(source);
-    if (!manifest) return tl::unexpected(manifest.error());
+    ASSIGN_OR_RETURN(auto manifest, state_->FillBatchTable(source));
     auto options = Sha256(options_json);
     if (!options) return tl::unexpected(options.error());
-    meta.manifest_sha256 = *std::move(manifest);
+    meta.manifest_sha256 = std::move(manifest);
     meta.options_sha256 = *std::move(options);
     state_->RestrictToShard(shard, meta);
     const std::string former_options = state_->GetMeta("options_sha256");
     state_->database.exec(MarkFormer(kHasOtherEntry));
     if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(MarkFormer("true"));
-    if (auto marked = state_->MarkOtherFiles(source, true); !marked) return tl::unexpected(marked.error());
+    RETURN_IF_ERROR(state_->MarkOtherFiles(source, true));
     state_->database.exec(kUpdateRuns);
     SQLite::Statement add(state_->database, "INSERT OR IGNORE INTO options VALUES(?, ?)");
     sqlite::Bind(add, meta.options_sha256, options_json).exec();
@@ -441,7 +438,7 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
     state_->SetMeta("shard_count", shard ? std::to_string(shard->count) : "");
     state_->SetMeta("complete", "0");
     if (check) {
-      if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+      RETURN_IF_ERROR(check());
     }
     all.commit();
     return meta;
@@ -460,9 +457,8 @@ Result<std::vector<StoredRun>> Store::Next(std::int64_t position, int max_runs) 
 
 Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
   return sqlite::Guard(name(), [&]() -> Result<void> {
-    const auto run = state_->Find(id);
-    if (!run) return tl::unexpected(run.error());
-    state_->PutRows(outcome, *run);
+    ASSIGN_OR_RETURN(const auto run, state_->Find(id));
+    state_->PutRows(outcome, run);
     return {};
   });
 }
@@ -470,13 +466,12 @@ Result<void> Store::Put(const std::string& id, const RunOutcome& outcome) {
 Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcome& outcome, const std::string& attempt,
                                           const IsGone& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<std::string> {
-    const auto run = state_->Find(id);
-    if (!run) return tl::unexpected(run.error());
-    std::string stale = state_->WhyWorse(outcome, *run, is_gone);
+    ASSIGN_OR_RETURN(const auto run, state_->Find(id));
+    std::string stale = state_->WhyWorse(outcome, run, is_gone);
     if (stale.empty()) {
-      state_->PutRows(outcome, *run);
+      state_->PutRows(outcome, run);
     } else {
-      state_->SetStale(*run, stale, attempt);
+      state_->SetStale(run, stale, attempt);
     }
     return stale;
   });
@@ -484,8 +479,7 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
 
 Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha256, const IsGone& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<bool> {
-    const auto added = state_->Find(id);
-    if (!added) return tl::unexpected(added.error());
+    ASSIGN_OR_RETURN(const auto added, state_->Find(id));
     std::vector<std::int64_t> renamed;
     SQLite::Statement& find = state_->Prepared(state_->renamed_runs, kRenamedRuns.c_str());
     sqlite::Bind(find, id, data_sha256);
@@ -497,7 +491,7 @@ Result<bool> Store::TakeOver(const std::string& id, const std::string& data_sha2
     if (renamed.size() != 1) return false;
     for (const char* table : {"quantities", "fits", "runs"}) {  // a failed attempt has rows, too
       SQLite::Statement drop(state_->database, std::string("DELETE FROM ") + table + " WHERE run = ?");
-      sqlite::Bind(drop, *added).exec();
+      sqlite::Bind(drop, added).exec();
     }
     SQLite::Statement rename(state_->database, kRenameRun);
     sqlite::Bind(rename, id, renamed.front()).exec();
@@ -523,9 +517,8 @@ Result<std::int64_t> Store::MarkChangedFiles(const Source& source) {
 
 Result<void> Store::MarkCurrent(const std::string& id) {
   return sqlite::Guard(name(), [&]() -> Result<void> {
-    const auto run = state_->Find(id);
-    if (!run) return tl::unexpected(run.error());
-    state_->SetStale(*run, std::nullopt, std::nullopt);
+    ASSIGN_OR_RETURN(const auto run, state_->Find(id));
+    state_->SetStale(run, std::nullopt, std::nullopt);
     return {};
   });
 }

@@ -19,6 +19,7 @@
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
@@ -404,24 +405,19 @@ Result<void> CheckGroupBy(Store& store, const std::string& group_by) {
 }
 
 Result<Json> Summarize(Store& store, const SummaryOptions& options) {
-  const auto meta = store.Meta();
-  if (!meta) return tl::unexpected(meta.error());
-  const auto counts = store.Count();
-  if (!counts) return tl::unexpected(counts.error());
-  if (counts->fits == 0) {
+  ASSIGN_OR_RETURN(const auto meta, store.Meta());
+  ASSIGN_OR_RETURN(const auto counts, store.Count());
+  if (counts.fits == 0) {
     return Error(StatusCode::kFailedPrecondition, store.name() + ": no run has a fit; refit some first");
   }
   return sqlite::Guard(store.name(), [&]() -> Result<Json> {
     SQLite::Database& database = store.database();
     const std::vector<std::string> columns = sqlite::Texts(database, sqlite::kManifestColumns);
-    if (auto checked = CheckGroupBy(options.group_by, columns); !checked) return tl::unexpected(checked.error());
-    if (auto checked = CheckColumn("--trend_by", options.trend_by, columns); !checked) {
-      return tl::unexpected(checked.error());
-    }
-    auto overview = Overview(store);
-    if (!overview) return tl::unexpected(overview.error());
+    RETURN_IF_ERROR(CheckGroupBy(options.group_by, columns));
+    RETURN_IF_ERROR(CheckColumn("--trend_by", options.trend_by, columns));
+    ASSIGN_OR_RETURN(auto overview, Overview(store));
     RunGroups groups = GroupRuns(database, options.group_by);
-    const std::string main = MainModel(database, *overview, groups), only = options.main_model_only ? main : "";
+    const std::string main = MainModel(database, overview, groups), only = options.main_model_only ? main : "";
     FindUnlikeGroups(database, main, groups);
     RunAgreement agreement;
     if (!options.without_agreement) agreement = TestRunAgreement(database, main, groups);
@@ -432,14 +428,14 @@ Result<Json> Summarize(Store& store, const SummaryOptions& options) {
                  {"headline", CountsJson(runs)},
                  {"grouping", GroupingJson(groups)},
                  {"main_model", TextOrNull(main)},
-                 {"verdicts", VerdictsJson(*overview, parameters, groups, !agreement.outliers.empty(), only)},
+                 {"verdicts", VerdictsJson(overview, parameters, groups, !agreement.outliers.empty(), only)},
                  {"agreement", std::move(agreement.json)},
-                 {"store", StoreJson(store, *meta, *counts)},
+                 {"store", StoreJson(store, meta, counts)},
                  {"group_by", TextOrNull(groups.name)},
                  {"trend_by", TextOrNull(options.trend_by)}};
-    json.update(*overview);
+    json.update(overview);
     json["parameters"] = parameters;
-    json["warnings"] = WarningsJson(database, *counts, json["store"], runs, options);
+    json["warnings"] = WarningsJson(database, counts, json["store"], runs, options);
     return json;
   });
 }

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 
@@ -22,18 +23,16 @@ Result<void> CheckFolderOf(const fs::path& file) {
 
 Result<void> Publish(const fs::path& from, const fs::path& to) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
-  auto input = InputFile::Open(from, "store");
-  if (!input) return tl::unexpected(input.error());
+  ASSIGN_OR_RETURN(auto input, InputFile::Open(from, "store"));
   StagedFile output(to.string());
-  if (auto opened = output.Open(); !opened) return opened;
+  RETURN_IF_ERROR(output.Open());
   std::string block(kBlock, '\0');
   for (std::size_t got = kBlock; got == kBlock;) {
-    const auto read = input->Read(block);
-    if (!read) return tl::unexpected(read.error());
-    got = *read;
-    if (auto written = output.Write({block.data(), got}); !written) return written;
+    ASSIGN_OR_RETURN(const auto read, input.Read(block));
+    got = read;
+    RETURN_IF_ERROR(output.Write({block.data(), got}));
   }
-  if (auto finished = output.Finish(); !finished) return finished;
+  RETURN_IF_ERROR(output.Finish());
   return output.Commit();
 }
 

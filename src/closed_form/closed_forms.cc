@@ -7,6 +7,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/recording/window.h"
@@ -87,9 +88,8 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     forms.decrement = *std::move(decrement);
   } else {
     forms.no_decrement = decrement.error().message;
-    Result<TurningPointTable> table = LocateTurningPoints(timed);
-    if (!table) return tl::unexpected(table.error());
-    forms.table = *std::move(table);
+    ASSIGN_OR_RETURN(TurningPointTable table, LocateTurningPoints(timed));
+    forms.table = std::move(table);
   }
   Result<EnvelopeComparison> laws = CompareEnvelopes(forms.table, model.gravity, stop);
   if (laws) {

@@ -11,6 +11,7 @@
 
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/half_swing_map.h"
 #include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/closed_form/period.h"
@@ -355,11 +356,10 @@ Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Grav
   const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
   const std::size_t terms = infos.size() - 1;
   std::optional<VectorXd> start;
-  const Result<Decrement> all = FitFrom(table, richest, std::vector<bool>(terms, true), stop, start);
-  if (!all) return tl::unexpected(all.error());
+  ASSIGN_OR_RETURN(const Decrement all, FitFrom(table, richest, std::vector<bool>(terms, true), stop, start));
   start->segment(2, static_cast<Index>(terms)).setZero();
-  const double scale = std::max(1.0, all->chi_square / all->freedom);
-  EnvelopeComparison laws{{}, all->chi_square, all->freedom};
+  const double scale = std::max(1.0, all.chi_square / all.freedom);
+  EnvelopeComparison laws{{}, all.chi_square, all.freedom};
   for (std::size_t k = 0; k < terms; ++k) {
     std::vector<bool> alone(terms, false);
     alone[k] = true;

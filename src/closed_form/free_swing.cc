@@ -16,6 +16,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/classify_half_swings.h"
 #include "pendulum/closed_form/low_band.h"
 #include "pendulum/closed_form/turning_point_view.h"
@@ -276,9 +277,8 @@ Result<std::vector<FreeSwing>> FindAmong(const Recording& recording, const Turni
                                          const Weights& weights) {
   const std::vector<Verdict> verdicts = ClassifyHalfSwings(recording, table);
   std::vector<TurningPointRun> runs = FreeRuns(table, verdicts);
-  const Result<std::optional<FreeSwing>> other_motion = ClassifyOtherMotion(recording, table, runs, weights);
-  if (!other_motion) return tl::unexpected(other_motion.error());
-  if (*other_motion) return std::vector<FreeSwing>{**other_motion};
+  ASSIGN_OR_RETURN(const std::optional<FreeSwing> other_motion, ClassifyOtherMotion(recording, table, runs, weights));
+  if (other_motion) return std::vector<FreeSwing>{*other_motion};
   const std::vector<bool> after_drive = LeaveOutDrives(table, runs);
   std::vector<FreeSwing> swings;
   const double outside = LargestOutside(table, runs);
@@ -363,7 +363,7 @@ Result<std::vector<FreeSwing>> FindWithoutGaps(const Recording& recording, const
     return tl::unexpected(found ? Status{StatusCode::kFailedPrecondition, "no turning points"} : found.error());
   }
   if (!is_spring) {
-    if (const Result<void> unit = CheckUnit(table); !unit) return tl::unexpected(unit.error());
+    RETURN_IF_ERROR(CheckUnit(table));
   }
   Result<std::vector<FreeSwing>> swings = FindAmong(recording, table, EqualWeights(table));
   constexpr double kMuchLonger = 2;

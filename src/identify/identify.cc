@@ -22,6 +22,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/fitting/fit/rig_quantities.h"
@@ -67,21 +68,19 @@ Swing TakeSwing(PreparedRecording& from, int release) {
 
 /// The samples of a swing, without a fit.
 Result<FittedModels> SelectSwing(Recording recording, const FreeSwing& swing) {
-  auto used = SelectWindow(std::move(recording), swing.from, swing.to);
-  if (!used) return tl::unexpected(used.error());
-  used->warnings.clear();
-  return FittedModels{*std::move(used), swing, {}};
+  ASSIGN_OR_RETURN(auto used, SelectWindow(std::move(recording), swing.from, swing.to));
+  used.warnings.clear();
+  return FittedModels{std::move(used), swing, {}};
 }
 
 /// Fits every model to one swing. The samples move into the result.
 Result<RunModels> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
   if (options.fit.stop.stop_requested()) return FitStopped();
-  auto models = options.closed_form_only
-                    ? SelectSwing(std::move(swing.recording), swing.found)
-                    : FitModels(std::move(swing.recording), swing.found, fit_options, options.models);
-  if (!models) return tl::unexpected(models.error());
+  ASSIGN_OR_RETURN(auto models, options.closed_form_only
+                                    ? SelectSwing(std::move(swing.recording), swing.found)
+                                    : FitModels(std::move(swing.recording), swing.found, fit_options, options.models));
   if (options.fit.stop.stop_requested()) return FitStopped();
-  return RunModels{{}, *std::move(models), {}};
+  return RunModels{{}, std::move(models), {}};
 }
 
 /// Whether fit m is checked; `main` is the index of the main fit.
@@ -233,10 +232,9 @@ Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
   if (converged == identification.fits.end() || is_undersampled) return {};
   const auto ratio = std::ranges::find(converged->derived, "gravity_over_inertia", &DerivedQuantity::name);
   if (ratio == converged->derived.end()) return {};
-  auto warnings = CompareRigWithSwing(rig, ratio->estimate);
-  if (!warnings) return tl::unexpected(warnings.error());
-  const bool is_questioned = !warnings->empty();
-  std::ranges::move(*warnings, std::back_inserter(identification.warnings));
+  ASSIGN_OR_RETURN(auto warnings, CompareRigWithSwing(rig, ratio->estimate));
+  const bool is_questioned = !warnings.empty();
+  std::ranges::move(warnings, std::back_inserter(identification.warnings));
   if (is_questioned) return {};
   const auto verdict = JudgeInertia(identification.rig, identification.fits[identification.MainFit()]);
   if (verdict && verdict->differs()) identification.warnings.push_back({"inertia_differs_from_rig", verdict->text});
@@ -244,33 +242,30 @@ Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
 }
 
 Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
-  const auto for_rig = OptionsForRig(asked, swing.known.rig);
-  if (!for_rig) return tl::unexpected(for_rig.error());
-  const IdentifyOptions& options = *for_rig;
+  ASSIGN_OR_RETURN(const auto for_rig, OptionsForRig(asked, swing.known.rig));
+  const IdentifyOptions& options = for_rig;
   FitOptions fit_options = options.fit;
   fit_options.rig = swing.known.rig;
-  auto run = FitAlone(options, fit_options, swing);
-  if (!run) return tl::unexpected(run.error());
+  ASSIGN_OR_RETURN(auto run, FitAlone(options, fit_options, swing));
   Identification identification = std::move(swing.known);
   WarnOfSpring(asked, options, identification);
-  if (run->alone.fits.size() > 1) {
+  if (run.alone.fits.size() > 1) {
     ReportProgress(options.fit.progress, "comparing the laws");
-    identification.comparison = CompareModels(run->alone, fit_options);
+    identification.comparison = CompareModels(run.alone, fit_options);
   }
-  identification.fits = std::move(run->alone.fits);
+  identification.fits = std::move(run.alone.fits);
   const std::size_t main = identification.MainFit();
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
     if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
-    run->constancy.push_back(TestFit(options, fit_options, run->alone.used, identification.fits[m], is_checked));
-    AddInconstancyError(run->constancy.back(), identification.fits[m]);
-    AddFrictionLawError(run->constancy.back(), identification.fits[m]);
+    run.constancy.push_back(TestFit(options, fit_options, run.alone.used, identification.fits[m], is_checked));
+    AddInconstancyError(run.constancy.back(), identification.fits[m]);
+    AddFrictionLawError(run.constancy.back(), identification.fits[m]);
   }
-  if (const auto applied = ApplyRig(run->alone.swing.undersampled, identification); !applied)
-    return tl::unexpected(applied.error());
+  RETURN_IF_ERROR(ApplyRig(run.alone.swing.undersampled, identification));
   const bool is_spring = !identification.fits.empty() && identification.fits[main].model.gravity.is_linear();
-  QuestionUnit(run->alone.used, run->alone.swing.half_period, is_spring, options.fit, identification);
-  CompleteIdentification(options, *std::move(run), main, identification);
+  QuestionUnit(run.alone.used, run.alone.swing.half_period, is_spring, options.fit, identification);
+  CompleteIdentification(options, std::move(run), main, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
   if (options.closed_form_only && !identification.closed_forms) {
     return Error(StatusCode::kFailedPrecondition, identification.no_closed_forms);
@@ -432,13 +427,12 @@ Identification CombineRecordings(const JointModels& joint, const std::optional<R
 }  // namespace
 
 Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecording& recording) {
-  const auto for_rig = OptionsForRig(options, recording.known.rig);
-  if (!for_rig) return tl::unexpected(for_rig.error());
+  ASSIGN_OR_RETURN(const auto for_rig, OptionsForRig(options, recording.known.rig));
   if (options.closed_form_only) return {};
-  FitOptions fit_options = for_rig->fit;
+  FitOptions fit_options = for_rig.fit;
   fit_options.rig = recording.known.rig;
   const auto first = static_cast<std::size_t>(recording.swings.chosen.front()) - 1;
-  return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig->models);
+  return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig.models);
 }
 
 std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options, PreparedRecording recording) {
@@ -460,30 +454,26 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
     return Error(StatusCode::kInvalidArgument,
                  "several recordings are identified together by fits; closed forms exist only for a single recording");
   }
-  auto swings = TakeAllSwings(std::move(recordings));
-  if (!swings) return tl::unexpected(swings.error());
-  if (const auto checked = CheckDifferent(*swings); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckResolution(asked, *swings); !checked) return tl::unexpected(checked.error());
-  const auto rig = CommonRig(*swings);
-  if (!rig) return tl::unexpected(rig.error());
-  auto for_rig = OptionsForRig(asked, *rig);
-  if (!for_rig) return tl::unexpected(for_rig.error());
-  for_rig->fit.may_be_spring = false;  // all recordings have the same models
-  const IdentifyOptions& options = *for_rig;
+  ASSIGN_OR_RETURN(auto swings, TakeAllSwings(std::move(recordings)));
+  RETURN_IF_ERROR(CheckDifferent(swings));
+  RETURN_IF_ERROR(CheckResolution(asked, swings));
+  ASSIGN_OR_RETURN(const auto rig, CommonRig(swings));
+  ASSIGN_OR_RETURN(auto for_rig, OptionsForRig(asked, rig));
+  for_rig.fit.may_be_spring = false;  // all recordings have the same models
+  const IdentifyOptions& options = for_rig;
   FitOptions fit_options = options.fit;
-  fit_options.rig = *rig;
-  auto alone = FitEachAlone(options, fit_options, *swings);
-  if (!alone) return tl::unexpected(alone.error());
-  JointModels joint = FitTogether(*std::move(alone), fit_options, options.models, options.shared);
-  Identification whole = CombineRecordings(joint, *rig, fit_options);
+  fit_options.rig = rig;
+  ASSIGN_OR_RETURN(auto alone, FitEachAlone(options, fit_options, swings));
+  JointModels joint = FitTogether(std::move(alone), fit_options, options.models, options.shared);
+  Identification whole = CombineRecordings(joint, rig, fit_options);
   WarnOfSpring(asked, options, whole);
   const bool is_undersampled =
       std::ranges::any_of(joint.runs, [](const RunModels& run) { return run.alone.swing.undersampled; });
-  if (const auto applied = ApplyRig(is_undersampled, whole); !applied) return tl::unexpected(applied.error());
+  RETURN_IF_ERROR(ApplyRig(is_undersampled, whole));
   const std::size_t main = whole.MainFit();
   for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    Identification identification = std::move((*swings)[k].known);
-    identification.rig = *rig;
+    Identification identification = std::move(swings[k].known);
+    identification.rig = rig;
     for (std::size_t m = 0; m < joint.models.size(); ++m) identification.fits.push_back(joint.FitOf(k, m));
     AddOwnWarnings(joint.runs[k].alone.fits[main], identification.fits[main], identification);
     QuestionUnit(joint.runs[k].alone.used, joint.runs[k].alone.swing.half_period,
@@ -498,18 +488,15 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
 Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, const RunFiles& files) {
   ReadRun run;
   if (files.rig) {
-    auto parsed = ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name, options.notes);
-    if (!parsed) return tl::unexpected(parsed.error());
-    run.rig = *std::move(parsed);
+    ASSIGN_OR_RETURN(auto parsed, ParseRigWith(options.rig_values, files.rig->bytes, files.rig->name, options.notes));
+    run.rig = std::move(parsed);
   }
   if (files.calibration) {
-    auto parsed = CalibrationFromText(files.calibration->bytes, files.calibration->name);
-    if (!parsed) return tl::unexpected(parsed.error());
-    options.read.calibration = *std::move(parsed);
+    ASSIGN_OR_RETURN(auto parsed, CalibrationFromText(files.calibration->bytes, files.calibration->name));
+    options.read.calibration = std::move(parsed);
   }
-  auto read = ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(options));
-  if (!read) return tl::unexpected(read.error());
-  run.recording = *std::move(read);
+  ASSIGN_OR_RETURN(auto read, ParseRecording(files.data.bytes, files.data.name, ReadOptionsOf(options)));
+  run.recording = std::move(read);
   return run;
 }
 
@@ -517,9 +504,8 @@ Result<Identification> IdentifyBytes(IdentifyOptions options, RunFiles files) {
   auto read = ReadBytesOfRun(options, files);
   files = {};  // the bytes of a long recording take much memory
   if (!read) return tl::unexpected(read.error());
-  auto prepared = PrepareRecording(std::move(read->recording), options, std::move(read->rig));
-  if (!prepared) return tl::unexpected(prepared.error());
-  return std::move(IdentifyEach(options, *std::move(prepared)).front());
+  ASSIGN_OR_RETURN(auto prepared, PrepareRecording(std::move(read->recording), options, std::move(read->rig)));
+  return std::move(IdentifyEach(options, std::move(prepared)).front());
 }
 
 }  // namespace pendulum

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/model/rig_check.h"
@@ -19,10 +20,9 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   std::vector<Warning> notes = options.notes;
   const bool has_file = rig || !read.rig_json.empty();
   if (!rig && (has_file || !options.rig_values.empty())) {
-    auto own = has_file ? ParseRigWith(options.rig_values, read.rig_json, read.path + ": # rig", notes)
-                        : RigOfValues(options.rig_values, notes);
-    if (!own) return tl::unexpected(own.error());
-    rig = *std::move(own);
+    ASSIGN_OR_RETURN(auto own, has_file ? ParseRigWith(options.rig_values, read.rig_json, read.path + ": # rig", notes)
+                                        : RigOfValues(options.rig_values, notes));
+    rig = std::move(own);
   }
   if (has_file && !options.rig_values.empty()) notes.push_back(OverrideWarning(options.rig_values));
   if (options.sensor && read.stated_sensor) {
@@ -36,9 +36,8 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
       IsUndersampled(read, rig) ? std::move(read) : WithEdges(RepairValues(std::move(read)), options.fit.noise);
   // The edges of an event-driven recording include samples for its silences.
   prepared.samples = std::max(prepared.samples, prepared.recording.size());
-  auto swings = ChooseSwings(prepared.recording, options.swing, rig);
-  if (!swings) return tl::unexpected(swings.error());
-  prepared.swings = *std::move(swings);
+  ASSIGN_OR_RETURN(auto swings, ChooseSwings(prepared.recording, options.swing, rig));
+  prepared.swings = std::move(swings);
   prepared.known.rig = std::move(rig);
   prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
   std::ranges::move(std::exchange(prepared.swings.warnings, {}), std::back_inserter(prepared.known.warnings));
@@ -57,9 +56,8 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 }
 
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig) {
-  auto read = ReadRecording(path, ReadOptionsOf(options));
-  if (!read) return tl::unexpected(read.error());
-  return PrepareRecording(*std::move(read), options, std::move(rig));
+  ASSIGN_OR_RETURN(auto read, ReadRecording(path, ReadOptionsOf(options)));
+  return PrepareRecording(std::move(read), options, std::move(rig));
 }
 
 tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release) {

@@ -17,6 +17,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
@@ -193,7 +194,7 @@ Result<Form> FindForm(const Json& rig, const std::string& name) {
   for (const Form& form : kForms) {
     for (const auto& item : rig.items()) {
       if (!HasKey(form.identifying, item.key())) continue;
-      if (auto checked = CheckKeys(rig, form, item.key(), name); !checked) return tl::unexpected(checked.error());
+      RETURN_IF_ERROR(CheckKeys(rig, form, item.key(), name));
       return form;
     }
   }
@@ -245,16 +246,13 @@ bool IsUsable(const RigValue& value) {
 std::span<const RigKey> RigKeys() { return kRigKeys; }
 
 Result<Rig> ParseRig(std::string_view text, const std::string& name) {
-  Result<Json> source = ParseJsonObject(text, name, "rig", kFormsText);
-  if (!source) return tl::unexpected(std::move(source).error());
-  const Result<Form> form = FindForm(*source, name);
-  if (!form) return tl::unexpected(form.error());
+  ASSIGN_OR_RETURN(Json source, ParseJsonObject(text, name, "rig", kFormsText));
+  ASSIGN_OR_RETURN(const Form form, FindForm(source, name));
   RigValues values;
   for (const RigKey& key : kRigKeys) {
-    if (!source->contains(key.name)) continue;
-    const Result<RigValue> value = ReadValue(*source, key.name, name);
-    if (!value) return tl::unexpected(value.error());
-    values[key.name] = *value;
+    if (!source.contains(key.name)) continue;
+    ASSIGN_OR_RETURN(const RigValue value, ReadValue(source, key.name, name));
+    values[key.name] = value;
   }
   Rig rig;
   rig.name = name;
@@ -262,7 +260,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
   rig.gravity = Find(values, "gravity");
   rig.length = Find(values, "length");
   rig.mass = Find(values, "mass");
-  form->set(values, rig);
+  form.set(values, rig);
   const bool are_usable = std::ranges::all_of(
       std::array{std::optional(rig.gravity_torque), rig.inertia, rig.known_inertia, rig.gravity, rig.length, rig.mass},
       [](const std::optional<RigValue>& value) { return !value || IsUsable(*value); });
@@ -271,14 +269,13 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
                  "these values give a torque or inertia outside 1e-30 to 1e30 (SI), which is impossible for a "
                  "pendulum; correct them");
   }
-  rig.source = std::move(*source);
+  rig.source = std::move(source);
   return rig;
 }
 
 Result<Rig> ReadRig(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "rig", kMaxJsonBytes);
-  if (!text) return tl::unexpected(text.error());
-  return ParseRig(*text, path.string());
+  ASSIGN_OR_RETURN(const std::string text, ReadFile(path, "rig", kMaxJsonBytes));
+  return ParseRig(text, path.string());
 }
 
 }  // namespace pendulum

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -97,7 +98,7 @@ Result<Arc> FitArc(const VectorXd& x, const VectorXd& y) {
   if (!(error < kLargestError)) {
     return NoArc("the radius would be uncertain by " + NumberText(100 * error, 2) + " %");
   }
-  if (auto checked = CheckDownDirection(at_y, circle); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckDownDirection(at_y, circle));
   Arc arc;
   arc.x = x_mean + scale * circle[0];
   arc.y = y_mean + scale * circle[1];

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/median.h"
+#include "pendulum/base/try.h"
 #include "recording/packet_clock.h"
 #include "recording/significant_digits.h"
 #include "recording/stamp_order.h"
@@ -595,7 +596,7 @@ Result<RawSamples> ClockRepair::Repair() {
   Unwrap();
   if (IsUniform()) return std::move(samples_);
   if (SharedRowsAreEqual()) {  // otherwise a clock with two rows in each interval would fit rows that are there twice
-    if (Check done = RemoveRowsWithSharedStamps(); !done) return tl::unexpected(done.error());
+    RETURN_IF_ERROR(RemoveRowsWithSharedStamps());
     if (IsUniform()) return std::move(samples_);
   }
   // A uniform clock fits stamps with lost rows only if the losses are spread evenly. The probability that 8 losses fall
@@ -609,16 +610,15 @@ Result<RawSamples> ClockRepair::Repair() {
         grid && (CountUnusualSteps(*grid) >= kMinUnusualSteps || 5 * CountSharedRows(keep) > size());
     if (suggests_uniform_clock && MakeUniform(*grid)) return std::move(samples_);
     if (MakeUniformFromDigits()) return std::move(samples_);
-    const Result<bool> made = MakeUniformFromPackets();
-    if (!made) return tl::unexpected(made.error());
-    if (*made) return std::move(samples_);
+    ASSIGN_OR_RETURN(const bool made, MakeUniformFromPackets());
+    if (made) return std::move(samples_);
   }
   if (Increases()) {
     if (!has_true_gaps) WarnOfScatter();
     return std::move(samples_);
   }
-  if (Check done = RemoveRowsWithSharedStamps(); !done) return tl::unexpected(done.error());
-  if (Check done = RemoveBackwardRows(); !done) return tl::unexpected(done.error());
+  RETURN_IF_ERROR(RemoveRowsWithSharedStamps());
+  RETURN_IF_ERROR(RemoveBackwardRows());
   return std::move(samples_);
 }
 
@@ -656,7 +656,7 @@ Check RefuseDistantRows(const RawSamples& samples) {
 Result<RawSamples> RepairRows(ClockRepair repair) {
   Result<RawSamples> repaired = repair.Repair();
   if (!repaired) return repaired;
-  if (Check done = RefuseDistantRows(*repaired); !done) return tl::unexpected(done.error());
+  RETURN_IF_ERROR(RefuseDistantRows(*repaired));
   return repaired;
 }
 

@@ -11,6 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -98,7 +99,7 @@ Check CalibrationReader::ReadNumbers(std::string_view key, const Json& json, std
 
 Check CalibrationReader::ReadCoefficients() {
   std::vector<double>& coefficients = calibration_.coefficients;
-  if (Check read = ReadNumbers("coefficients", *json_.find("coefficients"), coefficients); !read) return read;
+  RETURN_IF_ERROR(ReadNumbers("coefficients", *json_.find("coefficients"), coefficients));
   if (coefficients.empty()) return Fault("coefficients", "is empty; it must hold at least an offset and a slope");
   if (coefficients.size() > kMaxCoefficients) {
     return Fault("coefficients", "has " + std::to_string(coefficients.size()) + " numbers; there may be at most " +
@@ -121,7 +122,7 @@ Check CalibrationReader::ReadCovariance() {
   calibration_.covariance.resize(order, order);
   for (Eigen::Index i = 0; i < order; ++i) {
     std::vector<double> row;
-    if (Check read = ReadNumbers("covariance", (*json)[i], row); !read) return read;
+    RETURN_IF_ERROR(ReadNumbers("covariance", (*json)[i], row));
     if (row.size() != size) {
       return Fault("covariance", "has a row of " + std::to_string(row.size()) + " numbers; it must be " + shape);
     }
@@ -165,21 +166,19 @@ Check CalibrationReader::ReadRange() {
   const Json* json = Find("input_range");
   if (json == nullptr) return {};
   std::vector<double> ends;
-  if (Check read = ReadNumbers("input_range", *json, ends); !read) return read;
+  RETURN_IF_ERROR(ReadNumbers("input_range", *json, ends));
   if (ends.size() != 2 || !(ends[0] < ends[1])) return Wrong("input_range", *json, "two increasing numbers or null");
   calibration_.input_range = SensorRange{ends[0], ends[1]};
   return {};
 }
 
 Result<Calibration> CalibrationReader::Read() {
-  if (Check checked = CheckKeys(); !checked) return tl::unexpected(checked.error());
-  if (Check read = ReadWord("input", "counts", "volts", calibration_.input); !read) return tl::unexpected(read.error());
-  if (Check read = ReadWord("angle_unit", "deg", "rad", calibration_.angle_unit); !read) {
-    return tl::unexpected(read.error());
-  }
+  RETURN_IF_ERROR(CheckKeys());
+  RETURN_IF_ERROR(ReadWord("input", "counts", "volts", calibration_.input));
+  RETURN_IF_ERROR(ReadWord("angle_unit", "deg", "rad", calibration_.angle_unit));
   for (const auto read : {&CalibrationReader::ReadCoefficients, &CalibrationReader::ReadCovariance,
                           &CalibrationReader::ReadResidual, &CalibrationReader::ReadRange}) {
-    if (Check done = (this->*read)(); !done) return tl::unexpected(done.error());
+    RETURN_IF_ERROR((this->*read)());
   }
   calibration_.source = json_;
   return std::move(calibration_);
@@ -217,15 +216,13 @@ double Calibration::Reading(double angle, double near) const {
 double Calibration::RadFromUnit() const { return RadFrom(angle_unit); }
 
 Result<Calibration> ParseCalibration(std::string_view text, const std::string& name) {
-  const Result<Json> json = ParseJsonObject(text, name, "calibration", kForm);
-  if (!json) return tl::unexpected(json.error());
-  return CalibrationReader(*json, name).Read();
+  ASSIGN_OR_RETURN(const Json json, ParseJsonObject(text, name, "calibration", kForm));
+  return CalibrationReader(json, name).Read();
 }
 
 Result<Calibration> ReadCalibration(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "calibration", kMaxJsonBytes);
-  if (!text) return tl::unexpected(text.error());
-  return ParseCalibration(*text, path.string());
+  ASSIGN_OR_RETURN(const std::string text, ReadFile(path, "calibration", kMaxJsonBytes));
+  return ParseCalibration(text, path.string());
 }
 
 }  // namespace pendulum

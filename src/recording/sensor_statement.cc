@@ -10,6 +10,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -100,11 +101,9 @@ Result<SensorStatement> ParseSensorStatement(std::string_view text, const std::s
     return StatementFault(name, Quoted(text) + " is not a kind of sensor; " + KindRule() +
                                     ", or a JSON object such as " + std::string(kFormOfStatement));
   }
-  const Result<SensorJson> json = ParseJsonObject(text, name, "sensor", kFormOfStatement);
-  if (!json) return tl::unexpected(json.error());
-  for (const auto& item : json->items()) {
-    if (auto read = ReadSensorKey(item.key(), item.value(), name, statement); !read)
-      return tl::unexpected(read.error());
+  ASSIGN_OR_RETURN(const SensorJson json, ParseJsonObject(text, name, "sensor", kFormOfStatement));
+  for (const auto& item : json.items()) {
+    RETURN_IF_ERROR(ReadSensorKey(item.key(), item.value(), name, statement));
   }
   const bool has_size = std::ranges::any_of(statement.std_devs, [](const auto& size) { return size.has_value(); });
   if (statement.kind.empty() && !has_size) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pendulum/base/try.h"
 #include "pendulum/recording/calibration/adc.h"
 #include "pendulum/request/flag_values.h"
 
@@ -33,9 +34,8 @@ Result<void> ChooseRange(const CalibrationFlags& flags, CalibrationOptions& opti
   }
   if (options.has_bits) options.input_range = SensorRange{0, AdcSensor{.bits = flags.bits}.FullScale()};
   if (flags.input_range.empty()) return {};
-  const Result<SensorRange> range = ParseInputRange(flags.input_range);
-  if (!range) return tl::unexpected(range.error());
-  options.input_range = *range;
+  ASSIGN_OR_RETURN(const SensorRange range, ParseInputRange(flags.input_range));
+  options.input_range = range;
   return {};
 }
 
@@ -47,12 +47,10 @@ Result<void> CheckBits(int bits) {
 }
 
 Result<CalibrationOptions> MakeCalibrationOptions(const CalibrationFlags& flags) {
-  if (auto checked = CheckBits(flags.bits); !checked) return tl::unexpected(checked.error());
-  if (auto checked = CheckWhole("--order", flags.order, kHighestCalibrationOrder); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(CheckBits(flags.bits));
+  RETURN_IF_ERROR(CheckWhole("--order", flags.order, kHighestCalibrationOrder));
   CalibrationOptions options;
-  if (auto chosen = ChooseRange(flags, options); !chosen) return tl::unexpected(chosen.error());
+  RETURN_IF_ERROR(ChooseRange(flags, options));
   options.order = flags.order;
   return options;
 }

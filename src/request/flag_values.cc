@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -100,12 +101,10 @@ Result<std::map<std::string, Value, std::less<>>> ParseEntries(std::string_view 
   std::map<std::string, Value, std::less<>> values;
   if (text.ends_with(',')) return BadSetting(flag, "'" + std::string(text) + "' ends with a comma");
   for (const std::string& entry : Split(text, ',')) {
-    const auto setting = ParseSetting(flag, entry, model, parameters);
-    if (!setting) return tl::unexpected(setting.error());
-    auto value = parse(*setting->info, setting->value);
-    if (!value) return tl::unexpected(value.error());
-    const std::string name(setting->info->name);
-    if (!values.emplace(name, *std::move(value)).second) return BadSetting(flag, name + " is given twice");
+    ASSIGN_OR_RETURN(const auto setting, ParseSetting(flag, entry, model, parameters));
+    ASSIGN_OR_RETURN(auto value, parse(*setting.info, setting.value));
+    const std::string name(setting.info->name);
+    if (!values.emplace(name, std::move(value)).second) return BadSetting(flag, name + " is given twice");
   }
   return values;
 }
@@ -138,13 +137,12 @@ Result<ParameterRanges> ParseRanges(std::string_view flag, std::string_view text
     ParameterRange range;
     const auto read = [&](const std::string& end, double& bound) -> Result<void> {
       if (end.empty()) return {};
-      const auto number = ParseNumber(std::string(flag) + " " + name, end, "a number in SI units");
-      if (!number) return tl::unexpected(number.error());
-      bound = *number;
+      ASSIGN_OR_RETURN(const auto number, ParseNumber(std::string(flag) + " " + name, end, "a number in SI units"));
+      bound = number;
       return {};
     };
-    if (const auto done = read(value.substr(0, colon), range.lower); !done) return tl::unexpected(done.error());
-    if (const auto done = read(value.substr(colon + 1), range.upper); !done) return tl::unexpected(done.error());
+    RETURN_IF_ERROR(read(value.substr(0, colon), range.lower));
+    RETURN_IF_ERROR(read(value.substr(colon + 1), range.upper));
     if (range.lower < range.upper) return range;
     return BadSetting(flag, "'" + name + "=" + value + "' leaves no value; low must be below high");
   };
@@ -157,12 +155,11 @@ Result<ParameterPriors> ParsePriors(std::string_view flag, std::string_view text
     const std::size_t colon = value.find(':');
     const std::string name(info.name);
     if (colon == std::string::npos) return BadSetting(flag, "'" + name + "=" + value + "' must be name=mean:std_dev");
-    const auto mean = ParseValue(flag, info, value.substr(0, colon));
-    if (!mean) return tl::unexpected(mean.error());
+    ASSIGN_OR_RETURN(const auto mean, ParseValue(flag, info, value.substr(0, colon)));
     const auto std_dev =
         ParseNumber(std::string(flag) + " " + name, value.substr(colon + 1), "a standard deviation in SI units");
     if (!std_dev) return tl::unexpected(std_dev.error());
-    if (*std_dev > 0) return ParameterPrior{*mean, *std_dev};
+    if (*std_dev > 0) return ParameterPrior{mean, *std_dev};
     return BadSetting(flag, "the standard deviation of " + name + " is " + NumberText(*std_dev) +
                                 "; it must be positive (use --fix to hold a parameter)");
   };

@@ -9,6 +9,7 @@
 #include <limits>
 #include <variant>
 
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -86,9 +87,8 @@ Result<void> Parse(std::string_view flag, const std::string& text, bool& value) 
 }
 
 Result<void> Parse(std::string_view flag, const std::string& text, double& value) {
-  const auto number = ParseNumber(flag, text, "a number");
-  if (!number) return tl::unexpected(number.error());
-  value = *number;
+  ASSIGN_OR_RETURN(const auto number, ParseNumber(flag, text, "a number"));
+  value = number;
   return {};
 }
 
@@ -140,7 +140,7 @@ Result<Flags> FlagsOf(const FlagTexts& texts, const Tables&... tables) {
   const std::vector<std::string_view> names = NamesOf(tables...);
   Flags flags;
   for (const auto& given : texts) {
-    if (auto known = CheckFlagName(given.first, names); !known) return tl::unexpected(known.error());
+    RETURN_IF_ERROR(CheckFlagName(given.first, names));
     if (given.second.empty()) {
       return BadFlag("--" + given.first + " has an empty value; leave the flag out for its default");
     }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/rig_check.h"
 #include "pendulum/model/rig_units.h"
 #include "pendulum/request/flag_values.h"
@@ -121,10 +122,9 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     if (texts[i].empty()) continue;
     const RigKey& key = RigKeys()[i];
     const std::string flag = "--" + std::string(key.flag);
-    const Result<RigValue> value = ParseRigValue(flag, texts[i], key);
-    if (!value) return tl::unexpected(value.error());
-    values[std::string(key.name)] = JsonOf(*value);
-    const bool is_zero = value->value == 0 && value->std_dev == 0;
+    ASSIGN_OR_RETURN(const RigValue value, ParseRigValue(flag, texts[i], key));
+    values[std::string(key.name)] = JsonOf(value);
+    const bool is_zero = value.value == 0 && value.std_dev == 0;
     if (key.quantity == RigQuantity::kAcceleration || is_zero || HasUnit(texts[i])) continue;
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
   }

@@ -11,6 +11,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/oversampling.h"
@@ -111,12 +112,11 @@ Result<void> ParseWhole(std::string_view flag, const std::string& value, double 
   if (value.empty()) return {};
   constexpr double kLargest = 1e15;
   const std::string meaning = "a whole number, at least " + NumberText(least);
-  const auto parsed = ParseNumber(flag, value, meaning);
-  if (!parsed) return tl::unexpected(parsed.error());
-  if (*parsed < least || *parsed != std::floor(*parsed) || *parsed > kLargest) {
+  ASSIGN_OR_RETURN(const auto parsed, ParseNumber(flag, value, meaning));
+  if (parsed < least || parsed != std::floor(parsed) || parsed > kLargest) {
     return BadFlag(std::string(flag) + " is '" + value + "'; it must be " + meaning);
   }
-  number = *parsed;
+  number = parsed;
   return {};
 }
 
@@ -126,18 +126,17 @@ Result<void> ParseNoise(const RunFlags& flags, FitOptions& options) {
   if (!noise) return tl::unexpected(noise.error());
   const auto loss = ParseWord("--loss", flags.loss, kLosses);
   if (!loss) return tl::unexpected(loss.error());
-  const auto interval = ParseWord("--interval", flags.interval, kIntervals);
-  if (!interval) return tl::unexpected(interval.error());
+  ASSIGN_OR_RETURN(const auto interval, ParseWord("--interval", flags.interval, kIntervals));
   if (*loss && *noise) {
     return BadFlag("--loss " + flags.loss + " and --noise " + flags.noise + " exclude each other; give one of them");
   }
   auto seed = static_cast<double>(options.seed);
   double threads = options.threads;
-  if (auto parsed = ParseWhole("--seed", flags.seed, 0, seed); !parsed) return parsed;
-  if (auto parsed = ParseWhole("--threads", flags.threads, 0, threads); !parsed) return parsed;
+  RETURN_IF_ERROR(ParseWhole("--seed", flags.seed, 0, seed));
+  RETURN_IF_ERROR(ParseWhole("--threads", flags.threads, 0, threads));
   constexpr double kMaxThreads = 1024;
   options.noise = *loss ? *loss : *noise;
-  options.interval = *interval;
+  options.interval = interval;
   options.seed = static_cast<std::uint64_t>(seed);
   options.threads = static_cast<int>(std::min(threads, kMaxThreads));
   return {};
@@ -160,15 +159,14 @@ std::vector<ParameterInfo> NameableParameters(const std::vector<MotionModel>& mo
 /// Parses a time if the flag was given.
 Result<void> ParseTime(std::string_view flag, const std::string& value, double& time) {
   if (value.empty()) return {};
-  const auto number = ParseNumber(flag, value, "a time in seconds on the file's clock");
-  if (!number) return tl::unexpected(number.error());
-  time = *number;
+  ASSIGN_OR_RETURN(const auto number, ParseNumber(flag, value, "a time in seconds on the file's clock"));
+  time = number;
   return {};
 }
 
 Result<void> ParseWindow(const RunFlags& flags, IdentifyOptions& options) {
-  if (auto parsed = ParseTime("--from", flags.from, options.swing.from); !parsed) return parsed;
-  if (auto parsed = ParseTime("--to", flags.to, options.swing.to); !parsed) return parsed;
+  RETURN_IF_ERROR(ParseTime("--from", flags.from, options.swing.from));
+  RETURN_IF_ERROR(ParseTime("--to", flags.to, options.swing.to));
   if (options.swing.from >= options.swing.to) {
     return BadFlag("--from " + flags.from + " s does not lie before --to " + flags.to + " s");
   }
@@ -196,25 +194,20 @@ Result<void> CheckContradictions(const FitOptions& options) {
 std::string ModelOf(const RunFlags& flags) { return flags.model.empty() ? std::string(kDefaultModel) : flags.model; }
 
 Result<void> ParseFitOptions(const RunFlags& flags, const std::vector<MotionModel>& models, FitOptions& options) {
-  const auto start = ParseWord("--start", flags.start, kStarts);
-  if (!start) return tl::unexpected(start.error());
+  ASSIGN_OR_RETURN(const auto start, ParseWord("--start", flags.start, kStarts));
   const std::vector<ParameterInfo> parameters = NameableParameters(models);
   const std::string model = ModelOf(flags);
-  auto fixed = ParseSettings("--fix", flags.fix, model, parameters);
-  if (!fixed) return tl::unexpected(fixed.error());
-  auto initial = ParseSettings("--init", flags.init, model, parameters);
-  if (!initial) return tl::unexpected(initial.error());
-  auto bounds = ParseRanges("--bounds", flags.bounds, model, parameters);
-  if (!bounds) return tl::unexpected(bounds.error());
-  auto priors = ParsePriors("--prior", flags.prior, model, parameters);
-  if (!priors) return tl::unexpected(priors.error());
+  ASSIGN_OR_RETURN(auto fixed, ParseSettings("--fix", flags.fix, model, parameters));
+  ASSIGN_OR_RETURN(auto initial, ParseSettings("--init", flags.init, model, parameters));
+  ASSIGN_OR_RETURN(auto bounds, ParseRanges("--bounds", flags.bounds, model, parameters));
+  ASSIGN_OR_RETURN(auto priors, ParsePriors("--prior", flags.prior, model, parameters));
   options.model = models.front().name;
-  options.start = *start;
-  options.fixed = *std::move(fixed);
-  options.initial = *std::move(initial);
-  options.bounds = *std::move(bounds);
-  options.priors = *std::move(priors);
-  if (auto parsed = ParseNoise(flags, options); !parsed) return parsed;
+  options.start = start;
+  options.fixed = std::move(fixed);
+  options.initial = std::move(initial);
+  options.bounds = std::move(bounds);
+  options.priors = std::move(priors);
+  RETURN_IF_ERROR(ParseNoise(flags, options));
   return CheckContradictions(options);
 }
 
@@ -250,12 +243,10 @@ Result<void> ParseSensor(const RunFlags& flags, ReadOptions& options) {
   const std::string meaning = "two increasing numbers, low,high, in the file's unit";
   const std::vector<std::string> ends = Split(flags.range, ',');
   if (ends.size() != 2) return BadFlag("--range is '" + flags.range + "'; it must be " + meaning);
-  const auto low = ParseNumber("--range", ends[0], meaning);
-  if (!low) return tl::unexpected(low.error());
-  const auto high = ParseNumber("--range", ends[1], meaning);
-  if (!high) return tl::unexpected(high.error());
-  if (*low >= *high) return BadFlag("--range is '" + flags.range + "'; it must be " + meaning);
-  options.range = SensorRange{*low, *high};
+  ASSIGN_OR_RETURN(const auto low, ParseNumber("--range", ends[0], meaning));
+  ASSIGN_OR_RETURN(const auto high, ParseNumber("--range", ends[1], meaning));
+  if (low >= high) return BadFlag("--range is '" + flags.range + "'; it must be " + meaning);
+  options.range = SensorRange{low, high};
   return {};
 }
 
@@ -263,7 +254,7 @@ Result<void> ParseSensor(const RunFlags& flags, ReadOptions& options) {
 Result<void> ParseAveraging(const RunFlags& flags, ReadOptions& options) {
   const std::string most = std::to_string(kMostOversampling);
   double readings = 0;
-  if (auto parsed = ParseWhole("--oversample", flags.oversample, 1, readings); !parsed) return parsed;
+  RETURN_IF_ERROR(ParseWhole("--oversample", flags.oversample, 1, readings));
   if (readings > kMostOversampling)
     return BadFlag("--oversample is '" + flags.oversample + "'; it must be a whole number, 1 to " + most);
   options.oversample = static_cast<int>(readings);
@@ -274,17 +265,17 @@ Result<void> ParseAveraging(const RunFlags& flags, ReadOptions& options) {
 }
 
 Result<void> ParseReadOptions(const RunFlags& flags, ReadOptions& options) {
-  if (auto checked = CheckReadFlags(flags); !checked) return checked;
-  if (auto parsed = ParseSensor(flags, options); !parsed) return parsed;
-  if (auto parsed = ParseAveraging(flags, options); !parsed) return parsed;
+  RETURN_IF_ERROR(CheckReadFlags(flags));
+  RETURN_IF_ERROR(ParseSensor(flags, options));
+  RETURN_IF_ERROR(ParseAveraging(flags, options));
   options.time_column = flags.time_column;
   options.value_column = flags.value_column;
   options.unit = flags.unit;
   if (flags.sample_rate_hz.empty()) return {};
-  const auto rate = ParseNumber("--sample_rate_hz", flags.sample_rate_hz, "a positive number of samples per second");
-  if (!rate) return tl::unexpected(rate.error());
-  if (*rate <= 0) return BadFlag("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
-  options.sample_rate_hz = *rate;
+  ASSIGN_OR_RETURN(const auto rate,
+                   ParseNumber("--sample_rate_hz", flags.sample_rate_hz, "a positive number of samples per second"));
+  if (rate <= 0) return BadFlag("--sample_rate_hz is '" + flags.sample_rate_hz + "'; it must be positive");
+  options.sample_rate_hz = rate;
   return {};
 }
 
@@ -579,37 +570,33 @@ Result<std::string> ReadSensorFile(RunFlags& flags) {
     return WithMessage(
         text.error(), text.error().message + "; --sensor takes a file or a kind of sensor: " + NameList(SensorKinds()));
   }
-  if (const auto parsed = ParseSensorStatement(*text, flags.sensor, ""); !parsed) return tl::unexpected(parsed.error());
+  RETURN_IF_ERROR(ParseSensorStatement(*text, flags.sensor, ""));
   return std::exchange(flags.sensor, *std::move(text));
 }
 
 Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
-  if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckClosedFormOnly(flags));
   IdentifyOptions options;
   options.closed_form_only = flags.closed_form_only;
-  const auto checks = ParseWord("--checks", flags.checks, kChecks);
-  if (!checks) return tl::unexpected(checks.error());
-  options.checks = *checks;
-  const auto gravity = ParseWord("--gravity", flags.gravity, kGravities);
-  if (!gravity) return tl::unexpected(gravity.error());
-  const auto models = FindMotionModels(ModelOf(flags), *gravity);
+  ASSIGN_OR_RETURN(const auto checks, ParseWord("--checks", flags.checks, kChecks));
+  options.checks = checks;
+  ASSIGN_OR_RETURN(const auto gravity, ParseWord("--gravity", flags.gravity, kGravities));
+  const auto models = FindMotionModels(ModelOf(flags), gravity);
   if (!models) return BadFlag("--model: " + models.error().message);
-  options.fit.gravity = *gravity;
+  options.fit.gravity = gravity;
   options.swing.is_spring =
       std::ranges::all_of(*models, [](const MotionModel& model) { return model.gravity.is_linear(); });
-  options.rig_chooses_gravity = !*gravity;
-  options.fit.may_be_spring = !*gravity && flags.model.empty();
+  options.rig_chooses_gravity = !gravity;
+  options.fit.may_be_spring = !gravity && flags.model.empty();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
-  if (const auto parsed = ParseFitOptions(flags, *models, options.fit); !parsed) return tl::unexpected(parsed.error());
-  if (const auto parsed = ParseWindow(flags, options); !parsed) return tl::unexpected(parsed.error());
-  const auto release = ParseRelease(flags);
-  if (!release) return tl::unexpected(release.error());
-  options.swing.release = *release;
-  auto rig_values = RigValuesOf(flags.rig_values, options.notes);
-  if (!rig_values) return tl::unexpected(rig_values.error());
-  options.rig_values = *std::move(rig_values);
-  if (const auto parsed = ParseStatedSensor(flags, options); !parsed) return tl::unexpected(parsed.error());
-  if (const auto parsed = ParseReadOptions(flags, options.read); !parsed) return tl::unexpected(parsed.error());
+  RETURN_IF_ERROR(ParseFitOptions(flags, *models, options.fit));
+  RETURN_IF_ERROR(ParseWindow(flags, options));
+  ASSIGN_OR_RETURN(const auto release, ParseRelease(flags));
+  options.swing.release = release;
+  ASSIGN_OR_RETURN(auto rig_values, RigValuesOf(flags.rig_values, options.notes));
+  options.rig_values = std::move(rig_values);
+  RETURN_IF_ERROR(ParseStatedSensor(flags, options));
+  RETURN_IF_ERROR(ParseReadOptions(flags, options.read));
   return options;
 }
 

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/nesting.h"
 #include "pendulum/request/flag_values.h"
@@ -124,15 +125,15 @@ Result<void> ChooseSpread(const std::string& spread, std::vector<ParameterInfo> 
   if (spread.empty()) return {};
   const std::vector<ParameterInfo> bounded = infos;
   for (ParameterInfo& info : infos) info.lower = 0, info.upper = kUnbounded;  // bounds of a standard deviation
-  const Result<ParameterValues> std_devs = ParseSettings("--spread", spread, simulation.synthetic.model.name, infos);
-  if (!std_devs) return tl::unexpected(std_devs.error());
-  for (const auto& [name, std_dev] : *std_devs) {
+  ASSIGN_OR_RETURN(const ParameterValues std_devs,
+                   ParseSettings("--spread", spread, simulation.synthetic.model.name, infos));
+  for (const auto& [name, std_dev] : std_devs) {
     if (values.contains(name)) continue;
     return BadFlag("--spread: " + name + " belongs to a start other than that of --set; leave it out");
   }
   for (const ParameterInfo& info : bounded) {
     if (!values.contains(info.name)) continue;
-    simulation.scattered.push_back({info, ValueOr0(values, info), ValueOr0(*std_devs, info)});
+    simulation.scattered.push_back({info, ValueOr0(values, info), ValueOr0(std_devs, info)});
   }
   return {};
 }
@@ -152,25 +153,23 @@ Result<void> CheckRig(const std::optional<Rig>& rig, const MotionModel& model) {
 /// Applies --set to the chosen model: start and parameters, in `simulation` and in its true values.
 Result<void> ChooseMotion(const SimulationFlags& flags, const std::optional<Rig>& rig, Simulation& simulation) {
   SyntheticOptions& synthetic = simulation.synthetic;
-  if (auto checked = CheckRig(rig, synthetic.model); !checked) return checked;
+  RETURN_IF_ERROR(CheckRig(rig, synthetic.model));
   const std::vector<ParameterInfo> infos = SettableParameters(synthetic);
-  Result<ParameterValues> values = ParseSettings("--set", flags.set, synthetic.model.name, infos);
-  if (!values) return tl::unexpected(values.error());
-  const Result<StartKind> start = ChooseStart(*values);
-  if (!start) return tl::unexpected(start.error());
-  synthetic.start = *start;
-  if (Result<void> complete = Complete(infos, rig, *start, *values); !complete) return complete;
-  if (const double angle = ValueOr0(*values, kReleaseAngle);
+  ASSIGN_OR_RETURN(ParameterValues values, ParseSettings("--set", flags.set, synthetic.model.name, infos));
+  ASSIGN_OR_RETURN(const StartKind start, ChooseStart(values));
+  synthetic.start = start;
+  RETURN_IF_ERROR(Complete(infos, rig, start, values));
+  if (const double angle = ValueOr0(values, kReleaseAngle);
       !synthetic.model.gravity.is_linear() && std::abs(angle) > 2 * kPi) {
     return BadFlag("--set: release_angle is " + NumberText(angle) + " rad, more than a turn; if you mean " +
                    NumberText(angle) + " deg, give " + NumberText(angle * kRadFromDeg, 4));
   }
   simulation.gravity_torque = rig ? rig->gravity_torque.value : 1.0;
-  SetMotion(*values, simulation.gravity_torque, synthetic);
+  SetMotion(values, simulation.gravity_torque, synthetic);
   for (const ParameterInfo& info : infos) {
-    if (const auto found = values->find(info.name); found != values->end()) simulation.truth.emplace_back(*found);
+    if (const auto found = values.find(info.name); found != values.end()) simulation.truth.emplace_back(*found);
   }
-  return ChooseSpread(flags.spread, infos, *values, simulation);
+  return ChooseSpread(flags.spread, infos, values, simulation);
 }
 
 Result<std::optional<SensorRange>> ParseRange(const std::string& text) {
@@ -314,25 +313,22 @@ Result<std::vector<LostCounts>> ParseLostCounts(const SimulationFlags& flags) {
 }  // namespace
 
 Result<Simulation> MakeSimulation(const SimulationFlags& flags, const std::optional<Rig>& rig) {
-  if (Result<void> checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
-  if (Result<void> checked = CheckEvents(flags); !checked) return tl::unexpected(checked.error());
-  if (Result<void> checked = CheckAveraging(flags); !checked) return tl::unexpected(checked.error());
-  const Result<OutputUnit> unit = FindUnit(flags.unit);
-  if (!unit) return tl::unexpected(unit.error());
-  const Result<MotionModel> model = ChooseModel(flags);
-  if (!model) return tl::unexpected(model.error());
+  RETURN_IF_ERROR(CheckNumbers(flags));
+  RETURN_IF_ERROR(CheckEvents(flags));
+  RETURN_IF_ERROR(CheckAveraging(flags));
+  ASSIGN_OR_RETURN(const OutputUnit unit, FindUnit(flags.unit));
+  ASSIGN_OR_RETURN(const MotionModel model, ChooseModel(flags));
   Simulation simulation;
-  simulation.unit = *unit;
-  simulation.synthetic.quantity = unit->quantity;
-  simulation.synthetic.sensor.kind = unit->sensor;
-  if (unit->sensor == SensorKind::kAcceleration) simulation.synthetic.sensor.gravity = kStandardGravity;
-  simulation.synthetic.model = *model;
-  if (Result<void> chosen = ChooseSensor(flags, simulation); !chosen) return tl::unexpected(chosen.error());
-  const Result<std::vector<LostCounts>> lost = ParseLostCounts(flags);
-  if (!lost) return tl::unexpected(lost.error());
-  simulation.synthetic.lost_counts = *lost;
-  if (Result<void> chosen = ChooseMotion(flags, rig, simulation); !chosen) return tl::unexpected(chosen.error());
-  if (const auto first = SimulationOfRecording(simulation, 0); !first) return tl::unexpected(first.error());
+  simulation.unit = unit;
+  simulation.synthetic.quantity = unit.quantity;
+  simulation.synthetic.sensor.kind = unit.sensor;
+  if (unit.sensor == SensorKind::kAcceleration) simulation.synthetic.sensor.gravity = kStandardGravity;
+  simulation.synthetic.model = model;
+  RETURN_IF_ERROR(ChooseSensor(flags, simulation));
+  ASSIGN_OR_RETURN(const std::vector<LostCounts> lost, ParseLostCounts(flags));
+  simulation.synthetic.lost_counts = lost;
+  RETURN_IF_ERROR(ChooseMotion(flags, rig, simulation));
+  RETURN_IF_ERROR(SimulationOfRecording(simulation, 0));
   return simulation;
 }
 

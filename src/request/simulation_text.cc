@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 
 namespace pendulum {
@@ -124,13 +125,11 @@ std::string RecordingCsv(const Simulation& simulation, const Recording& recordin
 
 Result<std::string> SimulatedCsv(const Simulation& simulation, std::uint64_t seed) {
   if (simulation.unit.sensor == SensorKind::kArc) {
-    const Result<TrackedPoint> point = SimulatePoint(simulation.synthetic);
-    if (!point) return tl::unexpected(point.error());
-    return Csv(simulation, seed, point->time, {&point->x, &point->y});
+    ASSIGN_OR_RETURN(const TrackedPoint point, SimulatePoint(simulation.synthetic));
+    return Csv(simulation, seed, point.time, {&point.x, &point.y});
   }
-  const Result<Recording> recording = SimulateRecording(simulation.synthetic);
-  if (!recording) return tl::unexpected(recording.error());
-  return RecordingCsv(simulation, *recording, seed);
+  ASSIGN_OR_RETURN(const Recording recording, SimulateRecording(simulation.synthetic));
+  return RecordingCsv(simulation, recording, seed);
 }
 
 std::string TruthJson(const Simulation& simulation, std::uint64_t seed) {

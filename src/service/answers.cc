@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/request/flag_values.h"
 
@@ -102,12 +103,10 @@ Result<std::int64_t> QueryNumber(const RequestTarget& target, std::string_view n
 Result<ListPage> PageOf(const RequestTarget& target) {
   constexpr std::int64_t kMaxPageSize = 500;
   ListPage page;
-  const auto limit = QueryNumber(target, "limit", page.limit);
-  if (!limit) return tl::unexpected(limit.error());
-  const auto before = QueryNumber(target, "before", 0);
-  if (!before) return tl::unexpected(before.error());
-  page.limit = static_cast<int>(std::min(*limit, kMaxPageSize));
-  if (*before > 0) page.before = *before;
+  ASSIGN_OR_RETURN(const auto limit, QueryNumber(target, "limit", page.limit));
+  ASSIGN_OR_RETURN(const auto before, QueryNumber(target, "before", 0));
+  page.limit = static_cast<int>(std::min(limit, kMaxPageSize));
+  if (before > 0) page.before = before;
   return page;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/service/fit_request.h"
 #include "service/answers.h"
@@ -95,10 +96,9 @@ class BatchEvents {
 
 /// Progress of a batch that is no longer running.
 Result<std::shared_ptr<const BatchProgress>> ProgressFromStore(ServiceState& state, const std::string& id) {
-  if (const auto batch = state.store->FindBatch(id); !batch) return tl::unexpected(batch.error());
-  auto fits = state.store->RunsOf(id);
-  if (!fits) return tl::unexpected(fits.error());
-  return std::make_shared<const BatchProgress>(*std::move(fits));
+  RETURN_IF_ERROR(state.store->FindBatch(id));
+  ASSIGN_OR_RETURN(auto fits, state.store->RunsOf(id));
+  return std::make_shared<const BatchProgress>(std::move(fits));
 }
 
 /// Number of the last event that a reconnecting client received (WHATWG HTML, 9.2.4); 0 if it sends none.

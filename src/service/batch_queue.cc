@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "pendulum/base/parallel.h"
+#include "pendulum/base/try.h"
 #include "pendulum/service/fit_request.h"
 
 namespace pendulum {
@@ -87,17 +88,15 @@ BatchQueue::~BatchQueue() {
 }
 
 Result<void> BatchQueue::Begin(int threads) {
-  auto waiting = store_.WaitingRuns();
-  if (!waiting) return tl::unexpected(waiting.error());
+  ASSIGN_OR_RETURN(auto waiting, store_.WaitingRuns());
   std::map<std::string, std::size_t, std::less<>> left;
-  for (const FitStore::Waiting& run : *waiting) ++left[run.batch];
+  for (const FitStore::Waiting& run : waiting) ++left[run.batch];
   const std::scoped_lock lock(mutex_);
   for (const auto& [batch, runs] : left) {
-    auto kept = store_.RunsOf(batch);
-    if (!kept) return tl::unexpected(kept.error());
-    batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(*std::move(kept)), runs});
+    ASSIGN_OR_RETURN(auto kept, store_.RunsOf(batch));
+    batches_.emplace(batch, Batch{std::make_shared<BatchProgress>(std::move(kept)), runs});
   }
-  waiting_.insert(waiting_.end(), waiting->begin(), waiting->end());
+  waiting_.insert(waiting_.end(), waiting.begin(), waiting.end());
   return StartThreads(threads);
 }
 

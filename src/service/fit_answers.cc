@@ -11,6 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
@@ -134,21 +135,17 @@ Result<std::string> SinceOf(const RequestTarget& target) {
 
 Result<FitFilter> FilterOf(const RequestTarget& target) {
   FitFilter filter;
-  const auto page = PageOf(target);
-  if (!page) return tl::unexpected(page.error());
+  ASSIGN_OR_RETURN(const auto page, PageOf(target));
   std::vector<std::string_view> models;
   for (const MotionModel& model : MotionModels()) models.push_back(model.name);
-  auto model = OneOf(target, "model", models);
-  if (!model) return tl::unexpected(model.error());
-  auto status = OneOf(target, "status", {"converged", "not_converged", "not_identifiable", "failed"});
-  if (!status) return tl::unexpected(status.error());
-  auto since = SinceOf(target);
-  if (!since) return tl::unexpected(since.error());
-  filter.limit = page->limit;
-  filter.before = page->before;
-  filter.model = *std::move(model);
-  filter.status = *std::move(status);
-  filter.since = *std::move(since);
+  ASSIGN_OR_RETURN(auto model, OneOf(target, "model", models));
+  ASSIGN_OR_RETURN(auto status, OneOf(target, "status", {"converged", "not_converged", "not_identifiable", "failed"}));
+  ASSIGN_OR_RETURN(auto since, SinceOf(target));
+  filter.limit = page.limit;
+  filter.before = page.before;
+  filter.model = std::move(model);
+  filter.status = std::move(status);
+  filter.since = std::move(since);
   filter.name = QueryValue(target, "name");
   filter.batch = QueryValue(target, "batch");
   return filter;

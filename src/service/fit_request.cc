@@ -11,6 +11,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/batch/source.h"
 #include "pendulum/fitting/swing/choose_swings.h"
@@ -80,10 +81,9 @@ Result<void> AddFlag(const std::string& name, const std::string& text, FlagTexts
 }
 
 Result<void> AddOptions(const Json& object, FlagTexts& flags) {
-  const auto texts = FlagTextsOf(object);
-  if (!texts) return tl::unexpected(texts.error());
-  for (const auto& [name, text] : *texts) {
-    if (auto added = AddFlag(name, text, flags); !added) return added;
+  ASSIGN_OR_RETURN(const auto texts, FlagTextsOf(object));
+  for (const auto& [name, text] : texts) {
+    RETURN_IF_ERROR(AddFlag(name, text, flags));
   }
   return {};
 }
@@ -98,10 +98,10 @@ Result<Query> QueryOf(const RequestTarget& target) {
   Query query;
   for (const auto& [name, value] : target.query) {
     if (name == "name") {
-      if (auto checked = CheckName(value); !checked) return tl::unexpected(checked.error());
+      RETURN_IF_ERROR(CheckName(value));
       query.name = value;
     } else {
-      if (auto known = CheckFlagName(name, RunFlagNames()); !known) return tl::unexpected(known.error());
+      RETURN_IF_ERROR(CheckFlagName(name, RunFlagNames()));
       query.flags.emplace(name, value);
     }
   }
@@ -155,11 +155,10 @@ class FormReader {
 };
 
 Result<void> ReadForm(std::string_view content_type, const std::string& body, FitRequest& request) {
-  const auto parts = ParseFormData(content_type, body);
-  if (!parts) return tl::unexpected(parts.error());
+  ASSIGN_OR_RETURN(const auto parts, ParseFormData(content_type, body));
   FormReader reader(request);
-  for (const FormPart& part : *parts) {
-    if (auto read = reader.ReadPart(part); !read) return read;
+  for (const FormPart& part : parts) {
+    RETURN_IF_ERROR(reader.ReadPart(part));
   }
   return {};
 }
@@ -194,18 +193,17 @@ Result<Json> ParseBody(const std::string& body) {
 
 /// `name` receives the recording's name, if given.
 Result<void> ReadJson(const std::string& body, FitRequest& request, std::string& name) {
-  auto json = ParseBody(body);
-  if (!json) return tl::unexpected(json.error());
-  for (const auto& [key, value] : json->items()) {
-    if (auto read = ReadMember(key, value, request); !read) return read;
+  ASSIGN_OR_RETURN(auto json, ParseBody(body));
+  for (const auto& [key, value] : json.items()) {
+    RETURN_IF_ERROR(ReadMember(key, value, request));
   }
-  if (json->contains("name")) {
+  if (json.contains("name")) {
     if (!name.empty()) return Error(StatusCode::kInvalidArgument, "name is given in the query and in the body");
-    name = (*json)["name"].get<std::string>();
-    if (auto checked = CheckName(name); !checked) return checked;
+    name = json["name"].get<std::string>();
+    RETURN_IF_ERROR(CheckName(name));
   }
-  if (json->contains("data")) {
-    request.data.push_back({kUnnamed, std::move((*json)["data"].get_ref<std::string&>())});
+  if (json.contains("data")) {
+    request.data.push_back({kUnnamed, std::move(json["data"].get_ref<std::string&>())});
   }
   return {};
 }
@@ -264,7 +262,7 @@ ResultOrProblem<void> CheckOptions(const FlagTexts& flags) {
 
 /// Makes the options and checks the limits.
 ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limits) {
-  if (auto checked = CheckOptions(request.flags); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckOptions(request.flags));
   auto options = IdentifyOptionsOf(request.flags, request.calibration);
   if (!options) return Refused(options.error());
   if (request.rig) {
@@ -278,13 +276,13 @@ ResultOrProblem<FitRequest> Finish(FitRequest request, const RequestLimits& limi
   }
   request.options = *std::move(options);
   for (const NamedBytes& data : request.data) {
-    if (auto checked = CheckSize(data, limits); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(CheckSize(data, limits));
   }
   return request;
 }
 
 ResultOrProblem<FitRequest> Begin(const HttpRequest& http, const RequestTarget& target, std::string& name) {
-  if (auto checked = CheckCoding(http); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckCoding(http));
   auto query = QueryOf(target);
   if (!query) return Refused(query.error());
   FitRequest request;
@@ -314,10 +312,9 @@ Json JsonOf(const FlagTexts& flags) {
 }
 
 Result<IdentifyOptions> IdentifyOptionsOf(const FlagTexts& flags, const SharedFile& calibration) {
-  auto run_flags = RunFlagsOf(flags);
-  if (!run_flags) return tl::unexpected(run_flags.error());
-  if (calibration) run_flags->calibration = calibration->name;
-  auto options = MakeIdentifyOptions(*run_flags);
+  ASSIGN_OR_RETURN(auto run_flags, RunFlagsOf(flags));
+  if (calibration) run_flags.calibration = calibration->name;
+  auto options = MakeIdentifyOptions(run_flags);
   if (!options) return options;
   if (options->swing.release == SwingChoice::kAll) {
     return Error(
@@ -330,19 +327,17 @@ Result<IdentifyOptions> IdentifyOptionsOf(const FlagTexts& flags, const SharedFi
 }
 
 Result<FlagTexts> FlagsOf(const FitOrder& order) {
-  const auto json = ParseJsonObject(order.flags, "flags", "set of flags", "{}");
-  if (!json) return tl::unexpected(json.error());
-  return FlagTextsOf(*json);
+  ASSIGN_OR_RETURN(const auto json, ParseJsonObject(order.flags, "flags", "set of flags", "{}"));
+  return FlagTextsOf(json);
 }
 
 Result<IdentifyOptions> OptionsOf(const FitOrder& order) {
-  const auto flags = FlagsOf(order);
-  if (!flags) return tl::unexpected(flags.error());
-  return IdentifyOptionsOf(*flags, order.files.calibration);
+  ASSIGN_OR_RETURN(const auto flags, FlagsOf(order));
+  return IdentifyOptionsOf(flags, order.files.calibration);
 }
 
 ResultOrProblem<void> CheckKind(const HttpRequest& request, std::span<const std::string_view> types) {
-  if (auto checked = CheckCoding(request); !checked) return checked;
+  RETURN_IF_ERROR(CheckCoding(request));
   const std::string type = TypeOf(request);
   if (std::ranges::find(types, type) != types.end()) return {};
   return WrongKind(type, NameList(types));
@@ -378,7 +373,7 @@ ResultOrProblem<FitRequest> ParseFitRequest(const HttpRequest& http, const Reque
 
 ResultOrProblem<std::string> ParseNameRequest(const HttpRequest& http) {
   constexpr std::array<std::string_view, 2> kTypes = {"application/json", "application/merge-patch+json"};
-  if (auto checked = CheckKind(http, kTypes); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckKind(http, kTypes));
   auto json = ParseJsonObject(http.body, "the body", "change", R"({"name": "Heavy bob"})", http.body.size());
   if (!json) return Refused(ProblemKind::kWrongRequest, json.error().message);
   if (json->size() != 1 || !json->contains("name") || !(*json)["name"].is_string()) {

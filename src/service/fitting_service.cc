@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/service/problem.h"
 #include "pendulum/service/request_target.h"
 #include "service/answers.h"
@@ -67,7 +68,7 @@ Result<std::unique_ptr<FittingService>> FittingService::Begin(const ServiceOptio
     return Error(StatusCode::kTryAgain,
                  std::string("the service cannot start, ") + error.what() + "; end other processes");
   }
-  if (auto begun = state->queue.Begin(options.threads); !begun) return tl::unexpected(begun.error());
+  RETURN_IF_ERROR(state->queue.Begin(options.threads));
   return std::make_unique<FittingService>(std::move(state));
 }
 

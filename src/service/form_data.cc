@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/service/media_type.h"
 #include "service/escapes.h"
@@ -146,7 +147,7 @@ struct PartReader {
         line += piece;
         text.remove_prefix(std::min(text.size(), piece.size() + kLineEnd.size()));
       } while (text.starts_with(' ') || text.starts_with('\t'));
-      if (auto read = ReadField(line, head); !read) return tl::unexpected(read.error());
+      RETURN_IF_ERROR(ReadField(line, head));
     }
     return head;
   }
@@ -198,22 +199,18 @@ std::string WithoutBrowserEscapes(std::string_view text) {
 }
 
 Result<FormPart> PartReader::Read(std::string_view text) const {
-  const auto split = Split(text);
-  if (!split) return tl::unexpected(split.error());
-  const auto head = ReadHead(split->first);
-  if (!head) return tl::unexpected(head.error());
-  if (auto plain = CheckEncoding(head->encoding); !plain) return tl::unexpected(plain.error());
-  const auto parameters = ReadDisposition(head->disposition);
-  if (!parameters) return tl::unexpected(parameters.error());
-  FormPart part{"", "", head->type.value_or(""), split->second};
+  ASSIGN_OR_RETURN(const auto split, Split(text));
+  ASSIGN_OR_RETURN(const auto head, ReadHead(split.first));
+  RETURN_IF_ERROR(CheckEncoding(head.encoding));
+  ASSIGN_OR_RETURN(const auto parameters, ReadDisposition(head.disposition));
+  FormPart part{"", "", head.type.value_or(""), split.second};
   bool is_extended = false;
-  for (const auto& [name, value] : *parameters) {
+  for (const auto& [name, value] : parameters) {
     if (name == "name") part.name = WithoutBrowserEscapes(value);
     if (name == "filename" && !is_extended) part.filename = WithoutBrowserEscapes(value);
     if (name != "filename*") continue;
-    auto decoded = DecodeExtended(value);
-    if (!decoded) return tl::unexpected(decoded.error());
-    part.filename = *std::move(decoded);
+    ASSIGN_OR_RETURN(auto decoded, DecodeExtended(value));
+    part.filename = std::move(decoded);
     is_extended = true;
   }
   if (part.name.empty()) return Wrong("has no name; write Content-Disposition: form-data; name=\"data\"");
@@ -239,9 +236,8 @@ Result<std::vector<FormPart>> ParseFormData(std::string_view content_type, std::
     if (parts.size() == kMaxFormParts) {
       return WrongForm("has more than " + std::to_string(kMaxFormParts) + " parts; send several forms");
     }
-    auto part = reader.Read(body.substr(line->end, std::max(next->begin, line->end) - line->end));
-    if (!part) return tl::unexpected(part.error());
-    parts.push_back(*std::move(part));
+    ASSIGN_OR_RETURN(auto part, reader.Read(body.substr(line->end, std::max(next->begin, line->end) - line->end)));
+    parts.push_back(std::move(part));
     line = next;
   }
   return parts;

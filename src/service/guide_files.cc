@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -52,9 +53,8 @@ Result<GuideFile> ReadGuideFile(const std::string& folder, std::string_view path
                  "the user guide has no file '" + std::string(path) + "'; /docs/index.html lists its pages");
   }
   constexpr std::uintmax_t kMaxBytes = std::uintmax_t{16} << 20U;
-  auto bytes = ReadFile(file, "guide", kMaxBytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  return GuideFile{TypeOf(file), *std::move(bytes)};
+  ASSIGN_OR_RETURN(auto bytes, ReadFile(file, "guide", kMaxBytes));
+  return GuideFile{TypeOf(file), std::move(bytes)};
 }
 
 }  // namespace pendulum

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/motion_model.h"
@@ -46,14 +47,12 @@ Result<SimulationRequest> ParseSimulationRequest(const Call& call) {
   auto json = ParseJsonObject(call.http.body, "the body", "simulation", R"({"set": "inertia=0.079,..."})");
   if (!json) return Error(StatusCode::kInvalidArgument, json.error().message);
   if (json->contains("rig") && !(*json)["rig"].is_null()) {
-    auto rig = ParseRig(JsonText((*json)["rig"]), "rig");
-    if (!rig) return tl::unexpected(rig.error());
-    request.rig = *std::move(rig);
+    ASSIGN_OR_RETURN(auto rig, ParseRig(JsonText((*json)["rig"]), "rig"));
+    request.rig = std::move(rig);
   }
   json->erase("rig");
-  const auto flags = FlagTextsOf(*json);
-  if (!flags) return tl::unexpected(flags.error());
-  for (const auto& [name, text] : *flags) {
+  ASSIGN_OR_RETURN(const auto flags, FlagTextsOf(*json));
+  for (const auto& [name, text] : flags) {
     if (request.flags.emplace(name, text).second) continue;
     return Error(StatusCode::kInvalidArgument, "--" + name + " is given in the query and in the body");
   }

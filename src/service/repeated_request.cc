@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/service/form_data.h"
 #include "pendulum/service/idempotency_key.h"
 #include "pendulum/service/media_type.h"
@@ -21,10 +22,9 @@ std::string Framed(std::string_view text) { return std::to_string(text.size()) +
 
 /// The content of a form without its boundary, which differs in every request.
 Result<std::string> FormText(std::string_view content_type, std::string_view body) {
-  const auto parts = ParseFormData(content_type, body);
-  if (!parts) return tl::unexpected(parts.error());
+  ASSIGN_OR_RETURN(const auto parts, ParseFormData(content_type, body));
   std::string text;
-  for (const FormPart& part : *parts) {
+  for (const FormPart& part : parts) {
     text += Framed(part.name) + Framed(part.filename) + Framed(part.content_type) + Framed(part.content);
   }
   return text;
@@ -35,9 +35,8 @@ Result<std::string> HashOf(const HttpRequest& http) {
   const std::string_view type = http.Field("Content-Type").value_or("");
   const std::string head = Framed(http.method) + Framed(http.target);
   if (!LowerCase(type).starts_with("multipart/form-data")) return Sha256(head + Framed(type) + http.body);
-  const auto form = FormText(type, http.body);
-  if (!form) return tl::unexpected(form.error());
-  return Sha256(head + *form);
+  ASSIGN_OR_RETURN(const auto form, FormText(type, http.body));
+  return Sha256(head + form);
 }
 
 /// The earlier answer to a request.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/service/media_type.h"
 #include "service/escapes.h"
@@ -80,12 +81,11 @@ Result<std::vector<std::pair<std::string, std::string>>> DecodedQuery(std::strin
     auto name = DecodedFormText(item.substr(0, equals), "name of a query parameter");
     if (!name) return tl::unexpected(name.error());
     if (name->empty()) return WrongTarget("query parameter", item, "has no name; write name=value");
-    auto value = equals == std::string_view::npos
-                     ? Result<std::string>("")
-                     : DecodedFormText(item.substr(equals + 1), "value of " + Quoted(*name));
-    if (!value) return tl::unexpected(value.error());
+    ASSIGN_OR_RETURN(auto value, equals == std::string_view::npos
+                                     ? Result<std::string>("")
+                                     : DecodedFormText(item.substr(equals + 1), "value of " + Quoted(*name)));
     if (!names.insert(*name).second) return WrongTarget("query parameter", *name, "is given twice; keep one of them");
-    parameters.emplace_back(*std::move(name), *std::move(value));
+    parameters.emplace_back(*std::move(name), std::move(value));
   }
   return parameters;
 }
@@ -118,11 +118,9 @@ Result<RequestTarget> ParseTarget(std::string_view target) {
     return WrongTarget("target", target, "has a fragment; write # as %23, or leave out what follows it");
   }
   const std::size_t mark = target.find('?');
-  auto path = DecodedPath(target.substr(0, mark));
-  if (!path) return tl::unexpected(path.error());
-  auto query = DecodedQuery(mark == std::string_view::npos ? "" : target.substr(mark + 1));
-  if (!query) return tl::unexpected(query.error());
-  return RequestTarget{*std::move(path), *std::move(query)};
+  ASSIGN_OR_RETURN(auto path, DecodedPath(target.substr(0, mark)));
+  ASSIGN_OR_RETURN(auto query, DecodedQuery(mark == std::string_view::npos ? "" : target.substr(mark + 1)));
+  return RequestTarget{std::move(path), std::move(query)};
 }
 
 }  // namespace pendulum

@@ -17,6 +17,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "pendulum/base/try.h"
 #include "service/connection.h"
 
 namespace pendulum {
@@ -165,7 +166,7 @@ Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, Htt
                                                std::function<void(const Answered&)> answered) {
   try {
     auto state = std::make_unique<State>(options, handler, std::move(answered));
-    if (auto bound = state->Bind(); !bound) return tl::unexpected(bound.error());
+    RETURN_IF_ERROR(state->Bind());
     return std::make_unique<Server>(std::move(state));
   } catch (const std::exception& error) {
     return Error(StatusCode::kTryAgain, std::string("the server cannot start, ") + error.what() +

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/try.h"
 #include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/report/adc_plan_text.h"
 #include "pendulum/report/calibration_plot.h"
@@ -59,36 +60,31 @@ std::vector<ToolFlag<Flags>> FlagTable() {
 }
 
 Result<void> CheckBeforeWork(const CalibrateSensorOptions& options) {
-  if (auto checked = CheckOutputs(options.Outputs(), options.Inputs()); !checked) return checked;
+  RETURN_IF_ERROR(CheckOutputs(options.Outputs(), options.Inputs()));
   return options.plot.empty() ? Result<void>() : CheckGnuplot();
 }
 
 Result<std::vector<Output>> MakeOutputs(const CalibrateSensorOptions& options) {
   if (!options.plan.empty()) return std::vector<Output>{{"-", AdcPlanText(options.plan)}};
-  const Result<CalibrationTable> table = ReadCalibrationTable(options.data);
-  if (!table) return tl::unexpected(table.error());
-  const Result<CalibrationFit> fit = CalibrateTable(*table, options);
-  if (!fit) return tl::unexpected(fit.error());
+  ASSIGN_OR_RETURN(const CalibrationTable table, ReadCalibrationTable(options.data));
+  ASSIGN_OR_RETURN(const CalibrationFit fit, CalibrateTable(table, options));
   std::vector<Output> outputs;
-  if (!options.json.empty()) outputs.push_back({options.json, fit->calibration.source.dump(2) + "\n"});
+  if (!options.json.empty()) outputs.push_back({options.json, fit.calibration.source.dump(2) + "\n"});
   if (!options.plot.empty()) {
-    Result<std::string> plot = RunGnuplot(CalibrationPlot(*table, *fit));
-    if (!plot) return tl::unexpected(plot.error());
-    outputs.push_back({options.plot, *std::move(plot)});
+    ASSIGN_OR_RETURN(std::string plot, RunGnuplot(CalibrationPlot(table, fit)));
+    outputs.push_back({options.plot, std::move(plot)});
   }
   if (!IsStandardOutput(options.json) && !IsStandardOutput(options.plot)) {
-    outputs.push_back({"-", CalibrationText(*table, *fit, options.details ? TextExtent::kAll : TextExtent::kSummary)});
+    outputs.push_back({"-", CalibrationText(table, fit, options.details ? TextExtent::kAll : TextExtent::kSummary)});
   }
   return outputs;
 }
 
 Result<int> Work(const Flags& flags) {
-  const auto options = MakeCalibrateSensorOptions(flags);
-  if (!options) return tl::unexpected(options.error());
-  if (const auto checked = CheckBeforeWork(*options); !checked) return tl::unexpected(checked.error());
-  const auto outputs = MakeOutputs(*options);
-  if (!outputs) return tl::unexpected(outputs.error());
-  return WriteOutputs(*outputs).map([] { return 0; });
+  ASSIGN_OR_RETURN(const auto options, MakeCalibrateSensorOptions(flags));
+  RETURN_IF_ERROR(CheckBeforeWork(options));
+  ASSIGN_OR_RETURN(const auto outputs, MakeOutputs(options));
+  return WriteOutputs(outputs).map([] { return 0; });
 }
 
 }  // namespace

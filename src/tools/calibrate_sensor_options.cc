@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -53,33 +54,27 @@ Result<void> CheckTask(const CalibrateSensorFlags& flags) {
        {flags.potentiometer_range_deg != unset.potentiometer_range_deg, "--potentiometer_range_deg"},
        {flags.divider != unset.divider, "--divider"}}};
   for (const auto& [is_given, flag] : of_a_table) {
-    if (auto checked = CheckBelongs(flags.plan && is_given, flag, true); !checked) return checked;
+    RETURN_IF_ERROR(CheckBelongs(flags.plan && is_given, flag, true));
   }
   for (const auto& [is_given, flag] : of_a_plan) {
-    if (auto checked = CheckBelongs(!flags.plan && is_given, flag, false); !checked) return checked;
+    RETURN_IF_ERROR(CheckBelongs(!flags.plan && is_given, flag, false));
   }
   return CheckBits(flags.bits);
 }
 
 Result<std::vector<AdcSensor>> MakePlan(const CalibrateSensorFlags& flags) {
   constexpr double kMaxVolts = 1000, kMaxDeg = 36000;
-  if (auto checked = CheckQuantity("--supply_voltage", flags.supply_voltage, kMaxVolts); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (auto checked = CheckQuantity("--potentiometer_range_deg", flags.potentiometer_range_deg, kMaxDeg); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (auto checked = CheckQuantity("--divider", flags.divider, 1); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckQuantity("--supply_voltage", flags.supply_voltage, kMaxVolts));
+  RETURN_IF_ERROR(CheckQuantity("--potentiometer_range_deg", flags.potentiometer_range_deg, kMaxDeg));
+  RETURN_IF_ERROR(CheckQuantity("--divider", flags.divider, 1));
   const std::string list = flags.reference_voltage.empty() ? "5" : flags.reference_voltage;
   if (list.ends_with(',')) return BadFlag("--reference_voltage is '" + list + "', which ends with a comma");
   std::vector<AdcSensor> plan;
   for (const std::string& text : Split(list, ',')) {
-    const auto volts = ParseNumber("--reference_voltage", text, "a number of volts, or several between commas");
-    if (!volts) return tl::unexpected(volts.error());
-    if (auto checked = CheckQuantity("--reference_voltage", *volts, kMaxVolts); !checked) {
-      return tl::unexpected(checked.error());
-    }
-    plan.push_back({flags.bits == 0 ? kUsualBits : flags.bits, *volts, flags.supply_voltage,
+    ASSIGN_OR_RETURN(const auto volts,
+                     ParseNumber("--reference_voltage", text, "a number of volts, or several between commas"));
+    RETURN_IF_ERROR(CheckQuantity("--reference_voltage", volts, kMaxVolts));
+    plan.push_back({flags.bits == 0 ? kUsualBits : flags.bits, volts, flags.supply_voltage,
                     flags.potentiometer_range_deg, flags.divider});
   }
   return plan;
@@ -100,18 +95,16 @@ std::vector<NamedFile> CalibrateSensorOptions::Inputs() const {
 }
 
 Result<CalibrateSensorOptions> MakeCalibrateSensorOptions(const CalibrateSensorFlags& flags) {
-  if (auto checked = CheckTask(flags); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckTask(flags));
   CalibrateSensorOptions options;
   options.details = flags.details;
   if (flags.plan) {
-    Result<std::vector<AdcSensor>> plan = MakePlan(flags);
-    if (!plan) return tl::unexpected(plan.error());
-    options.plan = *std::move(plan);
+    ASSIGN_OR_RETURN(std::vector<AdcSensor> plan, MakePlan(flags));
+    options.plan = std::move(plan);
     return options;
   }
-  const Result<CalibrationOptions> calibration = MakeCalibrationOptions(flags);
-  if (!calibration) return tl::unexpected(calibration.error());
-  static_cast<CalibrationOptions&>(options) = *calibration;
+  ASSIGN_OR_RETURN(const CalibrationOptions calibration, MakeCalibrationOptions(flags));
+  static_cast<CalibrationOptions&>(options) = calibration;
   options.data = TableOf(flags);
   options.json = flags.json;
   options.plot = flags.plot;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "pendulum/analysis/coverage.h"
+#include "pendulum/base/try.h"
 #include "pendulum/report/coverage_text.h"
 #include "tools/coverage_study_options.h"
 #include "tools/output.h"
@@ -55,9 +56,8 @@ Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
     study_options.progress = [&](int done) {
       line.Show({"simulating and fitting " + scenario.name, done, study_options.count});
     };
-    auto study = StudyCoverage(scenario, study_options);
-    if (!study) return tl::unexpected(study.error());
-    studies.push_back(*std::move(study));
+    ASSIGN_OR_RETURN(auto study, StudyCoverage(scenario, study_options));
+    studies.push_back(std::move(study));
   }
   std::vector<Output> outputs;
   if (!options.markdown.empty()) outputs.push_back({options.markdown, CoverageMarkdown(studies, options.command)});
@@ -66,12 +66,10 @@ Result<std::vector<Output>> MakeOutputs(const CoverageStudyOptions& options) {
 }
 
 Result<int> Work(const Flags& flags) {
-  const auto options = MakeCoverageStudyOptions(flags);
-  if (!options) return tl::unexpected(options.error());
-  if (const auto checked = CheckOutputs(options->Outputs(), {}); !checked) return tl::unexpected(checked.error());
-  const auto outputs = MakeOutputs(*options);
-  if (!outputs) return tl::unexpected(outputs.error());
-  return WriteOutputs(*outputs).map([] { return 0; });
+  ASSIGN_OR_RETURN(const auto options, MakeCoverageStudyOptions(flags));
+  RETURN_IF_ERROR(CheckOutputs(options.Outputs(), {}));
+  ASSIGN_OR_RETURN(const auto outputs, MakeOutputs(options));
+  return WriteOutputs(outputs).map([] { return 0; });
 }
 
 }  // namespace

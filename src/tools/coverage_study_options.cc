@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -32,13 +33,9 @@ std::vector<NamedFile> CoverageStudyOptions::Outputs() const {
 
 Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
-  if (auto checked = CheckWhole("--count", flags.count, 1, kMaxRecordings); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  if (auto checked = CheckWhole("--runs", flags.runs, 1, kMaxRuns); !checked) return tl::unexpected(checked.error());
-  if (auto checked = CheckWhole("--threads", flags.threads, 0, kMaxThreads); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(CheckWhole("--count", flags.count, 1, kMaxRecordings));
+  RETURN_IF_ERROR(CheckWhole("--runs", flags.runs, 1, kMaxRuns));
+  RETURN_IF_ERROR(CheckWhole("--threads", flags.threads, 0, kMaxThreads));
   CoverageStudyOptions options;
   options.list = flags.list;
   if (!flags.list && flags.scenario.empty()) {

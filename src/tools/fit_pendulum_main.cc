@@ -9,6 +9,7 @@
 #include <gflags/gflags.h>
 #include <unistd.h>
 
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
@@ -109,9 +110,8 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   std::string text;
   const std::vector<const Identification*> parts = run.Parts();
   for (std::size_t k = 0; k < parts.size() && options.terminal_plot; ++k) {
-    const auto drawn = RunGnuplot(TerminalPlot(parts[k]->used, parts[k]->fits[run.MainFit()]));
-    if (!drawn) return tl::unexpected(drawn.error());
-    text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(*drawn) + "\n";
+    ASSIGN_OR_RETURN(const auto drawn, RunGnuplot(TerminalPlot(parts[k]->used, parts[k]->fits[run.MainFit()])));
+    text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(drawn) + "\n";
   }
   const TextStyle style = TextStyleFor(STDOUT_FILENO);
   if (options.quiet) return text + QuietText(run);
@@ -157,9 +157,8 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
       continue;
     }
     RenderFiles(options, *run, i, count, outputs);
-    const auto part = TextOf(options, *run);
-    if (!part) return tl::unexpected(part.error());
-    text += (text.empty() ? "" : "\n") + *part;
+    ASSIGN_OR_RETURN(const auto part, TextOf(options, *run));
+    text += (text.empty() ? "" : "\n") + part;
     if (options.quiet) PrintVerdict(*run);
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(*run))
@@ -179,23 +178,19 @@ Result<std::vector<Result<Identification>>> FitWithProgress(FitPendulumOptions o
 }
 
 Result<int> Work(const Flags& flags) {
-  auto options = MakeFitPendulumOptions(flags);
-  if (!options) return tl::unexpected(options.error());
-  const auto setup = ReadSetup(*options);
-  if (!setup) return tl::unexpected(setup.error());
-  if (const auto plots = options->terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
+  ASSIGN_OR_RETURN(auto options, MakeFitPendulumOptions(flags));
+  ASSIGN_OR_RETURN(const auto setup, ReadSetup(options));
+  if (const auto plots = options.terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
     return Error(plots.error().code, "--terminal_plot: " + plots.error().message);
   }
-  auto checked = CheckOutputs(options->Outputs(), setup->inputs);
-  if (checked) checked = CheckNumberedOutputs(*options, *setup, setup->paths.size());
+  auto checked = CheckOutputs(options.Outputs(), setup.inputs);
+  if (checked) checked = CheckNumberedOutputs(options, setup, setup.paths.size());
   if (!checked) return tl::unexpected(checked.error());
-  const auto runs = FitWithProgress(*options, *setup);
-  if (!runs) return tl::unexpected(runs.error());
-  const auto outputs = Render(*options, *runs);
-  if (!outputs) return tl::unexpected(outputs.error());
-  if (const auto written = WriteOutputs(*outputs); !written) return tl::unexpected(written.error());
+  ASSIGN_OR_RETURN(const auto runs, FitWithProgress(options, setup));
+  ASSIGN_OR_RETURN(const auto outputs, Render(options, runs));
+  RETURN_IF_ERROR(WriteOutputs(outputs));
   int worst = 0;
-  for (const Result<Identification>& run : *runs)
+  for (const Result<Identification>& run : runs)
     worst = std::max(worst, run ? ExitCode(*run) : ExitCode(run.error().code));
   return worst;
 }

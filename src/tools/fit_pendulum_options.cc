@@ -8,6 +8,7 @@
 
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -125,22 +126,20 @@ std::vector<NamedFile> FitPendulumOptions::Inputs() const {
 Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& given) {
   FitPendulumFlags flags = given;
   FitPendulumOptions options;
-  if (const auto checked = CheckData(flags); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckText(flags); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckClosedFormOnly(flags); !checked) return tl::unexpected(checked.error());
-  auto sensor = ReadSensorFile(flags);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto run = MakeIdentifyOptions(flags);
-  if (!run) return tl::unexpected(run.error());
-  static_cast<IdentifyOptions&>(options) = *std::move(run);
-  if (const auto parsed = ParseShared(flags, options); !parsed) return tl::unexpected(parsed.error());
+  RETURN_IF_ERROR(CheckData(flags));
+  RETURN_IF_ERROR(CheckText(flags));
+  RETURN_IF_ERROR(CheckClosedFormOnly(flags));
+  ASSIGN_OR_RETURN(auto sensor, ReadSensorFile(flags));
+  ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));
+  static_cast<IdentifyOptions&>(options) = std::move(run);
+  RETURN_IF_ERROR(ParseShared(flags, options));
   options.data = RecordingPaths(flags);
   options.data_list = flags.data_list;
   options.calibration = flags.calibration;
-  options.sensor_path = *std::move(sensor);
+  options.sensor_path = std::move(sensor);
   options.rig = flags.rig;
   static_cast<FitOutputs&>(options) = static_cast<const FitOutputs&>(flags);
-  if (const auto checked = CheckJoint(flags, options); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckJoint(flags, options));
   return options;
 }
 

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/identify/prepared_recording.h"
 #include "pendulum/model/rig_values.h"
 #include "pendulum/recording/calibration/calibration_source.h"
@@ -17,21 +18,17 @@ namespace pendulum {
 Result<Setup> ReadSetup(FitPendulumOptions& options) {
   Setup setup{options.data, options.Inputs(), std::nullopt};
   if (!options.rig.empty()) {
-    const auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
-    if (!text) return tl::unexpected(text.error());
-    auto rig = ParseRigWith(options.rig_values, *text, options.rig, options.notes);
-    if (!rig) return tl::unexpected(rig.error());
-    setup.rig = *std::move(rig);
+    ASSIGN_OR_RETURN(const auto text, ReadFile(options.rig, "rig", kMaxJsonBytes));
+    ASSIGN_OR_RETURN(auto rig, ParseRigWith(options.rig_values, text, options.rig, options.notes));
+    setup.rig = std::move(rig);
   }
   if (!options.calibration.empty()) {
-    auto calibration = CalibrationFromFile(options.calibration);
-    if (!calibration) return tl::unexpected(calibration.error());
-    options.read.calibration = *std::move(calibration);
+    ASSIGN_OR_RETURN(auto calibration, CalibrationFromFile(options.calibration));
+    options.read.calibration = std::move(calibration);
   }
   if (options.data_list.empty()) return setup;
-  const auto listed = ReadDataList(options.data_list);
-  if (!listed) return tl::unexpected(listed.error());
-  for (const ListedFile& file : *listed) {
+  ASSIGN_OR_RETURN(const auto listed, ReadDataList(options.data_list));
+  for (const ListedFile& file : listed) {
     setup.paths.push_back(file.path.string());
     setup.inputs.push_back({"--data_list", file.path.string()});
   }
@@ -73,9 +70,7 @@ Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup
     count += one->swings.chosen.size();
     recordings.push_back(*std::move(one));
   }
-  if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(CheckNumberedOutputs(options, setup, count));
   return IdentifyJointly(options, std::move(recordings));
 }
 
@@ -89,9 +84,8 @@ bool IsOfData(const Status& error) {
 Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<Result<Identification>> runs;
   if (options.IsJoint(setup.paths.size())) {
-    auto joint = FitJointly(options, setup);
-    if (!joint) return tl::unexpected(joint.error());
-    runs.emplace_back(*std::move(joint));
+    ASSIGN_OR_RETURN(auto joint, FitJointly(options, setup));
+    runs.emplace_back(std::move(joint));
     return runs;
   }
   const std::size_t files = setup.paths.size();
@@ -104,9 +98,7 @@ Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& opt
     }
     if (const std::size_t more = one->swings.chosen.size() - 1; more > 0) {
       count += more;
-      if (const auto checked = CheckNumberedOutputs(options, setup, count); !checked) {
-        return tl::unexpected(checked.error());
-      }
+      RETURN_IF_ERROR(CheckNumberedOutputs(options, setup, count));
     }
     for (Result<Identification>& run : IdentifyEach(options, *std::move(one))) {
       if (!run && (files > 1 || IsOfData(run.error()))) run = ErrorOfRun(run.error(), path, 0);

@@ -13,6 +13,7 @@
 
 #include <gflags/gflags.h>
 
+#include "pendulum/base/try.h"
 #include "pendulum/base/version.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/request/flag_values.h"
@@ -171,15 +172,13 @@ Result<ParsedFlags> ParseFlags(int argc, char** argv, std::string_view main_file
   static std::vector<std::string> arguments;  // gflags keeps pointers
   arguments = ReplaceAliases({argv + 1, argv + argc}, has_model);
   for (int i = 1; i < argc; ++i) argv[i] = arguments[static_cast<std::size_t>(i - 1)].data();
-  auto positional = PositionalArguments(arguments, flags);
-  if (!positional) return tl::unexpected(positional.error());
+  ASSIGN_OR_RETURN(auto positional, PositionalArguments(arguments, flags));
   std::atexit(ExitWithTwo);
   gflags_is_parsing = true;
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   gflags_is_parsing = false;
-  Result<std::string> answer = AnswerOf(std::filesystem::path(argv[0]).filename().string(), usage, flags);
-  if (!answer) return tl::unexpected(answer.error());
-  return ParsedFlags{*std::move(answer), *std::move(positional)};
+  ASSIGN_OR_RETURN(std::string answer, AnswerOf(std::filesystem::path(argv[0]).filename().string(), usage, flags));
+  return ParsedFlags{std::move(answer), std::move(positional)};
 }
 
 Result<std::vector<std::string>> PositionalArguments(std::span<const std::string> arguments,
@@ -194,10 +193,9 @@ Result<std::vector<std::string>> PositionalArguments(std::span<const std::string
     } else if (argument == "--") {
       flags_ended = true;
     } else {
-      const auto flag = CheckFlag(arguments.subspan(i), flags);
-      if (!flag) return tl::unexpected(flag.error());
-      if (const auto checked = CheckGivenOnce(*flag, values); !checked) return tl::unexpected(checked.error());
-      i += flag->arguments - 1;
+      ASSIGN_OR_RETURN(const auto flag, CheckFlag(arguments.subspan(i), flags));
+      RETURN_IF_ERROR(CheckGivenOnce(flag, values));
+      i += flag.arguments - 1;
     }
   }
   return positional;

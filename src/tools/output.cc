@@ -17,6 +17,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "pendulum/base/try.h"
+
 namespace pendulum {
 namespace {
 
@@ -84,7 +86,7 @@ Result<void> CheckWritable(const std::string& path, std::set<fs::path>& proven) 
   if (IsStream(path)) return {};
   const fs::path folder = FolderOf(FollowLinks(path));
   if (proven.contains(folder)) return {};
-  if (auto opened = StagedFile(path).Open(); !opened) return opened;
+  RETURN_IF_ERROR(StagedFile(path).Open());
   proven.insert(folder);
   return {};
 }
@@ -156,7 +158,7 @@ Result<void> CheckOutputs(std::span<const NamedFile> outputs, std::span<const Na
     }
     if (IsStandardOutput(path)) continue;
     if (IsRedirectionOfStdout(path)) return refuse("is the file to which standard output goes; give - instead");
-    if (auto writable = CheckWritable(path, proven); !writable) return writable;
+    RETURN_IF_ERROR(CheckWritable(path, proven));
   }
   return {};
 }
@@ -166,16 +168,16 @@ Result<void> WriteOutputs(std::span<const Output> outputs, Durability durability
   for (const Output& output : outputs) {
     if (IsStreamed(output.path)) continue;
     files.emplace_back(output.path, durability);
-    if (auto opened = files.back().Open(); !opened) return opened;
-    if (auto written = files.back().Write(output.text); !written) return written;
-    if (auto finished = files.back().Finish(); !finished) return finished;
+    RETURN_IF_ERROR(files.back().Open());
+    RETURN_IF_ERROR(files.back().Write(output.text));
+    RETURN_IF_ERROR(files.back().Finish());
   }
   for (StagedFile& file : files) {
-    if (auto committed = file.Commit(); !committed) return committed;
+    RETURN_IF_ERROR(file.Commit());
   }
   for (const Output& output : outputs) {
     if (!IsStreamed(output.path)) continue;
-    if (auto written = WriteStream(output); !written) return written;
+    RETURN_IF_ERROR(WriteStream(output));
   }
   return {};
 }
@@ -187,9 +189,8 @@ Result<void> WriteStreamOfPieces(const std::string& path, int count,
                                  const std::function<Result<std::string>(int)>& piece) {
   Output output{path, ""};
   for (int i = 0; i < count; ++i) {
-    const Result<std::string> text = piece(i);
-    if (!text) return tl::unexpected(text.error());
-    output.text += *text;
+    ASSIGN_OR_RETURN(const std::string text, piece(i));
+    output.text += text;
   }
   return WriteStream(output);
 }
@@ -199,9 +200,9 @@ Result<void> WriteStreamOfPieces(const std::string& path, int count,
 Result<void> WriteStreamed(const std::string& path, const std::function<Result<void>(const PieceSink&)>& run) {
   if (IsStreamed(path)) return WriteStream(path, run);
   StagedFile file(path);
-  if (auto opened = file.Open(); !opened) return opened;
-  if (auto written = run([&](std::string_view text) { return file.Write(text); }); !written) return written;
-  if (auto finished = file.Finish(); !finished) return finished;
+  RETURN_IF_ERROR(file.Open());
+  RETURN_IF_ERROR(run([&](std::string_view text) { return file.Write(text); }));
+  RETURN_IF_ERROR(file.Finish());
   return file.Commit();
 }
 
@@ -209,9 +210,8 @@ Result<void> WritePieces(const std::string& path, int count, const std::function
   if (IsStreamed(path)) return WriteStreamOfPieces(path, count, piece);
   return WriteStreamed(path, [&](const PieceSink& take) -> Result<void> {
     for (int i = 0; i < count; ++i) {
-      const Result<std::string> text = piece(i);
-      if (!text) return tl::unexpected(text.error());
-      if (auto written = take(*text); !written) return written;
+      ASSIGN_OR_RETURN(const std::string text, piece(i));
+      RETURN_IF_ERROR(take(text));
     }
     return {};
   });

@@ -17,6 +17,7 @@
 #include "pendulum/acquisition/logger.h"
 #include "pendulum/acquisition/serial_port.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/report/summary_text.h"
@@ -103,7 +104,7 @@ Result<std::string> ChoosePort(const std::string& asked) {
 
 /// A recording cannot be repeated, so an existing one is not overwritten by accident.
 Result<void> CheckOut(const RecordPendulumOptions& options) {
-  if (auto checked = CheckOutputs(options.Outputs(), options.Inputs()); !checked) return checked;
+  RETURN_IF_ERROR(CheckOutputs(options.Outputs(), options.Inputs()));
   const PartFile part(options.out);
   if (options.overwrite || part.path().empty()) return {};
   if (part.Exists()) {
@@ -119,13 +120,12 @@ Result<void> CheckOut(const RecordPendulumOptions& options) {
 
 Result<std::optional<Calibration>> ReadGivenCalibration(const RecordPendulumOptions& options) {
   if (options.calibration.empty()) return std::nullopt;
-  auto calibration = CalibrationFromFile(options.calibration);
-  if (!calibration) return tl::unexpected(calibration.error());
-  if (calibration->input != "counts") {
-    return Error(StatusCode::kDataLoss, options.calibration + " is of " + calibration->input +
+  ASSIGN_OR_RETURN(auto calibration, CalibrationFromFile(options.calibration));
+  if (calibration.input != "counts") {
+    return Error(StatusCode::kDataLoss, options.calibration + " is of " + calibration.input +
                                             ", but a logger sends counts; calibrate in counts");
   }
-  return *std::move(calibration);
+  return calibration;
 }
 
 /// 1 if data is missing; 130 if a recording of given length was stopped early.
@@ -139,11 +139,9 @@ constexpr const char* kMore = "More: fit_pendulum with the recording and --detai
 
 /// Fits the recording and prints the summary; returns the fit's exit code.
 Result<int> Fit(FitPendulumOptions options) {
-  auto setup = ReadSetup(options);
-  if (!setup) return tl::unexpected(setup.error());
-  const auto runs = FitAll(options, *setup);
-  if (!runs) return tl::unexpected(runs.error());
-  const Result<Identification>& run = runs->front();
+  ASSIGN_OR_RETURN(auto setup, ReadSetup(options));
+  ASSIGN_OR_RETURN(const auto runs, FitAll(options, setup));
+  const Result<Identification>& run = runs.front();
   if (!run) return tl::unexpected(run.error());
   const std::string text = "\n" + SummaryText(SummarizeResult(*run), kMore, TextStyleFor(STDOUT_FILENO));
   return WriteOutputs(std::vector<Output>{{"-", text}}).map([&] { return ExitCode(*run); });
@@ -191,13 +189,13 @@ void WarnOfSlowLine(const RecordPendulumOptions& options) {
 
 Result<int> Record(const RecordPendulumOptions& options, const std::optional<Calibration>& given,
                    const pendulum_logger::Info& info, Logger& logger) {
-  if (auto checked = CheckCalibrated(options, given, info); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckCalibrated(options, given, info));
   WarnOfSlowLine(options);
-  if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
-  const auto recorded = RecordRun(options, info, given ? given : StoredCalibration(info), stop, logger);
-  if (!recorded) return tl::unexpected(recorded.error());
-  if (auto kept = SaveRecording(options, *recorded); !kept) return tl::unexpected(kept.error());
-  const int code = ExitCodeOf(options, *recorded);
+  RETURN_IF_ERROR(logger.SetRate(options.rate));
+  ASSIGN_OR_RETURN(const auto recorded,
+                   RecordRun(options, info, given ? given : StoredCalibration(info), stop, logger));
+  RETURN_IF_ERROR(SaveRecording(options, recorded));
+  const int code = ExitCodeOf(options, recorded);
   if (!options.fit) return code;
   OnSignals(SIG_DFL);
   return Fit(*options.fit).map([code](int fit) { return fit != 0 ? fit : code; });
@@ -206,17 +204,16 @@ Result<int> Record(const RecordPendulumOptions& options, const std::optional<Cal
 /// Prints the mean of one second of readings; nothing if readings are missing.
 Result<int> PrintCounts(const RecordPendulumOptions& options, const pendulum_logger::Info& info, Logger& logger) {
   constexpr int kDigits = 6;
-  if (auto set = logger.SetRate(options.rate); !set) return tl::unexpected(set.error());
-  const auto recorded = RecordRun(options, info, std::nullopt, stop, logger);
-  if (!recorded) return tl::unexpected(recorded.error());
-  if (const int code = ExitCodeOf(options, *recorded); code != 0) {
+  RETURN_IF_ERROR(logger.SetRate(options.rate));
+  ASSIGN_OR_RETURN(const auto recorded, RecordRun(options, info, std::nullopt, stop, logger));
+  if (const int code = ExitCodeOf(options, recorded); code != 0) {
     PrintMessage(kRecordToolName, stop ? "interrupted before one second of readings was complete"
                                        : "samples are missing from the second of readings; try again");
     return code;
   }
   double sum = 0;
-  for (std::size_t i = 0; i < recorded->run.size(); ++i) sum += recorded->run.Counts(i);
-  const std::string mean = NumberText(sum / static_cast<double>(recorded->run.size()), kDigits) + "\n";
+  for (std::size_t i = 0; i < recorded.run.size(); ++i) sum += recorded.run.Counts(i);
+  const std::string mean = NumberText(sum / static_cast<double>(recorded.run.size()), kDigits) + "\n";
   return WriteOutputs(std::vector<Output>{{"-", mean}}).map([] { return 0; });
 }
 
@@ -237,25 +234,21 @@ Result<int> RunTask(const RecordPendulumOptions& options, const std::string& por
 }
 
 Result<int> Work(const OpenPort& open, const Flags& flags) {
-  const auto options = MakeRecordPendulumOptions(flags);
-  if (!options) return tl::unexpected(options.error());
-  if (options->task == RecordTask::kList) {
+  ASSIGN_OR_RETURN(const auto options, MakeRecordPendulumOptions(flags));
+  if (options.task == RecordTask::kList) {
     return WriteOutputs(std::vector<Output>{{"-", PortsText(ListSerialPorts())}}).map([] { return 0; });
   }
-  const auto given = ReadGivenCalibration(*options);
-  if (!given) return tl::unexpected(given.error());
-  if (options->fit) {  // an unreadable rig must be reported before the pendulum swings
-    FitPendulumOptions fit = *options->fit;
-    if (const auto setup = ReadSetup(fit); !setup) return tl::unexpected(setup.error());
+  ASSIGN_OR_RETURN(const auto given, ReadGivenCalibration(options));
+  if (options.fit) {  // an unreadable rig must be reported before the pendulum swings
+    FitPendulumOptions fit = *options.fit;
+    RETURN_IF_ERROR(ReadSetup(fit));
   }
-  if (auto checked = CheckOut(*options); !checked) return tl::unexpected(checked.error());
-  const auto port = ChoosePort(options->port);
-  if (!port) return tl::unexpected(port.error());
+  RETURN_IF_ERROR(CheckOut(options));
+  ASSIGN_OR_RETURN(const auto port, ChoosePort(options.port));
   OnSignals(Stop);
-  const auto opened = open(*port, options->baud);
-  if (!opened) return tl::unexpected(opened.error());
-  Logger logger(**opened, stop);
-  auto code = RunTask(*options, *port, *given, logger);
+  ASSIGN_OR_RETURN(const auto opened, open(port, options.baud));
+  Logger logger(*opened, stop);
+  auto code = RunTask(options, port, given, logger);
   if (!code && code.error().code == StatusCode::kTryAgain && stop) {
     PrintMessage(kRecordToolName, code.error().message);
     return kInterrupted;

@@ -6,15 +6,15 @@
 #include "pendulum/acquisition/port.h"
 #include "pendulum/acquisition/serial_port.h"
 #include "pendulum/base/status.h"
+#include "pendulum/base/try.h"
 #include "tools/record_pendulum.h"
 
 namespace pendulum {
 namespace {
 
 Result<std::unique_ptr<Port>> OpenSerialPort(const std::string& path, unsigned baud) {
-  auto port = SerialPort::Open(path, baud);
-  if (!port) return tl::unexpected(port.error());
-  return std::make_unique<SerialPort>(*std::move(port));
+  ASSIGN_OR_RETURN(auto port, SerialPort::Open(path, baud));
+  return std::make_unique<SerialPort>(std::move(port));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -90,10 +91,9 @@ Result<void> ChooseFit(const RecordPendulumFlags& flags, RecordPendulumOptions& 
   fit.data = "-";
   fit.rig = flags.rig;
   if (!flags.model.empty()) fit.model = flags.model;
-  auto made = MakeFitPendulumOptions(fit);
-  if (!made) return tl::unexpected(made.error());
-  made->data = {flags.out};  // one path, even if it contains commas
-  options.fit = *std::move(made);
+  ASSIGN_OR_RETURN(auto made, MakeFitPendulumOptions(fit));
+  made.data = {flags.out};  // one path, even if it contains commas
+  options.fit = std::move(made);
   return {};
 }
 
@@ -114,29 +114,27 @@ std::vector<NamedFile> RecordPendulumOptions::Inputs() const {
 
 Result<RecordPendulumOptions> MakeRecordPendulumOptions(const RecordPendulumFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
-  const auto task = ChooseTask(flags);
-  if (!task) return tl::unexpected(task.error());
+  ASSIGN_OR_RETURN(const auto task, ChooseTask(flags));
   RecordPendulumOptions options;
-  options.task = *task;
+  options.task = task;
   options.port = flags.port;
   if (flags.baud < 1200 || flags.baud > 2000000) {
     return BadFlag("--baud is " + std::to_string(flags.baud) + "; it must be what the sketch has, 1200 to 2000000");
   }
   options.baud = static_cast<unsigned>(flags.baud);
-  if (*task != RecordTask::kRecord) {
+  if (task != RecordTask::kRecord) {
     options.calibration = flags.store_calibration;
     options.seconds = kCountsSeconds;
-    if (auto checked = CheckBelongs(flags); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(CheckBelongs(flags));
     return options;
   }
   options.out = flags.out;
   options.calibration = flags.calibration;
   options.overwrite = flags.overwrite;
-  const auto rate = ChooseRate(flags);
-  if (!rate) return tl::unexpected(rate.error());
-  options.rate = *rate;
-  if (auto chosen = ChooseEnd(flags, options); !chosen) return tl::unexpected(chosen.error());
-  if (auto chosen = ChooseFit(flags, options); !chosen) return tl::unexpected(chosen.error());
+  ASSIGN_OR_RETURN(const auto rate, ChooseRate(flags));
+  options.rate = rate;
+  RETURN_IF_ERROR(ChooseEnd(flags, options));
+  RETURN_IF_ERROR(ChooseFit(flags, options));
   return options;
 }
 

@@ -11,6 +11,7 @@
 #include "pendulum/acquisition/rest.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utc_time.h"
 #include "tools/live_trace.h"
 #include "tools/output.h"
@@ -97,7 +98,7 @@ class RunInProgress {
 };
 
 Result<void> RunInProgress::Record() {
-  if (auto begun = Begin(); !begun) return begun;
+  RETURN_IF_ERROR(Begin());
   ReceiveUntilOver();
   Trim();
   recorded_.description.losses = recorded_.run.Losses();
@@ -122,7 +123,7 @@ void RunInProgress::Trim() {
 
 /// Nothing is written before the logger has started.
 Result<void> RunInProgress::Begin() {
-  if (auto started = logger_.Start(); !started) return started;
+  RETURN_IF_ERROR(logger_.Start());
   recorded_.description.begun = UtcTimeText();
   last_poll_ = Now();
   auto opened = part_.Open();
@@ -260,7 +261,7 @@ Result<RecordedRun> RecordRun(const RecordPendulumOptions& options, const wire::
   recorded.description.logger = info;
   recorded.description.run = info.run + 1;
   recorded.description.calibration = calibration;
-  if (auto done = RunInProgress(options, stop, logger, recorded).Record(); !done) return tl::unexpected(done.error());
+  RETURN_IF_ERROR(RunInProgress(options, stop, logger, recorded).Record());
   return recorded;
 }
 

@@ -14,6 +14,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/compare_stores.h"
 #include "pendulum/batch/export.h"
 #include "pendulum/batch/prune.h"
@@ -59,20 +60,15 @@ Result<Source> SourceOf(const RefitPendulumsOptions& options) {
 /// Reads rig and calibration of the whole batch. They must be valid, because otherwise every run would fail.
 Result<void> ReadCommon(const RefitPendulumsOptions& options, RefitOptions& refit) {
   if (!options.rig.empty()) {
-    auto text = ReadFile(options.rig, "rig", kMaxJsonBytes);
-    if (!text) return tl::unexpected(text.error());
+    ASSIGN_OR_RETURN(auto text, ReadFile(options.rig, "rig", kMaxJsonBytes));
     std::vector<Warning> ignored;  // Each run gives them.
-    const auto rig = ParseRigWith(options.refit.run.rig_values, *text, options.rig, ignored);
-    if (!rig) return tl::unexpected(rig.error());
-    refit.rig = *std::move(text);
+    RETURN_IF_ERROR(ParseRigWith(options.refit.run.rig_values, text, options.rig, ignored));
+    refit.rig = std::move(text);
   }
   if (options.calibration.empty()) return {};
-  auto text = ReadFile(options.calibration, "calibration", kMaxJsonBytes);
-  if (!text) return tl::unexpected(text.error());
-  if (const auto calibration = CalibrationFromText(*text, options.calibration); !calibration) {
-    return tl::unexpected(calibration.error());
-  }
-  refit.calibration = *std::move(text);
+  ASSIGN_OR_RETURN(auto text, ReadFile(options.calibration, "calibration", kMaxJsonBytes));
+  RETURN_IF_ERROR(CalibrationFromText(text, options.calibration));
+  refit.calibration = std::move(text);
   return {};
 }
 
@@ -92,47 +88,40 @@ std::string AttemptName() {
 
 /// Refits directly into the store; this process is its only writer.
 Result<RefitCounts> RefitInPlace(const Source& source, const std::string& path, const RefitOptions& options) {
-  if (const auto checked = CheckFolderOf(path); !checked) return tl::unexpected(checked.error());
-  const auto lock = StoreLock::Take(path);
-  if (!lock) return tl::unexpected(lock.error());
-  auto store = Store::Open(path, Store::Mode::kWrite);
-  if (!store) return tl::unexpected(store.error());
-  return Refit(source, *store, options);
+  RETURN_IF_ERROR(CheckFolderOf(path));
+  ASSIGN_OR_RETURN(const auto lock, StoreLock::Take(path));
+  ASSIGN_OR_RETURN(auto store, Store::Open(path, Store::Mode::kWrite));
+  return Refit(source, store, options);
 }
 
 Result<int> WriteText(const std::string& text) {
-  if (auto written = WriteOutputs(std::vector<Output>{{"-", text}}); !written) return tl::unexpected(written.error());
+  RETURN_IF_ERROR(WriteOutputs(std::vector<Output>{{"-", text}}));
   return 0;
 }
 
 /// Prints the summary of a store, preceded by its details if they are asked for. A store without fits has details only.
 Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   const std::string& path = options.stores.front();
-  auto store = Store::Open(path, Store::Mode::kRead);
-  if (!store) return tl::unexpected(store.error());
-  const auto counts = store->Count();
-  if (!counts) return tl::unexpected(counts.error());
-  const bool has_fits = counts->fits > 0;
+  ASSIGN_OR_RETURN(auto store, Store::Open(path, Store::Mode::kRead));
+  ASSIGN_OR_RETURN(const auto counts, store.Count());
+  const bool has_fits = counts.fits > 0;
   std::string text;
   if (options.details || !has_fits) {
-    const auto details = StatusText(*store);
-    if (!details) return tl::unexpected(details.error());
-    text = *details;
+    ASSIGN_OR_RETURN(const auto details, StatusText(store));
+    text = details;
   }
   if (!has_fits) return WriteText(options.quiet ? "" : text);
   SummaryOptions how = options.summary;
   how.main_model_only = true;
   how.without_agreement = options.quiet;
-  const auto summary = Summarize(*store, how);
-  if (!summary) return tl::unexpected(summary.error());
-  return WriteText(options.quiet ? QuietText(*summary) : text + SummaryText(*summary, path));
+  ASSIGN_OR_RETURN(const auto summary, Summarize(store, how));
+  return WriteText(options.quiet ? QuietText(summary) : text + SummaryText(summary, path));
 }
 
 /// The counts of the runs in a store.
 Result<StoreCounts> CountRunsOf(const std::string& path) {
-  auto store = Store::Open(path, Store::Mode::kRead);
-  if (!store) return tl::unexpected(store.error());
-  return store->Count();
+  ASSIGN_OR_RETURN(auto store, Store::Open(path, Store::Mode::kRead));
+  return store.Count();
 }
 
 /// Prints the summary of a refit and returns its exit code.
@@ -143,23 +132,21 @@ Result<int> FinishRefit(const RefitCounts& counts, const RefitPendulumsOptions& 
                                      (options.refit.force ? ", without --force" : ""));
     return stop_signal == SIGINT ? kInterrupted : ExitCode(StatusCode::kTryAgain);
   }
-  const auto stored = CountRunsOf(options.stores.front());
-  if (!stored) return tl::unexpected(stored.error());
-  PrintMessage(kRefitToolName, RefitText(counts) + WithoutResultText(*stored));
+  ASSIGN_OR_RETURN(const auto stored, CountRunsOf(options.stores.front()));
+  PrintMessage(kRefitToolName, RefitText(counts) + WithoutResultText(stored));
   const auto shown = ShowStatus(options);
   // The merge reports for all shards; their jobs have done what they could.
-  const bool is_fault = stored->lacks_results() && !options.refit.shard;
+  const bool is_fault = stored.lacks_results() && !options.refit.shard;
   return shown && is_fault ? ExitCode(StatusCode::kNotFound) : shown;
 }
 
 Result<int> RunRefit(const RefitPendulumsOptions& options) {
   RefitOptions refit = options.refit;
   refit.group_by = options.summary.group_by;
-  if (auto read = ReadCommon(options, refit); !read) return tl::unexpected(read.error());
-  const auto source = SourceOf(options);
-  if (!source) return tl::unexpected(source.error());
-  if (!source->left_out.empty()) PrintMessage(kRefitToolName, LeftOutText(source->left_out));
-  if (!source->lists.empty()) PrintMessage(kRefitToolName, ListsText(source->lists));
+  RETURN_IF_ERROR(ReadCommon(options, refit));
+  ASSIGN_OR_RETURN(const auto source, SourceOf(options));
+  if (!source.left_out.empty()) PrintMessage(kRefitToolName, LeftOutText(source.left_out));
+  if (!source.lists.empty()) PrintMessage(kRefitToolName, ListsText(source.lists));
   StopOnSignals();
   RefitProgress progress(std::string(kRefitToolName), STDERR_FILENO);
   refit.stop = &stop;
@@ -167,7 +154,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
   const std::string& store = options.stores.front();
   ShardOptions shard = options.shard;
   shard.attempt = AttemptName();
-  const auto counts = refit.shard ? RefitShard(*source, shard, refit) : RefitInPlace(*source, store, refit);
+  const auto counts = refit.shard ? RefitShard(source, shard, refit) : RefitInPlace(source, store, refit);
   progress.Finish();
   if (!counts) return tl::unexpected(counts.error());
   return FinishRefit(*counts, options);
@@ -177,7 +164,7 @@ Result<int> RunRefit(const RefitPendulumsOptions& options) {
 Result<Store> OpenForOutput(const RefitPendulumsOptions& options) {
   const std::string& store = options.stores.front();
   const std::vector<NamedFile> outputs = {{"--out", options.out}}, inputs = {{"--store", store}};
-  if (const auto checked = CheckOutputs(outputs, inputs); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckOutputs(outputs, inputs));
   return Store::Open(store, Store::Mode::kRead);
 }
 
@@ -190,11 +177,9 @@ Result<int> RunExport(const RefitPendulumsOptions& options) {
         "--out " + out +
             ": the name must end with .csv for a table or .jsonl for JSON lines; - is the table on standard output");
   }
-  auto store = OpenForOutput(options);
-  if (!store) return tl::unexpected(store.error());
-  const auto written = WriteStreamed(
-      out, [&](const TextSink& take) { return lines ? ExportJsonLines(*store, take) : ExportCsv(*store, take); });
-  if (!written) return tl::unexpected(written.error());
+  ASSIGN_OR_RETURN(auto store, OpenForOutput(options));
+  RETURN_IF_ERROR(WriteStreamed(
+      out, [&](const TextSink& take) { return lines ? ExportJsonLines(store, take) : ExportCsv(store, take); }));
   return 0;
 }
 
@@ -206,43 +191,31 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
         "--out " + options.out +
             ": the name must end with .html for a page or .json for its data; - is the page on standard output");
   }
-  auto store = OpenForOutput(options);
-  if (!store) return tl::unexpected(store.error());
-  const auto summary = Summarize(*store, options.summary);
-  if (!summary) return tl::unexpected(summary.error());
-  const std::string text = json ? JsonText(*summary, 2) + "\n" : SummaryHtml(*summary);
-  if (auto written = WriteOutputs(std::vector<Output>{{options.out, text}}); !written) {
-    return tl::unexpected(written.error());
-  }
+  ASSIGN_OR_RETURN(auto store, OpenForOutput(options));
+  ASSIGN_OR_RETURN(const auto summary, Summarize(store, options.summary));
+  const std::string text = json ? JsonText(summary, 2) + "\n" : SummaryHtml(summary);
+  RETURN_IF_ERROR(WriteOutputs(std::vector<Output>{{options.out, text}}));
   return 0;
 }
 
 Result<int> RunCompare(const RefitPendulumsOptions& options) {
-  auto before = Store::Open(options.stores[0], Store::Mode::kRead);
-  if (!before) return tl::unexpected(before.error());
-  auto after = Store::Open(options.stores[1], Store::Mode::kRead);
-  if (!after) return tl::unexpected(after.error());
-  const auto comparison = CompareStores(*before, *after);
-  if (!comparison) return tl::unexpected(comparison.error());
-  if (auto written = WriteText(ComparisonText(*comparison, options.stores[0], options.stores[1])); !written)
-    return written;
-  return comparison->moved + comparison->changed_status + comparison->only_before > 0 ? 1 : 0;
+  ASSIGN_OR_RETURN(auto before, Store::Open(options.stores[0], Store::Mode::kRead));
+  ASSIGN_OR_RETURN(auto after, Store::Open(options.stores[1], Store::Mode::kRead));
+  ASSIGN_OR_RETURN(const auto comparison, CompareStores(before, after));
+  RETURN_IF_ERROR(WriteText(ComparisonText(comparison, options.stores[0], options.stores[1])));
+  return comparison.moved + comparison.changed_status + comparison.only_before > 0 ? 1 : 0;
 }
 
 Result<int> RunPack(const RefitPendulumsOptions& options) {
-  const auto source = SourceOf(options);
-  if (!source) return tl::unexpected(source.error());
+  ASSIGN_OR_RETURN(const auto source, SourceOf(options));
   std::vector<NamedFile> inputs;
   if (!options.manifest.empty()) inputs.push_back({"--manifest", options.manifest});
-  if (auto checked = CheckOutputs(std::vector<NamedFile>{{"--out", options.out}}, inputs); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  const auto packed = Pack(*source, options.out);
-  if (!packed) return tl::unexpected(packed.error());
-  if (packed->unreadable > 0) {
+  RETURN_IF_ERROR(CheckOutputs(std::vector<NamedFile>{{"--out", options.out}}, inputs));
+  ASSIGN_OR_RETURN(const auto packed, Pack(source, options.out));
+  if (packed.unreadable > 0) {
     PrintMessage(kRefitToolName,
-                 std::to_string(packed->unreadable) + " of " + std::to_string(packed->files) +
-                     " files could not be read, and the pack records that; the first: " + packed->first_reason);
+                 std::to_string(packed.unreadable) + " of " + std::to_string(packed.files) +
+                     " files could not be read, and the pack records that; the first: " + packed.first_reason);
   }
   return 0;
 }
@@ -254,8 +227,7 @@ Result<int> RunPrune(const RefitPendulumsOptions& options) {
   auto prunable = FindPrunable(*store);
   if (!prunable) return tl::unexpected(prunable.error());
   if (options.dry_run) return WriteText(PruneText(*prunable, true));
-  const auto lock = StoreLock::Take(path);
-  if (!lock) return tl::unexpected(lock.error());
+  ASSIGN_OR_RETURN(const auto lock, StoreLock::Take(path));
   store = Store::Open(path, Store::Mode::kWrite);
   if (store) prunable = Prune(*store);
   if (!store || !prunable) return tl::unexpected(store ? prunable.error() : store.error());
@@ -263,22 +235,19 @@ Result<int> RunPrune(const RefitPendulumsOptions& options) {
 }
 
 Result<int> RunMissing(const RefitPendulumsOptions& options) {
-  const auto missing = MissingShards(options.shard_dir, options.shard_count);
-  if (!missing) return tl::unexpected(missing.error());
-  if (missing->empty()) return 0;
-  return WriteText(ShardList(*missing) + "\n");
+  ASSIGN_OR_RETURN(const auto missing, MissingShards(options.shard_dir, options.shard_count));
+  if (missing.empty()) return 0;
+  return WriteText(ShardList(missing) + "\n");
 }
 
 Result<int> RunMerge(const RefitPendulumsOptions& options) {
   const std::string& path = options.stores.front();
   const auto runs = MergeShards(options.shard_dir, options.shard_count, path);
   if (!runs) return tl::unexpected(runs.error());
-  const auto counts = CountRunsOf(path);
-  if (!counts) return tl::unexpected(counts.error());
+  ASSIGN_OR_RETURN(const auto counts, CountRunsOf(path));
   PrintMessage(kRefitToolName, std::to_string(*runs) + " runs of " + std::to_string(options.shard_count) +
-                                   " shards merged into " + path + KeptText(counts->stale) +
-                                   WithoutResultText(*counts));
-  return counts->lacks_results() ? ExitCode(StatusCode::kNotFound) : 0;
+                                   " shards merged into " + path + KeptText(counts.stale) + WithoutResultText(counts));
+  return counts.lacks_results() ? ExitCode(StatusCode::kNotFound) : 0;
 }
 
 }  // namespace

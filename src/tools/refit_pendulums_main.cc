@@ -5,6 +5,7 @@
 
 #include <gflags/gflags.h>
 
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/file_names.h"
 #include "tools/flags.h"
 #include "tools/refit_commands.h"
@@ -106,9 +107,8 @@ std::vector<ToolFlag<Flags>> FlagTable() {
 
 Result<int> Work(Flags flags) {
   flags.given = GivenFlags();
-  const auto options = MakeRefitPendulumsOptions(flags);
-  if (!options) return tl::unexpected(options.error());
-  return RunRefitCommand(*options);
+  ASSIGN_OR_RETURN(const auto options, MakeRefitPendulumsOptions(flags));
+  return RunRefitCommand(options);
 }
 
 }  // namespace

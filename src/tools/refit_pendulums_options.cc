@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/file_names.h"
 #include "pendulum/request/flag_values.h"
 
@@ -112,12 +113,11 @@ Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& opt
     if (Contains(flags.given, "checkpoint_s")) return BadFlag("--checkpoint_s is for a shard; give --shard too");
     return {};
   }
-  const auto shard = ParseShard(flags.shard);
-  if (!shard) return tl::unexpected(shard.error());
+  ASSIGN_OR_RETURN(const auto shard, ParseShard(flags.shard));
   if (!std::isfinite(flags.checkpoint_s) || flags.checkpoint_s <= 0) {
     return BadFlag("--checkpoint_s is " + NumberText(flags.checkpoint_s) + "; it must be a positive number of seconds");
   }
-  options.refit.shard = *shard;
+  options.refit.shard = shard;
   options.shard.store = flags.store;
   options.shard.scratch = flags.scratch;
   options.shard.checkpoint = flags.checkpoint_s;
@@ -150,15 +150,14 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
       return BadFlag("--" + std::string(name) + " is not a flag of a refit; leave it out");
   }
   if (flags.store.empty()) return BadFlag("no store was given; name the file for the results with --store");
-  if (auto parsed = ParseSource(flags, options); !parsed) return parsed;
+  RETURN_IF_ERROR(ParseSource(flags, options));
   if (flags.release == "all") {
     return BadFlag("--release all makes several results per run, but a batch stores one; give one release");
   }
-  if (const auto read = ReadSensorFile(flags); !read) return tl::unexpected(read.error());
-  auto run = MakeIdentifyOptions(flags);
-  if (!run) return tl::unexpected(run.error());
-  options.refit.threads = run->fit.threads;
-  options.refit.run = *std::move(run);
+  RETURN_IF_ERROR(ReadSensorFile(flags));
+  ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));
+  options.refit.threads = run.fit.threads;
+  options.refit.run = std::move(run);
   // The store has a row for each model that was asked for.
   options.refit.run.fit.may_be_spring = options.refit.run.rig_chooses_gravity = false;
   constexpr double kDay = 86'400;
@@ -176,7 +175,7 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
 }
 
 Result<void> ParseOther(const CommandFlags& command, const RefitFlags& flags, RefitPendulumsOptions& options) {
-  if (auto checked = CheckFlagsOf(command, flags); !checked) return checked;
+  RETURN_IF_ERROR(CheckFlagsOf(command, flags));
   options.command = command.command;
   options.out = flags.out;
   options.shard_dir = flags.shard_dir;
@@ -210,8 +209,7 @@ Result<RefitPendulumsOptions> MakeRefitPendulumsOptions(const RefitFlags& flags)
   const auto& commands = Commands();
   const auto found =
       flags.positional.empty() ? commands.end() : std::ranges::find(commands, flags.positional[0], &CommandFlags::name);
-  const auto parsed = found == commands.end() ? ParseRefit(flags, options) : ParseOther(*found, flags, options);
-  if (!parsed) return tl::unexpected(parsed.error());
+  RETURN_IF_ERROR(found == commands.end() ? ParseRefit(flags, options) : ParseOther(*found, flags, options));
   return options;
 }
 

@@ -10,6 +10,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
 #include "pendulum/report/layout.h"
@@ -293,21 +294,18 @@ std::string QuietText(const Json& summary) {
 }
 
 Result<std::string> StatusText(Store& store) {
-  const auto counts = store.Count();
-  if (!counts) return tl::unexpected(counts.error());
-  std::string text = Heading("Runs") + Row("in the store", counts->runs) + Row("not refitted yet", counts->pending) +
-                     Row("recording missing", counts->missing) + Row("refused", counts->unfitted - counts->missing);
-  if (counts->stale > 0) text += Row("with a former result only", counts->stale);
-  if (counts->earlier > 0) text += Row("not in the last manifest", counts->earlier);
-  if (counts->former_fits > 0) text += Row("fits of models not asked for", counts->former_fits);
-  const auto meta = store.Meta();
-  if (!meta) return tl::unexpected(meta.error());
-  if (meta->runs > 0 && !meta->complete) text += Prose("The last refit is not complete.");
-  if (counts->fits == 0) return text;
-  const auto overview = Overview(store);
-  if (!overview) return tl::unexpected(overview.error());
-  return text + ModelsText((*overview)["models"]) + RecommendationsText((*overview)["recommendations"]) +
-         FailuresText((*overview)["failures"]);
+  ASSIGN_OR_RETURN(const auto counts, store.Count());
+  std::string text = Heading("Runs") + Row("in the store", counts.runs) + Row("not refitted yet", counts.pending) +
+                     Row("recording missing", counts.missing) + Row("refused", counts.unfitted - counts.missing);
+  if (counts.stale > 0) text += Row("with a former result only", counts.stale);
+  if (counts.earlier > 0) text += Row("not in the last manifest", counts.earlier);
+  if (counts.former_fits > 0) text += Row("fits of models not asked for", counts.former_fits);
+  ASSIGN_OR_RETURN(const auto meta, store.Meta());
+  if (meta.runs > 0 && !meta.complete) text += Prose("The last refit is not complete.");
+  if (counts.fits == 0) return text;
+  ASSIGN_OR_RETURN(const auto overview, Overview(store));
+  return text + ModelsText(overview["models"]) + RecommendationsText(overview["recommendations"]) +
+         FailuresText(overview["failures"]);
 }
 
 std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out) {

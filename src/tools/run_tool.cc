@@ -9,6 +9,7 @@
 
 #include <glog/logging.h>
 
+#include "pendulum/base/try.h"
 #include "tools/flags.h"
 #include "tools/output.h"
 #include "tools/shell_command.h"
@@ -23,12 +24,9 @@ std::vector<std::string>& GivenCommand() {
 }
 
 Result<int> Run(const Tool& tool, int argc, char** argv) {
-  const Result<ParsedFlags> flags = ParseFlags(argc, argv, tool.main_file, tool.usage);
-  if (!flags) return tl::unexpected(flags.error());
-  if (flags->answer.empty()) return tool.work(flags->positional);
-  if (const auto written = WriteOutputs(std::vector<Output>{{"-", flags->answer}}); !written) {
-    return tl::unexpected(written.error());
-  }
+  ASSIGN_OR_RETURN(const ParsedFlags flags, ParseFlags(argc, argv, tool.main_file, tool.usage));
+  if (flags.answer.empty()) return tool.work(flags.positional);
+  RETURN_IF_ERROR(WriteOutputs(std::vector<Output>{{"-", flags.answer}}));
   return 0;
 }
 

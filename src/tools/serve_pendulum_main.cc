@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/batch/fit_store.h"
 #include "pendulum/service/fitting_service.h"
@@ -143,31 +144,26 @@ std::string AddressText(const ServerOptions& options, std::uint16_t port) {
 }
 
 Result<int> Work(const Flags& flags) {
-  const auto token = ReadToken(flags.token_file, std::getenv("PENDULUM_TOKEN"));
-  if (!token) return tl::unexpected(token.error());
-  auto options = MakeServePendulumOptions(flags, *token);
-  if (!options) return tl::unexpected(options.error());
-  options->service.say = LogWithTime;
-  if (options->service.docs.empty()) {
+  ASSIGN_OR_RETURN(const auto token, ReadToken(flags.token_file, std::getenv("PENDULUM_TOKEN")));
+  ASSIGN_OR_RETURN(auto options, MakeServePendulumOptions(flags, token));
+  options.service.say = LogWithTime;
+  if (options.service.docs.empty()) {
     std::error_code fault;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", fault);
-    if (!fault) options->service.docs = InstalledGuide(program);
+    if (!fault) options.service.docs = InstalledGuide(program);
   }
   const sigset_t signals = EndingSignals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread starts, so all threads inherit it
-  auto store = FitStore::Open(options->store);
-  if (!store) return tl::unexpected(store.error());
-  const auto service = FittingService::Begin(options->service, *std::move(store));
-  if (!service) return tl::unexpected(service.error());
-  const auto server = Server::Listen(options->server, **service, [&](const Answered& answered) {
-    (*service)->Count(answered);
-    Log(answered);
-  });
-  if (!server) return tl::unexpected(server.error());
-  (*service)->CountServer([&] { return (*server)->Count(); });
-  const SignalWatch watch(**server, **service, flags.stop_seconds);
-  std::cout << kName << ": listening on " << AddressText(options->server, (*server)->port()) << '\n' << std::flush;
-  (*server)->Run();
+  ASSIGN_OR_RETURN(auto store, FitStore::Open(options.store));
+  ASSIGN_OR_RETURN(const auto service, FittingService::Begin(options.service, std::move(store)));
+  ASSIGN_OR_RETURN(const auto server, Server::Listen(options.server, *service, [&](const Answered& answered) {
+                     service->Count(answered);
+                     Log(answered);
+                   }));
+  service->CountServer([&] { return server->Count(); });
+  const SignalWatch watch(*server, *service, flags.stop_seconds);
+  std::cout << kName << ": listening on " << AddressText(options.server, server->port()) << '\n' << std::flush;
+  server->Run();
   return 0;
 }
 

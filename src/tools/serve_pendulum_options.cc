@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "pendulum/base/file.h"
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -96,13 +97,13 @@ Result<ServePendulumOptions> MakeServePendulumOptions(const ServePendulumFlags& 
   if (flags.store.empty()) {
     return BadFlag("--store is missing: the file that stores the fits, created if it does not exist");
   }
-  if (const auto checked = CheckNumbers(flags); !checked) return tl::unexpected(checked.error());
-  if (const auto checked = CheckHosts(flags); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckNumbers(flags));
+  RETURN_IF_ERROR(CheckHosts(flags));
   std::error_code fault;
   if (!flags.docs.empty() && !std::filesystem::is_directory(flags.docs, fault)) {
     return BadFlag("--docs names '" + flags.docs + "'; there is no such folder");
   }
-  if (const auto checked = CheckRemoteAccess(flags, token); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckRemoteAccess(flags, token));
   return ServePendulumOptions{flags.store, ServerOptionsOf(flags), ServiceOptionsOf(flags, token)};
 }
 

@@ -11,6 +11,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/parallel.h"
+#include "pendulum/base/try.h"
 #include "pendulum/batch/export.h"
 #include "pendulum/request/simulation_text.h"
 #include "tools/output.h"
@@ -37,23 +38,22 @@ Result<void> CheckAllOutputs(const SimulateOptions& options) {
   std::vector<NamedFile> inputs;
   if (!options.rig_path.empty()) inputs.push_back({"--rig", options.rig_path});
   for (int block = 0; block < Blocks(options.count); ++block) {
-    if (auto checked = CheckOutputs(OutputsOfBlock(options, block), inputs); !checked) return checked;
+    RETURN_IF_ERROR(CheckOutputs(OutputsOfBlock(options, block), inputs));
   }
   return {};
 }
 
 Result<void> WriteRecording(const SimulateOptions& all, int index) {
-  const Result<Simulation> simulation = SimulationOfRecording(all, index);
-  if (!simulation) return tl::unexpected(simulation.error());
-  const std::uint64_t seed = simulation->synthetic.seed;
-  Result<std::string> csv = SimulatedCsv(*simulation, seed);
+  ASSIGN_OR_RETURN(const Simulation simulation, SimulationOfRecording(all, index));
+  const std::uint64_t seed = simulation.synthetic.seed;
+  Result<std::string> csv = SimulatedCsv(simulation, seed);
   if (!csv) {
     const std::string which = all.count == 1 ? "" : "seed " + std::to_string(seed) + ": ";
     return Error(csv.error().code, which + csv.error().message);
   }
   const std::vector<NamedFile> files = all.Outputs(index);
   std::vector<Output> outputs = {{files.front().path, *std::move(csv)}};
-  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(*simulation, seed)});
+  if (files.size() > 1) outputs.push_back({files.back().path, TruthJson(simulation, seed)});
   return WriteOutputs(outputs, all.count == 1 ? Durability::kSynchronised : Durability::kDeferred);
 }
 
@@ -102,9 +102,8 @@ Result<void> WriteManifest(const SimulateOptions& options) {
   return WritePieces(options.manifest_out, Blocks(options.count), [&](int block) -> Result<std::string> {
     std::string rows = block == 0 ? manifest.Header() : "";
     for (int i = block * kBlock; i < std::min((block + 1) * kBlock, options.count); ++i) {
-      const Result<std::string> row = manifest.Row(i);
-      if (!row) return tl::unexpected(row.error());
-      rows += *row;
+      ASSIGN_OR_RETURN(const std::string row, manifest.Row(i));
+      rows += row;
     }
     return rows;
   });
@@ -130,7 +129,7 @@ std::string SeenFrom(const fs::path& base, const fs::path& folder) {
 
 Result<void> WriteRecordings(const SimulateOptions& options) {
   for (const auto step : {CheckAllOutputs, WriteAllRecordings, SynchroniseRecordings, WriteManifest}) {
-    if (Result<void> done = step(options); !done) return done;
+    RETURN_IF_ERROR(step(options));
   }
   return {};
 }
@@ -150,13 +149,12 @@ std::string Manifest::Header() const {
 }
 
 Result<std::string> Manifest::Row(int index) const {
-  const Result<Simulation> made = SimulationOfRecording(options_, index);
-  if (!made) return tl::unexpected(made.error());
+  ASSIGN_OR_RETURN(const Simulation made, SimulationOfRecording(options_, index));
   const fs::path path = NumberedPath(options_.out, index, options_.count);
   std::string row = CsvField(folder_ + path.filename().string()) + "," + CsvField(path.stem().string()) + ",";
   if (!rig_.empty()) row += rig_ + ",";
-  row += std::to_string(made->synthetic.seed);
-  for (const auto& [name, value] : made->truth) row += "," + NumberText(value);
+  row += std::to_string(made.synthetic.seed);
+  for (const auto& [name, value] : made.truth) row += "," + NumberText(value);
   return row + "\n";
 }
 

@@ -7,6 +7,7 @@
 
 #include "pendulum/analysis/plan.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/gravity/registry.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
@@ -113,19 +114,16 @@ Result<std::optional<Rig>> RigOf(const Flags& flags) {
 Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>& rig) {
   SyntheticOptions planned = options.synthetic;
   planned.lost_counts.clear();
-  const Result<Plan> plan = MakePlan(planned);
-  if (!plan) return tl::unexpected(plan.error());
+  ASSIGN_OR_RETURN(const Plan plan, MakePlan(planned));
   return WriteOutputs(
-      std::vector<Output>{{"-", PlanText(*plan, rig, options.details ? TextExtent::kAll : TextExtent::kSummary)}});
+      std::vector<Output>{{"-", PlanText(plan, rig, options.details ? TextExtent::kAll : TextExtent::kSummary)}});
 }
 
 Result<void> Simulate(const SimulateFlags& flags) {
-  const Result<std::optional<Rig>> rig = RigOf(flags);
-  if (!rig) return tl::unexpected(rig.error());
-  const Result<SimulateOptions> options = MakeSimulateOptions(flags, *rig);
-  if (!options) return tl::unexpected(options.error());
-  if (options->plan) return WritePlan(*options, *rig);
-  return WriteRecordings(*options);
+  ASSIGN_OR_RETURN(const std::optional<Rig> rig, RigOf(flags));
+  ASSIGN_OR_RETURN(const SimulateOptions options, MakeSimulateOptions(flags, rig));
+  if (options.plan) return WritePlan(options, rig);
+  return WriteRecordings(options);
 }
 
 Result<int> Work(const Flags& flags) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -57,12 +58,11 @@ void CopyFiles(const SimulateFlags& flags, SimulateOptions& options) {
 
 Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const std::optional<Rig>& rig) {
   for (const auto check : {CheckFiles, CheckThreads}) {
-    if (Result<void> checked = check(flags); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(check(flags));
   }
-  Result<Simulation> simulation = MakeSimulation(flags, rig);
-  if (!simulation) return tl::unexpected(simulation.error());
+  ASSIGN_OR_RETURN(Simulation simulation, MakeSimulation(flags, rig));
   SimulateOptions options;
-  static_cast<Simulation&>(options) = *std::move(simulation);
+  static_cast<Simulation&>(options) = std::move(simulation);
   CopyFiles(flags, options);
   return options;
 }

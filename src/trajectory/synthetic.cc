@@ -14,6 +14,7 @@
 #include <boost/random/student_t_distribution.hpp>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/friction/registry.h"
 #include "pendulum/model/nesting.h"
 #include "pendulum/trajectory/encoder.h"
@@ -70,7 +71,7 @@ Result<void> CheckNumbers(const SyntheticOptions& options) {
       NumberRule{"resolution", options.resolution, Domain::kZeroOrMore},
   };
   for (const NumberRule& rule : rules) {
-    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+    RETURN_IF_ERROR(CheckNumber(rule));
   }
   return CheckNoiseLaw(options);
 }
@@ -89,7 +90,7 @@ Result<void> CheckModel(const SyntheticOptions& options) {
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     const NumberRule rule = {infos[i].name, options.parameters[i]};
-    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+    RETURN_IF_ERROR(CheckNumber(rule));
     if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
     if (rule.value > infos[i].upper) return BadOption(rule.name, rule.value, "at most " + NumberText(infos[i].upper));
   }
@@ -131,7 +132,7 @@ Result<void> CheckSensor(const SyntheticOptions& options) {
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     const NumberRule rule = {infos[i].name, options.sensor_parameters[i]};
-    if (Result<void> checked = CheckNumber(rule); !checked) return checked;
+    RETURN_IF_ERROR(CheckNumber(rule));
     if (rule.value < infos[i].lower) return BadOption(rule.name, rule.value, "at least " + NumberText(infos[i].lower));
   }
   if (!options.range) return {};
@@ -309,7 +310,7 @@ std::string UnitOf(const SyntheticOptions& options) {
 
 Result<void> CheckAll(const SyntheticOptions& options) {
   for (const auto check : {CheckNumbers, CheckModel, CheckSensor, CheckLostCounts, CheckEvents, CheckAveraging}) {
-    if (Result<void> checked = check(options); !checked) return checked;
+    RETURN_IF_ERROR(check(options));
   }
   return {};
 }
@@ -319,16 +320,14 @@ SensorStatement IdealSensor() { return {.kind = "ideal", .std_devs = {}, .source
 
 /// Records the angles of a point about the circle on which it moves.
 Result<Recording> RecordAngles(const SyntheticOptions& options) {
-  Result<TrackedPoint> point = SimulatePoint(options);
-  if (!point) return tl::unexpected(point.error());
-  Result<Arc> arc = FitArc(point->x, point->y);
-  if (!arc) return tl::unexpected(arc.error());
+  ASSIGN_OR_RETURN(TrackedPoint point, SimulatePoint(options));
+  ASSIGN_OR_RETURN(Arc arc, FitArc(point.x, point.y));
   Recording recording;
   recording.unit = UnitOf(options);
-  recording.time = std::move(point->time);
+  recording.time = std::move(point.time);
   recording.value.resize(recording.time.size());
-  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = arc->Angle(point->x[i], point->y[i]);
-  recording.arc = *std::move(arc);
+  for (Eigen::Index i = 0; i < recording.size(); ++i) recording.value[i] = arc.Angle(point.x[i], point.y[i]);
+  recording.arc = std::move(arc);
   recording.stated_sensor = IdealSensor();
   return MakeRecording(std::move(recording));
 }
@@ -362,19 +361,17 @@ void SetMeans(const SyntheticOptions& options, const Trajectory& trajectory, std
 }  // namespace
 
 Result<TrackedPoint> SimulatePoint(const SyntheticOptions& options) {
-  if (Result<void> checked = CheckAll(options); !checked) return tl::unexpected(checked.error());
-  const Result<Eigen::Index> count = SampleCount(options);
-  if (!count) return tl::unexpected(count.error());
+  RETURN_IF_ERROR(CheckAll(options));
+  ASSIGN_OR_RETURN(const Eigen::Index count, SampleCount(options));
   std::mt19937_64 generator(options.seed);
   TrackedPoint point;
-  point.x = NoiseSamples(options, *count, generator);
-  point.time = SamplingInstants(options, *count, generator);
-  point.y = NoiseSamples(options, *count, generator);
-  const Result<Trajectory> trajectory = TraceStart(options, point.time[*count - 1]);
-  if (!trajectory) return tl::unexpected(trajectory.error());
+  point.x = NoiseSamples(options, count, generator);
+  point.time = SamplingInstants(options, count, generator);
+  point.y = NoiseSamples(options, count, generator);
+  ASSIGN_OR_RETURN(const Trajectory trajectory, TraceStart(options, point.time[count - 1]));
   const std::vector<double>& p = options.sensor_parameters;  // zero_angle, pivot_x, pivot_y, radius
-  for (Eigen::Index i = 0; i < *count; ++i) {
-    const double angle = trajectory->Angle(point.time[i]) + p[0];
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double angle = trajectory.Angle(point.time[i]) + p[0];
     const double x = p[1] + p[3] * std::sin(angle) + point.x[i];
     const double y = p[2] + options.sensor.down * p[3] * std::cos(angle) + point.y[i];
     point.x[i] = SensorReading(x, options.resolution, options.range);
@@ -385,17 +382,15 @@ Result<TrackedPoint> SimulatePoint(const SyntheticOptions& options) {
 
 Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   if (options.sensor.kind == SensorKind::kArc) return RecordAngles(options);
-  if (Result<void> checked = CheckAll(options); !checked) return tl::unexpected(checked.error());
-  const Result<Eigen::Index> count = SampleCount(options);
-  if (!count) return tl::unexpected(count.error());
+  RETURN_IF_ERROR(CheckAll(options));
+  ASSIGN_OR_RETURN(const Eigen::Index count, SampleCount(options));
 
   std::mt19937_64 generator(options.seed);
-  const Eigen::VectorXd noise = NoiseSamples(options, *count, generator);
+  const Eigen::VectorXd noise = NoiseSamples(options, count, generator);
   Recording recording;
-  recording.time = SamplingInstants(options, *count, generator);
-  const double end = recording.time[*count - 1];
-  const Result<Trajectory> trajectory = TraceStart(options, end + 0.5 * options.averaging_window);
-  if (!trajectory) return tl::unexpected(trajectory.error());
+  recording.time = SamplingInstants(options, count, generator);
+  const double end = recording.time[count - 1];
+  ASSIGN_OR_RETURN(const Trajectory trajectory, TraceStart(options, end + 0.5 * options.averaging_window));
 
   recording.quantity = options.quantity;
   recording.stated_sensor = IdealSensor();
@@ -405,15 +400,15 @@ Result<Recording> SimulateRecording(const SyntheticOptions& options) {
   recording.range = options.range;
   if (options.rows != RowTiming::kEven) {
     const Eigen::VectorXd instants = recording.time;
-    ReadEncoder(*trajectory, options, instants, recording);
+    ReadEncoder(trajectory, options, instants, recording);
     for (Eigen::Index i = 0; i < recording.size(); ++i)
       recording.value[i] += LostOffsetBefore(options, recording.time[i]);
     return MakeRecording(std::move(recording));
   }
-  recording.value.resize(*count);
-  if (options.oversample > 1) SetMeans(options, *trajectory, generator, recording);
-  for (Eigen::Index i = 0; i < *count && options.oversample == 1; ++i) {
-    const double truth = TrueReading(options, *trajectory, recording.time[i]);
+  recording.value.resize(count);
+  if (options.oversample > 1) SetMeans(options, trajectory, generator, recording);
+  for (Eigen::Index i = 0; i < count && options.oversample == 1; ++i) {
+    const double truth = TrueReading(options, trajectory, recording.time[i]);
     recording.value[i] = SensorReading(truth + noise[i], options.resolution, options.range);
     recording.value[i] += LostOffsetBefore(options, recording.time[i]);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/escape_discontinuities.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/solve/optimum.h"
@@ -89,9 +90,8 @@ void KeepBetter(Attempt other, Attempt& best) {
 }  // namespace
 
 Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options) {
-  Result<FitProblem> problem = MakeFitProblem(recording, options);
-  if (!problem) return tl::unexpected(problem.error());
-  return SolveProblem(std::make_unique<FitProblem>(*std::move(problem)), options);
+  ASSIGN_OR_RETURN(FitProblem problem, MakeFitProblem(recording, options));
+  return SolveProblem(std::make_unique<FitProblem>(std::move(problem)), options);
 }
 
 AlternativeMinimum MinimumOf(const Attempt& attempt) {

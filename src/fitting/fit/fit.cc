@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fitting/fit/attempt.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/alternative_minima.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
@@ -206,27 +207,26 @@ std::string OrderViolationOf(const FitProblem& problem, const FitReport& report)
 
 /// Returns a report that may be incomplete if a stop is requested during the fit.
 Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
-  Result<Attempt> attempt = MakeAttempt(recording, options);
-  if (!attempt) return tl::unexpected(attempt.error());
-  std::vector<AttemptRecord> records = ApplyRescues(recording, options, *attempt);
-  std::string violation = OrderViolation(*attempt->problem, attempt->solution.parameters);
+  ASSIGN_OR_RETURN(Attempt attempt, MakeAttempt(recording, options));
+  std::vector<AttemptRecord> records = ApplyRescues(recording, options, attempt);
+  std::string violation = OrderViolation(*attempt.problem, attempt.solution.parameters);
   Result<FitReport> report = FitReport();
   if (violation.empty()) {
-    const AlternativeMinimum minimum = MinimumOf(*attempt);
+    const AlternativeMinimum minimum = MinimumOf(attempt);
     // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
-    const bool has_base = !HasLeastReference(*attempt, options);
-    report = MakeFitReport(recording, options, *attempt->problem, *attempt->cost, std::move(attempt->solution));
+    const bool has_base = !HasLeastReference(attempt, options);
+    report = MakeFitReport(recording, options, *attempt.problem, *attempt.cost, std::move(attempt.solution));
     const double effective_share =
-        report->statistics.effective_samples / static_cast<double>(attempt->problem->data.time.size());
+        report->statistics.effective_samples / static_cast<double>(attempt.problem->data.time.size());
     const bool is_correctable = has_base && report->effects.correction.readings.size() > 0;
     if (is_correctable && options.search.may_correct) CorrectForSuspicions(recording, options, *report);
     WarnOfSuspicions(is_correctable && !options.search.may_correct, *report);
-    CheckAlternativeMinima(*attempt->problem, attempt->alternatives, minimum, effective_share, *report);
-    CheckProfilesForBetterMinimum(*attempt->problem, *report);
-    violation = OrderViolationOf(*attempt->problem, *report);
+    CheckAlternativeMinima(*attempt.problem, attempt.alternatives, minimum, effective_share, *report);
+    CheckProfilesForBetterMinimum(*attempt.problem, *report);
+    violation = OrderViolationOf(*attempt.problem, *report);
   }
   if (!violation.empty()) {
-    report = ReportSimplerLaw(recording, options, *attempt->problem, violation);
+    report = ReportSimplerLaw(recording, options, *attempt.problem, violation);
     records.push_back({"simpler_law", true});
   }
   if (report) report->solver.attempts.insert(report->solver.attempts.begin(), records.begin(), records.end());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/fit_description.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/intervals.h"
@@ -370,10 +371,9 @@ namespace {
 
 /// The result is meaningless if a stop is requested during the fit.
 Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
-  Result<JointProblem> joint = MakeJointProblem(runs, shared);
-  if (!joint) return tl::unexpected(joint.error());
+  ASSIGN_OR_RETURN(JointProblem joint, MakeJointProblem(runs, shared));
   JointState state;
-  state.joint = *std::move(joint);
+  state.joint = std::move(joint);
   state.solution = SolveJointly(state.joint);
   JointFit fit;
   fit.shared = state.joint.shared;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/solve/search.h"
@@ -52,9 +53,8 @@ Result<JointMember> MakeMember(const JointRun& run, std::size_t k) {
   if (run.alone.termination == Termination::kFailed) {
     return Error(StatusCode::kFailedPrecondition, NumberOf(k) + " cannot be fitted separately: " + run.alone.reason);
   }
-  Result<FitProblem> problem = ProblemOf(run, member.options);
-  if (!problem) return tl::unexpected(problem.error());
-  member.problem = std::make_unique<FitProblem>(*std::move(problem));
+  ASSIGN_OR_RETURN(FitProblem problem, ProblemOf(run, member.options));
+  member.problem = std::make_unique<FitProblem>(std::move(problem));
   member.cost = MakeTrajectoryCost(member.problem->model, member.problem->start.start, member.problem->data);
   member.cost->set_threads(member.options.threads);
   member.tolerance = TraceTolerance(MaxTraceError(*member.problem, member.options), member.problem->start.amplitude);
@@ -212,12 +212,11 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
     return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
                                                    std::string(runs.empty() ? "there is none" : "there is one"));
   }
-  if (Result<void> checked = CheckSameModelAndRig(runs); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckSameModelAndRig(runs));
   JointProblem joint;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    Result<JointMember> member = MakeMember(runs[k], k);
-    if (!member) return tl::unexpected(member.error());
-    joint.members.push_back(*std::move(member));
+    ASSIGN_OR_RETURN(JointMember member, MakeMember(runs[k], k));
+    joint.members.push_back(std::move(member));
   }
   const MotionModel& model = joint.members.front().problem->model;
   joint.shared = SharedOf(model, shared);

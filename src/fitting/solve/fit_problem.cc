@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/low_band.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
@@ -66,49 +67,45 @@ Result<void> SetStartValue(double value, std::size_t i, const std::string& what,
 
 Result<void> ApplyBounds(const ParameterRanges& bounds, FitProblem& problem) {
   for (const auto& [name, range] : bounds) {
-    const Result<std::size_t> i = FindParameter(problem, name, "bound");
-    if (!i) return tl::unexpected(i.error());
-    double& lower = problem.solve.lower[*i];
-    double& upper = problem.solve.upper[*i];
-    const double new_lower = std::max(problem.Internal(*i, range.lower), lower);
-    const double new_upper = std::min(problem.Internal(*i, range.upper), upper);
+    ASSIGN_OR_RETURN(const std::size_t i, FindParameter(problem, name, "bound"));
+    double& lower = problem.solve.lower[i];
+    double& upper = problem.solve.upper[i];
+    const double new_lower = std::max(problem.Internal(i, range.lower), lower);
+    const double new_upper = std::min(problem.Internal(i, range.upper), upper);
     const bool too_small = name == kInertia.name && !(new_upper > kSmallestInertia);
     if (!(new_lower < new_upper) || too_small) {
       return Error(StatusCode::kInvalidArgument, "the bounds of " + name + " allow no value; it must be " +
-                                                     Range(problem, *i) + ", and may be fixed with --fix");
+                                                     Range(problem, i) + ", and may be fixed with --fix");
     }
     lower = new_lower;
     upper = new_upper;
-    problem.first_guess[*i] = std::clamp(problem.first_guess[*i], lower, upper);
+    problem.first_guess[i] = std::clamp(problem.first_guess[i], lower, upper);
   }
   return {};
 }
 
 Result<void> ApplyPriors(const ParameterPriors& priors, FitProblem& problem) {
   for (const auto& [name, prior] : priors) {
-    const Result<std::size_t> i = FindParameter(problem, name, "give a prior");
-    if (!i) return tl::unexpected(i.error());
-    const double scale = problem.si_per_internal[*i];
-    problem.priors.push_back({static_cast<int>(*i), problem.Internal(*i, prior.mean), scale / prior.std_dev});
+    ASSIGN_OR_RETURN(const std::size_t i, FindParameter(problem, name, "give a prior"));
+    const double scale = problem.si_per_internal[i];
+    problem.priors.push_back({static_cast<int>(i), problem.Internal(i, prior.mean), scale / prior.std_dev});
   }
   return {};
 }
 
 /// Applies the user's bounds, start values, fixed values and priors, and the prior knowledge of the sensor.
 Result<void> ApplyOptions(const FitOptions& options, const ParameterPriors& sensor_priors, FitProblem& problem) {
-  if (Result<void> done = ApplyBounds(options.bounds, problem); !done) return done;
+  RETURN_IF_ERROR(ApplyBounds(options.bounds, problem));
   for (const auto& [name, value] : options.initial) {
-    const Result<std::size_t> i = FindParameter(problem, name, "give an initial value");
-    if (!i) return tl::unexpected(i.error());
-    if (Result<void> done = SetStartValue(value, *i, "started at", problem); !done) return done;
+    ASSIGN_OR_RETURN(const std::size_t i, FindParameter(problem, name, "give an initial value"));
+    RETURN_IF_ERROR(SetStartValue(value, i, "started at", problem));
   }
   for (const auto& [name, value] : options.fixed) {
-    const Result<std::size_t> i = FindParameter(problem, name, "fix");
-    if (!i) return tl::unexpected(i.error());
-    if (Result<void> done = SetStartValue(value, *i, "fixed at", problem); !done) return done;
-    problem.solve.fixed[*i] = true;
+    ASSIGN_OR_RETURN(const std::size_t i, FindParameter(problem, name, "fix"));
+    RETURN_IF_ERROR(SetStartValue(value, i, "fixed at", problem));
+    problem.solve.fixed[i] = true;
   }
-  if (Result<void> done = ApplyPriors(options.priors, problem); !done) return done;
+  RETURN_IF_ERROR(ApplyPriors(options.priors, problem));
   return ApplyPriors(sensor_priors, problem);
 }
 
@@ -258,7 +255,7 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
                          const FitOptions& options) {
   const bool is_raw_angle = recording.quantity == Quantity::kAngle && !recording.is_calibrated();
   if (is_raw_angle && !model.gravity.is_linear()) return NeedsCalibration(recording, model);
-  if (Result<void> checked = CheckSensorOptions(sensor, options); !checked) return checked;
+  RETURN_IF_ERROR(CheckSensorOptions(sensor, options));
   if (recording.quantity != Quantity::kAcceleration) return {};
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   if (sensor.kind == SensorKind::kDirect && IsAlongRod(recording)) {
@@ -287,12 +284,11 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
   };
   if (sensor.kind == SensorKind::kDirect)
     return HasTurningPointView(timed) ? estimate(TurningPointView(timed)) : estimate(timed);
-  const Result<std::vector<SensorStart>> starts = SensorStarts(timed, sensor, options);
-  if (!starts) return tl::unexpected(starts.error());
-  if (starts->empty())
+  ASSIGN_OR_RETURN(const std::vector<SensorStart> starts, SensorStarts(timed, sensor, options));
+  if (starts.empty())
     return Error(StatusCode::kFailedPrecondition, "these readings do not match the swing of any pendulum");
-  sensor_starts = starts->size();
-  const SensorStart& start = (*starts)[std::min(options.search.sensor_start, starts->size() - 1)];
+  sensor_starts = starts.size();
+  const SensorStart& start = starts[std::min(options.search.sensor_start, starts.size() - 1)];
   Result<StartValues> values = estimate(start.view);
   if (values) AppendSensorParameters(sensor, start, *values);
   return values;
@@ -301,14 +297,13 @@ Result<StartValues> FindStart(const Recording& timed, const MotionModel& model, 
 }  // namespace
 
 Result<void> CheckReadings(const Recording& recording, const FitOptions& options) {
-  if (Result<void> checked = CheckNoise(recording, options); !checked) return checked;
-  const Result<MotionModel> model = ModelOf(options);
-  if (!model) return tl::unexpected(model.error());
-  return CheckSensor(recording, *model, SensorOf(recording, model->gravity), options);
+  RETURN_IF_ERROR(CheckNoise(recording, options));
+  ASSIGN_OR_RETURN(const MotionModel model, ModelOf(options));
+  return CheckSensor(recording, model, SensorOf(recording, model.gravity), options);
 }
 
 Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& options) {
-  if (const Result<void> checked = CheckReadings(recording, options); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckReadings(recording, options));
   const Result<MotionModel> model = ModelOf(options);
   if (!model) return tl::unexpected(model.error());
   const SensorModel sensor = SensorOf(recording, model->gravity);
@@ -359,9 +354,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   problem.solve.max_iterations = options.search.max_iterations;
   problem.solve.max_traces = options.search.max_traces;
   const ParameterPriors sensor_priors = SensorPriors(recording, sensor, options);
-  if (const Result<void> applied = ApplyOptions(options, sensor_priors, problem); !applied) {
-    return tl::unexpected(applied.error());
-  }
+  RETURN_IF_ERROR(ApplyOptions(options, sensor_priors, problem));
   return problem;
 }
 

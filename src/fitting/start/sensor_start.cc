@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/period.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
@@ -43,11 +44,9 @@ struct Turns : Oscillation {
 
 Result<Turns> FindTurnsOf(const Recording& recording) {
   Recording view = TurningPointView(recording);
-  const Result<TurningPointTable> table = FindTurningPoints(view);
-  if (!table) return tl::unexpected(table.error());
-  const Result<double> frequency = NaturalFrequency(view, *table, Gravity::kLinear);
-  if (!frequency) return tl::unexpected(frequency.error());
-  return Turns{{table->zero.value, table->LargestAmplitude(), *frequency}, std::move(view)};
+  ASSIGN_OR_RETURN(const TurningPointTable table, FindTurningPoints(view));
+  ASSIGN_OR_RETURN(const double frequency, NaturalFrequency(view, table, Gravity::kLinear));
+  return Turns{{table.zero.value, table.LargestAmplitude(), frequency}, std::move(view)};
 }
 
 /// The amplitudes to try; only `known` if the scale is known.
@@ -218,9 +217,8 @@ Result<void> CheckSensorOptions(const SensorModel& sensor, const FitOptions& opt
 Result<std::vector<SensorStart>> SensorStarts(const Recording& recording, const SensorModel& sensor,
                                               const FitOptions& options) {
   if (sensor.kind == SensorKind::kArc) return std::vector<SensorStart>{StartOfArc(recording)};
-  const Result<Turns> turns = FindTurnsOf(recording);
-  if (!turns) return tl::unexpected(turns.error());
-  return StartsOf(recording, sensor, options, *turns);
+  ASSIGN_OR_RETURN(const Turns turns, FindTurnsOf(recording));
+  return StartsOf(recording, sensor, options, turns);
 }
 
 std::vector<SensorStart> SensorStarts(const Recording& recording, const SensorModel& sensor, const FitOptions& options,

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/energy_balance.h"
 #include "pendulum/closed_form/period.h"
 #include "pendulum/closed_form/turning_points.h"
@@ -141,27 +142,24 @@ std::pair<double, double> InitialState(const Centred& data) {
 /// half a period before the first turn of a rate. Otherwise a parabola through the first samples gives angle and rate.
 Result<StartValues> EstimateStartValues(const Recording& recording, const MotionModel& model,
                                         std::optional<StartKind> choice) {
-  const Result<TurningPointTable> table = FindTurningPoints(recording);
-  if (!table) return tl::unexpected(table.error());
-  const Result<double> frequency = NaturalFrequency(recording, *table, model.gravity);
-  if (!frequency) return tl::unexpected(frequency.error());
+  ASSIGN_OR_RETURN(const TurningPointTable table, FindTurningPoints(recording));
+  ASSIGN_OR_RETURN(const double frequency, NaturalFrequency(recording, table, model.gravity));
   StartValues values;
-  values.natural_frequency = *frequency;
+  values.natural_frequency = frequency;
   const double inertia = 1 / (values.natural_frequency * values.natural_frequency);
   if (!(inertia > 1e-30 && inertia < 1e30)) {
     return Error(StatusCode::kFailedPrecondition, "the period is " + NumberText(2 * kPi / values.natural_frequency, 3) +
                                                       " s, which is impossible for a pendulum; check the unit of time");
   }
-  values.amplitude =
-      AngleAmplitude(table->quantity, table->LargestAmplitude(), values.natural_frequency, model.gravity);
+  values.amplitude = AngleAmplitude(table.quantity, table.LargestAmplitude(), values.natural_frequency, model.gravity);
   values.parameters = {inertia};
-  values.other_balances = BalanceEnergy(model, *table, values.natural_frequency);
+  values.other_balances = BalanceEnergy(model, table, values.natural_frequency);
   values.energy_balance = values.other_balances.front();
   values.other_balances.erase(values.other_balances.begin());
   const std::vector<double> friction = FrictionFrom(values.energy_balance);
   values.parameters.insert(values.parameters.end(), friction.begin(), friction.end());
 
-  const Centred data{recording, *table, model.gravity, values.natural_frequency};
+  const Centred data{recording, table, model.gravity, values.natural_frequency};
   const std::optional<Hold> hold =
       choice == StartKind::kMoving ? std::nullopt : FindHold(data, choice == StartKind::kRelease);
   if (choice == StartKind::kRelease && !hold) {
@@ -179,7 +177,7 @@ Result<StartValues> EstimateStartValues(const Recording& recording, const Motion
     const auto [angle, rate] = InitialState(data);
     values.parameters.insert(values.parameters.end(), {angle, rate});
   }
-  values.parameters.push_back(table->zero.value);
+  values.parameters.push_back(table.zero.value);
   return values;
 }
 

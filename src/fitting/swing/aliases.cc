@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/sampling.h"
 #include "pendulum/fitting/start/scan_starts.h"
 #include "pendulum/fitting/swing/undersampled.h"
@@ -78,13 +79,11 @@ AllowedFrequencies FindAllowedFrequencies(const Recording& used, const FitOption
 
 Result<std::vector<Alias>> FitAliases(const Recording& used, const AllowedFrequencies& allowed, FitOptions options) {
   constexpr double kBeyond = 1.02;  // the limits of a range are not exact bounds
-  const Result<MotionModel> model = ModelOf(options);
-  if (!model) return tl::unexpected(model.error());
-  Result<std::vector<StartValues>> starts = ScanStarts(used, *model, allowed.range, options);
-  if (!starts) return tl::unexpected(starts.error());
+  ASSIGN_OR_RETURN(const MotionModel model, ModelOf(options));
+  ASSIGN_OR_RETURN(std::vector<StartValues> starts, ScanStarts(used, model, allowed.range, options));
   std::optional<Status> error;
   std::vector<Alias> aliases;
-  for (StartValues& start : *starts) {
+  for (StartValues& start : starts) {
     options.search.start_values = start;
     Result<FitReport> fit = FitRecording(used, options);
     if (!fit) error = fit.error();

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/swing/clock_change.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
@@ -51,9 +52,8 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
   const bool to_given = !std::isnan(choice.to);
   std::optional<Recording> selected;
   if (from_given || to_given) {
-    Result<Recording> part = SelectWindow(recording, choice.from, choice.to);
-    if (!part) return tl::unexpected(part.error());
-    selected = *std::move(part);
+    ASSIGN_OR_RETURN(Recording part, SelectWindow(recording, choice.from, choice.to));
+    selected = std::move(part);
   }
   const Recording* const part = selected ? &*selected : &recording;
   const std::string where = recording.path.empty() ? "" : recording.path + ": ";

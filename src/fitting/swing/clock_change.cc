@@ -61,7 +61,8 @@ std::optional<Index> FindStepChange(const Eigen::VectorXd& time) {
   constexpr double kFew = 0.01;
   std::optional<Index> change = FindStepChange(time, 1, kEndShare);
   if (!change) change = FindStepChange(time, kRows, kEndShare);
-  return change ? change : FindStepChange(time, 1, kFew);
+  if (!change) change = FindStepChange(time, 1, kFew);
+  return change ? change : FindStepChange(time, kRows, kFew);
 }
 
 /// The median of a logarithm, with its standard error; std::nullopt of nothing.

@@ -18,6 +18,7 @@
 #include "fitting/swing/steady_hold.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/lost_counts.h"
 #include "pendulum/fitting/swing/not_a_pendulum.h"
@@ -43,15 +44,14 @@ std::string UnwrapOffset(Recording& used) {
 }
 
 Result<SwingFit> FitBetween(Recording recording, const FreeSwing& swing, FitOptions options) {
-  Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
-  if (!used) return tl::unexpected(used.error());
-  used->warnings.clear();
-  const std::string turns_message = UnwrapOffset(*used);
-  if (swing.vibration) options.search.vibration_period = used->clock_scale / swing.vibration->frequency;
-  Result<FitReport> fit = FitRecording(*used, options);
+  ASSIGN_OR_RETURN(Recording used, SelectWindow(std::move(recording), swing.from, swing.to));
+  used.warnings.clear();
+  const std::string turns_message = UnwrapOffset(used);
+  if (swing.vibration) options.search.vibration_period = used.clock_scale / swing.vibration->frequency;
+  Result<FitReport> fit = FitRecording(used, options);
   if (!fit) return tl::unexpected(fit.error());
   if (!turns_message.empty()) fit->warnings.push_back({"whole_turns_removed", turns_message});
-  SwingFit result{*std::move(used), swing, *std::move(fit)};
+  SwingFit result{std::move(used), swing, *std::move(fit)};
   // The fit decides how the swing began.
   const bool released = result.fit.start == StartKind::kRelease;
   WindowBegin::Reason& begins = result.swing.begins.reason;
@@ -266,13 +266,12 @@ Result<bool> LeaveOutPresliding(const FitOptions& options, SwingState& state) {
   FreeSwing shorter = state.swing;
   shorter.to = state.presliding->from;
   shorter.ends = {WindowEnd::Reason::kPresliding};
-  Result<SwingFit> result = FitBetween(state.result.used, shorter, options);
-  if (!result) return tl::unexpected(result.error());
-  const Eigen::VectorXd former = state.result.fit.residual.head(result->used.size());
-  const bool is_better = result->fit.residual.norm() < kBetter * former.norm();
+  ASSIGN_OR_RETURN(SwingFit result, FitBetween(state.result.used, shorter, options));
+  const Eigen::VectorXd former = state.result.fit.residual.head(result.used.size());
+  const bool is_better = result.fit.residual.norm() < kBetter * former.norm();
   if (!is_better && state.result.fit.termination == Termination::kConverged) return false;
   state.swing = shorter;
-  state.result = *std::move(result);
+  state.result = std::move(result);
   return true;
 }
 
@@ -282,9 +281,8 @@ bool MayBeDisturbed(const SwingState& state) { return state.IsLacking() && !stat
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   LeaveOutDisturbedEnds(state.result.used, options, state.swing);
   if (!state.HasNewWindow()) return false;
-  Result<SwingFit> result = FitBetween(std::move(state.result.used), state.swing, options);
-  if (!result) return tl::unexpected(result.error());
-  state.result = *std::move(result);
+  ASSIGN_OR_RETURN(SwingFit result, FitBetween(std::move(state.result.used), state.swing, options));
+  state.result = std::move(result);
   state.was_trimmed = true;
   return true;
 }
@@ -324,10 +322,9 @@ Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, Swing
   std::vector<AttemptRecord> records;
   for (const WindowRescue& rescue : kWindowRescues) {
     if (!state.is_pendulum || !rescue.applies(state)) continue;
-    const Result<bool> changed = rescue.run(options, state);
-    if (!changed) return tl::unexpected(changed.error());
+    ASSIGN_OR_RETURN(const bool changed, rescue.run(options, state));
     // A check that finds nothing is no attempt.
-    if (*changed || rescue.is_attempt) records.push_back({std::string(rescue.name), *changed});
+    if (changed || rescue.is_attempt) records.push_back({std::string(rescue.name), changed});
   }
   return records;
 }
@@ -416,12 +413,11 @@ Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const Fi
   if (MayBeFaster(options, state)) {
     if (std::optional<SwingFit> faster = FitFasterAlias(state.result, options)) return *std::move(faster);
   }
-  const auto records = ApplyRescues(options, state);
-  if (!records) return tl::unexpected(records.error());
+  ASSIGN_OR_RETURN(const auto records, ApplyRescues(options, state));
   if (with_hold && MayUseHold(options, state)) FitWithHold(*std::move(with_hold), options, state);
   if (state.is_pendulum) AddWarnings(options, state);
   std::vector<AttemptRecord>& attempts = state.result.fit.solver.attempts;
-  attempts.insert(attempts.begin(), records->begin(), records->end());
+  attempts.insert(attempts.begin(), records.begin(), records.end());
   return std::move(state.result);
 }
 
@@ -489,9 +485,8 @@ Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, cons
     return Error(StatusCode::kFailedPrecondition, *why);
   }
   if (swing.undersampled) return {};
-  const Result<Recording> used = SelectWindow(recording, swing.from, swing.to);
-  if (!used) return tl::unexpected(used.error());
-  return CheckReadings(*used, options);
+  ASSIGN_OR_RETURN(const Recording used, SelectWindow(recording, swing.from, swing.to));
+  return CheckReadings(used, options);
 }
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {

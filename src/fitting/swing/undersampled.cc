@@ -9,6 +9,7 @@
 
 #include "fitting/swing/aliases.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/closed_form/sampling.h"
 #include "pendulum/closed_form/turning_point_view.h"
 #include "pendulum/closed_form/turning_points.h"
@@ -274,14 +275,13 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
     return Error(StatusCode::kFailedPrecondition,
                  "sampled too slowly to find the time of the release; --start moving fits the motion after it");
   }
-  Result<Recording> used = SelectWindow(std::move(recording), swing.from, swing.to);
-  if (!used) return tl::unexpected(used.error());
-  used->warnings.clear();
-  if (used->value.maxCoeff() == used->value.minCoeff()) {
+  ASSIGN_OR_RETURN(Recording used, SelectWindow(std::move(recording), swing.from, swing.to));
+  used.warnings.clear();
+  if (used.value.maxCoeff() == used.value.minCoeff()) {
     return Error(StatusCode::kFailedPrecondition, "the reading is constant: no swing");
   }
-  RemoveHold(*used, swing);
-  const AllowedFrequencies allowed = FindAllowedFrequencies(*used, options);
+  RemoveHold(used, swing);
+  const AllowedFrequencies allowed = FindAllowedFrequencies(used, options);
   FitOptions whole = options;
   whole.start = StartKind::kMoving;
   // The scan finds every start in the range. One start for all aliases would lead to the same alias each time.
@@ -289,27 +289,25 @@ Result<SwingFit> FitUndersampled(Recording recording, FreeSwing swing, const Fit
   FitOptions moving = whole;
   moving.interval = IntervalMethod::kCovariance;
   moving.search.max_traces = std::min(options.search.max_traces, kMaxAliasTraces);
-  Result<std::vector<Alias>> aliases = FitAliases(*used, allowed, moving);
-  if (!aliases) return tl::unexpected(aliases.error());
-  if (aliases->empty()) {
+  ASSIGN_OR_RETURN(std::vector<Alias> aliases, FitAliases(used, allowed, moving));
+  if (aliases.empty()) {
     return Error(StatusCode::kFailedPrecondition, "no pendulum of " + Hz(allowed.range.low / kTurn) + " to " +
                                                       Hz(allowed.range.high / kTurn) +
                                                       " fits the readings; check --rig, or sample faster");
   }
-  PreferShown(allowed, SampleRateOf(*used), *aliases);
-  const std::optional<Rejection> rejection = RejectionOf(*used, *aliases, allowed, moving);
-  FitReport fit = aliases->front().fit;
+  PreferShown(allowed, SampleRateOf(used), aliases);
+  const std::optional<Rejection> rejection = RejectionOf(used, aliases, allowed, moving);
+  FitReport fit = aliases.front().fit;
   if (!rejection) {
-    whole.search.start_values = aliases->front().start;
-    Result<FitReport> best = FitRecording(*used, whole);
-    if (!best) return tl::unexpected(best.error());
-    fit = *std::move(best);
+    whole.search.start_values = aliases.front().start;
+    ASSIGN_OR_RETURN(FitReport best, FitRecording(used, whole));
+    fit = std::move(best);
   }
-  const double frequency = aliases->front().frequency;
-  swing.half_period = 0.5 / (frequency * used->clock_scale);
-  CompleteReport(*used, *aliases, allowed, rejection, fit);
-  WarnOfSampling(*used, frequency, options, fit);
-  return SwingFit{*std::move(used), std::move(swing), std::move(fit)};
+  const double frequency = aliases.front().frequency;
+  swing.half_period = 0.5 / (frequency * used.clock_scale);
+  CompleteReport(used, aliases, allowed, rejection, fit);
+  WarnOfSampling(used, frequency, options, fit);
+  return SwingFit{std::move(used), std::move(swing), std::move(fit)};
 }
 
 }  // namespace pendulum

@@ -17,6 +17,7 @@
 
 #include "fitting/likelihood/line_likelihood.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/covariance.h"
 #include "pendulum/fitting/start/fit_options.h"
 
@@ -394,11 +395,10 @@ Draws RunUntilEnough(Chain& chain) {
 
 Result<Posterior> SamplePosterior(const LinearizedFit& fit, std::uint64_t seed, const std::stop_token& stop) {
   for (const auto check : {CheckSizes, CheckValues}) {
-    if (Result<void> checked = check(fit); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(check(fit));
   }
-  Result<Frame> frame = FirstFrame(fit);
-  if (!frame) return tl::unexpected(frame.error());
-  Chain chain(fit, std::move(*frame), seed, stop);
+  ASSIGN_OR_RETURN(Frame frame, FirstFrame(fit));
+  Chain chain(fit, std::move(frame), seed, stop);
   WarmUp(chain);
   Draws draws = RunUntilEnough(chain);
   if (chain.is_stopped()) return FitStopped();

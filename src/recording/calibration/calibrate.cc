@@ -13,6 +13,7 @@
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -240,8 +241,8 @@ nlohmann::ordered_json CalibrationJson(const Calibration& calibration) {
 
 Result<CalibrationFit> CalibrateSensor(const CalibrationTable& table, int order,
                                        const std::optional<SensorRange>& input_range) {
-  if (Check checked = CheckCounts(table, order); !checked) return tl::unexpected(std::move(checked).error());
-  if (Check checked = CheckInputRange(table, input_range); !checked) return tl::unexpected(std::move(checked).error());
+  RETURN_IF_ERROR(CheckCounts(table, order));
+  RETURN_IF_ERROR(CheckInputRange(table, input_range));
   const Scale scale = ScaleOf(table.reading);
   const LeastSquares best = Solve(table, scale, order);
   if (!best.is_determined) {
@@ -250,7 +251,7 @@ Result<CalibrationFit> CalibrateSensor(const CalibrationTable& table, int order,
   }
   CalibrationFit fit = FitOf(table, best, scale);
   for (const auto check : {CheckNumbers, CheckCurveIsMonotonic}) {
-    if (Check checked = check(table, fit); !checked) return tl::unexpected(std::move(checked).error());
+    RETURN_IF_ERROR(check(table, fit));
   }
   fit.rounding = TestRounding(fit.resolution, best.Rss(), table.size() - order - 1);
   if (order > 1) fit.lower_order = TestOrder(table, Solve(table, scale, order - 1), best, order);

@@ -6,6 +6,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/recording/calibration/calibrate.h"
 #include "pendulum/recording/calibration/calibration_table.h"
@@ -56,17 +57,15 @@ Result<Calibration> CalibrationFromText(std::string_view text, const std::string
                                           ". A calibration is JSON, or a table with a column of counts or volts and a "
                                           "column of angles, such as adc_counts,angle_deg");
   }
-  Result<CalibrationFit> fit = CalibrateSensor(*table, 1);
-  if (!fit) return tl::unexpected(std::move(fit).error());
-  fit->calibration.note = NoteOn(*table, *fit);
-  fit->calibration.doubt = DoubtOn(*table, *fit);
-  return std::move(fit->calibration);
+  ASSIGN_OR_RETURN(CalibrationFit fit, CalibrateSensor(*table, 1));
+  fit.calibration.note = NoteOn(*table, fit);
+  fit.calibration.doubt = DoubtOn(*table, fit);
+  return std::move(fit.calibration);
 }
 
 Result<Calibration> CalibrationFromFile(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path, "calibration", kMaxJsonBytes);
-  if (!text) return tl::unexpected(text.error());
-  return CalibrationFromText(*text, path.string());
+  ASSIGN_OR_RETURN(const std::string text, ReadFile(path, "calibration", kMaxJsonBytes));
+  return CalibrationFromText(text, path.string());
 }
 
 }  // namespace pendulum

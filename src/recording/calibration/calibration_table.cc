@@ -7,6 +7,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 #include "recording/readers/columns/column.h"
 #include "recording/readers/columns/column_choice.h"
@@ -47,10 +48,8 @@ class TableReader {
 };
 
 Result<CalibrationTable> TableReader::Read() {
-  if (Check read = csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }); !read) {
-    return tl::unexpected(std::move(read).error());
-  }
-  if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
+  RETURN_IF_ERROR(csv::ForEachLine(lines_, line_, [this] { return ReadLine(); }));
+  RETURN_IF_ERROR(CheckEnd());
   CalibrationTable table;
   table.path = lines_.name();
   table.input = reading_.unit->name;
@@ -79,9 +78,9 @@ Check TableReader::ReadHeader() {
                        "the first row has numbers instead of column names; put a header above it that gives the units, "
                        "such as counts,angle_deg");
   }
-  if (Check checked = CheckUnits(names); !checked) return checked;
-  if (Check found = FindColumn(names, Kind::kRaw, reading_); !found) return found;
-  if (Check found = FindColumn(names, Kind::kAngle, angle_); !found) return found;
+  RETURN_IF_ERROR(CheckUnits(names));
+  RETURN_IF_ERROR(FindColumn(names, Kind::kRaw, reading_));
+  RETURN_IF_ERROR(FindColumn(names, Kind::kAngle, angle_));
   numbers_ = csv::Numbers(separator_ != ',');
   width_ = names.size();
   return {};
@@ -245,7 +244,7 @@ Result<CalibrationTable> MakeCalibrationTable(CalibrationTable table) {
   }
   const std::vector<Index> order = table.ByReading();
   for (const auto check : {CheckReadingsDiffer, CheckAnglesRiseOrFall}) {
-    if (Check checked = check(table, order); !checked) return tl::unexpected(std::move(checked).error());
+    RETURN_IF_ERROR(check(table, order));
   }
   return table;
 }
@@ -255,9 +254,8 @@ Result<CalibrationTable> ParseCalibrationTable(std::string_view text, const std:
 }
 
 Result<CalibrationTable> ReadCalibrationTable(const std::filesystem::path& path) {
-  Result<InputFile> file = path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "CSV");
-  if (!file) return tl::unexpected(std::move(file).error());
-  return TableReader(LineReader(*std::move(file))).Read();
+  ASSIGN_OR_RETURN(InputFile file, path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "CSV"));
+  return TableReader(LineReader(std::move(file))).Read();
 }
 
 }  // namespace pendulum

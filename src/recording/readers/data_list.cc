@@ -8,6 +8,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 #include "recording/readers/columns/csv.h"
 
@@ -36,20 +37,18 @@ Result<void> CheckListed(const ListedFile& file, const std::map<fs::path, std::s
 }  // namespace
 
 Result<std::vector<ListedFile>> ReadDataList(const fs::path& path) {
-  Result<InputFile> input = path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "list");
-  if (!input) return tl::unexpected(input.error());
-  LineReader lines(*std::move(input));
+  ASSIGN_OR_RETURN(InputFile input, path == "-" ? InputFile::StandardInput() : InputFile::Open(path, "list"));
+  LineReader lines(std::move(input));
   std::vector<ListedFile> files;
   std::map<fs::path, std::string> places;
   while (true) {
-    const Result<bool> next = lines.Next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) break;
+    ASSIGN_OR_RETURN(const bool next, lines.Next());
+    if (!next) break;
     const std::string_view text = csv::Trim(lines.line());
     if (text.empty() || text.front() == '#') continue;
     const fs::path folder = path == "-" ? fs::path() : path.parent_path();
     files.push_back({folder / text, lines.name() + ":" + std::to_string(lines.number())});
-    if (const auto checked = CheckListed(files.back(), places); !checked) return tl::unexpected(checked.error());
+    RETURN_IF_ERROR(CheckListed(files.back(), places));
     places.emplace(files.back().path.lexically_normal(), files.back().place);
   }
   if (!files.empty()) return files;

@@ -7,6 +7,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 #include "recording/readers/bytes_recording.h"
 #include "recording/readers/containers/npy.h"
@@ -30,10 +31,9 @@ Result<std::string> ReadRest(InputFile& file, std::string bytes) {
   while (true) {
     const std::size_t used = bytes.size();
     bytes.resize(std::max(2 * used, kBlock));
-    const Result<std::size_t> got = file.Read(std::span(bytes).subspan(used));
-    if (!got) return tl::unexpected(got.error());
-    const bool is_end = used + *got < bytes.size();
-    bytes.resize(used + *got);
+    ASSIGN_OR_RETURN(const std::size_t got, file.Read(std::span(bytes).subspan(used)));
+    const bool is_end = used + got < bytes.size();
+    bytes.resize(used + got);
     if (bytes.size() > kMaxBytes) {
       return Fault(file.name(), "the file has more than " + std::to_string(kMaxBytes) +
                                     " bytes, too many for a file other than text; export the recording as CSV");
@@ -44,23 +44,20 @@ Result<std::string> ReadRest(InputFile& file, std::string bytes) {
 
 Result<Recording> ReadInput(InputFile file, const ReadOptions& options) {
   std::string begin(kContentBytes, '\0');
-  const Result<std::size_t> got = file.Read(begin);
-  if (!got) return tl::unexpected(got.error());
-  begin.resize(*got);
+  ASSIGN_OR_RETURN(const std::size_t got, file.Read(begin));
+  begin.resize(got);
   const Content content = ContentOf(begin);
   if (content == Content::kText) return ReadRows(LineReader(std::move(file), begin), options);
   if (content == Content::kForeign) return ForeignContent(begin, file.name());  // may be larger than the memory
-  const Result<std::string> bytes = ReadRest(file, std::move(begin));
-  if (!bytes) return tl::unexpected(bytes.error());
-  return ParseRecording(*bytes, file.name(), options);
+  ASSIGN_OR_RETURN(const std::string bytes, ReadRest(file, std::move(begin)));
+  return ParseRecording(bytes, file.name(), options);
 }
 
 /// A recording that was read from a text made from the bytes of a file.
 Result<Recording> FromConverted(Result<Recording> recording, std::string_view bytes) {
   if (!recording) return recording;
-  Result<std::string> sha256 = Sha256(bytes);
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
-  recording->sha256 = *std::move(sha256);
+  ASSIGN_OR_RETURN(std::string sha256, Sha256(bytes));
+  recording->sha256 = std::move(sha256);
   return recording;
 }
 
@@ -85,9 +82,8 @@ Result<Recording> ReadLinesWithReturns(std::string_view bytes, const std::string
 }
 
 Result<Recording> ReadLabelled(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  const Result<std::string> text = csv::TableOfLabelledRows(bytes, name);
-  if (!text) return tl::unexpected(text.error());
-  return FromConverted(ReadRows(LineReader(*text, name), options), bytes);
+  ASSIGN_OR_RETURN(const std::string text, csv::TableOfLabelledRows(bytes, name));
+  return FromConverted(ReadRows(LineReader(text, name), options), bytes);
 }
 
 }  // namespace
@@ -116,9 +112,8 @@ Result<Recording> ParseRecording(std::string_view bytes, const std::string& name
 
 Result<Recording> ReadRecording(const std::filesystem::path& path, const ReadOptions& options) {
   if (path == "-") return ReadInput(InputFile::StandardInput(), options);
-  Result<InputFile> file = InputFile::Open(path, "CSV");
-  if (!file) return tl::unexpected(std::move(file).error());
-  return ReadInput(*std::move(file), options);
+  ASSIGN_OR_RETURN(InputFile file, InputFile::Open(path, "CSV"));
+  return ReadInput(std::move(file), options);
 }
 
 }  // namespace pendulum

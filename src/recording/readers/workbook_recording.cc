@@ -10,6 +10,7 @@
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 #include "recording/readers/containers/compound_file.h"
 #include "recording/readers/containers/excel_xml.h"
@@ -132,10 +133,9 @@ Result<Recording> FromWorkbook(Workbook workbook, WorkbookWords words, std::stri
   };
   Result<Recording> recording = ReadOnlyMember(FolderOfSheets(workbook.sheets, words, name), options, read);
   if (!recording) return recording;
-  Result<std::string> sha256 = Sha256(bytes);
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  ASSIGN_OR_RETURN(std::string sha256, Sha256(bytes));
   recording->path = name;
-  recording->sha256 = *std::move(sha256);
+  recording->sha256 = std::move(sha256);
   return recording;
 }
 

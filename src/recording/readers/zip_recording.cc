@@ -6,6 +6,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/sha256.h"
+#include "pendulum/base/try.h"
 #include "recording/readers/containers/npy.h"
 #include "recording/readers/containers/ods.h"
 #include "recording/readers/containers/xlsx.h"
@@ -89,10 +90,9 @@ Result<Recording> ReadZip(std::string_view bytes, const std::string& name, const
   };
   Result<Recording> recording = ReadOnlyMember(FolderOfZip(*zip, name), options, read);
   if (!recording) return recording;
-  Result<std::string> sha256 = Sha256(bytes);
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  ASSIGN_OR_RETURN(std::string sha256, Sha256(bytes));
   recording->path = name;
-  recording->sha256 = *std::move(sha256);
+  recording->sha256 = std::move(sha256);
   return recording;
 }
 

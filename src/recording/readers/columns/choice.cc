@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 #include "pendulum/recording/recording.h"
 
@@ -144,9 +145,8 @@ Result<void> Choice::Answer(std::size_t place) const {
 
 Result<void> Choice::NeedNumbers() {
   if (numbers) return {};
-  Result<TableNumbers> read = table.numbers();
-  if (!read) return tl::unexpected(std::move(read).error());
-  numbers = *std::move(read);
+  ASSIGN_OR_RETURN(TableNumbers read, table.numbers());
+  numbers = std::move(read);
   return {};
 }
 

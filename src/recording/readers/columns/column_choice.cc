@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/readers/columns/column_choice.h"
 
+#include "pendulum/base/try.h"
 #include "recording/readers/columns/choice.h"
 #include "recording/readers/columns/passages.h"
 #include "recording/readers/columns/time_choice.h"
@@ -26,16 +27,16 @@ void FillPreview(const Choice& choice, TablePreview& preview) {
 }
 
 Result<void> Choose(Choice& choice) {
-  if (Result<void> refused = RefusePassages(choice); !refused) return refused;
-  if (Result<void> found = FindNamedTime(choice); !found) return found;
-  if (Result<void> chosen = ChooseValue(choice); !chosen) return chosen;
-  if (Result<void> chosen = ChooseTime(choice); !chosen) return chosen;
+  RETURN_IF_ERROR(RefusePassages(choice));
+  RETURN_IF_ERROR(FindNamedTime(choice));
+  RETURN_IF_ERROR(ChooseValue(choice));
+  RETURN_IF_ERROR(ChooseTime(choice));
   if (choice.value && choice.value == choice.time) {
     return choice.WrongFlag(*choice.value,
                             "column " + choice.NameOf(*choice.value) +
                                 " cannot be both the time and the quantity; choose another with --value_column");
   }
-  if (Result<void> set = SetValue(choice); !set) return set;
+  RETURN_IF_ERROR(SetValue(choice));
   return choice.Answer(choice.value.value_or(0));
 }
 

@@ -13,6 +13,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/status.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/readers/columns/line_reader.h"
 
 /// The grammar of CSV text: blanks, quotes, numbers, separators. Fields are never copied.
@@ -69,12 +70,11 @@ template <typename Take>
 Result<void> ForEachLine(LineReader& lines, Line& line, const Take& take) {
   line.file = lines.name();
   while (true) {
-    const Result<bool> next = lines.Next();
-    if (!next) return tl::unexpected(next.error());
-    if (!*next) return {};
+    ASSIGN_OR_RETURN(const bool next, lines.Next());
+    if (!next) return {};
     line.text = lines.line();
     line.number = lines.number();
-    if (Result<void> taken = take(); !taken) return taken;
+    RETURN_IF_ERROR(take());
   }
 }
 

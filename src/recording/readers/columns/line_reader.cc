@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/base/utf8.h"
 
 namespace pendulum {
@@ -33,9 +34,9 @@ LineReader::~LineReader() = default;
 
 Result<void> LineReader::Begin() {
   has_begun_ = true;
-  if (Result<void> checked = HashAndCheck({at_, end_}); !checked) return checked;
+  RETURN_IF_ERROR(HashAndCheck({at_, end_}));
   if (file_ != nullptr) {
-    if (Result<void> filled = Refill(); !filled) return filled;
+    RETURN_IF_ERROR(Refill());
   }
   is_empty_ = at_ == end_;
   at_ = WithoutByteOrderMark({at_, end_}).data();
@@ -58,7 +59,7 @@ Result<std::size_t> LineReader::Read(std::span<char> room) {
 
 Result<std::string> LineReader::Peek(std::size_t max_bytes) {
   if (!has_begun_) {
-    if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
+    RETURN_IF_ERROR(Begin());
   }
   std::string bytes(at_, std::min<std::size_t>(end_ - at_, max_bytes));
   if (file_ == nullptr || bytes.size() == max_bytes) return bytes;
@@ -67,9 +68,8 @@ Result<std::string> LineReader::Peek(std::size_t max_bytes) {
   if (kept < wanted) {
     ahead_.erase(0, std::exchange(ahead_at_, 0));
     ahead_.resize(wanted);
-    const Result<std::size_t> got = file_->Read(std::span(ahead_).subspan(kept));
-    if (!got) return tl::unexpected(got.error());
-    ahead_.resize(kept + *got);
+    ASSIGN_OR_RETURN(const std::size_t got, file_->Read(std::span(ahead_).subspan(kept)));
+    ahead_.resize(kept + got);
   }
   return bytes + ahead_.substr(ahead_at_, wanted);
 }
@@ -78,18 +78,17 @@ Result<std::string> LineReader::Peek(std::size_t max_bytes) {
 Result<void> LineReader::Refill() {
   const std::size_t left = end_ - at_;
   std::memmove(block_->data(), at_, left);
-  const Result<std::size_t> got = Read({block_->data() + left, block_->size() - left});
-  if (!got) return tl::unexpected(got.error());
+  ASSIGN_OR_RETURN(const std::size_t got, Read({block_->data() + left, block_->size() - left}));
   at_ = block_->data();
-  end_ = at_ + left + *got;
-  if (left + *got < block_->size()) file_.reset();
-  return HashAndCheck({at_ + left, *got});
+  end_ = at_ + left + got;
+  if (left + got < block_->size()) file_.reset();
+  return HashAndCheck({at_ + left, got});
 }
 
 /// Hashes new bytes and checks for NUL bytes, which come from a logger that lost its power or from an encoding with two
 /// bytes per character.
 Result<void> LineReader::HashAndCheck(std::string_view bytes) {
-  if (auto added = digest_.Add(bytes); !added) return added;
+  RETURN_IF_ERROR(digest_.Add(bytes));
   const char* nul = Find(bytes.data(), bytes.data() + bytes.size(), '\0');
   if (nul == nullptr) return {};
   const std::string_view before(at_, nul);
@@ -125,7 +124,7 @@ void LineReader::TakeLine(const char* line_end) {
 /// Takes the next line when more data must be read, or the last line, or returns an error.
 Result<bool> LineReader::NextBlock() {
   if (!has_begun_) {
-    if (const Result<void> begun = Begin(); !begun) return tl::unexpected(begun.error());
+    RETURN_IF_ERROR(Begin());
   }
   while (!TakeBufferedLine()) {
     if (static_cast<std::size_t>(end_ - at_) > kLongestLine) return TooLongError();
@@ -136,7 +135,7 @@ Result<bool> LineReader::NextBlock() {
       at_ = end_;
       return true;
     }
-    if (const Result<void> filled = Refill(); !filled) return tl::unexpected(filled.error());
+    RETURN_IF_ERROR(Refill());
   }
   return true;
 }

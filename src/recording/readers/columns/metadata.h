@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/base/try.h"
 #include "pendulum/recording/oversampling.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/recording/sensor_errors.h"
@@ -120,14 +121,12 @@ inline Result<void> StoreMetadata(const Line& line, std::string_view key, std::s
   if (key != "calibration" && key != "sensor") return {};
   const std::string name = std::string(line.file) + ":" + std::to_string(line.number) + ": # " + std::string(key);
   if (key == "sensor") {
-    Result<SensorStatement> sensor = ParseSensorStatement(value, name, "stated in the file");
-    if (!sensor) return tl::unexpected(std::move(sensor).error());
-    metadata.sensor = *std::move(sensor);
+    ASSIGN_OR_RETURN(SensorStatement sensor, ParseSensorStatement(value, name, "stated in the file"));
+    metadata.sensor = std::move(sensor);
     return {};
   }
-  Result<Calibration> calibration = ParseCalibration(value, name);
-  if (!calibration) return tl::unexpected(std::move(calibration).error());
-  metadata.calibration = *std::move(calibration);
+  ASSIGN_OR_RETURN(Calibration calibration, ParseCalibration(value, name));
+  metadata.calibration = std::move(calibration);
   metadata.calibration_line = line.number;
   return {};
 }

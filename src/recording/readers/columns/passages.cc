@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum::csv {
 namespace {
@@ -88,7 +89,7 @@ std::string PeriodText(const Choice& choice, std::size_t index) {
 
 Result<void> RefusePassages(Choice& choice) {
   if (!MayHoldPassages(choice)) return {};
-  if (Result<void> read = choice.NeedNumbers(); !read) return read;
+  RETURN_IF_ERROR(choice.NeedNumbers());
   const auto index = OnlyColumn(choice);
   if (!index || !ArePassages(choice.NumbersOf(*index))) return {};
   return choice.table.line.Fault(

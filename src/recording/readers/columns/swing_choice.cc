@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/unit_guess.h"
@@ -336,7 +337,7 @@ bool WantsCombination(const Choice& choice) {
 
 Result<std::optional<std::size_t>> ChooseBySwing(Choice& choice, const Columns& candidates, bool must_swing) {
   constexpr std::size_t kMostCompared = 64;
-  if (Result<void> read = choice.NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
+  RETURN_IF_ERROR(choice.NeedNumbers());
   if (choice.NumbersOf(0).size() == 0) return candidates.front();  // The number of rows will be the error.
   if (AskForRun(choice, candidates)) return std::nullopt;
   const Columns numeric = WithNumbers(choice, candidates, must_swing);

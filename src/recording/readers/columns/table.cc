@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "recording/readers/columns/name_list.h"
 
 namespace pendulum::csv {
@@ -98,9 +99,8 @@ Result<std::vector<Name>> NamesOf(const Line& line, const std::vector<TableColum
   }
   std::optional<std::string> run;
   if (RunsOf(columns).size() > 1) {
-    auto one = ChooseRun(line, columns, options);
-    if (!one) return tl::unexpected(std::move(one).error());
-    run = *std::move(one);
+    ASSIGN_OR_RETURN(auto one, ChooseRun(line, columns, options));
+    run = std::move(one);
   }
   const std::string flag = TimeFlagOf(columns, options.time_column).column;
   const std::size_t time = flag.empty() ? columns.size() : IndexOf(columns, flag);

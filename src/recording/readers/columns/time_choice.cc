@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendulum/base/try.h"
 #include "pendulum/recording/recording.h"
 #include "recording/readers/columns/unit_guess.h"
 
@@ -85,7 +86,7 @@ bool AskForTimeUnit(Choice& choice, std::size_t index) {
 
 /// Finds the unit of times whose name does not give it.
 Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
-  if (Result<void> read = choice.NeedNumbers(); !read) return read;
+  RETURN_IF_ERROR(choice.NeedNumbers());
   if (!choice.IsClock(index) && AskForTimeUnit(choice, index)) return {};
   if (choice.IsClock(index)) {
     choice.layout.is_clock = choice.layout.is_from_first = true;
@@ -139,18 +140,17 @@ Result<void> FindNamedTime(Choice& choice) {
     if (unit != nullptr && unit->kind != Kind::kTime) unit = nullptr;
     if (unit != nullptr) name = name.substr(0, colon);
   }
-  const Result<std::size_t> index = choice.FindColumn("--time_column", name);
-  if (!index) return tl::unexpected(index.error());
-  const Unit* own = *index < choice.names.size() ? FindTimeUnit(choice.names[*index].text) : nullptr;
+  ASSIGN_OR_RETURN(const std::size_t index, choice.FindColumn("--time_column", name));
+  const Unit* own = index < choice.names.size() ? FindTimeUnit(choice.names[index].text) : nullptr;
   if (unit != nullptr && own != nullptr && unit != own) {
     choice.Assume("unit_overridden",
-                  "column " + choice.NameOf(*index) + " names " + std::string(own->name) + ", but --time_column says " +
+                  "column " + choice.NameOf(index) + " names " + std::string(own->name) + ", but --time_column says " +
                       std::string(unit->name) + ", which was used",
                   "times in " + std::string(unit->name) + ", as --time_column says, not in " + std::string(own->name));
   }
-  choice.time = *index;
+  choice.time = index;
   if (unit == nullptr) unit = own;
-  if (unit != nullptr) UseTime(choice, *index, *unit);
+  if (unit != nullptr) UseTime(choice, index, *unit);
   return {};
 }
 
@@ -170,7 +170,7 @@ Result<void> ChooseTime(Choice& choice) {
   }
   const bool has_other = choice.table.has_rate || choice.table.has_host;
   if (!has_asked_rate && times.empty() && choice.table.has_rate && choice.table.is_rate_weak) {
-    if (Result<void> read = choice.NeedNumbers(); !read) return read;
+    RETURN_IF_ERROR(choice.NeedNumbers());
     times = TimesByNumbers(choice);
   }
   if (has_asked_rate || (times.empty() && has_other)) return {};
@@ -178,7 +178,7 @@ Result<void> ChooseTime(Choice& choice) {
   if (times.size() == 1 && choice.Meaning(times[0]).unit != nullptr && !choice.names[times[0]].is_hidden) {
     return SetTime(choice, times[0], choice.Meaning(times[0]).unit);
   }
-  if (Result<void> read = choice.NeedNumbers(); !read) return read;
+  RETURN_IF_ERROR(choice.NeedNumbers());
   std::erase_if(times,
                 [&](std::size_t i) { return !choice.IsNumeric(i) || (times.size() > 1 && !choice.IsIncreasing(i)); });
   if (times.empty()) times = TimesByNumbers(choice);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/sensor_statement.h"
 #include "recording/readers/columns/to_angle.h"
 
@@ -70,9 +71,8 @@ Result<void> SetTimes(ReadColumns& columns, const ReadOptions& options) {
     for (double& time : samples.time) time = unit.ToSi(time);
     samples.time_unit = "s";
   }
-  Result<RawSamples> repaired = RepairClock(std::move(samples), options.window);
-  if (!repaired) return tl::unexpected(std::move(repaired).error());
-  samples = *std::move(repaired);
+  ASSIGN_OR_RETURN(RawSamples repaired, RepairClock(std::move(samples), options.window));
+  samples = std::move(repaired);
   if (is_usual && unit.divisor != 1) {
     for (double& time : samples.time) time = unit.ToSi(time);
   }
@@ -98,7 +98,7 @@ Warning EmptyCells(const std::string& file, std::size_t rows, const std::string&
 Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   WarnOfClock(columns, options);
   WarnOfSensor(columns);
-  if (Result<void> set = SetTimes(columns, options); !set) return tl::unexpected(std::move(set).error());
+  RETURN_IF_ERROR(SetTimes(columns, options));
   RawSamples& samples = columns.samples;
   const Metadata& metadata = columns.metadata;
   Recording recording;
@@ -116,9 +116,7 @@ Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   MoveToMiddle(recording);
   recording.is_unit_assumed = columns.layout.is_unit_assumed;
   if (columns.layout.second) {
-    if (Result<void> turned = TurnIntoAngles(*columns.layout.second, samples.second, recording); !turned) {
-      return tl::unexpected(std::move(turned).error());
-    }
+    RETURN_IF_ERROR(TurnIntoAngles(*columns.layout.second, samples.second, recording));
   }
   recording.sha256 = std::move(columns.sha256);
   return MakeRecording(std::move(recording));

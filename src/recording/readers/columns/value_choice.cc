@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pendulum/base/physics.h"
+#include "pendulum/base/try.h"
 #include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/swing_choice.h"
@@ -94,9 +95,8 @@ Result<std::optional<std::size_t>> ChooseByName(Choice& choice) {
       choice.vertical = point->vertical;
       return point->horizontal;
     }
-    const Result<std::size_t> index = choice.FindColumn("--value_column", choice.options.value_column);
-    if (!index) return tl::unexpected(index.error());
-    return *index;
+    ASSIGN_OR_RETURN(const std::size_t index, choice.FindColumn("--value_column", choice.options.value_column));
+    return index;
   }
   std::vector<Columns> classes = CandidateClasses(choice, !choice.options.unit.empty());
   if (classes.empty()) classes = CandidateClasses(choice, false);  // The flag contradicts the only candidates.
@@ -201,7 +201,7 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (!choice.table.raw_input.empty() && meaning.kind.value_or(Kind::kRaw) == Kind::kRaw) {
     return UnitOfText(choice.table.raw_input);
   }
-  if (Result<void> read = choice.NeedNumbers(); !read) return tl::unexpected(std::move(read).error());
+  RETURN_IF_ERROR(choice.NeedNumbers());
   const double step = choice.layout.time ? MedianStep(choice.NumbersOf(choice.layout.time->index)) : 0;
   const double seconds = choice.layout.time ? choice.layout.time->unit->ToSi(step) : 0;
   const UnitGuess guess =
@@ -266,9 +266,8 @@ Column ColumnOf(const Choice& choice, std::size_t index, const Unit& unit) {
 }  // namespace
 
 Result<void> ChooseValue(Choice& choice) {
-  auto chosen = ChooseByName(choice);
-  if (!chosen) return tl::unexpected(std::move(chosen).error());
-  choice.value = *chosen;
+  ASSIGN_OR_RETURN(auto chosen, ChooseByName(choice));
+  choice.value = chosen;
   if (!choice.value) {
     if (choice.questions.empty()) {
       const std::size_t last = choice.layout.width - 1;
@@ -293,12 +292,11 @@ Result<void> SetValue(Choice& choice) {
     const auto unit = choice.example ? ValueUnit(choice, *choice.example) : Result<const Unit*>(nullptr);
     return unit ? Result<void>() : tl::unexpected(unit.error());
   }
-  if (Result<void> checked = CheckUnitFlag(choice, *choice.value); !checked) return checked;
-  const Result<const Unit*> unit = ValueUnit(choice, *choice.value);
-  if (!unit) return tl::unexpected(unit.error());
-  if (*unit == nullptr) return {};
-  choice.layout.value = ColumnOf(choice, *choice.value, **unit);
-  for (const std::size_t axis : choice.axes) choice.layout.axes.push_back(ColumnOf(choice, axis, **unit));
+  RETURN_IF_ERROR(CheckUnitFlag(choice, *choice.value));
+  ASSIGN_OR_RETURN(const Unit* unit, ValueUnit(choice, *choice.value));
+  if (unit == nullptr) return {};
+  choice.layout.value = ColumnOf(choice, *choice.value, *unit);
+  for (const std::size_t axis : choice.axes) choice.layout.axes.push_back(ColumnOf(choice, axis, *unit));
   std::optional<std::size_t> vertical = choice.vertical;
   if (choice.options.value_column.empty() && !vertical) vertical = FindVertical(choice, *choice.value);
   if (vertical) choice.layout.second = Column{*vertical, choice.NameOf(*vertical), choice.layout.value.unit};

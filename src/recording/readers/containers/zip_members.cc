@@ -9,6 +9,7 @@
 
 #include "pendulum/base/file.h"
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum {
 namespace {
@@ -75,7 +76,7 @@ Result<std::string> ZipMembers::Unpack(const Member& member, std::size_t max_byt
     text += block.substr(0, max_bytes - text.size());
     return text.size() < max_bytes;
   };
-  if (Result<void> unpacked = UnpackBlocks(member, add); !unpacked) return tl::unexpected(unpacked.error());
+  RETURN_IF_ERROR(UnpackBlocks(member, add));
   return text;
 }
 

@@ -22,6 +22,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/staged_file.h"
+#include "pendulum/base/try.h"
 #include "recording/readers/columns/runs.h"
 #include "recording/readers/columns/to_angle.h"
 #include "recording/readers/columns/to_recording.h"
@@ -143,7 +144,7 @@ tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, 
 }
 
 Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
-  if (auto checked = CheckSizes(bytes, name); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(CheckSizes(bytes, name));
   const TemporaryFile file(bytes);
   if (file.error() != 0) {
     const std::string folder = std::filesystem::path(file.path()).parent_path().string();
@@ -323,14 +324,13 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
     columns.push_back(column.name);
     if (!column.is_unit_known) columns.back().meaning = "time";
   }
-  if (auto checked = CheckVariables(table, columns, name, options); !checked) return tl::unexpected(checked.error());
-  const auto names = csv::NamesOf(line, columns, options);
-  if (!names) return tl::unexpected(names.error());
+  RETURN_IF_ERROR(CheckVariables(table, columns, name, options));
+  ASSIGN_OR_RETURN(const auto names, csv::NamesOf(line, columns, options));
   csv::ReadColumns read;
   read.layout.width = columns.size();
   read.layout.has_header = true;
   const csv::TableView view{.line = line,
-                            .names = *names,
+                            .names = names,
                             .has_rate = false,
                             .has_host = false,
                             .raw_input = options.calibration ? options.calibration->input : "",
@@ -339,17 +339,13 @@ Result<Recording> FromMatTable(const MatTable& table, std::string_view bytes, co
                             .first_rows = [&table] { return FirstRowsOf(table); }};
   if (options.preview != nullptr) options.preview->format = "MAT-file";
   std::vector<Warning> assumptions;
-  if (auto chosen = csv::ChooseColumns(view, options, read.layout, assumptions); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
+  RETURN_IF_ERROR(csv::ChooseColumns(view, options, read.layout, assumptions));
   Result<RawSamples> samples = SamplesOf(table, read.layout, name);
   Result<std::string> sha256 = Sha256(bytes);
   if (!samples || !sha256) return tl::unexpected(samples ? sha256.error() : samples.error());
   read.samples = *std::move(samples);
   read.samples.warnings.insert(read.samples.warnings.begin(), assumptions.begin(), assumptions.end());
-  if (auto checked = csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(csv::CheckCalibration(line, read.layout.value, options, {}, read.samples.warnings));
   read.sha256 = *std::move(sha256);
   if (read.layout.time) read.samples.time_unit = read.layout.time->unit->name;
   return csv::ToRecording(std::move(read), options);

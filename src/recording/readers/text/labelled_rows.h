@@ -8,8 +8,8 @@
 
 namespace pendulum::csv {
 
-/// Whether a text has rows in which each of one value or more has its label, as Arduino's serial plotter reads them
-/// ("t:2310,pot:638") and as people print them ("t=2310 ms  pot=638"). `begin`: the first bytes of a text.
+/// Whether a text has rows in which each value has its label, as Arduino's serial plotter reads them ("t:2310,pot:638")
+/// and as people print them ("t=2310 ms  pot=638"). `begin`: the first bytes of a text.
 bool HasLabelledRows(std::string_view begin);
 
 /// The rows of such a text as a table with commas, below a header of the labels and units, which is one line more. The

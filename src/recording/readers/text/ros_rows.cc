@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 
 namespace pendulum::csv {
 
@@ -32,16 +33,12 @@ Result<std::optional<RosRows::Sample>> RosRows::Read(const Line& line, Cells& ce
   fields_.resize(std::max(fields_.size(), layout_.width));
   Sample sample;
   if (layout_.time) {
-    if (auto read = ReadStamp(line, cells, sample.time); !read) return tl::unexpected(std::move(read).error());
+    RETURN_IF_ERROR(ReadStamp(line, cells, sample.time));
   }
   const Column& column = layout_.value;
-  if (auto read = cells.Read(line, fields_[column.index], column, sample.value); !read) {
-    return tl::unexpected(std::move(read).error());
-  }
+  RETURN_IF_ERROR(cells.Read(line, fields_[column.index], column, sample.value));
   if (layout_.second) {
-    if (auto read = cells.Read(line, fields_[layout_.second->index], *layout_.second, sample.second); !read) {
-      return tl::unexpected(std::move(read).error());
-    }
+    RETURN_IF_ERROR(cells.Read(line, fields_[layout_.second->index], *layout_.second, sample.second));
   }
   if (cells.is_gap) return std::nullopt;
   if (!has_joints()) return sample;

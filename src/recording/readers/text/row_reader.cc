@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/recording/clock.h"
 #include "pendulum/recording/encoder_edges.h"
 #include "recording/readers/columns/column.h"
@@ -178,21 +179,19 @@ class Reader {
 
 Result<Recording> Reader::Read() {
   samples_.name = lines_.name();
-  if (Check parsed = ParseHead(); !parsed) return tl::unexpected(std::move(parsed).error());
+  RETURN_IF_ERROR(ParseHead());
   const auto read_line = [this]() -> Check {
     Check read = ReadLine();
     // A fault in another table than the longest does not matter.
     if (!read && longest_ && longest_->rows > rows_) is_over_ = true;
     return is_over_ ? Check() : read;
   };
-  if (Check read = csv::ForEachLine(lines_, line_, read_line); !read) {
-    return tl::unexpected(std::move(read).error());
-  }
+  RETURN_IF_ERROR(csv::ForEachLine(lines_, line_, read_line));
   return Finish();
 }
 
 Result<std::vector<csv::TableColumn>> Reader::ReadNames() {
-  if (Check parsed = ParseHead(); !parsed) return tl::unexpected(std::move(parsed).error());
+  RETURN_IF_ERROR(ParseHead());
   return std::move(head_.columns);
 }
 
@@ -209,7 +208,7 @@ Check Reader::ReadLine() {
   if (head_.first_row.number == 0 || line_.number < head_.first_row.number) return {};
   if (!has_layout_) {
     const Line row = line_;
-    if (Check chosen = ChooseColumns(); !chosen) return chosen;
+    RETURN_IF_ERROR(ChooseColumns());
     line_ = row;
   }
   return ReadOrSetAsideRow();
@@ -230,9 +229,8 @@ Check Reader::HeadTooLong(std::size_t last_line_end) const {
 
 /// Finds the names of the columns and the first row.
 Check Reader::ParseHead() {
-  Result<std::string> bytes = lines_.Peek(kHeadBytes);
-  if (!bytes) return tl::unexpected(std::move(bytes).error());
-  first_bytes_ = *std::move(bytes);
+  ASSIGN_OR_RETURN(std::string bytes, lines_.Peek(kHeadBytes));
+  first_bytes_ = std::move(bytes);
   std::string_view begin = first_bytes_;
   const std::size_t last_line_end = begin.rfind('\n');
   if (begin.size() == kHeadBytes && last_line_end != std::string_view::npos) begin = begin.substr(0, last_line_end + 1);
@@ -253,30 +251,28 @@ Check Reader::ChooseColumns() {
   const std::string row(next_line > 0 ? lines_.line() : std::string_view());
   line_ = header;
   const ReadOptions options = ros_ ? ros_->SplitOffJoint(options_) : options_;
-  const auto names = csv::NamesOf(header, head_.columns, options);
-  if (!names) return tl::unexpected(names.error());
-  const bool has_times = std::ranges::any_of(*names, [](const csv::Name& name) { return csv::IsTime(name.text); });
+  ASSIGN_OR_RETURN(const auto names, csv::NamesOf(header, head_.columns, options));
+  const bool has_times = std::ranges::any_of(names, [](const csv::Name& name) { return csv::IsTime(name.text); });
   const bool needs_rate = !has_times && metadata_.sample_rate_hz == 0 && !(options_.sample_rate_hz > 0);
   if (needs_rate) metadata_.sample_rate_hz = head_.sample_rate_hz;
   const auto& calibration = csv::ChosenCalibration(options_, metadata_);
   const csv::TableView table{
       .line = header,
-      .names = *names,
+      .names = names,
       .has_rate = metadata_.sample_rate_hz > 0,
       .is_rate_weak = needs_rate,
       .has_host = head_.has_host,
       .raw_input = calibration ? calibration->input : "",
       .value_unit = head_.value_unit,
       .numbers = [&]() -> Result<csv::TableNumbers> {
-        const Result<std::string> rest = lines_.Peek(kNumbersBytes);
-        if (!rest) return tl::unexpected(rest.error());
-        return csv::ReadNumbers(row + "\n" + WholeLines(*rest), next_line, head_, layout_);
+        ASSIGN_OR_RETURN(const std::string rest, lines_.Peek(kNumbersBytes));
+        return csv::ReadNumbers(row + "\n" + WholeLines(rest), next_line, head_, layout_);
       },
       .first_rows = [this] { return csv::FirstRows(first_bytes_, TablePreview::kRows, head_, layout_); }};
   if (options.preview != nullptr && options.preview->format.empty()) {
     options.preview->format = "text with columns separated by " + SeparatorWords(layout_.separator);
   }
-  if (Check chosen = csv::ChooseColumns(table, options, layout_, samples_.warnings); !chosen) return chosen;
+  RETURN_IF_ERROR(csv::ChooseColumns(table, options, layout_, samples_.warnings));
   if (needs_rate && layout_.time) metadata_.sample_rate_hz = 0;
   if (needs_rate && !layout_.time && head_.rate_line.number > 0) {
     Warn("sample_rate_from_text", head_.rate_line.number,
@@ -284,10 +280,8 @@ Check Reader::ChooseColumns() {
              Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise",
          NumberText(head_.sample_rate_hz) + " Hz, from a line above the rows (--sample_rate_hz)");
   }
-  if (Check checked = ros_ ? ros_->CheckSecond(header) : Check(); !checked) return checked;
-  if (Check checked = CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings); !checked) {
-    return checked;
-  }
+  RETURN_IF_ERROR(ros_ ? ros_->CheckSecond(header) : Check());
+  RETURN_IF_ERROR(CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings));
   cells_ = {csv::Numbers(layout_.separator != ',')};
   if (layout_.time) samples_.time_unit = layout_.time->unit->name;
   slots_.assign(layout_.width, kNotRead);
@@ -305,7 +299,7 @@ Check Reader::ChooseColumns() {
 Check Reader::ReadComments() {
   for (const TextOfLine& comment : std::exchange(comments_, {})) {
     const Line line{lines_.name(), comment.text, comment.number};
-    if (Check read = csv::ReadMetadata(line, Trim(Trim(line.text).substr(1)), metadata_); !read) return read;
+    RETURN_IF_ERROR(csv::ReadMetadata(line, Trim(Trim(line.text).substr(1)), metadata_));
   }
   return {};
 }
@@ -454,7 +448,7 @@ Check Reader::ReadRow() {
   if (head_.has_host) {
     const auto stamp = csv::FindHostStamp(row);
     if (stamp) row = stamp->rest;
-    if (Check taken = ReadHostTime(stamp, numbers[kTime]); !taken) return taken;
+    RETURN_IF_ERROR(ReadHostTime(stamp, numbers[kTime]));
   }
   for (FieldCutter fields(row, layout_.separator); !fields.done(); ++index) {
     const int slot = index < slots_.size() ? slots_[index] : kNotRead;
@@ -465,7 +459,7 @@ Check Reader::ReadRow() {
         continue;
       }
       const bool had_gap = std::exchange(cells_.is_gap, false);
-      if (Check read = ReadField(fields, slot, numbers.at(slot)); !read) return read;
+      RETURN_IF_ERROR(ReadField(fields, slot, numbers.at(slot)));
       has_number |= !cells_.is_gap;
       cells_.is_gap |= had_gap;
     } else if (const std::string_view text = Trim(fields.Next()); index < layout_.width) {
@@ -592,10 +586,10 @@ Check Reader::Append(double time, double value, double second) {
   }
   header_again_ = 0;
   if (!comments_.empty()) {
-    if (Check read = ReadComments(); !read) return read;
+    RETURN_IF_ERROR(ReadComments());
   }
   if (rows_ == samples_.time.size()) {
-    if (Check made = MakeRoom(); !made) return made;
+    RETURN_IF_ERROR(MakeRoom());
   }
   samples_.time[rows_] = time;
   samples_.value[rows_] = value;
@@ -611,9 +605,8 @@ Check Reader::Append(double time, double value, double second) {
 // ---- Rows of ROS -------------------------------------------------------------------------------------------------
 
 Check Reader::ReadRosRow() {
-  const auto sample = ros_->Read(line_, cells_);
-  if (!sample) return tl::unexpected(sample.error());
-  if (*sample) return Append((*sample)->time, (*sample)->value, (*sample)->second);
+  ASSIGN_OR_RETURN(const auto sample, ros_->Read(line_, cells_));
+  if (sample) return Append(sample->time, sample->value, sample->second);
   gap_rows_ += cells_.TakeGap() ? 1 : 0;
   return {};
 }
@@ -621,10 +614,9 @@ Check Reader::ReadRosRow() {
 /// If each row belongs to one joint, selects the rows of one joint.
 Check Reader::SelectJoint() {
   if (!ros_ || !ros_->has_joints()) return {};
-  auto chosen = ros_->ChooseJoint({lines_.name(), head_.names.text, head_.names.number});
-  if (!chosen) return tl::unexpected(std::move(chosen).error());
-  if (*chosen == nullptr) return {};
-  csv::JointRows& rows = **chosen;
+  ASSIGN_OR_RETURN(auto chosen, ros_->ChooseJoint({lines_.name(), head_.names.text, head_.names.number}));
+  if (chosen == nullptr) return {};
+  csv::JointRows& rows = *chosen;
   rows_ = static_cast<Eigen::Index>(rows.time.size());
   samples_.time = Eigen::VectorXd::Map(rows.time.data(), rows_);
   samples_.value = Eigen::VectorXd::Map(rows.value.data(), rows_);
@@ -637,13 +629,13 @@ Check Reader::SelectJoint() {
 
 Check Reader::CheckEnd() {
   if (tables_.empty()) {
-    if (Check read = ReadComments(); !read) return read;
+    RETURN_IF_ERROR(ReadComments());
   }
   if (below_.error && !below_.begins_with_text && rows_ < kMinimumSamples) return tl::unexpected(*below_.error);
   if (below_.lines.count > 1 && !below_.begins_with_text) {
-    if (Check left_out = LeaveOutBetweenRows(); !left_out) return left_out;
+    RETURN_IF_ERROR(LeaveOutBetweenRows());
   }
-  if (Check checked = CheckLeftOut(); !checked) return checked;
+  RETURN_IF_ERROR(CheckLeftOut());
   WarnOfTheEnd();
   if (rows_ >= kMinimumSamples) return {};
   const std::string least = "at least " + std::to_string(kMinimumSamples);
@@ -734,20 +726,19 @@ void Reader::WarnOfEmptyCells() {
 }
 
 Result<Recording> Reader::Finish() {
-  if (Check selected = SelectJoint(); !selected) return tl::unexpected(std::move(selected).error());
+  RETURN_IF_ERROR(SelectJoint());
   TakeLongest();
-  if (Check checked = CheckEnd(); !checked) return tl::unexpected(std::move(checked).error());
+  RETURN_IF_ERROR(CheckEnd());
   RemoveTruncatedValue();
   RemoveTruncatedStamp();
   WarnOfEmptyCells();
-  if (Check paired = CheckUnpairedRows(); !paired) return tl::unexpected(std::move(paired).error());
+  RETURN_IF_ERROR(CheckUnpairedRows());
   samples_.time.conservativeResize(rows_);
   samples_.value.conservativeResize(rows_);
   if (layout_.second) samples_.second.conservativeResize(rows_);
-  Result<std::string> sha256 = lines_.Sha256();
-  if (!sha256) return tl::unexpected(std::move(sha256).error());
+  ASSIGN_OR_RETURN(std::string sha256, lines_.Sha256());
   Result<Recording> recording = csv::ToRecording(
-      {std::move(samples_), layout_, std::move(metadata_), is_host_time(), *std::move(sha256)}, options_);
+      {std::move(samples_), layout_, std::move(metadata_), is_host_time(), std::move(sha256)}, options_);
   if (recording) WarnOfOtherRate(*recording);
   return recording;
 }
