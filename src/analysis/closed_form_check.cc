@@ -86,7 +86,7 @@ FormulaGroup LinearFormulas(const ClosedForms& forms, const Recording& used) {
   return group;
 }
 
-VectorXd DecrementValues(const Decrement& decrement) {
+VectorXd DecrementValues(const TurningPointFit& decrement) {
   VectorXd values(2 + static_cast<Index>(decrement.friction.size()));
   values[0] = decrement.zero.value;
   values[1] = decrement.inertia.value;
@@ -95,7 +95,7 @@ VectorXd DecrementValues(const Decrement& decrement) {
 }
 
 FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity, const std::stop_token& stop) {
-  const Decrement& decrement = *forms.decrement;
+  const TurningPointFit& decrement = *forms.decrement;
   FormulaGroup group;
   const std::string method = "least squares over all turning points";
   const auto add = [&](std::string_view name) {
@@ -111,7 +111,7 @@ FormulaGroup DecrementFormulas(const ClosedForms& forms, Quantity quantity, cons
                                                 Gravity gravity) -> std::optional<VectorXd> {
     MotionModel with_gravity = model;
     with_gravity.gravity = gravity;
-    const Result<Decrement> there = FitDecrement(recording, with_gravity, stop);
+    const Result<TurningPointFit> there = FitTurningPoints(recording, with_gravity, stop);
     if (!there) return std::nullopt;
     return DecrementValues(*there);
   };

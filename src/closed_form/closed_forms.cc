@@ -42,7 +42,7 @@ std::string DescribeEnvelopes(const EnvelopeComparison& laws) {
 
 /// Describes the misfit of the fitted law if all friction terms together fit much better; otherwise empty. Uses the F
 /// test, which allows for turning points that scatter more than their errors.
-std::string DescribeWrongLaw(const Decrement& decrement, const EnvelopeComparison& laws) {
+std::string DescribeWrongLaw(const TurningPointFit& decrement, const EnvelopeComparison& laws) {
   constexpr double kMaxP = 1e-4;
   constexpr double kMaxRemainingShare = 0.5;  // other terms must explain at least half of what the law leaves
   const int more = decrement.freedom - laws.richest_freedom;
@@ -81,7 +81,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
   const Recording timed = InTrueSeconds(TurningPointView(recording));
   ClosedForms forms;
   forms.gravity = model.gravity;
-  Result<Decrement> decrement = FitDecrement(timed, model, stop);
+  Result<TurningPointFit> decrement = FitTurningPoints(timed, model, stop);
   if (stop.stop_requested()) return Stopped();
   if (decrement) {
     forms.table = decrement->table;

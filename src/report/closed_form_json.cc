@@ -31,7 +31,7 @@ Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional
   return json;
 }
 
-Json DecrementJson(const Decrement& decrement, const Identification& identification) {
+Json DecrementJson(const TurningPointFit& decrement, const Identification& identification) {
   return NumberObject()
       .Set("parameters",
            EstimatesJson(DecrementEstimates(decrement, identification.data.unit, identification.si_rig())))

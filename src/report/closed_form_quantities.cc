@@ -34,7 +34,7 @@ std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravit
   return estimates;
 }
 
-std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,
+std::vector<ReportedEstimate> DecrementEstimates(const TurningPointFit& decrement, const std::string& unit,
                                                  const std::optional<Rig>& rig) {
   const bool is_rate = decrement.table.quantity == Quantity::kRate;
   std::vector<ReportedEstimate> estimates = {Reported(is_rate ? kRateBias : kZeroAngle, decrement.zero, rig)};
@@ -47,7 +47,7 @@ std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, con
   return estimates;
 }
 
-std::optional<ReportedEstimate> StickingAngle(const Decrement& decrement) {
+std::optional<ReportedEstimate> StickingAngle(const TurningPointFit& decrement) {
   const std::vector<ReportedEstimate> relative = DecrementEstimates(decrement, "", std::nullopt);
   for (const auto& [name, symbol, coulomb, unit] : relative) {
     if (name != kCoulomb.name || !(coulomb.value > 0 && coulomb.value < 1)) continue;

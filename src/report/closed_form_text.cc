@@ -82,7 +82,7 @@ void AddLinear(const ClosedForms& forms, const std::optional<Rig>& rig, Section&
 }
 
 /// Warns about negative friction, which would add energy.
-void WarnOfNegativeFriction(const Decrement& decrement, Section& section) {
+void WarnOfNegativeFriction(const TurningPointFit& decrement, Section& section) {
   constexpr double kSurely = 3;
   const std::vector<ParameterInfo> infos = PhysicalParameters(decrement.model);
   for (std::size_t k = 0; k < decrement.friction.size(); ++k) {
@@ -100,7 +100,7 @@ void AddDecrement(const Identification& identification, Section& section) {
     section.AddText("No law was fitted to the turning points: " + forms.no_decrement + ".");
     return;
   }
-  const Decrement& decrement = *forms.decrement;
+  const TurningPointFit& decrement = *forms.decrement;
   std::vector<ReportedEstimate> estimates =
       DecrementEstimates(decrement, identification.data.unit, identification.si_rig());
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);

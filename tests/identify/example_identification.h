@@ -114,7 +114,7 @@ inline ClosedForms ExampleClosedForms() {
   linear.viscous = {0.00175, 0.00025};
   linear.corrected_inertia = {0.044, 0.000125};
   forms.linear = linear;
-  Decrement decrement;
+  TurningPointFit decrement;
   decrement.model = {"coulomb", "coulomb", Gravity::kSine};
   decrement.table = forms.table;
   decrement.zero = forms.table.zero;

@@ -43,7 +43,7 @@ TEST(LinearEstimates, AreInSiWithARig) {
 }
 
 TEST(DecrementEstimates, HaveTheNamesOfTheFitsParameters) {
-  const Decrement decrement = *ExampleClosedForms().decrement;
+  const TurningPointFit decrement = *ExampleClosedForms().decrement;
   EXPECT_THAT(Lines(DecrementEstimates(decrement, "rad", kRig)),
               ElementsAre("zero_angle z [rad] 0.01 0.0001", "inertia I_O [kg m^2] 0.0875 0.00025",
                           "viscous b [N m s/rad] 0.003 0.0005", "coulomb τ_c [N m] 0.01 0.001"));
@@ -51,7 +51,7 @@ TEST(DecrementEstimates, HaveTheNamesOfTheFitsParameters) {
 }
 
 TEST(DecrementEstimates, KeepTheUnitOfTheReadings) {
-  Decrement decrement = *ExampleClosedForms().decrement;
+  TurningPointFit decrement = *ExampleClosedForms().decrement;
   EXPECT_EQ(Lines(DecrementEstimates(decrement, "counts", kRig)).front(), "zero_angle z [counts] 0.01 0.0001");
   decrement.table.quantity = Quantity::kRate;
   EXPECT_EQ(Lines(DecrementEstimates(decrement, "rad/s", kRig)).front(), "rate_bias z [rad/s] 0.01 0.0001");
@@ -59,7 +59,7 @@ TEST(DecrementEstimates, KeepTheUnitOfTheReadings) {
 
 // sin 30 deg = 1/2; the derivative of asin there is 1 / cos 30 deg.
 TEST(StickingAngle, IsTheAngleWhereGravityEqualsDryFriction) {
-  Decrement decrement = *ExampleClosedForms().decrement;
+  TurningPointFit decrement = *ExampleClosedForms().decrement;
   decrement.friction[1] = {0.5, 0.01};
   const auto sticking = StickingAngle(decrement);
   ASSERT_TRUE(sticking);
@@ -69,7 +69,7 @@ TEST(StickingAngle, IsTheAngleWhereGravityEqualsDryFriction) {
 }
 
 TEST(StickingAngle, NeedsDryFrictionBelowGravity) {
-  Decrement decrement = *ExampleClosedForms().decrement;
+  TurningPointFit decrement = *ExampleClosedForms().decrement;
   for (const double coulomb : {-0.001, 0.0, 1.0, 2.0}) {
     decrement.friction[1].value = coulomb;
     EXPECT_FALSE(StickingAngle(decrement)) << coulomb;

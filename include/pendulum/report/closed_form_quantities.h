@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/closed_form/decrement.h"
 #include "pendulum/closed_form/estimate.h"
 #include "pendulum/closed_form/log_decrement.h"
+#include "pendulum/closed_form/turning_point_fit.h"
 #include "pendulum/model/rig.h"
 
 namespace pendulum {
@@ -26,10 +26,10 @@ std::vector<ReportedEstimate> LinearEstimates(const LogDecrement& linear, Gravit
                                               const std::optional<Rig>& rig);
 
 /// Zero, inertia and friction of a decrement, with the names of the fit's parameters. `unit`: unit of the readings.
-std::vector<ReportedEstimate> DecrementEstimates(const Decrement& decrement, const std::string& unit,
+std::vector<ReportedEstimate> DecrementEstimates(const TurningPointFit& decrement, const std::string& unit,
                                                  const std::optional<Rig>& rig);
 
 /// The largest angle at which dry friction holds the pendulum, asin(τ_c / G) [rad]; std::nullopt unless 0 < τ_c < G.
-std::optional<ReportedEstimate> StickingAngle(const Decrement& decrement);
+std::optional<ReportedEstimate> StickingAngle(const TurningPointFit& decrement);
 
 }  // namespace pendulum

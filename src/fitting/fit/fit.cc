@@ -206,7 +206,7 @@ std::string OrderViolationOf(const FitProblem& problem, const FitReport& report)
 }
 
 /// Returns a report that may be incomplete if a stop is requested during the fit.
-Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions& options) {
+Result<FitReport> FitWithRescues(const Recording& recording, const FitOptions& options) {
   ASSIGN_OR_RETURN(Attempt attempt, MakeAttempt(recording, options));
   std::vector<AttemptRecord> records = ApplyRescues(recording, options, attempt);
   std::string violation = OrderViolation(*attempt.problem, attempt.solution.parameters);
@@ -237,7 +237,7 @@ Result<FitReport> FitUnlessStopped(const Recording& recording, const FitOptions&
 
 Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
   if (options.stop.stop_requested()) return FitStopped();
-  Result<FitReport> report = FitUnlessStopped(recording, options);
+  Result<FitReport> report = FitWithRescues(recording, options);
   if (options.stop.stop_requested()) return FitStopped();
   return report;
 }

@@ -370,7 +370,7 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 namespace {
 
 /// The result is meaningless if a stop is requested during the fit.
-Result<JointFit> FitUnlessStopped(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+Result<JointFit> SolveAndReport(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   ASSIGN_OR_RETURN(JointProblem joint, MakeJointProblem(runs, shared));
   JointState state;
   state.joint = std::move(joint);
@@ -412,7 +412,7 @@ bool IsStopped(std::span<const JointRun> runs) {
 
 Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
   if (IsStopped(runs)) return FitStopped();
-  Result<JointFit> fit = FitUnlessStopped(runs, shared);
+  Result<JointFit> fit = SolveAndReport(runs, shared);
   if (IsStopped(runs)) return FitStopped();
   return fit;
 }

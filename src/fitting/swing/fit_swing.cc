@@ -399,7 +399,7 @@ bool MayBeFaster(const FitOptions& options, const SwingState& state) {
 }
 
 /// After a stop request the result is meaningless.
-Result<SwingFit> FitUnlessStopped(Recording recording, FreeSwing swing, const FitOptions& options) {
+Result<SwingFit> FitWithOtherWindows(Recording recording, FreeSwing swing, const FitOptions& options) {
   if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
     return Error(StatusCode::kFailedPrecondition, *why);
   }
@@ -430,7 +430,7 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
   FitOptions linear = options;
   linear.model = spring->name;
   linear.gravity = Gravity::kLinear;
-  Result<SwingFit> other = FitUnlessStopped(std::move(recording), std::move(swing), linear);
+  Result<SwingFit> other = FitWithOtherWindows(std::move(recording), std::move(swing), linear);
   if (!other || other->fit.termination != Termination::kConverged) return;
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
@@ -466,7 +466,7 @@ void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions&
   if (!IsContradicted(result->fit)) return;
   recording.shows_gravity = !recording.shows_gravity;
   const bool is_shown = recording.shows_gravity;
-  Result<SwingFit> other = FitUnlessStopped(std::move(recording), std::move(swing), options);
+  Result<SwingFit> other = FitWithOtherWindows(std::move(recording), std::move(swing), options);
   if (!other || !IsBetterAcceleration(*other, *result)) return;
   const std::string says = is_shown ? "that gravity was removed" : "nothing of gravity being removed";
   other->fit.warnings.insert(
@@ -493,7 +493,7 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
   std::optional<Recording> original;
   const bool is_acceleration = recording.quantity == Quantity::kAcceleration;
   if (is_acceleration || (options.may_be_spring && ReasonForUnit(recording))) original = recording;
-  Result<SwingFit> result = FitUnlessStopped(std::move(recording), swing, options);
+  Result<SwingFit> result = FitWithOtherWindows(std::move(recording), swing, options);
   if (result && is_acceleration) {
     FitWithOtherGravity(*std::move(original), std::move(swing), options, result);
   } else if (result && original && !result->linear_reason.empty()) {

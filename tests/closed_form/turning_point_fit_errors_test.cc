@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the standard errors of FitDecrement, with 200 simulated recordings of the reference rig for each friction
-// law.
+// Tests of the standard errors of FitTurningPoints, with 200 simulated recordings of the reference rig for each
+// friction law.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/closed_form/decrement.h"
+#include "pendulum/closed_form/turning_point_fit.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum::decrement_errors_test {
+namespace pendulum::turning_point_fit_errors_test {
 namespace {
 
 constexpr int kSeeds = 200;
@@ -58,7 +58,7 @@ void ExpectTrueErrors(const MotionModel& model, const Decay& decay, double resol
   std::vector<std::vector<double>> z(2 + terms);
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const double zero = 0.01 + 1e-4 * static_cast<double>(seed);
-    const Decrement found = Must(FitDecrement(Read(clean, zero, resolution, seed), model));
+    const TurningPointFit found = Must(FitTurningPoints(Read(clean, zero, resolution, seed), model));
     const auto add = [&](std::size_t k, const Estimate& estimate, double truth) {
       z[k].push_back((estimate.value - truth) / estimate.std_error);
     };
@@ -70,25 +70,25 @@ void ExpectTrueErrors(const MotionModel& model, const Decay& decay, double resol
   for (std::size_t k = 0; k < z.size(); ++k) ExpectStandardNormal(z[k], std::string(model.name) + ": " + names[k]);
 }
 
-TEST(DecrementErrors, AreRightForViscousFriction) {
+TEST(TurningPointFitErrors, AreRightForViscousFriction) {
   Decay decay = ReferenceDecay();
   decay.viscous = 0.003 / kTorque;
   ExpectTrueErrors({"viscous", "viscous", Gravity::kSine}, decay);
 }
 
-TEST(DecrementErrors, AreRightForDryFrictionAlone) {
+TEST(TurningPointFitErrors, AreRightForDryFrictionAlone) {
   Decay decay = ReferenceDecay();
   decay.coulomb = 0.003 / kTorque;
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay);
 }
 
-TEST(DecrementErrors, AreRightForViscousAndDryFrictionOnCounts) {
+TEST(TurningPointFitErrors, AreRightForViscousAndDryFrictionOnCounts) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
   ExpectTrueErrors({"coulomb", "coulomb", Gravity::kSine}, decay, 0.003464);  // 0.1985 deg per count
 }
 
-TEST(DecrementErrors, AreRightWithDrag) {
+TEST(TurningPointFitErrors, AreRightWithDrag) {
   Decay decay = ReferenceDecay();
   decay.viscous = decay.coulomb = 0.003 / kTorque;
   decay.drag = 0.002 / kTorque;
@@ -96,4 +96,4 @@ TEST(DecrementErrors, AreRightWithDrag) {
 }
 
 }  // namespace
-}  // namespace pendulum::decrement_errors_test
+}  // namespace pendulum::turning_point_fit_errors_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/closed_form/decrement.h"
+#include "pendulum/closed_form/turning_point_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -29,10 +29,10 @@ using Eigen::VectorXd;
 /// Turning points outside the runs are not used. Amplitude and time of a run are those of its first turning point. The
 /// readings of a rate sensor peak between turning points of the angle; the amplitude and time of a run are then those
 /// of the turning point before the first peak.
-class DecrementProblem {
+class TurningPointProblem {
  public:
-  DecrementProblem(const TurningPointTable& table, const MotionModel& model, std::vector<bool> included,
-                   const std::stop_token& stop)
+  TurningPointProblem(const TurningPointTable& table, const MotionModel& model, std::vector<bool> included,
+                      const std::stop_token& stop)
       : table_(table), model_(model), stop_(stop), included_(std::move(included)), runs_(table.Runs()) {
     for (const auto& [first, last] : runs_) {
       rows_.push_back(2 * points_);
@@ -199,7 +199,7 @@ struct LeastSquares {
 
 /// Levenberg-Marquardt with Marquardt's scaling. It stops when the remaining Newton step is below a hundredth of the
 /// standard errors, which are multiplied by sqrt(chi2 / dof) if this factor exceeds 1.
-std::optional<LeastSquares> Solve(const DecrementProblem& problem, VectorXd x, const std::vector<Index>& free) {
+std::optional<LeastSquares> Solve(const TurningPointProblem& problem, VectorXd x, const std::vector<Index>& free) {
   constexpr int kMaxSteps = 100;
   constexpr double kSmallStep = 1e-4;  // squared, in standard errors
   constexpr double kMaxDamping = 1e12;
@@ -237,9 +237,9 @@ double ProbabilityBeyond(double chi_square, int freedom) {
   return ChiSquareTail(chi_square, freedom);
 }
 
-/// Converts the unknowns of the fit to the quantities of Decrement, with ω0 becoming I = 1/ω0², and their errors.
-void Report(const DecrementProblem& problem, const LeastSquares& solution, const std::vector<Index>& free,
-            Decrement& decrement) {
+/// Converts the unknowns of the fit to the quantities of TurningPointFit, with ω0 becoming I = 1/ω0², and their errors.
+void Report(const TurningPointProblem& problem, const LeastSquares& solution, const std::vector<Index>& free,
+            TurningPointFit& decrement) {
   const auto size = static_cast<Index>(2 + decrement.friction.size());
   const double frequency = solution.x[1];
   VectorXd factor = VectorXd::Ones(size);
@@ -266,7 +266,7 @@ void Report(const DecrementProblem& problem, const LeastSquares& solution, const
 }
 
 /// The static torque of the fitted friction.
-double RestTorque(const Decrement& decrement) {
+double RestTorque(const TurningPointFit& decrement) {
   double torque = 0;
   FrictionModels::Visit(decrement.model.friction, [&]<typename F>() {
     std::array<double, kFrictionParameters<F>> friction{};
@@ -290,10 +290,11 @@ std::string_view EnvelopeShape(std::string_view term) {
   return term == kDrag.name ? "hyperbola" : "";
 }
 
-Result<Decrement> FitFrom(const TurningPointTable& table, const MotionModel& model, const std::vector<bool>& included,
-                          const std::stop_token& stop, std::optional<VectorXd>& start) {
-  Decrement decrement{model, table, {}, {}, std::vector<Estimate>(included.size()), {}, {}, 0, 0};
-  const DecrementProblem problem(table, model, included, stop);
+Result<TurningPointFit> FitFrom(const TurningPointTable& table, const MotionModel& model,
+                                const std::vector<bool>& included, const std::stop_token& stop,
+                                std::optional<VectorXd>& start) {
+  TurningPointFit decrement{model, table, {}, {}, std::vector<Estimate>(included.size()), {}, {}, 0, 0};
+  const TurningPointProblem problem(table, model, included, stop);
   const std::vector<Index> free = problem.Free();
   decrement.freedom = static_cast<int>(problem.observations()) - static_cast<int>(free.size());
   if (decrement.freedom < 1) {
@@ -320,15 +321,16 @@ Result<Decrement> FitFrom(const TurningPointTable& table, const MotionModel& mod
 
 }  // namespace
 
-double Decrement::Probability() const { return ProbabilityBeyond(chi_square, freedom); }
+double TurningPointFit::Probability() const { return ProbabilityBeyond(chi_square, freedom); }
 
-Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel& model,
-                               const std::vector<bool>& included, const std::stop_token& stop) {
+Result<TurningPointFit> FitTurningPoints(const TurningPointTable& table, const MotionModel& model,
+                                         const std::vector<bool>& included, const std::stop_token& stop) {
   std::optional<VectorXd> start;
   return FitFrom(table, model, included, stop, start);
 }
 
-Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop) {
+Result<TurningPointFit> FitTurningPoints(const Recording& recording, const MotionModel& model,
+                                         const std::stop_token& stop) {
   if (!IsLinear(model)) {
     return Error(StatusCode::kFailedPrecondition,
                  "there is no closed form for " + std::string(model.friction) +
@@ -338,7 +340,7 @@ Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& mo
   if (!table) return tl::unexpected(table.error());
   const std::vector<bool> all(PhysicalParameters(model).size() - 1, true);
   std::optional<VectorXd> start;
-  Result<Decrement> decrement = FitFrom(*table, model, all, stop, start);
+  Result<TurningPointFit> decrement = FitFrom(*table, model, all, stop, start);
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds && decrement; ++round) {
     const Kink kink{RestTorque(*decrement), 1 / std::sqrt(decrement->inertia.value)};
@@ -356,7 +358,7 @@ Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Grav
   const std::vector<ParameterInfo> infos = PhysicalParameters(richest);
   const std::size_t terms = infos.size() - 1;
   std::optional<VectorXd> start;
-  ASSIGN_OR_RETURN(const Decrement all, FitFrom(table, richest, std::vector<bool>(terms, true), stop, start));
+  ASSIGN_OR_RETURN(const TurningPointFit all, FitFrom(table, richest, std::vector<bool>(terms, true), stop, start));
   start->segment(2, static_cast<Index>(terms)).setZero();
   const double scale = std::max(1.0, all.chi_square / all.freedom);
   EnvelopeComparison laws{{}, all.chi_square, all.freedom};
@@ -364,7 +366,7 @@ Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Grav
     std::vector<bool> alone(terms, false);
     alone[k] = true;
     std::optional<VectorXd> from = start;
-    const Result<Decrement> one = FitFrom(table, richest, alone, stop, from);
+    const Result<TurningPointFit> one = FitFrom(table, richest, alone, stop, from);
     if (!one && one.error().code == StatusCode::kTryAgain) return tl::unexpected(one.error());
     if (!one) continue;
     const std::string_view name = infos[k + 1].name;

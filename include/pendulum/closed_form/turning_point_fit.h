@@ -16,7 +16,7 @@ namespace pendulum {
 
 /// Zero, period and K friction parameters from the turning points alone, in units of the restoring torque G. An
 /// uncalibrated angle keeps its unit.
-struct Decrement {
+struct TurningPointFit {
   MotionModel model;
   TurningPointTable table;
   Estimate zero;                   ///< rad or rad/s
@@ -41,11 +41,12 @@ struct Decrement {
 /// again. kFailedPrecondition: as LocateTurningPoints, a law that is not linear in its parameters, too few turning
 /// points for the number of unknowns, or no convergence. kTryAgain: a stop was requested before the end. Cost: some
 /// milliseconds; a second for a thousand turning points.
-Result<Decrement> FitDecrement(const Recording& recording, const MotionModel& model, const std::stop_token& stop = {});
+Result<TurningPointFit> FitTurningPoints(const Recording& recording, const MotionModel& model,
+                                         const std::stop_token& stop = {});
 
 /// The same fit to turning points that are already located. Friction parameters that are not `included` (K) are 0.
-Result<Decrement> FitDecrement(const TurningPointTable& table, const MotionModel& model,
-                               const std::vector<bool>& included, const std::stop_token& stop = {});
+Result<TurningPointFit> FitTurningPoints(const TurningPointTable& table, const MotionModel& model,
+                                         const std::vector<bool>& included, const std::stop_token& stop = {});
 
 /// The fit of one friction term alone to the turning points.
 struct EnvelopeLaw {
@@ -53,7 +54,7 @@ struct EnvelopeLaw {
   std::string shape;  ///< How the amplitudes depend on time: "exponential", ...
   double chi_square = 0;
   int freedom = 0;
-  double probability = 0;  ///< As Decrement::Probability, with the errors enlarged until the richest law fits.
+  double probability = 0;  ///< As TurningPointFit::Probability, with the errors enlarged until the richest law fits.
 };
 
 /// Fits of friction laws to the turning points: each term of the richest law alone, and all terms together.
@@ -65,7 +66,7 @@ struct EnvelopeComparison {
 
 /// Compares which law the envelope follows: a straight line for dry friction alone, an exponential for viscous
 /// friction, a hyperbola for drag. Each is fitted alone. The errors are enlarged until all terms together fit.
-/// `gravity` is the model's. Errors as FitDecrement.
+/// `gravity` is the model's. Errors as FitTurningPoints.
 Result<EnvelopeComparison> CompareEnvelopes(const TurningPointTable& table, Gravity gravity,
                                             const std::stop_token& stop = {});
 

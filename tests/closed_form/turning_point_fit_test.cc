@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/closed_form/decrement.h"
+#include "pendulum/closed_form/turning_point_fit.h"
 
 #include <cmath>
 #include <string>
@@ -11,7 +11,7 @@
 #include "pendulum/closed_form/locate_turning_points.h"
 #include "tests/closed_form/reference_swing.h"
 
-namespace pendulum::decrement_test {
+namespace pendulum::turning_point_fit_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -30,8 +30,8 @@ Decay AllThree() {
   return decay;
 }
 
-TEST(FitDecrement, RecoversAllThreeTermsAtLargeAmplitude) {
-  const Decrement found = Must(FitDecrement(SimulateDecay(AllThree()), kDragModel));
+TEST(FitTurningPoints, RecoversAllThreeTermsAtLargeAmplitude) {
+  const TurningPointFit found = Must(FitTurningPoints(SimulateDecay(AllThree()), kDragModel));
   EXPECT_NEAR(found.inertia.value * 25, 1, 1e-5);
   EXPECT_NEAR(found.zero.value, 0, 1e-5);
   EXPECT_NEAR(found.friction[0].value, 0.002, 1e-5);
@@ -39,59 +39,59 @@ TEST(FitDecrement, RecoversAllThreeTermsAtLargeAmplitude) {
   EXPECT_NEAR(found.friction[2].value, 0.001, 1e-5);
 }
 
-TEST(FitDecrement, RecoversTheTermsFromARateToo) {
+TEST(FitTurningPoints, RecoversTheTermsFromARateToo) {
   Decay decay = AllThree();
   decay.quantity = Quantity::kRate;
-  const Decrement found = Must(FitDecrement(SimulateDecay(decay), kDragModel));
+  const TurningPointFit found = Must(FitTurningPoints(SimulateDecay(decay), kDragModel));
   EXPECT_NEAR(found.inertia.value * 25, 1, 1e-5);
   EXPECT_NEAR(found.friction[0].value, 0.002, 1e-5);
   EXPECT_NEAR(found.friction[1].value, 0.001, 1e-5);
   EXPECT_NEAR(found.friction[2].value, 0.001, 1e-5);
 }
 
-TEST(FitDecrement, KeepsTheUnitOfAnUncalibratedAngle) {
+TEST(FitTurningPoints, KeepsTheUnitOfAnUncalibratedAngle) {
   constexpr double kCounts = 300;  // per radian
   const auto counts = [](double t) { return 512 + kCounts * 0.4 * std::exp(-0.02 * t) * std::cos(4.8 * t + 1); };
   Recording recording = Sample(counts, 20, 100);
   recording.unit = "counts";
-  const Decrement found = Must(FitDecrement(recording, {"linear", "viscous", Gravity::kLinear}));
+  const TurningPointFit found = Must(FitTurningPoints(recording, {"linear", "viscous", Gravity::kLinear}));
   const double square = 4.8 * 4.8 + 0.02 * 0.02;  // ω_d² + (ζ ω0)²
   EXPECT_NEAR(found.zero.value, 512, 1e-3);
   EXPECT_NEAR(found.inertia.value * square, 1, 1e-6);
   EXPECT_NEAR(found.friction[0].value, 2 * 0.02 / square, 1e-6);
 }
 
-TEST(FitDecrement, ContinuesAcrossAGap) {
+TEST(FitTurningPoints, ContinuesAcrossAGap) {
   const Recording gap = WithNoise(WithoutSamples(SimulateDecay(AllThree()), 9.0, 12.3), 1e-3, 5);
-  const Decrement found = Must(FitDecrement(gap, kDragModel));
+  const TurningPointFit found = Must(FitTurningPoints(gap, kDragModel));
   EXPECT_NEAR(found.inertia.value, 0.04, 4 * found.inertia.std_error);
   EXPECT_NEAR(found.friction[1].value, 0.001, 4 * found.friction[1].std_error);
   EXPECT_GT(found.Probability(), 1e-3);
 }
 
-TEST(FitDecrement, HasTheGradientOfItsTurningPoints) {
+TEST(FitTurningPoints, HasTheGradientOfItsTurningPoints) {
   const Recording recording = WithNoise(SimulateDecay(AllThree()), 1e-3, 1);
   TurningPointTable table = Must(LocateTurningPoints(recording));
   const std::vector<bool> all(3, true);
-  const Decrement before = Must(FitDecrement(table, kDragModel, all));
+  const TurningPointFit before = Must(FitTurningPoints(table, kDragModel, all));
   const double change = 0.3 * std::sqrt(table.points[4].covariance(1, 1));
   table.points[4].value += change;
-  const Decrement after = Must(FitDecrement(table, kDragModel, all));
+  const TurningPointFit after = Must(FitTurningPoints(table, kDragModel, all));
   const Eigen::VectorXd slope = before.gradient.col(9);  // with respect to the value of turning point 4
   EXPECT_NEAR((after.zero.value - before.zero.value) / change, slope[0], 0.02 * std::abs(slope[0]));
   EXPECT_NEAR((after.friction[1].value - before.friction[1].value) / change, slope[3], 0.02 * std::abs(slope[3]));
 }
 
-TEST(FitDecrement, RejectsAWrongLaw) {
+TEST(FitTurningPoints, RejectsAWrongLaw) {
   const Recording recording = WithNoise(SimulateDecay(AllThree()), 1e-3, 2);
-  EXPECT_LT(Must(FitDecrement(recording, kViscousModel)).Probability(), 1e-6);
-  EXPECT_GT(Must(FitDecrement(recording, kDragModel)).Probability(), 1e-3);
+  EXPECT_LT(Must(FitTurningPoints(recording, kViscousModel)).Probability(), 1e-6);
+  EXPECT_GT(Must(FitTurningPoints(recording, kDragModel)).Probability(), 1e-3);
 }
 
-TEST(FitDecrement, NeedsMoreTurningPointsThanUnknowns) {
+TEST(FitTurningPoints, NeedsMoreTurningPointsThanUnknowns) {
   Decay decay = AllThree();
   decay.duration = 2.5;  // three turning points: six numbers for seven unknowns
-  const auto found = FitDecrement(SimulateDecay(decay), kDragModel);
+  const auto found = FitTurningPoints(SimulateDecay(decay), kDragModel);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
   EXPECT_THAT(found.error().message, HasSubstr("3 turning points are too few for the 7 unknowns"));
@@ -116,4 +116,4 @@ TEST(CompareEnvelopes, FindsTheOnlyTermPresent) {
 }
 
 }  // namespace
-}  // namespace pendulum::decrement_test
+}  // namespace pendulum::turning_point_fit_test
