@@ -180,7 +180,9 @@ SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, '')
   const auto text = [&](int column) { return sqlite::Text(both, column); };
   const auto is_gone = [](const std::string&) { return false; };  // a merge does not see the recordings
   while (both.executeStep()) {
-    const NewerOutcome newer{text(2), text(3), both.getColumn(5).getInt(), both.getColumn(6).getInt() != 0};
+    const std::string result = text(2);
+    const NewerOutcome newer{!result.empty(), DataOf(nlohmann::ordered_json::parse(result, nullptr, false)), text(3),
+                             both.getColumn(5).getInt(), both.getColumn(6).getInt() != 0};
     const std::string why = WhyKept(text(1), both.getColumn(4).getInt(), newer, is_gone);
     if (why.empty()) continue;
     sqlite::Bind(keep, text(0), why).exec();
