@@ -55,15 +55,15 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
 /// Warnings of the richest law that hold for every model. If the recording is not a pendulum's swing, or its zero
 /// jumps, no fit counts as converged. Whether an acceleration contains gravity is only said.
 void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
-  const auto of_gravity = std::ranges::find(richest_fit.warnings, "gravity_in_readings", &Warning::code);
-  if (of_gravity != richest_fit.warnings.end() && !fit.HasWarning(of_gravity->code))
+  const Warning* const of_gravity = FindWarning(richest_fit.warnings, "gravity_in_readings");
+  if (of_gravity != nullptr && !fit.HasWarning("gravity_in_readings"))
     fit.warnings.insert(fit.warnings.begin(), *of_gravity);
   const auto said = std::ranges::find_if(richest_fit.warnings, [](const Warning& warning) {
     return warning.code == "not_a_pendulum" || warning.code == "offset_jumps";
   });
   if (said == richest_fit.warnings.end() || fit.termination == Termination::kFailed) return;
   fit.termination = Termination::kNotConverged;
-  fit.reason = said->message;
+  fit.reason = MessageText(*said);
   WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
@@ -111,12 +111,11 @@ class SharedFits {
     Fit(i, richest_fit);
     std::vector<Warning>& warnings = result_.fits[i].warnings;
     for (Warning& warning : said) {
-      constexpr std::array kOfWindow = {
+      constexpr std::array<WarningCode, 10> kOfWindow = {
           "ends_trimmed", "larger_motion_outside", "not_a_pendulum", "lost_counts",   "offset_jumps", "presliding",
           "vibration",    "ambiguous_frequency",   "hold_left_out",  "hold_disagrees"};
       const bool of_window = std::ranges::find(kOfWindow, warning.code) != kOfWindow.end();
-      const bool is_known = std::ranges::find(warnings, warning.code, &Warning::code) != warnings.end();
-      if (of_window && !is_known) warnings.push_back(std::move(warning));
+      if (of_window && !HasWarning(warnings, warning.code)) warnings.push_back(std::move(warning));
     }
   }
 
@@ -183,9 +182,12 @@ void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& mo
   for (FitReport& fit : fitted.fits) {
     const std::string model(fit.model.name);
     for (const std::string& name : ForModel(options, model, models).ignored) {
-      std::string message = "model ";
-      message.append(model).append(" has no ").append(name).append("; its options are ignored for this model");
-      fit.warnings.push_back({"ignored_parameter", std::move(message)});
+      std::string finding = "model ";
+      finding.append(model).append(" has no ").append(name);
+      fit.warnings.push_back({.code = "ignored_parameter",
+                              .finding = std::move(finding),
+                              .explanation = "its options are ignored for this model",
+                              .about = {.parameters = {name}}});
     }
   }
 }

@@ -151,10 +151,10 @@ std::string ChangeText(const ParameterEstimate& parameter, double std_dev) {
 
 void Warn(const std::string& changes, const std::string& when, FitReport& fit) {
   if (changes.empty()) return;
-  fit.warnings.push_back(
-      {"not_constant", "parameters change " + when + " by more than their errors: " + changes +
-                           ". Another run may differ by about as much; the systematic errors include this, standard "
-                           "errors and intervals do not"});
+  fit.warnings.push_back({.code = "not_constant",
+                          .finding = "parameters change " + when + " by more than their errors: " + changes,
+                          .explanation = "another run may differ by about as much; the systematic errors include this, "
+                                         "standard errors and intervals do not"});
 }
 
 /// Root mean square of a parameter's changes in all recordings, weighted with 1 / std_error²; 0 if it is constant, or

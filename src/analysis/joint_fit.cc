@@ -61,8 +61,9 @@ void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
     whole.reason += "; the recordings do not agree";
     return;
   }
-  whole.warnings.push_back(
-      {"recordings_disagree", "the errors assume that the recordings agree, but they do not; do not quote them"});
+  whole.warnings.push_back({.code = "recordings_disagree",
+                            .finding = "the errors assume that the recordings agree, but they do not",
+                            .advice = "do not quote them"});
 }
 
 }  // namespace

@@ -173,9 +173,9 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   if (const std::size_t exact = ranked.SimplestWithoutNoise();
       comparison.likelihood == Likelihood::kNone && exact != comparison.rows.size()) {
     comparison.recommended = comparison.rows[exact].model;
-    comparison.reason = comparison.recommended +
-                        ": the simplest law whose residuals are no larger than the error of its computed trajectory, "
-                        "so that no noise is left by which laws could be compared";
+    comparison.reason =
+        "the simplest law whose residuals are no larger than the error of its computed trajectory, so that no noise is "
+        "left by which laws could be compared";
     return;
   }
   const std::size_t chosen = ranked.Simplest();
@@ -185,7 +185,7 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
   }
   const ComparisonRow& row = comparison.rows[chosen];
   comparison.recommended = row.model;
-  comparison.reason = row.model + ": ";
+  comparison.reason.clear();
   const std::size_t next = ranked.RunnerUp();
   const std::vector<std::string> undecided = ranked.UndecidedModels(chosen);
   if (!undecided.empty()) {

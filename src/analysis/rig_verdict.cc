@@ -47,22 +47,24 @@ void SetTexts(std::string_view lacks, RigVerdict& verdict) {
   const std::string excess = ExcessText(verdict.excess);
   const std::string size = "the fitted inertia is " + excess + " than the rig's";
   if (!verdict.z) {
-    verdict.text = size + "; " + std::string(lacks) + " gives no standard deviations, so this is no verdict";
+    verdict.finding = size + "; " + std::string(lacks) + " gives no standard deviations, so this is no verdict";
     return;
   }
   const std::string z = "z " + NumberText(*verdict.z, 2);
   if (!verdict.differs()) {
-    verdict.text = "the fitted inertia agrees with the rig's: " + excess + " (" + z + ")";
+    verdict.finding = "the fitted inertia agrees with the rig's: " + excess + " (" + z + ")";
     return;
   }
-  verdict.text = size + " (" + z + "), more than all errors allow: " + CausesOf(verdict.excess) +
-                 " can cause this, and one swing cannot tell which; record a swing with another bob mass, and check "
-                 "the rig's values";
+  verdict.finding = size + " (" + z + "), more than all errors allow: " + CausesOf(verdict.excess) +
+                    " can cause this, and one swing cannot tell which";
+  verdict.advice = "record a swing with another bob mass, and check the rig's values";
   verdict.brief = "The rig disagrees: the fitted inertia is " + excess + " than its own (" + z + "), by " +
                   CausesOf(verdict.excess) + "; swing another mass (--details)";
 }
 
 }  // namespace
+
+std::string RigVerdict::text() const { return finding + (advice.empty() ? "" : "; " + advice); }
 
 bool RigVerdict::differs() const { return z && std::abs(*z) > kRigDiffers; }
 
@@ -73,7 +75,7 @@ std::optional<RigVerdict> JudgeInertia(const std::optional<Rig>& rig, const FitR
   const std::vector<GeometricInertia> all = GeometricInertias(*rig, inertia->estimate);
   const auto own = std::ranges::find(all, false, &GeometricInertia::is_point_mass);
   if (own == all.end() || !(own->value > 0)) return std::nullopt;
-  RigVerdict verdict{own->value, inertia->estimate, inertia->estimate / own->value - 1, {}, "", ""};
+  RigVerdict verdict{own->value, inertia->estimate, inertia->estimate / own->value - 1, {}, "", "", ""};
   if (own->std_error && inertia->std_error) {
     const double error = std::hypot(own->difference_std_error, OwnError(*inertia), GeometryError(*rig, own->value));
     if (error > 0) verdict.z = (verdict.fitted - verdict.geometric) / error;

@@ -70,17 +70,18 @@ Warning AliasedWarning(const Sampling& sampling, double expected) {
   const double cycles = std::round(expected / sampling.rate_hz);
   constexpr double kStill = 0.01;  // of the rate: less than one swing in a hundred samples
   const bool still = apparent < kStill * sampling.rate_hz;
-  std::string why = "the expected frequency is " + Hz(expected) + ", but the readings were taken at " +
-                    Hz(sampling.rate_hz) +
-                    ", less than two samples per swing. Between two samples the pendulum makes " +
-                    NumberText(expected / sampling.rate_hz, 3) +
+  std::string why = "between two samples the pendulum makes " + NumberText(expected / sampling.rate_hz, 3) +
                     " swings, and the samples do not show whole swings, so the readings seem to ";
   why += still ? "stand still"
                : "swing at |" + NumberText(expected, 3) + " - " + NumberText(cycles * sampling.rate_hz, 3) +
                      "| = " + Hz(apparent) + ", a period of " + NumberText(1 / apparent, 3) + " s";
   if (sampling.apparent_frequency_hz)
     why += " (" + NumberText(1 / *sampling.apparent_frequency_hz, 3) + " s in the readings)";
-  return {"aliased", why + ". Periods and decrements from turning points are wrong; use the fit; " + Advice(expected)};
+  return {.code = "aliased",
+          .finding = "the expected frequency is " + Hz(expected) + ", but the readings were taken at " +
+                     Hz(sampling.rate_hz) + ", less than two samples per swing",
+          .explanation = why + "; periods and decrements from turning points are wrong",
+          .advice = "use the fit; " + Advice(expected)};
 }
 
 void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warning>& warnings) {
@@ -89,41 +90,47 @@ void WarnOfAliasing(const Sampling& sampling, double expected, std::vector<Warni
   if (expected > 0.5 * sampling.rate_hz) {
     warnings.push_back(AliasedWarning(sampling, expected));
   } else if (high > 0.5 * sampling.rate_hz) {
-    warnings.push_back({"nearly_aliased", "the expected frequency is " + Hz(expected) +
-                                              ", and the readings were taken at " + Hz(sampling.rate_hz) +
-                                              ", hardly more than two samples per swing; " + Advice(expected)});
+    warnings.push_back({.code = "nearly_aliased",
+                        .finding = "the expected frequency is " + Hz(expected) + ", and the readings were taken at " +
+                                   Hz(sampling.rate_hz) + ", hardly more than two samples per swing",
+                        .advice = Advice(expected)});
   }
   if (!CanAliasWithinRange(low, high, sampling.rate_hz)) return;
   const double mirror = 0.5 * sampling.rate_hz * std::round(2 * expected / sampling.rate_hz);
-  warnings.push_back({"samples_near_period", "sampled at " + Hz(sampling.rate_hz) + ", frequencies on both sides of " +
-                                                 Hz(mirror) + " look the same. The pendulum's frequency, about " +
-                                                 Hz(expected) + ", may be on either side; sample faster, or at " +
-                                                 Hz(1.3 * sampling.rate_hz)});
+  warnings.push_back({.code = "samples_near_period",
+                      .finding = "sampled at " + Hz(sampling.rate_hz) + ", frequencies on both sides of " + Hz(mirror) +
+                                 " look the same",
+                      .explanation = "the pendulum's frequency, about " + Hz(expected) + ", may be on either side",
+                      .advice = "sample faster, or at " + Hz(1.3 * sampling.rate_hz)});
 }
 
 void WarnOfTimes(const Sampling& sampling, std::vector<Warning>& warnings) {
   if (sampling.gaps > 0) {
-    warnings.push_back({"gaps", "readings are missing in " + std::to_string(sampling.gaps) +
-                                    (sampling.gaps == 1 ? " place" : " places") + ", for " +
-                                    NumberText(sampling.longest_gap, 3) +
-                                    " s at most; the fit uses the time stamps and continues across these gaps, but "
-                                    "turning points in them are missing"});
+    warnings.push_back({.code = "gaps",
+                        .finding = "readings are missing in " + std::to_string(sampling.gaps) +
+                                   (sampling.gaps == 1 ? " place" : " places") + ", for " +
+                                   NumberText(sampling.longest_gap, 3) + " s at most",
+                        .explanation = "the fit uses the time stamps and continues across these gaps, but turning "
+                                       "points in them are missing"});
   }
   if (sampling.jitter * sampling.rate_hz > kMuchJitter) {
-    warnings.push_back(
-        {"jitter", "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) + " ms about " +
-                       NumberText(1e3 / sampling.rate_hz, 3) +
-                       " ms; the time stamps are used as they are. If the sensor was read at equal "
-                       "intervals and only stamped late, give --time_column none with --sample_rate_hz"});
+    warnings.push_back({.code = "jitter",
+                        .finding = "the sampling intervals scatter by " + NumberText(1e3 * sampling.jitter, 3) +
+                                   " ms about " + NumberText(1e3 / sampling.rate_hz, 3) + " ms",
+                        .explanation = "the time stamps are used as they are",
+                        .advice = "if the sensor was read at equal intervals and only stamped late, give --time_column "
+                                  "none with --sample_rate_hz",
+                        .flags = {"time_column", "sample_rate_hz"}});
   }
 }
 
 void WarnOfCounts(const Sampling& sampling, std::vector<Warning>& warnings) {
   if (!(sampling.start_counts > 0 && sampling.start_counts < kMinCounts)) return;
-  warnings.push_back({"few_counts", "the swing spans only " + NumberText(sampling.start_counts) +
-                                        " levels of the sensor at first and " + NumberText(sampling.end_counts) +
-                                        " at the end, so turning points are inaccurate; release from a larger angle or "
-                                        "use a sensor with a finer resolution"});
+  warnings.push_back({.code = "few_counts",
+                      .finding = "the swing spans only " + NumberText(sampling.start_counts) +
+                                 " levels of the sensor at first and " + NumberText(sampling.end_counts) +
+                                 " at the end, so turning points are inaccurate",
+                      .advice = "release from a larger angle or use a sensor with a finer resolution"});
 }
 
 }  // namespace
@@ -160,10 +167,10 @@ std::vector<Warning> SamplingWarnings(const Sampling& sampling) {
   const bool aliases = !warnings.empty();
   if (!aliases && sampling.frequency_hz > 0 && sampling.samples_per_period < kMinPerPeriod) {
     warnings.push_back(
-        {"slow_sampling",
-         NumberText(sampling.samples_per_period, 2) +
-             " samples per period: turning points and closed-form estimates are inaccurate, but the fit is not; " +
-             Advice(sampling.frequency_hz)});
+        {.code = "slow_sampling",
+         .finding = NumberText(sampling.samples_per_period, 2) +
+                    " samples per period: turning points and closed-form estimates are inaccurate, but the fit is not",
+         .advice = Advice(sampling.frequency_hz)});
   }
   WarnOfCounts(sampling, warnings);
   WarnOfTimes(sampling, warnings);

@@ -30,7 +30,10 @@ void WarnOfUnexplained(const ClosedFormCheck& check, FitReport& fit) {
   const bool is_doubted = fit.termination != Termination::kConverged || fit.HasWarning("lack_of_fit") ||
                           !fit.suspicions.empty() || fit.correction.size() > 0;
   if (check.unexplained.empty() || is_doubted) return;
-  fit.warnings.push_back({"closed_forms_differ", check.unexplained + "; compare the laws: --models all"});
+  fit.warnings.push_back({.code = "closed_forms_differ",
+                          .finding = check.unexplained,
+                          .advice = "compare the laws: --models all",
+                          .flags = {"models"}});
 }
 
 /// A fit that failed or is not to be checked has an empty check.
@@ -55,10 +58,10 @@ void WarnOfFrequency(const Sampling& sampling, Identification& identification) {
   constexpr double kMaxRatio = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
   if (!(seen > 0) || (seen < kMaxRatio * expected && expected < kMaxRatio * seen)) return;
-  identification.warnings.push_back(
-      {"frequency_differs_from_rig", "the pendulum swings at " + NumberText(seen, 3) + " Hz, but the rig predicts " +
-                                         NumberText(expected, 3) +
-                                         " Hz; check the unit of time and the units in the rig file (SI)"});
+  identification.warnings.push_back({.code = "frequency_differs_from_rig",
+                                     .finding = "the pendulum swings at " + NumberText(seen, 3) +
+                                                " Hz, but the rig predicts " + NumberText(expected, 3) + " Hz",
+                                     .advice = "check the unit of time and the units in the rig file (SI)"});
 }
 
 /// An undersampled swing shows no turning points; its fit has warned already.

@@ -9,8 +9,7 @@ namespace pendulum {
 namespace {
 
 bool ContainsWarning(const std::vector<Warning>& warnings, const Warning& warning) {
-  return std::ranges::any_of(
-      warnings, [&](const Warning& other) { return other.code == warning.code && other.message == warning.message; });
+  return std::ranges::find(warnings, warning) != warnings.end();
 }
 
 /// Whether the same was assumed; the messages may name different files.
@@ -38,8 +37,8 @@ std::vector<Warning> WarningsOfRuns(const Identification& identification, const 
   for (std::size_t k = 0; k < runs.size(); ++k) {
     for (Warning warning : runs[k]) {
       const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return ContainsWarning(run, warning); });
-      warning.message =
-          (of_each ? std::string("each recording") : RecordingLabel(identification, k)) + ": " + warning.message;
+      warning.about.recording = of_each ? WarningSubject::kEachRecording : static_cast<int>(k) + 1;
+      if (!of_each) warning.about.recording_name = RecordingLabel(identification, k);
       if (!warning.assumed.empty() &&
           !std::ranges::all_of(runs, [&](const auto& run) { return Assumes(run, warning); }))
         warning.assumed = RecordingLabel(identification, k) + ": " + warning.assumed;
@@ -94,8 +93,7 @@ std::vector<Warning> AllWarnings(const Identification& identification) {
   for (const FitReport& fit : identification.fits) {
     std::vector<Warning> named = fit.warnings;
     for (Warning& warning : named) {
-      if (!IsWarningOfAll(identification.fits, warning))
-        warning.message = std::string(fit.model.name) + ": " + warning.message;
+      if (!IsWarningOfAll(identification.fits, warning)) warning.about.law = fit.model.name;
     }
     AddOnce(named, all);
   }

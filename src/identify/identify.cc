@@ -107,9 +107,9 @@ MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& iden
   const MotionModel linear = *FindMotionModel("linear");
   if (identification.used.is_calibrated() || asked.gravity.is_linear()) return asked;
   identification.warnings.push_back(
-      {"uncalibrated",
-       "the readings are in " + identification.used.unit +
-           ", not in a unit of angle; the closed forms are those of model linear, which assumes small angles"});
+      {.code = "uncalibrated",
+       .finding = "the readings are in " + identification.used.unit + ", not in a unit of angle",
+       .explanation = "the closed forms are those of model linear, which assumes small angles"});
   return linear;
 }
 
@@ -148,16 +148,17 @@ void QuestionUnit(const Recording& used, double half_period, bool is_spring, con
   const bool is_odd = amplitude <= kOddlySmall ||
                       (!identification.fits.empty() && FitsBetterInRadians(used, identification.fits.front(), options));
   if (!is_odd) return;
-  const std::string degrees = NumberText(amplitude / kRadFromDeg, 3);
+  const std::string degrees = NumberText(amplitude / kRadFromDeg, 3), radians = is_rate ? "rad_s" : "rad";
   identification.warnings.push_back(
-      {"unit_questioned",
-       "the pendulum swings by only " + degrees + " deg; if the readings are in " + (is_rate ? "rad/s" : "rad") + " (" +
-           NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) + " deg), correct the unit (--unit " +
-           (is_rate ? "rad_s" : "rad") +
-           ", or in the column's name): the period stays, but "
-           "angles and dry friction are 57.3 times larger",
-       "readings in deg" + std::string(is_rate ? "/s" : "") + ", though the swing is only " + degrees +
-           " deg (--unit " + (is_rate ? "rad_s" : "rad") + ")"});
+      {.code = "unit_questioned",
+       .finding = "the pendulum swings by only " + degrees + " deg",
+       .explanation = std::string("if the readings are in ") + (is_rate ? "rad/s" : "rad") + " (" +
+                      NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
+                      " deg), the period stays, but angles and dry friction are 57.3 times larger",
+       .advice = "correct the unit then (--unit " + radians + ", or in the column's name)",
+       .flags = {"unit"},
+       .assumed = "readings in deg" + std::string(is_rate ? "/s" : "") + ", though the swing is only " + degrees +
+                  " deg (--unit " + radians + ")"});
 }
 
 /// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
@@ -214,11 +215,14 @@ Result<IdentifyOptions> OptionsForRig(IdentifyOptions options, const std::option
 /// Says that the rig changed the models.
 void WarnOfSpring(const IdentifyOptions& asked, const IdentifyOptions& options, Identification& identification) {
   if (asked.models == options.models) return;
-  identification.warnings.push_back({"linear_restoring_torque",
-                                     "the rig gives a stiffness, so a restoring torque proportional to the angle is "
-                                     "assumed, as of a spring or wire (--gravity linear); a pendulum needs a rig with "
-                                     "masses and lengths, or gravity_torque",
-                                     "a spring, as the rig gives a stiffness (--gravity)"});
+  identification.warnings.push_back(
+      {.code = "linear_restoring_torque",
+       .finding =
+           "the rig gives a stiffness, so a restoring torque proportional to the angle is assumed, as of a spring "
+           "or wire (--gravity linear)",
+       .explanation = "a pendulum needs a rig with masses and lengths, or gravity_torque",
+       .flags = {"gravity"},
+       .assumed = "a spring, as the rig gives a stiffness (--gravity)"});
 }
 
 /// Adds what the rig makes known to the fits, and compares the rig with the first converged fit. kDataLoss: the rig
@@ -237,7 +241,11 @@ Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
   std::ranges::move(warnings, std::back_inserter(identification.warnings));
   if (is_questioned) return {};
   const auto verdict = JudgeInertia(identification.rig, identification.fits[identification.MainFit()]);
-  if (verdict && verdict->differs()) identification.warnings.push_back({"inertia_differs_from_rig", verdict->text});
+  if (verdict && verdict->differs())
+    identification.warnings.push_back({.code = "inertia_differs_from_rig",
+                                       .finding = verdict->finding,
+                                       .advice = verdict->advice,
+                                       .about = {.parameters = {"inertia"}}});
   return {};
 }
 
@@ -384,7 +392,7 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
 /// Adds the warnings of the separate fit about the window, the sampling and other local minima, unless the joint fit
 /// repeats them. kOfTheFit lists warnings that the joint fit gives itself if they apply.
 void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& identification) {
-  constexpr std::array<std::string_view, 8> kOfTheFit = {
+  constexpr std::array<WarningCode, 8> kOfTheFit = {
       "lack_of_fit",         "correlated_residuals", "zero_drift", "noise_below_resolution",
       "trajectory_accuracy", "prior_conflict",       "at_bound",   "uncertain_stop"};
   for (const Warning& warning : alone.warnings) {
@@ -392,9 +400,10 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identificati
     if (!of_the_fit && !joint.HasWarning(warning.code)) identification.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
-  identification.warnings.push_back({"separate_fit_not_converged", "the separate fit of this recording is " +
-                                                                       std::string(TerminationName(alone.termination)) +
-                                                                       ": " + alone.reason});
+  identification.warnings.push_back(
+      {.code = "separate_fit_not_converged",
+       .finding = "the separate fit of this recording is " + std::string(TerminationName(alone.termination)),
+       .explanation = alone.reason});
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {

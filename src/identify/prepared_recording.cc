@@ -26,7 +26,9 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   }
   if (has_file && !options.rig_values.empty()) notes.push_back(OverrideWarning(options.rig_values));
   if (options.sensor && read.stated_sensor) {
-    notes.push_back({"sensor_replaced", "what --sensor states replaces the line # sensor of the recording"});
+    notes.push_back({.code = "sensor_replaced",
+                     .finding = "what --sensor states replaces the line # sensor of the recording",
+                     .flags = {"sensor"}});
   }
   PreparedRecording prepared;
   prepared.sensor = options.sensor;
@@ -48,10 +50,18 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   prepared.known.calibration = prepared.recording.calibration->source;
   const Calibration& calibration = *prepared.recording.calibration;
   if (!calibration.note.empty()) {
-    prepared.known.warnings.push_back(
-        {"calibration_from_table", calibration.note, "a straight line through the points of --calibration"});
+    prepared.known.warnings.push_back({.code = "calibration_from_table",
+                                       .finding = calibration.note,
+                                       .assumed = "a straight line through the points of --calibration"});
   }
-  if (!calibration.doubt.empty()) prepared.known.warnings.push_back({"calibration_bent", calibration.doubt});
+  if (!calibration.doubt.empty()) {
+    prepared.known.warnings.push_back({.code = "calibration_bent",
+                                       .finding = calibration.doubt,
+                                       .advice =
+                                           "make the calibration with calibrate_sensor --order 2 --json, and give "
+                                           "its file with --calibration",
+                                       .flags = {"calibration"}});
+  }
   return prepared;
 }
 

@@ -81,6 +81,11 @@ bool IsOdd(double value, const UsualRange& usual) {
   return value != 0 && !(value >= usual.lower && value <= usual.upper);
 }
 
+/// The flag of a value that was given by flags.
+std::vector<std::string> FlagsOf(const RigKey& key, const Rig& rig) {
+  return IsGivenByFlags(rig.name) ? std::vector{std::string(key.flag)} : std::vector<std::string>();
+}
+
 std::string OddityOf(const RigKey& key, double value, const UsualRange& usual, const std::string& rig_name) {
   if (const RigUnit* unit = UsualUnit(key, value, usual)) return Question(key, value, *unit, rig_name);
   return KeyText(key, rig_name) + " is " + NumberText(value) + " " + std::string(key.unit) +
@@ -95,7 +100,9 @@ void QuestionValues(const Rig& rig, std::vector<Warning>& warnings) {
     const double value = ValueOfEntry(rig.source.at(key.name));
     const UsualRange usual = UsualRangeOf(key.quantity, LongestLength(rig.source));
     if (!IsOdd(value, usual)) continue;
-    warnings.push_back({"rig_implausible", "the rig: " + OddityOf(key, value, usual, rig.name)});
+    warnings.push_back({.code = "rig_implausible",
+                        .finding = "the rig: " + OddityOf(key, value, usual, rig.name),
+                        .flags = FlagsOf(key, rig)});
   }
 }
 
@@ -139,7 +146,7 @@ std::string ErrorExample(const RigKey& key, const Rig& rig) {
 
 /// How to give a standard deviation.
 std::string HowToGiveError(const RigKey& key, const Rig& rig) {
-  return (IsGivenByFlags(rig.name) ? "Give it after the value: " : "Write ") + ErrorExample(key, rig);
+  return (IsGivenByFlags(rig.name) ? "give it after the value: " : "write ") + ErrorExample(key, rig);
 }
 
 void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
@@ -162,14 +169,16 @@ void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
   if (!(converting.std_dev > 0)) return;
   const std::string errors =
       is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + std::string(example->name);
+  const std::string share = NumberText(100 * converting.std_dev / converting.value, 2) + " %";
   warnings.push_back(
-      {"rig_taken_as_exact",
-       "the rig's values have no standard deviation, so they count as exact; " + errors +
-           " would add a systematic error of " + NumberText(100 * converting.std_dev / converting.value, 2) + " % to " +
-           Converted(rig) + ". " + HowToGiveError(*example, rig),
-       "rig exact (" + std::string(is_direct ? "±1 g, ±1 mm" : "1 % in " + std::string(example->name)) + " add " +
-           NumberText(100 * converting.std_dev / converting.value, 2) +
-           " %: " + (IsGivenByFlags(rig.name) ? ErrorExample(*example, rig) : R"("std_dev" in the rig)") + ")"});
+      {.code = "rig_taken_as_exact",
+       .finding = "the rig's values have no standard deviation, so they count as exact",
+       .explanation = errors + " would add a systematic error of " + share + " to " + Converted(rig),
+       .advice = HowToGiveError(*example, rig),
+       .flags = FlagsOf(*example, rig),
+       .assumed = "rig exact (" + std::string(is_direct ? "±1 g, ±1 mm" : "1 % in " + std::string(example->name)) +
+                  " add " + share + ": " +
+                  (IsGivenByFlags(rig.name) ? ErrorExample(*example, rig) : R"("std_dev" in the rig)") + ")"});
 }
 
 // ---- With the swing ------------------------------------------------------------------------------------------------
@@ -249,19 +258,21 @@ Result<std::vector<Warning>> CompareLength(const Rig& rig, double gravity_over_i
   constexpr double kEarthWithin = 1.1;
   if (Factor(gravity, kStandardGravity) < kEarthWithin) return {};
   return std::vector<Warning>{
-      {"rig_implausible",
-       "the rig: length " + NumberText(rig.length->value) + " m gives g = " + NumberText(gravity, kDigits) +
-           " m/s^2, which is not the Earth's; the swing's effective length there is " +
-           NumberText(kStandardGravity / gravity_over_inertia, kDigits) +
-           " m. Correct length, unless the pendulum is elsewhere, tilted, or not a small bob on a string"}};
+      {.code = "rig_implausible",
+       .finding = "the rig: length " + NumberText(rig.length->value) + " m gives g = " + NumberText(gravity, kDigits) +
+                  " m/s^2, which is not the Earth's",
+       .explanation = "the swing's effective length there is " +
+                      NumberText(kStandardGravity / gravity_over_inertia, kDigits) + " m",
+       .advice = "correct length, unless the pendulum is elsewhere, tilted, or not a small bob on a string"}};
 }
 
 /// Length and g predict another period than the swing shows.
 std::vector<Warning> QuestionPeriod(const Rig& rig, double predicted, double seen) {
-  return {{"rig_implausible", "the rig: length " + NumberText(rig.length->value) + " m and g predict a period of " +
-                                  PeriodText(predicted) + ", but the swing has one of " + PeriodText(seen) +
-                                  ", an effective length of " + NumberText(rig.gravity->value / seen, kDigits) +
-                                  " m; correct length, unless the pendulum is not a small bob on a string"}};
+  return {{.code = "rig_implausible",
+           .finding = "the rig: length " + NumberText(rig.length->value) + " m and g predict a period of " +
+                      PeriodText(predicted) + ", but the swing has one of " + PeriodText(seen) +
+                      ", an effective length of " + NumberText(rig.gravity->value / seen, kDigits) + " m",
+           .advice = "correct length, unless the pendulum is not a small bob on a string"}};
 }
 
 }  // namespace
@@ -300,11 +311,14 @@ Result<std::vector<Warning>> CompareRigWithSwing(const Rig& rig, double gravity_
     if (factor < kSameWithin) return {};
     if (rig.length && rig.gravity && !rig.mass) return QuestionPeriod(rig, *predicted, gravity_over_inertia);
     const double times = *predicted / gravity_over_inertia;
-    return std::vector<Warning>{
-        {"inertia_differs_from_rig",
-         "the fitted inertia is " + NumberText(times, kDigits) + " times the one that the rig's " + KeysOfInertia(rig) +
-             (rig.source.contains("inertia") ? " gives" : " give") + "; check these values" +
-             (rig.source.contains("inertia") ? "" : ", and whether the bob is a point mass at that distance")}};
+    const bool is_given = rig.source.contains("inertia");
+    return std::vector<Warning>{{.code = "inertia_differs_from_rig",
+                                 .finding = "the fitted inertia is " + NumberText(times, kDigits) +
+                                            " times the one that the rig's " + KeysOfInertia(rig) +
+                                            (is_given ? " gives" : " give"),
+                                 .advice = std::string("check these values") +
+                                           (is_given ? "" : ", and whether the bob is a point mass at that distance"),
+                                 .about = {.parameters = {"inertia"}}}};
   }
   const std::optional<double> largest = LargestRatio(rig);
   if (largest && gravity_over_inertia > kSameWithin * *largest)

@@ -30,10 +30,12 @@ Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<W
   if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
   Result<Rig> rig = ParseRig(JsonText(values), name);
   if (rig && lacks_gravity) {
-    warnings.push_back({"gravity_assumed",
-                        "g was taken as " + NumberText(kMeanGravity) + " +- " + NumberText(kGravityStdDev) +
-                            " m/s^2, as at sea level; give the local value with --g",
-                        "g " + NumberText(kMeanGravity) + " ± " + NumberText(kGravityStdDev) + " m/s^2 (--g)"});
+    const std::string mean = NumberText(kMeanGravity), std_dev = NumberText(kGravityStdDev);
+    warnings.push_back({.code = "gravity_assumed",
+                        .finding = "g was taken as " + mean + " +- " + std_dev + " m/s^2, as at sea level",
+                        .advice = "give the local value with --g",
+                        .flags = {"g"},
+                        .assumed = "g " + mean + " ± " + std_dev + " m/s^2 (--g)"});
   }
   return rig;
 }
@@ -57,12 +59,16 @@ Result<Rig> RigOfValues(Json values, std::vector<Warning>& warnings) {
 }
 
 Warning OverrideWarning(const Json& values) {
-  std::vector<std::string> flags;
+  std::vector<std::string> names, flags;
   for (const RigKey& key : RigKeys()) {
-    if (values.contains(key.name)) flags.push_back("--" + std::string(key.flag));
+    if (!values.contains(key.name)) continue;
+    names.emplace_back(key.flag);
+    flags.push_back("--" + names.back());
   }
-  return {"rig_overridden", "the values of the rig file were replaced by " + NameList(flags),
-          NameList(flags) + " instead of the rig file's"};
+  return {.code = "rig_overridden",
+          .finding = "the values of the rig file were replaced by " + NameList(flags),
+          .flags = names,
+          .assumed = NameList(flags) + " instead of the rig file's"};
 }
 
 }  // namespace pendulum

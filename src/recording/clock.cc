@@ -28,6 +28,11 @@ std::string Count(Index count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
+std::string PacketsText(const Packets& packets) {
+  return "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
+         " rows";
+}
+
 /// A relative error of the times in a message.
 std::string ErrorText(double share) {
   const auto percent = [](double each) { return NumberText(100 * each, 2) + " %"; };
@@ -90,8 +95,10 @@ class ClockRepair {
   tl::unexpected<Status> Fault(Index row, const std::string& sentence) const {
     return Error(StatusCode::kDataLoss, LineText(row) + ": " + sentence);
   }
-  void Warn(const std::string& code, Index row, const std::string& sentence, const std::string& assumed = "") {
-    samples_.warnings.push_back({code, LineText(row) + ": " + sentence, assumed});
+  void Warn(Index row, Warning warning) {
+    warning.about.file = samples_.name;
+    warning.about.line = samples_.lines.LineOf(row);
+    samples_.warnings.push_back(std::move(warning));
   }
 
   bool IsUniform() const;
@@ -200,10 +207,12 @@ void ClockRepair::Unwrap() {
   for (const Counter& counter : kCounters) {
     const std::vector<Index> wraps = Wraps(counter);
     if (wraps.empty() || !IsLikely(counter, wraps)) continue;
-    Warn("time_wrapped", wraps.front(),
-         "the times restart from " + NumberText(counter.first, kDigits) + " after " + counter.range_text + " " +
-             samples_.time_unit + ", " + Count(static_cast<Index>(wraps.size()), "time") +
-             " in all, because the counter overflows; later times were corrected");
+    Warn(wraps.front(),
+         {.code = "time_wrapped",
+          .finding = "the times restart from " + NumberText(counter.first, kDigits) + " after " + counter.range_text +
+                     " " + samples_.time_unit + ", " + Count(static_cast<Index>(wraps.size()), "time") +
+                     " in all, because the counter overflows",
+          .explanation = "later times were corrected"});
     double add = 0;
     std::size_t next = 0;
     for (Index i = wraps.front(); i < size(); ++i) {
@@ -271,12 +280,13 @@ bool ClockRepair::MakeUniform(double grid) {
   const auto in_steps = [&](double each) { return std::round((each - first) / grid); };
   const std::optional<UniformClock> clock = FindUniformClock(IntervalsOfWholeSteps(time().unaryExpr(in_steps)));
   if (!clock) return false;
-  Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(grid) + ", which is coarse compared with the sampling interval. " +
-           ReplacementText(clock->slope * grid, clock->slope_tolerance / clock->slope) +
-           ". If the times were truncated instead of rounded, the new times and release_time are " +
-           TimeText(grid / 2) + " too early",
-       EvenText(clock->slope * grid, "the times are rounded"));
+  Warn(0, {.code = "time_rounded",
+           .finding =
+               "the times are rounded to " + TimeText(grid) + ", which is coarse compared with the sampling interval",
+           .explanation = ReplacementText(clock->slope * grid, clock->slope_tolerance / clock->slope) +
+                          "; if the times were truncated instead of rounded, the new times and release_time are " +
+                          TimeText(grid / 2) + " too early",
+           .assumed = EvenText(clock->slope * grid, "the times are rounded")});
   UseClock(first + clock->start * grid, clock->slope * grid, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
   return true;
 }
@@ -298,11 +308,12 @@ bool ClockRepair::MakeUniformFromDigits() {
     clock = clock_of(DigitsRule::kTruncated);
   }
   if (!clock) return false;
-  Warn("time_rounded", 0,
-       "the times are " + rounded + " to " + std::to_string(*digits) + " significant digits, so their steps grow to " +
-           TimeText(unit) + ", which is coarse compared with the sampling interval. " +
-           ReplacementText(clock->slope, clock->slope_tolerance / clock->slope),
-       EvenText(clock->slope, "the times are rounded"));
+  Warn(0, {.code = "time_rounded",
+           .finding = "the times are " + rounded + " to " + std::to_string(*digits) +
+                      " significant digits, so their steps grow to " + TimeText(unit) +
+                      ", which is coarse compared with the sampling interval",
+           .explanation = ReplacementText(clock->slope, clock->slope_tolerance / clock->slope),
+           .assumed = EvenText(clock->slope, "the times are rounded")});
   UseClock(clock->start, clock->slope, clock->slope_tolerance / clock->slope / std::sqrt(3.0));
   return true;
 }
@@ -310,8 +321,8 @@ bool ClockRepair::MakeUniformFromDigits() {
 double ClockRepair::RateHz(double interval) const { return PerSecond(samples_.time_unit) / interval; }
 
 std::string ClockRepair::ReplacementText(double interval, double tolerance) const {
-  return "They were replaced by a uniform clock of " + NumberText(RateHz(interval), 6) +
-         " Hz, which assumes uniform sampling. Clocks within +- " + NumberText(tolerance * RateHz(interval), 2) +
+  return "they were replaced by a uniform clock of " + NumberText(RateHz(interval), 6) +
+         " Hz, which assumes uniform sampling; clocks within +- " + NumberText(tolerance * RateHz(interval), 2) +
          " Hz agree with all times: " + ErrorText(tolerance);
 }
 
@@ -353,15 +364,15 @@ Result<bool> ClockRepair::MakeUniformFromPackets() {
     if (found.verdict == PacketClockVerdict::kUneven && packets.has_inner_steps) WarnOfPackets(packets, found);
     return false;
   }
-  Warn("time_bursts", 0,
-       "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
-           " rows, and each packet has the time at which it was received. The times were replaced by a uniform clock "
-           "of " +
-           NumberText(RateHz(clock.interval), 6) + " Hz +- " + NumberText(clock.std_dev * RateHz(clock.interval), 2) +
-           " Hz, which assumes that no rows are missing: " + ErrorText(clock.std_dev) +
-           ". The shortest delay of the packets remains in release_time. If you know the sampling rate, give "
-           "--sample_rate_hz with --time_column none",
-       EvenText(clock.interval, "the rows come in packets"));
+  Warn(0, {.code = "time_bursts",
+           .finding = PacketsText(packets) + ", and each packet has the time at which it was received",
+           .explanation = "the times were replaced by a uniform clock of " + NumberText(RateHz(clock.interval), 6) +
+                          " Hz +- " + NumberText(clock.std_dev * RateHz(clock.interval), 2) +
+                          " Hz, which assumes that no rows are missing: " + ErrorText(clock.std_dev) +
+                          "; the shortest delay of the packets remains in release_time",
+           .advice = "if you know the sampling rate, give --sample_rate_hz with --time_column none",
+           .flags = {"sample_rate_hz", "time_column"},
+           .assumed = EvenText(clock.interval, "the rows come in packets")});
   UseClock(clock.start, clock.interval, clock.std_dev);
   return true;
 }
@@ -376,11 +387,12 @@ std::string ClockRepair::UnevenText(const PacketClockSearch& found) const {
 /// Warns of stamps of packets that are wrong, because the values show that the rows are sampled uniformly, and that no
 /// uniform clock can replace.
 void ClockRepair::WarnOfPackets(const Packets& packets, const PacketClockSearch& found) {
-  Warn("time_bursts", 0,
-       "the rows come in " + std::to_string(packets.count) + " packets of about " + NumberText(packets.rows) +
-           " rows, and the times are those at which the packets were received. No uniform clock agrees with them, so "
-           "rows are missing or the rate changes" +
-           UnevenText(found) + ", and the times were not changed. Give a part without gaps with --from and --to");
+  Warn(0, {.code = "time_bursts",
+           .finding = PacketsText(packets) + ", and the times are those at which the packets were received",
+           .explanation = "no uniform clock agrees with them, so rows are missing or the rate changes" +
+                          UnevenText(found) + ", and the times were not changed",
+           .advice = "give a part without gaps with --from and --to",
+           .flags = {"from", "to"}});
 }
 
 /// The error for rows of which too many share a stamp.
@@ -410,11 +422,12 @@ void ClockRepair::WarnOfScatter() {
   constexpr double kMinUnusualShare = 0.1;
   const std::optional<double> grid = Grid();
   if (!grid || static_cast<double>(CountUnusualSteps(*grid)) <= kMinUnusualShare * static_cast<double>(size())) return;
-  Warn("time_rounded", 0,
-       "the times are rounded to " + TimeText(*grid) +
-           ", which is coarse compared with the sampling interval. No uniform clock agrees with them, so they were not "
-           "changed; rounding gives them an error of " +
-           NumberText(*grid / std::sqrt(12.0), 2) + " " + samples_.time_unit);
+  Warn(0, {.code = "time_rounded",
+           .finding =
+               "the times are rounded to " + TimeText(*grid) + ", which is coarse compared with the sampling interval",
+           .explanation = "no uniform clock agrees with them, so they were not changed; rounding gives them an error "
+                          "of " +
+                          NumberText(*grid / std::sqrt(12.0), 2) + " " + samples_.time_unit});
 }
 
 // ---- Repeated stamps ---------------------------------------------------------------------------------------------
@@ -462,9 +475,10 @@ Check ClockRepair::RemoveRowsWithSharedStamps() {
   if (static_cast<double>(removed) > kMaxShare * static_cast<double>(size()) && !SharedRowsAreEqual()) {
     return SharedStampsFault({});
   }
-  Warn("time_repeated", first + 1,
-       many + " were left out because they share their time with another row, first " + TimeText(time()[first]) +
-           "; of rows with equal times and values, one was kept");
+  Warn(first + 1, {.code = "time_repeated",
+                   .finding = many + " were left out because they share their time with another row, first " +
+                              TimeText(time()[first]),
+                   .explanation = "of rows with equal times and values, one was kept"});
   KeepRows(keep);
   return {};
 }
@@ -505,14 +519,13 @@ void ClockRepair::RemoveRepeatedEnds() {
   const auto line = [&](Index row) { return std::to_string(samples_.lines.LineOf(row)); };
   std::vector<bool> keep(static_cast<std::size_t>(size()), true);
   if (at_end >= least) {
-    Warn("rows_repeated", end + 1,
-         "lines " + line(end + 1) + " to " + line(size() - 1) + " repeat line " + line(end) +
-             ", time and value, and were left out");
+    Warn(end + 1, {"rows_repeated", "lines " + line(end + 1) + " to " + line(size() - 1) + " repeat line " + line(end) +
+                                        ", time and value, and were left out"});
     std::fill(keep.begin() + end + 1, keep.end(), false);
   }
   if (at_start >= least) {
-    Warn("rows_repeated", 1,
-         "lines " + line(1) + " to " + line(begin) + " repeat line " + line(0) + ", time and value, and were left out");
+    Warn(1, {"rows_repeated", "lines " + line(1) + " to " + line(begin) + " repeat line " + line(0) +
+                                  ", time and value, and were left out"});
     std::fill(keep.begin() + 1, keep.begin() + begin + 1, false);
   }
   if (std::ranges::find(keep, false) != keep.end()) KeepRows(keep);
@@ -545,10 +558,11 @@ void ClockRepair::RemoveStrayStamps() {
     removed += count;
   }
   if (removed == 0 || static_cast<double>(removed) > kMaxShare * static_cast<double>(size())) return;
-  Warn("time_not_increasing", first,
-       "time " + TimeText(time()[first]) + " is far from " + TimeText(time()[first - 1]) + " of line " +
-           std::to_string(samples_.lines.LineOf(first - 1)) + "; " + Count(removed, "row") +
-           (removed == 1 ? " with such a time was" : " with such times were") + " left out");
+  Warn(first, {.code = "time_not_increasing",
+               .finding = "time " + TimeText(time()[first]) + " is far from " + TimeText(time()[first - 1]) +
+                          " of line " + std::to_string(samples_.lines.LineOf(first - 1)),
+               .explanation = Count(removed, "row") +
+                              (removed == 1 ? " with such a time was" : " with such times were") + " left out"});
   KeepRows(all);
 }
 
@@ -576,7 +590,9 @@ Check ClockRepair::RemoveBackwardRows() {
     return Fault(first, sentence + ", and " + many +
                             " would have to be left out to make times increase; correct or sort the rows");
   }
-  Warn("time_not_increasing", first, sentence + "; the fewest rows were left out to make times increase, " + many);
+  Warn(first, {.code = "time_not_increasing",
+               .finding = sentence,
+               .explanation = "the fewest rows were left out to make times increase, " + many});
   KeepRows(keep);
   return {};
 }
@@ -681,9 +697,12 @@ Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
   part.KeepOnly(rows);
   Result<RawSamples> repaired_part = RepairRows(std::move(part));
   if (!repaired_part) return repaired_part;
-  repaired_part->warnings.push_back(
-      {"time_outside_window", repaired.error().message + ". Only the " + std::to_string(rows.size()) + " of " +
-                                  std::to_string(all) + " rows in the window of --from and --to were read"});
+  repaired_part->warnings.push_back({.code = "time_outside_window",
+                                     .finding = "only the " + std::to_string(rows.size()) + " of " +
+                                                std::to_string(all) +
+                                                " rows in the window of --from and --to were read",
+                                     .explanation = repaired.error().message,
+                                     .flags = {"from", "to"}});
   return repaired_part;
 }
 

@@ -74,15 +74,18 @@ bool StartsWithHold(const Recording& recording) {
 }
 
 Warning ConversionWarning(Index silences, std::ptrdiff_t slips) {
-  std::string text =
-      "the recording has rows only where the count changes. Each row is treated as the edge of its count, crossed at "
-      "its time stamp; between rows at the " +
+  std::string explanation =
+      "each row is treated as the edge of its count, crossed at its time stamp; between rows at the " +
       std::to_string(silences) + " turning points and rests the angle is only known to be within its count";
   if (slips > 0) {
-    text += "; " + std::to_string(slips) + (slips == 1 ? " row" : " rows") +
-            " in the wrong direction left out, because the counter missed edges";
+    explanation += "; " + std::to_string(slips) + (slips == 1 ? " row" : " rows") +
+                   " in the wrong direction left out, because the counter missed edges";
   }
-  return {"event_driven", text + "; use --noise gaussian to treat the rows as samples"};
+  return {.code = "event_driven",
+          .finding = "the recording has rows only where the count changes",
+          .explanation = explanation,
+          .advice = "use --noise gaussian to treat the rows as samples",
+          .flags = {"noise"}};
 }
 
 }  // namespace

@@ -133,10 +133,11 @@ void WarnOfEventRows(double smallest_step, Recording& recording) {
   std::ranges::sort(intervals);
   const bool uneven = intervals[intervals.size() * 9 / 10] > kUneven * intervals[intervals.size() / 10];
   if (!uneven || single < kMinSingleShare * steps || none > kNever * steps) return;
-  recording.warnings.push_back(
-      {"event_driven",
-       "the recording has rows only where the value changes. The angle is then at the edge of its count, half a count "
-       "from the middle, and the error bars ignore this shift; record at equal intervals if possible"});
+  recording.warnings.push_back({.code = "event_driven",
+                                .finding = "the recording has rows only where the value changes",
+                                .explanation = "the angle is then at the edge of its count, half a count from the "
+                                               "middle, and the error bars ignore this shift",
+                                .advice = "record at equal intervals if possible"});
 }
 
 constexpr Index kStaleReach = 6;  // samples on either side that are examined for stale readings
@@ -207,8 +208,9 @@ void RemoveStaleReadings(double smallest_step, Recording& recording) {
   if (left_out == 0 || recording.size() - left_out < kMinimumSamples) return;
   KeepMarkedSamples(kept, recording);
   recording.warnings.push_back(
-      {"stale_values", std::to_string(left_out) +
-                           " readings only repeat the previous one while the pendulum moves; they are left out"});
+      {.code = "stale_values",
+       .finding = std::to_string(left_out) + " readings only repeat the previous one while the pendulum moves",
+       .explanation = "they are left out"});
 }
 
 /// The scale of the distances of readings to the line through their two neighbours. Stores the median of each block;

@@ -26,9 +26,9 @@ Json RigVerdictJson(const RigVerdict& verdict) {
       .Set("geometric", verdict.geometric)
       .Set("fitted", verdict.fitted)
       .Set("excess", verdict.excess)
-      .Set("z", verdict.z, verdict.text)
+      .Set("z", verdict.z, verdict.text())
       .Set("agrees", verdict.z ? Json(!verdict.differs()) : Json(nullptr))
-      .Set("verdict", Json(verdict.text))
+      .Set("verdict", Json(verdict.text()))
       .Done();
 }
 
@@ -40,7 +40,7 @@ Sections AmbiguitySections(const Identification& identification, std::size_t fit
   if (ambiguities.empty()) return {};
   Section section{"What one swing cannot tell"};
   if (const auto verdict = JudgeInertia(identification.rig, report)) {
-    section.AddText(AsSentence(verdict->text), verdict->differs() ? Emphasis::kCaution : Emphasis::kNone);
+    section.AddText(AsSentence(verdict->text()), verdict->differs() ? Emphasis::kCaution : Emphasis::kNone);
   }
   Items items;
   for (const Ambiguity& one : ambiguities) {

@@ -119,7 +119,7 @@ Section ComparisonSection(const Comparison& comparison, const Conversion& shown)
   Section section{"Comparison"};
   section.AddText(recommends ? "Recommended: " + comparison.recommended + "." : "No model is recommended.",
                   recommends ? Emphasis::kNone : Emphasis::kCaution);
-  section.AddText(Sentence(comparison.reason)).Add(CriteriaTable(comparison, shown));
+  section.AddText(Capitalized(Sentence(comparison.reason))).Add(CriteriaTable(comparison, shown));
   section.AddText(Sentence(comparison.criterion));
   if (HasPredictions(comparison)) {
     section.AddText(

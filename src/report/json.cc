@@ -105,7 +105,22 @@ Json FitJson(const Identification& identification, std::size_t index) {
 Json WarningsJson(const Identification& identification) {
   Json warnings = Json::array();
   for (const Warning& warning : AllWarnings(identification)) {
-    warnings.push_back({{"code", warning.code}, {"message", warning.message}});
+    const WarningSubject& about = warning.about;
+    Json recordings = Json::array();
+    for (int k = 1; k <= static_cast<int>(identification.runs.size()); ++k) {
+      if (about.recording == k || about.recording == WarningSubject::kEachRecording) recordings.push_back(k);
+    }
+    warnings.push_back({{"code", warning.code.text()},
+                        {"message", MessageText(warning)},
+                        {"text", TextWithoutLaw(warning)},
+                        {"finding", warning.finding},
+                        {"explanation", TextOrNull(warning.explanation)},
+                        {"advice", TextOrNull(warning.advice)},
+                        {"flags", warning.flags},
+                        {"assumed", TextOrNull(warning.assumed)},
+                        {"law", TextOrNull(about.law)},
+                        {"recordings", std::move(recordings)},
+                        {"parameters", about.parameters}});
   }
   return warnings;
 }

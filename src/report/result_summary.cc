@@ -319,13 +319,9 @@ std::string MisfitText(const FitReport& fit, bool is_one_of_several) {
          "another window (--from, --to).";
 }
 
-bool HasWarning(std::string_view code, const FitSummary& summary) {
-  return std::ranges::find(summary.warnings, code, &Warning::code) != summary.warnings.end();
-}
-
 /// Erases the warnings whose code begins with `code`, since the summary says otherwise what they say.
 void EraseWarnings(std::string_view code, FitSummary& summary) {
-  std::erase_if(summary.warnings, [&](const Warning& warning) { return warning.code.starts_with(code); });
+  std::erase_if(summary.warnings, [&](const Warning& warning) { return warning.code.text().starts_with(code); });
 }
 
 /// Whether the law describes the readings. What it says is no warning any more.
@@ -338,7 +334,7 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
                       std::string(TerminationName(fit.termination)) + "): " + WithFullStop(Printable(fit.reason));
     summary.emphasis = Emphasis::kAlarm;
     std::erase_if(summary.warnings, [&](const Warning& warning) {
-      return warning.code == "at_bound" || fit.reason.starts_with(warning.message);
+      return warning.code == "at_bound" || fit.reason.starts_with(MessageText(warning));
     });
     return;
   }
@@ -416,11 +412,11 @@ void CollectMisfits(const Identification& identification, std::size_t index, Fit
   if (list.empty()) return;
   EraseWarnings("lack_of_fit", summary);
   if (identification.joint[index].lacks_fit) return;  // the verdict says it
-  summary.warnings.insert(
-      summary.warnings.begin(),
-      {"lack_of_fit", "the law does not describe " +
-                          std::string(list.find(',') == std::string::npos ? "recording " : "recordings ") + list +
-                          " (--models all)"});
+  summary.warnings.insert(summary.warnings.begin(),
+                          {.code = "lack_of_fit",
+                           .finding = "the law does not describe " +
+                                      std::string(list.find(',') == std::string::npos ? "recording " : "recordings ") +
+                                      list + " (--models all)"});
 }
 
 /// What the formula assumes, or what disturbs it.
@@ -466,49 +462,10 @@ std::string TextbookText(const ClosedFormCheck* check) {
   return text.empty() ? "" : text + ".";
 }
 
-/// The clauses of a message: the parts between semicolons and full stops outside parentheses.
-std::vector<std::string> ClausesOf(const std::string& message) {
-  std::vector<std::string> clauses(1);
-  int depth = 0;
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    depth += message[i] == '(' ? 1 : message[i] == ')' ? -1 : 0;
-    const bool ends = depth == 0 && (message[i] == ';' || message[i] == '.') && message.substr(i + 1, 1) == " ";
-    if (ends) {
-      clauses.emplace_back();
-      ++i;
-    } else {
-      clauses.back() += message[i];
-    }
-  }
-  return clauses;
-}
-
-bool HasFlag(const std::string& text) { return text.find("--") != std::string::npos; }
-
-/// A message without its explanations: its first clause, and the one that names a flag.
-std::string ShortMessage(const std::string& message) {
-  const std::vector<std::string> clauses = ClausesOf(message);
-  std::string text = clauses.front();
-  const auto with_flag = std::ranges::find_if(clauses, HasFlag);
-  if (with_flag != clauses.end() && with_flag != clauses.begin()) text += ". " + Capitalized(*with_flag);
-  text = Printable(text);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
-/// A message about the recording at `path` without the path, which is the title: "line 118: ..." if it names a line.
-std::string WithoutPath(const std::string& message, const std::string& path) {
-  if (path.empty() || !message.starts_with(path + ":")) return message;
-  const std::string rest = message.substr(path.size() + 1);
-  if (rest.starts_with(" ")) return rest.substr(1);
-  return (rest.find_first_of("0123456789") == 0 ? "line " : "") + rest;
-}
-
-/// The warnings in short, serious ones first. An assumption is none of them.
-std::vector<Warning> Shortened(std::vector<Warning> warnings, const std::string& path) {
+/// The warnings that are no assumptions, serious ones first.
+std::vector<Warning> WithoutAssumptions(std::vector<Warning> warnings) {
   std::erase_if(warnings, [](const Warning& warning) { return !warning.assumed.empty(); });
-  for (Warning& warning : warnings) warning.message = ShortMessage(WithoutPath(warning.message, path));
-  std::ranges::stable_partition(warnings, IsSerious);
+  std::ranges::stable_partition(warnings, [](const Warning& warning) { return warning.code.is_serious(); });
   return warnings;
 }
 
@@ -551,15 +508,12 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
   const Comparison& comparison = *identification.comparison;
   const bool recommends = !comparison.recommended.empty();
   const std::string reason = WithFullStop(Printable(comparison.reason));
-  const bool names_law = reason.starts_with(comparison.recommended + ":");
-  summary.comparison = !recommends ? Capitalized(reason)
-                       : names_law ? "Recommended: " + reason
-                                   : "Recommended: " + comparison.recommended + ". " + reason;
+  summary.comparison = recommends ? "Recommended: " + comparison.recommended + ": " + reason : Capitalized(reason);
   const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
       summary.without_result += (summary.without_result.empty() ? "No result with " : " No result with ") + row.model +
-                                ": " + WithFullStop(ShortMessage(row.reason));
+                                ": " + WithFullStop(Printable(row.reason));
       continue;
     }
     SummaryLaw law{row.model, SignificantText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
@@ -575,7 +529,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
   summary.assumptions = AssumptionsOf(AllWarnings(identification));
-  summary.warnings = Shortened(AllWarnings(identification), identification.data.path);
+  summary.warnings = WithoutAssumptions(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
   if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
   const ClosedForms& forms = *identification.closed_forms;
@@ -589,51 +543,12 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 
 }  // namespace
 
-bool IsSerious(const Warning& warning) {
-  constexpr std::array<std::string_view, 30> kSerious = {"ambiguous_frequency",
-                                                         "clock_unproven",
-                                                         "inertia_differs_from_rig",
-                                                         "another_minimum",
-                                                         "frequency_differs_from_rig",
-                                                         "hold_disagrees",
-                                                         "noise_below_resolution",
-                                                         "offset_unsteady",
-                                                         "prior_conflict",
-                                                         "rate_disagrees",
-                                                         "rig_implausible",
-                                                         "unequal_columns",
-                                                         "trajectory_accuracy",
-                                                         "closed_forms_differ",
-                                                         "gravity_in_readings",
-                                                         "at_bound",
-                                                         "averaging_disagrees",
-                                                         "aliased",
-                                                         "resolution_disagrees",
-                                                         "calibration_bent",
-                                                         "correlated_residuals",
-                                                         "lack_of_fit",
-                                                         "lost_counts",
-                                                         "lost_samples",
-                                                         "recordings_disagree",
-                                                         "not_constant",
-                                                         "samples_near_period",
-                                                         "stale_values",
-                                                         "uncertain_stop",
-                                                         "zero_drift"};
-  return std::ranges::find(kSerious, warning.code) != kSerious.end();
-}
-
-std::string Capitalized(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
 FitSummary SummarizeFit(const Identification& identification, std::size_t index) {
   FitSummary summary;
   const FitReport& fit = identification.fits[index];
   const std::vector<Warning> warnings = WarningsOfFit(identification, index);
   summary.assumptions = AssumptionsOf(warnings);
-  summary.warnings = Shortened(warnings, identification.data.path);
+  summary.warnings = WithoutAssumptions(warnings);
   summary.law = fit.model.name;
   if (!identification.is_joint()) {  // the ends of the window say it
     for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
@@ -656,7 +571,8 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (const std::string untested = UntestedText(identification.ConstancyOf(index), fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
   }
-  if (const std::string changing = ChangingText(fit); !changing.empty() && HasWarning("not_constant", summary)) {
+  if (const std::string changing = ChangingText(fit);
+      !changing.empty() && HasWarning(summary.warnings, "not_constant")) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + changing;
     EraseWarnings("not_constant", summary);
   }
@@ -722,7 +638,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
                             : summary.emphasis == Emphasis::kCaution ? "caution"
                                                                      : "good";
   nlohmann::ordered_json messages = nlohmann::ordered_json::array();
-  for (const Warning& warning : summary.warnings) messages.push_back(warning.message);
+  for (const Warning& warning : summary.warnings) messages.push_back(Printable(ShortText(warning)));
   return {{"verdict", summary.verdict},
           {"level", level},
           {"agreement", summary.agreement},

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/report/fit_sections.h"
 #include "pendulum/report/layout.h"
@@ -131,7 +132,7 @@ std::string WithoutAsides(std::string text) {
 
 /// "zero drift": the code in words.
 std::string NameOf(const Warning& warning) {
-  std::string name = warning.code;
+  std::string name(warning.code.text());
   std::ranges::replace(name, '_', ' ');
   return name;
 }
@@ -144,8 +145,9 @@ struct WarningTexts {
 WarningTexts TextsOf(const std::vector<Warning>& warnings, Folding folding) {
   WarningTexts texts;
   for (const Warning& warning : warnings) {
-    if (folding < Folding::kNames || IsSerious(warning)) {
-      texts.sentences.push_back(folding >= Folding::kAsides ? WithoutAsides(warning.message) : warning.message);
+    if (folding < Folding::kNames || warning.code.is_serious()) {
+      const std::string text = Printable(ShortText(warning));
+      texts.sentences.push_back(folding >= Folding::kAsides ? WithoutAsides(text) : text);
     } else if (std::ranges::find(texts.names, NameOf(warning)) == texts.names.end()) {
       texts.names.push_back(NameOf(warning));
     }

@@ -66,7 +66,7 @@ constexpr const char* kWarningTitle = "Warnings";
 
 Section WarningSection(const Identification& identification) {
   Items items{{}, Emphasis::kCaution};
-  for (const Warning& warning : AllWarnings(identification)) items.texts.push_back(Printable(warning.message));
+  for (const Warning& warning : AllWarnings(identification)) items.texts.push_back(Printable(MessageText(warning)));
   return {kWarningTitle, "", {std::move(items)}};
 }
 

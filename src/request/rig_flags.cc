@@ -145,10 +145,10 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
                    with_unit);
   }
   if (!without_unit.empty()) {
-    warnings.push_back({"rig_unit_assumed",
-                        "values without a unit were taken in SI units: " + NameList(without_unit) +
-                            "; write the unit after the number, such as 380g or 43cm",
-                        NameList(without_unit) + " in SI units (380g, 43cm say otherwise)"});
+    warnings.push_back({.code = "rig_unit_assumed",
+                        .finding = "values without a unit were taken in SI units: " + NameList(without_unit),
+                        .advice = "write the unit after the number, such as 380g or 43cm",
+                        .assumed = NameList(without_unit) + " in SI units (380g, 43cm say otherwise)"});
   }
   return values;
 }

@@ -180,7 +180,7 @@ Json AssumptionsJson(const std::vector<Warning>& assumptions) {
   Json list = Json::array();
   for (const Warning& assumption : assumptions) {
     list.push_back(
-        {{"code", assumption.code}, {"message", assumption.message}, {"options", FlagsIn(assumption.message)}});
+        {{"code", assumption.code.text()}, {"message", MessageText(assumption)}, {"options", assumption.flags}});
   }
   return list;
 }

@@ -162,7 +162,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     if (options.quiet) PrintVerdict(*run);
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(*run))
-        PrintMessage(kName, "warning: " + WithPath(*run, warning.message));
+        PrintMessage(kName, "warning: " + WithPath(*run, MessageText(warning)));
     }
     PrintFailures(*run, !options.quiet && !data_on_stdout);
   }

@@ -83,16 +83,19 @@ std::string Counted(std::int64_t count, const std::string& one, const std::strin
   return std::to_string(count) + " " + one + (count == 1 ? " " + is : "s " + are);
 }
 
-std::string LossWarning(const RunLosses& losses, int damaged_frames) {
-  std::string text = Counted(losses.samples, "sample", "is", "are") + " missing";
+Warning LossWarning(const RunLosses& losses, int damaged_frames) {
+  Warning warning{.code = "lost_samples", .finding = Counted(losses.samples, "sample", "is", "are") + " missing"};
   if (losses.dropped > 0) {
-    text += "; " + std::to_string(losses.dropped) +
-            " did not fit into the logger's memory, because the line is too slow for this rate; lower --rate_hz";
+    warning.explanation += std::to_string(losses.dropped) +
+                           " did not fit into the logger's memory, because the line is too slow for this rate; ";
+    warning.advice = "lower --rate_hz";
+    warning.flags = {"rate_hz"};
   }
-  if (losses.on_line > 0) text += "; " + std::to_string(losses.on_line) + " were damaged or lost on the line";
-  if (damaged_frames > 0) text += " (" + Counted(damaged_frames, "damaged frame", "came", "came") + ")";
-  if (losses.late > 0) text += "; " + std::to_string(losses.late) + " conversions began too late";
-  return text + ". Their rows are not in the file; all other rows have correct times";
+  if (losses.on_line > 0) warning.explanation += std::to_string(losses.on_line) + " were damaged or lost on the line; ";
+  if (damaged_frames > 0) warning.explanation += Counted(damaged_frames, "damaged frame", "came", "came") + "; ";
+  if (losses.late > 0) warning.explanation += std::to_string(losses.late) + " conversions began too late; ";
+  warning.explanation += "their rows are not in the file, and all other rows have correct times";
+  return warning;
 }
 
 }  // namespace
@@ -106,8 +109,10 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
   const RunLosses losses = recorded.description.losses.value_or(RunLosses());
   std::vector<Warning> warnings;
   if (recorded.end == RunEnd::kLost)
-    warnings.push_back({"recording_interrupted", recorded.loss_reason + "; the samples before that are kept"});
-  if (losses.samples > 0) warnings.push_back({"lost_samples", LossWarning(losses, recorded.damaged_frames)});
+    warnings.push_back({.code = "recording_interrupted",
+                        .finding = recorded.loss_reason,
+                        .explanation = "the samples before that are kept"});
+  if (losses.samples > 0) warnings.push_back(LossWarning(losses, recorded.damaged_frames));
   if (!losses.is_end_known && recorded.end != RunEnd::kLost) {
     warnings.push_back({"end_message_missing",
                         "the logger did not report how many samples it had sent, so the last ones may be missing"});
@@ -119,19 +124,22 @@ std::vector<Warning> RecordWarnings(const RecordedRun& recorded) {
                                      " ignored"});
   }
   if (const int saturated = ReadingsOf(recorded).saturated; saturated > 0) {
-    warnings.push_back({"saturated", Counted(saturated, "reading", "is", "are") +
-                                         " at an end of the converter's range; turn the potentiometer, or "
-                                         "choose another reference"});
+    warnings.push_back({.code = "saturated",
+                        .finding = Counted(saturated, "reading", "is", "are") + " at an end of the converter's range",
+                        .advice = "turn the potentiometer, or choose another reference"});
   }
   if (recorded.description.clock.is_implausible) {
     warnings.push_back(
-        {"clock_implausible",
-         "the logger's clock and this computer's differ by more than any resonator explains, so the scale of the times "
-         "was not measured; check whether one of them pauses, as in a virtual machine"});
+        {.code = "clock_implausible",
+         .finding =
+             "the logger's clock and this computer's differ by more than any resonator explains, so the scale of "
+             "the times was not measured",
+         .advice = "check whether one of them pauses, as in a virtual machine"});
   }
   if (!recorded.part_file_error.empty()) {
-    warnings.push_back(
-        {"part_file_not_written", recorded.part_file_error + "; during the run the recording was only in memory"});
+    warnings.push_back({.code = "part_file_not_written",
+                        .finding = recorded.part_file_error,
+                        .explanation = "during the run the recording was only in memory"});
   }
   return warnings;
 }
@@ -146,7 +154,7 @@ std::string RecordText(const RecordedRun& recorded, const std::string& path) {
           Row("ended", EndText(recorded));
   const std::vector<Warning> warnings = RecordWarnings(recorded);
   if (!warnings.empty()) text += Heading("Warnings");
-  for (const Warning& warning : warnings) text += Paragraph(Printable(warning.message), "  - ", kTextWidth);
+  for (const Warning& warning : warnings) text += Paragraph(Printable(MessageText(warning)), "  - ", kTextWidth);
   return text;
 }
 

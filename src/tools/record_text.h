@@ -7,7 +7,7 @@
 #include <pendulum_logger/frame.h>
 
 #include "pendulum/acquisition/serial_port.h"
-#include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "tools/record_run.h"
 
 namespace pendulum {

@@ -118,7 +118,7 @@ TEST(RunCsv, IsReadBackSampleForSample) {
     EXPECT_DOUBLE_EQ(recording.time[i], 0.005 * i);
     EXPECT_EQ(recording.value[i], 500 + i % 7);
   }
-  EXPECT_TRUE(recording.warnings.empty()) << recording.warnings.front().message;
+  EXPECT_TRUE(recording.warnings.empty()) << MessageText(recording.warnings.front());
 }
 
 TEST(RunCsv, ContainsResolutionAndRange) {
@@ -178,7 +178,7 @@ TEST(RunCsv, ReportsLostSamples) {
   EXPECT_DOUBLE_EQ(recording->time[19], 0.095);  // from # sample_rate_hz
   ASSERT_EQ(recording->warnings.size(), 1);
   EXPECT_EQ(recording->warnings[0].code, "lost_samples");
-  EXPECT_THAT(recording->warnings[0].message, HasSubstr("4"));
+  EXPECT_THAT(MessageText(recording->warnings[0]), HasSubstr("4"));
 }
 
 TEST(RunCsv, KeepsTheTimesAfterAGap) {

@@ -105,9 +105,7 @@ TEST(FitModels, IgnoresAndReportsParametersOfOtherModels) {
   FitOptions options;
   options.fixed = {{"coulomb", 0.002}};
   const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
-  const auto warns = [](const FitReport& fit) {
-    return std::ranges::find(fit.warnings, "ignored_parameter", &Warning::code) != fit.warnings.end();
-  };
+  const auto warns = [](const FitReport& fit) { return fit.HasWarning("ignored_parameter"); };
   EXPECT_TRUE(warns(fitted.fits[0]));
   EXPECT_FALSE(warns(fitted.fits[1]));
   EXPECT_TRUE(fitted.fits[1].Find("coulomb")->fixed);

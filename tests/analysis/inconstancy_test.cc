@@ -91,7 +91,7 @@ TEST(Inconstancy, ExplainsDifferencesBetweenAmplitudes) {
 TEST(Inconstancy, IsReportedWithItsSize) {
   const FitOfRun run = FitWithInconstancy(NoisyTextbookRun("viscous"), WithLinearGravity({}));
   ASSERT_TRUE(run.fit.HasWarning("not_constant"));
-  EXPECT_THAT(run.fit.warnings.back().message, HasSubstr("by more than their errors: inertia by 0.000"));
+  EXPECT_THAT(MessageText(run.fit.warnings.back()), HasSubstr("by more than their errors: inertia by 0.000"));
 }
 
 // The rig's error is a factor common to all torques; the inconstancy belongs to inertia alone.
@@ -184,7 +184,7 @@ TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {
   AddInconstancyError(constancy, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
-  EXPECT_THAT(fit.warnings.back().message, HasSubstr("s^2 between halves. Another run"));
+  EXPECT_THAT(MessageText(fit.warnings.back()), HasSubstr("s^2 between halves; another run"));
 }
 
 // A zero that moves in the middle of a recording makes the halves differ and gives the windows no trend. A recording

@@ -70,7 +70,7 @@ TEST(Recommend, ChoosesTheMoreCommonOfTwoEquallySimpleLaws) {
 
 TEST(Recommend, GivesItsReasonInWords) {
   EXPECT_EQ(Recommended({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}}).reason,
-            "drag: BIC lower by 812 than with coulomb, and predicts the last 40 % 2 times as well");
+            "BIC lower by 812 than with coulomb, and predicts the last 40 % 2 times as well");
   EXPECT_THAT(Recommended({{"coulomb", 90, 0.0020}, {"drag", 50, 0.0021}}).reason, HasSubstr("equally well"));
   EXPECT_THAT(Recommended({{"coulomb", 90, 0.001}, {"drag", 50, 0.003}}).reason, HasSubstr("3 times worse"));
 }
@@ -100,7 +100,7 @@ TEST(Recommend, RefusesALawThatDoesNotPredictBetter) {
   Recommend(made.fitted.fits, made.comparison);
   EXPECT_EQ(made.comparison.recommended, "drag");
   EXPECT_EQ(made.comparison.reason,
-            "drag: no other is better; stribeck has a smaller BIC, but residuals that are more than noise, and a "
+            "no other is better; stribeck has a smaller BIC, but residuals that are more than noise, and a "
             "prediction of the last 40 % that is missing or not better; its residuals are still more than noise "
             "(lag-1 correlation 0), so the model lacks something");
   made.comparison.rows[1].forward.rms = 0.6;

@@ -43,7 +43,7 @@ TEST(JudgeInertia, DividesTheDifferenceByAllErrors) {
   EXPECT_NEAR(*verdict->z, 0.001 / std::sqrt(8e-4 * 8e-4 + 6e-4 * 6e-4 + 2e-4 * 2e-4), 2e-3);
   EXPECT_NEAR(verdict->excess, 0.080 / 0.079 - 1, 1e-12);
   EXPECT_FALSE(verdict->differs());
-  EXPECT_THAT(verdict->text, HasSubstr("agrees with the rig's: 1.3 % larger (z 0.98)"));
+  EXPECT_THAT(verdict->text(), HasSubstr("agrees with the rig's: 1.3 % larger (z 0.98)"));
   EXPECT_THAT(verdict->brief, IsEmpty());
 }
 
@@ -59,13 +59,13 @@ TEST(JudgeInertia, NamesCausesAndTheExperimentIfTheyDiffer) {
   const auto larger = JudgeInertia(RigWithInertia(R"({"value": 0.070, "std_dev": 0.0006})"), FitWithInertia());
   ASSERT_TRUE(larger);
   EXPECT_TRUE(larger->differs());
-  EXPECT_THAT(larger->text, AllOf(HasSubstr("14 % larger than the rig's (z 9.8)"), HasSubstr("a support that yields"),
-                                  HasSubstr("another bob mass")));
+  EXPECT_THAT(larger->text(), AllOf(HasSubstr("14 % larger than the rig's (z 9.8)"), HasSubstr("a support that yields"),
+                                    HasSubstr("another bob mass")));
   EXPECT_THAT(larger->brief, HasSubstr("The rig disagrees"));
   const auto smaller = JudgeInertia(RigWithInertia(R"({"value": 0.090, "std_dev": 0.0006})"), FitWithInertia());
   ASSERT_TRUE(smaller);
   EXPECT_TRUE(smaller->differs());
-  EXPECT_THAT(smaller->text, AllOf(HasSubstr("11 % smaller"), HasSubstr("spring, cable")));
+  EXPECT_THAT(smaller->text(), AllOf(HasSubstr("11 % smaller"), HasSubstr("spring, cable")));
 }
 
 TEST(JudgeInertia, IsNoVerdictWithoutErrorsOfTheRig) {
@@ -74,7 +74,7 @@ TEST(JudgeInertia, IsNoVerdictWithoutErrorsOfTheRig) {
   ASSERT_TRUE(verdict);
   EXPECT_FALSE(verdict->z);
   EXPECT_FALSE(verdict->differs());
-  EXPECT_THAT(verdict->text, HasSubstr("14 % larger than the rig's; the rig gives no standard deviations"));
+  EXPECT_THAT(verdict->text(), HasSubstr("14 % larger than the rig's; the rig gives no standard deviations"));
 }
 
 TEST(JudgeInertia, NeedsAnInertiaAndAResult) {

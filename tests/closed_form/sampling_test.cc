@@ -34,13 +34,13 @@ Recording Cosine(double frequency_hz, double rate_hz, Eigen::Index count, double
 
 auto Codes(const Sampling& sampling) {
   std::vector<std::string> codes;
-  for (const Warning& warning : SamplingWarnings(sampling)) codes.push_back(warning.code);
+  for (const Warning& warning : SamplingWarnings(sampling)) codes.emplace_back(warning.code.text());
   return codes;
 }
 
 std::string MessageOf(const Sampling& sampling, const std::string& code) {
   for (const Warning& warning : SamplingWarnings(sampling)) {
-    if (warning.code == code) return warning.message;
+    if (warning.code == code) return MessageText(warning);
   }
   return "";
 }

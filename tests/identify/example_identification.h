@@ -72,7 +72,7 @@ inline FitReport ExampleFit() {
   fit.statistics = {0.00349, 1234.5, -2457, -2456.875, -2437.5, 1.75, 0.04, 0.25, 1200.25};
   fit.solver = {7, 15, "Convergence. (made up)", {}};
   fit.trace_error = 2e-10;
-  fit.warnings = {{"lack_of_fit", "the residuals are not white; friction may be of another kind"}};
+  fit.warnings = {{"lack_of_fit", "the residuals are not white", "friction may be of another kind"}};
   return fit;
 }
 
@@ -171,7 +171,7 @@ inline Constancy ExampleConstant() {
 inline Comparison ExampleComparison() {
   Comparison comparison;
   comparison.recommended = "coulomb";
-  comparison.reason = "It is the only one that converged.";
+  comparison.reason = "the only one that converged";
   comparison.criterion = "BIC of independent residuals";
   comparison.effective_samples = 1801;
   ComparisonRow coulomb;
@@ -231,7 +231,7 @@ inline Identification ExampleIdentification() {
   report.closed_forms_model = "coulomb";
   report.checks = {ExampleCheck()};
   report.constancy = {ExampleConstant()};
-  report.warnings = {{"gap", "there is a gap of 0.5 s after 7 s"}};
+  report.warnings = {{"gaps", "there is a gap of 0.5 s after 7 s"}};
   return report;
 }
 

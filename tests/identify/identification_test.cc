@@ -8,6 +8,7 @@
 
 #include "pendulum/recording/window.h"
 #include "tests/analysis/fitted_run.h"
+#include "tests/base/warning_matchers.h"
 #include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::identification_test {
@@ -47,10 +48,9 @@ TEST(SummarizeUsed, DescribesTheWindow) {
 TEST(AllWarnings, ListEachWarningOnceAndStartWithTheData) {
   Identification report = ExampleIdentification();
   report.fits.push_back(report.fits.front());
-  report.fits.back().warnings.push_back({"gap", "another gap"});
-  EXPECT_THAT(AllWarnings(report),
-              ElementsAre(Field(&Warning::code, "gap"), Field(&Warning::code, "lack_of_fit"),
-                          Field(&Warning::message, std::string(report.fits[1].model.name) + ": another gap")));
+  report.fits.back().warnings.push_back({"gaps", "another gap"});
+  EXPECT_THAT(AllWarnings(report), ElementsAre(CodeIs("gaps"), CodeIs("lack_of_fit"),
+                                               MessageIs(std::string(report.fits[1].model.name) + ": another gap")));
 }
 
 TEST(Identification, GivesTheCheckOfAFitIfThereIsOne) {
@@ -64,23 +64,22 @@ TEST(Identification, GivesTheCheckOfAFitIfThereIsOne) {
 TEST(AllWarnings, AreTheWarningsOfTheRecordingIfThereIsNoFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  EXPECT_THAT(AllWarnings(report), ElementsAre(Field(&Warning::code, "gap")));
+  EXPECT_THAT(AllWarnings(report), ElementsAre(CodeIs("gaps")));
 }
 
 TEST(AllWarnings, NameTheRecordingInAJointFit) {
   Identification report = ExampleJointIdentification();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
   report.runs[1].warnings = report.runs[0].warnings;
-  EXPECT_THAT(AllWarnings(report),
-              ElementsAre(Field(&Warning::message, "they do not agree"),
-                          Field(&Warning::message, "each recording: there is a gap of 0.5 s after 7 s"),
-                          Field(&Warning::message, StartsWith("recording 1 (run.csv): the residuals are not white"))));
-  report.runs[1].warnings[0].message = "there is a gap of 0.7 s after 7 s";
-  EXPECT_THAT(AllWarnings(report),
-              ElementsAre(Field(&Warning::message, "they do not agree"),
-                          Field(&Warning::message, "recording 1 (run.csv): there is a gap of 0.5 s after 7 s"),
-                          Field(&Warning::code, "lack_of_fit"),
-                          Field(&Warning::message, "recording 2 (b c.csv): there is a gap of 0.7 s after 7 s")));
+  EXPECT_THAT(
+      AllWarnings(report),
+      ElementsAre(MessageIs("they do not agree"), MessageIs("each recording: there is a gap of 0.5 s after 7 s"),
+                  MessageIs(StartsWith("recording 1 (run.csv): the residuals are not white"))));
+  report.runs[1].warnings[0].finding = "there is a gap of 0.7 s after 7 s";
+  EXPECT_THAT(
+      AllWarnings(report),
+      ElementsAre(MessageIs("they do not agree"), MessageIs("recording 1 (run.csv): there is a gap of 0.5 s after 7 s"),
+                  CodeIs("lack_of_fit"), MessageIs("recording 2 (b c.csv): there is a gap of 0.7 s after 7 s")));
 }
 
 TEST(RecordingLabel, IsNumberAndFile) {

@@ -97,7 +97,9 @@ TEST(IdentifyEach, TakesALinearTorqueForARigWithAStiffness) {
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_EQ(run->fits[0].model.name, "linear");
   EXPECT_EQ(run->fits[0].Find("inertia")->unit, "kg m^2");
-  EXPECT_EQ(std::ranges::count(run->warnings, "linear_restoring_torque", &Warning::code), 1);
+  EXPECT_EQ(std::ranges::count_if(run->warnings,
+                                  [](const Warning& warning) { return warning.code == "linear_restoring_torque"; }),
+            1);
 }
 
 /// Two recordings at 100 Hz joined; between them a hand seems to lift the pendulum for 4 s.
@@ -193,7 +195,7 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   EXPECT_EQ(runs[0]->closed_forms_model, "linear");
   ASSERT_THAT(runs[0]->warnings, Not(IsEmpty()));
   EXPECT_EQ(runs[0]->warnings.back().code, "uncalibrated");
-  EXPECT_THAT(runs[0]->warnings.back().message, StartsWith("the readings are in counts, not in a unit of angle"));
+  EXPECT_THAT(MessageText(runs[0]->warnings.back()), StartsWith("the readings are in counts, not in a unit of angle"));
 }
 
 TEST(IdentifyEach, FitsEachChosenRelease) {

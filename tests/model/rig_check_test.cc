@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/base/warning_matchers.h"
+
 namespace pendulum::rig_check_test {
 namespace {
 
@@ -32,9 +34,7 @@ Rig Textbook(const std::string& bob, const std::string& rod, const std::string& 
 /// G/I of the textbook's rig, with the inertia that its authors measured: 1.803 N m / 0.079 kg m².
 constexpr double kSeen = 1.803 / 0.079;
 
-auto Is(const std::string& code, const std::string& text) {
-  return AllOf(Field(&Warning::code, code), Field(&Warning::message, HasSubstr(text)));
-}
+auto Is(const std::string& code, const std::string& text) { return AllOf(CodeIs(code), MessageIs(HasSubstr(text))); }
 
 std::vector<Warning> Implausible(const Rig& rig) {
   std::vector<Warning> warnings = QuestionRig(rig);

@@ -53,7 +53,8 @@ TEST(RigOfValues, AssumesGravityIfItIsNeeded) {
   EXPECT_NEAR(rig->gravity_torque.std_dev, 0.45 * 0.015 * 0.5, 1e-12);
   ASSERT_EQ(warnings.size(), 1);
   EXPECT_EQ(warnings[0].code, "gravity_assumed");
-  EXPECT_EQ(warnings[0].message, "g was taken as 9.806 +- 0.015 m/s^2, as at sea level; give the local value with --g");
+  EXPECT_EQ(MessageText(warnings[0]),
+            "g was taken as 9.806 +- 0.015 m/s^2, as at sea level; give the local value with --g");
 }
 
 TEST(RigOfValues, NeedsNoGravityBesideATorque) {
@@ -89,7 +90,7 @@ TEST(RigOfValues, AssumesNoGravityBesideALengthOrAnInertia) {
 }
 
 TEST(OverrideWarning, NamesTheFlags) {
-  EXPECT_EQ(OverrideWarning({{"gravity", 9.8}, {"bob_mass", 0.4}}).message,
+  EXPECT_EQ(MessageText(OverrideWarning({{"gravity", 9.8}, {"bob_mass", 0.4}})),
             "the values of the rig file were replaced by --bob_mass, --g");
 }
 

@@ -51,7 +51,9 @@ RawSamples Repaired(const RawSamples& samples) {
 /// The only warning, as "code: message".
 std::string WarningOf(const RawSamples& repaired) {
   EXPECT_EQ(repaired.warnings.size(), 1);
-  return repaired.warnings.empty() ? "" : repaired.warnings[0].code + ": " + repaired.warnings[0].message;
+  return repaired.warnings.empty()
+             ? ""
+             : std::string(repaired.warnings[0].code.text()) + ": " + MessageText(repaired.warnings[0]);
 }
 
 std::string FaultOf(const RawSamples& samples) {
@@ -272,8 +274,8 @@ TEST(RepairClock, ReportsTheRepairOfCoarseStamps) {
   // 1 / 896 or too short by at most 1 / 898.
   EXPECT_EQ(WarningOf(Repaired(Rows(Stamps(901, [](int i) { return std::round(i / 3.0) / 10; })))),
             "time_rounded: run.csv:2: the times are rounded to 0.1 s, which is coarse compared with the sampling "
-            "interval. They were replaced by a uniform clock of 30 Hz, which assumes uniform sampling. Clocks within "
-            "+- 0.033 Hz agree with all times: an error of 0.11 % in times and 0.22 % in inertia. If the times were "
+            "interval; they were replaced by a uniform clock of 30 Hz, which assumes uniform sampling; clocks within "
+            "+- 0.033 Hz agree with all times: an error of 0.11 % in times and 0.22 % in inertia; if the times were "
             "truncated instead of rounded, the new times and release_time are 0.05 s too early");
 }
 
@@ -286,7 +288,7 @@ TEST(RepairClock, KeepsIncreasingCoarseStampsOfUnevenSampling) {
   EXPECT_EQ(repaired.time, samples.time);
   EXPECT_EQ(
       WarningOf(repaired),
-      "time_rounded: run.csv:2: the times are rounded to 1 ms, which is coarse compared with the sampling interval. No "
+      "time_rounded: run.csv:2: the times are rounded to 1 ms, which is coarse compared with the sampling interval; no "
       "uniform clock agrees with them, so they were not changed; rounding gives them an error of 0.29 ms");  // 1 / √12
 }
 
@@ -352,8 +354,8 @@ TEST(RepairClock, ReportsTimesWithFewSignificantDigits) {
   const std::string warning = WarningOf(Repaired(Rows(Stamps(900, [](int i) { return Printed(i / 30.0, 3); }))));
   EXPECT_THAT(warning, testing::StartsWith(
                            "time_rounded: run.csv:2: the times are rounded to 3 significant digits, so their steps "
-                           "grow to 0.1 s, which is coarse compared with the sampling interval. They were replaced by "
-                           "a uniform clock of 30 Hz, which assumes uniform sampling. Clocks within +- "));
+                           "grow to 0.1 s, which is coarse compared with the sampling interval; they were replaced by "
+                           "a uniform clock of 30 Hz, which assumes uniform sampling; clocks within +- "));
 }
 
 TEST(RepairClock, RefusesTimesWithFewDigitsAndLostRows) {
@@ -488,7 +490,7 @@ TEST(RepairClock, RefusesPacketsWithLostRowsOrWarns) {
       }
       const auto is_warned = [](const Warning& warning) {
         return warning.code == "time_bursts" &&
-               warning.message.ends_with(". Give a part without gaps with --from and --to");
+               MessageText(warning).ends_with("; give a part without gaps with --from and --to");
       };
       missed += std::ranges::any_of(repaired->warnings, is_warned) ? 0 : 1;
     }
@@ -502,10 +504,10 @@ TEST(RepairClock, ReportsPackets) {
   EXPECT_THAT(warning,
               testing::MatchesRegex(
                   "time_bursts: run.csv:2: the rows come in 32. packets of about 16 rows, and each packet has "
-                  "the time at which it was received. The times were replaced by a uniform clock of "
+                  "the time at which it was received; the times were replaced by a uniform clock of "
                   "(259.9|260)[0-9.]* Hz .- 0.0[0-9]* Hz, which assumes that no rows are missing: an error of "
-                  "0.0[0-9]* % in times and 0.0[0-9]* % in inertia. The shortest delay of the packets remains in "
-                  "release_time. If you know the sampling rate, give --sample_rate_hz with --time_column none"));
+                  "0.0[0-9]* % in times and 0.0[0-9]* % in inertia; the shortest delay of the packets remains in "
+                  "release_time; if you know the sampling rate, give --sample_rate_hz with --time_column none"));
 }
 
 /// A device that samples fast, then pauses: the stamps increase within groups of rows and are right.
@@ -558,9 +560,10 @@ TEST(RepairClock, RemovesRowsThatRepeatTheFirstOrTheLast) {
   EXPECT_EQ(repaired.lines.LineOf(1), 8);
   ASSERT_EQ(repaired.warnings.size(), 2);
   EXPECT_EQ(repaired.warnings[0].code, "rows_repeated");
-  EXPECT_EQ(repaired.warnings[0].message,
+  EXPECT_EQ(MessageText(repaired.warnings[0]),
             "run.csv:307: lines 307 to 1006 repeat line 306, time and value, and were left out");
-  EXPECT_EQ(repaired.warnings[1].message, "run.csv:3: lines 3 to 7 repeat line 2, time and value, and were left out");
+  EXPECT_EQ(MessageText(repaired.warnings[1]),
+            "run.csv:3: lines 3 to 7 repeat line 2, time and value, and were left out");
 }
 
 TEST(RepairClock, KeepsOneOfEachPairOfEqualRows) {
@@ -582,10 +585,11 @@ TEST(RepairClock, JudgesTheWindowIfTheWholeFileCannotBeRepaired) {
   EXPECT_EQ(repaired->time.size(), 351);  // 1 s to 4.5 s
   EXPECT_EQ(repaired->time[0], 1000);
   EXPECT_EQ(repaired->lines.LineOf(0), 102);
-  EXPECT_EQ(WarningOf(*repaired),
-            "time_outside_window: run.csv:602: time 0 ms follows 5990 ms, so the clock was set back: these are two "
-            "recordings in one file; split it before this line. Only the 351 of 900 rows in the window of --from and "
-            "--to were read");
+  EXPECT_EQ(
+      WarningOf(*repaired),
+      "time_outside_window: only the 351 of 900 rows in the window of --from and --to were read; run.csv:602: time "
+      "0 ms follows 5990 ms, so the clock was set back: these are two recordings in one file; split it before this "
+      "line");
   EXPECT_EQ(RepairClock(samples, {1, 20}).error().message, RepairClock(samples).error().message);
 }
 
@@ -733,7 +737,7 @@ TEST(RepairClock, RepairsOneFaultAfterAnother) {
   time[120] = 1.175;
   const RawSamples repaired = Repaired(Rows(time));
   ASSERT_EQ(repaired.warnings.size(), 2);
-  EXPECT_EQ(repaired.warnings[1].message,
+  EXPECT_EQ(MessageText(repaired.warnings[1]),
             "run.csv:122: time 1.175 s does not follow 1.19 s of line 121; the fewest rows were left out to make times "
             "increase, 1 of 198 rows");
   EXPECT_EQ(repaired.time.size(), 197);

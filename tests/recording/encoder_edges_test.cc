@@ -78,7 +78,7 @@ TEST(ConvertToEdges, PlacesARowOnTheEdgeThatTheCountCrossed) {
   EXPECT_THAT(std::remainder(*edges.edge - 0.5 * kResolution, kResolution), DoubleNear(0, 1e-15));
   ASSERT_EQ(edges.warnings.size(), 1);
   EXPECT_EQ(edges.warnings[0].code, "event_driven");
-  EXPECT_THAT(edges.warnings[0].message, HasSubstr("at the 2 turning points and rests"));
+  EXPECT_THAT(MessageText(edges.warnings[0]), HasSubstr("at the 2 turning points and rests"));
 }
 
 TEST(ConvertToEdges, UsesTheEnteredEdgeIfRowsWereMissed) {
@@ -104,7 +104,7 @@ TEST(ConvertToEdges, RemovesRowsOfACounterSlip) {
   EXPECT_EQ(edges.time[12], 13);
   EXPECT_THAT(edges.value[11], DoubleNear(10.5 * kResolution, 1e-15));
   EXPECT_THAT(edges.value[12], DoubleNear(8.5 * kResolution, 1e-15));
-  EXPECT_THAT(edges.warnings[0].message, HasSubstr("1 row in the wrong direction left out"));
+  EXPECT_THAT(MessageText(edges.warnings[0]), HasSubstr("1 row in the wrong direction left out"));
 }
 
 TEST(EdgeDirections, AreTheCrossingDirectionsOfEdges) {

@@ -37,7 +37,7 @@ TEST(MakeRecording, KeepsAValidRecordingUnchanged) {
   recording.path = "swing.csv";
   recording.unit = "deg";
   recording.resolution = 0.01;
-  recording.warnings = {{"code", "message"}};
+  recording.warnings = {{"gaps", "message"}};
   const Result<Recording> made = MakeRecording(recording);
   ASSERT_TRUE(made.has_value());
   EXPECT_EQ(made->path, "swing.csv");

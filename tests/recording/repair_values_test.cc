@@ -41,7 +41,7 @@ Recording Noisy(Recording recording, double sigma, std::uint64_t seed) {
 
 std::vector<std::string> Codes(const Recording& recording) {
   std::vector<std::string> codes;
-  for (const Warning& warning : recording.warnings) codes.push_back(warning.code);
+  for (const Warning& warning : recording.warnings) codes.emplace_back(warning.code.text());
   return codes;
 }
 
@@ -76,7 +76,7 @@ TEST(RepairValues, UnwrapsAnAngleAcrossTheSensorsZero) {
   const Recording repaired = RepairValues(recording);
   ASSERT_THAT(Codes(repaired), ElementsAre("unwrapped"));
   EXPECT_EQ(
-      repaired.warnings[0].message,
+      MessageText(repaired.warnings[0]),
       "16 jumps by a whole turn, where the sensor's range begins again, were removed, so the angle is continuous");
   EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-12);
   EXPECT_FALSE(repaired.range);
@@ -115,9 +115,9 @@ TEST(RepairValues, RemovesATrackersRepeats) {
     const Recording repaired = RepairValues(recording);
     ASSERT_THAT(Codes(repaired), ElementsAre("stale_values"));
     const Eigen::Index left_out = recording.size() - repaired.size();
-    EXPECT_EQ(repaired.warnings[0].message, std::to_string(left_out) +
-                                                " readings only repeat the previous one while the pendulum moves; "
-                                                "they are left out");
+    EXPECT_EQ(MessageText(repaired.warnings[0]), std::to_string(left_out) +
+                                                     " readings only repeat the previous one while the pendulum moves; "
+                                                     "they are left out");
     EXPECT_THAT(static_cast<double>(left_out), testing::DoubleNear(1000.0 * (times - 1) / times, 10));
     EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 1e-3);
   }
@@ -159,7 +159,7 @@ TEST(RepairValues, RemovesOnlySpikes) {
     for (const Eigen::Index i : spiked) recording.value[i] += height;
     const Recording repaired = RepairValues(recording);
     ASSERT_THAT(Codes(repaired), ElementsAre("spikes")) << height;
-    EXPECT_EQ(repaired.warnings[0].message, "4 readings far from their neighbours on both sides are left out");
+    EXPECT_EQ(MessageText(repaired.warnings[0]), "4 readings far from their neighbours on both sides are left out");
     EXPECT_EQ(repaired.size(), 996);
     EXPECT_LT(FarthestFrom(repaired, [](double t) { return 0.5 * std::cos(5 * t); }), 0.013);  // limited by the noise
   }
@@ -203,9 +203,9 @@ TEST(RepairValues, KeepsAllReadingsIfThereAreTooManySpikes) {
   const Recording repaired = RepairValues(recording);
   ASSERT_THAT(Codes(repaired), ElementsAre("many_spikes"));
   EXPECT_EQ(repaired.value, recording.value);
-  EXPECT_THAT(repaired.warnings[0].message,
+  EXPECT_THAT(MessageText(repaired.warnings[0]),
               testing::EndsWith(" readings are far from their neighbours, too many to leave out"));
-  EXPECT_THAT(std::stoi(repaired.warnings[0].message), testing::Ge(101));
+  EXPECT_THAT(std::stoi(MessageText(repaired.warnings[0])), testing::Ge(101));
 }
 
 // ---- Rows only at changes -------------------------------------------------------------------------------------------
@@ -233,8 +233,8 @@ Recording OnlyChanges(const Recording& recording) {
 TEST(RepairValues, DetectsRowsWrittenOnlyAtChanges) {
   const Recording repaired = RepairValues(OnlyChanges(Counted(20000, 5e-4)));
   ASSERT_THAT(Codes(repaired), ElementsAre("event_driven"));
-  EXPECT_EQ(repaired.warnings[0].message,
-            "the recording has rows only where the value changes. The angle is then at the edge of its count, half a "
+  EXPECT_EQ(MessageText(repaired.warnings[0]),
+            "the recording has rows only where the value changes; the angle is then at the edge of its count, half a "
             "count from the middle, and the error bars ignore this shift; record at equal intervals if possible");
 }
 

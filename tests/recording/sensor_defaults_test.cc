@@ -203,7 +203,7 @@ TEST(ReadRecording, TakesAnotherTextAfterSensorAsAComment) {
   EXPECT_FALSE(recording.stated_sensor);
   ASSERT_EQ(recording.warnings.size(), 1U);
   EXPECT_EQ(recording.warnings[0].code, "sensor_unknown");
-  EXPECT_NE(recording.warnings[0].message.find("# sensor: soldered by Ada names no kind"), std::string::npos);
+  EXPECT_NE(MessageText(recording.warnings[0]).find("# sensor: soldered by Ada names no kind"), std::string::npos);
 }
 
 TEST(ReadRecording, RefusesAWrongStatementWithItsLine) {

@@ -22,7 +22,7 @@ Recording Ramp() {
   recording.time = Eigen::VectorXd::LinSpaced(21, 10.0, 20.0);
   recording.value = Eigen::VectorXd::LinSpaced(21, 0.0, 20.0);
   recording.resolution = 0.5;
-  recording.warnings = {{"code", "message"}};
+  recording.warnings = {{"gaps", "message"}};
   return recording;
 }
 

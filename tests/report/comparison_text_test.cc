@@ -20,7 +20,7 @@ std::string ConstancyText(const Identification& report) { return ToText(Constanc
 TEST(ComparisonSections, StartWithTheRecommendation) {
   EXPECT_EQ(ComparisonText(ExampleComparedIdentification()), R"([[Comparison]]
     Recommended: coulomb.
-    It is the only one that converged.
+    The only one that converged.
     model    parameters  rms [deg]  ΔBIC  AICc weight  lag 1
     coulomb           4      0.200   0.0            1   0.12
     drag              -          -     -            -      -  lack of fit

@@ -209,5 +209,19 @@ TEST(JointFitJson, ExplainsNonFiniteNumbers) {
   EXPECT_THAT(fit.dump(), Not(HasSubstr("nan")));
 }
 
+// The page shows the warnings of each recording, and those of the whole.
+TEST(ToJson, SaysWhichRecordingsAWarningIsAbout) {
+  Identification report = ExampleJointIdentification();
+  report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
+  report.runs[1].warnings = report.runs[0].warnings;
+  const Json warnings = ToJson(report)["warnings"];
+  ASSERT_EQ(warnings.size(), 3);
+  EXPECT_EQ(warnings[0]["recordings"], Json::array());
+  EXPECT_EQ(warnings[1]["code"], "gaps");
+  EXPECT_EQ(warnings[1]["recordings"], Json::array({1, 2}));
+  EXPECT_EQ(warnings[2]["code"], "lack_of_fit");
+  EXPECT_EQ(warnings[2]["recordings"], Json::array({1}));
+}
+
 }  // namespace
 }  // namespace pendulum::joint_json_test

@@ -225,7 +225,7 @@ TEST(ToText, EndsAJointFitWithTheRecordingsWarnings) {
 TEST(ToText, ReplacesTerminalControlCharactersOfAJointFit) {
   Identification report = ExampleJointIdentification();
   report.runs[1].data.path = "a\x1B[2J\n.csv";
-  report.runs[1].warnings = {{"gap", "a gap"}};
+  report.runs[1].warnings = {{"gaps", "a gap"}};
   report.joint[0].homogeneity.verdict = "recording 2 (" + report.runs[1].data.path + ") disagrees with the others";
   report.fits[0].reason = "not one pendulum; " + report.joint[0].homogeneity.verdict;
   EXPECT_THAT(ToText(report), HasSubstr("    2  a?[2J?.csv\n"));

@@ -39,6 +39,23 @@ TEST(ToJsonText, MatchesTheExampleByteForByte) {
   EXPECT_EQ(ToJsonText(ExampleComparedIdentification()), FileText("tests/report/result_example.json"));
 }
 
+// The page shows the warnings of each law below its name.
+TEST(ToJson, NamesTheLawOfAWarningThatHoldsForOneAlone) {
+  Identification identification = ExampleComparedIdentification();
+  identification.fits[0].warnings.clear();
+  identification.fits[1].warnings = {{.code = "at_bound",
+                                      .finding = "drag is at its bound 0",
+                                      .advice = "widen --bounds",
+                                      .flags = {"bounds"},
+                                      .about = {.parameters = {"drag"}}}};
+  const Json warning = ToJson(identification)["warnings"].back();
+  EXPECT_EQ(warning["law"], "drag");
+  EXPECT_EQ(warning["message"], "drag: drag is at its bound 0; widen --bounds");
+  EXPECT_EQ(warning["text"], "drag is at its bound 0; widen --bounds");
+  EXPECT_EQ(warning["flags"], Json::array({"bounds"}));
+  EXPECT_EQ(warning["parameters"], Json::array({"drag"}));
+}
+
 TEST(ToJson, KeepsTheOrderOfKeys) {
   const Json json = ToJson(ExampleIdentification());
   EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",

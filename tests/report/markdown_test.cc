@@ -69,7 +69,7 @@ TEST(ToMarkdown, StartsWithTheSummary) {
 
 1801 of 2000 samples, 1.5 s (held, then released) to 19.5 s (the end of the recording).
 
-Recommended: coulomb. It is the only one that converged.
+Recommended: coulomb: the only one that converged.
 
 | law | rms residual | ΔBIC | |
 | --- | --: | --: | --- |

@@ -30,7 +30,7 @@ const SummaryQuantity& Find(const std::vector<SummaryQuantity>& quantities, cons
 
 std::vector<std::string> Messages(const FitSummary& summary) {
   std::vector<std::string> messages;
-  for (const Warning& warning : summary.warnings) messages.push_back(warning.message);
+  for (const Warning& warning : summary.warnings) messages.push_back(ShortText(warning));
   return messages;
 }
 
@@ -233,7 +233,7 @@ TEST(SummarizeFit, ComparesWithTheTextbook) {
 TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   Identification identification = ExampleComparedIdentification();
   for (FitReport& fit : identification.fits) fit.warnings.clear();
-  identification.warnings = {{"gaps", "the recording has 3 gaps; the longest takes 2 s"}};
+  identification.warnings = {{"gaps", "the recording has 3 gaps", "the longest takes 2 s"}};
   identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
@@ -246,8 +246,11 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
 TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {
-      {"w", "the unit is odd (its period; its size); others are not. Or give --unit rad; and more."}};
+  identification.warnings = {{.code = "unit_questioned",
+                              .finding = "the unit is odd (its period; its size)",
+                              .explanation = "others are not",
+                              .advice = "or give --unit rad",
+                              .flags = {"unit"}}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
               ElementsAre("the unit is odd (its period; its size). Or give --unit rad"));
 }
@@ -257,7 +260,9 @@ TEST(SummarizeFit, OmitsThePathOfTheRecording) {
   Identification identification = ExampleIdentification();
   identification.data.path = "run.csv";
   identification.fits[0].warnings.clear();
-  identification.warnings = {{"a", "run.csv: rows were left out"}, {"b", "run.csv:118: the counter restarts"}};
+  identification.warnings = {
+      {.code = "empty_cells", .finding = "rows were left out", .about = {.file = "run.csv"}},
+      {.code = "time_wrapped", .finding = "the counter restarts", .about = {.file = "run.csv", .line = 118}}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
               ElementsAre("rows were left out", "line 118: the counter restarts"));
 }
@@ -267,8 +272,9 @@ TEST(SummarizeFit, OmitsThePathOfTheRecording) {
 TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {{"time_unit_assumed", "a sentence", "times in s (--time_column t:ms)"},
-                             {"gaps", "the recording has 3 gaps"}};
+  identification.warnings = {
+      {.code = "time_unit_assumed", .finding = "a sentence", .assumed = "times in s (--time_column t:ms)"},
+      {.code = "gaps", .finding = "the recording has 3 gaps"}};
   identification.data.sensor.kind = "encoder";
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s (--time_column t:ms)"));
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)), ElementsAre("the recording has 3 gaps"));
@@ -281,7 +287,10 @@ TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
 TEST(SummarizeFit, SaysACommonAssumptionOfSeveralRecordingsOnce) {
   Identification identification = ExampleJointIdentification();
   for (Identification& run : identification.runs)
-    run.warnings = {{"time_unit_assumed", run.data.path + ": a sentence", "times in s"}};
+    run.warnings = {{.code = "time_unit_assumed",
+                     .finding = "a sentence",
+                     .assumed = "times in s",
+                     .about = {.file = run.data.path}}};
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s"));
   identification.runs[1].warnings[0].assumed = "times in ms";
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions,

@@ -169,7 +169,7 @@ Outcome CheckRefusal(const Status& status) {
 }
 
 bool HasCounting(const std::vector<Warning>& warnings) {
-  constexpr std::array kCounting = {
+  constexpr std::array<WarningCode, 10> kCounting = {
       "another_minimum", "ambiguous_frequency", "at_bound",   "correlated_residuals",  "lack_of_fit",
       "not_a_pendulum",  "uncertain_stop",      "zero_drift", "larger_motion_outside", "noise_below_resolution"};
   return std::ranges::any_of(

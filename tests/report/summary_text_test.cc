@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/summary_text.h"
 
+#include <array>
 #include <sstream>
 #include <string>
 
@@ -44,7 +45,7 @@ TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
   Identification identification = ExampleIdentification();
   for (int i = 0; i < 30; ++i) {
     identification.warnings.push_back(
-        {"w", "warning number " + std::to_string(i) + " has a first clause; and a second"});
+        {"jitter", "warning number " + std::to_string(i) + " has a first clause", "and a second"});
   }
   const std::vector<std::string> lines = Lines(SummaryText(SummarizeResult(identification), "More."));
   EXPECT_LE(lines.size(), 20);
@@ -55,9 +56,11 @@ TEST(SummaryText, HasAtMostTwentyLinesOfEightyColumns) {
 // What changes the numbers has a line with its flag, however little room there is, and not only its code in words.
 TEST(SummaryText, SaysEachAssumptionWithItsFlag) {
   Identification identification = ExampleIdentification();
-  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
-  identification.warnings.push_back({"time_unit_assumed", "a long sentence", "times in ms (--time_column t:s)"});
-  identification.warnings.push_back({"gravity_assumed", "another one", "g 9.80665 m/s^2 (--g)"});
+  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"jitter", "warning number " + std::to_string(i)});
+  identification.warnings.push_back(
+      {.code = "time_unit_assumed", .finding = "a long sentence", .assumed = "times in ms (--time_column t:s)"});
+  identification.warnings.push_back(
+      {.code = "gravity_assumed", .finding = "another one", .assumed = "g 9.80665 m/s^2 (--g)"});
   const std::string text = Unbroken(SummaryText(SummarizeResult(identification), "More."));
   EXPECT_THAT(text, HasSubstr("Assumed: times in ms (--time_column t:s); g 9.80665 m/s^2 (--g)"));
   EXPECT_THAT(text, Not(HasSubstr("time unit assumed")));
@@ -77,8 +80,9 @@ TEST(SummaryText, KeepsTheZeroAndTheTextbookBesideWarnings) {
 TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
   const std::string words = " in a sentence that is longer than one line of eighty columns, so that there is no room";
   std::vector<Warning> warnings;
-  for (const char* code : {"gaps", "jitter", "spikes", "stray_lines", "unwrapped", "vibration", "event_driven"})
-    warnings.push_back({code, std::string("this is ") + code + words});
+  for (const WarningCode code :
+       std::array<WarningCode, 7>{"gaps", "jitter", "spikes", "stray_lines", "unwrapped", "vibration", "event_driven"})
+    warnings.push_back({code, "this is " + std::string(code.text()) + words});
   const std::string text = TextWith(warnings);
   EXPECT_THAT(text, HasSubstr("gaps, jitter, spikes, stray lines, unwrapped, vibration, event driven."));
   EXPECT_THAT(text, Not(HasSubstr("this is")));
@@ -87,12 +91,12 @@ TEST(SummaryText, NamesTheWarningsThatItDoesNotShow) {
 // A warning that the numbers may be wrong stands before the others and is not reduced to its name.
 TEST(SummaryText, ShowsEachSeriousWarning) {
   Identification identification = ExampleIdentification();
-  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"w", "warning number " + std::to_string(i)});
-  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
-    identification.warnings.push_back({code, std::string("the reason is ") + code});
+  for (int i = 0; i < 30; ++i) identification.warnings.push_back({"jitter", "warning number " + std::to_string(i)});
+  constexpr std::array<WarningCode, 3> kCodes = {"another_minimum", "hold_disagrees", "prior_conflict"};
+  for (const WarningCode code : kCodes)
+    identification.warnings.push_back({code, "the reason is " + std::string(code.text())});
   const std::string text = Unbroken(SummaryText(SummarizeResult(identification), "More."));
-  for (const char* code : {"another_minimum", "hold_disagrees", "prior_conflict"})
-    EXPECT_THAT(text, HasSubstr(std::string("the reason is ") + code));
+  for (const WarningCode code : kCodes) EXPECT_THAT(text, HasSubstr("the reason is " + std::string(code.text())));
 }
 
 TEST(SummaryText, LeavesOutWholeParenthesesWhereThereIsNoRoom) {
@@ -119,7 +123,7 @@ TEST(SummaryText, SaysWhyALawHasNoResult) {
   row.rms = 0;
   row.reason = "the fit did not converge; more";
   const std::string text = SummaryText(SummarizeResult(identification), "");
-  EXPECT_THAT(text, HasSubstr("No result with " + row.model + ": the fit did not converge."));
+  EXPECT_THAT(text, HasSubstr("No result with " + row.model + ": the fit did not converge; more."));
   EXPECT_THAT(text, Not(HasSubstr(row.model + "  ")));
 }
 

@@ -76,7 +76,7 @@ TEST(MakeIdentifyOptions, TakesTheValuesOfTheRig) {
   ASSERT_EQ(options->notes.size(), 1);
   EXPECT_EQ(options->notes[0].code, "rig_unit_assumed");
   EXPECT_EQ(
-      options->notes[0].message,
+      MessageText(options->notes[0]),
       "values without a unit were taken in SI units: --bob_mass 0.38 kg; write the unit after the number, such as "
       "380g or 43cm");
 }

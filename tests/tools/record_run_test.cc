@@ -84,7 +84,7 @@ void ExpectSawtooth(const Recording& recording, int count) {
 
 std::vector<std::string> CodesOf(const RecordedRun& recorded) {
   std::vector<std::string> codes;
-  for (const Warning& warning : RecordWarnings(recorded)) codes.push_back(warning.code);
+  for (const Warning& warning : RecordWarnings(recorded)) codes.emplace_back(warning.code.text());
   return codes;
 }
 

@@ -59,7 +59,7 @@ Calibration QuarterDegree() {
 
 std::vector<std::string> CodesOf(const RecordedRun& recorded) {
   std::vector<std::string> codes;
-  for (const Warning& warning : RecordWarnings(recorded)) codes.push_back(warning.code);
+  for (const Warning& warning : RecordWarnings(recorded)) codes.emplace_back(warning.code.text());
   return codes;
 }
 
@@ -173,8 +173,9 @@ TEST(RecordWarnings, ReportLostSamples) {
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_EQ(warnings[0].code, "lost_samples");
-  EXPECT_THAT(warnings[0].message, AllOf(HasSubstr("30 samples"), HasSubstr("20 did not fit"), HasSubstr("--rate_hz"),
-                                         HasSubstr("10 were damaged"), HasSubstr("5 conversions")));
+  EXPECT_THAT(MessageText(warnings[0]),
+              AllOf(HasSubstr("30 samples"), HasSubstr("20 did not fit"), HasSubstr("--rate_hz"),
+                    HasSubstr("10 were damaged"), HasSubstr("5 conversions")));
   EXPECT_THAT(FlatText(recorded), HasSubstr("; 30 lost"));
   EXPECT_FALSE(IsComplete(recorded));
 }
@@ -194,7 +195,7 @@ TEST(RecordWarnings, ReportALostLogger) {
   const auto warnings = RecordWarnings(recorded);
   ASSERT_THAT(warnings, SizeIs(1));  // none for the End frame, which is missing too
   EXPECT_EQ(warnings[0].code, "recording_interrupted");
-  EXPECT_THAT(warnings[0].message, HasSubstr("/dev/ttyACM0 is gone"));
+  EXPECT_THAT(MessageText(warnings[0]), HasSubstr("/dev/ttyACM0 is gone"));
   EXPECT_FALSE(IsComplete(recorded));
 }
 
@@ -202,7 +203,7 @@ TEST(RecordWarnings, CountSaturatedReadings) {
   const auto warnings = RecordWarnings(Recorded({0, 1, 1022, 1023, 1023}));
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_EQ(warnings[0].code, "saturated");
-  EXPECT_THAT(warnings[0].message, HasSubstr("3 readings"));
+  EXPECT_THAT(MessageText(warnings[0]), HasSubstr("3 readings"));
   EXPECT_TRUE(IsComplete(Recorded({0, 1, 1022, 1023, 1023})));
 }
 

@@ -15,10 +15,12 @@ struct RigVerdict {
   double excess = 0;                 ///< fitted / geometric - 1
   std::optional<double> z;  ///< (fitted - geometric) / standard deviation of this difference; absent if the rig file
                             ///< gives no standard deviations, or the fit no error.
-  std::string text;         ///< A sentence without full stop: the verdict, or why there is none.
+  std::string finding;      ///< The verdict, or why there is none.
+  std::string advice;       ///< What to do if they differ; otherwise empty.
   std::string brief;        ///< If they differ: what, by how much, why and what to do, in few words; otherwise empty.
 
-  bool differs() const;  ///< |z| > kRigDiffers
+  bool differs() const;      ///< |z| > kRigDiffers
+  std::string text() const;  ///< Finding and advice, a sentence without full stop.
 };
 
 inline constexpr double kRigDiffers = 3;

@@ -25,6 +25,9 @@ constexpr char HexDigit(unsigned int digit) { return "0123456789abcdef"[digit]; 
 /// control a terminal become \xNN.
 std::string Quoted(std::string_view text);
 
+/// A text with a capital first letter, if that is one of a to z.
+std::string Capitalized(std::string text);
+
 /// A word of a command for a POSIX shell: in single quotes if it has special characters.
 std::string ShellWord(const std::string& word);
 

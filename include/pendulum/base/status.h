@@ -55,13 +55,4 @@ inline tl::unexpected<Status> WithMessage(Status status, std::string message) {
 /// kInternal 70.
 int ExitCode(StatusCode code);
 
-/// Something a user should know about a valid result: a stable code and a sentence.
-struct Warning {
-  std::string code;
-  std::string message;
-  /// If numbers rest on an assumption: what was assumed and the flag that says otherwise, in a few words:
-  /// "times in s (--time_column t:ms)". Else empty.
-  std::string assumed = {};
-};
-
 }  // namespace pendulum

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {

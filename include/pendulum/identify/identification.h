@@ -14,6 +14,7 @@
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/homogeneity.h"
 #include "pendulum/analysis/model_comparison.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/closed_form/closed_forms.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/closed_form/sampling.h"

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/start/fit_options.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "pendulum/recording/readers/columns/read_options.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/model/rig.h"
 
 namespace pendulum {

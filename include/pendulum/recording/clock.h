@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 
 namespace pendulum {
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/recording/arc.h"
 #include "pendulum/recording/sensor.h"
 #include "pendulum/recording/sensor_errors.h"

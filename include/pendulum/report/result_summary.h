@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/identify/identification.h"
 #include "pendulum/report/section.h"
 
@@ -43,7 +43,7 @@ struct FitSummary {
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
   std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
   std::vector<std::string> assumptions;  ///< What the numbers rest on that nobody said, each with its flag.
-  std::vector<Warning> warnings;         ///< Others that the verdict does not say; messages without explanations.
+  std::vector<Warning> warnings;         ///< Others that the verdict does not say; texts: ShortText.
 };
 
 /// What a reader of a result needs first. Every front end shows it first.
@@ -60,12 +60,6 @@ struct ResultSummary {
 FitSummary SummarizeFit(const Identification& identification, std::size_t index);
 
 ResultSummary SummarizeResult(const Identification& identification);
-
-/// Whether a warning says that the numbers or their errors may be wrong. Such a warning is never shortened to its name.
-bool IsSerious(const Warning& warning);
-
-/// A sentence that begins with a capital letter.
-std::string Capitalized(std::string text);
 
 /// The parameters of the main fit, a line each: name, value, total standard error ("-" if there is none) and unit,
 /// separated by blanks, in the result's own units and with 10 digits.

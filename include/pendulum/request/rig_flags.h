@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/model/rig.h"
 
 namespace pendulum {

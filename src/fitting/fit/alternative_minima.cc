@@ -92,11 +92,13 @@ void CheckAlternativeMinima(const FitProblem& problem, std::span<const Alternati
   const std::vector<std::size_t> different = DifferingParameters(problem, *nearest, report);
   const std::string_view deciding = problem.infos[DecidingParameter(problem, different)].name;
   report.termination = Termination::kNotIdentifiable;
-  report.reason = "with " + DescribeDifferences(problem, *nearest, report, different) +
-                  " the fit is nearly as good (-2 log L is " + NumberText(std::max(behind(*nearest), 0.0), 2) +
-                  " higher" + (effective_share < 1 ? ", by the effective samples" : "") +
-                  "): " + MeasurementFor(deciding);
-  report.warnings.push_back({"ambiguous_sensor", report.reason});
+  report.warnings.push_back({.code = "ambiguous_sensor",
+                             .finding = "with " + DescribeDifferences(problem, *nearest, report, different) +
+                                        " the fit is nearly as good (-2 log L is " +
+                                        NumberText(std::max(behind(*nearest), 0.0), 2) + " higher" +
+                                        (effective_share < 1 ? ", by the effective samples" : "") + ")",
+                             .advice = MeasurementFor(deciding)});
+  report.reason = MessageText(report.warnings.back());
   for (Identifiability& known : report.identifiability) {
     if (std::ranges::none_of(different, [&](std::size_t i) { return problem.infos[i].name == known.parameter; }))
       continue;

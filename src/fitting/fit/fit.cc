@@ -134,7 +134,7 @@ Recording WithoutEffects(Recording recording, const Correction& correction) {
 
 /// Whether a correction is worth another fit: it has a new cause, or differs from the former one by more than a tenth
 /// of the noise.
-bool Changes(const Correction& correction, const Correction& former, double sigma) {
+bool HasChanged(const Correction& correction, const Correction& former, double sigma) {
   constexpr double kNegligible = 0.1;
   if (correction.readings.size() == 0) return false;
   if (former.readings.size() == 0 || correction.causes.size() != former.causes.size()) return true;
@@ -159,7 +159,7 @@ void CorrectForSuspicions(const Recording& recording, const FitOptions& options,
   Correction applied;
   for (int fits = 0; fits < kMostFits; ++fits) {
     const Correction next = report.effects.correction;
-    if (!Changes(next, applied, report.noise.sigma)) break;
+    if (!HasChanged(next, applied, report.noise.sigma)) break;
     const Recording corrected = WithoutEffects(recording, next);
     const FitOptions like = OptionsLike(report, options);
     Result<Attempt> attempt = MakeAttempt(corrected, like);

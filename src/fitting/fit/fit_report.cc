@@ -25,9 +25,7 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-bool FitReport::HasWarning(std::string_view code) const {
-  return std::ranges::find(warnings, code, &Warning::code) != warnings.end();
-}
+bool FitReport::HasWarning(WarningCode code) const { return pendulum::HasWarning(warnings, code); }
 
 void WithdrawErrors(std::string_view why, FitReport& fit) {
   for (ParameterEstimate& parameter : fit.parameters) {

@@ -21,9 +21,9 @@ namespace {
 /// A reading at an end of the sensor's range only states that the angle is at that end or beyond.
 void WarnOfSaturation(const FitProblem& problem, std::vector<Warning>& warnings) {
   if (problem.censored == 0) return;
-  warnings.push_back({"saturated", std::to_string(problem.censored) +
-                                       " readings are at an end of the sensor's range; the fit only "
-                                       "assumes that the angle is at that end or beyond it"});
+  warnings.push_back({.code = "saturated",
+                      .finding = std::to_string(problem.censored) + " readings are at an end of the sensor's range",
+                      .explanation = "the fit only assumes that the angle is at that end or beyond it"});
 }
 
 /// The size of the misfit, in resolutions if the readings are quantized.
@@ -45,20 +45,24 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
   if (!(ratio > kRatio)) {
     const bool is_modelled = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
                              report.termination == Termination::kConverged;
-    warnings.push_back({"correlated_residuals",
-                        is_modelled ? "the residuals are autocorrelated: the error bars assume autocorrelated noise (" +
-                                          report.noise.autocorrelation.Name() + ") and are valid if the model is right"
-                                    : "the residuals are autocorrelated, and the error bars ignore that"});
+    warnings.push_back(
+        {.code = "correlated_residuals",
+         .finding = is_modelled ? "the residuals are autocorrelated: the error bars assume autocorrelated noise (" +
+                                      report.noise.autocorrelation.Name() + ") and are valid if the model is right"
+                                : "the residuals are autocorrelated, and the error bars ignore that"});
     return;
   }
   const std::string times = ratio > kLargestShown ? "more than 99" : NumberText(ratio, 2);
   const double misfit = report.statistics.rms_residual * std::sqrt(1 - 1 / (ratio * ratio));
   warnings.push_back(
-      {"lack_of_fit",
-       "the residuals are autocorrelated and " + times +
-           " times as large as the noise between neighbouring samples; the misfit is " + MisfitSize(recording, misfit) +
-           ". The model does not describe the whole recording, or its noise is slow. The error bars may "
-           "be wrong; look at the residuals (--report), and try other laws (--models all) or another window"});
+      {.code = "lack_of_fit",
+       .finding = "the residuals are autocorrelated and " + times +
+                  " times as large as the noise between neighbouring samples",
+       .explanation = "the misfit is " + MisfitSize(recording, misfit) +
+                      "; the model does not describe the whole recording, or its noise is slow; the error bars may be "
+                      "wrong",
+       .advice = "look at the residuals (--report), and try other laws (--models all) or another window",
+       .flags = {"report", "models"}});
 }
 
 /// A line through the mean residuals of whole periods. The swing itself does not affect these means.
@@ -93,9 +97,11 @@ void WarnOfDrift(const Recording& recording, const FitProblem& problem, const Fi
   if (std::abs(drift) < kMatters * report.statistics.rms_residual) return;
   const bool angle = recording.quantity != Quantity::kRate;
   const std::string name(angle ? kZeroDrift.name : kBiasDrift.name);
-  warnings.push_back({"zero_drift", "the zero of the readings drifts by about " + NumberText(drift, 2) + " " +
-                                        recording.value_unit() + " over the window; --init " + name +
-                                        "=0 makes the drift a parameter of the fit"});
+  warnings.push_back({.code = "zero_drift",
+                      .finding = "the zero of the readings drifts by about " + NumberText(drift, 2) + " " +
+                                 recording.value_unit() + " over the window",
+                      .advice = "--init " + name + "=0 makes the drift a parameter of the fit",
+                      .flags = {"init"}});
 }
 
 /// Warns if the noise is below half a resolution: the readings are then rounded values of a smooth curve, not a curve
@@ -106,20 +112,23 @@ void WarnOfQuietSensor(const Recording& recording, const FitReport& report, std:
   const bool is_quantized = report.noise.family == NoiseFamily::kQuantized ||
                             report.noise.family == NoiseFamily::kEdges || report.noise.family == NoiseFamily::kAveraged;
   if (is_quantized || !(rms < kQuiet * recording.resolution)) return;
-  warnings.push_back(
-      {"noise_below_resolution", "the residuals are " + NumberText(rms / recording.resolution, 2) +
-                                     " resolutions: rounding errors do not average out with so little noise, so "
-                                     "the error bars may be several times too small; use --noise quantized"});
+  warnings.push_back({.code = "noise_below_resolution",
+                      .finding = "the residuals are " + NumberText(rms / recording.resolution, 2) +
+                                 " resolutions: rounding errors do not average out with so little noise, so the error "
+                                 "bars may be several times too small",
+                      .advice = "use --noise quantized",
+                      .flags = {"noise"}});
 }
 
 void WarnOfTraceAccuracy(const FitReport& report, std::vector<Warning>& warnings) {
   constexpr double kNegligible = 0.01;
   constexpr double kRounding = 1e-11;  // rad or rad/s: smaller noise is rounding error
   if (!(report.trace_error > std::max(kNegligible * report.noise.sigma, kRounding))) return;
-  warnings.push_back({"trajectory_accuracy",
-                      "the numerical error of the trajectory is " + NumberText(report.trace_error, 1) +
-                          ", which is not small compared with the noise of " + NumberText(report.noise.sigma, 1) +
-                          ", because rounding errors grow near the top; choose a window with smaller swings"});
+  warnings.push_back({.code = "trajectory_accuracy",
+                      .finding = "the numerical error of the trajectory is " + NumberText(report.trace_error, 1) +
+                                 ", which is not small compared with the noise of " +
+                                 NumberText(report.noise.sigma, 1) + ", because rounding errors grow near the top",
+                      .advice = "choose a window with smaller swings"});
 }
 
 /// Compares the prior with the estimate from the recording alone, which follows from prior and posterior. If the
@@ -137,21 +146,30 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
     const double distance =
         std::abs(solution.parameters[prior.parameter] - prior.mean) * prior.weight * std::sqrt(1 + own);
     if (!(distance > kFar)) continue;
-    warnings.push_back({"prior_conflict", "the prior of " + std::string(parameter.info.name) +
-                                              " (--prior) and the recording disagree by " + NumberText(distance, 3) +
-                                              " standard deviations of their difference"});
+    const std::string name(parameter.info.name);
+    warnings.push_back({.code = "prior_conflict",
+                        .finding = "the prior of " + name + " (--prior) and the recording disagree by " +
+                                   NumberText(distance, 3) + " standard deviations of their difference",
+                        .about = {.parameters = {name}}});
   }
 }
 
-/// "viscous is at its bound 0".
-std::string AreAt(const std::vector<ParameterInfo>& parameters, const std::string& bound) {
-  return NameList(parameters) + (parameters.size() == 1 ? " is at its " : " are each at their ") + bound;
+constexpr std::string_view kBoundIsExact =
+    "the standard errors of the others assume that this value is exact, the intervals by profile likelihood do not";
+
+/// The warning of parameters at a bound: "viscous is at its bound 0".
+Warning AtBound(const std::vector<ParameterInfo>& parameters, const std::string& bound, std::string advice) {
+  Warning warning{
+      .code = "at_bound",
+      .finding = NameList(parameters) + (parameters.size() == 1 ? " is at its " : " are each at their ") + bound,
+      .explanation = std::string(kBoundIsExact),
+      .advice = std::move(advice)};
+  for (const ParameterInfo& parameter : parameters) warning.about.parameters.emplace_back(parameter.name);
+  return warning;
 }
 
 /// If one parameter is at its bound, the errors of the others are valid only if the true value lies on that bound.
 void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
-  constexpr std::string_view kConsequence =
-      "; the standard errors of the others assume that this value is exact, the intervals by profile likelihood do not";
   std::vector<ParameterInfo> friction, bounded, extreme;
   for (const ParameterEstimate& parameter : report.parameters) {
     if (!parameter.at_bound) continue;
@@ -162,20 +180,23 @@ void WarnOfBounds(const FitReport& report, std::vector<Warning>& warnings) {
       continue;
     }
     warnings.push_back(
-        {"at_bound", "release_time is at an end of the hold: the readings suggest a release outside it" +
-                         std::string(kConsequence) +
-                         "; choose a window with all of the hold, or --start moving with a window after the release"});
+        {.code = "at_bound",
+         .finding = "release_time is at an end of the hold: the readings suggest a release outside it",
+         .explanation = std::string(kBoundIsExact),
+         .advice = "choose a window with all of the hold, or --start moving with a window after the release",
+         .flags = {"start"},
+         .about = {.parameters = {"release_time"}}});
   }
   if (!extreme.empty()) {
-    warnings.push_back({"at_bound", AreAt(extreme, "limit") + std::string(kConsequence) +
-                                        "; the recording hardly determines its value"});
+    warnings.push_back(AtBound(extreme, "limit", ""));
+    warnings.back().explanation += "; the recording hardly determines its value";
   }
   if (!bounded.empty()) {
-    warnings.push_back({"at_bound", AreAt(bounded, "given bound") + std::string(kConsequence) + "; widen --bounds"});
+    warnings.push_back(AtBound(bounded, "given bound", "widen --bounds"));
+    warnings.back().flags = {"bounds"};
   }
   if (friction.empty()) return;
-  warnings.push_back({"at_bound", AreAt(friction, "bound 0") + std::string(kConsequence) +
-                                      "; a simpler model or a longer recording gives smaller errors"});
+  warnings.push_back(AtBound(friction, "bound 0", "a simpler model or a longer recording gives smaller errors"));
 }
 
 /// Warns about the stop of a pendulum that dry friction brings to rest.
@@ -194,16 +215,20 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
         return minimum.sum - solution.sum <= kNearlyAsWell && std::abs(distance) >= error;
       });
   if (other != solution.other_minima.end()) {
-    warnings.push_back({"another_minimum", "with " + name + " " + NumberText(si * other->parameters[holding], 6) +
-                                               (friction.unit.empty() ? "" : " " + std::string(friction.unit)) +
-                                               " and another number of half swings the fit is nearly as good; the "
-                                               "error bars apply to the best minimum only"});
+    warnings.push_back({.code = "another_minimum",
+                        .finding = "with " + name + " " + NumberText(si * other->parameters[holding], 6) +
+                                   (friction.unit.empty() ? "" : " " + std::string(friction.unit)) +
+                                   " and another number of half swings the fit is nearly as good",
+                        .explanation = "the error bars apply to the best minimum only",
+                        .about = {.parameters = {name}}});
   }
   if (trace.stop_time < problem.data.time.back() && trace.smallest_reversal_margin < 3 * error) {
-    warnings.push_back(
-        {"uncertain_stop", "at a late turning point gravity and " + name +
-                               " balance within three standard errors, so the number of half swings is uncertain and "
-                               "the error bars are rough; end the window before the pendulum stops (--to)"});
+    warnings.push_back({.code = "uncertain_stop",
+                        .finding = "at a late turning point gravity and " + name +
+                                   " balance within three standard errors, so the number of half swings is uncertain "
+                                   "and the error bars are rough",
+                        .advice = "end the window before the pendulum stops (--to)",
+                        .flags = {"to"}});
   }
 }
 
@@ -211,35 +236,41 @@ void WarnOfStop(const FitProblem& problem, const Solution& solution, const Trace
 
 /// What a cause does, what to measure or set, and the flag for it; empty: there is none.
 struct CauseText {
+  WarningCode code;
   std::string_view what, advice, flag;
 };
 
 CauseText TextOf(Cause cause) {
   switch (cause) {
-    case Cause::kGain: return {"the sensor's gain is wrong", "calibrate the sensor at known angles", "--calibration"};
+    case Cause::kGain:
+      return {"suspected_gain", "the sensor's gain is wrong", "calibrate the sensor at known angles", "--calibration"};
     case Cause::kNonlinearity:
-      return {"the sensor's curve is bent or the sensor is eccentric", "calibrate the sensor at ten angles or more",
-              "--calibration"};
+      return {"suspected_nonlinearity", "the sensor's curve is bent or the sensor is eccentric",
+              "calibrate the sensor at ten angles or more", "--calibration"};
     case Cause::kLag:
-      return {"the readings are late", "switch off filters and averaging, or state the lag", "--sensor"};
-    case Cause::kBacklash: return {"the sensor has a play", "tighten the coupling of the sensor", ""};
+      return {"suspected_lag", "the readings are late", "switch off filters and averaging, or state the lag",
+              "--sensor"};
+    case Cause::kBacklash:
+      return {"suspected_backlash", "the sensor has a play", "tighten the coupling of the sensor", ""};
     case Cause::kDrift:
-      return {"the zero of the readings drifts", "let the sensor warm up, or fit the drift", "--init zero_drift=0"};
+      return {"suspected_drift", "the zero of the readings drifts", "let the sensor warm up, or fit the drift",
+              "--init zero_drift=0"};
     case Cause::kPush:
-      return {"the pendulum was pushed or let go slowly, as with a rate at the release",
+      return {"suspected_push", "the pendulum was pushed or let go slowly, as with a rate at the release",
               "release it with a thread, or begin the window after the release", "--from"};
     case Cause::kHold:
-      return {"the pendulum was not held still at the angle of the release: its hold is off",
+      return {"suspected_hold", "the pendulum was not held still at the angle of the release: its hold is off",
               "hold it at a stop, or begin the window after the release", "--from"};
     case Cause::kFrictionLaw:
-      return {"friction depends on the rate in another way", "compare the laws", "--models all"};
+      return {"suspected_friction_law", "friction depends on the rate in another way", "compare the laws",
+              "--models all"};
     case Cause::kPositionFriction:
-      return {"dry friction depends on the angle or the load", "look for rubbing cables and bent shafts", ""};
-    case Cause::kPresliding:
-      return {"dry friction builds up after each reversal, as bristles do",
-              "leave out small swings (--to), or fit the law dahl", "--model dahl"};
+      return {"suspected_position_friction", "dry friction depends on the angle or the load",
+              "look for rubbing cables and bent shafts", ""};
+    case Cause::kPresliding: break;
   }
-  return {};
+  return {"suspected_presliding", "dry friction builds up after each reversal, as bristles do",
+          "leave out small swings (--to), or fit the law dahl", "--model dahl"};
 }
 
 /// A unit as it is shown, and the factor to it.
@@ -269,10 +300,14 @@ Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
   std::string consequence =
       suspicion.is_corrected ? "the estimates are those of corrected readings" : "the estimates do not allow for it";
   if (!law.empty()) consequence += " (a fit of this recording with --model " + law + " alone does)";
-  return {"suspected_" + std::string(CauseName(suspicion.cause)),
-          "the residuals suggest that " + std::string(TextOf(suspicion.cause).what) + EffectText(suspicion) + ", " +
-              NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations; " + consequence + "; " +
-              AdviceFor(suspicion.cause)};
+  const CauseText text = TextOf(suspicion.cause);
+  return {.code = text.code,
+          .finding = "the residuals suggest that " + std::string(text.what) + EffectText(suspicion) + ", " +
+                     NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations",
+          .explanation = consequence,
+          .advice = AdviceFor(suspicion.cause),
+          .flags = text.flag.empty() ? std::vector<std::string>()
+                                     : std::vector{std::string(text.flag.substr(2, text.flag.find(' ') - 2))}};
 }
 
 }  // namespace
@@ -296,8 +331,8 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
 std::string_view FlagFor(Cause cause) { return TextOf(cause).flag; }
 
 std::string AdviceFor(Cause cause) {
-  const auto [what, advice, flag] = TextOf(cause);
-  return std::string(advice) + (flag.empty() ? "" : " (" + std::string(flag) + ")");
+  const CauseText text = TextOf(cause);
+  return std::string(text.advice) + (text.flag.empty() ? "" : " (" + std::string(text.flag) + ")");
 }
 
 std::string SizeText(const Suspicion& suspicion) {

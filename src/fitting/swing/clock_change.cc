@@ -175,11 +175,11 @@ std::string TextOf(const StepChange& change) {
 }  // namespace
 
 Warning StepChange::ToWarning() const {
-  return {"clock_unproven", TextOf(*this) +
-                                ", and the swings do not show whether the clock changed or the "
-                                "sampling; if it was the clock, the times of one part are wrong: fit the other part "
-                                "with --to " +
-                                TimeTextOf(*this) + " or --from " + TimeTextOf(*this)};
+  return {.code = "clock_unproven",
+          .finding = TextOf(*this) + ", and the swings do not show whether the clock changed or the sampling",
+          .explanation = "if it was the clock, the times of one part are wrong",
+          .advice = "fit the other part then, with --to " + TimeTextOf(*this) + " or --from " + TimeTextOf(*this),
+          .flags = {"to", "from"}};
 }
 
 Result<std::optional<StepChange>> CheckClock(const Recording& recording, bool is_spring) {

@@ -88,19 +88,22 @@ SwingFit EndEarlier(SwingFit result, const FitOptions& options) {
 void WarnOfLargerMotion(const FreeSwing& swing, FitReport& fit) {
   constexpr double kLarger = 1.3;
   if (!(swing.amplitude_outside > kLarger * swing.amplitude)) return;
-  fit.warnings.push_back(
-      {"larger_motion_outside", "outside the window the motion is " +
-                                    NumberText(swing.amplitude_outside / swing.amplitude, 2) +
-                                    " times as large as inside, but not a free swing; look at the recording, and "
-                                    "choose another window with --from and --to if needed"});
+  fit.warnings.push_back({.code = "larger_motion_outside",
+                          .finding = "outside the window the motion is " +
+                                     NumberText(swing.amplitude_outside / swing.amplitude, 2) +
+                                     " times as large as inside, but not a free swing",
+                          .advice = "look at the recording, and choose another window with --from and --to if needed",
+                          .flags = {"from", "to"}});
 }
 
 void WarnOfVibration(const Recording& used, const Vibration& vibration, FitReport& fit) {
-  fit.warnings.push_back({"vibration", "a faster vibration of " +
-                                           NumberText(vibration.frequency / used.clock_scale, 2) + " Hz, " +
-                                           NumberText(vibration.amplitude, 2) + " " + used.value_unit() +
-                                           " in size, lies over the swing; it is treated as noise. Damp it, or choose "
-                                           "a window without it with --from and --to"});
+  fit.warnings.push_back({.code = "vibration",
+                          .finding = "a faster vibration of " + NumberText(vibration.frequency / used.clock_scale, 2) +
+                                     " Hz, " + NumberText(vibration.amplitude, 2) + " " + used.value_unit() +
+                                     " in size, lies over the swing",
+                          .explanation = "it is treated as noise",
+                          .advice = "damp it, or choose a window without it with --from and --to",
+                          .flags = {"from", "to"}});
 }
 
 /// Marks the fit as not of a pendulum, and removes its errors, which are valid only for a pendulum.
@@ -332,9 +335,11 @@ Result<std::vector<AttemptRecord>> ApplyRescues(const FitOptions& options, Swing
 void WarnOfHold(const HoldDisagreement& hold, const Recording& used, FitReport& fit) {
   const std::string why = Sentence(hold, used) + ": the hand moved, or pushed or braked the pendulum at the release";
   if (fit.start == StartKind::kRelease) {
-    fit.warnings.push_back({"hold_disagrees", "the hold does not agree with the swing: " + why +
-                                                  ". The hold affects all estimates; leave it out with --start moving "
-                                                  "and --from after the release"});
+    fit.warnings.push_back({.code = "hold_disagrees",
+                            .finding = "the hold does not agree with the swing: " + why,
+                            .explanation = "the hold affects all estimates",
+                            .advice = "leave it out with --start moving and --from after the release",
+                            .flags = {"start", "from"}});
     return;
   }
   fit.warnings.push_back({"hold_left_out", "the hold before the release was left out: " + why});
@@ -345,17 +350,19 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
   if (state.hold) WarnOfHold(*state.hold, state.result.used, fit);
   if (state.was_trimmed) {
     fit.warnings.push_back(
-        {"ends_trimmed", "disturbed ends were left out, because they do not fit the rest: the window is now " +
-                             NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) +
-                             " s; choose another one with --from and --to"});
+        {.code = "ends_trimmed",
+         .finding = "disturbed ends were left out, because they do not fit the rest: the window is now " +
+                    NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) + " s",
+         .advice = "choose another one with --from and --to",
+         .flags = {"from", "to"}});
   }
   if (state.presliding) {
-    fit.warnings.push_back({"presliding", Sentence(*state.presliding, state.result.used.value_unit(),
-                                                   state.swing.ends.reason == WindowEnd::Reason::kPresliding)});
+    fit.warnings.push_back(WarningOf(*state.presliding, state.result.used.value_unit(),
+                                     state.swing.ends.reason == WindowEnd::Reason::kPresliding));
   }
   WarnOfLargerMotion(state.swing, fit);
-  if (const auto assumed = AssumedFrequencyText(state.result.used, state.swing.half_period, options)) {
-    fit.warnings.push_back({"ambiguous_frequency", *assumed});
+  if (const auto assumed = AssumedFrequency(state.result.used, state.swing.half_period, options)) {
+    fit.warnings.push_back(*assumed);
   }
   WarnOfOffsetJumps(state.jumps, state.IsLacking(), fit);
   if (state.swing.vibration) WarnOfVibration(state.result.used, *state.swing.vibration, fit);
@@ -395,7 +402,7 @@ void FitWithHold(Recording recording, const FitOptions& options, SwingState& sta
 
 /// With few samples, a fast swing may look like a slow one, whose law it does not follow.
 bool MayBeFaster(const FitOptions& options, const SwingState& state) {
-  return state.IsLacking() && AssumedFrequencyText(state.result.used, state.swing.half_period, options);
+  return state.IsLacking() && AssumedFrequency(state.result.used, state.swing.half_period, options);
 }
 
 /// After a stop request the result is meaningless.
@@ -434,12 +441,14 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
   if (!other || other->fit.termination != Termination::kConverged) return;
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
-      {"linear_restoring_torque",
-       "a restoring torque proportional to the angle is assumed, as of a spring or wire (law " + linear.model +
-           ", where G is the stiffness k); for a pendulum, give --gravity sin and correct the unit (--unit, or in the "
-           "column's name). The reason: " +
-           result->linear_reason + ". The readings are in " + result->used.unit + ": " + *unit,
-       "the restoring torque of a spring (--gravity sin for a pendulum)"});
+      {.code = "linear_restoring_torque",
+       .finding = "a restoring torque proportional to the angle is assumed, as of a spring or wire (law " +
+                  linear.model + ", where G is the stiffness k)",
+       .explanation =
+           "the reason: " + result->linear_reason + "; the readings are in " + result->used.unit + ": " + *unit,
+       .advice = "for a pendulum, give --gravity sin and correct the unit (--unit, or in the column's name)",
+       .flags = {"gravity", "unit"},
+       .assumed = "the restoring torque of a spring (--gravity sin for a pendulum)"});
   result = std::move(other);
 }
 
@@ -471,10 +480,11 @@ void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions&
   const std::string says = is_shown ? "that gravity was removed" : "nothing of gravity being removed";
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
-      {"gravity_in_readings", "the readings fit only if the acceleration " +
-                                  std::string(is_shown ? "contains gravity" : "is one without gravity") +
-                                  ", but its name says " + says + "; they were fitted so. Correct the name (" +
-                                  (is_shown ? "Acceleration" : "Linear Acceleration") + ")"});
+      {.code = "gravity_in_readings",
+       .finding = "the readings fit only if the acceleration " +
+                  std::string(is_shown ? "contains gravity" : "is one without gravity") + ", but its name says " + says,
+       .explanation = "they were fitted so",
+       .advice = std::string("correct the name (") + (is_shown ? "Acceleration" : "Linear Acceleration") + ")"});
   result = std::move(other);
 }
 

@@ -250,14 +250,14 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
   if (!consistent || consistent->steps.empty() || !consistent->explains_misfit) return std::nullopt;
   const std::vector<OffsetStep>& steps = consistent->steps;
   OffsetJumps jumps;
-  jumps.message = "the zero jumps " + DescribeJumps(recording, steps);
+  jumps.warning.finding = "the zero jumps " + DescribeJumps(recording, steps);
   if (consistent->uncertain) {
     jumps.uncertain_from = recording.time[*consistent->uncertain];
-    jumps.message += ", perhaps not by whole counts";
-    if (steps.size() > 1) jumps.message += " from " + NumberText(*jumps.uncertain_from, 6) + " s on";
-    jumps.message +=
-        ": the sensor slipped, or an unknown number of counts was lost; choose a window before or after the jump with "
-        "--from and --to";
+    jumps.warning.finding += ", perhaps not by whole counts";
+    if (steps.size() > 1) jumps.warning.finding += " from " + NumberText(*jumps.uncertain_from, 6) + " s on";
+    jumps.warning.explanation = "the sensor slipped, or an unknown number of counts was lost";
+    jumps.warning.advice = "choose a window before or after the jump with --from and --to";
+    jumps.warning.flags = {"from", "to"};
     return jumps;
   }
   for (const OffsetStep& step : steps) {
@@ -265,18 +265,19 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
     jumps.lost.push_back({recording.time[step.sample], static_cast<int>(counts)});
   }
   jumps.corrected = std::move(consistent->corrected);
-  jumps.message +=
-      ": counts were lost; the readings after each jump were corrected by its size, here and in the series";
+  jumps.warning.code = "lost_counts";
+  jumps.warning.finding += ": counts were lost";
+  jumps.warning.explanation = "the readings after each jump were corrected by its size, here and in the series";
   return jumps;
 }
 
 namespace {
 
 /// If the zero of the sensor jumps and the readings are not corrected, the standard errors of the fit are not valid.
-void RejectForOffsetJumps(const std::string& why, FitReport& fit) {
+void RejectForOffsetJumps(const Warning& why, FitReport& fit) {
   fit.termination = Termination::kNotConverged;
-  fit.reason = why;
-  fit.warnings.push_back({"offset_jumps", fit.reason});
+  fit.reason = MessageText(why);
+  fit.warnings.push_back(why);
   WithdrawErrors("the zero jumps", fit);
 }
 
@@ -288,13 +289,15 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
       fit.noise.family == NoiseFamily::kEdges ||
       (!has_misfit && fit.noise.family != NoiseFamily::kQuantized && fit.noise.family != NoiseFamily::kAveraged);
   if (!jumps && can_detect && MayHaveOffsetJump(fit)) {
-    fit.warnings.push_back({"offset_unsteady",
-                            "the mean of the residuals changes within the window by more than chance explains: the "
-                            "zero may have jumped or drifted by a small amount; look at the residuals (--report)"});
+    fit.warnings.push_back({.code = "offset_unsteady",
+                            .finding = "the mean of the residuals changes within the window by more than chance "
+                                       "explains: the zero may have jumped or drifted by a small amount",
+                            .advice = "look at the residuals (--report)",
+                            .flags = {"report"}});
   }
   if (!jumps) return;
-  if (!jumps->AreCorrected()) return RejectForOffsetJumps(jumps->message, fit);
-  fit.warnings.push_back({"lost_counts", jumps->message});
+  if (!jumps->AreCorrected()) return RejectForOffsetJumps(jumps->warning, fit);
+  fit.warnings.push_back(jumps->warning);
 }
 
 }  // namespace pendulum

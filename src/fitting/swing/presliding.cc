@@ -92,14 +92,16 @@ std::optional<Presliding> FindPresliding(const Recording& used, Gravity gravity)
   return std::nullopt;
 }
 
-std::string Sentence(const Presliding& presliding, const std::string& unit, bool is_left_out) {
-  const std::string where = NumberText(presliding.from, 4) + " s";
-  return "from " + where + " on, below about " + NumberText(presliding.amplitude, 2) + " " + unit +
-         ", the swings are up to " + NumberText(100 * presliding.faster, 2) +
-         " % faster than the larger ones: before a bearing slides, its friction acts like a spring (presliding), as in "
-         "the law dahl (--model dahl). " +
-         (is_left_out ? "They were left out; choose another end with --to"
-                      : "Leave them out with --to " + NumberText(presliding.from, 4));
+Warning WarningOf(const Presliding& presliding, const std::string& unit, bool is_left_out) {
+  const std::string from = NumberText(presliding.from, 4);
+  return {.code = "presliding",
+          .finding = "from " + from + " s on, below about " + NumberText(presliding.amplitude, 2) + " " + unit +
+                     ", the swings are up to " + NumberText(100 * presliding.faster, 2) +
+                     " % faster than the larger ones: before a bearing slides, its friction acts like a spring "
+                     "(presliding), as in the law dahl (--model dahl)",
+          .explanation = is_left_out ? "they were left out" : "",
+          .advice = is_left_out ? "choose another end with --to" : "leave them out with --to " + from,
+          .flags = {"to"}};
 }
 
 }  // namespace pendulum

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/model/gravity/gravity.h"
 #include "pendulum/recording/recording.h"
@@ -23,7 +24,7 @@ struct Presliding {
 /// not calibrated, and if less than four half swings would remain.
 std::optional<Presliding> FindPresliding(const Recording& used, Gravity gravity);
 
-/// The sentence of the warning. is_left_out: the window ends before.
-std::string Sentence(const Presliding& presliding, const std::string& unit, bool is_left_out);
+/// is_left_out: the window ends before.
+Warning WarningOf(const Presliding& presliding, const std::string& unit, bool is_left_out);
 
 }  // namespace pendulum

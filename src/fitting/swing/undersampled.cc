@@ -93,8 +93,7 @@ void PreferShown(const AllowedFrequencies& allowed, double rate, std::vector<Ali
 
 /// The reason to reject a fit if neither rig nor bounds limit the frequency. Only the slowest pendulum is accepted, and
 /// only if the samples show its periods, or no faster pendulum explains the readings nearly as well.
-std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& aliases, double rate,
-                                                    const FitOptions& options) {
+std::optional<Warning> UnboundedFrequency(const std::vector<Alias>& aliases, double rate, const FitOptions& options) {
   constexpr double kMinPerPeriodIfUnambiguous = 4.5;  // if no pendulum could alias to this frequency
   const double frequency = aliases.front().frequency;
   const bool slowest = frequency < 0.5 * rate;
@@ -102,10 +101,13 @@ std::optional<std::string> UnboundedFrequencyReason(const std::vector<Alias>& al
   const bool is_unambiguous = alone && rate - frequency > kFastestHz;
   if (slowest && rate > (is_unambiguous ? kMinPerPeriodIfUnambiguous : kShown) * frequency) return std::nullopt;
   const double apparent = ApparentFrequency(frequency, rate);
-  return "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) +
-         " or faster; the readings suggest " + Hz(frequency) + " (" + BoundsFlag(frequency, options) +
-         "). If it swings at about " + Hz(apparent) + ", give " + BoundsFlag(apparent, options) +
-         "; otherwise give --rig with rod and bob, or with length and gravity, or sample at 6 Hz or faster";
+  return Warning{.code = "ambiguous_frequency",
+                 .finding = "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) + " or faster",
+                 .explanation = "the readings suggest " + Hz(frequency) + " (" + BoundsFlag(frequency, options) + ")",
+                 .advice = "if it swings at about " + Hz(apparent) + ", give " + BoundsFlag(apparent, options) +
+                           "; otherwise give --rig with rod and bob, or with length and gravity, or sample at 6 Hz or "
+                           "faster",
+                 .flags = {"bounds", "rig"}};
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.
@@ -118,47 +120,59 @@ bool SamplesTwoPhasesOnly(const Recording& used, double frequency) {
 }
 
 /// The reason for an ambiguous result, or std::nullopt.
-std::optional<std::string> AmbiguityReason(const Recording& used, const std::vector<Alias>& aliases,
-                                           const AllowedFrequencies& allowed, const FitOptions& options) {
+std::optional<Warning> AmbiguityOf(const Recording& used, const std::vector<Alias>& aliases,
+                                   const AllowedFrequencies& allowed, const FitOptions& options) {
   const double rate = SampleRateOf(used);
   const auto near = NearlyAsGood(aliases, kNearlyAsWell);
   if (near.size() > 1 && !IsShown(aliases.front(), allowed, rate)) {
-    return "several inertias fit the readings nearly equally well, because their samples at " + Hz(rate) +
-           " look the same: " + ListOf(near, rate) + "; sample faster, or choose one with --bounds of inertia";
+    return Warning{.code = "ambiguous_frequency",
+                   .finding = "several inertias fit the readings nearly equally well, because their samples at " +
+                              Hz(rate) + " look the same: " + ListOf(near, rate),
+                   .advice = "sample faster, or choose one with --bounds of inertia",
+                   .flags = {"bounds"}};
   }
   if (const double frequency = aliases.front().frequency; SamplesTwoPhasesOnly(used, frequency)) {
-    return "sampled at " + Hz(rate) + ", once or twice per swing of " + Hz(frequency) +
-           ", all readings show nearly the same two phases, so a slightly lower and a slightly higher frequency look "
-           "the same; sample at another rate";
+    return Warning{.code = "ambiguous_frequency",
+                   .finding = "sampled at " + Hz(rate) + ", once or twice per swing of " + Hz(frequency) +
+                              ", all readings show nearly the same two phases, so a slightly lower and a slightly "
+                              "higher frequency look the same",
+                   .advice = "sample at another rate"};
   }
-  return allowed.bounded ? std::nullopt : UnboundedFrequencyReason(aliases, rate, options);
+  return allowed.bounded ? std::nullopt : UnboundedFrequency(aliases, rate, options);
 }
 
 /// The assumption that the samples show each swing.
-std::string ShownText(double frequency, double rate) {
-  return NumberText(rate / frequency, 2) + " samples per period show a swing of " + Hz(frequency) +
-         ", which is assumed; a swing of " + Hz(rate - frequency) +
-         " would look the same. If it is faster, give a rig file with masses and length, or --bounds of inertia";
+Warning ShownFrequency(double frequency, double rate) {
+  return {.code = "ambiguous_frequency",
+          .finding = NumberText(rate / frequency, 2) + " samples per period show a swing of " + Hz(frequency) +
+                     ", which is assumed",
+          .explanation = "a swing of " + Hz(rate - frequency) + " would look the same",
+          .advice = "if it is faster, give a rig file with masses and length, or --bounds of inertia",
+          .flags = {"bounds"}};
 }
 
 /// The assumption on which an unambiguous result depends.
-std::string AssumptionText(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate,
-                           bool is_linear) {
+Warning AssumptionOf(const std::vector<Alias>& aliases, const AllowedFrequencies& allowed, double rate,
+                     bool is_linear) {
   const std::string chosen = ListOf({&aliases.front()}, rate);
   if (!allowed.bounded && (is_linear || NearlyAsGood(aliases, kNearlyAsWell).size() > 1)) {
-    return ShownText(aliases.front().frequency, rate);
+    return ShownFrequency(aliases.front().frequency, rate);
   }
   if (!allowed.bounded) {
-    return "sampled at " + Hz(rate) + ", a pendulum faster than " + Hz(0.5 * rate) +
-           " would look slower than it is; up to " + Hz(kFastestHz) + " only " + chosen +
-           " fits the readings; give a rig file with masses and length to be certain";
+    return {.code = "ambiguous_frequency",
+            .finding = "sampled at " + Hz(rate) + ", a pendulum faster than " + Hz(0.5 * rate) +
+                       " would look slower than it is",
+            .explanation = "up to " + Hz(kFastestHz) + " only " + chosen + " fits the readings",
+            .advice = "give a rig file with masses and length to be certain"};
   }
-  return "sampled at " + Hz(rate) + ", two frequencies at equal distances from a multiple of " + Hz(0.5 * rate) +
-         " differ only in how the period depends on the amplitude; only " + chosen + " fits the readings";
+  return {.code = "ambiguous_frequency",
+          .finding = "sampled at " + Hz(rate) + ", two frequencies at equal distances from a multiple of " +
+                     Hz(0.5 * rate) + " differ only in how the period depends on the amplitude",
+          .explanation = "only " + chosen + " fits the readings"};
 }
 
 /// Whether the readings fit far better at a frequency that contradicts the rig.
-std::optional<std::string> RigMismatchReason(const Recording& used, const FitReport& fit, const FitOptions& options) {
+std::optional<Warning> RigMismatch(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const auto expected = ExpectedFrequency(options.rig);
   if (!expected || options.bounds.contains(kInertia.name) || options.fixed.contains(kInertia.name)) return std::nullopt;
   const AllowedFrequencies wide{{0.5 * kTurn * *expected, 2 * kTurn * *expected}, false};
@@ -166,23 +180,28 @@ std::optional<std::string> RigMismatchReason(const Recording& used, const FitRep
   if (!aliases || aliases->empty()) return std::nullopt;
   const Alias& best = aliases->front();
   if (2 * (best.likelihood() - fit.statistics.log_likelihood) < kMinDevianceGap) return std::nullopt;
-  return "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " + Hz(*expected) +
-         " that the rig predicts; check the rig file, or give --bounds of inertia";
+  return Warning{.code = "ambiguous_frequency",
+                 .finding = "the readings fit far better at " + Hz(best.frequency) + " than within 15 % of the " +
+                            Hz(*expected) + " that the rig predicts",
+                 .advice = "check the rig file, or give --bounds of inertia",
+                 .flags = {"bounds"}};
 }
 
 /// The reason to reject a fit, independent of its own errors.
 struct Rejection {
   Termination termination;
   std::string why;
+  std::optional<Warning> ambiguity;  // if that is the reason
 };
 
 std::optional<Rejection> RejectionOf(const Recording& used, const std::vector<Alias>& aliases,
                                      const AllowedFrequencies& allowed, const FitOptions& options) {
   if (const auto why = NotDescribedReason(used, aliases.front().fit))
-    return Rejection{Termination::kNotConverged, *why};
-  auto why = AmbiguityReason(used, aliases, allowed, options);
-  if (!why) why = RigMismatchReason(used, aliases.front().fit, options);
-  return why ? std::optional(Rejection{Termination::kNotIdentifiable, *why}) : std::nullopt;
+    return Rejection{Termination::kNotConverged, *why, std::nullopt};
+  auto ambiguity = AmbiguityOf(used, aliases, allowed, options);
+  if (!ambiguity) ambiguity = RigMismatch(used, aliases.front().fit, options);
+  if (!ambiguity) return std::nullopt;
+  return Rejection{Termination::kNotIdentifiable, MessageText(*ambiguity), ambiguity};
 }
 
 /// Sets the termination and warnings of a fit from the information in the samples.
@@ -190,11 +209,10 @@ void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, co
                     const std::optional<Rejection>& rejection, FitReport& fit) {
   const double rate = SampleRateOf(used);
   const bool mirrors = CanAliasWithinRange(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
-  const bool ambiguous = rejection && rejection->termination == Termination::kNotIdentifiable;
-  if (ambiguous) fit.warnings.push_back({"ambiguous_frequency", rejection->why});
-  if (!rejection && mirrors)
-    fit.warnings.push_back(
-        {"ambiguous_frequency", AssumptionText(aliases, allowed, rate, fit.model.gravity.is_linear())});
+  if (rejection && rejection->ambiguity) fit.warnings.push_back(*rejection->ambiguity);
+  if (!rejection && mirrors) {
+    fit.warnings.push_back(AssumptionOf(aliases, allowed, rate, fit.model.gravity.is_linear()));
+  }
   // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!rejection) return;
@@ -229,12 +247,12 @@ std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig) {
   return ratio ? std::optional(std::sqrt(*ratio) / kTurn) : std::nullopt;
 }
 
-std::optional<std::string> AssumedFrequencyText(const Recording& used, double half_period, const FitOptions& options) {
+std::optional<Warning> AssumedFrequency(const Recording& used, double half_period, const FitOptions& options) {
   const double frequency = 0.5 / (half_period * used.clock_scale);
   const double rate = SampleRateOf(used);
   const bool is_settled = IsFrequencyKnown(options) || IsLinear(options) || !(half_period > 0);
   if (is_settled || rate >= 2 * kFastestHz || rate - frequency > kFastestHz) return std::nullopt;
-  return ShownText(frequency, rate);
+  return ShownFrequency(frequency, rate);
 }
 
 std::optional<SwingFit> FitFasterAlias(const SwingFit& slow, const FitOptions& options) {

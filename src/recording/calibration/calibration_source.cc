@@ -37,8 +37,7 @@ std::string DoubtOn(const CalibrationTable& table, const CalibrationFit& fit) {
   constexpr double kSmallP = 0.001;
   if (!fit.higher_order || !(fit.higher_order->p < kSmallP)) return "";
   return "a parabola fits the points of " + table.path + " better than the straight line that is used (p " +
-         ProbabilityText(fit.higher_order->p) +
-         "); make the calibration with calibrate_sensor --order 2 --json, and give its file";
+         ProbabilityText(fit.higher_order->p) + ")";
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   for (std::size_t i = 0; i < std::min(folder.paths.size(), kMaxMembers); ++i) {
     MemberSummary summary = SummarizeMember(folder, i, options);
     if (summary.fault && warnings.size() < kMaxWarnings)
-      warnings.push_back({"unreadable_member", summary.fault->message});
+      warnings.push_back({.code = "unreadable_member", .finding = summary.fault->message});
     if (summary.fault && !fault) fault = summary.fault;
     if (!summary.candidates.empty()) summaries.push_back(std::move(summary));
   }
@@ -203,13 +203,14 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
     }
     return several;
   }
-  warnings.push_back(
-      {"member_assumed",
-       folder.name + ": " + folder.member + " " + Quoted(folder.paths[*usual]) +
-           " was read, although others have columns of a swing too; "
-           "choose another with --value_column " +
-           FlagExample(folder),
-       folder.member + " " + Quoted(folder.paths[*usual]) + " (--value_column " + FlagExample(folder) + ")"});
+  const std::string member = folder.member + " " + Quoted(folder.paths[*usual]);
+  const std::string flag = "--value_column " + FlagExample(folder);
+  warnings.push_back({.code = "member_assumed",
+                      .finding = member + " was read, although others have columns of a swing too",
+                      .advice = "choose another with " + flag,
+                      .flags = {"value_column"},
+                      .assumed = member + " (" + flag + ")",
+                      .about = {.file = folder.name}});
   return usual;
 }
 

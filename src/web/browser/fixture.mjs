@@ -26,7 +26,7 @@ function comparisonOf(fits, recommended) {
   }));
   return {
     recommended,
-    reason: `${recommended}: the simplest law whose residuals are noise`,
+    reason: `the simplest law whose residuals are noise`,
     criterion: 'bic',
     criterion_reason: 'residuals are independent',
     likelihood: 'independent',

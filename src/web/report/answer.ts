@@ -29,8 +29,7 @@ const kPhone = '(max-width: 560px)';
 export function recommendation(comparison: Comparison | null | undefined, shown: string | null): HTMLElement | null {
   if (!comparison) return null;
   const { recommended } = comparison;
-  const reason = comparison.reason ?? '';
-  const why = sentence(reason.startsWith(`${recommended}: `) ? reason.slice(`${recommended}: `.length) : reason);
+  const why = sentence(comparison.reason ?? '');
   const words =
     recommended === null
       ? 'No law is recommended.'
@@ -94,7 +93,7 @@ function assumedText({ assumptions = [] }: FitSummary): HTMLElement | null {
 }
 
 /** Warnings of the law that is shown: in short, and with their explanations. */
-function warningPart(summary: FitSummary, result: Pick<Result, 'fits' | 'warnings'>, model: string): HTMLElement | null {
+function warningPart(summary: FitSummary, result: Pick<Result, 'warnings'>, model: string): HTMLElement | null {
   if (summary.warnings.length === 0) return null;
   const list = el('ul', { class: 'warnings' }, ...summary.warnings.map((words) => el('li', {}, sentence(words))));
   const count = summary.warnings.length;

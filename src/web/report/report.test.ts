@@ -8,8 +8,8 @@ const result = {
   fits: [{ model: 'viscous' }, { model: 'coulomb' }, { model: 'drag' }],
   warnings: [
     { code: 'gaps', message: 'readings are missing' },
-    { code: 'lack_of_fit', message: 'viscous: the residuals are more than noise' },
-    { code: 'at_bound', message: 'drag: at the bound 0: drag' },
+    { code: 'lack_of_fit', message: 'viscous: the residuals', text: 'the residuals', law: 'viscous' },
+    { code: 'at_bound', message: 'drag: at the bound 0: drag', text: 'at the bound 0: drag', law: 'drag' },
   ],
 } as unknown as Result;
 
@@ -21,7 +21,7 @@ test('a law has its own warnings and those of the recording', () => {
 test('warnings of the other laws are with these laws', () => {
   const others = otherWarnings(result, 'drag');
   expect(others.map(({ model }) => model)).toEqual(['viscous']);
-  expect(others[0].warnings[0].message).toBe('the residuals are more than noise');
+  expect(others[0].warnings[0].message).toBe('the residuals');
 });
 
 test('the best fit is the recommended one, else the one with the smallest residuals that converged', () => {

@@ -54,17 +54,13 @@ export function sharedView(report: Report, { time }: Samples): TimeView {
 
 type Warnings = Result['warnings'];
 
-/** Warnings that name this model, without its name. */
-function warningsWith(model: string, warnings: Warnings): Warnings {
-  const name = `${model}: `;
-  return warnings.flatMap(({ code, message }) =>
-    message.startsWith(name) ? [{ code, message: message.slice(name.length) }] : [],
-  );
-}
+/** Warnings about this law, without its name. */
+const warningsWith = (model: string, warnings: Warnings): Warnings =>
+  warnings.filter(({ law }) => law === model).map((warning) => ({ ...warning, message: warning.text ?? warning.message }));
 
-/** Warnings of this model, and those that name no model. */
-export function warningsOf({ fits, warnings }: Pick<Result, 'fits' | 'warnings'>, model: string | null): Warnings {
-  const general = warnings.filter(({ message }) => !fits.some((fit) => message.startsWith(`${fit.model}: `)));
+/** Warnings about no law in particular, and those about this one. */
+export function warningsOf({ warnings }: Pick<Result, 'warnings'>, model: string | null): Warnings {
+  const general = warnings.filter(({ law }) => (law ?? null) === null);
   return [...general, ...(model === null ? [] : warningsWith(model, warnings))];
 }
 

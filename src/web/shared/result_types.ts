@@ -247,6 +247,17 @@ export interface ClosedForms extends Loose {
   turning_points: number;
 }
 
+/** All but code and message are absent in results of older versions. */
+export interface Warning {
+  code: string;
+  message: string;
+  /** The message without the law. */
+  text?: string;
+  law?: string | null;
+  /** Of a joint fit, from 1; empty: it is about the whole. */
+  recordings?: number[];
+}
+
 export interface Result {
   schema_version: number;
   tool: { name: string; version: string };
@@ -256,7 +267,7 @@ export interface Result {
   fits: Fit[];
   closed_forms: ClosedForms | null;
   comparison?: Comparison | null;
-  warnings: { code: string; message: string }[];
+  warnings: Warning[];
   reason?: string;
 }
 

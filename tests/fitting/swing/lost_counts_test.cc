@@ -40,9 +40,9 @@ SwingFit Fit(const Recording& recording, std::string_view model = "coulomb") {
   return Must(FitSwing(recording, swings.found[static_cast<std::size_t>(swings.chosen.at(0) - 1)], options));
 }
 
-const std::string& MessageOf(const FitReport& fit, std::string_view code) {
+std::string MessageOf(const FitReport& fit, std::string_view code) {
   for (const Warning& warning : fit.warnings) {
-    if (warning.code == code) return warning.message;
+    if (warning.code == code) return MessageText(warning);
   }
   throw std::runtime_error("no warning " + std::string(code));
 }

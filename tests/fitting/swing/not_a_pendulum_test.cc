@@ -25,7 +25,7 @@ using testing::StartsWith;
 
 std::vector<std::string> Codes(const FitReport& report) {
   std::vector<std::string> codes;
-  for (const Warning& warning : report.warnings) codes.push_back(warning.code);
+  for (const Warning& warning : report.warnings) codes.emplace_back(warning.code.text());
   return codes;
 }
 
@@ -123,12 +123,13 @@ TEST(FitSwing, TakesASpringIfTheUnitIsCertain) {
   degrees.unit = "deg";
   const FitReport fit = FitLongest(degrees, OptionsWithoutGravity()).fit;
   ExpectASpring(fit, truth);
-  EXPECT_THAT(fit.warnings.at(0).message, AllOf(HasSubstr("a restoring torque proportional to the angle is assumed"),
-                                                HasSubstr("the file says deg"), HasSubstr("give --gravity sin")));
+  EXPECT_THAT(MessageText(fit.warnings.at(0)),
+              AllOf(HasSubstr("a restoring torque proportional to the angle is assumed"),
+                    HasSubstr("the file says deg"), HasSubstr("give --gravity sin")));
   const Recording levels = OnLevels(LinearOscillator(60, "coulomb", 2), 578);
   const FitReport encoder = FitLongest(levels, OptionsWithoutGravity()).fit;
   ExpectASpring(encoder, truth);
-  EXPECT_THAT(encoder.warnings.at(0).message, HasSubstr("their levels are 1/578 of a turn"));
+  EXPECT_THAT(MessageText(encoder.warnings.at(0)), HasSubstr("their levels are 1/578 of a turn"));
 }
 
 TEST(FitSwing, DoesNotTakeASpringIfTheUserChoseTheModel) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/swing/choose_swings.h"
+#include "tests/base/warning_matchers.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::undersampled_test {
@@ -67,7 +68,7 @@ SwingFit FitSimulated(const SyntheticOptions& options, const std::optional<Rig>&
 
 double InertiaOf(const SwingFit& result) { return result.fit.Find("inertia")->estimate; }
 
-auto HasWarning(const std::string& code) { return Contains(Field(&Warning::code, code)); }
+auto HasWarning(const std::string& code) { return Contains(CodeIs(code)); }
 
 /// Deviations from the truth in standard errors.
 struct Scatter {

@@ -65,7 +65,7 @@ TEST(ForeignFormats, TheUserChoosesAmongColumns) {
 TEST(ForeignFormats, ColumnsWithoutAUnitTakeTheUnitFlag) {
   const std::string text = "t,x\n" + Rows("{t},{v}");
   EXPECT_EQ(
-      RecordingOf(text, TimeAndValue("t:ms", "x")).warnings.at(0).message,
+      MessageText(RecordingOf(text, TimeAndValue("t:ms", "x")).warnings.at(0)),
       "run.csv: column \"x\" does not give its unit and was assumed to be in px, a length of unknown scale; --unit "
       "says otherwise");
   ExpectTheRows(RecordingOf(text, TimeAndValue("t:ms", "x", "deg")), kDegree);
@@ -79,7 +79,7 @@ TEST(ForeignFormats, FractionalTimesWithoutAUnitAreSeconds) {
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "time_unit_assumed");
   EXPECT_EQ(
-      recording.warnings[0].message,
+      MessageText(recording.warnings[0]),
       "run.csv: column \"t\" does not give its unit and was assumed to be in s (the rows are then 0.0936 s apart); "
       "--time_column t:ms or :us says otherwise");
 }
@@ -111,9 +111,9 @@ TEST(ForeignFormats, TakeTheUnitOfAFlagBeforeThatOfAName) {
   EXPECT_EQ(recording.unit, "rad");
   EXPECT_NEAR(recording.time[1] - recording.time[0], (RecordingOf(text).time[1] - RecordingOf(text).time[0]) / 1000,
               1e-12);
-  EXPECT_EQ(recording.warnings.at(0).message,
+  EXPECT_EQ(MessageText(recording.warnings.at(0)),
             "run.csv: column \"time_s\" names s, but --time_column says ms, which was used");
-  EXPECT_EQ(recording.warnings.at(1).message,
+  EXPECT_EQ(MessageText(recording.warnings.at(1)),
             "run.csv: column \"angle_deg\" names deg, but --unit says rad, which was used");
 }
 
@@ -156,7 +156,7 @@ TEST(ForeignFormats, NameTheFlagsAFileWithoutHeaderNeeds) {
                 "a length: give it with --unit"));
   const Recording recording = RecordingOf(three, TimeAndValue("", "2", "deg"));
   ExpectTheRows(recording, kDegree);
-  EXPECT_EQ(recording.warnings.at(0).message,
+  EXPECT_EQ(MessageText(recording.warnings.at(0)),
             "run.csv: column 1 increases and was assumed to be the time; --time_column chooses another");
   ExpectTheRows(RecordingOf(three, TimeAndValue("1:ms", "2", "deg")), kDegree);
 }
@@ -190,7 +190,7 @@ TEST(ForeignFormats, WarnOfLostSamplesIfTimesComeFromTheSampleRate) {
   const Recording counted = RecordingOf("# sample_rate_hz: 100\n# lost_samples: 3\nangle_deg\n" + Rows("{v}"));
   ASSERT_EQ(counted.warnings.size(), 1);
   EXPECT_EQ(counted.warnings[0].code, "lost_samples");
-  EXPECT_THAT(counted.warnings[0].message, HasSubstr("that 3 samples were lost"));
+  EXPECT_THAT(MessageText(counted.warnings[0]), HasSubstr("that 3 samples were lost"));
   EXPECT_TRUE(RecordingOf("# sample_rate_hz: 9\n# lost_samples: 0\nangle_deg\n" + Rows("{v}")).warnings.empty());
 }
 
@@ -281,7 +281,7 @@ TEST(ForeignFormats, DoNotApplyTheFilesCalibrationToAnAngle) {
   ExpectTheRows(recording);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "metadata_not_applied");
-  EXPECT_EQ(recording.warnings[0].message,
+  EXPECT_EQ(MessageText(recording.warnings[0]),
             "run.csv:1: the metadata calibration is not applied to column \"angle_rad\", which is in rad already");
 }
 

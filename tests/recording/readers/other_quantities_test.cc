@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/recording/readers/read_recording.h"
+#include "tests/base/warning_matchers.h"
 
 namespace pendulum::other_quantities_test {
 namespace {
@@ -45,13 +46,12 @@ TEST(ParseRecording, NamesUnitsAsTheFileHasThem) {
   for (int i = 0; i < 40; ++i) text += std::to_string(0.01 * i) + "," + std::to_string(1 + 0.05 * std::cos(i)) + "\n";
   const Recording acceleration = Of(text);
   EXPECT_THAT(acceleration.warnings,
-              testing::Contains(
-                  testing::Field(&Warning::message, HasSubstr("was assumed to be in g (it is about 1 at rest)"))));
+              testing::Contains(MessageIs(HasSubstr("was assumed to be in g (it is about 1 at rest)"))));
   ReadOptions rad;
   rad.unit = "rad";
   const auto overridden = ParseRecording("time_s,angle_mrad\n" + kRows, "run.csv", rad);
   ASSERT_TRUE(overridden);
-  EXPECT_THAT(overridden->warnings.at(0).message, HasSubstr("names mrad, but --unit says rad, which was used"));
+  EXPECT_THAT(MessageText(overridden->warnings.at(0)), HasSubstr("names mrad, but --unit says rad, which was used"));
 }
 
 TEST(ParseRecording, PrefersAnAngleToCoordinates) {

@@ -231,7 +231,7 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
   // Of several quantities the angle is preferred.
   const Recording recording = RecordingOf("time_s,gyro_rad_s,angle_rad\n" + rows);
   EXPECT_EQ(recording.quantity, Quantity::kAngle);
-  EXPECT_EQ(recording.warnings.at(0).message,
+  EXPECT_EQ(MessageText(recording.warnings.at(0)),
             "run.csv: column \"angle_rad\" was used, not \"gyro_rad_s\"; --value_column chooses another");
 }
 

@@ -490,7 +490,7 @@ TEST(StrangersFiles, AreReadWithoutFlagsOrSayWhichFlagsWork) {
       warned += recording->warnings.empty() ? 0 : 1;
       wrong += recording->warnings.empty() ? 1 : 0;
       std::string warnings;
-      for (const Warning& warning : recording->warnings) warnings += warning.message + "\n";
+      for (const Warning& warning : recording->warnings) warnings += MessageText(warning) + "\n";
       std::printf("file %d is read wrongly:\n%s%s", i, file.description.c_str(), warnings.c_str());
       continue;
     }

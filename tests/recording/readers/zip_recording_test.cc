@@ -174,7 +174,7 @@ TEST(ReadZip, NamesAnUnreadableMember) {
   ExpectTheRows(recording, kDegree);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "unreadable_member");
-  EXPECT_THAT(recording.warnings[0].message, StartsWith("run.csv:a.csv: it cannot be unpacked ("));
+  EXPECT_THAT(MessageText(recording.warnings[0]), StartsWith("run.csv:a.csv: it cannot be unpacked ("));
   EXPECT_TRUE(RecordingOf(damaged(angle), Value("other.csv")).warnings.empty());
   EXPECT_THAT(FaultOf(damaged(kLight)), StartsWith("run.csv:a.csv: it cannot be unpacked ("));
   EXPECT_EQ(FaultOf(ZipOf({{"a.csv", angle}, {"b.csv", angle}}, "secret")),

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/effects/check_effects.h"
 #include "pendulum/fitting/effects/effect.h"
 #include "pendulum/fitting/likelihood/noise.h"
@@ -135,7 +136,7 @@ struct FitReport {
   /// The parameter with this name, or nullptr.
   const ParameterEstimate* Find(std::string_view name) const;
 
-  bool HasWarning(std::string_view code) const;
+  bool HasWarning(WarningCode code) const;
 };
 
 /// Removes the errors, intervals and covariance from a report in which they are not valid. Each parameter that is not

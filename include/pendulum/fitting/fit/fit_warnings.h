@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 

@@ -9,6 +9,7 @@
 
 #include "pendulum/base/progress.h"
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/fitting/start/start_values.h"
 #include "pendulum/model/motion_model.h"

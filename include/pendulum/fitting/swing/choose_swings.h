@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/recording/recording.h"

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/synthetic.h"
@@ -16,8 +17,8 @@ struct OffsetJumps {
   std::vector<LostCounts> lost;  ///< Whole counts, s on the file's clock, in time order; empty if some are not whole.
   Recording corrected;           ///< The readings after each jump are shifted back.
   std::optional<double> uncertain_from;  ///< s on the file's clock: the first jump that is not whole or not certain.
-  /// One sentence. It says what was corrected, or what to do if `lost` is empty.
-  std::string message;
+  /// It says what was corrected, or what to do if `lost` is empty.
+  Warning warning = {.code = "offset_jumps", .finding = ""};
 
   bool AreCorrected() const { return !lost.empty(); }
 };

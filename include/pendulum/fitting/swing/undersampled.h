@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/fitting/swing/fit_swing.h"
 
 namespace pendulum {
@@ -17,9 +18,9 @@ std::optional<double> ExpectedFrequency(const std::optional<Rig>& rig);
 /// swing, or if the samples could be an alias of a frequency up to 3 Hz (a pendulum 3 cm long).
 bool IsUndersampled(const Recording& recording, const std::optional<Rig>& rig);
 
-/// The assumption that the samples show each swing, in a sentence; std::nullopt if the rig or the options determine the
+/// The assumption that the samples show each swing; std::nullopt if the rig or the options determine the
 /// frequency, or if no faster pendulum would look the same. half_period [s] on the recording's clock.
-std::optional<std::string> AssumedFrequencyText(const Recording& used, double half_period, const FitOptions& options);
+std::optional<Warning> AssumedFrequency(const Recording& used, double half_period, const FitOptions& options);
 
 /// For a fit that leaves more than noise although the samples show its periods: FitUndersampled of the same readings,
 /// unless it finds the same frequency or nothing at all.

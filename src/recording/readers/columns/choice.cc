@@ -116,8 +116,9 @@ tl::unexpected<Status> Choice::WrongFlag(std::size_t index, const std::string& s
   return table.line.Fault(PlaceOf(index), sentence, StatusCode::kInvalidArgument);
 }
 
-void Choice::Assume(const std::string& code, const std::string& sentence, const std::string& in_short) {
-  warnings.push_back({code, std::string(table.line.file) + ": " + sentence, in_short});
+void Choice::Assume(Warning assumption) {
+  assumption.about.file = table.line.file;
+  warnings.push_back(std::move(assumption));
 }
 
 void Choice::Ask(const std::string& sentence, const std::vector<std::string>& flags, std::string_view option) {

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/base/warning.h"
 #include "recording/readers/columns/column_choice.h"
 
 /// What the choosers of time and quantity share.
@@ -70,8 +71,8 @@ struct Choice {
   const char* PlaceOf(std::size_t index) const;
   tl::unexpected<Status> WrongFlag(std::size_t index, const std::string& sentence) const;
 
-  /// Warns of an assumption. `in_short`: as Warning::assumed.
-  void Assume(const std::string& code, const std::string& sentence, const std::string& in_short);
+  /// Warns of an assumption about this file.
+  void Assume(Warning assumption);
 
   /// Notes what the user must tell, and an example of the flags that tell it. Without an example, `option` is the name
   /// of the flag.

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/recording/readers/columns/read_options.h"
 #include "recording/readers/columns/csv.h"
 #include "recording/readers/columns/header.h"

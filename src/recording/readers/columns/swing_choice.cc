@@ -102,10 +102,12 @@ bool CombineAxes(Choice& choice, const Columns& axes, const Eigen::MatrixXd& cov
     choice.layout.direction[next++] = direction[i];
     parts += (direction[i] < 0 ? " - " : " + ") + NumberText(std::abs(direction[i]), 3) + " " + choice.NameOf(axes[i]);
   }
-  choice.Assume("axes_combined",
-                "the axes share the swing, so the rate about the fixed axis of the rotation was computed: " + parts +
-                    "; --value_column " + ShellWord(choice.FlagValueOf(*choice.value)) + " uses this axis alone",
-                "rate about the axis " + parts + " (--value_column)");
+  choice.Assume(
+      {.code = "axes_combined",
+       .finding = "the axes share the swing, so the rate about the fixed axis of the rotation was computed: " + parts,
+       .advice = "--value_column " + ShellWord(choice.FlagValueOf(*choice.value)) + " uses this axis alone",
+       .flags = {"value_column"},
+       .assumed = "rate about the axis " + parts + " (--value_column)"});
   return true;
 }
 
@@ -242,9 +244,11 @@ std::optional<std::size_t> ChoosePoint(Choice& choice, const Point& point) {
     return std::nullopt;
   }
   choice.vertical = point.vertical;
-  choice.Assume("value_column_assumed",
-                both + " lie on a circle and were used as the coordinates of a point; " + one + " uses one alone",
-                both + " as a point (" + one + ")");
+  choice.Assume({.code = "value_column_assumed",
+                 .finding = both + " lie on a circle and were used as the coordinates of a point",
+                 .advice = one + " uses one alone",
+                 .flags = {"value_column"},
+                 .assumed = both + " as a point (" + one + ")"});
   return point.horizontal;
 }
 
@@ -263,10 +267,14 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   if (columns.size() == 1) {
     Columns copies = candidates;
     std::erase(copies, columns.front());
-    choice.Assume("value_column_assumed",
-                  "column " + choice.NameOf(columns.front()) + " was used; " + ListOf(choice.NamesOf(copies)) +
-                      (copies.size() == 1 ? " shows" : " show") + " the same; --value_column chooses another",
-                  "value column " + choice.NameOf(columns.front()) + " (--value_column)");
+    const std::string name = choice.NameOf(columns.front());
+    choice.Assume(
+        {.code = "value_column_assumed",
+         .finding = "column " + name + " was used",
+         .explanation = ListOf(choice.NamesOf(copies)) + (copies.size() == 1 ? " shows" : " show") + " the same",
+         .advice = "--value_column chooses another",
+         .flags = {"value_column"},
+         .assumed = "value column " + name + " (--value_column)"});
     return columns.front();
   }
   const Eigen::MatrixXd covariance = all(rows, rows);
@@ -303,11 +311,14 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   // One axis of an accelerometer is enough, because its direction is a parameter of the fit.
   const double least = !is_acceleration ? kMost : is_gravity ? kNoticeableShare : kMost / 2;
   if (is_rotation || share >= least) {
-    choice.Assume("value_column_assumed",
-                  "column " + choice.NameOf(columns[best]) + " carries " + Percent(share) +
-                      " of the swing and was used, not " + ListOf(others) + "; --value_column chooses another" +
-                      (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""),
-                  "value column " + choice.NameOf(columns[best]) + " (--value_column)");
+    const std::string name = choice.NameOf(columns[best]);
+    choice.Assume({.code = "value_column_assumed",
+                   .finding = "column " + name + " carries " + Percent(share) + " of the swing and was used, not " +
+                              ListOf(others),
+                   .advice = std::string("--value_column chooses another") +
+                             (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""),
+                   .flags = {"value_column"},
+                   .assumed = "value column " + name + " (--value_column)"});
     return columns[best];
   }
   // Whether one axis is enough follows from the unit, which will be asked for.

@@ -18,6 +18,16 @@ void UseTime(Choice& choice, std::size_t index, const Unit& unit) {
   choice.layout.time = Column{index, choice.NameOf(index), &unit};
 }
 
+/// Says that a column is taken as the time, and why: " was taken as the time, not t2".
+void AssumeTime(Choice& choice, std::size_t index, const std::string& why) {
+  const std::string column = "column " + choice.NameOf(index);
+  choice.Assume({.code = "time_column_assumed",
+                 .finding = column + why,
+                 .advice = "--time_column chooses another",
+                 .flags = {"time_column"},
+                 .assumed = column + " is the time (--time_column)"});
+}
+
 /// The columns without a meaning whose numbers increase. A single one is assumed to be the time.
 Columns TimesByNumbers(Choice& choice) {
   Columns times;
@@ -27,10 +37,7 @@ Columns TimesByNumbers(Choice& choice) {
     if (is_free && choice.IsNumeric(i) && choice.IsIncreasing(i) && !choice.IsRowNumber(i)) times.push_back(i);
   }
   if (times.size() == 1) {
-    choice.Assume("time_column_assumed",
-                  "column " + choice.NameOf(times[0]) +
-                      " increases and was assumed to be the time; --time_column chooses another",
-                  "column " + choice.NameOf(times[0]) + " is the time (--time_column)");
+    AssumeTime(choice, times[0], " increases and was assumed to be the time");
   }
   return times;
 }
@@ -91,9 +98,10 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   if (choice.IsClock(index)) {
     choice.layout.is_clock = choice.layout.is_from_first = true;
     UseTime(choice, index, *UnitOfSuffix("s"));
-    choice.Assume("times_of_day",
-                  "column " + choice.NameOf(index) + " holds times of day; times count from the first row",
-                  "column " + choice.NameOf(index) + " holds times of day (--time_column)");
+    choice.Assume({.code = "times_of_day",
+                   .finding = "column " + choice.NameOf(index) + " holds times of day",
+                   .explanation = "times count from the first row",
+                   .assumed = "column " + choice.NameOf(index) + " holds times of day (--time_column)"});
     return {};
   }
   TimeGuess guess = GuessTimeUnit(choice.NumbersOf(index), SwingBeside(choice));
@@ -110,12 +118,13 @@ Result<void> SetTimeUnit(Choice& choice, std::size_t index) {
   const std::string column = choice.FlagValueOf(index);
   const bool is_s = guess.unit == "s";
   const std::string others = ShellWord(column + (is_s ? ":ms" : ":s")) + (is_s ? " or :us" : "");
-  choice.Assume("time_unit_assumed",
-                "column " + choice.NameOf(index) + " does not give its unit and was assumed to be in " +
-                    std::string(guess.unit) + guess.reason +
-                    (guess.has_calendar_origin ? "; times count from the first row" : "") + "; --time_column " +
-                    others + " says otherwise",
-                "times in " + std::string(guess.unit) + " (--time_column " + others + ")");
+  choice.Assume({.code = "time_unit_assumed",
+                 .finding = "column " + choice.NameOf(index) + " does not give its unit and was assumed to be in " +
+                            std::string(guess.unit) + guess.reason,
+                 .explanation = guess.has_calendar_origin ? "times count from the first row" : "",
+                 .advice = "--time_column " + others + " says otherwise",
+                 .flags = {"time_column"},
+                 .assumed = "times in " + std::string(guess.unit) + " (--time_column " + others + ")"});
   return {};
 }
 
@@ -143,10 +152,12 @@ Result<void> FindNamedTime(Choice& choice) {
   ASSIGN_OR_RETURN(const std::size_t index, choice.FindColumn("--time_column", name));
   const Unit* own = index < choice.names.size() ? FindTimeUnit(choice.names[index].text) : nullptr;
   if (unit != nullptr && own != nullptr && unit != own) {
-    choice.Assume("unit_overridden",
-                  "column " + choice.NameOf(index) + " names " + std::string(own->name) + ", but --time_column says " +
-                      std::string(unit->name) + ", which was used",
-                  "times in " + std::string(unit->name) + ", as --time_column says, not in " + std::string(own->name));
+    const std::string used(unit->name), named(own->name);
+    choice.Assume({.code = "unit_overridden",
+                   .finding = "column " + choice.NameOf(index) + " names " + named + ", but --time_column says " +
+                              used + ", which was used",
+                   .flags = {"time_column"},
+                   .assumed = "times in " + used + ", as --time_column says, not in " + named});
   }
   choice.time = index;
   if (unit == nullptr) unit = own;
@@ -197,10 +208,7 @@ Result<void> ChooseTime(Choice& choice) {
   const auto known = std::ranges::find_if(times, has_unit);
   const std::size_t chosen = known != times.end() ? *known : times.front();
   if (times.size() > 1) {
-    choice.Assume("time_column_assumed",
-                  "column " + choice.NameOf(chosen) + " was taken as the time, not " +
-                      choice.NameOf(times[chosen == times.front() ? 1 : 0]) + "; --time_column chooses another",
-                  "column " + choice.NameOf(chosen) + " is the time (--time_column)");
+    AssumeTime(choice, chosen, " was taken as the time, not " + choice.NameOf(times[chosen == times.front() ? 1 : 0]));
   }
   return SetTime(choice, chosen, choice.Meaning(chosen).unit);
 }

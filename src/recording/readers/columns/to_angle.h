@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/warning.h"
 #include "pendulum/recording/arc.h"
 #include "pendulum/recording/oversampling.h"
 #include "pendulum/recording/recording.h"
@@ -33,11 +34,11 @@ inline Result<void> CheckCalibration(const Line& header, const Column& column, c
   const bool is_raw = column.unit->kind == Kind::kRaw;
   const std::string unit(column.unit->name);
   if (!is_raw && !options.calibration) {
-    warnings.push_back({"metadata_not_applied",
-                        std::string(header.file) + ":" + std::to_string(metadata.calibration_line) +
-                            ": the metadata calibration is not applied to column " + column.name + ", which is in " +
-                            unit + " already",
-                        "the file's calibration does not apply, as readings are in " + unit});
+    warnings.push_back({.code = "metadata_not_applied",
+                        .finding = "the metadata calibration is not applied to column " + column.name +
+                                   ", which is in " + unit + " already",
+                        .assumed = "the file's calibration does not apply, as readings are in " + unit,
+                        .about = {.file = std::string(header.file), .line = metadata.calibration_line}});
     return {};
   }
   return header.Fault(header.text.data(),
@@ -55,11 +56,12 @@ inline void WarnOfResolution(double found, Recording& recording) {
   constexpr double kAlike = 0.1;
   if (found == 0 || std::abs(recording.resolution - found) <= kAlike * found) return;
   const std::string who = recording.resolution_source == "given" ? "as given" : "as the file says";
-  recording.warnings.push_back(
-      {"resolution_disagrees",
-       "the resolution " + NumberText(recording.resolution, 4) + ", " + who + ", is used, but the values are " +
-           NumberText(found, 4) +
-           " apart (in the file's unit); correct the resolution, because a wrong one makes the error bars wrong"});
+  recording.warnings.push_back({.code = "resolution_disagrees",
+                                .finding = "the resolution " + NumberText(recording.resolution, 4) + ", " + who +
+                                           ", is used, but the values are " + NumberText(found, 4) +
+                                           " apart (in the file's unit)",
+                                .explanation = "a wrong resolution makes the error bars wrong",
+                                .advice = "correct the resolution"});
 }
 
 /// Sets the resolution and its source: the user, the file, or the values themselves. Whole counts have a resolution of
@@ -101,17 +103,21 @@ inline void SetRange(const Unit& unit, const ReadOptions& options, const Metadat
   const double slack = recording.resolution + 1e-6 * (high - low);
   const auto outside = (recording.value.array() < low - slack || recording.value.array() > high + slack).count();
   if (outside == 0) return;
-  recording.warnings.push_back({"range_disagrees", std::to_string(outside) + " readings are outside the range " +
-                                                       NumberText(low, 4) + " to " + NumberText(high, 4) +
-                                                       " (in the file's unit), so the range is ignored"});
+  recording.warnings.push_back({.code = "range_disagrees",
+                                .finding = std::to_string(outside) + " readings are outside the range " +
+                                           NumberText(low, 4) + " to " + NumberText(high, 4) +
+                                           " (in the file's unit), so the range is ignored"});
   recording.range.reset();
 }
 
 /// Says that a flag and a line of the file disagree about the averaging; the flag is used.
 inline void WarnOfAveraging(const std::string& flag, const std::string& given, const std::string& line,
                             Recording& recording) {
-  recording.warnings.push_back({"averaging_disagrees", flag + " is " + given + ", but the file says " + line +
-                                                           "; the flag is used: correct whichever is wrong"});
+  recording.warnings.push_back({.code = "averaging_disagrees",
+                                .finding = "--" + flag + " is " + given + ", but the file says " + line,
+                                .explanation = "the flag is used",
+                                .advice = "correct whichever is wrong",
+                                .flags = {flag}});
 }
 
 inline std::string WindowText(const AveragingWindow& window) {
@@ -127,13 +133,13 @@ inline void SetOversampling(const Unit& unit, const ReadOptions& options, const 
   oversampling.readings = options.oversample > 0 ? options.oversample : std::max(by_file, 1);
   oversampling.window = options.averaging_window ? options.averaging_window : metadata.window;
   if (options.oversample > 0 && by_file > 0 && options.oversample != by_file) {
-    WarnOfAveraging("--oversample", std::to_string(options.oversample), "# oversample: " + std::to_string(by_file),
+    WarnOfAveraging("oversample", std::to_string(options.oversample), "# oversample: " + std::to_string(by_file),
                     recording);
   }
   if (options.averaging_window && metadata.window) {
     const auto [from, to] = *options.averaging_window;
     if (from != metadata.window->from || to != metadata.window->to) {
-      WarnOfAveraging("--window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
+      WarnOfAveraging("window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
     }
   }
   FindCountLevels(unit.name == "counts", recording);

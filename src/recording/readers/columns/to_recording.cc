@@ -26,21 +26,23 @@ TimeSource TimeSourceOf(const ReadColumns& columns) {
 }
 
 void WarnOfClock(ReadColumns& columns, const ReadOptions& options) {
-  const auto warn = [&](const std::string& code, const std::string& sentence, const std::string& in_short = "") {
-    columns.samples.warnings.push_back({code, columns.samples.name + ": " + sentence, in_short});
+  const auto warn = [&](Warning warning) {
+    warning.about.file = columns.samples.name;
+    columns.samples.warnings.push_back(std::move(warning));
   };
   const Layout& layout = columns.layout;
   const std::string& lost = columns.metadata.lost_samples;
   if (columns.is_host_time) {
-    warn("host_time",
-         "the times are those at which the host received each line; if there is a column of the device's own times, "
-         "name it with --time_column",
-         "times of arrival at the computer (--time_column)");
+    warn({.code = "host_time",
+          .finding = "the times are those at which the host received each line",
+          .advice = "if there is a column of the device's own times, name it with --time_column",
+          .flags = {"time_column"},
+          .assumed = "times of arrival at the computer (--time_column)"});
   }
   if (!layout.time && RateOf(columns, options) > 0 && lost.find_first_of("123456789") != std::string::npos) {
-    warn("lost_samples",
-         "the file says that " + lost +
-             " samples were lost, so times computed from the sample rate are too early after each loss");
+    warn({.code = "lost_samples",
+          .finding = "the file says that " + lost +
+                     " samples were lost, so times computed from the sample rate are too early after each loss"});
   }
 }
 
@@ -48,10 +50,11 @@ void WarnOfSensor(ReadColumns& columns) {
   const std::string& unknown = columns.metadata.unknown_sensor;
   if (unknown.empty() || columns.metadata.sensor) return;
   columns.samples.warnings.push_back(
-      {"sensor_unknown",
-       columns.samples.name + ": the line # sensor: " + unknown +
-           " names no kind of sensor, so its errors are assumed from the readings; a kind is one of " +
-           NameList(SensorKinds())});
+      {.code = "sensor_unknown",
+       .finding =
+           "the line # sensor: " + unknown + " names no kind of sensor, so its errors are assumed from the readings",
+       .explanation = "a kind is one of " + NameList(SensorKinds()),
+       .about = {.file = columns.samples.name}});
 }
 
 /// Converts times to seconds and repairs the clock.
@@ -92,7 +95,9 @@ void MoveToMiddle(Recording& recording) {
 
 Warning EmptyCells(const std::string& file, std::size_t rows, const std::string& column) {
   const std::string count = rows == 1 ? "1 row was" : std::to_string(rows) + " rows were";
-  return {"empty_cells", file + ": " + count + " left out, with no number in column " + column + " or in its time"};
+  return {.code = "empty_cells",
+          .finding = count + " left out, with no number in column " + column + " or in its time",
+          .about = {.file = file}};
 }
 
 Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {

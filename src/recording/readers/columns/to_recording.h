@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 
+#include "pendulum/base/warning.h"
 #include "pendulum/recording/clock.h"
 #include "pendulum/recording/recording.h"
 #include "recording/readers/columns/column_choice.h"

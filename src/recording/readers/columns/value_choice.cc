@@ -68,10 +68,11 @@ void WarnOfOthers(Choice& choice, std::size_t chosen, std::span<const Columns> c
     }
   }
   if (names.empty()) return;
-  choice.Assume(
-      "value_column_assumed",
-      "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names) + "; --value_column chooses another",
-      "value column " + choice.NameOf(chosen) + " (--value_column)");
+  choice.Assume({.code = "value_column_assumed",
+                 .finding = "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names),
+                 .advice = "--value_column chooses another",
+                 .flags = {"value_column"},
+                 .assumed = "value column " + choice.NameOf(chosen) + " (--value_column)"});
 }
 
 /// The error for --value_column combined without axes that turn about one fixed axis.
@@ -140,11 +141,11 @@ Result<void> CheckUnitFlag(Choice& choice, std::size_t index) {
                    " contradicts it; leave the flag out, or choose another column with --value_column");
   }
   if (is_quantity && asked != nullptr && meaning.unit != asked) {
-    choice.Assume("unit_overridden",
-                  column + " names " + std::string(meaning.unit->Written()) + ", but --unit says " +
-                      std::string(asked->Written()) + ", which was used",
-                  "readings in " + std::string(asked->Written()) + ", as --unit says, not in " +
-                      std::string(meaning.unit->Written()));
+    const std::string used(asked->Written()), named(meaning.unit->Written());
+    choice.Assume({.code = "unit_overridden",
+                   .finding = column + " names " + named + ", but --unit says " + used + ", which was used",
+                   .flags = {"unit"},
+                   .assumed = "readings in " + used + ", as --unit says, not in " + named});
   }
   if (meaning.unit != nullptr && meaning.unit->kind == Kind::kTime && asked == nullptr) {
     return choice.table.line.Fault(
@@ -190,11 +191,11 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (!choice.options.unit.empty()) return UnitOfText(choice.options.unit);
   if (meaning.unit != nullptr) return meaning.unit;
   if (choice.vertical) {
-    choice.Assume("value_unit_assumed",
-                  "columns " + ListOf(choice.NamesOf({index, *choice.vertical})) +
-                      " do not give their unit and were assumed to be in px, which changes no "
-                      "angle; --unit says otherwise",
-                  "");
+    choice.Assume({.code = "value_unit_assumed",
+                   .finding = "columns " + ListOf(choice.NamesOf({index, *choice.vertical})) +
+                              " do not give their unit and were assumed to be in px, which changes no angle",
+                   .advice = "--unit says otherwise",
+                   .flags = {"unit"}});
     return UnitOfSuffix("px");
   }
   if (!choice.table.value_unit.empty()) return UnitOfSuffix(choice.table.value_unit);
@@ -247,9 +248,11 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
     return nullptr;
   }
   const std::string unit(UnitOfSuffix(guess.unit)->Written());
-  choice.Assume("value_unit_assumed",
-                column + " and was assumed to be in " + unit + guess.reason + "; --unit says otherwise",
-                "readings in " + unit + " (--unit)");
+  choice.Assume({.code = "value_unit_assumed",
+                 .finding = column + " and was assumed to be in " + unit + guess.reason,
+                 .advice = "--unit says otherwise",
+                 .flags = {"unit"},
+                 .assumed = "readings in " + unit + " (--unit)"});
   choice.layout.is_unit_assumed = true;
   return UnitOfSuffix(guess.unit);
 }

@@ -134,7 +134,7 @@ class Reader {
   const csv::Column& ColumnOf(int slot) const;
   std::size_t LastIndex() const;
   Check Append(double time, double value, double second = 0);
-  void Warn(const std::string& code, std::size_t line, const std::string& sentence, const std::string& assumed = "");
+  void Warn(std::size_t line, Warning warning);
   void WarnOfIncompleteRow(const Line& line);
   void WarnOfNote(std::string_view text);
   Check CheckEnd();
@@ -275,10 +275,13 @@ Check Reader::ChooseColumns() {
   RETURN_IF_ERROR(csv::ChooseColumns(table, options, layout_, samples_.warnings));
   if (needs_rate && layout_.time) metadata_.sample_rate_hz = 0;
   if (needs_rate && !layout_.time && head_.rate_line.number > 0) {
-    Warn("sample_rate_from_text", head_.rate_line.number,
-         "the rows have no times, so the rate of " + NumberText(head_.sample_rate_hz) + " Hz was taken from " +
-             Quoted(Trim(head_.rate_line.text)) + "; --sample_rate_hz says otherwise",
-         NumberText(head_.sample_rate_hz) + " Hz, from a line above the rows (--sample_rate_hz)");
+    const std::string rate = NumberText(head_.sample_rate_hz) + " Hz";
+    Warn(head_.rate_line.number, {.code = "sample_rate_from_text",
+                                  .finding = "the rows have no times, so the rate of " + rate + " was taken from " +
+                                             Quoted(Trim(head_.rate_line.text)),
+                                  .advice = "--sample_rate_hz says otherwise",
+                                  .flags = {"sample_rate_hz"},
+                                  .assumed = rate + ", from a line above the rows (--sample_rate_hz)"});
   }
   RETURN_IF_ERROR(ros_ ? ros_->CheckSecond(header) : Check());
   RETURN_IF_ERROR(CheckCalibration(header, layout_.value, options_, metadata_, samples_.warnings));
@@ -405,21 +408,25 @@ bool Reader::BeginsSecondTable(double time) const {
   return header_again_ > 0 && rows_ > 0 && !(layout_.time && time > samples_.time[rows_ - 1]);
 }
 
-void Reader::Warn(const std::string& code, std::size_t line, const std::string& sentence, const std::string& assumed) {
-  samples_.warnings.push_back(
-      {code, std::string(lines_.name()) + ":" + std::to_string(line) + ": " + sentence, assumed});
+void Reader::Warn(std::size_t line, Warning warning) {
+  warning.about.file = lines_.name();
+  warning.about.line = line;
+  samples_.warnings.push_back(std::move(warning));
 }
 
 void Reader::WarnOfIncompleteRow(const Line& line) {
-  Warn("incomplete_row", line.number, "the row " + Quoted(line.text) + " is incomplete; it was left out");
+  Warn(line.number, {.code = "incomplete_row",
+                     .finding = "the row " + Quoted(line.text) + " is incomplete",
+                     .explanation = "it was left out"});
 }
 
 /// `text`: what the current row holds beyond the columns.
 void Reader::WarnOfNote(std::string_view text) {
   if (!std::exchange(has_note_, true)) {
-    Warn("notes_left_out", line_.number,
-         "this row has text after its last column, " + Quoted(text) +
-             "; such text was left out in all rows. If it is a reading, name its column in the header");
+    Warn(line_.number, {.code = "notes_left_out",
+                        .finding = "this row has text after its last column, " + Quoted(text),
+                        .explanation = "such text was left out in all rows",
+                        .advice = "if it is a reading, name its column in the header"});
   }
 }
 
@@ -664,9 +671,12 @@ Check Reader::CheckLeftOut() {
                                             ": too many to leave out; delete them, or have the device send rows alone");
   }
   sentence += count == 1 ? ", was left out" : ", were left out";
-  if (cut_off > 0) sentence += "; rows that are cut off: " + std::to_string(cut_off);
-  if (!has_times()) sentence += "; the rows have no times, so a line that stood for a row makes later times wrong";
-  Warn("stray_lines", first.number, sentence);
+  std::string explanation = cut_off > 0 ? "rows that are cut off: " + std::to_string(cut_off) : "";
+  if (!has_times()) {
+    explanation += std::string(explanation.empty() ? "" : "; ") +
+                   "the rows have no times, so a line that stood for a row makes later times wrong";
+  }
+  Warn(first.number, {.code = "stray_lines", .finding = sentence, .explanation = explanation});
   samples_.left_out += cut_off;
   return {};
 }
@@ -680,17 +690,20 @@ void Reader::WarnOfTheEnd() {
       if (&table == &*longest) continue;
       others += (others.empty() ? "" : ", ") + std::to_string(table.rows) + " from line " + std::to_string(table.line);
     }
-    Warn("second_table", longest->line,
-         "the header stands again, and the times begin again; of these tables the longest was read, " +
-             std::to_string(longest->rows) + " rows from this line on, and not: " + others +
-             ". Save each table in a file of its own to fit the others",
-         "the longest table, of " + std::to_string(longest->rows) + " rows (split the file for the others)");
+    const std::string rows = std::to_string(longest->rows) + " rows";
+    Warn(longest->line,
+         {.code = "second_table",
+          .finding = "the header stands again, and the times begin again",
+          .explanation = "of these tables the longest was read, " + rows + " from this line on, and not: " + others,
+          .advice = "save each table in a file of its own to fit the others",
+          .assumed = "the longest table, of " + rows + " (split the file for the others)"});
   }
   if (below_.lines.count == 0) return;
   const TextOfLine& line = below_.lines.first;
   if (!below_.begins_with_text) return WarnOfIncompleteRow({lines_.name(), line.text, line.number});
-  Warn("text_below_table", line.number,
-       "the table ends here, at the text " + Quoted(line.text) + "; this line and all below it were not read");
+  Warn(line.number, {.code = "text_below_table",
+                     .finding = "the table ends here, at the text " + Quoted(line.text),
+                     .explanation = "this line and all below it were not read"});
 }
 
 /// In a paste without a header, the first stamp may have lost its leading digits and still parse as a number.
@@ -758,7 +771,8 @@ Check Reader::CheckUnpairedRows() {
                                           "; look for the missing ones at their "
                                           "source, or shorten the longer list if the others are complete"});
   }
-  samples_.warnings.push_back({"unequal_columns", file + ": " + lost + "; these rows were left out"});
+  samples_.warnings.push_back(
+      {.code = "unequal_columns", .finding = lost, .explanation = "these rows were left out", .about = {.file = file}});
   return {};
 }
 
@@ -771,11 +785,14 @@ void Reader::WarnOfOtherRate(Recording& recording) const {
   const auto is_stated = [&](double unit) { return std::abs(step / (stated * unit) - 1) <= kDiffers; };
   if (is_stated(1) || is_stated(1e-3) || is_stated(1e-6)) return;
   const auto text = [](double seconds) { return NumberText(seconds, 4) + " s"; };
-  recording.warnings.push_back({"rate_disagrees", recording.path + ": the times in column " + layout_.time->name +
-                                                      " are " + text(step) + " apart, but the lines above say " +
-                                                      text(stated) +
-                                                      "; the times are used (--time_column none --sample_rate_hz " +
-                                                      NumberText(head_.sample_rate_hz, 6) + " uses the other)"});
+  recording.warnings.push_back(
+      {.code = "rate_disagrees",
+       .finding = "the times in column " + layout_.time->name + " are " + text(step) +
+                  " apart, but the lines above say " + text(stated),
+       .explanation = "the times are used",
+       .advice = "--time_column none --sample_rate_hz " + NumberText(head_.sample_rate_hz, 6) + " uses the other",
+       .flags = {"time_column", "sample_rate_hz"},
+       .about = {.file = recording.path}});
 }
 
 }  // namespace

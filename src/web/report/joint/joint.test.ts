@@ -82,15 +82,20 @@ describe('views of a joint fit', () => {
   });
 
   test('a recording has its own data, parameters and warnings', () => {
-    const warnings = ['recording 1 (a): x', 'recording 10 (b): y', 'viscous: they disagree', 'recording 2 (c): z', 'each recording: u'];
-    const result = joint([jointFit()], { warnings: warnings.map((message) => ({ code: 'c', message })) });
+    const warnings = [
+      { message: 'x', recordings: [1] },
+      { message: 'they disagree', recordings: [] },
+      { message: 'z', recordings: [2] },
+      { message: 'u', recordings: [1, 2] },
+    ];
+    const result = joint([jointFit()], { warnings: warnings.map((warning) => ({ code: 'c', ...warning })) });
     const view = recordingView(result, 1);
     expect(view.data.path).toBe('f/run1.csv');
     expect(view.calibration).toEqual({ input: 'counts' });
     expect(view.fits[0].parameters.release_time.estimate).toBe(1.5);
     expect(view.fits[0].noise?.lag1_correlation).toBe(0.1);
-    expect(view.warnings.map((warning) => warning.message)).toEqual(['recording 2 (c): z', 'each recording: u']);
-    expect(recordingView(result, 0).warnings.map((warning) => warning.message)).toEqual(['recording 1 (a): x', 'each recording: u']);
+    expect(view.warnings.map((warning) => warning.message)).toEqual(['z', 'u']);
+    expect(recordingView(result, 0).warnings.map((warning) => warning.message)).toEqual(['x', 'u']);
   });
 
   test('the view of all recordings has the shared parameters and all warnings', () => {

@@ -21,9 +21,6 @@ export interface JointReport {
 
 export const isJoint = (result: Result | JointResult): result is JointResult => Array.isArray(result.data);
 
-/** Whether a warning is about recording k (from 0), or about each recording: fit_pendulum writes this first. */
-const isOf = (message: string, k: number): boolean => new RegExp(`^(recording ${k + 1}\\b|each recording:)`).test(message);
-
 /** Recording k of the joint fit as a result of one recording. */
 export function recordingView(result: JointResult, k: number): Result {
   return {
@@ -32,7 +29,7 @@ export function recordingView(result: JointResult, k: number): Result {
     calibration: result.calibration[k] ?? null,
     closed_forms: result.closed_forms[k] ?? null,
     fits: result.fits.map((fit): Fit => ({ ...fit, ...fit.runs[k] })),
-    warnings: result.warnings.filter(({ message }) => isOf(message, k)),
+    warnings: result.warnings.filter(({ recordings = [] }) => recordings.includes(k + 1)),
   };
 }
 

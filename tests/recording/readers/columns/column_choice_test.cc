@@ -48,7 +48,7 @@ double LargestError(const Recording& recording) {
 TEST(ChooseColumns, TakesTheAxisThatSwings) {
   const Recording recording = RecordingOf(Gyro({0, 0, 1}, 0.002));
   EXPECT_LT(LargestError(recording), 0.01);
-  EXPECT_THAT(recording.warnings.at(0).message,
+  EXPECT_THAT(MessageText(recording.warnings.at(0)),
               HasSubstr("column \"Gyroscope z (rad/s)\" carries 100 % of the swing and was used, not"));
 }
 
@@ -71,7 +71,7 @@ TEST(ChooseColumns, ASmallShareIsCombinedOnlyOnRequest) {
   const std::string text = Gyro({0, 0.1, std::sqrt(0.99)}, 0.002);
   const Recording alone = RecordingOf(text);
   EXPECT_EQ(alone.warnings.at(0).code, "value_column_assumed");
-  EXPECT_THAT(alone.warnings.at(0).message, HasSubstr("or 'combined' for a sensor that is mounted askew"));
+  EXPECT_THAT(MessageText(alone.warnings.at(0)), HasSubstr("or 'combined' for a sensor that is mounted askew"));
   EXPECT_LT(LargestError(RecordingOf(text, TimeAndValue("", "combined"))), 0.01);
 }
 
@@ -165,7 +165,7 @@ TEST(ChooseColumns, TheSameAngleInTwoUnitsIsOneCandidate) {
   }
   const Recording recording = RecordingOf(text);
   EXPECT_NEAR(recording.value[0], 0.3, 1e-6);
-  EXPECT_THAT(recording.warnings.at(0).message, HasSubstr("\"angle_rad\" shows the same"));
+  EXPECT_THAT(MessageText(recording.warnings.at(0)), HasSubstr("\"angle_rad\" shows the same"));
 }
 
 TEST(ChooseColumns, AColumnByItsNumberAlwaysWorks) {

@@ -81,7 +81,7 @@ TEST(Runs, RowsWithAnEmptyCellAreRemovedWithAWarning) {
   EXPECT_EQ(recording.size(), 9);
   ASSERT_GE(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "empty_cells");
-  EXPECT_EQ(recording.warnings[0].message,
+  EXPECT_EQ(MessageText(recording.warnings[0]),
             "run.csv: 1 row was left out, with no number in column \"Latest: Angle (rad)\" or in its time");
   EXPECT_EQ(RecordingOf("time_s,angle_rad\n" + Rows("0.0{t},{v}") + "0.08,\n0.09,109\n").size(), 9);
 }

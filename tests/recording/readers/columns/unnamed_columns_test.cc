@@ -103,8 +103,9 @@ TEST(UnnamedColumns, OnAnArcAreAPoint) {
       const Recording recording = RecordingOf(Table(swing, point, 0.5, separator));
       EXPECT_LT(LargestError(recording, swing), 0.02);
       EXPECT_EQ(recording.quantity, Quantity::kAngle);
-      EXPECT_THAT(recording.warnings.at(0).message, HasSubstr("columns 2 and 3 lie on a circle and were used as the "
-                                                              "coordinates of a point; --value_column 2 uses one"));
+      EXPECT_THAT(MessageText(recording.warnings.at(0)),
+                  HasSubstr("columns 2 and 3 lie on a circle and were used as the "
+                            "coordinates of a point; --value_column 2 uses one"));
     }
   }
   const Readings swapped = [](const Sample& each) {

@@ -132,7 +132,7 @@ TEST(ReadXlsx, PrefersRawDataAndSaysSo) {
   ExpectTheRows(recording);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "member_assumed");
-  EXPECT_EQ(recording.warnings[0].message,
+  EXPECT_EQ(MessageText(recording.warnings[0]),
             "run.csv: sheet \"Raw Data\" was read, although others have columns of a swing too; choose another with "
             "--value_column \"SHEET/COLUMN\"");
 }

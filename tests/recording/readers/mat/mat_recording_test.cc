@@ -129,7 +129,7 @@ TEST(ReadMat, RemovesRowsWithNaN) {
   const Recording recording = RecordingOf(MatOf({Matrix("t_s", 9, times), Matrix("angle_rad", 9, values)}));
   ExpectTheRows(recording);
   ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(recording.warnings[0].message,
+  EXPECT_EQ(MessageText(recording.warnings[0]),
             "run.csv: 1 row was left out, with no number in column \"angle_rad\" or in its time");
 }
 
@@ -149,7 +149,8 @@ TEST(ReadMat, WholeNumbersOfATimeAreMilliseconds) {
 TEST(ReadMat, WarnsThatATimeIsTakenAsSeconds) {
   const auto codes = [](const MatVariables& variables) {
     std::string list;
-    for (const Warning& warning : RecordingOf(MatOf(variables)).warnings) list += warning.code + ' ';
+    for (const Warning& warning : RecordingOf(MatOf(variables)).warnings)
+      list += std::string(warning.code.text()) + ' ';
     return list;
   };
   EXPECT_EQ(codes({Matrix("t", 8, Times()), Matrix("angle_rad", 8, Values())}), "time_unit_assumed ");
@@ -180,7 +181,7 @@ TEST(ReadMat, RefusesTwoCandidatesAndChoosesOneOfTwoTimes) {
             "itself; choose one with --value_column");
   ExpectTheRows(RecordingOf(two, Value("a_rad")));
   const std::string times = MatOf({Matrix("t", 8, Times()), Matrix("tout", 8, Times()), Matrix("a_rad", 8, Values())});
-  EXPECT_EQ(RecordingOf(times).warnings.at(0).message,
+  EXPECT_EQ(MessageText(RecordingOf(times).warnings.at(0)),
             "run.csv: column \"tout\" was taken as the time, not \"t\"; --time_column chooses another");
 }
 

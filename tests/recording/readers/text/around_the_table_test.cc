@@ -23,7 +23,7 @@ using testing::StartsWith;
 
 std::vector<std::string> MessagesOf(const Recording& recording) {
   std::vector<std::string> messages;
-  for (const Warning& warning : recording.warnings) messages.push_back(warning.message);
+  for (const Warning& warning : recording.warnings) messages.push_back(MessageText(warning));
   return messages;
 }
 
@@ -67,11 +67,11 @@ TEST(AroundTheTable, TimesOfRowsCountMoreThanAnIntervalAbove) {
           std::string("Model,DPO2014\nSample Interval,") + interval + "\nRecord Length,8\n" + label;
       const Recording recording = RecordingOf(head + "\nTIME (ms),angle_rad\n" + Rows("{t},{v}"));
       ExpectTheRows(recording);
-      const auto found = std::ranges::find(recording.warnings, "rate_disagrees", &Warning::code);
-      EXPECT_EQ(found != recording.warnings.end(), has_warning) << interval;
+      const Warning* const found = FindWarning(recording.warnings, "rate_disagrees");
+      EXPECT_EQ(found != nullptr, has_warning) << interval;
       if (!has_warning) continue;
       EXPECT_THAT(
-          found->message,
+          MessageText(*found),
           AllOf(HasSubstr("column \"TIME (ms)\" are 0.01 s apart, but the lines above say 0.03 s; the times are used"),
                 HasSubstr("--time_column none --sample_rate_hz 33.3333")));
     }
@@ -215,7 +215,7 @@ TEST(AroundTheTable, RemarksBesideTheHeaderAreNoNames) {
     for (const std::string below : {"", "Calibrating...\nDone\n", "Calibrating gyro...\n", "Start time\n"}) {
       const Recording recording = RecordingOf(above + "millis,ADC\n" + below + Rows("{t},{v}"));
       ExpectTheRows(recording);
-      EXPECT_TRUE(recording.warnings.empty()) << above << below << recording.warnings.at(0).message;
+      EXPECT_TRUE(recording.warnings.empty()) << above << below << MessageText(recording.warnings.at(0));
     }
   }
   ExpectTheRows(RecordingOf("Ready v1\nmillis ADC\nTemp: 23 C\n" + Rows("{t} {v}")));
@@ -280,7 +280,7 @@ TEST(AroundTheTable, ASecondTableIsLeftOut) {
   }
   EXPECT_THAT(MessagesOf(RecordingOf(kTable + kSecond)),
               ElementsAre("run.csv:2: the header stands again, and the times begin again; of these tables the longest "
-                          "was read, 8 rows from this line on, and not: 8 from line 11. Save each table in a file of "
+                          "was read, 8 rows from this line on, and not: 8 from line 11; save each table in a file of "
                           "its own to fit the others"));
   EXPECT_THAT(FaultOf("time_ms,angle_deg\n" + Rows("{t},{v}", 5) + "time_ms,angle_deg\n" + Rows("{t},9", 4), {},
                       StatusCode::kFailedPrecondition),
@@ -295,7 +295,7 @@ TEST(AroundTheTable, TheLongestOfSeveralTablesIsRead) {
     const Recording recording = RecordingOf(text);
     ExpectTheRows(recording, kDegree);
     EXPECT_EQ(recording.warnings.at(0).code, "second_table") << text;
-    EXPECT_THAT(recording.warnings.at(0).message, HasSubstr("8 rows from this line on, and not: 5 from line 2"));
+    EXPECT_THAT(MessageText(recording.warnings.at(0)), HasSubstr("8 rows from this line on, and not: 5 from line 2"));
     EXPECT_FALSE(recording.warnings.at(0).assumed.empty());
   }
   // A fault in the longest table is none of the others'.
@@ -321,7 +321,7 @@ TEST(AroundTheTable, NotesBesideItAreLeftOut) {
   ExpectTheRows(recording, kDegree);
   EXPECT_THAT(MessagesOf(recording),
               ElementsAre("run.csv:2: this row has text after its last column, \"released\"; such text was left out in "
-                          "all rows. If it is a reading, name its column in the header"));
+                          "all rows; if it is a reading, name its column in the header"));
 }
 
 TEST(AroundTheTable, NamesMayHaveLineBreaks) {

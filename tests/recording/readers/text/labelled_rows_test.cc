@@ -35,7 +35,7 @@ TEST(LabelledRows, MayHaveOtherLinesAmongThem) {
   const Recording recording = RecordingOf(text);
   ExpectTheRows(recording);
   ASSERT_FALSE(recording.warnings.empty());
-  EXPECT_THAT(recording.warnings[0].message, HasSubstr("WARN battery low"));
+  EXPECT_THAT(MessageText(recording.warnings[0]), HasSubstr("WARN battery low"));
 }
 
 TEST(LabelledRows, MayBeginWithARowThatIsCutOffOrWithOtherLabels) {

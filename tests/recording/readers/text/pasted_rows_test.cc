@@ -22,7 +22,8 @@ TEST(PastedRows, ReadAPasteOfASerialMonitor) {
   EXPECT_EQ(recording.value[0], 99);
   ASSERT_EQ(recording.warnings.size(), 1);
   EXPECT_EQ(recording.warnings[0].code, "incomplete_row");
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:10: the row \"14:03:22.203 -> 80\" is incomplete; it was left out");
+  EXPECT_EQ(MessageText(recording.warnings[0]),
+            "run.csv:10: the row \"14:03:22.203 -> 80\" is incomplete; it was left out");
 }
 
 TEST(PastedRows, UseTheHostsTimeIfThereIsNoOtherTime) {
@@ -34,9 +35,9 @@ TEST(PastedRows, UseTheHostsTimeIfThereIsNoOtherTime) {
   ASSERT_EQ(recording.size(), 8);
   for (int i = 0; i < 8; ++i) EXPECT_DOUBLE_EQ(recording.time[i], 86399.96 + i / 100.0);
   ASSERT_EQ(recording.warnings.size(), 2);
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"99.990 -> 7\" is incomplete; it was left out");
+  EXPECT_EQ(MessageText(recording.warnings[0]), "run.csv:1: the row \"99.990 -> 7\" is incomplete; it was left out");
   EXPECT_EQ(recording.warnings[1].code, "host_time");
-  EXPECT_EQ(recording.warnings[1].message,
+  EXPECT_EQ(MessageText(recording.warnings[1]),
             "run.csv: the times are those at which the host received each line; if there is a column of the device's "
             "own times, name it with --time_column");
 }
@@ -59,7 +60,7 @@ TEST(PastedRows, RemoveATruncatedFirstRowWithoutAHeader) {
     const Recording recording = RecordingOf(cut + "\n" + Rows("{t},{v}"), TimeAndValue("1:ms", "", "deg"));
     ExpectTheRows(recording, kDegree);
     ASSERT_EQ(recording.warnings.size(), 1) << cut;
-    EXPECT_EQ(recording.warnings[0].message, "run.csv:1: the row \"" + cut + "\" is incomplete; it was left out");
+    EXPECT_EQ(MessageText(recording.warnings[0]), "run.csv:1: the row \"" + cut + "\" is incomplete; it was left out");
   }
 }
 
@@ -79,7 +80,7 @@ TEST(PastedRows, RemoveATruncatedLastRow) {
     ExpectTheRows(recording, kDegree);
     ASSERT_EQ(recording.warnings.size(), 1) << cut;
     EXPECT_EQ(recording.warnings[0].code, "incomplete_row");
-    EXPECT_THAT(recording.warnings[0].message, StartsWith("run.csv:10: the row \"80")) << cut;
+    EXPECT_THAT(MessageText(recording.warnings[0]), StartsWith("run.csv:10: the row \"80")) << cut;
   }
   EXPECT_EQ(RecordingOf(text + "80,108").size(), 9);
 }
@@ -89,7 +90,7 @@ TEST(PastedRows, RemoveATruncatedLastValue) {
   const Recording recording = RecordingOf(text + "90,10");
   EXPECT_EQ(recording.size(), 9);
   ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(recording.warnings[0].message, "run.csv:11: the row \"90,10\" is incomplete; it was left out");
+  EXPECT_EQ(MessageText(recording.warnings[0]), "run.csv:11: the row \"90,10\" is incomplete; it was left out");
   EXPECT_EQ(RecordingOf(text + "90,10\n").size(), 10);  // The line end shows that it is whole.
   EXPECT_EQ(RecordingOf(text + "90,105").size(), 10);
 }
@@ -105,7 +106,7 @@ TEST(PastedRows, NameTheLineOfClockRepairs) {
   const std::string text = "# a\ntime_ms,angle_deg\n" + Rows("{t},{v}");
   const Recording recording = RecordingOf(text + "\n\n70,5\n80,5\n90,5\n100,5\n110,5\n");
   ASSERT_EQ(recording.warnings.size(), 1);
-  EXPECT_EQ(recording.warnings[0].message,
+  EXPECT_EQ(MessageText(recording.warnings[0]),
             "run.csv:13: 2 of 13 rows were left out because they share their time with another row, first 70 ms; of "
             "rows with equal times and values, one was kept");
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/base/warning.h"
 
 namespace pendulum {
 
