@@ -2,10 +2,12 @@
 #include "pendulum/batch/overview.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "batch/run_kinds.h"
@@ -14,41 +16,28 @@
 namespace pendulum {
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr std::size_t kMaxExamples = 10;
 
-constexpr int kMaxExamples = 10;
-
-Json ModelsJson(SQLite::Database& database) {
+std::vector<LawCounts> CountLaws(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT model, count(*), count(*) FILTER (WHERE status = 'converged'), count(*) FILTER (WHERE status = 'not_converged'),
     count(*) FILTER (WHERE status = 'not_identifiable'), count(*) FILTER (WHERE status = 'failed')
   FROM fits JOIN runs USING(run) WHERE )sql" +
                                        kIsLiveFit + " GROUP BY model ORDER BY model");
-  Json models = Json::array();
-  while (rows.executeStep()) {
-    models.push_back({{"model", sqlite::Text(rows, 0)},
-                      {"fits", rows.getColumn(1).getInt64()},
-                      {"converged", rows.getColumn(2).getInt64()},
-                      {"not_converged", rows.getColumn(3).getInt64()},
-                      {"not_identifiable", rows.getColumn(4).getInt64()},
-                      {"failed", rows.getColumn(5).getInt64()}});
-  }
-  return models;
+  const auto count = [&](int column) { return rows.getColumn(column).getInt64(); };
+  std::vector<LawCounts> laws;
+  while (rows.executeStep()) laws.push_back({sqlite::Text(rows, 0), count(1), count(2), count(3), count(4), count(5)});
+  return laws;
 }
 
-/// Number of recommendations of each model, among runs with several models.
-Json RecommendationsJson(SQLite::Database& database) {
+std::vector<RecommendationCount> CountRecommendations(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT recommended, count(*) FROM runs
   WHERE result IS NOT NULL AND run IN (SELECT run FROM fits WHERE stale IS NULL GROUP BY run HAVING count(*) > 1) AND )sql" +
                                        kIsLive + " GROUP BY recommended ORDER BY count(*) DESC, recommended");
-  Json list = Json::array();
-  while (rows.executeStep()) {
-    const bool none = rows.getColumn(0).isNull();
-    list.push_back(
-        {{"model", none ? Json(nullptr) : Json(sqlite::Text(rows, 0))}, {"runs", rows.getColumn(1).getInt64()}});
-  }
-  return list;
+  std::vector<RecommendationCount> counts;
+  while (rows.executeStep()) counts.push_back({sqlite::Text(rows, 0), rows.getColumn(1).getInt64()});
+  return counts;
 }
 
 /// A reason without the name of the recording and its line.
@@ -70,51 +59,40 @@ std::string KindOf(const std::string& reason) {
   return kind;
 }
 
-struct Failures {
-  std::int64_t fits = 0;
-  std::string reason;   ///< Reason of the first run, with numbers.
-  bool differ = false;  ///< Other runs have other numbers in their reason.
-  std::vector<std::string> models, examples;
-};
-
-Json FailuresJson(SQLite::Database& database) {
+/// Failures are grouped by their reasons without file names and numbers. The reason of a group has the numbers only if
+/// they are the same in all its failures.
+std::vector<FailureCount> CountFailures(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
 SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
   WHERE fits.status <> 'converged' AND )sql" +
                                        kIsLiveFit + " ORDER BY position, id");
-  std::map<std::tuple<std::string, int, std::string>, Failures> kinds;
+  std::map<std::tuple<std::string, int, std::string>, FailureCount> kinds;
   while (rows.executeStep()) {
-    const std::string why = ReasonOf(sqlite::Text(rows, 2), sqlite::Text(rows, 3));
-    Failures& failures = kinds[{sqlite::Text(rows, 0), rows.getColumn(1).getInt(), KindOf(why)}];
+    const std::string why = ReasonOf(sqlite::Text(rows, 2), sqlite::Text(rows, 3)), kind = KindOf(why);
+    FailureCount& failures = kinds[{sqlite::Text(rows, 0), rows.getColumn(1).getInt(), kind}];
     if (failures.fits++ == 0) failures.reason = why;
-    failures.differ = failures.differ || failures.reason != why;
-    const std::string model = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
-    if (std::ranges::find(failures.models, model) == failures.models.end()) failures.models.push_back(model);
+    if (failures.reason != why) failures.reason = kind;
+    const std::string law = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
+    if (std::ranges::find(failures.laws, law) == failures.laws.end()) failures.laws.push_back(law);
     const bool known = std::ranges::find(failures.examples, id) != failures.examples.end();
     if (!known && failures.examples.size() < kMaxExamples) failures.examples.push_back(id);
   }
-  std::vector<Json> list;
-  for (const auto& [kind, failures] : kinds) {
-    const auto& [status, exit_code, words] = kind;
-    list.push_back({{"status", status},
-                    {"exit_code", exit_code},
-                    {"reason", failures.differ ? words : failures.reason},
-                    {"fits", failures.fits},
-                    {"models", failures.models},
-                    {"examples", failures.examples}});
+  std::vector<FailureCount> list;
+  for (auto& [kind, failures] : kinds) {
+    failures.status = std::get<0>(kind);
+    failures.exit_code = std::get<1>(kind);
+    list.push_back(std::move(failures));
   }
-  std::ranges::stable_sort(list, [](const Json& a, const Json& b) { return a["fits"] > b["fits"]; });
+  std::ranges::stable_sort(list, std::ranges::greater(), &FailureCount::fits);
   return list;
 }
 
 }  // namespace
 
-Result<Json> Overview(Store& store) {
-  return sqlite::Guard(store.name(), [&]() -> Result<Json> {
+Result<StoreOverview> Overview(Store& store) {
+  return sqlite::Guard(store.name(), [&]() -> Result<StoreOverview> {
     SQLite::Database& database = store.database();
-    return Json{{"models", ModelsJson(database)},
-                {"recommendations", RecommendationsJson(database)},
-                {"failures", FailuresJson(database)}};
+    return StoreOverview{CountLaws(database), CountRecommendations(database), CountFailures(database)};
   });
 }
 

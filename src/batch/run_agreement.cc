@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,10 +126,10 @@ Member MemberOf(std::string id, const std::string& text, const std::string& mode
 }
 
 /// A disagreeing run, and the parameter in which it differs most.
-Json OutlierJson(const std::vector<SeparateEstimates>& estimates, std::size_t run,
-                 const std::vector<std::size_t>& outliers, const std::string& id) {
+DisagreeingRun DisagreementOf(const std::vector<SeparateEstimates>& estimates, std::size_t run,
+                              const std::vector<std::size_t>& outliers, const std::string& id) {
   const SeparateEstimates& own = estimates[run];
-  Json json;
+  DisagreeingRun described;
   double largest = -1;
   for (Index j = 0; j < own.value.size(); ++j) {
     double sum = 0, weights = 0;
@@ -142,13 +143,9 @@ Json OutlierJson(const std::vector<SeparateEstimates>& estimates, std::size_t ru
     const double z = (own.value[j] - others) / std::sqrt(own.covariance(j, j) + 1 / weights);
     if (!(std::abs(z) > largest)) continue;
     largest = std::abs(z);
-    json = {{"id", id},
-            {"parameter", own.names[static_cast<std::size_t>(j)]},
-            {"estimate", own.value[j]},
-            {"others", others},
-            {"z", z}};
+    described = {id, own.names[static_cast<std::size_t>(j)], own.value[j], others, z};
   }
-  return json;
+  return described;
 }
 
 /// One pendulum: its runs, and the test.
@@ -162,8 +159,8 @@ class Group {
     if (++runs_ <= kMaxRuns) members_.push_back(MemberOf(std::move(id), result, model));
   }
 
-  /// The row of the group; null if it cannot be tested. Adds the ids of the outliers if they are few.
-  Json Test(std::set<std::string>& named) const {
+  /// std::nullopt if the group cannot be tested. Adds the ids of the outliers if they are few.
+  std::optional<GroupAgreement> Test(std::set<std::string>& named) const {
     std::vector<const Member*> members;
     std::vector<SeparateEstimates> estimates;
     for (const Member* member : Comparable()) {
@@ -173,19 +170,18 @@ class Group {
       members.push_back(member);
       estimates.push_back(*std::move(one));
     }
-    if (members.size() < 2 || runs_ > kMaxRuns) return nullptr;
+    if (members.size() < 2 || runs_ > kMaxRuns) return std::nullopt;
     const Agreement agreement = TestAgreement(estimates);
-    if (!agreement.p) return nullptr;
+    if (!agreement.p) return std::nullopt;
     std::vector<std::size_t> outliers;
     if (*agreement.p < Agreement::kDisagree) outliers = FindDisagreeing(estimates);
-    Json list = Json::array();
+    GroupAgreement tested{name_, members.size(), agreement.statistic, agreement.dof, *agreement.p, {}};
     for (const std::size_t k : outliers) {
-      list.push_back(OutlierJson(estimates, k, outliers, members[k]->id));
+      tested.outliers.push_back(DisagreementOf(estimates, k, outliers, members[k]->id));
       constexpr std::size_t kShare = 10;  // more than one in ten are no exceptions
       if (outliers.size() == 1 || kShare * outliers.size() <= members.size()) named.insert(members[k]->id);
     }
-    return {{"group", name_},       {"runs", members.size()}, {"statistic", agreement.statistic},
-            {"dof", agreement.dof}, {"p", *agreement.p},      {"outliers", std::move(list)}};
+    return tested;
   }
 
  private:
@@ -212,17 +208,18 @@ class Group {
 
 RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& model, const RunGroups& groups) {
   RunAgreement agreement;
+  agreement.law = model;
   if (!groups.compares() || groups.runs > kMaxBatch) return agreement;
   SQLite::Statement rows(database, "SELECT " + groups.sql +
                                        R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
   WHERE model = ? AND status = 'converged' AND result IS NOT NULL AND )sql" +
                                        kIsLiveFit + " ORDER BY pendulum, position, id");
   sqlite::Bind(rows, model);
-  std::vector<Json> tested;
+  std::vector<GroupAgreement>& tested = agreement.rows;
   std::optional<Group> group;
   const auto test = [&] {
     if (!group || std::ranges::find(groups.unlike, group->name()) != groups.unlike.end()) return;
-    if (Json row = group->Test(agreement.outliers); !row.is_null()) tested.push_back(std::move(row));
+    if (auto row = group->Test(agreement.outliers)) tested.push_back(*std::move(row));
   };
   while (rows.executeStep()) {
     const std::string name = sqlite::Text(rows, 0);
@@ -233,16 +230,13 @@ RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& mod
     group->Add(sqlite::Text(rows, 1), sqlite::Text(rows, 2), model);
   }
   test();
-  if (tested.empty()) return agreement;
-  std::ranges::stable_sort(tested, {}, [](const Json& row) { return row["p"].get<double>(); });
-  std::size_t disagreeing = 0;
-  for (Json& row : tested) {
-    if (groups.name.empty()) row["group"] = nullptr;
-    if (row["p"].get<double>() < Agreement::kDisagree) ++disagreeing;
+  std::ranges::stable_sort(tested, {}, &GroupAgreement::p);
+  for (GroupAgreement& row : tested) {
+    if (groups.name.empty()) row.group.reset();
+    if (row.p < Agreement::kDisagree) ++agreement.disagreeing;
   }
-  const std::size_t count = tested.size();
+  agreement.groups = tested.size();
   if (tested.size() > kMaxRows) tested.resize(kMaxRows);
-  agreement.json = {{"model", model}, {"groups", count}, {"disagreeing", disagreeing}, {"rows", tested}};
   return agreement;
 }
 

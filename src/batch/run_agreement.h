@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <set>
 #include <string>
-
-#include <nlohmann/json.hpp>
 
 #include "batch/run_groups.h"
 #include "batch/sqlite.h"
+#include "pendulum/batch/store_summary.h"
 
 namespace pendulum {
-
-/// Runs that disagree with the other runs of their pendulum, by the test of a joint fit (FindDisagreeing).
-struct RunAgreement {
-  nlohmann::ordered_json json;     ///< `agreement` of summary.schema.json; null if there is nothing to compare.
-  std::set<std::string> outliers;  ///< Ids of the runs that are named; few.
-};
 
 /// Tests the runs of each pendulum under a model, with their stored estimates and covariances, by the rules of a joint
 /// fit (EstimatesToCompare). Unlike there, priors are not removed, runs with a parameter at a bound are

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "batch/sqlite.h"
-#include "pendulum/base/status.h"
 #include "pendulum/batch/run_statistics.h"
 
 namespace pendulum {

@@ -237,8 +237,8 @@ std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, 
       Prepared(result_of, "SELECT data_sha256, result, exit_code FROM runs WHERE run = ? AND result IS NOT NULL");
   std::string why;
   if (sqlite::Bind(before, run).executeStep()) {
-    const NewerOutcome newer{outcome.result.is_null() ? "" : JsonText(outcome.result), outcome.reason,
-                             outcome.exit_code, sqlite::Text(before, 0) == outcome.provenance.data_sha256};
+    const NewerOutcome newer{!outcome.result.is_null(), DataOf(outcome.result), outcome.reason, outcome.exit_code,
+                             sqlite::Text(before, 0) == outcome.provenance.data_sha256};
     why = WhyKept(sqlite::Text(before, 1), before.getColumn(2).getInt(), newer, is_gone);
   }
   before.reset();

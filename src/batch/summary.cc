@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -20,37 +21,28 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
 #include "pendulum/base/try.h"
-#include "pendulum/base/version.h"
 #include "pendulum/batch/overview.h"
 #include "pendulum/batch/run_statistics.h"
-#include "pendulum/report/json_parts.h"
 
 namespace pendulum {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr int kSchemaVersion = 2;
-constexpr int kMaxOutliers = 50;
+constexpr std::size_t kMaxOutliers = 50;
 constexpr std::size_t kMaxPoints = 2000;
 
-Json StoreJson(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
-  SQLite::Database& database = store.database();
-  return {{"path", store.name()},
-          {"runs", counts.runs},
-          {"refitted", counts.runs - counts.pending},
-          {"pending", counts.pending},
-          {"fits", counts.fits},
-          {"versions",
-           sqlite::Texts(database, "SELECT DISTINCT version FROM runs WHERE version IS NOT NULL ORDER BY version")},
-          {"cpus", sqlite::Texts(database, "SELECT DISTINCT cpu FROM runs WHERE cpu IS NOT NULL ORDER BY cpu")},
-          {"manifest_sha256", TextOrNull(meta.manifest_sha256)}};
+StoreFacts FactsOf(Store& store, const StoreMeta& meta, const StoreCounts& counts) {
+  const auto distinct = [&](const std::string& column) {
+    return sqlite::Texts(store.database(), "SELECT DISTINCT " + column + " FROM runs WHERE " + column +
+                                               " IS NOT NULL ORDER BY " + column);
+  };
+  return {store.name(), meta.manifest_sha256, counts.runs,    counts.pending,
+          counts.fits,  distinct("version"),  distinct("cpu")};
 }
 
 /// One parameter or derived quantity of one model, in one unit.
 struct Quantity {
-  std::string model, name, unit;
-  bool derived = false;
+  std::string law, name, unit;
+  bool is_derived = false;
 };
 
 /// What a summary needs to know of the runs.
@@ -91,7 +83,7 @@ QuantityRuns RunsOf(SQLite::Database& database, const Quantity& quantity, const 
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND unit = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND )sql" +
                                        kIsLiveFit + " ORDER BY position, id");
-  sqlite::Bind(rows, quantity.model, quantity.name, quantity.unit);
+  sqlite::Bind(rows, quantity.law, quantity.name, quantity.unit);
   QuantityRuns runs;
   std::map<std::string, std::size_t> groups;
   const std::vector<std::string>& unlike = context.groups.unlike;
@@ -136,58 +128,28 @@ std::string VerdictText(const Repeatability& all, const std::string& unit, std::
   return text;
 }
 
-Json GroupName(const QuantityRuns& runs, const Context& context, std::size_t group) {
-  return context.groups.name.empty() ? Json(nullptr) : Json(runs.groups[group]);
+std::optional<std::string> GroupName(const QuantityRuns& runs, const Context& context, std::size_t group) {
+  return context.groups.name.empty() ? std::nullopt : std::optional(runs.groups[group]);
 }
 
-Json RepeatabilityJson(const QuantityRuns& runs, const Context& context, const Repeatability& all,
-                       const std::string& unit, std::size_t outliers) {
-  constexpr std::array<const char*, 3> kVerdicts = {"agrees", "scatter_larger", "scatter_smaller"};
-  Json rows = Json::array();
-  for (const GroupRepeatability& group : all.groups) {
-    rows.push_back({{"group", context.groups.name.empty() ? "all runs" : runs.groups[group.group]},
-                    {"runs", group.runs},
-                    {"weighted_mean", group.mean},
-                    {"std_error", group.std_error},
-                    {"scatter_ratio", group.ScatterRatio()},
-                    {"p", group.P()}});
+std::vector<OutlyingRun> Named(const std::vector<Outlier>& outliers, const QuantityRuns& runs, const Context& context) {
+  std::vector<OutlyingRun> named;
+  for (const auto& [run, z] : outliers) {
+    if (named.size() == kMaxOutliers) break;
+    named.push_back({runs.ids[run], GroupName(runs, context, runs.values.group[run]), runs.values.estimate[run],
+                     runs.values.std_error[run], z});
   }
-  return {{"groups", all.groups.size()},
-          {"runs", all.runs},
-          {"dof", all.dof},
-          {"chi2", all.chi2},
-          {"scatter_ratio", all.ScatterRatio()},
-          {"p", std::min(all.lower_p, all.upper_p)},
-          {"between_std_dev", all.between},
-          {"verdict", kVerdicts.at(static_cast<std::size_t>(all.verdict))},
-          {"text", VerdictText(all, unit, outliers)},
-          {"rows", rows}};
-}
-
-Json OutliersJson(const QuantityRuns& runs, const Context& context, const std::vector<Outlier>& outliers) {
-  Json list = Json::array();
-  for (const Outlier& outlier : outliers) {
-    if (list.size() == kMaxOutliers) break;
-    list.push_back({{"id", runs.ids[outlier.run]},
-                    {"group", GroupName(runs, context, runs.values.group[outlier.run])},
-                    {"estimate", runs.values.estimate[outlier.run]},
-                    {"std_error", NumberOrNull(runs.values.std_error[outlier.run])},
-                    {"z", outlier.z}});
-  }
-  return list;
+  return named;
 }
 
 /// Every n-th point, so that at most kMaxPoints remain.
-Json PointsJson(const QuantityRuns& runs, const Context& context) {
-  Json points = Json::array();
+std::vector<TrendSummary::Point> PointsOf(const QuantityRuns& runs, const Context& context) {
+  std::vector<TrendSummary::Point> points;
   const std::size_t step = (runs.values.size() + kMaxPoints - 1) / kMaxPoints;
   for (std::size_t i = 0; i < runs.values.size(); i += step) {
     if (!std::isfinite(runs.values.order[i])) continue;
-    points.push_back({{"x", runs.values.order[i]},
-                      {"y", runs.values.estimate[i]},
-                      {"std_error", NumberOrNull(runs.values.std_error[i])},
-                      {"id", runs.ids[i]},
-                      {"group", GroupName(runs, context, runs.values.group[i])}});
+    points.push_back({runs.values.order[i], runs.values.estimate[i], runs.values.std_error[i], runs.ids[i],
+                      GroupName(runs, context, runs.values.group[i])});
   }
   return points;
 }
@@ -199,52 +161,20 @@ std::string TrendText(const Trend& trend, const std::string& unit, const std::st
   return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 
-Json TrendJson(const QuantityRuns& runs, const Context& context, const std::string& unit,
-               const std::vector<Outlier>& outliers) {
+std::optional<TrendSummary> TrendOf(const QuantityRuns& runs, const Context& context, const std::string& unit,
+                                    const std::vector<Outlier>& outliers) {
   const auto trend = FitTrend(runs.values, outliers);
-  if (!trend) return nullptr;
+  if (!trend) return std::nullopt;
   const std::string column = context.trend_by.empty() ? "position" : context.trend_by;
   const std::string per = runs.dates ? "per day" : context.trend_by.empty() ? "per run" : "per unit of " + column;
-  return {{"column", column},
-          {"unit", runs.dates ? Json("days since 1970-01-01") : Json(nullptr)},
-          {"slope", trend->slope},
-          {"std_error", trend->std_error},
-          {"p", trend->p},
-          {"text", TrendText(*trend, unit, per)},
-          {"points", PointsJson(runs, context)},
-          {"points_total", runs.values.size()}};
+  return TrendSummary{*trend, column, runs.dates, TrendText(*trend, unit, per), PointsOf(runs, context)};
 }
 
-/// The median of those that are finite; null if there is none.
-Json MedianOrNull(const std::vector<double>& values) {
+/// The median of those that are finite.
+std::optional<double> MedianOfFinite(const std::vector<double>& values) {
   std::vector<double> known;
   std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return std::isfinite(value); });
-  return known.empty() ? Json(nullptr) : Json(MedianOf(std::move(known)));
-}
-
-Json DistributionJson(const Quantity& quantity, const QuantityRuns& runs) {
-  const RunValues& values = runs.values;
-  const Distribution distribution = Describe(values.estimate);
-  return {{"model", quantity.model},
-          {"name", quantity.name},
-          {"unit", quantity.unit},
-          {"derived", quantity.derived},
-          {"runs", values.size()},
-          {"median", distribution.median},
-          {"mean", distribution.mean},
-          {"std_dev", distribution.std_dev},
-          {"minimum", distribution.minimum},
-          {"maximum", distribution.maximum},
-          {"lower_quartile", distribution.lower_quartile},
-          {"upper_quartile", distribution.upper_quartile},
-          {"median_std_error", MedianOrNull(runs.std_errors)},
-          {"median_repeat_error", MedianOrNull(values.std_error)},
-          {"histogram",
-           {{"from", distribution.from},
-            {"to", distribution.to},
-            {"counts", distribution.counts},
-            {"below", distribution.below},
-            {"above", distribution.above}}}};
+  return known.empty() ? std::nullopt : std::optional(MedianOf(std::move(known)));
 }
 
 /// Outliers of this quantity, and runs that disagree in all parameters together.
@@ -265,64 +195,67 @@ const char* NotComparedReason(const RunGroups& groups) {
                                : "the recordings differ too much to be repeats of one pendulum";
 }
 
-Json QuantityJson(SQLite::Database& database, const Quantity& quantity, const Context& context) {
+/// std::nullopt if no run has a value.
+std::optional<QuantitySummary> SummaryOf(SQLite::Database& database, const Quantity& quantity, const Context& context) {
   const QuantityRuns runs = RunsOf(database, quantity, context);
-  if (runs.values.size() == 0) return nullptr;
+  if (runs.values.size() == 0) return std::nullopt;
   const bool of_the_rig = IsOfTheRig(quantity.name);
   const std::vector<Outlier> outliers = of_the_rig ? FindOutliers(runs.values) : std::vector<Outlier>();
   const std::vector<Outlier> left_out = of_the_rig ? LeftOut(runs, context, outliers) : std::vector<Outlier>();
-  const auto repeatability = of_the_rig ? AnalyzeRepeatability(runs.values, left_out) : std::nullopt;
-  Json json = DistributionJson(quantity, runs);
-  json["repeatability"] =
-      repeatability ? RepeatabilityJson(runs, context, *repeatability, quantity.unit, left_out.size()) : Json(nullptr);
-  const char* reason = of_the_rig ? NotComparedReason(context.groups)
-                                  : "it depends on how each run begins, so it is not a constant of the rig";
-  json["repeatability_reason"] = repeatability ? Json(nullptr) : Json(reason);
-  json["outliers"] = OutliersJson(runs, context, outliers);
-  json["outliers_total"] = outliers.size();
-  json["trend"] = TrendJson(runs, context, quantity.unit, left_out);
-  return json;
+  QuantitySummary summary{.law = quantity.law,
+                          .name = quantity.name,
+                          .unit = quantity.unit,
+                          .is_derived = quantity.is_derived,
+                          .runs = runs.values.size(),
+                          .distribution = Describe(runs.values.estimate),
+                          .median_std_error = MedianOfFinite(runs.std_errors),
+                          .median_repeat_error = MedianOfFinite(runs.values.std_error),
+                          .outliers = Named(outliers, runs, context),
+                          .outliers_total = outliers.size(),
+                          .trend = TrendOf(runs, context, quantity.unit, left_out)};
+  if (of_the_rig) summary.repeatability = AnalyzeRepeatability(runs.values, left_out);
+  if (!summary.repeatability) {
+    summary.repeatability_text = of_the_rig ? NotComparedReason(context.groups)
+                                            : "it depends on how each run begins, so it is not a constant of the rig";
+    return summary;
+  }
+  summary.repeatability_text = VerdictText(*summary.repeatability, quantity.unit, left_out.size());
+  for (const GroupRepeatability& group : summary.repeatability->groups) {
+    summary.repeated_groups.push_back(GroupName(runs, context, group.group).value_or("all runs"));
+  }
+  return summary;
 }
 
 /// The quantities of all models, or the parameters of one model.
-Json QuantitiesJson(SQLite::Database& database, const Context& context, const std::string& only) {
+std::vector<QuantitySummary> SummarizeQuantities(SQLite::Database& database, const Context& context,
+                                                 const std::string& only) {
   SQLite::Statement rows(database, R"sql(
 SELECT model, name, unit, min(derived) FROM quantities WHERE ?1 = '' OR (model = ?1 AND derived = 0)
   GROUP BY model, name, unit ORDER BY model, min(derived), name, unit)sql");
   sqlite::Bind(rows, only);
-  Json list = Json::array();
+  std::vector<QuantitySummary> quantities;
   while (rows.executeStep()) {
-    Json json = QuantityJson(
+    auto summary = SummaryOf(
         database,
         {sqlite::Text(rows, 0), sqlite::Text(rows, 1), sqlite::Text(rows, 2), rows.getColumn(3).getInt() == 1},
         context);
-    if (!json.is_null()) list.push_back(std::move(json));
+    if (summary) quantities.push_back(*std::move(summary));
   }
-  return list;
+  return quantities;
 }
 
-Json GroupingJson(const RunGroups& groups) {
+Grouping GroupingOf(const RunGroups& groups) {
   constexpr std::array<const char*, 5> kBy = {"column", "true_values", "rig", "folder", "all"};
-  return {{"by", kBy.at(static_cast<std::size_t>(groups.by))},
-          {"name", TextOrNull(groups.name)},
-          {"is_stated", groups.is_stated},
-          {"pendulums", groups.groups},
-          {"smallest", groups.smallest},
-          {"largest", groups.largest},
-          {"unlike", groups.unlike.size()},
-          {"is_compared", groups.compares()},
-          {"text", GroupsText(groups)},
-          {"otherwise", TextOrNull(OtherGroupsText(groups))}};
-}
-
-Json VerdictsJson(const Json& overview, const Json& parameters, const RunGroups& groups, bool left_out,
-                  const std::string& only) {
-  Json list = Json::array();
-  for (const Json& row : overview["models"]) {
-    const auto model = row["model"].get<std::string>();
-    if (only.empty() || only == model) list.push_back(VerdictJson(model, parameters, groups, left_out));
-  }
-  return list;
+  return {.by = kBy.at(static_cast<std::size_t>(groups.by)),
+          .name = groups.name,
+          .is_stated = groups.is_stated,
+          .pendulums = groups.groups,
+          .smallest = groups.smallest,
+          .largest = groups.largest,
+          .unlike = groups.unlike.size(),
+          .is_compared = groups.compares(),
+          .text = GroupsText(groups),
+          .otherwise = OtherGroupsText(groups)};
 }
 
 Result<void> CheckColumn(const char* flag, const std::string& column, const std::vector<std::string>& known) {
@@ -350,47 +283,46 @@ std::pair<std::int64_t, std::string> WithoutOrder(SQLite::Database& database, co
   return found;
 }
 
-Json WarningsJson(SQLite::Database& database, const StoreCounts& counts, const Json& store, const RunCounts& runs,
-                  const SummaryOptions& options) {
-  Json warnings = Json::array();
-  const auto add = [&](const char* code, const std::string& message) {
-    warnings.push_back({{"code", code}, {"message", message}});
+std::vector<Warning> WarningsOf(SQLite::Database& database, const StoreCounts& counts, const StoreSummary& summary) {
+  std::vector<Warning> warnings;
+  const auto add = [&](WarningCode code, const std::string& finding, const std::string& explanation = "") {
+    warnings.push_back({.code = code, .finding = finding, .explanation = explanation});
   };
-  if (!runs.is_complete) {
-    add("incomplete",
-        "the last refit has not reached all recordings, so some results may be of their former content; give its "
-        "command "
-        "again, unless it is still running");
+  if (!summary.headline.is_complete) {
+    warnings.push_back({.code = "incomplete",
+                        .finding = "the last refit has not reached all recordings, so some results may be of their "
+                                   "former content",
+                        .advice = "give its command again, unless it is still running"});
   }
   if (counts.pending > 0) add("pending", std::to_string(counts.pending) + " runs are not refitted yet");
+  constexpr const char* kLeftOut = "statistics leave them out";
   if (counts.stale > 0) {
-    add("stale", std::to_string(counts.stale) +
-                     " runs keep a former result (the column stale says why); statistics leave them out");
+    add("stale", std::to_string(counts.stale) + " runs keep a former result (the column stale says why)", kLeftOut);
   }
   if (counts.earlier > 0) {
-    add("not_in_the_manifest", std::to_string(counts.earlier) +
-                                   " runs are not among the recordings of the last refit; statistics leave them out");
+    add("not_in_the_manifest", std::to_string(counts.earlier) + " runs are not among the recordings of the last refit",
+        kLeftOut);
   }
   if (counts.former_fits > 0) {
-    add("former_models", std::to_string(counts.former_fits) +
-                             " fits are of models that the last refit did not ask for; statistics leave them out");
+    add("former_models", std::to_string(counts.former_fits) + " fits are of models that the last refit did not ask for",
+        kLeftOut);
   }
   const std::int64_t same =
       database.execAndGet("SELECT count(data_sha256) - count(DISTINCT data_sha256) FROM runs WHERE " + kIsFitted)
           .getInt64();
   if (same > 0) {
-    add("same_data",
-        std::to_string(same) +
-            " runs have the same data as another run; unless their windows differ, one swing counts several times");
+    add("same_data", std::to_string(same) + " runs have the same data as another run",
+        "unless their windows differ, one swing counts several times");
   }
-  const auto [without, example] = WithoutOrder(database, options.trend_by);
+  const auto [without, example] = WithoutOrder(database, summary.trend_by);
   if (without > 0) {
-    add("no_order", "the column " + options.trend_by + " of " + std::to_string(without) +
-                        " runs is neither a number nor a date such as 2026-03-01, for example " + Quoted(example) +
-                        "; trends leave these runs out");
+    add("no_order",
+        "the column " + summary.trend_by + " of " + std::to_string(without) +
+            " runs is neither a number nor a date such as 2026-03-01, for example " + Quoted(example),
+        "trends leave these runs out");
   }
-  if (store["versions"].size() > 1) add("mixed_versions", "the fits come from several versions of the program");
-  if (store["cpus"].size() > 1) {
+  if (summary.store.versions.size() > 1) add("mixed_versions", "the fits come from several versions of the program");
+  if (summary.store.cpus.size() > 1) {
     add("several_cpus", "the fits were made on several types of CPU, whose last bits differ");
   }
   return warnings;
@@ -404,39 +336,34 @@ Result<void> CheckGroupBy(Store& store, const std::string& group_by) {
   });
 }
 
-Result<Json> Summarize(Store& store, const SummaryOptions& options) {
+Result<StoreSummary> Summarize(Store& store, const SummaryOptions& options) {
   ASSIGN_OR_RETURN(const auto meta, store.Meta());
   ASSIGN_OR_RETURN(const auto counts, store.Count());
   if (counts.fits == 0) {
     return Error(StatusCode::kFailedPrecondition, store.name() + ": no run has a fit; refit some first");
   }
-  return sqlite::Guard(store.name(), [&]() -> Result<Json> {
+  return sqlite::Guard(store.name(), [&]() -> Result<StoreSummary> {
     SQLite::Database& database = store.database();
     const std::vector<std::string> columns = sqlite::Texts(database, sqlite::kManifestColumns);
     RETURN_IF_ERROR(CheckGroupBy(options.group_by, columns));
     RETURN_IF_ERROR(CheckColumn("--trend_by", options.trend_by, columns));
-    ASSIGN_OR_RETURN(auto overview, Overview(store));
+    StoreSummary summary{.store = FactsOf(store, meta, counts), .trend_by = options.trend_by};
+    ASSIGN_OR_RETURN(summary.overview, Overview(store));
     RunGroups groups = GroupRuns(database, options.group_by);
-    const std::string main = MainModel(database, overview, groups), only = options.main_model_only ? main : "";
-    FindUnlikeGroups(database, main, groups);
-    RunAgreement agreement;
-    if (!options.without_agreement) agreement = TestRunAgreement(database, main, groups);
-    const RunCounts runs = CountRuns(database);
-    const Json parameters = QuantitiesJson(database, {groups, agreement.outliers, options.trend_by}, only);
-    Json json = {{"schema_version", kSchemaVersion},
-                 {"tool", {{"name", "refit_pendulums"}, {"version", kVersion}}},
-                 {"headline", CountsJson(runs)},
-                 {"grouping", GroupingJson(groups)},
-                 {"main_model", TextOrNull(main)},
-                 {"verdicts", VerdictsJson(overview, parameters, groups, !agreement.outliers.empty(), only)},
-                 {"agreement", std::move(agreement.json)},
-                 {"store", StoreJson(store, meta, counts)},
-                 {"group_by", TextOrNull(groups.name)},
-                 {"trend_by", TextOrNull(options.trend_by)}};
-    json.update(overview);
-    json["parameters"] = parameters;
-    json["warnings"] = WarningsJson(database, counts, json["store"], runs, options);
-    return json;
+    summary.main_law = MainLaw(database, summary.overview, groups);
+    FindUnlikeGroups(database, summary.main_law, groups);
+    if (!options.without_agreement) summary.agreement = TestRunAgreement(database, summary.main_law, groups);
+    summary.grouping = GroupingOf(groups);
+    summary.headline = CountRuns(database, meta);
+    const std::set<std::string>& outliers = summary.agreement.outliers;
+    const std::string only = options.main_law_only ? summary.main_law : "";
+    summary.quantities = SummarizeQuantities(database, {groups, outliers, options.trend_by}, only);
+    for (const LawCounts& law : summary.overview.laws) {
+      if (!only.empty() && only != law.law) continue;
+      summary.verdicts.push_back(VerdictOf(law.law, summary.quantities, groups, !outliers.empty()));
+    }
+    summary.warnings = WarningsOf(database, counts, summary);
+    return summary;
   });
 }
 

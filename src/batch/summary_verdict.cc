@@ -12,8 +12,6 @@
 namespace pendulum {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kExamples = 10;
 
 std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
@@ -29,12 +27,6 @@ std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::st
   return runs;
 }
 
-Json ExamplesJson(const std::vector<RunCounts::Run>& runs) {
-  Json list = Json::array();
-  for (const RunCounts::Run& run : runs) list.push_back({{"id", run.id}, {"reason", run.reason}});
-  return list;
-}
-
 /// "inertia, viscous and 3 more".
 std::string NamesText(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 3;
@@ -43,17 +35,29 @@ std::string NamesText(const std::vector<std::string>& names) {
          std::to_string(names.size() - kNamed + 1) + " more";
 }
 
-Json Verdict(const std::string& model, const char* verdict, const char* level, const std::string& text) {
-  return {{"model", model}, {"verdict", verdict}, {"level", level}, {"text", text}};
+std::string CountsText(const RunCounts& counts) {
+  std::string text = std::to_string(counts.fitted) + " of " + std::to_string(counts.runs) +
+                     (counts.runs == 1 ? " recording fitted" : " recordings fitted");
+  std::string rest;
+  for (const auto& [count, words] :
+       {std::pair{counts.missing, "missing"}, std::pair{counts.without_rig_file, "with a missing rig or calibration"},
+        std::pair{counts.refused - counts.without_rig_file, "refused"},
+        std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"},
+        std::pair{counts.stale, "with a former result only"},
+        std::pair{counts.unlisted, "more left out, not among the recordings of the last refit"}}) {
+    if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
+  }
+  return text + rest + (counts.is_complete ? "" : "; " + std::string(kNotComplete));
 }
 
 }  // namespace
 
-RunCounts CountRuns(SQLite::Database& database) {
+RunCounts CountRuns(SQLite::Database& database, const StoreMeta& meta) {
   const std::string live = " AND " + kIsLive;
   const std::string missing = kIsMissing + live;
   const std::string refused = "exit_code > 1 AND NOT " + kIsMissing + live;
   RunCounts counts;
+  counts.is_complete = !meta.is_interrupted();
   const std::array<std::pair<std::string, std::int64_t*>, 9> all = {
       {{"NOT " + kIsUnlisted, &counts.runs},
        {kIsFitted, &counts.fitted},
@@ -71,44 +75,14 @@ RunCounts CountRuns(SQLite::Database& database) {
   SQLite::Statement row(database, "SELECT " + columns + " FROM runs");
   row.executeStep();
   for (std::size_t i = 0; i < all.size(); ++i) *all.at(i).second = row.getColumn(static_cast<int>(i)).getInt64();
-  counts.is_complete = sqlite::Texts(database, "SELECT value FROM meta WHERE key = 'complete' AND value = '0'").empty();
   counts.missing_runs = ExamplesOf(database, missing);
   counts.refused_runs = ExamplesOf(database, refused);
   counts.stale_runs = ExamplesOf(database, kIsStale);
+  counts.text = CountsText(counts);
   return counts;
 }
 
-std::string CountsText(const RunCounts& counts) {
-  std::string text = std::to_string(counts.fitted) + " of " + std::to_string(counts.runs) +
-                     (counts.runs == 1 ? " recording fitted" : " recordings fitted");
-  std::string rest;
-  for (const auto& [count, words] :
-       {std::pair{counts.missing, "missing"}, std::pair{counts.without_rig_file, "with a missing rig or calibration"},
-        std::pair{counts.refused - counts.without_rig_file, "refused"},
-        std::pair{counts.not_converged, "not converged"}, std::pair{counts.pending, "not fitted yet"},
-        std::pair{counts.stale, "with a former result only"},
-        std::pair{counts.unlisted, "more left out, not among the recordings of the last refit"}}) {
-    if (count > 0) rest += (rest.empty() ? "; " : ", ") + std::to_string(count) + " " + words;
-  }
-  return text + rest + (counts.is_complete ? "" : "; the last refit is not complete");
-}
-
-Json CountsJson(const RunCounts& counts) {
-  return {{"text", CountsText(counts)},
-          {"runs", counts.runs},
-          {"fitted", counts.fitted},
-          {"not_converged", counts.not_converged},
-          {"missing", counts.missing},
-          {"refused", counts.refused},
-          {"pending", counts.pending},
-          {"stale", counts.stale},
-          {"unlisted", counts.unlisted},
-          {"missing_runs", ExamplesJson(counts.missing_runs)},
-          {"refused_runs", ExamplesJson(counts.refused_runs)},
-          {"stale_runs", ExamplesJson(counts.stale_runs)}};
-}
-
-std::string MainModel(SQLite::Database& database, const Json& overview, const RunGroups& groups) {
+std::string MainLaw(SQLite::Database& database, const StoreOverview& overview, const RunGroups& groups) {
   SQLite::Statement laws(database, "WITH laws AS (SELECT " + groups.sql + R"sql( AS pendulum, coalesce(recommended,
     (SELECT min(model) FROM fits WHERE fits.run = runs.run AND fits.stale IS NULL HAVING count(*) = 1)) AS law FROM runs WHERE )sql" +
                                        kIsFitted + R"sql()
@@ -117,63 +91,59 @@ SELECT law FROM laws WHERE law IS NOT NULL AND
   GROUP BY law ORDER BY count(*) DESC, law LIMIT 1)sql");
   sqlite::Bind(laws, groups.largest);
   if (laws.executeStep()) return sqlite::Text(laws, 0);
-  for (const Json& model : overview["models"]) {
-    if (model["converged"].get<std::int64_t>() > 0) return model["model"].get<std::string>();
+  for (const LawCounts& law : overview.laws) {
+    if (law.converged > 0) return law.law;
   }
-  return overview["models"].empty() ? "" : overview["models"][0]["model"].get<std::string>();
+  return overview.laws.empty() ? "" : overview.laws.front().law;
 }
 
-Json VerdictJson(const std::string& model, const Json& parameters, const RunGroups& groups, bool left_out) {
-  constexpr int kEnoughDof = 20;  // with fewer degrees of freedom, the scatter may be wrong by a third by chance
-  if (!groups.compares())
-    return Verdict(model, "not_compared", "caution", "Whether the errors are right is not known.");
+ErrorVerdict VerdictOf(const std::string& law, const std::vector<QuantitySummary>& quantities, const RunGroups& groups,
+                       bool left_out) {
+  // With fewer degrees of freedom, the scatter may be wrong by a third by chance.
+  constexpr std::size_t kEnoughDof = 20;
+  if (!groups.compares()) return {law, "not_compared", "caution", "Whether the errors are right is not known."};
   std::vector<std::string> all, larger, smaller;
   double largest = 0;
   std::string worst;
   bool enough = true;
-  for (const Json& parameter : parameters) {
-    if (parameter["model"] != model || parameter["derived"].get<bool>()) continue;
-    const Json& found = parameter["repeatability"];
-    if (found.is_null()) continue;
-    const auto name = parameter["name"].get<std::string>();
-    all.push_back(name);
-    enough = enough && found["dof"].get<int>() >= kEnoughDof;
-    if (found["verdict"] == "scatter_smaller") smaller.push_back(name);
-    if (found["verdict"] != "scatter_larger") continue;
-    larger.push_back(name);
-    const double ratio = found["scatter_ratio"].get<double>();
-    if (ratio <= largest) continue;
-    largest = ratio;
-    worst = name;
+  for (const QuantitySummary& quantity : quantities) {
+    if (quantity.law != law || quantity.is_derived || !quantity.repeatability) continue;
+    const Repeatability& found = *quantity.repeatability;
+    all.push_back(quantity.name);
+    enough = enough && found.dof >= kEnoughDof;
+    if (found.verdict == Repeatability::Verdict::kScatterSmaller) smaller.push_back(quantity.name);
+    if (found.verdict != Repeatability::Verdict::kScatterLarger) continue;
+    larger.push_back(quantity.name);
+    if (found.ScatterRatio() <= largest) continue;
+    largest = found.ScatterRatio();
+    worst = quantity.name;
   }
   const std::string count = std::to_string(all.size()) + (all.size() == 1 ? " parameter" : " parameters");
   const std::string repeats =
-      "Under the law " + model + ", repeats" + (left_out ? " without the outliers" : "") + " differ";
+      "Under the law " + law + ", repeats" + (left_out ? " without the outliers" : "") + " differ";
   if (all.empty()) {
-    return Verdict(
-        model, "not_compared", "caution",
-        "Whether the errors are right is not known: no two recordings of one pendulum have a fit with errors.");
+    return {law, "not_compared", "caution",
+            "Whether the errors are right is not known: no two recordings of one pendulum have a fit with errors."};
   }
   if (!larger.empty()) {
-    return Verdict(model, "too_small", "caution",
-                   repeats + " by more than their errors in " + std::to_string(larger.size()) + " of " + count + ": " +
-                       (larger.size() > 1 ? NamesText(larger) + ". Most of all, " : "") + worst + " scatters " +
-                       NumberText(largest, 3) +
-                       " times as much as its errors predict. Either the pendulum changed or the errors are too "
-                       "small.");
+    return {law, "too_small", "caution",
+            repeats + " by more than their errors in " + std::to_string(larger.size()) + " of " + count + ": " +
+                (larger.size() > 1 ? NamesText(larger) + ". Most of all, " : "") + worst + " scatters " +
+                NumberText(largest, 3) +
+                " times as much as its errors predict. Either the pendulum changed or the errors are too "
+                "small."};
   }
   if (!smaller.empty()) {
-    return Verdict(model, "too_large", "good",
-                   repeats + " by less than their errors in " + NamesText(smaller) + ". The errors are not too small.");
+    return {law, "too_large", "good",
+            repeats + " by less than their errors in " + NamesText(smaller) + ". The errors are not too small."};
   }
   if (!enough) {
-    return Verdict(model, "few", "good",
-                   repeats + " as much as their errors say, but they are too few to find a difference below a third.");
+    return {law, "few", "good",
+            repeats + " as much as their errors say, but they are too few to find a difference below a third."};
   }
-  return Verdict(model, "agrees", "good",
-                 repeats + " as much as their errors say, in " +
-                     (all.size() == 1 ? "the " + all.front() : "all " + count) +
-                     ". No difference from the errors was found.");
+  return {law, "agrees", "good",
+          repeats + " as much as their errors say, in " + (all.size() == 1 ? "the " + all.front() : "all " + count) +
+              ". No difference from the errors was found."};
 }
 
 }  // namespace pendulum

@@ -19,6 +19,7 @@
 #include "pendulum/batch/export.h"
 #include "pendulum/batch/prune.h"
 #include "pendulum/batch/store_lock.h"
+#include "pendulum/batch/summary_json.h"
 #include "pendulum/batch/temporary_store.h"
 #include "pendulum/model/rig_values.h"
 #include "pendulum/recording/calibration/calibration_source.h"
@@ -112,7 +113,7 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   }
   if (!has_fits) return WriteText(options.quiet ? "" : text);
   SummaryOptions how = options.summary;
-  how.main_model_only = true;
+  how.main_law_only = true;
   how.without_agreement = options.quiet;
   ASSIGN_OR_RETURN(const auto summary, Summarize(store, how));
   return WriteText(options.quiet ? QuietText(summary) : text + SummaryText(summary, path));
@@ -193,7 +194,8 @@ Result<int> MakeReport(const RefitPendulumsOptions& options) {
   }
   ASSIGN_OR_RETURN(auto store, OpenForOutput(options));
   ASSIGN_OR_RETURN(const auto summary, Summarize(store, options.summary));
-  const std::string text = json ? JsonText(summary, 2) + "\n" : SummaryHtml(summary);
+  const auto summary_json = ToJson(summary);
+  const std::string text = json ? JsonText(summary_json, 2) + "\n" : SummaryHtml(summary_json);
   RETURN_IF_ERROR(WriteOutputs(std::vector<Output>{{options.out, text}}));
   return 0;
 }

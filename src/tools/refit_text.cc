@@ -2,6 +2,8 @@
 #include "tools/refit_text.h"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -22,39 +24,33 @@ namespace pendulum {
 namespace {
 
 using Cells = std::vector<std::string>;
-using Json = nlohmann::ordered_json;
 
-std::string ModelsText(const nlohmann::ordered_json& models) {
+std::string LawsText(const std::vector<LawCounts>& laws) {
   const std::vector<Column> columns = {
       {"model"},       {"fits", true}, {"converged", true}, {"not converged", true}, {"not identifiable", true},
       {"failed", true}};
   std::vector<Cells> rows;
-  for (const auto& model : models) {
-    rows.push_back({model["model"].get<std::string>()});
-    for (const char* key : {"fits", "converged", "not_converged", "not_identifiable", "failed"}) {
-      rows.back().push_back(model[key].dump());
-    }
+  for (const LawCounts& law : laws) {
+    rows.push_back({law.law});
+    for (const std::int64_t count : {law.fits, law.converged, law.not_converged, law.not_identifiable, law.failed})
+      rows.back().push_back(std::to_string(count));
   }
   return Heading("Fits") + AlignedTable(columns, rows, kTextIndent);
 }
 
-std::string RecommendationsText(const nlohmann::ordered_json& recommendations) {
+std::string RecommendationsText(const std::vector<RecommendationCount>& recommendations) {
   if (recommendations.empty()) return "";
   std::vector<Cells> rows;
-  for (const auto& row : recommendations) {
-    rows.push_back({row["model"].is_null() ? "none" : row["model"].get<std::string>(), row["runs"].dump()});
-  }
+  for (const auto& [law, runs] : recommendations) rows.push_back({law.empty() ? "none" : law, std::to_string(runs)});
   return Heading("Recommended") + AlignedTable({{"model"}, {"runs", true}}, rows, kTextIndent);
 }
 
-std::string FailuresText(const nlohmann::ordered_json& failures) {
+std::string FailuresText(const std::vector<FailureCount>& failures) {
   if (failures.empty()) return "";
   std::string text = Heading("Failed or not converged");
-  for (const auto& failure : failures) {
-    const std::string first = "    " + failure["fits"].dump() + " x " + failure["status"].get<std::string>() + ": ";
-    text += Paragraph(Printable(failure["reason"].get<std::string>()) + " (" +
-                          Printable(failure["examples"][0].get<std::string>()) + ")",
-                      first, kTextWidth);
+  for (const FailureCount& failure : failures) {
+    const std::string first = "    " + std::to_string(failure.fits) + " x " + failure.status + ": ";
+    text += Paragraph(Printable(failure.reason) + " (" + Printable(failure.examples.front()) + ")", first, kTextWidth);
   }
   return text;
 }
@@ -102,63 +98,55 @@ constexpr std::size_t kSummaryLines = 20;
 std::size_t LineCount(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
 
 /// A standard error or a spread; "-" if there is none.
-std::string SpreadText(const Json& number) {
+std::string SpreadText(const std::optional<double>& size) {
   constexpr int kDigits = 2;
-  if (!number.is_number()) return "-";
-  const auto size = number.get<double>();
-  return size > 0 ? RoundedText(size, SignificantRounding(size, kDigits)) : "0";
+  if (!size) return "-";
+  return *size > 0 ? RoundedText(*size, SignificantRounding(*size, kDigits)) : "0";
 }
 
 /// A median with the decimals of the spread, but with three digits or more: one outlier makes the spread large and
 /// leaves the median as it is.
-std::string MedianText(const Json& median, const Json& spread) {
+std::string MedianText(const Distribution& distribution) {
   constexpr int kFewest = 3;
-  if (!median.is_number()) return "-";
-  const auto value = median.get<double>();
-  if (value == 0 || !spread.is_number() || !(spread.get<double>() > 0)) return NumberText(value, kTextDigits);
-  const Rounding rounding = PdgRounding(value, spread.get<double>());
-  const bool is_enough = SignificantDigits(value, rounding) >= kFewest;
-  return RoundedText(value, is_enough ? rounding : SignificantRounding(value, kFewest));
+  const double median = distribution.median;
+  if (median == 0 || !(distribution.std_dev > 0)) return NumberText(median, kTextDigits);
+  const Rounding rounding = PdgRounding(median, distribution.std_dev);
+  const bool is_enough = SignificantDigits(median, rounding) >= kFewest;
+  return RoundedText(median, is_enough ? rounding : SignificantRounding(median, kFewest));
 }
 
 /// The law of the table, and how often it was recommended.
-std::string LawText(const Json& summary) {
-  if (!summary["main_model"].is_string()) return "";
-  const auto law = summary["main_model"].get<std::string>();
+std::string LawText(const StoreSummary& summary) {
   std::int64_t compared = 0, recommended = 0;
-  for (const Json& row : summary["recommendations"]) {
-    compared += row["runs"].get<std::int64_t>();
-    if (row["model"] == law) recommended += row["runs"].get<std::int64_t>();
+  for (const auto& [law, runs] : summary.overview.recommendations) {
+    compared += runs;
+    if (law == summary.main_law) recommended += runs;
   }
-  if (compared == 0) return "";
-  return "Law " + law + ": recommended for " + std::to_string(recommended) + " of " + std::to_string(compared) +
-         " recordings.";
+  if (summary.main_law.empty() || compared == 0) return "";
+  return "Law " + summary.main_law + ": recommended for " + std::to_string(recommended) + " of " +
+         std::to_string(compared) + " recordings.";
 }
 
-std::string VerdictText(const Json& summary) {
-  for (const Json& verdict : summary["verdicts"]) {
-    if (verdict["model"] == summary["main_model"]) return verdict["text"].get<std::string>();
-  }
-  return "";
+std::string VerdictText(const StoreSummary& summary) {
+  const auto found = std::ranges::find(summary.verdicts, summary.main_law, &ErrorVerdict::law);
+  return found == summary.verdicts.end() ? "" : found->text;
 }
 
-/// The parameters of the main model: typical value, scatter between recordings, and the
-/// error that repeats are compared with.
-std::string ParametersText(const Json& summary, bool of_the_rig_only) {
+std::string UnitText(const std::string& unit) { return unit == "1" ? "" : unit; }
+
+/// The parameters of the main law: typical value, scatter between recordings, and the error that repeats are compared
+/// with.
+std::string ParametersText(const StoreSummary& summary, bool of_the_rig_only) {
   std::vector<Cells> rows;
-  for (const Json& parameter : summary["parameters"]) {
-    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
-    if (of_the_rig_only && !IsOfTheRig(parameter["name"].get<std::string>())) continue;
-    const Json& found = parameter["repeatability"];
+  for (const QuantitySummary& quantity : summary.quantities) {
+    if (!summary.IsMainParameter(quantity) || (of_the_rig_only && !IsOfTheRig(quantity.name))) continue;
     rows.push_back(
-        {parameter["name"].get<std::string>(), MedianText(parameter["median"], parameter["std_dev"]),
-         parameter["runs"] == 1 ? "-" : SpreadText(parameter["std_dev"]), SpreadText(parameter["median_repeat_error"]),
-         found.is_object() && found["scatter_ratio"].is_number() ? NumberText(found["scatter_ratio"].get<double>(), 3)
-                                                                 : "",
-         parameter["unit"] == "1" ? "" : parameter["unit"].get<std::string>()});
+        {quantity.name, MedianText(quantity.distribution),
+         quantity.runs == 1 ? "-" : SpreadText(quantity.distribution.std_dev), SpreadText(quantity.median_repeat_error),
+         quantity.repeatability ? NumberText(quantity.repeatability->ScatterRatio(), 3) : "", UnitText(quantity.unit)});
   }
   if (rows.empty()) return "";
-  return AlignedTable({{summary["main_model"].get<std::string>()},
+  return AlignedTable({{summary.main_law},
                        {"median", true},
                        {"spread", true},
                        {"error of repeats", true},
@@ -168,39 +156,30 @@ std::string ParametersText(const Json& summary, bool of_the_rig_only) {
 }
 
 /// Names the recordings that disagree with the others of their pendulum.
-std::string OutliersText(const Json& summary) {
+std::string OutliersText(const StoreSummary& summary) {
   constexpr std::size_t kNamed = 3;
-  std::vector<std::string> texts;
-  std::size_t total = 0;
-  const auto take = [&](const std::string& id, const std::string& text) {
-    if (std::ranges::any_of(texts, [&](const std::string& known) { return known.starts_with(id + " ("); })) return;
-    ++total;
-    texts.push_back(id + " (" + text + ")");
-  };
-  if (summary["agreement"].is_object()) {
-    for (const Json& row : summary["agreement"]["rows"]) {
-      for (const Json& outlier : row["outliers"]) {
-        take(Printable(outlier["id"].get<std::string>()),
-             outlier["parameter"].get<std::string>() + " " + NumberText(outlier["estimate"].get<double>(), 5) +
-                 ", the others " + NumberText(outlier["others"].get<double>(), 5));
-      }
-    }
-  }
-  for (const Json& parameter : summary["parameters"]) {
-    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
-    for (const Json& outlier : parameter["outliers"]) {
-      take(Printable(outlier["id"].get<std::string>()),
-           parameter["name"].get<std::string>() + " " + NumberText(outlier["estimate"].get<double>(), 5) + ", median " +
-               NumberText(parameter["median"].get<double>(), 5));
-    }
-  }
-  if (texts.empty()) return "";
-  const std::string count = total == 1 ? "One recording disagrees" : std::to_string(total) + " recordings disagree";
-  if (texts.size() > kNamed) texts.resize(kNamed);
+  constexpr int kDigits = 5;
+  std::set<std::string> known;
   std::string text;
-  for (const std::string& one : texts) text += (text.empty() ? "" : "; ") + one;
-  return count + " with the others of the same pendulum: " + text +
-         (total > texts.size() ? "; and " + std::to_string(total - texts.size()) + " more" : "") + ".";
+  const auto take = [&](const std::string& id, const std::string& parameter, double estimate, const std::string& whose,
+                        double others) {
+    if (!known.insert(id).second || known.size() > kNamed) return;
+    text += (text.empty() ? "" : "; ") + Printable(id) + " (" + parameter + " " + NumberText(estimate, kDigits) + ", " +
+            whose + " " + NumberText(others, kDigits) + ")";
+  };
+  for (const GroupAgreement& row : summary.agreement.rows) {
+    for (const DisagreeingRun& run : row.outliers) take(run.id, run.parameter, run.estimate, "the others", run.others);
+  }
+  for (const QuantitySummary& quantity : summary.quantities) {
+    if (!summary.IsMainParameter(quantity)) continue;
+    for (const OutlyingRun& run : quantity.outliers)
+      take(run.id, quantity.name, run.estimate, "median", quantity.distribution.median);
+  }
+  if (known.empty()) return "";
+  const std::size_t count = known.size();
+  return (count == 1 ? "One recording disagrees" : std::to_string(count) + " recordings disagree") +
+         std::string(" with the others of the same pendulum: ") + text +
+         (count > kNamed ? "; and " + std::to_string(count - kNamed) + " more" : "") + ".";
 }
 
 /// The beginning of a reason; --details shows all of it.
@@ -212,14 +191,15 @@ std::string Beginning(const std::string& reason) {
 }
 
 /// "Missing: a.csv, b.csv and 3 more."
-std::string ExamplesText(const char* heading, const Json& runs, std::int64_t total, bool with_reason) {
+std::string ExamplesText(const char* heading, const std::vector<RunCounts::Run>& runs, std::int64_t total,
+                         bool with_reason) {
   constexpr std::size_t kNamed = 3;
   if (runs.empty()) return "";
   std::string text;
   const std::size_t named = std::min(runs.size(), with_reason ? std::size_t{1} : kNamed);
   for (std::size_t i = 0; i < named; ++i) {
-    text += (i == 0 ? "" : ", ") + Printable(runs[i]["id"].get<std::string>());
-    if (with_reason) text += " (" + Beginning(runs[i]["reason"].get<std::string>()) + ")";
+    text += (i == 0 ? "" : ", ") + Printable(runs[i].id);
+    if (with_reason) text += " (" + Beginning(runs[i].reason) + ")";
   }
   const std::int64_t more = total - static_cast<std::int64_t>(named);
   return std::string(heading) + ": " + text + (more > 0 ? " and " + std::to_string(more) + " more" : "") + ".";
@@ -241,20 +221,16 @@ std::string FirstNames(std::vector<std::string> names) {
 }
 
 /// `folding` 1: without the law and the parameters of the start; 2: also without examples of missing and refused files.
-std::string SummaryText(const Json& summary, const std::string& store, int folding) {
-  const Json& headline = summary["headline"];
-  const Json& grouping = summary["grouping"];
-  std::string groups = Printable(grouping["text"].get<std::string>());
-  if (grouping["otherwise"].is_string()) groups += " " + grouping["otherwise"].get<std::string>();
-  std::string text = Heading(Printable(store)) + Prose(headline["text"].get<std::string>() + ".") + Prose(groups);
-  const std::string missing =
-      ExamplesText("Missing", headline["missing_runs"], headline["missing"].get<std::int64_t>(), false);
-  const std::string refused =
-      ExamplesText("Refused", headline["refused_runs"], headline["refused"].get<std::int64_t>(), true);
-  const std::string stale =
-      ExamplesText("With a former result only", headline["stale_runs"], headline["stale"].get<std::int64_t>(), true);
+std::string SummaryText(const StoreSummary& summary, const std::string& store, int folding) {
+  const RunCounts& runs = summary.headline;
+  const Grouping& grouping = summary.grouping;
+  const std::string groups = Printable(grouping.text) + (grouping.otherwise.empty() ? "" : " " + grouping.otherwise);
+  std::string text = Heading(Printable(store)) + Prose(runs.text + ".") + Prose(groups);
+  const std::string missing = ExamplesText("Missing", runs.missing_runs, runs.missing, false);
+  const std::string refused = ExamplesText("Refused", runs.refused_runs, runs.refused, true);
+  const std::string stale = ExamplesText("With a former result only", runs.stale_runs, runs.stale, true);
   for (const std::string& line :
-       {stale, OutliersText(summary), grouping["is_compared"].get<bool>() ? VerdictText(summary) : std::string(),
+       {stale, OutliersText(summary), grouping.is_compared ? VerdictText(summary) : std::string(),
         folding < 2 ? missing : "", folding < 2 ? refused : "", folding < 1 ? LawText(summary) : ""}) {
     if (!line.empty()) text += Prose(line);
   }
@@ -270,7 +246,7 @@ constexpr std::chrono::milliseconds kRedraw{200};
 
 }  // namespace
 
-std::string SummaryText(const Json& summary, const std::string& store) {
+std::string SummaryText(const StoreSummary& summary, const std::string& store) {
   constexpr int kMaxFolding = 2;
   std::string text = SummaryText(summary, store, 0);
   for (int folding = 1; folding <= kMaxFolding && LineCount(text) > kSummaryLines; ++folding) {
@@ -279,16 +255,14 @@ std::string SummaryText(const Json& summary, const std::string& store) {
   return text;
 }
 
-std::string QuietText(const Json& summary) {
+std::string QuietText(const StoreSummary& summary) {
   constexpr int kDigits = 10;
   std::string text;
-  for (const Json& parameter : summary["parameters"]) {
-    if (parameter["model"] != summary["main_model"] || parameter["derived"].get<bool>()) continue;
-    const Json& spread = parameter["std_dev"];
-    text += parameter["name"].get<std::string>() + " " + NumberText(parameter["median"].get<double>(), kDigits) + " " +
-            (spread.is_number() && parameter["runs"].get<std::int64_t>() > 1 ? NumberText(spread.get<double>(), kDigits)
-                                                                             : "-") +
-            " " + parameter["unit"].get<std::string>() + "\n";
+  for (const QuantitySummary& quantity : summary.quantities) {
+    if (!summary.IsMainParameter(quantity)) continue;
+    const Distribution& values = quantity.distribution;
+    text += quantity.name + " " + NumberText(values.median, kDigits) + " " +
+            (quantity.runs > 1 ? NumberText(values.std_dev, kDigits) : "-") + " " + quantity.unit + "\n";
   }
   return text;
 }
@@ -301,11 +275,11 @@ Result<std::string> StatusText(Store& store) {
   if (counts.earlier > 0) text += Row("not in the last manifest", counts.earlier);
   if (counts.former_fits > 0) text += Row("fits of models not asked for", counts.former_fits);
   ASSIGN_OR_RETURN(const auto meta, store.Meta());
-  if (meta.runs > 0 && !meta.complete) text += Prose("The last refit is not complete.");
+  if (meta.is_interrupted()) text += Prose(Capitalized(std::string(kNotComplete)) + ".");
   if (counts.fits == 0) return text;
   ASSIGN_OR_RETURN(const auto overview, Overview(store));
-  return text + ModelsText(overview["models"]) + RecommendationsText(overview["recommendations"]) +
-         FailuresText(overview["failures"]);
+  return text + LawsText(overview.laws) + RecommendationsText(overview.recommendations) +
+         FailuresText(overview.failures);
 }
 
 std::string LeftOutText(const std::map<std::string, std::int64_t>& left_out) {

@@ -5,24 +5,23 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "pendulum/base/status.h"
 #include "pendulum/batch/compare_stores.h"
 #include "pendulum/batch/prune.h"
 #include "pendulum/batch/refit.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/batch/store_summary.h"
 
 namespace pendulum {
 
 /// What a reader of a batch needs first, in at most 20 lines of 80 columns: how many recordings were fitted, which were
-/// taken for repeats of one pendulum, whether these agree, and the parameters of the main model. `summary`: of
-/// Summarize. `store`: its path.
-std::string SummaryText(const nlohmann::ordered_json& summary, const std::string& store);
+/// taken for repeats of one pendulum, whether these agree, and the parameters of the main law. `store`: its
+/// path.
+std::string SummaryText(const StoreSummary& summary, const std::string& store);
 
-/// The parameters of the main model, a line each: name, median, standard deviation over the recordings ("-" if there is
+/// The parameters of the main law, a line each: name, median, standard deviation over the recordings ("-" if there is
 /// none) and unit, separated by blanks.
-std::string QuietText(const nlohmann::ordered_json& summary);
+std::string QuietText(const StoreSummary& summary);
 
 /// The content of a store as text: runs, fits by model and status, failures by reason.
 Result<std::string> StatusText(Store& store);

@@ -174,8 +174,8 @@ TEST_F(GoldenStoresTest, AreUpgradedWithoutLoss) {
     ASSERT_TRUE(store) << store.error().message;
     const auto summary = Summarize(*store, {});
     ASSERT_TRUE(summary) << summary.error().message;
-    EXPECT_EQ((*summary)["headline"]["fitted"], 1);
-    EXPECT_EQ((*summary)["headline"]["missing"], 1);
+    EXPECT_EQ(summary->headline.fitted, 1);
+    EXPECT_EQ(summary->headline.missing, 1);
     ExpectPresent(path, version);
   }
 }
@@ -189,7 +189,7 @@ TEST_F(GoldenStoresTest, AreReadFromAFullDisk) {
       FillDisk();
       auto store = Store::Open(path, Store::Mode::kRead);
       const auto summary = store ? Summarize(*store, {}) : tl::unexpected(store.error());
-      ::_exit(summary && (*summary)["headline"]["fitted"] == 1 ? EXIT_SUCCESS : EXIT_FAILURE);
+      ::_exit(summary && summary->headline.fitted == 1 ? EXIT_SUCCESS : EXIT_FAILURE);
     }
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/batch/summary.h"
+#include "pendulum/batch/summary_json.h"
 #include "tests/batch/refit_folder.h"
 #include "tests/batch/small_batch.h"
 #include "tests/batch/store_rows.h"
@@ -42,13 +43,13 @@ TEST_F(PruneTest, FindsWhatStatisticsLeaveOut) {
   EXPECT_THAT(found.unlisted_runs, ElementsAre("c"));
   EXPECT_THAT(found.models, ElementsAre(Pair("viscous", 1)));
   const auto summary = Summarize(store, {}).value();
-  EXPECT_EQ(summary["models"].size(), 1);
-  EXPECT_EQ(summary["models"][0]["model"], "coulomb");
-  EXPECT_EQ(summary["models"][0]["fits"], 1);
-  EXPECT_EQ(summary["recommendations"].size(), 0);
-  for (const auto& parameter : summary["parameters"]) {
-    EXPECT_EQ(parameter["model"], "coulomb");
-    EXPECT_EQ(parameter["runs"], 1);
+  ASSERT_EQ(summary.overview.laws.size(), 1);
+  EXPECT_EQ(summary.overview.laws[0].law, "coulomb");
+  EXPECT_EQ(summary.overview.laws[0].fits, 1);
+  EXPECT_THAT(summary.overview.recommendations, IsEmpty());
+  for (const QuantitySummary& quantity : summary.quantities) {
+    EXPECT_EQ(quantity.law, "coulomb");
+    EXPECT_EQ(quantity.runs, 1);
   }
 }
 
@@ -67,7 +68,7 @@ TEST_F(PruneTest, RemovesOnlyThat) {
   EXPECT_THAT(Rows(store_, "SELECT run, model FROM fits"), ElementsAre("1|coulomb"));
   EXPECT_EQ(Rows(store_, kept), before);
   EXPECT_EQ(ValueOf("SELECT count(*) FROM quantities"), std::to_string(before.size()));
-  EXPECT_EQ(Summarize(store, {}).value()["parameters"], summary["parameters"]);
+  EXPECT_EQ(ToJson(Summarize(store, {}).value())["parameters"], ToJson(summary)["parameters"]);
   EXPECT_FALSE(store.Meta()->complete);  // b has no rows
 }
 

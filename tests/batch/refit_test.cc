@@ -343,7 +343,7 @@ TEST_F(RefitTest, ContinuesAStoppedRefitOfAllRuns) {
   EXPECT_EQ(ValueOf("SELECT count(stale) FROM runs"), "2");
   const auto headline = [&] {
     auto store = Store::Open(store_, Store::Mode::kRead).value();
-    return Summarize(store, {})->at("headline").at("text").get<std::string>();
+    return Summarize(store, {})->headline.text;
   };
   EXPECT_THAT(headline(), EndsWith("2 with a former result only; the last refit is not complete"));
   EXPECT_THAT(Refitted(coulomb_), ElementsAre("a", "b"));

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/batch/summary.h"
+#include "pendulum/batch/summary_json.h"
 #include "tests/batch/made_outcomes.h"
 #include "tests/batch/made_store.h"
 
@@ -44,7 +45,7 @@ class RepeatSimulation : public made_store::MadeStoreTest {
     std::filesystem::remove(folder_ / "store.sqlite");
     Store store = StoreOf(PlainManifest(truths.size()), [&](std::size_t i) { return outcomes[i]; });
     auto summary = Summarize(store, {});
-    if (summary) return *std::move(summary);
+    if (summary) return ToJson(*summary);
     ADD_FAILURE() << summary.error().message;
     return nullptr;
   }

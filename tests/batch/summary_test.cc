@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -15,10 +14,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/batch/overview.h"
+#include "pendulum/batch/summary_json.h"
 #include "tests/batch/made_outcomes.h"
 #include "tests/batch/made_store.h"
-#include "tests/batch/schema_check.h"
 
 namespace pendulum::summary_test {
 namespace {
@@ -29,7 +27,6 @@ using made_outcomes::FitWithCovariance;
 using made_outcomes::OutcomeOf;
 using made_store::ManifestOf;
 using made_store::PlainManifest;
-using schema_check::SchemaCheck;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -44,7 +41,7 @@ class SummaryTest : public made_store::MadeStoreTest {
  protected:
   static Json SummaryOf(Store& store, const SummaryOptions& options = {}) {
     auto summary = Summarize(store, options);
-    if (summary) return *std::move(summary);
+    if (summary) return ToJson(*summary);
     ADD_FAILURE() << summary.error().message;
     return nullptr;
   }
@@ -531,43 +528,6 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, StatusCode::kFailedPrecondition);
   EXPECT_EQ(summary.error().message, (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
-}
-
-TEST_F(SummaryTest, ContainsTheOverview) {
-  Store store = StoreOf(PlainManifest(3), [](std::size_t i) {
-    return i == 0 ? FailureOf("no swing", 5) : OutcomeOf({FitOf("viscous", 10)});
-  });
-  const auto overview = Overview(store);
-  ASSERT_TRUE(overview) << overview.error().message;
-  const Json summary = SummaryOf(store);
-  ASSERT_THAT(*overview, SizeIs(3));
-  for (const char* key : {"models", "recommendations", "failures"}) EXPECT_EQ((*overview)[key], summary[key]) << key;
-}
-
-// ---- Published schema ----------------------------------------------------------------------------------------------
-
-TEST_F(SummaryTest, MatchesItsSchema) {
-  const char* const path = "include/pendulum/report/summary.schema.json";
-  if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path;
-  std::ifstream file(path);
-  const Json schema = Json::parse(file);
-  const SchemaCheck check(schema);
-  const std::string manifest = ManifestOf(30, ",rig no,date", [](std::size_t i) {
-    return (i % 2 == 0 ? ",A," : ",B,") + std::string("2026-01-") + (i < 9 ? "0" : "") + std::to_string(i + 1);
-  });
-  Store store = StoreOf(manifest, [](std::size_t i) -> std::optional<RunOutcome> {
-    if (i == 0) return std::nullopt;
-    if (i == 1) return FailureOf("run1.csv: no swing", 5);
-    const double value = (i % 2 == 0 ? 10 : 90) + (i == 9 ? 500 : static_cast<double>(i % 3));
-    return OutcomeOf({FitOf("viscous", value), FitOf("coulomb", value, i == 2 ? "not_converged" : "converged")});
-  });
-  for (const SummaryOptions& options :
-       {SummaryOptions{"rig no", "date"}, SummaryOptions{"rig no", ""}, SummaryOptions{}}) {
-    const Json summary = SummaryOf(store, options);
-    EXPECT_THAT(check.Faults(summary), IsEmpty()) << options.group_by;
-    for (const Json& key : schema["required"]) EXPECT_TRUE(summary.contains(key.get<std::string>())) << key;
-  }
-  EXPECT_THAT(check.Faults({{"schema_version", 1}}), SizeIs(testing::Gt(8U)));  // the check detects violations
 }
 
 }  // namespace

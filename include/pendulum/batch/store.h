@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -60,7 +61,13 @@ struct StoreMeta {
   std::optional<Shard> shard;  ///< std::nullopt: the whole manifest.
   std::int64_t runs = 0;       ///< Runs of the manifest, over all shards.
   bool complete = false;
+
+  /// A refit was stopped before its end, or is running.
+  bool is_interrupted() const { return !complete && !manifest_sha256.empty(); }
 };
+
+/// What is said of a store whose meta data is_interrupted().
+inline constexpr std::string_view kNotComplete = "the last refit is not complete";
 
 /// Counts of a store's runs and fits.
 struct StoreCounts {

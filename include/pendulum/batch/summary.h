@@ -3,10 +3,9 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "pendulum/base/status.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/batch/store_summary.h"
 
 namespace pendulum {
 
@@ -16,7 +15,7 @@ struct SummaryOptions {
                          ///< Empty: what the manifest says (columns pendulum, group and rig_id, true values of
                          ///< simulated recordings, rig files), else folders or all runs.
   std::string trend_by;  ///< A manifest column of numbers or ISO 8601 dates; empty: the position in the manifest.
-  bool main_model_only = false;    ///< Only the parameters of the main model.
+  bool main_law_only = false;      ///< Only the parameters of the main law.
   bool without_agreement = false;  ///< Without the test of a joint fit, which reads the results of all runs.
 };
 
@@ -24,13 +23,13 @@ struct SummaryOptions {
 /// errors: of the store.
 Result<void> CheckGroupBy(Store& store, const std::string& group_by);
 
-/// Statistics of all refitted runs as JSON (summary.schema.json). First it says how many recordings were fitted, which
+/// Statistics of all refitted runs. First it says how many recordings were fitted, which
 /// of them were taken for repeats of one pendulum, and whether these agree. Runs of different pendulums, and runs that
 /// differ grossly although nothing says that they are of one pendulum, are not compared. It counts fits by model and
 /// status, recommendations and failures. For each parameter of the converged fits it has the distribution, the
 /// outliers, the repeatability within groups compared with the errors, and the trend. Only one parameter of one model
 /// is in memory. kInvalidArgument: the manifest has no such column. kFailedPrecondition: no run was refitted. Other
 /// errors: of the store.
-Result<nlohmann::ordered_json> Summarize(Store& store, const SummaryOptions& options);
+Result<StoreSummary> Summarize(Store& store, const SummaryOptions& options);
 
 }  // namespace pendulum
