@@ -155,7 +155,29 @@ std::vector<Outlier> FindOutliers(const RunValues& values) {
 
 double GroupRepeatability::ScatterRatio() const { return std::sqrt(chi2 / static_cast<double>(runs - 1)); }
 double GroupRepeatability::P() const { return UpperP(chi2, runs - 1); }
+
+std::pair<double, double> GroupRepeatability::ScatterInterval() const {
+  constexpr double kTail = 0.025;
+  const auto freedom = static_cast<double>(runs - 1);
+  const auto end = [&](double probability) { return std::sqrt(chi2 / ChiSquareQuantile(probability, freedom)); };
+  return {end(1 - kTail), end(kTail)};
+}
+
+std::pair<double, double> GroupRepeatability::MeanInterval() const {
+  return {mean - kNormal95 * std_error, mean + kNormal95 * std_error};
+}
+
 double Repeatability::ScatterRatio() const { return std::sqrt(chi2 / static_cast<double>(dof)); }
+
+bool Repeatability::HasEnoughRuns() const {
+  constexpr std::size_t kEnough = 20;
+  return dof >= kEnough;
+}
+
+bool Repeatability::Disagrees(const GroupRepeatability& group) const {
+  constexpr double kLevel = 0.05;
+  return group.P() < kLevel / static_cast<double>(groups.size());
+}
 
 std::optional<Repeatability> AnalyzeRepeatability(const RunValues& values, const std::vector<Outlier>& outliers) {
   const std::vector<bool> left_out = IsOutlier(values.size(), outliers);

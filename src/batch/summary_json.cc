@@ -28,6 +28,10 @@ Json ArrayOf(const Range& range, const ItemOf& item_of) {
 
 Json GroupJson(const std::optional<std::string>& group) { return group ? Json(*group) : Json(nullptr); }
 
+Json IntervalJson(const std::pair<double, double>& interval) {
+  return Json::array({NumberOrNull(interval.first), NumberOrNull(interval.second)});
+}
+
 Json ExamplesJson(const std::vector<RunCounts::Run>& runs) {
   return ArrayOf(runs, [](const auto& run) { return Json{{"id", run.id}, {"reason", run.reason}}; });
 }
@@ -148,8 +152,11 @@ Json RepeatabilityJson(const QuantitySummary& quantity) {
                     {"runs", group.runs},
                     {"weighted_mean", group.mean},
                     {"std_error", group.std_error},
+                    {"interval95", IntervalJson(group.MeanInterval())},
                     {"scatter_ratio", group.ScatterRatio()},
-                    {"p", group.P()}});
+                    {"scatter_interval95", IntervalJson(group.ScatterInterval())},
+                    {"p", group.P()},
+                    {"disagrees", all.Disagrees(group)}});
   }
   return {{"groups", all.groups.size()},
           {"runs", all.runs},
@@ -159,6 +166,7 @@ Json RepeatabilityJson(const QuantitySummary& quantity) {
           {"p", std::min(all.lower_p, all.upper_p)},
           {"between_std_dev", all.between},
           {"verdict", kVerdicts.at(static_cast<std::size_t>(all.verdict))},
+          {"has_enough_runs", all.HasEnoughRuns()},
           {"text", quantity.repeatability_text},
           {"rows", std::move(rows)}};
 }

@@ -99,8 +99,6 @@ SELECT law FROM laws WHERE law IS NOT NULL AND
 
 ErrorVerdict VerdictOf(const std::string& law, const std::vector<QuantitySummary>& quantities, const RunGroups& groups,
                        bool left_out) {
-  // With fewer degrees of freedom, the scatter may be wrong by a third by chance.
-  constexpr std::size_t kEnoughDof = 20;
   if (!groups.compares()) return {law, "not_compared", "caution", "Whether the errors are right is not known."};
   std::vector<std::string> all, larger, smaller;
   double largest = 0;
@@ -110,7 +108,7 @@ ErrorVerdict VerdictOf(const std::string& law, const std::vector<QuantitySummary
     if (quantity.law != law || quantity.is_derived || !quantity.repeatability) continue;
     const Repeatability& found = *quantity.repeatability;
     all.push_back(quantity.name);
-    enough = enough && found.dof >= kEnoughDof;
+    enough = enough && found.HasEnoughRuns();
     if (found.verdict == Repeatability::Verdict::kScatterSmaller) smaller.push_back(quantity.name);
     if (found.verdict != Repeatability::Verdict::kScatterLarger) continue;
     larger.push_back(quantity.name);

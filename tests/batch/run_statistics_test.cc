@@ -191,6 +191,32 @@ TEST(AnalyzeRepeatability, MatchesThreeRunsComputedByHand) {
 
 // With equal errors the equation of Paule and Mandel is between² = s² - error²: 4 - 1 and 16 - 1. With 2 and 1 degrees
 // of freedom the result is sqrt((2 · 3 + 1 · 15) / 3).
+// Quantiles 0.025 and 0.975 of χ²: M. Abramowitz and I. A. Stegun, table 26.8. 1.96: table 26.5.
+TEST(GroupRepeatability, HasIntervalsOfScatterAndMean) {
+  const GroupRepeatability group{.group = 0, .runs = 11, .mean = 2, .std_error = 0.1, .chi2 = 22.5, .between = 0};
+  EXPECT_NEAR(group.ScatterRatio(), 1.5, 1e-12);
+  const auto [low, high] = group.ScatterInterval();
+  EXPECT_NEAR(low, std::sqrt(22.5 / 20.4831), 1e-5);
+  EXPECT_NEAR(high, std::sqrt(22.5 / 3.24697), 1e-5);
+  const auto [from, to] = group.MeanInterval();
+  EXPECT_NEAR(from, 2 - 0.196, 1e-5);
+  EXPECT_NEAR(to, 2 + 0.196, 1e-5);
+}
+
+// p 0.001 is expected among a hundred groups: χ² with one degree of freedom exceeds 10.828 with this probability.
+TEST(Repeatability, NamesAGroupOnlyIfItsPIsSmallAmongAllGroups) {
+  const GroupRepeatability group{.group = 0, .runs = 2, .mean = 0, .std_error = 1, .chi2 = 10.828, .between = 0};
+  Repeatability all;
+  all.groups = std::vector<GroupRepeatability>(3, group);
+  EXPECT_TRUE(all.Disagrees(group));
+  all.groups.resize(100, group);
+  EXPECT_FALSE(all.Disagrees(group));
+  all.dof = 19;
+  EXPECT_FALSE(all.HasEnoughRuns());
+  all.dof = 20;
+  EXPECT_TRUE(all.HasEnoughRuns());
+}
+
 TEST(AnalyzeRepeatability, CombinesGroupsByTheirDegreesOfFreedom) {
   RunValues values = OneGroup({10, 12, 14, 100, 100 + std::sqrt(32)}, 1);
   values.group = {0, 0, 0, 1, 1};

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pendulum {
@@ -62,6 +63,10 @@ struct GroupRepeatability {
 
   double ScatterRatio() const;
   double P() const;  ///< Probability of this chi2 or a larger one if the errors are right.
+  /// The 95 % confidence interval of the ratio, by χ² with runs - 1 degrees of freedom.
+  std::pair<double, double> ScatterInterval() const;
+  /// The 95 % confidence interval of the mean if the errors are right.
+  std::pair<double, double> MeanInterval() const;
 };
 
 /// Repeatability of each group with at least two runs that have errors, and of these groups together (MODEL.md eq.
@@ -74,6 +79,10 @@ struct Repeatability {
   enum class Verdict { kAgrees, kScatterLarger, kScatterSmaller } verdict = Verdict::kAgrees;
 
   double ScatterRatio() const;
+  /// Whether a difference of a third between scatter and errors would be seen: 20 degrees of freedom or more.
+  bool HasEnoughRuns() const;
+  /// Whether a group disagrees with its errors, at a level of 5 % for all groups together (Bonferroni).
+  bool Disagrees(const GroupRepeatability& group) const;
 };
 
 /// std::nullopt if no group has two runs with errors. The verdict differs from kAgrees if p is below 1 % and the

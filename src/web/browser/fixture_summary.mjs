@@ -65,7 +65,10 @@ function groupOf(group, runs) {
     runs: runs.length,
     weighted_mean: centre,
     std_error: sum(weights) ** -0.5,
+    interval95: [centre - 2 * sum(weights) ** -0.5, centre + 2 * sum(weights) ** -0.5],
     scatter_ratio: ratio,
+    scatter_interval95: [0.7 * (ratio ?? 1), 1.6 * (ratio ?? 1)],
+    disagrees: ratio !== null && pOf(ratio, runs.length - 1) < 0.001,
     p: ratio === null ? null : pOf(ratio, runs.length - 1),
     chi2,
   };
@@ -95,6 +98,7 @@ function repeatabilityOf(runs) {
     p,
     between_std_dev: Math.sqrt(Math.max(0, ratio ** 2 - 1)) * mean(runs.map((run) => run.std_error)),
     verdict,
+    has_enough_runs: dof >= 20,
     text: `runs of one rig scatter ${ratio.toFixed(2)} times as much as their standard errors (chi2 ${chi2.toFixed(1)}, ${dof} degrees of freedom)`,
     rows: rows.map(({ chi2: _unused, ...row }) => row),
   };

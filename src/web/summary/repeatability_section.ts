@@ -10,7 +10,7 @@ import { plusMinus, probabilityText, significant } from '../shared/rounding';
 import { absent, figure, section } from '../shared/section';
 import { facts, table, type Cell, type Column } from '../shared/table';
 import { unitText, wordsOf } from '../shared/units';
-import { disagrees, meanRows, rowsToDraw, scatterInterval, scatterRows, hasEnoughRuns } from './repeatability';
+import { meanRows, rowsToDraw, scatterRows } from './repeatability';
 import type { GroupRow, ParameterSummary, Repeatability } from './types';
 import { countText, ratioText, spreadText } from './words';
 
@@ -36,22 +36,19 @@ function numbers(found: Repeatability, unit: string): HTMLElement {
   ]);
 }
 
-function row(one: GroupRow, groups: number): Cell[] {
-  const { runs, scatter_ratio: ratio } = one;
-  const known = ratio !== null && runs > 1;
-  const interval = known ? scatterInterval(ratio, runs - 1).map(ratioText) : null;
-  const odd = disagrees(one, groups) && el('small', { class: 'no' }, 'disagrees');
+function row(one: GroupRow): Cell[] {
+  const [from, to] = one.scatter_interval95.map(ratioText);
   return [
-    [identifier(one.group), odd],
-    countText(runs),
+    [identifier(one.group), one.disagrees && el('small', { class: 'no' }, 'disagrees')],
+    countText(one.runs),
     plusMinus(one.weighted_mean, one.std_error),
-    known ? ratioText(ratio) : '–',
-    interval ? `${interval[0]} to ${interval[1]}` : '–',
-    known ? probabilityText(one.p) : '–',
+    one.scatter_ratio === null ? '–' : ratioText(one.scatter_ratio),
+    `${from} to ${to}`,
+    probabilityText(one.p),
   ];
 }
 
-function groupTable({ rows, groups }: Repeatability, group: string, unit: string): HTMLElement {
+function groupTable({ rows }: Repeatability, group: string, unit: string): HTMLElement {
   const number = 'number' as const;
   const columns: Column[] = [
     { head: visible(group) },
@@ -65,7 +62,7 @@ function groupTable({ rows, groups }: Repeatability, group: string, unit: string
   const box = table(
     'By group',
     columns,
-    shown.map((one) => row(one, groups)),
+    shown.map(row),
   );
   box.classList.add('ids');
   return box;
@@ -142,7 +139,7 @@ const kLabels = {
 
 /** A note that the agreement of only a few runs is weak evidence. */
 const labelOf = (found: Repeatability): string =>
-  found.verdict === 'agrees' && !hasEnoughRuns(found)
+  found.verdict === 'agrees' && !found.has_enough_runs
     ? 'The runs agree with their errors, but they are few.'
     : kLabels[found.verdict];
 

@@ -158,6 +158,7 @@ export interface Repeatability {
   /** Standard deviation between runs in addition to their errors. */
   between_std_dev: Num;
   verdict: Verdict;
+  has_enough_runs: boolean;
   text: string;
   rows: GroupRow[];
 }
@@ -167,8 +168,12 @@ export interface GroupRow {
   runs: number;
   weighted_mean: Num;
   std_error: Num;
+  /** Of the mean. */
+  interval95: [number, number];
   scatter_ratio: Num;
+  scatter_interval95: [number, number];
   p: Num;
+  disagrees: boolean;
 }
 
 export interface Outlier {
