@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMaxDigits = 12;        // significant digits of a value; a reader has no use for more
 constexpr int kMinExponent = -4;      // numbers below 1e-4 are shown with a power of ten, as with %g
-constexpr int kPlainExponent = 2;     // "120 ± 40" is read more easily than "(1.2 ± 0.4)e+02"
+constexpr int kPlainExponent = 5;     // "15100 ± 1600" is read more easily than "(1.51 ± 0.16)e+04"
 constexpr std::size_t kBuffer = 352;  // the largest double has 309 digits before the point
 
 /// The three leading decimal digits (100 to 999) of x != 0, and the power of ten of the first one.
@@ -81,7 +81,7 @@ std::string ExponentText(int exponent) {
   return std::string(exponent < 0 ? "e-" : "e+") + (digits.size() < 2 ? "0" : "") + digits;
 }
 
-/// Whether tens or hundreds are written without a power of ten.
+/// Whether zeros stand before the point instead of a power of ten.
 bool IsPlain(const Rounding& rounding) { return rounding.exponent > 0 && rounding.exponent <= kPlainExponent; }
 
 std::string Mantissa(double x, const Rounding& rounding) {

@@ -36,16 +36,18 @@ TEST(PdgText, RoundsDecimalHalvesOfTheErrorUpwards) {
 TEST(PdgText, UsesAPowerOfTenForSmallNumbersAndLargeErrors) {
   EXPECT_EQ(Pdg(3e-6, 1.2e-7), "(3.00 ± 0.12)e-06");
   EXPECT_EQ(Pdg(0.0001234, 5e-6), "0.000123 ± 0.000005");
-  EXPECT_EQ(Pdg(12345, 678), "(1.23 ± 0.07)e+04");
+  EXPECT_EQ(Pdg(1234567, 67800), "(1.23 ± 0.07)e+06");
   EXPECT_EQ(Pdg(12345, 25), "12345 ± 25");
   EXPECT_EQ(Pdg(123456789, 0.3), "123456789.00 ± 0.30");
 }
 
-TEST(PdgText, WritesTensAndHundredsWithoutAPowerOfTen) {
+TEST(PdgText, WritesZerosBeforeThePointOfNumbersBelowAMillion) {
   EXPECT_EQ(Pdg(84, 41), "80 ± 40");
   EXPECT_EQ(Pdg(-3, 41), "0 ± 40");
   EXPECT_EQ(Pdg(123, 36), "120 ± 40");
-  EXPECT_EQ(Pdg(987, 360), "(1.0 ± 0.4)e+03");  // 1000 after rounding
+  EXPECT_EQ(Pdg(987, 360), "1000 ± 400");
+  EXPECT_EQ(Pdg(15123, 1621), "15100 ± 1600");
+  EXPECT_EQ(Pdg(999700, 3600), "(1.000 ± 0.004)e+06");  // a million after rounding
   EXPECT_EQ(RoundedText(123, PdgRounding(123, 36)), "120");
 }
 
@@ -54,7 +56,7 @@ TEST(PdgText, WritesOneDigitBeforeThePointAlsoAfterRoundingUp) {
   EXPECT_EQ(Pdg(3e-6, 9.6e-6), "(0.3 ± 1.0)e-05");
   EXPECT_EQ(Pdg(6e-8, 5e-7), "(1 ± 5)e-07");
   EXPECT_EQ(Pdg(4e-8, 5e-7), "(0 ± 5)e-07");
-  EXPECT_EQ(Pdg(-99970, 500), "(-1.000 ± 0.005)e+05");
+  EXPECT_EQ(Pdg(-9.997e7, 5e5), "(-1.000 ± 0.005)e+08");
 }
 
 TEST(PdgText, RoundsTheValueToTheDecimalOfALargeError) {
