@@ -152,7 +152,7 @@ def sources_to_check(tree, commands, base):
     sources = [path for path in tree.paths if path.suffix == ".cc" and path.is_relative_to(tree.root / "src")]
     for path in sources:
         if path not in commands:
-            fail(f"{path.relative_to(tree.root)} is not compiled: name it in src/CMakeLists.txt.")
+            fail(f"{path.relative_to(tree.root)} is not compiled: it is in the folder of no floor and of no tool.")
     changed = [] if base is None else changed_since(base)
     if base is None or any(CONCERNS_ALL.search(name) for name in changed):
         return sources

@@ -15,8 +15,8 @@ def output(*command, **options):
 
 
 def tool_names():
-    """The names of all tools in src/CMakeLists.txt."""
-    return set(re.findall(r"^pendulum_add_tool\((\w+)\)$", (empty_root.TOP / "src/CMakeLists.txt").read_text(), re.MULTILINE))
+    """The names of all tools: each has a src/tools/NAME_main.cc."""
+    return {path.name.removesuffix("_main.cc") for path in (empty_root.TOP / "src/tools").glob("*_main.cc")}
 
 
 def flags(tool):
