@@ -8,10 +8,10 @@
 namespace pendulum {
 namespace {
 
-void Join(const std::string& text, const std::string& separator, std::string& all) {
-  if (text.empty()) return;
-  if (!all.empty()) all += separator;
-  all += text;
+void Append(const std::string& part, const std::string& separator, std::string& message) {
+  if (part.empty()) return;
+  if (!message.empty()) message += separator;
+  message += part;
 }
 
 std::string RecordingOf(const WarningSubject& about) {
@@ -28,9 +28,9 @@ std::string LineOf(const WarningSubject& about) {
 std::string MessageText(const Warning& warning) {
   std::string text;
   for (const std::string& part : {RecordingOf(warning.about), warning.about.law, LineOf(warning.about)})
-    Join(part, ": ", text);
-  Join(warning.finding, ": ", text);
-  for (const std::string& part : {warning.explanation, warning.advice}) Join(part, "; ", text);
+    Append(part, ": ", text);
+  Append(warning.finding, ": ", text);
+  for (const std::string& part : {warning.explanation, warning.advice}) Append(part, "; ", text);
   return text;
 }
 
@@ -39,11 +39,15 @@ std::string TextWithoutLaw(Warning warning) {
   return MessageText(warning);
 }
 
-std::string ShortText(const Warning& warning) {
+std::string ShortText(const Warning& warning, const std::string& recording) {
+  const WarningSubject& about = warning.about;
+  const bool is_inside = !recording.empty() && about.file.starts_with(recording + ":");
+  std::string place = is_inside ? about.file.substr(recording.size() + 1) : "";
+  if (about.line > 0) Append("line " + std::to_string(about.line), ", ", place);
   std::string text = RecordingOf(warning.about);
-  if (warning.about.line > 0) Join("line " + std::to_string(warning.about.line), ": ", text);
-  Join(warning.finding, ": ", text);
-  if (!warning.flags.empty()) Join(Capitalized(warning.advice), ". ", text);
+  Append(place, ": ", text);
+  Append(warning.finding, ": ", text);
+  if (!warning.flags.empty()) Append(Capitalized(warning.advice), ". ", text);
   return text;
 }
 

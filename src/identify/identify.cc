@@ -152,10 +152,9 @@ void QuestionUnit(const Recording& used, double half_period, bool is_spring, con
   identification.warnings.push_back(
       {.code = "unit_questioned",
        .finding = "the pendulum swings by only " + degrees + " deg",
-       .explanation = std::string("if the readings are in ") + (is_rate ? "rad/s" : "rad") + " (" +
-                      NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) +
-                      " deg), the period stays, but angles and dry friction are 57.3 times larger",
-       .advice = "correct the unit then (--unit " + radians + ", or in the column's name)",
+       .advice = std::string("if the readings are in ") + (is_rate ? "rad/s" : "rad") + " (" +
+                 NumberText(amplitude / kRadFromDeg / kRadFromDeg, 3) + " deg), correct the unit (--unit " + radians +
+                 ", or in the column's name): the period stays, but angles and dry friction are 57.3 times larger",
        .flags = {"unit"},
        .assumed = "readings in deg" + std::string(is_rate ? "/s" : "") + ", though the swing is only " + degrees +
                   " deg (--unit " + radians + ")"});
@@ -400,10 +399,13 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identificati
     if (!of_the_fit && !joint.HasWarning(warning.code)) identification.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
-  identification.warnings.push_back(
-      {.code = "separate_fit_not_converged",
-       .finding = "the separate fit of this recording is " + std::string(TerminationName(alone.termination)),
-       .explanation = alone.reason});
+  const std::string ended = "the separate fit of this recording is " + std::string(TerminationName(alone.termination));
+  const Warning* const why = alone.ReasonWarning();
+  identification.warnings.push_back({.code = "separate_fit_not_converged",
+                                     .finding = ended + ": " + (why == nullptr ? alone.reason : why->finding),
+                                     .explanation = why == nullptr ? "" : why->explanation,
+                                     .advice = why == nullptr ? "" : why->advice,
+                                     .flags = why == nullptr ? std::vector<std::string>() : why->flags});
 }
 
 JointPart PartOf(const JointModels& joint, std::size_t m) {

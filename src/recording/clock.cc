@@ -698,11 +698,13 @@ Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
   Result<RawSamples> repaired_part = RepairRows(std::move(part));
   if (!repaired_part) return repaired_part;
   repaired_part->warnings.push_back({.code = "time_outside_window",
-                                     .finding = "only the " + std::to_string(rows.size()) + " of " +
-                                                std::to_string(all) +
-                                                " rows in the window of --from and --to were read",
+                                     .finding = "the times outside the window of --from and --to cannot be repaired, "
+                                                "so only " +
+                                                std::to_string(rows.size()) + " of " + std::to_string(all) +
+                                                " rows were read",
                                      .explanation = repaired.error().message,
-                                     .flags = {"from", "to"}});
+                                     .flags = {"from", "to"},
+                                     .about = {.file = repaired_part->name}});
   return repaired_part;
 }
 

@@ -149,6 +149,7 @@ std::string WithBlanks(std::string text) {
 std::string KeySuffix(std::string_view unit) {
   std::string suffix(unit);
   std::ranges::replace(suffix, '/', '_');
+  std::erase(suffix, '^');
   return suffix;
 }
 

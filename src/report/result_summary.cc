@@ -333,8 +333,9 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
     summary.verdict = "No result with " + std::string(fit.model.name) + " (" +
                       std::string(TerminationName(fit.termination)) + "): " + WithFullStop(Printable(fit.reason));
     summary.emphasis = Emphasis::kAlarm;
+    const Warning* const why = fit.ReasonWarning();
     std::erase_if(summary.warnings, [&](const Warning& warning) {
-      return warning.code == "at_bound" || fit.reason.starts_with(MessageText(warning));
+      return warning.code == "at_bound" || (why != nullptr && warning == *why);
     });
     return;
   }
@@ -504,6 +505,14 @@ std::string VerdictOf(const ComparisonRow& row, bool is_recommended) {
   return row.lack_of_fit ? "lack of fit" : "";
 }
 
+/// Why a law has no result, without what follows from that.
+std::string ShortReason(const Identification& identification, const ComparisonRow& row) {
+  const auto fit =
+      std::ranges::find(identification.fits, row.model, [](const FitReport& each) { return each.model.name; });
+  const Warning* const why = fit == identification.fits.end() ? nullptr : fit->ReasonWarning();
+  return why == nullptr ? row.reason : std::string(TerminationName(fit->termination)) + ": " + ShortText(*why);
+}
+
 void SetComparison(const Identification& identification, ResultSummary& summary) {
   const Comparison& comparison = *identification.comparison;
   const bool recommends = !comparison.recommended.empty();
@@ -513,7 +522,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
       summary.without_result += (summary.without_result.empty() ? "No result with " : " No result with ") + row.model +
-                                ": " + WithFullStop(Printable(row.reason));
+                                ": " + WithFullStop(Printable(ShortReason(identification, row)));
       continue;
     }
     SummaryLaw law{row.model, SignificantText(shown.factor * row.rms, kRmsDigits) + " " + std::string(shown.unit),
@@ -528,6 +537,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 /// What the linear formulas give.
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
+  summary.path = identification.data.path;
   summary.assumptions = AssumptionsOf(AllWarnings(identification));
   summary.warnings = WithoutAssumptions(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
@@ -543,8 +553,11 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 
 }  // namespace
 
+std::string FitSummary::TextOf(const Warning& warning) const { return Printable(ShortText(warning, path)); }
+
 FitSummary SummarizeFit(const Identification& identification, std::size_t index) {
   FitSummary summary;
+  summary.path = identification.data.path;
   const FitReport& fit = identification.fits[index];
   const std::vector<Warning> warnings = WarningsOfFit(identification, index);
   summary.assumptions = AssumptionsOf(warnings);
@@ -638,7 +651,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
                             : summary.emphasis == Emphasis::kCaution ? "caution"
                                                                      : "good";
   nlohmann::ordered_json messages = nlohmann::ordered_json::array();
-  for (const Warning& warning : summary.warnings) messages.push_back(Printable(ShortText(warning)));
+  for (const Warning& warning : summary.warnings) messages.push_back(summary.TextOf(warning));
   return {{"verdict", summary.verdict},
           {"level", level},
           {"agreement", summary.agreement},

@@ -142,11 +142,11 @@ struct WarningTexts {
   std::vector<std::string> sentences, names;
 };
 
-WarningTexts TextsOf(const std::vector<Warning>& warnings, Folding folding) {
+WarningTexts TextsOf(const FitSummary& fit, Folding folding) {
   WarningTexts texts;
-  for (const Warning& warning : warnings) {
+  for (const Warning& warning : fit.warnings) {
     if (folding < Folding::kNames || warning.code.is_serious()) {
-      const std::string text = Printable(ShortText(warning));
+      const std::string text = fit.TextOf(warning);
       texts.sentences.push_back(folding >= Folding::kAsides ? WithoutAsides(text) : text);
     } else if (std::ranges::find(texts.names, NameOf(warning)) == texts.names.end()) {
       texts.names.push_back(NameOf(warning));
@@ -166,7 +166,7 @@ std::string WarningsText(const WarningTexts& warnings) {
 }
 
 void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, Section& section) {
-  const WarningTexts warnings = TextsOf(summary.warnings, folding);
+  const WarningTexts warnings = TextsOf(summary, folding);
   std::string text = AssumedText(summary);
   if (folding >= Folding::kParagraphs) {
     Join(WarningsText(warnings), " ", text);

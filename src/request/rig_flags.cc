@@ -117,7 +117,7 @@ Result<RigValue> ParseRigValue(const std::string& flag, const std::string& text,
 
 Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts, std::vector<Warning>& warnings) {
   Json values = Json::object();
-  std::vector<std::string> without_unit;
+  std::vector<std::string> without_unit, names;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     if (texts[i].empty()) continue;
     const RigKey& key = RigKeys()[i];
@@ -127,6 +127,7 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     const bool is_zero = value.value == 0 && value.std_dev == 0;
     if (key.quantity == RigQuantity::kAcceleration || is_zero || HasUnit(texts[i])) continue;
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));
+    names.emplace_back(key.flag);
   }
   // No swing tells a mass in g from one in kg: the period does not depend on it, and every result does.
   std::vector<std::string> odd, with_unit;
@@ -148,6 +149,7 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     warnings.push_back({.code = "rig_unit_assumed",
                         .finding = "values without a unit were taken in SI units: " + NameList(without_unit),
                         .advice = "write the unit after the number, such as 380g or 43cm",
+                        .flags = names,
                         .assumed = NameList(without_unit) + " in SI units (380g, 43cm say otherwise)"});
   }
   return values;

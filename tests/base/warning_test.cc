@@ -41,6 +41,14 @@ TEST(ShortText, HasTheAdviceIfItHasFlags) {
   EXPECT_EQ(ShortText({.code = "gaps", .finding = "there are gaps", .advice = "do better"}), "there are gaps");
 }
 
+// A line of a file in a zip file says of which file.
+TEST(ShortText, NamesTheFileInTheRecording) {
+  const Warning warning = {
+      .code = "stray_lines", .finding = "2 lines are no rows", .about = {.file = "a.zip:run2.csv", .line = 503}};
+  EXPECT_EQ(ShortText(warning, "a.zip"), "run2.csv, line 503: 2 lines are no rows");
+  EXPECT_EQ(ShortText(warning, "a.zip:run2.csv"), "line 503: 2 lines are no rows");
+}
+
 TEST(WarningCode, IsOneOfTheTable) {
   const Warning warning{"lack_of_fit", "the residuals are not noise"};
   EXPECT_EQ(warning.code, "lack_of_fit");

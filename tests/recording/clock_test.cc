@@ -585,11 +585,12 @@ TEST(RepairClock, JudgesTheWindowIfTheWholeFileCannotBeRepaired) {
   EXPECT_EQ(repaired->time.size(), 351);  // 1 s to 4.5 s
   EXPECT_EQ(repaired->time[0], 1000);
   EXPECT_EQ(repaired->lines.LineOf(0), 102);
-  EXPECT_EQ(
-      WarningOf(*repaired),
-      "time_outside_window: only the 351 of 900 rows in the window of --from and --to were read; run.csv:602: time "
-      "0 ms follows 5990 ms, so the clock was set back: these are two recordings in one file; split it before this "
-      "line");
+  EXPECT_EQ(WarningOf(*repaired),
+            "time_outside_window: run.csv: the times outside the window of --from and --to cannot be repaired, so only "
+            "351 of "
+            "900 rows were read; run.csv:602: time 0 ms follows 5990 ms, so the clock was set back: these are two "
+            "recordings in "
+            "one file; split it before this line");
   EXPECT_EQ(RepairClock(samples, {1, 20}).error().message, RepairClock(samples).error().message);
 }
 

@@ -70,5 +70,12 @@ TEST(Paragraph, BreaksNoLineAtANoBreakSpace) {
 
 TEST(Paragraph, MeasuresWidthInCharacters) { EXPECT_EQ(Paragraph("ττττ ωω", "", 7), "ττττ ωω\n"); }
 
+// As the reader of recordings names its columns.
+TEST(KeySuffix, HasNoCharactersThatAKeyCannotHave) {
+  EXPECT_EQ(KeySuffix("rad"), "rad");
+  EXPECT_EQ(KeySuffix("rad/s"), "rad_s");
+  EXPECT_EQ(KeySuffix("m/s^2"), "m_s2");
+}
+
 }  // namespace
 }  // namespace pendulum::layout_test

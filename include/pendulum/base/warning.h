@@ -197,9 +197,9 @@ std::string MessageText(const Warning& warning);
 /// The same without the law, for a list below its name: "recording 2 (b.csv): b.csv:118: finding; explanation; advice".
 std::string TextWithoutLaw(Warning warning);
 
-/// What is found, and the advice if it has flags; without the name of the file, which the reader knows: "line 118:
-/// finding. Advice".
-std::string ShortText(const Warning& warning);
+/// What is found, and the advice if it has flags: "line 118: finding. Advice". Of the file only what `recording`, the
+/// path that the reader knows, does not say: "run2.csv, line 118" of a zip file.
+std::string ShortText(const Warning& warning, const std::string& recording = "");
 
 /// The first warning of this code; nullptr if there is none.
 const Warning* FindWarning(const std::vector<Warning>& warnings, WarningCode code);

@@ -37,7 +37,7 @@ inline constexpr std::string_view kNoBreak = "\xC2\xA0";  ///< U+00A0, a blank w
 /// The text with no-break spaces replaced by blanks.
 std::string WithBlanks(std::string text);
 
-/// A unit as the end of a key or a column name: rad_s for rad/s.
+/// A unit as the end of a key or a column name: rad_s for rad/s, m_s2 for m/s^2.
 std::string KeySuffix(std::string_view unit);
 
 }  // namespace pendulum

@@ -43,7 +43,11 @@ struct FitSummary {
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
   std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
   std::vector<std::string> assumptions;  ///< What the numbers rest on that nobody said, each with its flag.
-  std::vector<Warning> warnings;         ///< Others that the verdict does not say; texts: ShortText.
+  std::vector<Warning> warnings;         ///< Others that the verdict does not say.
+  std::string path;                      ///< Of the recording; empty for several.
+
+  /// The text of one of the warnings, printable.
+  std::string TextOf(const Warning& warning) const;
 };
 
 /// What a reader of a result needs first. Every front end shows it first.

@@ -27,6 +27,13 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
 
 bool FitReport::HasWarning(WarningCode code) const { return pendulum::HasWarning(warnings, code); }
 
+const Warning* FitReport::ReasonWarning() const {
+  if (termination == Termination::kConverged) return nullptr;
+  const auto says_it = [&](const Warning& warning) { return reason.starts_with(MessageText(warning)); };
+  const auto found = std::ranges::find_if(warnings, says_it);
+  return found == warnings.end() ? nullptr : &*found;
+}
+
 void WithdrawErrors(std::string_view why, FitReport& fit) {
   for (ParameterEstimate& parameter : fit.parameters) {
     parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;

@@ -150,6 +150,7 @@ void WarnOfPriors(const FitProblem& problem, const Solution& solution, const Fit
     warnings.push_back({.code = "prior_conflict",
                         .finding = "the prior of " + name + " (--prior) and the recording disagree by " +
                                    NumberText(distance, 3) + " standard deviations of their difference",
+                        .flags = {"prior"},
                         .about = {.parameters = {name}}});
   }
 }
@@ -297,17 +298,19 @@ std::string EffectText(const Suspicion& suspicion) {
 
 /// law: the law that corrects for the cause if it is fitted alone; empty: none.
 Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
-  std::string consequence =
-      suspicion.is_corrected ? "the estimates are those of corrected readings" : "the estimates do not allow for it";
-  if (!law.empty()) consequence += " (a fit of this recording with --model " + law + " alone does)";
   const CauseText text = TextOf(suspicion.cause);
-  return {.code = text.code,
-          .finding = "the residuals suggest that " + std::string(text.what) + EffectText(suspicion) + ", " +
-                     NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations",
-          .explanation = consequence,
-          .advice = AdviceFor(suspicion.cause),
-          .flags = text.flag.empty() ? std::vector<std::string>()
-                                     : std::vector{std::string(text.flag.substr(2, text.flag.find(' ') - 2))}};
+  Warning warning{.code = text.code,
+                  .finding = "the residuals suggest that " + std::string(text.what) + EffectText(suspicion) + ", " +
+                             NumberText(std::min(suspicion.significance, 99.0), 2) + " standard deviations",
+                  .explanation = suspicion.is_corrected ? "the estimates are those of corrected readings"
+                                                        : "the estimates do not allow for it",
+                  .advice = AdviceFor(suspicion.cause)};
+  if (!text.flag.empty()) warning.flags.emplace_back(text.flag.substr(2, text.flag.find(' ') - 2));
+  if (!law.empty()) {
+    warning.advice += ", or fit this recording with --model " + law + " alone, which allows for it";
+    warning.flags.emplace_back("model");
+  }
+  return warning;
 }
 
 }  // namespace

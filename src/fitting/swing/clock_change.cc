@@ -177,8 +177,8 @@ std::string TextOf(const StepChange& change) {
 Warning StepChange::ToWarning() const {
   return {.code = "clock_unproven",
           .finding = TextOf(*this) + ", and the swings do not show whether the clock changed or the sampling",
-          .explanation = "if it was the clock, the times of one part are wrong",
-          .advice = "fit the other part then, with --to " + TimeTextOf(*this) + " or --from " + TimeTextOf(*this),
+          .advice = "if it was the clock, the times of one part are wrong: fit the other part with --to " +
+                    TimeTextOf(*this) + " or --from " + TimeTextOf(*this),
           .flags = {"to", "from"}};
 }
 

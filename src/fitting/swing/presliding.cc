@@ -101,7 +101,7 @@ Warning WarningOf(const Presliding& presliding, const std::string& unit, bool is
                      "(presliding), as in the law dahl (--model dahl)",
           .explanation = is_left_out ? "they were left out" : "",
           .advice = is_left_out ? "choose another end with --to" : "leave them out with --to " + from,
-          .flags = {"to"}};
+          .flags = {"model", "to"}};
 }
 
 }  // namespace pendulum

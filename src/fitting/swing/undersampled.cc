@@ -103,11 +103,11 @@ std::optional<Warning> UnboundedFrequency(const std::vector<Alias>& aliases, dou
   const double apparent = ApparentFrequency(frequency, rate);
   return Warning{.code = "ambiguous_frequency",
                  .finding = "sampled at " + Hz(rate) + ", the pendulum may swing at " + Hz(apparent) + " or faster",
-                 .explanation = "the readings suggest " + Hz(frequency) + " (" + BoundsFlag(frequency, options) + ")",
-                 .advice = "if it swings at about " + Hz(apparent) + ", give " + BoundsFlag(apparent, options) +
-                           "; otherwise give --rig with rod and bob, or with length and gravity, or sample at 6 Hz or "
-                           "faster",
-                 .flags = {"bounds", "rig"}};
+                 .explanation = "the readings suggest " + Hz(frequency) + " (" + BoundsFlag(frequency, options) +
+                                "); --rig with rod and bob, or with length and gravity, or samples at 6 Hz or faster "
+                                "would tell",
+                 .advice = "if it swings at about " + Hz(apparent) + ", give " + BoundsFlag(apparent, options),
+                 .flags = {"bounds"}};
 }
 
 /// Whether evenly spaced samples show nearly the same two phases of a swing throughout the recording.

@@ -106,7 +106,7 @@ TEST(CheckEffects, CorrectsNothingIfItMayNot) {
   EXPECT_EQ(fit.correction.size(), 0);
   const Warning* const warning = FindWarning(fit.warnings, "suspected_gain");
   ASSERT_NE(warning, nullptr);
-  EXPECT_THAT(MessageText(*warning), testing::HasSubstr("with --model coulomb alone does"));
+  EXPECT_THAT(MessageText(*warning), testing::HasSubstr("with --model coulomb alone, which allows for it"));
 }
 
 // No sensor known to 1 % is wrong by 10 %.

@@ -137,6 +137,9 @@ struct FitReport {
   const ParameterEstimate* Find(std::string_view name) const;
 
   bool HasWarning(WarningCode code) const;
+
+  /// The warning that says why the fit did not converge; nullptr if its reason is none of the warnings.
+  const Warning* ReasonWarning() const;
 };
 
 /// Removes the errors, intervals and covariance from a report in which they are not valid. Each parameter that is not

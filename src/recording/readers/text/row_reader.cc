@@ -785,14 +785,13 @@ void Reader::WarnOfOtherRate(Recording& recording) const {
   const auto is_stated = [&](double unit) { return std::abs(step / (stated * unit) - 1) <= kDiffers; };
   if (is_stated(1) || is_stated(1e-3) || is_stated(1e-6)) return;
   const auto text = [](double seconds) { return NumberText(seconds, 4) + " s"; };
-  recording.warnings.push_back(
-      {.code = "rate_disagrees",
-       .finding = "the times in column " + layout_.time->name + " are " + text(step) +
-                  " apart, but the lines above say " + text(stated),
-       .explanation = "the times are used",
-       .advice = "--time_column none --sample_rate_hz " + NumberText(head_.sample_rate_hz, 6) + " uses the other",
-       .flags = {"time_column", "sample_rate_hz"},
-       .about = {.file = recording.path}});
+  recording.warnings.push_back({.code = "rate_disagrees",
+                                .finding = "the times in column " + layout_.time->name + " are " + text(step) +
+                                           " apart, but the lines above say " + text(stated) + "; the times are used",
+                                .advice = "to use the lines above, give --time_column none --sample_rate_hz " +
+                                          NumberText(head_.sample_rate_hz, 6),
+                                .flags = {"time_column", "sample_rate_hz"},
+                                .about = {.file = recording.path}});
 }
 
 }  // namespace
