@@ -48,6 +48,7 @@ for (const name of Object.keys(kReports)) {
         assert.equal(await page.evaluate(() => window.scrollY), 0);
         const first = ['.banner .title', '#verdict .plot canvas', '.answer-table'];
         for (const selector of first) {
+          await page.waitForSelector(selector); // the swing is drawn after the first section stands
           const ends = await bottoms(page, selector);
           assert.equal(ends.length, 1, selector);
           assert.ok(ends[0] > 0 && ends[0] <= height, `${selector} ends at ${ends[0]} px`);

@@ -4,6 +4,9 @@
 import { fitOf } from './fixture_fit.mjs';
 import { kPeriod, kRate, kRelease, kSigma, kZero, motion, seeded } from './fixture_motion.mjs';
 
+/** A warning about one law. */
+const ofLaw = (law, code, text) => ({ code, message: `${law}: ${text}`, text, law, recordings: [] });
+
 function comparisonOf(fits, recommended) {
   const prediction = (standardized) => ({ rms_rad: 0.003 * standardized, standardized, samples: 900 });
   const rows = fits.map((fit, i) => ({
@@ -121,9 +124,9 @@ export function makeResult({
     },
     comparison: models.length > 1 ? comparisonOf(fits, models[1]) : null,
     warnings: [
-      ...(models.length > 1 ? [{ code: 'lack_of_fit', message: 'viscous: the residuals are more than noise; try another law' }] : []),
+      ...(models.length > 1 ? [ofLaw('viscous', 'lack_of_fit', 'the residuals are more than noise; try another law')] : []),
       { code: 'weakly_identifiable', message: 'viscous is weakly identifiable; record for longer' },
-      ...(models.includes('drag') ? [{ code: 'at_bound', message: 'drag: at the bound 0: drag; a simpler law has smaller errors' }] : []),
+      ...(models.includes('drag') ? [ofLaw('drag', 'at_bound', 'at the bound 0: drag; a simpler law has smaller errors')] : []),
     ],
   };
 }

@@ -114,7 +114,7 @@ export function makeJointResult({ models = ['viscous', 'coulomb', 'drag'], count
     fits: one.fits.map((fit) => jointFit(fit, count, odd)),
     warnings: [
       ...(odd ? [{ code: 'recordings_disagree', message: verdictOf(count, odd) }] : []),
-      { code: 'gaps', message: 'recording 2 (folder/run2.csv): readings are missing in 1 place' },
+      { code: 'gaps', message: 'recording 2 (folder/run2.csv): readings are missing in 1 place', recordings: [2] },
     ],
   };
 }
