@@ -18,19 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSchemaVersion = 2;
 
-/// An array with one item for each element.
-template <typename Range, typename ItemOf>
-Json ArrayOf(const Range& range, const ItemOf& item_of) {
-  Json array = Json::array();
-  for (const auto& element : range) array.push_back(item_of(element));
-  return array;
-}
-
 Json GroupJson(const std::optional<std::string>& group) { return group ? Json(*group) : Json(nullptr); }
-
-Json IntervalJson(const std::pair<double, double>& interval) {
-  return Json::array({NumberOrNull(interval.first), NumberOrNull(interval.second)});
-}
 
 Json ExamplesJson(const std::vector<RunCounts::Run>& runs) {
   return ArrayOf(runs, [](const auto& run) { return Json{{"id", run.id}, {"reason", run.reason}}; });
@@ -148,13 +136,15 @@ Json RepeatabilityJson(const QuantitySummary& quantity) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.groups.size(); ++i) {
     const GroupRepeatability& group = all.groups[i];
+    const auto [from, to] = group.MeanInterval();
+    const auto [least, most] = group.ScatterInterval();
     rows.push_back({{"group", quantity.repeated_groups[i]},
                     {"runs", group.runs},
                     {"weighted_mean", group.mean},
                     {"std_error", group.std_error},
-                    {"interval95", IntervalJson(group.MeanInterval())},
+                    {"interval95", IntervalJson(from, to)},
                     {"scatter_ratio", group.ScatterRatio()},
-                    {"scatter_interval95", IntervalJson(group.ScatterInterval())},
+                    {"scatter_interval95", IntervalJson(least, most)},
                     {"p", group.P()},
                     {"disagrees", all.Disagrees(group)}});
   }

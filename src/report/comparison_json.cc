@@ -66,13 +66,6 @@ Json TestJson(const NestedTest& test) {
       .Done();
 }
 
-template <typename Range, typename Render>
-Json ArrayOf(const Range& items, const Render& render) {
-  Json json = Json::array();
-  for (const auto& item : items) json.push_back(render(item));
-  return json;
-}
-
 Json HalfJson(const HalvesRow& row) {
   return NumberObject()
       .Set("parameter", Json(row.name))

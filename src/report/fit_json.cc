@@ -55,11 +55,6 @@ Json MatrixJson(const std::vector<std::string>& names, const Element& element) {
 
 }  // namespace
 
-Json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper) {
-  if (!lower && !upper) return nullptr;
-  return Json::array({NumberOrNull(lower), NumberOrNull(upper)});
-}
-
 Json ResolutionJson(const DataSummary& data) { return data.resolution > 0 ? Json(data.resolution) : Json(nullptr); }
 
 Json ParametersJson(const FitReport& fit) {

@@ -42,6 +42,11 @@ Json NumberOrNull(const std::optional<double>& value) {
 
 Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
+Json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper) {
+  if (!lower && !upper) return nullptr;
+  return Json::array({NumberOrNull(lower), NumberOrNull(upper)});
+}
+
 std::string KeyWithUnit(const std::string& name, const std::string& unit) { return name + "_" + KeySuffix(unit); }
 
 }  // namespace pendulum

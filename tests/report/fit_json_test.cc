@@ -15,13 +15,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-TEST(IntervalJson, HasNullForAMissingEnd) {
-  EXPECT_EQ(IntervalJson(0.5, 2.0).dump(), "[0.5,2.0]");
-  EXPECT_EQ(IntervalJson(0.5, std::nullopt).dump(), "[0.5,null]");
-  EXPECT_EQ(IntervalJson(std::nullopt, 2.0).dump(), "[null,2.0]");
-  EXPECT_TRUE(IntervalJson(std::nullopt, std::nullopt).is_null());
-}
-
 TEST(ResolutionJson, IsNullWithoutLevels) {
   DataSummary data;
   EXPECT_TRUE(ResolutionJson(data).is_null());

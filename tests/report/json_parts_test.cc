@@ -35,5 +35,12 @@ TEST(NumberOrNull, IsNullForNonFiniteNumbers) {
 
 TEST(KeyWithUnit, WritesASlashAsAnUnderscore) { EXPECT_EQ(KeyWithUnit("sigma", "rad/s"), "sigma_rad_s"); }
 
+TEST(IntervalJson, HasNullForAMissingEnd) {
+  EXPECT_EQ(IntervalJson(0.5, 2.0).dump(), "[0.5,2.0]");
+  EXPECT_EQ(IntervalJson(0.5, std::nullopt).dump(), "[0.5,null]");
+  EXPECT_EQ(IntervalJson(std::nullopt, 2.0).dump(), "[null,2.0]");
+  EXPECT_TRUE(IntervalJson(std::nullopt, std::nullopt).is_null());
+}
+
 }  // namespace
 }  // namespace pendulum::json_parts_test

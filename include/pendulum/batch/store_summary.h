@@ -109,10 +109,10 @@ struct QuantitySummary {
 
 /// Whether the errors of a law agree with the scatter between recordings.
 struct ErrorVerdict {
-  std::string law = {};
-  std::string verdict = {};  ///< not_compared, too_small, too_large, few or agrees.
-  std::string level = {};    ///< good or caution.
-  std::string text = {};
+  std::string law;
+  std::string verdict;  ///< not_compared, too_small, too_large, few or agrees.
+  std::string level;    ///< good or caution.
+  std::string text;
 };
 
 /// What was fitted, and with what.

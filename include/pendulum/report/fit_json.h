@@ -13,9 +13,6 @@ namespace pendulum {
 /// Parts of the result's JSON common to fits of one and of several recordings. Missing numbers are null, and `reason`
 /// in the same object says why.
 
-/// [lower, upper]; null if both are missing.
-nlohmann::ordered_json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper);
-
 /// Spacing of the sensor's levels; null if there are none.
 nlohmann::ordered_json ResolutionJson(const DataSummary& data);
 

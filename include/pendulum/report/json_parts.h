@@ -35,6 +35,17 @@ nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
 
 nlohmann::ordered_json TextOrNull(const std::string& text);
 
+/// [lower, upper]; null if both are missing.
+nlohmann::ordered_json IntervalJson(const std::optional<double>& lower, const std::optional<double>& upper);
+
+/// An array with `item_of(item)` for each item.
+template <typename Range, typename ItemOf>
+nlohmann::ordered_json ArrayOf(const Range& items, const ItemOf& item_of) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const auto& item : items) array.push_back(item_of(item));
+  return array;
+}
+
 /// A key with its unit: sigma_rad_s.
 std::string KeyWithUnit(const std::string& name, const std::string& unit);
 
