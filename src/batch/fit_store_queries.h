@@ -83,8 +83,8 @@ inline ListedFit FitOf(const SQLite::Statement& row) {
 /// The window in the result of a run, if it has one.
 inline std::optional<std::array<double, 2>> WindowOf(SQLite::Database& database, std::int64_t run) {
   SQLite::Statement ends(database,
-                         "SELECT json_extract(result, '$.data.window_s[0]'), json_extract(result, "
-                         "'$.data.window_s[1]') FROM runs WHERE run = ? AND json_valid(result)");
+                         "SELECT json_extract(result, '$.recordings[0].window_s[0]'), json_extract(result, "
+                         "'$.recordings[0].window_s[1]') FROM runs WHERE run = ? AND json_valid(result)");
   if (!sqlite::Bind(ends, run).executeStep()) return std::nullopt;
   const auto begin = Number(ends, 0), end = Number(ends, 1);
   return begin && end ? std::optional(std::array{*begin, *end}) : std::nullopt;

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "pendulum/base/json.h"
+#include "pendulum/model/motion_model.h"
 #include "pendulum/model/parameter.h"
 
 namespace pendulum {
@@ -64,14 +68,172 @@ Json Translated(const Json& value, std::string_view key) {
   return members;
 }
 
+// ---- From version 2 to version 3 ------------------------------------------------------------------------------------
+
+using NameSet = std::set<std::string>;
+
+/// The parameters that the recordings of a fit of version 2 share.
+NameSet SharedNames(const Json& fit) {
+  if (fit.contains("shared")) return fit["shared"].get<NameSet>();
+  NameSet names;
+  const auto model = FindMotionModel(fit["model"].get<std::string>());
+  if (!model) return names;
+  for (const ParameterInfo& parameter : PhysicalParameters(*model)) names.emplace(parameter.name);
+  return names;
+}
+
+/// Copies those of the members that there are.
+void CopyMembers(const Json& from, const std::vector<std::string>& keys, Json& to) {
+  for (const std::string& key : keys) {
+    if (from.contains(key)) to[key] = from[key];
+  }
+}
+
+Json Parameters(const Json& fit, const NameSet& shared, bool are_shared) {
+  Json parameters = Json::object();
+  for (const auto& [name, parameter] : fit["parameters"].items()) {
+    if (shared.contains(name) == are_shared) parameters[name] = parameter;
+  }
+  return parameters;
+}
+
+Json Identifiabilities(const Json& fit, const NameSet& shared, bool are_shared) {
+  Json rows = Json::array();
+  for (const Json& row : fit["identifiability"]) {
+    if (shared.contains(row["parameter"].get<std::string>()) == are_shared) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// The rows and columns of the shared parameters.
+Json SharedMatrix(const Json& matrix, const NameSet& shared) {
+  Json names = Json::array(), rows = Json::array();
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < matrix["names"].size(); ++i) {
+    if (!shared.contains(matrix["names"][i].get<std::string>())) continue;
+    places.push_back(i);
+    names.push_back(matrix["names"][i]);
+  }
+  for (const std::size_t i : places) {
+    rows.push_back(Json::array());
+    for (const std::size_t j : places) rows.back().push_back(matrix["matrix"][i][j]);
+  }
+  return {{"names", std::move(names)}, {"matrix", std::move(rows)}};
+}
+
+/// Statistics over all recordings.
+Json SumStatistics(const Json& statistics) {
+  if (!statistics.is_object()) return nullptr;
+  Json sums = Json::object();
+  for (const auto& [key, value] : statistics.items()) {
+    if (key != "durbin_watson" && key != "ljung_box_p" && key != "runs_p") sums[key] = value;
+  }
+  return sums;
+}
+
+/// The part of a fit for one recording; own: the recording's run in the fit, or the fit to the only recording.
+Json OwnPart(const Json& fit, const Json& own) {
+  const NameSet shared = SharedNames(fit);
+  const std::string status = fit["status"].get<std::string>();
+  Json part = {{"model", fit["model"]},
+               {"amplitude_rad", own.value("amplitude_rad", Json(nullptr))},
+               {"parameters", Parameters(own, shared, false)}};
+  CopyMembers(own, {"covariance", "correlation", "systematic_covariance", "std_error_method"}, part);
+  part["identifiability"] = Identifiabilities(own, shared, false);
+  CopyMembers(own, {"noise", "statistics", "closed_form", "constancy", "constancy_reason", "suspicions"}, part);
+  part["separate"] =
+      own.value("separate", status == "converged" ? status : status + ": " + fit["reason"].get<std::string>());
+  return part;
+}
+
+Json SharedFit(const Json& fit) {
+  const NameSet shared = SharedNames(fit);
+  Json current;
+  CopyMembers(fit, {"model", "status", "reason", "equation"}, current);
+  const Json parameters = Parameters(fit, shared, true);
+  Json names = Json::array();
+  for (const auto& [name, parameter] : parameters.items()) names.push_back(name);
+  current["shared"] = fit.value("shared", std::move(names));
+  current["parameters"] = parameters;
+  CopyMembers(fit, {"derived"}, current);
+  for (const char* key : {"covariance", "correlation", "systematic_covariance"}) {
+    current[key] = SharedMatrix(fit[key], shared);
+  }
+  CopyMembers(fit, {"std_error_method", "interval_method"}, current);
+  current["identifiability"] = Identifiabilities(fit, shared, true);
+  current["statistics"] = SumStatistics(fit["statistics"]);
+  current["homogeneity"] = fit.value("homogeneity", Json(nullptr));
+  CopyMembers(fit, {"rig_verdict", "ambiguities", "solver", "summary"}, current);
+  return current;
+}
+
+/// A warning of an earlier version has a code and a message only.
+Json WithParts(const Json& warning) {
+  const Json& message = warning["message"];
+  Json whole = {{"code", warning["code"]}, {"message", message}, {"text", message},
+                {"finding", message},      {"explanation", nullptr}, {"advice", nullptr},
+                {"flags", Json::array()},  {"assumed", nullptr}, {"law", nullptr},
+                {"recordings", Json::array()}, {"parameters", Json::array()}};
+  whole.update(warning);
+  return whole;
+}
+
+Json ToVersion3(const Json& former) {
+  const bool are_several = former["data"].is_array();
+  const auto each = [&](const char* key) {
+    const Json member = former.value(key, Json(nullptr));
+    return are_several ? member : Json::array({member});
+  };
+  const Json data = each("data"), calibrations = each("calibration"), closed_forms = each("closed_forms");
+  Json recordings = Json::array(), fits = Json::array(), warnings = Json::array();
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    Json recording = data[k];
+    recording["calibration"] = calibrations[k];
+    recording["closed_forms"] = closed_forms[k];
+    recording["fits"] = Json::array();
+    for (const Json& fit : former["fits"]) recording["fits"].push_back(OwnPart(fit, are_several ? fit["runs"][k] : fit));
+    if (closed_forms[k].is_null() && former.contains("reason")) recording["reason"] = former["reason"];
+    recordings.push_back(std::move(recording));
+  }
+  for (const Json& fit : former["fits"]) fits.push_back(SharedFit(fit));
+  for (const Json& warning : former["warnings"]) warnings.push_back(WithParts(warning));
+  return {{"schema_version", 3},
+          {"tool", former["tool"]},
+          {"rig", former["rig"]},
+          {"recordings", std::move(recordings)},
+          {"fits", std::move(fits)},
+          {"comparison", former.value("comparison", Json(nullptr))},
+          {"warnings", std::move(warnings)}};
+}
+
+/// `convert` of a JSON object; the text unchanged if it is none, or lacks members that every result has.
+template <typename Convert>
+std::string Converted(std::string_view text, const Convert& convert) {
+  const Json former = Json::parse(text, nullptr, false);
+  if (!former.is_object()) return std::string(text);
+  try {
+    return convert(former);
+  } catch (const Json::exception&) {
+    return std::string(text);
+  }
+}
+
 }  // namespace
 
-std::string WithCurrentNames(std::string_view result) {
-  const Json former = Json::parse(result, nullptr, false);
-  if (!former.is_object() || former.value("schema_version", Json()) != 1) return std::string(result);
-  Json current = Translated(former, "");
-  current["schema_version"] = 2;
-  return JsonText(current);
+std::string ToCurrentResult(std::string_view result) {
+  return Converted(result, [&](const Json& former) {
+    const Json version = former.value("schema_version", Json());
+    if (version != 1 && version != 2) return std::string(result);
+    return JsonText(ToVersion3(version == 1 ? Translated(former, "") : former));
+  });
+}
+
+std::string ToCurrentFit(std::string_view fit) {
+  return Converted(fit, [&](const Json& former) {
+    Json current = SharedFit(former);
+    current["recordings"] = Json::array({OwnPart(former, former)});
+    return JsonText(current);
+  });
 }
 
 }  // namespace pendulum

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "batch/kept_result.h"
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/batch/store.h"
 
@@ -71,9 +72,10 @@ inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(
 
 /// The clock and the calibration of a result, as text.
 inline std::string SourcesOf(const Json& result) {
-  const Json& data = result["data"];
-  return SourcesText(Get<double>(data, "clock_scale").value_or(1), Get<double>(data, "clock_scale_std_dev").value_or(0),
-                     result.value("calibration", Json()).dump());
+  const Json recording = RecordingOf(result);
+  return SourcesText(Get<double>(recording, "clock_scale").value_or(1),
+                     Get<double>(recording, "clock_scale_std_dev").value_or(0),
+                     recording.value("calibration", Json()).dump());
 }
 
 inline void SetErrorParts(const Json& json, QuantityRow& row) {
@@ -109,9 +111,9 @@ inline QuantityRow Quantity(const std::string& name, const Json& json, bool deri
   return row;
 }
 
-inline void SetStatistics(const Json& fit, FitRow& row) {
-  const Json& statistics = fit["statistics"];
-  const Json& noise = fit["noise"];
+inline void SetStatistics(const Json& own, FitRow& row) {
+  const Json& statistics = own["statistics"];
+  const Json& noise = own["noise"];
   std::tie(row.rms_residual, row.residual_unit) = GetWithUnit(statistics, "rms_residual_");
   row.sigma = GetWithUnit(noise, "sigma_").first;
   row.noise_model = Get<std::string>(noise, "model");
@@ -124,21 +126,24 @@ inline void SetStatistics(const Json& fit, FitRow& row) {
   row.durbin_watson = Get<double>(statistics, "durbin_watson");
   row.ljung_box_p = Get<double>(statistics, "ljung_box_p");
   row.runs_p = Get<double>(statistics, "runs_p");
-  row.iterations = Get<std::int64_t>(fit["solver"], "iterations");
-  row.evaluations = Get<std::int64_t>(fit["solver"], "evaluations");
 }
 
-inline FitRow Fit(const Json& result, const Json& fit) {
+/// own: the part of the fit for the recording.
+inline FitRow Fit(const Json& recording, const Json& fit, const Json& own) {
   FitRow row;
   row.model = fit["model"].get<std::string>();
   row.status = fit["status"].get<std::string>();
   row.reason = fit["reason"].get<std::string>();
-  row.used_samples = Get<std::int64_t>(result["data"], "used_samples");
+  row.used_samples = Get<std::int64_t>(recording, "used_samples");
   if (const auto summary = fit.find("summary"); summary != fit.end()) {
     row.verdict = Get<std::string>(*summary, "verdict");
   }
-  SetStatistics(fit, row);
-  for (const auto& [name, json] : fit["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
+  SetStatistics(own, row);
+  row.iterations = Get<std::int64_t>(fit["solver"], "iterations");
+  row.evaluations = Get<std::int64_t>(fit["solver"], "evaluations");
+  for (const Json* const part : {&fit, &own}) {
+    for (const auto& [name, json] : (*part)["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
+  }
   for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));
   return row;
 }
@@ -157,7 +162,10 @@ inline std::vector<FitRow> FitRows(const RunOutcome& outcome) {
     }
     return rows;
   }
-  for (const auto& fit : outcome.result["fits"]) rows.push_back(result_rows::Fit(outcome.result, fit));
+  const auto recording = RecordingOf(outcome.result);
+  const auto& fits = outcome.result["fits"];
+  for (std::size_t m = 0; m < fits.size(); ++m)
+    rows.push_back(result_rows::Fit(recording, fits[m], recording["fits"][m]));
   return rows;
 }
 

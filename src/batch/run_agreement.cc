@@ -76,11 +76,10 @@ std::optional<double> HalfInterval(const Json& parameter) {
   return 0.5 * (interval[1].get<double>() - interval[0].get<double>()) / parameter["std_error"].get<double>();
 }
 
-bool IsComparable(const Json& result, const Json& fit, const std::vector<std::string>& names) {
+/// own: the part of the fit for its recording.
+bool IsComparable(const Json& result, const Json& fit, const Json& own, const std::vector<std::string>& names) {
   const auto is_free = [](const Json& parameter) { return !parameter["at_bound"].get<bool>(); };
-  for (const auto& [name, parameter] : fit["parameters"].items()) {
-    if (!is_free(parameter)) return false;
-  }
+  if (!std::ranges::all_of(fit["parameters"], is_free) || !std::ranges::all_of(own["parameters"], is_free)) return false;
   for (const std::string& name : names) {
     if (!fit["parameters"][name]["std_error"].is_number()) return false;
   }
@@ -110,7 +109,8 @@ Member MemberOf(std::string id, const std::string& text, const std::string& mode
   const auto fit = std::ranges::find_if(result["fits"], [&](const Json& one) { return one["model"] == model; });
   if (fit == result["fits"].end() || !fit->contains("covariance")) return member;
   const std::vector<std::string> names = FreeNames(*fit);
-  if (names.empty() || !IsComparable(result, *fit, names)) return member;
+  const Json& own = result["recordings"][0]["fits"][static_cast<std::size_t>(fit - result["fits"].begin())];
+  if (names.empty() || !IsComparable(result, *fit, own, names)) return member;
   const auto covariance = MatrixOf((*fit)["covariance"], names);
   if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
   FitAloneResult alone{

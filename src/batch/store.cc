@@ -54,13 +54,20 @@ StoredRun RunOf(const SQLite::Statement& row) {
   return run;
 }
 
-/// Gives stored results the names of the present schema.
-void RenameInResults(SQLite::Database& database) {
+/// Converts stored results, and the fits of former ones, to the present schema of the result JSON.
+void ConvertResults(SQLite::Database& database) {
   SQLite::Statement results(database, "SELECT run, result FROM runs WHERE result IS NOT NULL");
-  SQLite::Statement rename(database, "UPDATE runs SET result = ? WHERE run = ?");
+  SQLite::Statement set(database, "UPDATE runs SET result = ? WHERE run = ?");
   while (results.executeStep()) {
-    sqlite::Bind(rename, WithCurrentNames(sqlite::Text(results, 1)), results.getColumn(0).getInt64()).exec();
-    rename.reset();
+    sqlite::Bind(set, ToCurrentResult(sqlite::Text(results, 1)), results.getColumn(0).getInt64()).exec();
+    set.reset();
+  }
+  SQLite::Statement fits(database, "SELECT run, model, json FROM fits WHERE json IS NOT NULL");
+  SQLite::Statement set_fit(database, "UPDATE fits SET json = ? WHERE run = ? AND model = ?");
+  while (fits.executeStep()) {
+    sqlite::Bind(set_fit, ToCurrentFit(sqlite::Text(fits, 2)), fits.getColumn(0).getInt64(), sqlite::Text(fits, 1))
+        .exec();
+    set_fit.reset();
   }
 }
 
@@ -76,7 +83,7 @@ SELECT run, model, name, std_error, systematic_std_error FROM quantities
   SQLite::Statement sources(database, "UPDATE runs SET sources = ? WHERE run = ?");
   while (results.executeStep()) {
     const Json result = Json::parse(sqlite::Text(results, 1), nullptr, false);
-    if (!result.is_object() || !result.contains("data")) continue;
+    if (RecordingOf(result).is_null()) continue;
     sqlite::Bind(sources, result_rows::SourcesOf(result), results.getColumn(0).getInt64()).exec();
   }
   while (both.executeStep()) {
@@ -108,7 +115,7 @@ void Migrate(SQLite::Database& database) {
   for (std::size_t step = version; step < kStoreMigrations.size(); ++step) {
     database.exec(std::string(kStoreMigrations.at(step)));
   }
-  if (version > 0 && version <= kLastFormerResults) RenameInResults(database);
+  if (version > 0 && version <= kLastFormerResults) ConvertResults(database);
   if (version > 0 && version < kFirstWithTotalErrors) FillNewColumns(database);
   UpdateResultsView(database);
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId));
@@ -237,7 +244,7 @@ std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, 
       Prepared(result_of, "SELECT data_sha256, result, exit_code FROM runs WHERE run = ? AND result IS NOT NULL");
   std::string why;
   if (sqlite::Bind(before, run).executeStep()) {
-    const NewerOutcome newer{!outcome.result.is_null(), DataOf(outcome.result), outcome.reason, outcome.exit_code,
+    const NewerOutcome newer{!outcome.result.is_null(), RecordingOf(outcome.result), outcome.reason, outcome.exit_code,
                              sqlite::Text(before, 0) == outcome.provenance.data_sha256};
     why = WhyKept(sqlite::Text(before, 1), before.getColumn(2).getInt(), newer, is_gone);
   }

@@ -49,7 +49,10 @@ UPDATE runs SET (id, position, path, rig, calibration, from_s, to_s, models, col
 /// Marks the fits of a run whose models, a JSON array, are not among those of its next result.
 inline constexpr const char* kKeepFits = R"sql(
 UPDATE fits SET stale = 'the last refit did not ask for this model',
-    json = (SELECT fit.value FROM runs, json_each(iif(json_valid(result), result, '{}'), '$.fits') AS fit
+    json = (SELECT json_set(fit.value, '$.recordings', json((SELECT json_group_array(json(part.value))
+                FROM json_each(result, '$.recordings') AS recording, json_each(recording.value, '$.fits') AS part
+                WHERE json_extract(part.value, '$.model') = fits.model)))
+              FROM runs, json_each(iif(json_valid(result), result, '{}'), '$.fits') AS fit
               WHERE runs.run = fits.run AND json_extract(fit.value, '$.model') = fits.model)
   WHERE run = ?1 AND stale IS NULL AND status <> 'failed' AND model NOT IN (SELECT value FROM json_each(?2)))sql";
 

@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended, and tests/batch/golden_stores.py adds a store with it.
 /// The view `results` is replaced after them (ResultsView). SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 6> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 7> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -110,12 +110,15 @@ ALTER TABLE runs ADD COLUMN attempt TEXT;  -- hash of what that attempt was made
 ALTER TABLE fits ADD COLUMN stale TEXT;  -- why the result of the run does not have this fit; NULL: it has
 ALTER TABLE fits ADD COLUMN json TEXT;   -- the fit as the former result had it; NULL where stale is
 CREATE INDEX unlisted_by_data ON runs(data_sha256) WHERE position < 0;
+)sql",
+                                                                     R"sql(
+-- the results are converted to schema version 3 of the result JSON
 )sql"};
 
 /// The first version whose quantities have total_std_error, and runs have sources.
 inline constexpr int kFirstWithTotalErrors = 4;
 
-/// The last version that stored results in schema version 1 of the result JSON.
-inline constexpr int kLastFormerResults = 2;
+/// The last version that stored results in an earlier schema of the result JSON.
+inline constexpr int kLastFormerResults = 6;
 
 }  // namespace pendulum

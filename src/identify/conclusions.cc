@@ -14,14 +14,14 @@
 namespace pendulum {
 namespace {
 
-void AddClosedForms(const MotionModel& model, const std::stop_token& stop, Identification& identification) {
-  auto forms = EstimateClosedForms(identification.used, model, stop);
+void AddClosedForms(const MotionModel& model, const std::stop_token& stop, IdentifiedRecording& recording) {
+  auto forms = EstimateClosedForms(recording.used, model, stop);
   if (!forms) {
-    identification.no_closed_forms = forms.error().message;
+    recording.no_closed_forms = forms.error().message;
     return;
   }
-  identification.closed_forms = *std::move(forms);
-  identification.closed_forms_model = model.name;
+  recording.closed_forms = *std::move(forms);
+  recording.closed_forms_model = model.name;
 }
 
 /// Only if nothing else says that the law does not describe the readings. Closed forms of readings that were corrected
@@ -37,62 +37,64 @@ void WarnOfUnexplained(const ClosedFormCheck& check, FitReport& fit) {
 }
 
 /// A fit that failed or is not to be checked has an empty check.
-void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
+void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop, std::size_t k,
                Identification& identification) {
-  if (!identification.closed_forms) return;
+  IdentifiedRecording& recording = identification.recordings[k];
+  if (!recording.closed_forms) return;
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
-    FitReport& fit = identification.fits[m];
-    identification.checks.emplace_back();
+    FitReport& fit = identification.FitOf(k, m);
+    recording.checks.emplace_back();
     if (fit.termination == Termination::kFailed || !is_checked(m)) continue;
-    const bool same = fit.model.name == identification.closed_forms_model;
-    const auto own = same ? Result<ClosedForms>(*identification.closed_forms)
-                          : EstimateClosedForms(identification.used, fit.model, stop);
+    const bool same = fit.model.name == recording.closed_forms_model;
+    const auto own = same ? Result<ClosedForms>(*recording.closed_forms)
+                          : EstimateClosedForms(recording.used, fit.model, stop);
     if (!own) continue;
-    identification.checks.back() = CheckClosedForms(identification.used, *own, fit, identification.si_rig(), stop);
-    WarnOfUnexplained(identification.checks.back(), fit);
+    recording.checks.back() = CheckClosedForms(recording.used, *own, fit, identification.si_rig(), stop);
+    WarnOfUnexplained(recording.checks.back(), fit);
   }
 }
 
 /// The rig's geometry predicts the frequency only roughly, but an error of a factor of two means a wrong unit.
-void WarnOfFrequency(const Sampling& sampling, Identification& identification) {
+void WarnOfFrequency(const Sampling& sampling, IdentifiedRecording& recording) {
   constexpr double kMaxRatio = 2;
   const double seen = sampling.frequency_hz, expected = sampling.expected_frequency_hz.value_or(seen);
   if (!(seen > 0) || (seen < kMaxRatio * expected && expected < kMaxRatio * seen)) return;
-  identification.warnings.push_back({.code = "frequency_differs_from_rig",
-                                     .finding = "the pendulum swings at " + NumberText(seen, 3) +
-                                                " Hz, but the rig predicts " + NumberText(expected, 3) + " Hz",
-                                     .advice = "check the unit of time and the units in the rig file (SI)"});
+  recording.warnings.push_back({.code = "frequency_differs_from_rig",
+                                .finding = "the pendulum swings at " + NumberText(seen, 3) +
+                                           " Hz, but the rig predicts " + NumberText(expected, 3) + " Hz",
+                                .advice = "check the unit of time and the units in the rig file (SI)"});
 }
 
 /// An undersampled swing shows no turning points; its fit has warned already.
-void AddSampling(const FreeSwing& swing, Identification& identification) {
-  const double clock_scale = identification.used.clock_scale;
+void AddSampling(const FreeSwing& swing, std::size_t k, Identification& identification) {
+  IdentifiedRecording& recording = identification.recordings[k];
+  const double clock_scale = recording.used.clock_scale;
   double half_period = swing.half_period;
-  if (!(half_period > 0) && identification.closed_forms)
-    half_period = identification.closed_forms->table.half_period / clock_scale;
+  if (!(half_period > 0) && recording.closed_forms)
+    half_period = recording.closed_forms->table.half_period / clock_scale;
   const bool is_seen = half_period > 0 && !(swing.undersampled && identification.si_rig());
   const std::optional<double> seen = is_seen ? std::optional(half_period) : std::nullopt;
   std::optional<double> expected = ExpectedFrequency(identification.rig);
   if (expected) *expected *= clock_scale;
   const bool is_fitted = swing.undersampled && !identification.fits.empty() &&
-                         ExitCode(identification.fits[identification.MainFit()].termination) == 0;
+                         identification.FitOf(k, identification.MainFit()).termination == Termination::kConverged;
   if (expected && is_fitted) expected = 0.5 / swing.half_period;
-  identification.sampling = DescribeSampling(identification.used, seen, expected);
-  WarnOfFrequency(*identification.sampling, identification);
-  if (swing.undersampled || identification.used.edge) return;  // an event-driven recording has no sampling rate
-  std::ranges::move(SamplingWarnings(*identification.sampling), std::back_inserter(identification.warnings));
+  recording.sampling = DescribeSampling(recording.used, seen, expected);
+  WarnOfFrequency(*recording.sampling, recording);
+  if (swing.undersampled || recording.used.edge) return;  // an event-driven recording has no sampling rate
+  std::ranges::move(SamplingWarnings(*recording.sampling), std::back_inserter(recording.warnings));
 }
 
 }  // namespace
 
 void AddConclusions(const FreeSwing& swing, const std::optional<MotionModel>& model,
-                    const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop,
+                    const std::function<bool(std::size_t fit)>& is_checked, const std::stop_token& stop, std::size_t k,
                     Identification& identification) {
   if (model) {
-    AddClosedForms(*model, stop, identification);
-    AddChecks(is_checked, stop, identification);
+    AddClosedForms(*model, stop, identification.recordings[k]);
+    AddChecks(is_checked, stop, k, identification);
   }
-  AddSampling(swing, identification);
+  AddSampling(swing, k, identification);
 }
 
 }  // namespace pendulum

@@ -27,25 +27,36 @@ bool IsWarningOfAll(const std::vector<FitReport>& fits, const Warning& warning) 
   return std::ranges::all_of(fits, [&](const FitReport& fit) { return ContainsWarning(fit.warnings, warning); });
 }
 
-/// The warnings of a joint fit's recordings, as `of_run` lists them. Each names its recording, or says that it applies
-/// to all.
-template <typename OfRun>
-std::vector<Warning> WarningsOfRuns(const Identification& identification, const OfRun& of_run) {
-  std::vector<std::vector<Warning>> runs;
-  for (const Identification& run : identification.runs) runs.push_back(of_run(run));
+/// The warnings of several recordings; of_recording(k) lists those of one. Each names its recording, or says that it
+/// applies to all.
+template <typename OfRecording>
+std::vector<Warning> WarningsOfRecordings(const Identification& identification, const OfRecording& of_recording) {
+  std::vector<std::vector<Warning>> recordings;
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) recordings.push_back(of_recording(k));
   std::vector<Warning> all;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    for (Warning warning : runs[k]) {
-      const bool of_each = std::ranges::all_of(runs, [&](const auto& run) { return ContainsWarning(run, warning); });
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    for (Warning warning : recordings[k]) {
+      const bool of_each = std::ranges::all_of(recordings, [&](const auto& of) { return ContainsWarning(of, warning); });
       warning.about.recording = of_each ? WarningSubject::kEachRecording : static_cast<int>(k) + 1;
       if (!of_each) warning.about.recording_name = RecordingLabel(identification, k);
       if (!warning.assumed.empty() &&
-          !std::ranges::all_of(runs, [&](const auto& run) { return Assumes(run, warning); }))
+          !std::ranges::all_of(recordings, [&](const auto& of) { return Assumes(of, warning); }))
         warning.assumed = RecordingLabel(identification, k) + ": " + warning.assumed;
       AddOnce({warning}, all);
     }
   }
   return all;
+}
+
+/// Adds the warnings of the fits. A warning that is not one of all fits names its law.
+void AddNamed(const std::vector<FitReport>& fits, std::vector<Warning>& all) {
+  for (const FitReport& fit : fits) {
+    std::vector<Warning> named = fit.warnings;
+    for (Warning& warning : named) {
+      if (!IsWarningOfAll(fits, warning)) warning.about.law = fit.model.name;
+    }
+    AddOnce(named, all);
+  }
 }
 
 }  // namespace
@@ -71,11 +82,8 @@ const std::optional<Rig>& Identification::si_rig() const {
   return rig && rig->gives_torque ? rig : none;
 }
 
-std::vector<const Identification*> Identification::Parts() const {
-  if (!is_joint()) return {this};
-  std::vector<const Identification*> parts;
-  for (const Identification& run : runs) parts.push_back(&run);
-  return parts;
+bool Identification::SharesMotion(std::size_t m) const {
+  return spans[m].shared.size() == PhysicalParameters(fits[m].model).size();
 }
 
 std::size_t Identification::MainFit() const {
@@ -90,37 +98,45 @@ std::size_t Identification::MainFit() const {
 std::vector<Warning> AllWarnings(const Identification& identification) {
   std::vector<Warning> all;
   AddOnce(identification.warnings, all);
-  for (const FitReport& fit : identification.fits) {
-    std::vector<Warning> named = fit.warnings;
-    for (Warning& warning : named) {
-      if (!IsWarningOfAll(identification.fits, warning)) warning.about.law = fit.model.name;
-    }
-    AddOnce(named, all);
-  }
-  AddOnce(WarningsOfRuns(identification, AllWarnings), all);
+  if (!identification.is_joint()) AddOnce(identification.recordings.front().warnings, all);
+  AddNamed(identification.fits, all);
+  if (!identification.is_joint()) return all;
+  const auto of_recording = [&](std::size_t k) {
+    std::vector<Warning> own = identification.recordings[k].warnings;
+    AddNamed(identification.recordings[k].fits, own);
+    return own;
+  };
+  AddOnce(WarningsOfRecordings(identification, of_recording), all);
   return all;
 }
 
 std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit) {
   std::vector<Warning> all;
   AddOnce(identification.warnings, all);
+  if (!identification.is_joint()) AddOnce(identification.recordings.front().warnings, all);
   AddOnce(identification.fits[fit].warnings, all);
-  AddOnce(WarningsOfRuns(identification, [&](const Identification& run) { return WarningsOfFit(run, fit); }), all);
+  if (!identification.is_joint()) return all;
+  const auto of_recording = [&](std::size_t k) {
+    std::vector<Warning> own = identification.recordings[k].warnings;
+    AddOnce(identification.FitOf(k, fit).warnings, own);
+    return own;
+  };
+  AddOnce(WarningsOfRecordings(identification, of_recording), all);
   return all;
 }
 
-bool IsOneOfSeveral(const Identification& identification, std::size_t run) {
-  const DataSummary& data = identification.runs[run].data;
-  const auto is_match = [&](const Identification& other) { return other.data.path == data.path; };
-  return data.release > 0 && std::ranges::count_if(identification.runs, is_match) > 1;
+bool IsOneOfSeveral(const Identification& identification, std::size_t k) {
+  const DataSummary& data = identification.recordings[k].data;
+  const auto is_match = [&](const IdentifiedRecording& other) { return other.data.path == data.path; };
+  return data.release > 0 && std::ranges::count_if(identification.recordings, is_match) > 1;
 }
 
-std::string RecordingLabel(const Identification& identification, std::size_t run) {
-  const DataSummary& data = identification.runs[run].data;
-  std::string label = "recording " + std::to_string(run + 1);
+std::string RecordingLabel(const Identification& identification, std::size_t k) {
+  const DataSummary& data = identification.recordings[k].data;
+  std::string label = "recording " + std::to_string(k + 1);
   if (data.path.empty()) return label;
   return label + " (" + data.path +
-         (IsOneOfSeveral(identification, run) ? ", free swing " + std::to_string(data.release) : "") + ")";
+         (IsOneOfSeveral(identification, k) ? ", free swing " + std::to_string(data.release) : "") + ")";
 }
 
 int ExitCode(const Identification& identification) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "identify/conclusions.h"
+#include "pendulum/analysis/amplitude_dependence.h"
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/inconstancy.h"
@@ -38,12 +39,13 @@
 namespace pendulum {
 namespace {
 
-/// A chosen swing as input of the pipeline TakeSwing -> FitAlone -> (FitTogether) -> CompleteIdentification.
+/// A chosen swing as input of the pipeline TakeSwing -> FitEachAlone -> (FitTogether) -> CompleteRecording.
 struct Swing {
   std::string path;
   Recording recording;
   FreeSwing found;
-  Identification known;
+  std::optional<Rig> rig;
+  IdentifiedRecording known;
   int release = 0;  ///< Number of the swing if several swings of its recording were chosen, otherwise 0.
 };
 
@@ -54,6 +56,7 @@ Swing TakeSwing(PreparedRecording& from, int release) {
   Swing swing;
   swing.path = from.recording.path;
   swing.found = from.swings.found[static_cast<std::size_t>(release - 1)];
+  swing.rig = from.rig;
   swing.known = from.known;
   swing.release = from.swings.chosen.size() > 1 ? release : 0;
   swing.known.data.samples = from.samples;
@@ -102,13 +105,13 @@ Constancy TestFit(const IdentifyOptions& options, const FitOptions& fit_options,
 
 /// The model whose closed forms are computed without a fit. For readings in an unknown unit it is the linear model,
 /// because only small-angle formulas apply.
-MotionModel ClosedFormModel(const IdentifyOptions& options, Identification& identification) {
+MotionModel ClosedFormModel(const IdentifyOptions& options, IdentifiedRecording& recording) {
   const MotionModel asked = *FindMotionModel(options.fit.model);
   const MotionModel linear = *FindMotionModel("linear");
-  if (identification.used.is_calibrated() || asked.gravity.is_linear()) return asked;
-  identification.warnings.push_back(
+  if (recording.used.is_calibrated() || asked.gravity.is_linear()) return asked;
+  recording.warnings.push_back(
       {.code = "uncalibrated",
-       .finding = "the readings are in " + identification.used.unit + ", not in a unit of angle",
+       .finding = "the readings are in " + recording.used.unit + ", not in a unit of angle",
        .explanation = "the closed forms are those of model linear, which assumes small angles"});
   return linear;
 }
@@ -136,20 +139,19 @@ bool FitsBetterInRadians(const Recording& used, const FitReport& fit, const FitO
 
 /// Readings in rad under the name of degrees are 57 times too small. Below 0.6 deg the size tells; the period of so
 /// small a swing says nothing of its amplitude. Above, a fit of the readings as radians tells. half_period: of the
-/// swing [s].
-void QuestionUnit(const Recording& used, double half_period, bool is_spring, const FitOptions& options,
-                  Identification& identification) {
+/// swing [s]. fit: its main fit, or nullptr.
+void QuestionUnit(const Recording& used, double half_period, const FitReport* fit, const FitOptions& options,
+                  IdentifiedRecording& recording) {
   constexpr double kOddlySmall = 0.6 * kRadFromDeg, kMayBeRadians = 3.4 * kRadFromDeg;
   const bool is_rate = used.unit == "deg/s";
+  const bool is_spring = fit != nullptr && fit->model.gravity.is_linear();
   if (is_spring || (used.unit != "deg" && !is_rate)) return;
   const double range = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
   const double amplitude = is_rate ? range * half_period / kPi : range;
   if (amplitude > kMayBeRadians) return;
-  const bool is_odd = amplitude <= kOddlySmall ||
-                      (!identification.fits.empty() && FitsBetterInRadians(used, identification.fits.front(), options));
-  if (!is_odd) return;
+  if (amplitude > kOddlySmall && (fit == nullptr || !FitsBetterInRadians(used, *fit, options))) return;
   const std::string degrees = NumberText(amplitude / kRadFromDeg, 3), radians = is_rate ? "rad_s" : "rad";
-  identification.warnings.push_back(
+  recording.warnings.push_back(
       {.code = "unit_questioned",
        .finding = "the pendulum swings by only " + degrees + " deg",
        .advice = std::string("if the readings are in ") + (is_rate ? "rad/s" : "rad") + " (" +
@@ -160,25 +162,28 @@ void QuestionUnit(const Recording& used, double half_period, bool is_spring, con
                   " deg (--unit " + radians + ")"});
 }
 
-/// Adds the samples, the fits' constancy and the conclusions to the identification of a swing. Closed forms have the
-/// friction of the model of fit `main`.
-void CompleteIdentification(const IdentifyOptions& options, RunModels run, std::size_t main,
-                            Identification& identification) {
-  SummarizeUsed(run.alone.used, run.alone.swing, identification.data);
-  identification.used = std::move(run.alone.used);
-  identification.constancy = std::move(run.constancy);
+/// Adds the samples, the fits' constancy and the conclusions to recording k. Closed forms have the friction of the
+/// model of the main fit.
+void CompleteRecording(const IdentifyOptions& options, RunModels run, std::size_t k, Identification& identification) {
+  const std::size_t main = identification.MainFit();
+  IdentifiedRecording& recording = identification.recordings[k];
+  const FitReport* const fit = identification.fits.empty() ? nullptr : &identification.FitOf(k, main);
+  QuestionUnit(run.alone.used, run.alone.swing.half_period, fit, options.fit, recording);
+  SummarizeUsed(run.alone.used, run.alone.swing, recording.data);
+  recording.used = std::move(run.alone.used);
+  recording.constancy = std::move(run.constancy);
   std::optional<MotionModel> model;
   if (run.alone.swing.undersampled) {
-    identification.no_closed_forms =
+    recording.no_closed_forms =
         "the samples are too far apart to show turning points: the swing that they show may be the alias of a faster "
         "one";
-  } else if (options.checks == Checks::kNone && !identification.fits.empty()) {
-    identification.no_closed_forms = "not computed (--checks none)";
+  } else if (options.checks == Checks::kNone && fit != nullptr) {
+    recording.no_closed_forms = "not computed (--checks none)";
   } else {
-    model = identification.fits.empty() ? ClosedFormModel(options, identification) : identification.fits[main].model;
+    model = fit == nullptr ? ClosedFormModel(options, recording) : fit->model;
   }
   const auto is_checked = [&](std::size_t m) { return IsChecked(options.checks, m, main); };
-  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, identification);
+  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, k, identification);
 }
 
 // ---- The rig --------------------------------------------------------------------------------------------------------
@@ -248,39 +253,7 @@ Result<void> ApplyRig(bool is_undersampled, Identification& identification) {
   return {};
 }
 
-Result<Identification> IdentifyOne(const IdentifyOptions& asked, Swing swing) {
-  ASSIGN_OR_RETURN(const auto for_rig, OptionsForRig(asked, swing.known.rig));
-  const IdentifyOptions& options = for_rig;
-  FitOptions fit_options = options.fit;
-  fit_options.rig = swing.known.rig;
-  ASSIGN_OR_RETURN(auto run, FitAlone(options, fit_options, swing));
-  Identification identification = std::move(swing.known);
-  WarnOfSpring(asked, options, identification);
-  if (run.alone.fits.size() > 1) {
-    ReportProgress(options.fit.progress, "comparing the laws");
-    identification.comparison = CompareModels(run.alone, fit_options);
-  }
-  identification.fits = std::move(run.alone.fits);
-  const std::size_t main = identification.MainFit();
-  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
-    const bool is_checked = IsChecked(options.checks, m, main);
-    if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
-    run.constancy.push_back(TestFit(options, fit_options, run.alone.used, identification.fits[m], is_checked));
-    AddInconstancyError(run.constancy.back(), identification.fits[m]);
-    AddFrictionLawError(run.constancy.back(), identification.fits[m]);
-  }
-  RETURN_IF_ERROR(ApplyRig(run.alone.swing.undersampled, identification));
-  const bool is_spring = !identification.fits.empty() && identification.fits[main].model.gravity.is_linear();
-  QuestionUnit(run.alone.used, run.alone.swing.half_period, is_spring, options.fit, identification);
-  CompleteIdentification(options, std::move(run), main, identification);
-  if (options.fit.stop.stop_requested()) return FitStopped();
-  if (options.closed_form_only && !identification.closed_forms) {
-    return Error(StatusCode::kFailedPrecondition, identification.no_closed_forms);
-  }
-  return identification;
-}
-
-// ---- Several recordings of one pendulum -----------------------------------------------------------------------------
+// ---- The fits -------------------------------------------------------------------------------------------------------
 
 Result<std::vector<Swing>> TakeAllSwings(std::vector<PreparedRecording> recordings) {
   std::vector<Swing> swings;
@@ -326,10 +299,10 @@ Result<void> CheckResolution(const IdentifyOptions& options, const std::vector<S
 Result<std::optional<Rig>> CommonRig(const std::vector<Swing>& swings) {
   const Swing* known = nullptr;
   for (const Swing& swing : swings) {
-    if (!swing.known.rig) continue;
+    if (!swing.rig) continue;
     if (known == nullptr) known = &swing;
-    const Rig& rig = *swing.known.rig;
-    const Rig& first = *known->known.rig;
+    const Rig& rig = *swing.rig;
+    const Rig& first = *known->rig;
     const bool is_same = rig.gives_torque ? rig.gravity_torque.value == first.gravity_torque.value &&
                                                 rig.gravity_torque.std_dev == first.gravity_torque.std_dev
                                           : rig.source == first.source;
@@ -339,25 +312,32 @@ Result<std::optional<Rig>> CommonRig(const std::vector<Swing>& swings) {
                      " describe different rigs (# rig), but recordings that are fitted together must have one rig; "
                      "give it with --rig, or fit the recordings separately with --shared none");
   }
-  return known == nullptr ? std::nullopt : known->known.rig;
+  return known == nullptr ? std::nullopt : known->rig;
 }
 
 /// The names of the recordings in sentences.
 std::vector<std::string> LabelsOf(const std::vector<Swing>& swings) {
   Identification all;
   for (const Swing& swing : swings) {
-    all.runs.emplace_back();
-    all.runs.back().data.path = swing.path;
-    all.runs.back().data.release = swing.release;
+    all.recordings.emplace_back();
+    all.recordings.back().data.path = swing.path;
+    all.recordings.back().data.release = swing.release;
   }
   std::vector<std::string> labels;
   for (std::size_t k = 0; k < swings.size(); ++k) labels.push_back(RecordingLabel(all, k));
   return labels;
 }
 
-/// Fits each swing alone, several at a time.
+/// Fits each swing alone. Several swings are fitted at the same time, as recorded; whether they agree is judged with
+/// the constancy of each fit.
 Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, const FitOptions& fit_options,
                                             std::vector<Swing>& swings) {
+  if (swings.size() == 1) {
+    ASSIGN_OR_RETURN(auto only, FitAlone(options, fit_options, swings.front()));
+    std::vector<RunModels> runs;
+    runs.push_back(std::move(only));
+    return runs;
+  }
   const std::vector<std::string> labels = LabelsOf(swings);
   std::vector<Result<RunModels>> fitted(swings.size());
   FitOptions each = fit_options;
@@ -372,7 +352,6 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
     fitted[k] = FitAlone(options, each, swings[k]);
     if (!fitted[k]) return;
     fitted[k]->label = labels[k];
-    // Whether recordings agree is judged with the constancy of each.
     for (const FitReport& fit : fitted[k]->alone.fits) {
       const bool is_checked = options.checks != Checks::kNone;
       fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->alone.used, fit, is_checked));
@@ -388,49 +367,111 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
   return runs;
 }
 
+/// How a separate fit ended.
+std::string EndingOf(const FitReport& fit) {
+  const std::string status(TerminationName(fit.termination));
+  return fit.termination == Termination::kConverged ? status : status + ": " + fit.reason;
+}
+
+/// Makes the fits to the only recording those of the whole: compares them and tests whether they are constant.
+void UseOnly(const IdentifyOptions& options, const FitOptions& fit_options, RunModels& run, Identification& whole) {
+  if (run.alone.fits.size() > 1) {
+    ReportProgress(options.fit.progress, "comparing the laws");
+    whole.comparison = CompareModels(run.alone, fit_options);
+  }
+  whole.fits = std::move(run.alone.fits);
+  const std::size_t main = whole.MainFit();
+  for (std::size_t m = 0; m < whole.fits.size(); ++m) {
+    FitReport& fit = whole.fits[m];
+    const bool is_checked = IsChecked(options.checks, m, main);
+    if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
+    run.constancy.push_back(TestFit(options, fit_options, run.alone.used, fit, is_checked));
+    AddInconstancyError(run.constancy.back(), fit);
+    AddFrictionLawError(run.constancy.back(), fit);
+    const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
+    FitSpan span{{}, {MeanAmplitude(run.alone.used, fit, own)}, {EndingOf(fit)}, {}, fit.HasWarning("lack_of_fit")};
+    for (const ParameterInfo& parameter : PhysicalParameters(fit.model)) span.shared.emplace_back(parameter.name);
+    whole.spans.push_back(std::move(span));
+  }
+}
+
 /// Adds the warnings of the separate fit about the window, the sampling and other local minima, unless the joint fit
 /// repeats them. kOfTheFit lists warnings that the joint fit gives itself if they apply.
-void AddOwnWarnings(const FitReport& alone, const FitReport& joint, Identification& identification) {
+void AddOwnWarnings(const FitReport& alone, const FitReport& joint, IdentifiedRecording& recording) {
   constexpr std::array<WarningCode, 8> kOfTheFit = {
       "lack_of_fit",         "correlated_residuals", "zero_drift", "noise_below_resolution",
       "trajectory_accuracy", "prior_conflict",       "at_bound",   "uncertain_stop"};
   for (const Warning& warning : alone.warnings) {
     const bool of_the_fit = std::ranges::find(kOfTheFit, warning.code) != kOfTheFit.end();
-    if (!of_the_fit && !joint.HasWarning(warning.code)) identification.warnings.push_back(warning);
+    if (!of_the_fit && !joint.HasWarning(warning.code)) recording.warnings.push_back(warning);
   }
   if (alone.termination == Termination::kConverged) return;
   const std::string ended = "the separate fit of this recording is " + std::string(TerminationName(alone.termination));
   const Warning* const why = alone.ReasonWarning();
-  identification.warnings.push_back({.code = "separate_fit_not_converged",
-                                     .finding = ended + ": " + (why == nullptr ? alone.reason : why->finding),
-                                     .explanation = why == nullptr ? "" : why->explanation,
-                                     .advice = why == nullptr ? "" : why->advice,
-                                     .flags = why == nullptr ? std::vector<std::string>() : why->flags});
+  recording.warnings.push_back({.code = "separate_fit_not_converged",
+                                .finding = ended + ": " + (why == nullptr ? alone.reason : why->finding),
+                                .explanation = why == nullptr ? "" : why->explanation,
+                                .advice = why == nullptr ? "" : why->advice,
+                                .flags = why == nullptr ? std::vector<std::string>() : why->flags});
 }
 
-JointPart PartOf(const JointModels& joint, std::size_t m) {
-  JointPart part{joint.joint[m].shared, joint.homogeneity[m], {}, false};
+FitSpan SpanOf(const JointModels& joint, std::size_t m) {
+  FitSpan span{joint.joint[m].shared, joint.homogeneity[m].amplitudes, {}, joint.homogeneity[m], false};
   for (const RunModels& run : joint.runs) {
     const FitReport& fit = run.alone.fits[m];
-    const std::string status(TerminationName(fit.termination));
-    part.alone.push_back(fit.termination == Termination::kConverged ? status : status + ": " + fit.reason);
-    part.lacks_fit = part.lacks_fit || fit.HasWarning("lack_of_fit");
+    span.separate.push_back(EndingOf(fit));
+    span.lacks_fit = span.lacks_fit || fit.HasWarning("lack_of_fit");
   }
-  return part;
+  return span;
 }
 
-/// The results common to all recordings.
-Identification CombineRecordings(const JointModels& joint, const std::optional<Rig>& rig, const FitOptions& options) {
-  Identification whole;
-  whole.rig = rig;
-  whole.data.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
+/// Fits every law to all recordings together, and compares the laws.
+void UseTogether(const IdentifyOptions& options, const FitOptions& fit_options, std::vector<RunModels>& runs,
+                 Identification& whole) {
+  JointModels joint = FitTogether(std::move(runs), fit_options, options.models, options.shared);
+  if (joint.models.size() > 1) {
+    ReportProgress(fit_options.progress, "comparing the laws");
+    whole.comparison = CompareJointModels(joint, fit_options);
+  }
+  whole.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
   for (std::size_t m = 0; m < joint.models.size(); ++m) {
     whole.fits.push_back(joint.joint[m].whole);
-    whole.joint.push_back(PartOf(joint, m));
+    whole.spans.push_back(SpanOf(joint, m));
   }
-  if (joint.models.size() > 1) {
-    ReportProgress(options.progress, "comparing the laws");
-    whole.comparison = CompareJointModels(joint, options);
+  const std::size_t main = whole.MainFit();
+  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
+    IdentifiedRecording& recording = whole.recordings[k];
+    for (JointFit& fit : joint.joint) recording.fits.push_back(std::move(fit.runs[k]));
+    AddOwnWarnings(joint.runs[k].alone.fits[main], recording.fits[main], recording);
+  }
+  runs = std::move(joint.runs);
+}
+
+Result<Identification> Identify(const IdentifyOptions& asked, std::vector<Swing> swings) {
+  const bool is_joint = swings.size() > 1;
+  ASSIGN_OR_RETURN(const auto rig, CommonRig(swings));
+  ASSIGN_OR_RETURN(auto options, OptionsForRig(asked, rig));
+  if (is_joint) options.fit.may_be_spring = false;  // all recordings have the same models
+  FitOptions fit_options = options.fit;
+  fit_options.rig = rig;
+  ASSIGN_OR_RETURN(auto runs, FitEachAlone(options, fit_options, swings));
+  Identification whole;
+  whole.rig = rig;
+  whole.unit = runs.front().alone.used.value_unit();
+  for (Swing& swing : swings) whole.recordings.push_back(std::move(swing.known));
+  WarnOfSpring(asked, options, whole);
+  if (is_joint) {
+    UseTogether(options, fit_options, runs, whole);
+  } else {
+    UseOnly(options, fit_options, runs.front(), whole);
+  }
+  const bool is_undersampled =
+      std::ranges::any_of(runs, [](const RunModels& run) { return run.alone.swing.undersampled; });
+  RETURN_IF_ERROR(ApplyRig(is_undersampled, whole));
+  for (std::size_t k = 0; k < runs.size(); ++k) CompleteRecording(options, std::move(runs[k]), k, whole);
+  if (options.fit.stop.stop_requested()) return FitStopped();
+  if (options.closed_form_only && !whole.recordings.front().closed_forms) {
+    return Error(StatusCode::kFailedPrecondition, whole.recordings.front().no_closed_forms);
   }
   return whole;
 }
@@ -438,10 +479,10 @@ Identification CombineRecordings(const JointModels& joint, const std::optional<R
 }  // namespace
 
 Result<void> CheckBeforeFit(const IdentifyOptions& options, const PreparedRecording& recording) {
-  ASSIGN_OR_RETURN(const auto for_rig, OptionsForRig(options, recording.known.rig));
+  ASSIGN_OR_RETURN(const auto for_rig, OptionsForRig(options, recording.rig));
   if (options.closed_form_only) return {};
   FitOptions fit_options = for_rig.fit;
-  fit_options.rig = recording.known.rig;
+  fit_options.rig = recording.rig;
   const auto first = static_cast<std::size_t>(recording.swings.chosen.front()) - 1;
   return CheckModels(recording.recording, recording.swings.found[first], fit_options, for_rig.models);
 }
@@ -451,7 +492,9 @@ std::vector<Result<Identification>> IdentifyEach(const IdentifyOptions& options,
   const std::vector<int> chosen = recording.swings.chosen;
   const std::string path = recording.recording.path;
   for (const int release : chosen) {
-    auto identification = IdentifyOne(options, TakeSwing(recording, release));
+    std::vector<Swing> only;
+    only.push_back(TakeSwing(recording, release));
+    auto identification = Identify(options, std::move(only));
     // A stop may have caused another error.
     if (!identification && options.fit.stop.stop_requested()) identification = FitStopped();
     if (!identification && chosen.size() > 1) identification = ErrorOfRun(identification.error(), path, release);
@@ -468,32 +511,7 @@ Result<Identification> IdentifyJointly(const IdentifyOptions& asked, std::vector
   ASSIGN_OR_RETURN(auto swings, TakeAllSwings(std::move(recordings)));
   RETURN_IF_ERROR(CheckDifferent(swings));
   RETURN_IF_ERROR(CheckResolution(asked, swings));
-  ASSIGN_OR_RETURN(const auto rig, CommonRig(swings));
-  ASSIGN_OR_RETURN(auto for_rig, OptionsForRig(asked, rig));
-  for_rig.fit.may_be_spring = false;  // all recordings have the same models
-  const IdentifyOptions& options = for_rig;
-  FitOptions fit_options = options.fit;
-  fit_options.rig = rig;
-  ASSIGN_OR_RETURN(auto alone, FitEachAlone(options, fit_options, swings));
-  JointModels joint = FitTogether(std::move(alone), fit_options, options.models, options.shared);
-  Identification whole = CombineRecordings(joint, rig, fit_options);
-  WarnOfSpring(asked, options, whole);
-  const bool is_undersampled =
-      std::ranges::any_of(joint.runs, [](const RunModels& run) { return run.alone.swing.undersampled; });
-  RETURN_IF_ERROR(ApplyRig(is_undersampled, whole));
-  const std::size_t main = whole.MainFit();
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    Identification identification = std::move(swings[k].known);
-    identification.rig = rig;
-    for (std::size_t m = 0; m < joint.models.size(); ++m) identification.fits.push_back(joint.FitOf(k, m));
-    AddOwnWarnings(joint.runs[k].alone.fits[main], identification.fits[main], identification);
-    QuestionUnit(joint.runs[k].alone.used, joint.runs[k].alone.swing.half_period,
-                 identification.fits[main].model.gravity.is_linear(), options.fit, identification);
-    CompleteIdentification(options, std::move(joint.runs[k]), main, identification);
-    whole.runs.push_back(std::move(identification));
-  }
-  if (options.fit.stop.stop_requested()) return FitStopped();
-  return whole;
+  return Identify(asked, std::move(swings));
 }
 
 Result<ReadRun> ReadBytesOfRun(IdentifyOptions& options, const RunFiles& files) {

@@ -40,11 +40,10 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
   prepared.samples = std::max(prepared.samples, prepared.recording.size());
   ASSIGN_OR_RETURN(auto swings, ChooseSwings(prepared.recording, options.swing, rig));
   prepared.swings = std::move(swings);
-  prepared.known.rig = std::move(rig);
+  prepared.rig = std::move(rig);
   prepared.known.warnings = std::exchange(prepared.recording.warnings, {});
   std::ranges::move(std::exchange(prepared.swings.warnings, {}), std::back_inserter(prepared.known.warnings));
-  if (prepared.known.rig)
-    std::ranges::move(QuestionRig(*prepared.known.rig), std::back_inserter(prepared.known.warnings));
+  if (prepared.rig) std::ranges::move(QuestionRig(*prepared.rig), std::back_inserter(prepared.known.warnings));
   std::ranges::move(notes, std::back_inserter(prepared.known.warnings));
   if (!prepared.recording.calibration) return prepared;
   prepared.known.calibration = prepared.recording.calibration->source;

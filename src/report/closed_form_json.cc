@@ -31,10 +31,9 @@ Json LinearJson(const LogDecrement& linear, Gravity gravity, const std::optional
   return json;
 }
 
-Json DecrementJson(const TurningPointFit& decrement, const Identification& identification) {
+Json DecrementJson(const TurningPointFit& decrement, const std::string& unit, const std::optional<Rig>& rig) {
   return NumberObject()
-      .Set("parameters",
-           EstimatesJson(DecrementEstimates(decrement, identification.data.unit, identification.si_rig())))
+      .Set("parameters", EstimatesJson(DecrementEstimates(decrement, unit, rig)))
       .Set("chi_square", decrement.chi_square)
       .Set("dof", Json(decrement.freedom))
       .Set("p", decrement.Probability())
@@ -104,19 +103,20 @@ nlohmann::ordered_json CheckJson(const ClosedFormCheck* check) {
   return rows;
 }
 
-nlohmann::ordered_json ClosedFormsJson(const Identification& identification) {
-  if (!identification.closed_forms) return nullptr;
-  const ClosedForms& forms = *identification.closed_forms;
+nlohmann::ordered_json ClosedFormsJson(const IdentifiedRecording& recording, const std::optional<Rig>& si_rig) {
+  if (!recording.closed_forms) return nullptr;
+  const ClosedForms& forms = *recording.closed_forms;
+  const std::string& unit = recording.data.unit;
   NumberObject json;
-  json.Set("model", Json(identification.closed_forms_model));
-  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, identification.si_rig()) : Json(nullptr));
+  json.Set("model", Json(recording.closed_forms_model));
+  json.Set("linear", forms.linear ? LinearJson(*forms.linear, forms.gravity, si_rig) : Json(nullptr));
   if (!forms.linear) json.AddReason("linear: no two successive turning points are a whole period apart");
-  json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, identification) : Json(nullptr));
+  json.Set("decrement", forms.decrement ? DecrementJson(*forms.decrement, unit, si_rig) : Json(nullptr));
   if (!forms.decrement) json.AddReason("decrement: " + forms.no_decrement);
   return json.Set("envelopes", EnvelopesJson(forms.envelopes))
       .Set("envelope", TextOrNull(forms.envelope))
       .Set("turning_points", Json(forms.table.points.size()))
-      .Set(KeyWithUnit("noise", identification.data.unit), forms.table.noise)
+      .Set(KeyWithUnit("noise", unit), forms.table.noise)
       .Done();
 }
 

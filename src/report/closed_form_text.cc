@@ -94,19 +94,18 @@ void WarnOfNegativeFriction(const TurningPointFit& decrement, Section& section) 
   }
 }
 
-void AddDecrement(const Identification& identification, Section& section) {
-  const ClosedForms& forms = *identification.closed_forms;
+void AddDecrement(const IdentifiedRecording& recording, const std::optional<Rig>& rig, Section& section) {
+  const ClosedForms& forms = *recording.closed_forms;
   if (!forms.decrement) {
     section.AddText("No law was fitted to the turning points: " + forms.no_decrement + ".");
     return;
   }
   const TurningPointFit& decrement = *forms.decrement;
-  std::vector<ReportedEstimate> estimates =
-      DecrementEstimates(decrement, identification.data.unit, identification.si_rig());
+  std::vector<ReportedEstimate> estimates = DecrementEstimates(decrement, recording.data.unit, rig);
   if (const auto sticking = StickingAngle(decrement)) estimates.push_back(*sticking);
   section.AddText("Fitted to all " + std::to_string(forms.table.points.size()) + " turning points, " +
                   (forms.gravity.is_linear() ? "small angles" : "exact at any amplitude") +
-                  ", with the friction of model " + identification.closed_forms_model + ": chi-square " +
+                  ", with the friction of model " + recording.closed_forms_model + ": chi-square " +
                   NumberText(decrement.chi_square, 3) + " for " + std::to_string(decrement.freedom) +
                   " degrees of freedom, p " + ProbabilityText(decrement.Probability()) + ".");
   section.Add(EstimateTable(estimates, true));
@@ -186,11 +185,10 @@ Cells TurningPointCells(const ClosedForms& forms, std::size_t i, double factor) 
   return cells;
 }
 
-Section TurningPointSection(const Identification& identification) {
-  const ClosedForms& forms = *identification.closed_forms;
-  const std::optional<Conversion> degrees = Degrees(identification.data.unit);
-  const Conversion shown = degrees.value_or(Conversion{identification.data.unit});
-  const Listed listed = identification.fits.empty() ? kAlone : kBesideAFit;
+Section TurningPointSection(const IdentifiedRecording& recording, const Listed& listed) {
+  const ClosedForms& forms = *recording.closed_forms;
+  const std::optional<Conversion> degrees = Degrees(recording.data.unit);
+  const Conversion shown = degrees.value_or(Conversion{recording.data.unit});
   const std::size_t count = forms.table.points.size();
   const std::size_t left_out = count - std::min(count, listed.first + listed.last);
   Table table{TurningPointColumns(forms.table, std::string(shown.unit)), {}};
@@ -210,9 +208,9 @@ Section TurningPointSection(const Identification& identification) {
 
 }  // namespace
 
-Sections SamplingSections(const Identification& identification) {
-  if (!identification.sampling) return {};
-  const Sampling& sampling = *identification.sampling;
+Sections SamplingSections(const std::optional<Sampling>& known) {
+  if (!known) return {};
+  const Sampling& sampling = *known;
   Facts facts = {{"rate", NumberText(sampling.rate_hz, kTextDigits) + " Hz, " + JitterText(sampling)},
                  {"gaps", GapsText(sampling)}};
   if (sampling.frequency_hz > 0) facts.push_back({"swing", SwingText(sampling)});
@@ -223,24 +221,24 @@ Sections SamplingSections(const Identification& identification) {
   return {{"Sampling", "", {std::move(facts)}}};
 }
 
-Sections ClosedFormSections(const Identification& identification) {
+Sections ClosedFormSections(const Identification& identification, std::size_t k) {
+  const IdentifiedRecording& recording = identification.recordings[k];
   Section forms{"Closed forms"};
-  if (!identification.closed_forms) {
-    if (identification.no_closed_forms.empty()) return {};
-    return {forms.AddText("There are none: " + identification.no_closed_forms + ".")};
+  if (!recording.closed_forms) {
+    if (recording.no_closed_forms.empty()) return {};
+    return {forms.AddText("There are none: " + recording.no_closed_forms + ".")};
   }
-  AddLinear(*identification.closed_forms, identification.si_rig(), forms);
-  AddDecrement(identification, forms);
-  if (!identification.closed_forms->envelope.empty())
-    forms.Add(Facts{{"envelope", identification.closed_forms->envelope}});
+  AddLinear(*recording.closed_forms, identification.si_rig(), forms);
+  AddDecrement(recording, identification.si_rig(), forms);
+  if (!recording.closed_forms->envelope.empty()) forms.Add(Facts{{"envelope", recording.closed_forms->envelope}});
   Sections sections = {std::move(forms)};
-  for (std::size_t i = 0; i < identification.checks.size(); ++i) {
+  for (std::size_t i = 0; i < recording.checks.size(); ++i) {
     if (!identification.IsShownInFull(i)) continue;
-    const bool several = identification.checks.size() > 1;
+    const bool several = recording.checks.size() > 1;
     sections.push_back(
-        CheckSection(identification.checks[i], several ? " of " + std::string(identification.fits[i].model.name) : ""));
+        CheckSection(recording.checks[i], several ? " of " + std::string(identification.fits[i].model.name) : ""));
   }
-  sections.push_back(TurningPointSection(identification));
+  sections.push_back(TurningPointSection(recording, identification.fits.empty() ? kAlone : kBesideAFit));
   return sections;
 }
 

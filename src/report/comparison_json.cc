@@ -120,7 +120,7 @@ nlohmann::ordered_json ComparisonJson(const Identification& identification) {
   if (!identification.comparison) return nullptr;
   const Comparison& comparison = *identification.comparison;
   const bool has_criterion = comparison.likelihood != Likelihood::kNone;
-  const std::string& unit = identification.data.unit;
+  const std::string& unit = identification.unit;
   return NumberObject()
       .Set("recommended", TextOrNull(comparison.recommended))
       .Set("reason", Json(comparison.reason))

@@ -24,7 +24,7 @@ constexpr const char* kLackOfFit = "lack of fit";
 
 /// Degrees for angles, otherwise the readings' own unit.
 Conversion ShownUnit(const Identification& identification) {
-  return Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
+  return Degrees(identification.unit).value_or(Conversion{identification.unit});
 }
 
 std::string FixedOrDash(const std::optional<double>& value, int decimals) {
@@ -215,8 +215,7 @@ Sections ComparisonSections(const Identification& identification) {
   return sections;
 }
 
-Sections ConstancySections(const Identification& identification, std::size_t fit) {
-  const Constancy* constancy = identification.ConstancyOf(fit);
+Sections ConstancySections(const Constancy* constancy) {
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
   section.AddText(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/report/fit_json.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "pendulum/report/ambiguity_sections.h"
+#include "pendulum/report/closed_form_json.h"
+#include "pendulum/report/comparison_json.h"
+#include "pendulum/report/equation.h"
+#include "pendulum/report/homogeneity_json.h"
 #include "pendulum/report/json_parts.h"
+#include "pendulum/report/result_summary.h"
+#include "pendulum/report/suspicion_sections.h"
 
 namespace pendulum {
 
@@ -41,26 +51,44 @@ Json ParameterJson(const ParameterEstimate& parameter) {
 }
 
 template <typename Element>
-Json MatrixJson(const std::vector<std::string>& names, const Element& element) {
-  Json matrix = Json::array();
-  for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(names.size()); ++row) {
-    Json values = Json::array();
-    for (Eigen::Index column = 0; column < static_cast<Eigen::Index>(names.size()); ++column) {
-      values.push_back(NumberOrNull(element(row, column)));
-    }
-    matrix.push_back(std::move(values));
+Json MatrixJson(const std::vector<std::string>& names, const ShowsParameter& shows, const Element& element) {
+  std::vector<Eigen::Index> shown;
+  Json shown_names = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!shows(names[i])) continue;
+    shown.push_back(static_cast<Eigen::Index>(i));
+    shown_names.push_back(names[i]);
   }
-  return {{"names", names}, {"matrix", std::move(matrix)}};
+  const auto row_of = [&](Eigen::Index row) {
+    return ArrayOf(shown, [&](Eigen::Index column) { return NumberOrNull(element(row, column)); });
+  };
+  return {{"names", std::move(shown_names)}, {"matrix", ArrayOf(shown, row_of)}};
+}
+
+/// Sums over all recordings.
+Json SumJson(const std::string& unit, const FitStatistics& statistics) {
+  NumberObject json;
+  if (unit != "sigma") json.Set(KeyWithUnit("rms_residual", unit), statistics.rms_residual);
+  return json.Set("log_likelihood", statistics.log_likelihood)
+      .Set("aic", statistics.aic)
+      .Set("aicc", statistics.aicc)
+      .Set("bic", statistics.bic)
+      .Set("effective_samples", statistics.effective_samples)
+      .Done();
+}
+
+ShowsParameter Shared(const FitSpan& span) {
+  return [&span](std::string_view name) { return std::ranges::find(span.shared, name) != span.shared.end(); };
 }
 
 }  // namespace
 
 Json ResolutionJson(const DataSummary& data) { return data.resolution > 0 ? Json(data.resolution) : Json(nullptr); }
 
-Json ParametersJson(const FitReport& fit) {
+Json ParametersJson(const FitReport& fit, const ShowsParameter& shows) {
   Json parameters = Json::object();
   for (const ParameterEstimate& parameter : fit.parameters) {
-    parameters[std::string(parameter.info.name)] = ParameterJson(parameter);
+    if (shows(parameter.info.name)) parameters[std::string(parameter.info.name)] = ParameterJson(parameter);
   }
   return parameters;
 }
@@ -82,16 +110,16 @@ Json DerivedJson(const FitReport& fit) {
   return derived;
 }
 
-Json CovarianceJson(const FitReport& fit) {
-  return MatrixJson(fit.covariance_names, [&](Eigen::Index i, Eigen::Index j) { return fit.covariance(i, j); });
+Json CovarianceJson(const FitReport& fit, const ShowsParameter& shows) {
+  return MatrixJson(fit.covariance_names, shows, [&](Eigen::Index i, Eigen::Index j) { return fit.covariance(i, j); });
 }
 
-Json CorrelationJson(const FitReport& fit) {
-  return MatrixJson(fit.covariance_names, [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
+Json CorrelationJson(const FitReport& fit, const ShowsParameter& shows) {
+  return MatrixJson(fit.covariance_names, shows, [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
 }
 
-Json SystematicJson(const FitReport& fit) {
-  return MatrixJson(fit.systematic_names,
+Json SystematicJson(const FitReport& fit, const ShowsParameter& shows) {
+  return MatrixJson(fit.systematic_names, shows,
                     [&](Eigen::Index i, Eigen::Index j) { return fit.systematic_covariance(i, j); });
 }
 
@@ -126,9 +154,10 @@ Json StatisticsJson(const FitReport& fit) {
       .Done();
 }
 
-Json IdentifiabilityJson(const FitReport& fit) {
+Json IdentifiabilityJson(const FitReport& fit, const ShowsParameter& shows) {
   Json all = Json::array();
   for (const Identifiability& known : fit.identifiability) {
+    if (!shows(known.parameter)) continue;
     all.push_back({{"parameter", known.parameter},
                    {"verdict", VerdictName(known.verdict)},
                    {"direction", known.direction},
@@ -145,6 +174,59 @@ nlohmann::ordered_json SolverJson(const SolverSummary& solver) {
           {"evaluations", solver.evaluations},
           {"termination", solver.termination},
           {"attempts", std::move(attempts)}};
+}
+
+nlohmann::ordered_json FitJson(const Identification& identification, std::size_t m) {
+  const FitReport& fit = identification.fits[m];
+  const FitSpan& span = identification.spans[m];
+  const ShowsParameter shows = Shared(span);
+  const bool failed = fit.termination == Termination::kFailed;
+  const bool has_equation = !failed && identification.SharesMotion(m);
+  Json json;
+  json["model"] = fit.model.name;
+  json["status"] = TerminationName(fit.termination);
+  json["reason"] = fit.reason;
+  json["equation"] = has_equation ? Json(FittedEquation(fit, identification.si_rig())) : Json(nullptr);
+  json["shared"] = span.shared;
+  json["parameters"] = ParametersJson(fit, shows);
+  json["derived"] = DerivedJson(fit);
+  json["covariance"] = CovarianceJson(fit, shows);
+  json["correlation"] = CorrelationJson(fit, shows);
+  json["systematic_covariance"] = SystematicJson(fit, shows);
+  json["std_error_method"] = TextOrNull(fit.std_error_method);
+  json["interval_method"] = TextOrNull(fit.interval_method);
+  json["identifiability"] = IdentifiabilityJson(fit, shows);
+  json["statistics"] = failed ? Json(nullptr) : SumJson(identification.unit, fit.statistics);
+  json["homogeneity"] = span.homogeneity ? HomogeneityJson(*span.homogeneity) : Json(nullptr);
+  AddAmbiguities(identification, m, json);
+  json["solver"] = SolverJson(fit.solver);
+  json["summary"] = FitSummaryJson(SummarizeFit(identification, m));
+  return json;
+}
+
+nlohmann::ordered_json RecordingFitJson(const Identification& identification, std::size_t k, std::size_t m) {
+  const FitReport& fit = identification.FitOf(k, m);
+  const IdentifiedRecording& recording = identification.recordings[k];
+  const FitSpan& span = identification.spans[m];
+  const ShowsParameter is_own = std::not_fn(Shared(span));
+  const bool failed = fit.termination == Termination::kFailed;
+  Json json;
+  json["model"] = fit.model.name;
+  json["amplitude_rad"] = NumberOrNull(span.amplitudes[k]);
+  json["parameters"] = ParametersJson(fit, is_own);
+  json["covariance"] = CovarianceJson(fit);
+  json["correlation"] = CorrelationJson(fit);
+  json["systematic_covariance"] = SystematicJson(fit);
+  json["std_error_method"] = TextOrNull(fit.std_error_method);
+  json["identifiability"] = IdentifiabilityJson(fit, is_own);
+  json["noise"] = failed ? Json(nullptr) : NoiseJson(fit, recording.data);
+  json["statistics"] = failed ? Json(nullptr) : StatisticsJson(fit);
+  json["closed_form"] = CheckJson(recording.CheckOf(m));
+  json["constancy"] = ConstancyJson(recording.ConstancyOf(m));
+  if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, recording.ConstancyOf(m));
+  if (fit.termination == Termination::kConverged) json["suspicions"] = SuspicionsJson(fit);
+  json["separate"] = span.separate[k];
+  return json;
 }
 
 }  // namespace pendulum

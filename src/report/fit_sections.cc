@@ -4,14 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
-#include "pendulum/identify/identification.h"
+#include "pendulum/report/agreement_section.h"
+#include "pendulum/report/ambiguity_sections.h"
+#include "pendulum/report/comparison_text.h"
+#include "pendulum/report/data_sections.h"
 #include "pendulum/report/equation.h"
+#include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
@@ -28,15 +34,33 @@ std::string TitleOf(const std::string& title, const FitReport& fit, bool is_one_
   return is_one_of_several ? title + " of " + std::string(fit.model.name) : title;
 }
 
-Section ModelSection(const FitReport& fit) {
-  const std::string start =
-      fit.start == StartKind::kRelease ? "held at an angle, then released" : "in motion at the first used sample";
-  return {"Fit",
-          "",
-          {Facts{{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))},
-                 {"start", start},
-                 {"status", std::string(TerminationName(fit.termination)) + ": " + fit.reason,
-                  IsConverged(fit) ? Emphasis::kNone : Emphasis::kAlarm}}}};
+/// The work of the solver. How accurate the trajectories are is a matter of each recording.
+std::string SolverText(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
+  std::string text = std::to_string(fit.solver.iterations) + " iterations, " +
+                     std::to_string(fit.solver.evaluations) + " trajectories";
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    const FitReport& own = identification.FitOf(k, index);
+    text += (k == 0 ? ", accurate to " : ", ") + NumberText(own.trace_error, 1) + " " + own.reading_unit;
+  }
+  return text;
+}
+
+Section ModelSection(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
+  Facts facts = {{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))}};
+  if (identification.is_joint()) {
+    facts.push_back({"shared", NameList(identification.spans[index].shared) + ", by " +
+                                   std::to_string(identification.recordings.size()) +
+                                   " recordings; each recording has its own start, zero and noise"});
+  } else {
+    facts.push_back({"start", fit.start == StartKind::kRelease ? "held at an angle, then released"
+                                                               : "in motion at the first used sample"});
+  }
+  facts.push_back({"status", std::string(TerminationName(fit.termination)) + ": " + Printable(fit.reason),
+                   IsConverged(fit) ? Emphasis::kNone : Emphasis::kAlarm});
+  if (fit.termination != Termination::kFailed) facts.push_back({"solver", SolverText(identification, index)});
+  return {"Fit", "", {std::move(facts)}};
 }
 
 // --- parameters ------------------------------------------------------------------------------------------------------
@@ -189,8 +213,6 @@ std::string OtherUnitsText(const NoiseEstimate& noise, const std::string& unit) 
   return also.empty() ? "" : " (" + also + ")";
 }
 
-}  // namespace
-
 Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
   Section section{"Parameters"};
   if (fit.termination == Termination::kFailed) section.AddText(kNoEstimates, Emphasis::kAlarm);
@@ -268,6 +290,69 @@ Section EquationSection(const FitReport& fit, const std::optional<Rig>& rig) {
       "and g, or weigh the pendulum held horizontally at a known distance from the pivot, and give --rig.");
 }
 
+Section StatisticsSection(const Identification& identification, std::size_t index, std::size_t k) {
+  const FitReport& fit = identification.FitOf(k, index);
+  const FitStatistics& statistics = fit.statistics;
+  Facts facts = {
+      {"noise", NoiseText(fit)},
+      {"because", fit.noise.why},
+      {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
+      {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
+      {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
+      {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
+      {"autocorrelation", fit.noise.autocorrelation.Name() + "; for estimating a constant, equivalent to " +
+                              NumberText(std::round(statistics.effective_samples)) + " independent samples"},
+      {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
+      {"AIC, AICc, BIC",
+       FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)}};
+  if (identification.is_joint()) facts.push_back({"separate fit", identification.spans[index].separate[k]});
+  return {"Noise and statistics", "", {std::move(facts)}};
+}
+
+/// The criteria of all recordings together.
+Section SumSection(const FitStatistics& all) {
+  return {"Noise and statistics: all recordings",
+          "",
+          {Facts{{"log-likelihood", FixedText(all.log_likelihood, 2)},
+                 {"AIC, AICc, BIC", FixedText(all.aic, 2) + ", " + FixedText(all.aicc, 2) + ", " +
+                                        FixedText(all.bic, 2)}}}};
+}
+
+/// What each of several recordings does not share.
+Section OwnSection(const Identification& identification, std::size_t index) {
+  Table table{{{""}, {"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
+  const std::vector<std::string>& shared = identification.spans[index].shared;
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    std::string number = std::to_string(k + 1);
+    for (const ParameterEstimate& parameter : identification.FitOf(k, index).parameters) {
+      if (std::ranges::find(shared, parameter.info.name) != shared.end()) continue;
+      Row row = ParameterRow(parameter, {parameter.unit}, true);
+      row.insert(row.begin(), std::exchange(number, ""));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return {"Each recording's own", "by the joint fit", {std::move(table)}};
+}
+
+/// What the fit says of recording k alone.
+Sections OwnSections(const Identification& identification, std::size_t index, std::size_t k) {
+  const IdentifiedRecording& recording = identification.recordings[k];
+  Sections sections = ConstancySections(recording.ConstancyOf(index));
+  std::ranges::move(SuspicionSections(identification.FitOf(k, index), recording.used.sensor_errors),
+                    std::back_inserter(sections));
+  return OfRecording(identification, k, std::move(sections));
+}
+
+void AddStatistics(const Identification& identification, std::size_t index, Sections& sections) {
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    std::ranges::move(OfRecording(identification, k, {StatisticsSection(identification, index, k)}),
+                      std::back_inserter(sections));
+  }
+  if (identification.is_joint()) sections.push_back(SumSection(identification.fits[index].statistics));
+}
+
+}  // namespace
+
 std::string WithUnbrokenTerms(const std::string& equation) {
   std::string text;
   const auto is_sign = [&](std::size_t i) {
@@ -283,31 +368,6 @@ std::string WithUnbrokenTerms(const std::string& equation) {
   return text;
 }
 
-namespace {
-
-Section StatisticsSection(const FitReport& fit) {
-  const FitStatistics& statistics = fit.statistics;
-  return {
-      "Noise and statistics",
-      "",
-      {Facts{
-          {"noise", NoiseText(fit)},
-          {"because", fit.noise.why},
-          {"rms residual", ReadingText(statistics.rms_residual, fit.reading_unit)},
-          {"lag-1 correlation", FixedText(fit.noise.lag1_correlation, 3)},
-          {"Durbin-Watson", FixedText(statistics.durbin_watson, 3)},
-          {"Ljung-Box, runs", "p " + NumberText(statistics.ljung_box_p, 2) + ", " + NumberText(statistics.runs_p, 2)},
-          {"autocorrelation", fit.noise.autocorrelation.Name() + "; for estimating a constant, equivalent to " +
-                                  NumberText(std::round(statistics.effective_samples)) + " independent samples"},
-          {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
-          {"AIC, AICc, BIC",
-           FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)},
-          {"solver", std::to_string(fit.solver.iterations) + " iterations, " + std::to_string(fit.solver.evaluations) +
-                         " trajectories, accurate to " + NumberText(fit.trace_error, 1) + " " + fit.reading_unit}}}};
-}
-
-}  // namespace
-
 Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
   Section section{TitleOf("Parameters", fit, is_one_of_several)};
   if (!IsConverged(fit)) {
@@ -317,13 +377,31 @@ Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
   return section.Add(EstimateTable(fit));
 }
 
-Sections FitSections(const FitReport& fit, const std::optional<Rig>& rig, const ClosedFormCheck* check) {
-  Sections sections = {ModelSection(fit), AllOfParameters(fit, rig, check)};
-  if (!fit.derived.empty()) sections.push_back(DerivedSection(fit));
+Sections FitSections(const Identification& identification, std::size_t index) {
+  const FitReport& fit = identification.fits[index];
+  const std::optional<Rig>& rig = identification.si_rig();
+  const bool is_joint = identification.is_joint();
+  const ClosedFormCheck* const check = is_joint ? nullptr : identification.recordings.front().CheckOf(index);
+  Sections sections = {ModelSection(identification, index), AllOfParameters(fit, rig, check)};
+  if (const std::optional<Homogeneity>& homogeneity = identification.spans[index].homogeneity) {
+    if (IsConverged(fit) && !homogeneity->agrees()) {
+      sections.back().AddText("The recordings do not agree, but these errors assume that they do: see below.",
+                              Emphasis::kCaution);
+    }
+    sections.push_back(AgreementSection(identification, index));
+  }
+  // If the fit to several recordings did not converge, its motion describes none of them.
+  const bool is_failed = fit.termination == Termination::kFailed;
+  const bool is_a_motion = !is_failed && !(is_joint && fit.termination == Termination::kNotConverged);
+  if (is_joint && is_a_motion) sections.push_back(OwnSection(identification, index));
+  if (!fit.derived.empty() && (!is_joint || is_a_motion)) sections.push_back(DerivedSection(fit));
   if (fit.covariance_names.size() > 1) sections.push_back(CorrelationSection(fit));
-  if (fit.termination == Termination::kFailed) return sections;
-  sections.push_back(StatisticsSection(fit));
-  sections.push_back(EquationSection(fit, rig));
+  if (!is_failed) AddStatistics(identification, index, sections);
+  if (is_a_motion && identification.SharesMotion(index)) sections.push_back(EquationSection(fit, rig));
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    std::ranges::move(OwnSections(identification, index, k), std::back_inserter(sections));
+  }
+  std::ranges::move(AmbiguitySections(identification, index), std::back_inserter(sections));
   return sections;
 }
 

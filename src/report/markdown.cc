@@ -165,11 +165,7 @@ std::string ToMarkdown(const Identification& identification) {
   const auto is_warning = [](const Section& section) { return section.title == "Warnings"; };
   std::ranges::copy_if(all, std::back_inserter(sections), is_warning);
   std::ranges::copy_if(all, std::back_inserter(sections), std::not_fn(is_warning));
-  const std::string name = identification.is_joint()
-                               ? std::to_string(identification.runs.size()) + " recordings of one rig"
-                           : identification.data.path.empty() ? "a recording"
-                                                              : identification.data.path;
-  return "# Pendulum: " + MarkdownText(name) + "\n\n" + ToMarkdown(sections);
+  return "# Pendulum: " + MarkdownText(TitleOf(identification, "a recording")) + "\n\n" + ToMarkdown(sections);
 }
 
 }  // namespace pendulum

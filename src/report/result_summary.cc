@@ -287,8 +287,8 @@ std::string DataText(const DataSummary& data) {
 std::string JointDataText(const Identification& identification) {
   Eigen::Index used = 0, all = 0;
   std::string names;
-  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
-    const DataSummary& data = identification.runs[k].data;
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    const DataSummary& data = identification.recordings[k].data;
     used += data.used_samples;
     all += data.samples;
     if (data.path.empty()) continue;
@@ -407,12 +407,12 @@ void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
 /// Names the recordings that the law does not describe in one warning.
 void CollectMisfits(const Identification& identification, std::size_t index, FitSummary& summary) {
   std::string list;
-  for (std::size_t k = 0; k < identification.runs.size(); ++k) {
-    if (identification.runs[k].fits[index].HasWarning("lack_of_fit")) AddListed(std::to_string(k + 1), list);
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
+    if (identification.FitOf(k, index).HasWarning("lack_of_fit")) AddListed(std::to_string(k + 1), list);
   }
   if (list.empty()) return;
   EraseWarnings("lack_of_fit", summary);
-  if (identification.joint[index].lacks_fit) return;  // the verdict says it
+  if (identification.spans[index].lacks_fit) return;  // the verdict says it
   summary.warnings.insert(summary.warnings.begin(),
                           {.code = "lack_of_fit",
                            .finding = "the law does not describe " +
@@ -479,8 +479,8 @@ std::string WithArticle(const std::string& noun) {
 
 /// What was assumed of the sensors, if errors follow from it.
 void AddSensors(const Identification& identification, std::vector<std::string>& assumptions) {
-  for (const Identification* const part : identification.Parts()) {
-    const SensorErrors& sensor = part->data.sensor;
+  for (const IdentifiedRecording& recording : identification.recordings) {
+    const SensorErrors& sensor = recording.data.sensor;
     if (!sensor.is_kind_assumed || sensor.kind.empty()) continue;
     std::string text = WithArticle(sensor.kind) + " (--sensor)";
     if (std::ranges::find(assumptions, text) == assumptions.end()) assumptions.push_back(std::move(text));
@@ -518,7 +518,7 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
   const bool recommends = !comparison.recommended.empty();
   const std::string reason = WithFullStop(Printable(comparison.reason));
   summary.comparison = recommends ? "Recommended: " + comparison.recommended + ": " + reason : Capitalized(reason);
-  const Conversion shown = Degrees(identification.data.unit).value_or(Conversion{identification.data.unit});
+  const Conversion shown = Degrees(identification.unit).value_or(Conversion{identification.unit});
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.judged) {
       summary.without_result += (summary.without_result.empty() ? "No result with " : " No result with ") + row.model +
@@ -537,12 +537,13 @@ void SetComparison(const Identification& identification, ResultSummary& summary)
 /// What the linear formulas give.
 FitSummary SummarizeClosedForms(const Identification& identification) {
   FitSummary summary;
-  summary.path = identification.data.path;
+  summary.path = identification.path();
   summary.assumptions = AssumptionsOf(AllWarnings(identification));
   summary.warnings = WithoutAssumptions(AllWarnings(identification));
   summary.verdict = "Nothing was fitted: these are formulas of the linear pendulum, with standard errors from noise.";
-  if (!identification.closed_forms || !identification.closed_forms->linear) return summary;
-  const ClosedForms& forms = *identification.closed_forms;
+  const std::optional<ClosedForms>& known = identification.recordings.front().closed_forms;
+  if (!known || !known->linear) return summary;
+  const ClosedForms& forms = *known;
   for (const ReportedEstimate& reported : LinearEstimates(*forms.linear, forms.gravity, identification.si_rig())) {
     summary.parameters.push_back(
         Quantity(reported.name, reported.symbol, reported.estimate.value, reported.estimate.std_error, reported.unit));
@@ -553,11 +554,17 @@ FitSummary SummarizeClosedForms(const Identification& identification) {
 
 }  // namespace
 
+std::string TitleOf(const Identification& identification, const std::string& without_name) {
+  const std::size_t count = identification.recordings.size();
+  if (count > 1) return std::to_string(count) + " recordings of one rig";
+  return identification.path().empty() ? without_name : Printable(identification.path());
+}
+
 std::string FitSummary::TextOf(const Warning& warning) const { return Printable(ShortText(warning, path)); }
 
 FitSummary SummarizeFit(const Identification& identification, std::size_t index) {
   FitSummary summary;
-  summary.path = identification.data.path;
+  summary.path = identification.path();
   const FitReport& fit = identification.fits[index];
   const std::vector<Warning> warnings = WarningsOfFit(identification, index);
   summary.assumptions = AssumptionsOf(warnings);
@@ -566,11 +573,14 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (!identification.is_joint()) {  // the ends of the window say it
     for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
   }
-  const bool lacks_fit =
-      fit.HasWarning("lack_of_fit") || (identification.is_joint() && identification.joint[index].lacks_fit);
-  SetVerdict(fit, identification.ConstancyOf(index), lacks_fit, identification.fits.size() > 1, summary);
-  if (identification.is_joint()) {
-    SetAgreement(identification.joint[index].homogeneity, summary);
+  const FitSpan& span = identification.spans[index];
+  const IdentifiedRecording* const only =
+      identification.is_joint() ? nullptr : &identification.recordings.front();
+  const Constancy* const constancy = only == nullptr ? nullptr : only->ConstancyOf(index);
+  const bool lacks_fit = fit.HasWarning("lack_of_fit") || span.lacks_fit;
+  SetVerdict(fit, constancy, lacks_fit, identification.fits.size() > 1, summary);
+  if (span.homogeneity) {
+    SetAgreement(*span.homogeneity, summary);
     CollectMisfits(identification, index, summary);
   }
   if (fit.termination != Termination::kConverged) return summary;
@@ -581,7 +591,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (summary.has_systematic) AddSensors(identification, summary.assumptions);
   if (!identification.is_joint()) SetRigVerdict(JudgeInertia(identification.rig, fit), summary);
   summary.remarks = RemarksText(fit);
-  if (const std::string untested = UntestedText(identification.ConstancyOf(index), fit); !untested.empty()) {
+  if (const std::string untested = UntestedText(constancy, fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
   }
   if (const std::string changing = ChangingText(fit);
@@ -590,9 +600,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
     EraseWarnings("not_constant", summary);
   }
   summary.derived = DerivedOf(fit);
-  const bool has_all =
-      !identification.is_joint() || identification.joint[index].shared.size() == PhysicalParameters(fit.model).size();
-  if (has_all) {
+  if (identification.SharesMotion(index)) {
     summary.equation = WithoutZeroTerms(FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError));
   }
   if (!identification.si_rig()) {
@@ -600,17 +608,15 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
                         ? "In units of the stiffness k; a known stiffness (--stiffness) gives SI."
                         : "In units of the gravity torque G; masses and length (--rig) give SI.";
   }
-  summary.textbook = TextbookText(identification.CheckOf(index));
+  if (only != nullptr) summary.textbook = TextbookText(only->CheckOf(index));
   return summary;
 }
 
 ResultSummary SummarizeResult(const Identification& identification) {
   ResultSummary summary;
-  const std::string path = Printable(identification.data.path);
-  summary.title = identification.is_joint() ? std::to_string(identification.runs.size()) + " recordings of one rig"
-                  : path.empty()            ? "Recording"
-                                            : path;
-  summary.data = identification.is_joint() ? JointDataText(identification) : DataText(identification.data);
+  summary.title = TitleOf(identification, "Recording");
+  summary.data = identification.is_joint() ? JointDataText(identification)
+                                           : DataText(identification.recordings.front().data);
   if (identification.comparison) SetComparison(identification, summary);
   summary.fit = identification.fits.empty() ? SummarizeClosedForms(identification)
                                             : SummarizeFit(identification, identification.MainFit());

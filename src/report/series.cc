@@ -81,12 +81,10 @@ Json PeakJson(const ClosedForms& forms, std::size_t i, const std::string& unit) 
   return json;
 }
 
-Json PeaksJson(const Identification& identification, const std::string& unit) {
+Json PeaksJson(const std::optional<ClosedForms>& forms, const std::string& unit) {
   Json json = Json::array();
-  if (!identification.closed_forms) return json;
-  for (std::size_t i = 0; i < identification.closed_forms->table.points.size(); ++i) {
-    json.push_back(PeakJson(*identification.closed_forms, i, unit));
-  }
+  if (!forms) return json;
+  for (std::size_t i = 0; i < forms->table.points.size(); ++i) json.push_back(PeakJson(*forms, i, unit));
   return json;
 }
 
@@ -166,10 +164,13 @@ Json MotionJson(const Recording& used, const FitReport& fit, const std::optional
 }
 
 /// The fitted motion of each model; null if the samples themselves show the motion.
-Json MotionsJson(const Recording& used, const Identification& identification, SeriesDetail detail) {
+Json MotionsJson(const Identification& identification, std::size_t k, SeriesDetail detail) {
+  const IdentifiedRecording& recording = identification.recordings[k];
+  const Recording& used = recording.used;
   Json json;
-  if (!HidesMotion(used, identification.sampling)) return json;
-  for (const FitReport& fit : identification.fits) {
+  if (!HidesMotion(used, recording.sampling)) return json;
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
+    const FitReport& fit = identification.FitOf(k, m);
     json[std::string(fit.model.name)] = MotionJson(used, fit, identification.si_rig(), detail);
   }
   return json;
@@ -186,9 +187,10 @@ Json ProfileJson(const ProfileCurve& curve) {
 }
 
 /// Profiles by model and parameter; null if no fit has one.
-Json ProfilesJson(const Identification& identification) {
+Json ProfilesJson(const Identification& identification, std::size_t k) {
   Json json;
-  for (const FitReport& fit : identification.fits) {
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
+    const FitReport& fit = identification.FitOf(k, m);
     for (const ProfileCurve& curve : fit.profiles) json[std::string(fit.model.name)][curve.name] = ProfileJson(curve);
   }
   return json;
@@ -219,42 +221,45 @@ std::string ToResidualCsv(const Recording& used, const FitReport& fit, const Tex
   return text;
 }
 
-std::string ToResidualCsv(const Identification& identification, std::size_t fit) {
-  return ToResidualCsv(identification.used, identification.fits[fit],
-                       identification.checks.empty() ? TextbookOverlay{} : identification.checks[fit].overlay);
+std::string ToResidualCsv(const Identification& identification, std::size_t k, std::size_t fit) {
+  const IdentifiedRecording& recording = identification.recordings[k];
+  const ClosedFormCheck* const check = recording.CheckOf(fit);
+  return ToResidualCsv(recording.used, identification.FitOf(k, fit),
+                       check == nullptr ? TextbookOverlay() : check->overlay);
 }
 
 namespace {
 
-Json PartJson(const Identification& identification, SeriesDetail detail) {
-  const Recording& used = identification.used;
+Json RecordingSeriesJson(const Identification& identification, std::size_t k, SeriesDetail detail) {
+  const IdentifiedRecording& recording = identification.recordings[k];
+  const Recording& used = recording.used;
   const std::string unit = used.value_unit();
   Json json;
   json["time_s"] = SamplesJson(used.time, used.size(), SeriesDetail::kAll);
   json["measured"] = SamplesJson(used.value, used.size(), detail);
   json["unit"] = unit;
   json["extrema"] = ExtremaJson(used);
-  json["peaks"] = PeaksJson(identification, unit);
-  json["profiles"] = ProfilesJson(identification);
+  json["peaks"] = PeaksJson(recording.closed_forms, unit);
+  json["profiles"] = ProfilesJson(identification, k);
   json["models"] = Json::object();
-  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
-    const FitReport& fit = identification.fits[i];
-    const ClosedFormCheck* const check = identification.CheckOf(i);
-    const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || i == identification.MainFit());
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
+    const FitReport& fit = identification.FitOf(k, m);
+    const ClosedFormCheck* const check = recording.CheckOf(m);
+    const bool has_overlay = check != nullptr && (detail == SeriesDetail::kAll || m == identification.MainFit());
     json["models"][std::string(fit.model.name)] =
         ModelJson(used, fit, has_overlay ? check->overlay : TextbookOverlay(),
                   FittedStdErrors(used, fit, identification.si_rig()), detail);
   }
-  json["motions"] = MotionsJson(used, identification, detail);
+  json["motions"] = MotionsJson(identification, k, detail);
   return json;
 }
 
 }  // namespace
 
 nlohmann::ordered_json SeriesJson(const Identification& identification, SeriesDetail detail) {
-  if (!identification.is_joint()) return PartJson(identification, detail);
   Json all = Json::array();
-  for (const Identification& run : identification.runs) all.push_back(PartJson(run, detail));
+  for (std::size_t k = 0; k < identification.recordings.size(); ++k)
+    all.push_back(RecordingSeriesJson(identification, k, detail));
   return all;
 }
 

@@ -58,12 +58,10 @@ Section SensorSection(const SensorErrors& sensor, const std::string& reading_uni
 
 }  // namespace
 
-Sections SuspicionSections(const Identification& identification, std::size_t fit) {
-  const FitReport& report = identification.fits[fit];
-  if (report.termination != Termination::kConverged) return {};
-  Sections sections = {SuggestedSection(report)};
-  const SensorErrors& sensor = identification.used.sensor_errors;
-  if (!sensor.kind.empty()) sections.push_back(SensorSection(sensor, report.reading_unit));
+Sections SuspicionSections(const FitReport& fit, const SensorErrors& sensor) {
+  if (fit.termination != Termination::kConverged) return {};
+  Sections sections = {SuggestedSection(fit)};
+  if (!sensor.kind.empty()) sections.push_back(SensorSection(sensor, fit.reading_unit));
   return sections;
 }
 

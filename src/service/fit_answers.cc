@@ -97,7 +97,7 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
 /// The identification with the name of its recording as path.
 Identification NamedIdentification(const Identification& run, const std::string& name) {
   Identification named = run;
-  named.data.path = name;
+  named.recordings.front().data.path = name;
   return named;
 }
 
@@ -255,7 +255,7 @@ HttpResponse GetResiduals(ServiceState& state, const Call& call) {
       return ProblemAnswer(
           {StatusCode::kNotFound, "this run has only closed forms and no fit, so there are no residuals"});
     }
-    return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run, run.MainFit()), "residuals of " + name);
+    return FileAnswer("text/csv; charset=utf-8", ToResidualCsv(run, 0, run.MainFit()), "residuals of " + name);
   });
 }
 

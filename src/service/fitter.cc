@@ -67,7 +67,7 @@ void Fitter::FitInto(const IdentifyOptions& asked, RunFiles files, const std::st
     }
     return;
   }
-  run->data.path.clear();
+  run->recordings.front().data.path.clear();
   fitted.outcome.exit_code = ExitCode(*run);
   fitted.outcome.result = ToJson(*run);
   fitted.run = std::make_shared<const Identification>(*std::move(run));
@@ -83,7 +83,7 @@ Result<std::shared_ptr<const Identification>> Fitter::FitOf(const std::string& i
 }
 
 void Fitter::Remember(const std::string& id, std::shared_ptr<const Identification> run) {
-  const Eigen::Index samples = run->used.size();
+  const Eigen::Index samples = run->recordings.front().used.size();
   const std::scoped_lock lock(mutex_);
   std::erase_if(remembered_, [&](const Remembered& other) { return other.id == id; });
   remembered_.push_front({id, std::move(run), samples});

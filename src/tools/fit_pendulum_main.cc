@@ -84,13 +84,12 @@ std::vector<ToolFlag<Flags>> FlagTable() {
 /// Adds the outputs of run `index` (0-based) of `count`, except the text for standard output.
 void RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
                  std::vector<Output>& outputs) {
-  const std::vector<const Identification*> parts = run.Parts();
-  const auto recordings = static_cast<int>(parts.size());
+  const auto recordings = static_cast<int>(run.recordings.size());
   if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(run)});
   for (int k = 0; k < recordings && !options.residuals.empty(); ++k) {
     const std::string path =
         run.is_joint() ? NumberedPath(options.residuals, k, recordings) : NumberedPath(options.residuals, index, count);
-    outputs.push_back({path, ToResidualCsv(*parts[static_cast<std::size_t>(k)], run.MainFit())});
+    outputs.push_back({path, ToResidualCsv(run, static_cast<std::size_t>(k), run.MainFit())});
   }
   if (!options.series.empty()) {
     outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run)});
@@ -108,9 +107,8 @@ constexpr const char* kMore = "More: --details (all of it), --report fit.html (p
 /// The result as text, with a plot of each recording if requested.
 Result<std::string> TextOf(const FitPendulumOptions& options, const Identification& run) {
   std::string text;
-  const std::vector<const Identification*> parts = run.Parts();
-  for (std::size_t k = 0; k < parts.size() && options.terminal_plot; ++k) {
-    ASSIGN_OR_RETURN(const auto drawn, RunGnuplot(TerminalPlot(parts[k]->used, parts[k]->fits[run.MainFit()])));
+  for (std::size_t k = 0; k < run.recordings.size() && options.terminal_plot; ++k) {
+    ASSIGN_OR_RETURN(const auto drawn, RunGnuplot(TerminalPlot(run.recordings[k].used, run.FitOf(k, run.MainFit()))));
     text += (run.is_joint() ? Printable(RecordingLabel(run, k)) + "\n" : "") + PictureText(drawn) + "\n";
   }
   const TextStyle style = TextStyleFor(STDOUT_FILENO);
@@ -120,7 +118,7 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
 
 /// A message about a recording that names its file.
 std::string WithPath(const Identification& run, const std::string& message) {
-  const std::string& path = run.data.path;
+  const std::string path = run.path();
   return path.empty() || message.find(path) != std::string::npos ? message : path + ": " + message;
 }
 

@@ -49,32 +49,18 @@ struct DataSummary {
 /// Sets all members that follow from the used samples of a swing: all but samples, releases and release.
 void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& data);
 
-/// Additional results of a joint fit.
-struct JointPart {
-  std::vector<std::string> shared;  ///< Names of the shared parameters.
-  Homogeneity homogeneity;
-  std::vector<std::string> alone;  ///< How each separate fit ended: its status, and the reason if it did not converge.
-  bool lacks_fit = false;          ///< Whether the law does not describe a recording completely in its separate fit.
-};
-
-/// Everything that was identified from a free swing, or from several recordings together. In a joint identification,
-/// used samples, data, sampling, calibration and closed forms are in `runs`, and `fits` have only the shared
-/// parameters. Reports in every format are made from it.
-struct Identification {
+/// One of the recordings of an Identification, and what was found in it alone.
+struct IdentifiedRecording {
   Recording used;  ///< The N samples that were fitted, without warnings.
   DataSummary data;
-  std::optional<Rig> rig;                   ///< As the user described it; see also si_rig.
   nlohmann::ordered_json calibration;       ///< Converts counts or volts to angles, as given by the user; null: none.
-  std::vector<FitReport> fits;              ///< In the order of the requested models; empty: closed forms only.
   std::optional<Sampling> sampling;         ///< Sampling of the used samples.
   std::optional<ClosedForms> closed_forms;  ///< Closed forms of the used samples, with the friction of the first model.
   std::string closed_forms_model;           ///< The name of that model; empty if closed forms were not requested.
   std::string no_closed_forms;              ///< Why there are no closed forms.
+  std::vector<FitReport> fits;              ///< One of several recordings: its part of each fit. See FitOf.
   std::vector<ClosedFormCheck> checks;      ///< One per fit, in order; or empty.
-  std::optional<Comparison> comparison;     ///< Comparison of the fits, if several were requested.
   std::vector<Constancy> constancy;         ///< One per fit, in order; or empty.
-  std::vector<JointPart> joint;             ///< One per joint fit; otherwise empty.
-  std::vector<Identification> runs;         ///< Recordings of a joint fit, each with its part of `fits`.
   std::vector<Warning> warnings;            ///< Warnings of the recording; those of a fit are in its FitReport.
 
   /// The check of fit `fit`, or nullptr.
@@ -82,14 +68,44 @@ struct Identification {
 
   /// The constancy of fit `fit`, or nullptr.
   const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
+};
+
+/// What one fit says of its K recordings.
+struct FitSpan {
+  std::vector<std::string> shared;         ///< Names of the parameters that all recordings share.
+  std::vector<double> amplitudes;          ///< K, of each recording's motion, rms [rad]; NaN if unknown.
+  std::vector<std::string> separate;       ///< K: how the fit of each recording alone ended: status, and reason.
+  std::optional<Homogeneity> homogeneity;  ///< Whether the recordings agree; absent for one.
+  bool lacks_fit = false;  ///< Whether the law does not describe a recording completely in its separate fit.
+};
+
+/// Everything that was identified from K >= 1 free swings of one pendulum. Reports in every format are made from it.
+struct Identification {
+  std::vector<IdentifiedRecording> recordings;  ///< K
+  std::optional<Rig> rig;                       ///< As the user described it; see also si_rig.
+  std::string unit = "rad";  ///< Of the residuals of all recordings; "sigma" if their readings have several units.
+  /// The fits to all recordings, in the order of the requested models; empty: closed forms only. A fit to one recording
+  /// has all parameters, a fit to several has those that they share.
+  std::vector<FitReport> fits;
+  std::vector<FitSpan> spans;            ///< One per fit.
+  std::optional<Comparison> comparison;  ///< Comparison of the fits, if several were requested.
+  std::vector<Warning> warnings;         ///< Warnings of the whole.
+
+  /// Fit m of recording k, with all parameters of the recording.
+  const FitReport& FitOf(std::size_t k, std::size_t m) const { return is_joint() ? recordings[k].fits[m] : fits[m]; }
+  FitReport& FitOf(std::size_t k, std::size_t m) { return is_joint() ? recordings[k].fits[m] : fits[m]; }
 
   /// The rig, if it gives the restoring torque that converts results to SI; otherwise torques are in units of G.
   const std::optional<Rig>& si_rig() const;
 
-  bool is_joint() const { return !runs.empty(); }
+  /// Whether several recordings were fitted together.
+  bool is_joint() const { return recordings.size() > 1; }
 
-  /// The identifications of single recordings: `runs` of a joint one, else this one alone.
-  std::vector<const Identification*> Parts() const;
+  /// The path of the only recording; empty for several.
+  std::string path() const { return is_joint() ? "" : recordings.front().data.path; }
+
+  /// Whether fit m determines the pendulum of all recordings: inertia and all friction parameters are shared.
+  bool SharesMotion(std::size_t m) const;
 
   /// Index of the main fit: the recommended one, otherwise the one with the smallest residuals among those that
   /// converged, otherwise among all.
@@ -110,10 +126,10 @@ std::vector<Warning> AllWarnings(const Identification& identification);
 /// single recording of a joint fit names it.
 std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit);
 
-/// Whether recording `run` (0-based) of a joint fit is one of several free swings of its file.
-bool IsOneOfSeveral(const Identification& identification, std::size_t run);
+/// Whether recording k (0-based) is one of several free swings of its file.
+bool IsOneOfSeveral(const Identification& identification, std::size_t k);
 
-/// The label of recording `run` (0-based) of a joint fit: "recording 2 (b.csv)".
-std::string RecordingLabel(const Identification& identification, std::size_t run);
+/// The label of recording k (0-based): "recording 2 (b.csv)".
+std::string RecordingLabel(const Identification& identification, std::size_t k);
 
 }  // namespace pendulum

@@ -22,7 +22,8 @@ struct PreparedRecording {
   ChosenSwings swings;
   Eigen::Index samples = 0;  ///< Number as read; for an event-driven recording including samples for its silences.
   std::optional<SensorStatement> sensor;  ///< Replaces what the recording states.
-  Identification known;  ///< Common to the identifications of all its swings: rig, calibration, warnings.
+  std::optional<Rig> rig;
+  IdentifiedRecording known;  ///< Common to all its swings: calibration and warnings.
 };
 
 /// Repairs a recording, converts an event-driven one to edges (unless options.fit.noise requests otherwise), and

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-
+#include "pendulum/analysis/constancy.h"
 #include "pendulum/identify/identification.h"
 #include "pendulum/report/section.h"
 
@@ -12,8 +11,8 @@ namespace pendulum {
 /// and the likelihood-ratio tests. Empty without a comparison.
 Sections ComparisonSections(const Identification& identification);
 
-/// Whether the parameters of fit `fit` are constant: a sentence, and tables of the parameters that are not, or why this
-/// was not tested. Empty if there is neither a verdict nor a reason.
-Sections ConstancySections(const Identification& identification, std::size_t fit);
+/// Whether the parameters of a fit are constant: a sentence, and tables of the parameters that are not, or why this was
+/// not tested. Empty if there is neither a verdict nor a reason, or for nullptr.
+Sections ConstancySections(const Constancy* constancy);
 
 }  // namespace pendulum

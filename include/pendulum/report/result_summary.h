@@ -60,6 +60,9 @@ struct ResultSummary {
   FitSummary fit;              ///< Of the main fit; if there is none, of closed forms.
 };
 
+/// The recording's path or `without_name`, or "4 recordings of one rig".
+std::string TitleOf(const Identification& identification, const std::string& without_name);
+
 /// The summary of one fit.
 FitSummary SummarizeFit(const Identification& identification, std::size_t index);
 

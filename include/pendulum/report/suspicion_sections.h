@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/fitting/fit/fit_report.h"
-#include "pendulum/identify/identification.h"
+#include "pendulum/recording/sensor_errors.h"
 #include "pendulum/report/section.h"
 
 namespace pendulum {
@@ -14,7 +14,7 @@ namespace pendulum {
 /// What the residuals of a fit suggest: each named cause with its size, its significance, whether the estimates allow
 /// for it, and what to measure. Then what the sensor may do to the readings, with the source of each size. Empty for a
 /// fit without errors.
-Sections SuspicionSections(const Identification& identification, std::size_t fit);
+Sections SuspicionSections(const FitReport& fit, const SensorErrors& sensor);
 
 /// [{"name", "size", "std_error", "unit", "significance", "corrected"}, ...], the strongest first.
 nlohmann::ordered_json SuspicionsJson(const FitReport& fit);

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "pendulum/identify/identification.h"
+#include "pendulum/report/section.h"
+
+namespace pendulum {
+
+/// The samples and the sampling of each recording; for several recordings a table of them first.
+Sections DataSections(const Identification& identification);
+
+/// The sections of recording k; if there are several recordings, their titles name it: "Sampling: recording 2".
+Sections OfRecording(const Identification& identification, std::size_t k, Sections sections);
+
+}  // namespace pendulum
