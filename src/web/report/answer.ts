@@ -30,7 +30,7 @@ const kPhone = '(max-width: 560px)';
 export function recommendation(comparison: Comparison | null, shown: string | null): HTMLElement | null {
   if (!comparison) return null;
   const { recommended } = comparison;
-  const why = sentence(comparison.reason ?? '');
+  const why = sentence(comparison.reason);
   const words =
     recommended === null
       ? 'No law is recommended.'

@@ -89,7 +89,9 @@ export function reportContent(report: Report, name?: string): Content {
     recommended: comparison?.recommended,
     shown: report.shown,
     show: (index) => (report.shown = index),
-    sections: (changed) =>
-      [verdictSection(report), ...own(report, changed), rigSection(report), provenanceSection(report)].flatMap((part) => part ?? []),
+    sections: (changed) => {
+      const made = [verdictSection(report), ...own(report, changed), rigSection(report), provenanceSection(report)];
+      return made.flatMap((part) => part ?? []);
+    },
   };
 }

@@ -15,9 +15,9 @@ import { recordingFile, shownFit, type OneRecording, type Report } from '../repo
 const number = 'number' as const;
 
 /** "3", with its colour in the plots, and whether it disagrees. */
-function recordingName({ number: k, report }: OneRecording): Cell {
-  const disagrees = shownFit(report)?.homogeneity?.outliers.includes(k);
-  return [swatch(recordingMark(k - 1)), String(k), disagrees && el('small', { class: 'no' }, 'disagrees')];
+function recordingName({ number: which, report }: OneRecording): Cell {
+  const disagrees = shownFit(report)?.homogeneity?.outliers.includes(which);
+  return [swatch(recordingMark(which - 1)), String(which), disagrees && el('small', { class: 'no' }, 'disagrees')];
 }
 
 /** "0.0030 rad" for sigma_rad. */

@@ -43,7 +43,7 @@ export const parameterNames = (all: readonly Compared[]): string[] => [
   ...new Set(all.flatMap((one) => Object.keys(fitOf(one)?.parameters ?? {}))),
 ];
 
-export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters?.[name] ?? null;
+export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters[name] ?? null;
 
 /**
  * (b - a) over its standard error, for independent recordings. Null if the units differ, a value is missing or neither
