@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { makeFailed, makeMotions, makeResult, makeSeries } from './fixture.mjs';
+import { makeFailed, makeMotions, makeResult, makeSeries, warning } from './fixture.mjs';
 import { ink, open, template } from './page.mjs';
 
 test('the page contains each placeholder once', () => {
@@ -137,12 +137,9 @@ test('the page has all sections in order', async (t) => {
 });
 
 test('the page begins with the failure of a fit and has its other sections', async (t) => {
-  const page = await open(t, makeFailed(), {
-    ...makeSeries({ models: [] }),
-    peaks: [],
-    extrema: [],
-    models: { coulomb: { fitted: null, residual: null, linear_closed_form: null, nonlinear_closed_form: null } },
-  });
+  const nothing = { fitted: null, residual: null, linear_closed_form: null, nonlinear_closed_form: null };
+  const series = makeSeries({ models: [] }, { peaks: [], extrema: [], models: { coulomb: nothing } });
+  const page = await open(t, makeFailed(), series);
   assert.match(
     await page.locator('main').innerText(),
     /^Result\s+✕\s+No result with coulomb \(failed\): the pendulum never moves\./,
@@ -153,9 +150,10 @@ test('the page begins with the failure of a fit and has its other sections', asy
 test('a parameter without an error has the reason', async (t) => {
   const result = makeResult({ models: ['coulomb'] });
   const [fit] = result.fits;
+  const [{ parameters: own }] = result.recordings[0].fits;
   fit.status = 'not_converged';
   Object.assign(fit.summary, { verdict: 'No result with coulomb (not_converged): it did not converge.', level: 'bad' });
-  for (const parameter of Object.values(fit.parameters))
+  for (const parameter of Object.values({ ...fit.parameters, ...own }))
     Object.assign(parameter, { std_error: null, total_std_error: null, error_budget: null, interval95: null, reason: 'it did not converge' });
   const page = await open(t, result, makeSeries({ models: ['coulomb'] }));
   assert.match(await page.locator('.banner.bad').textContent(), /No result with coulomb/);
@@ -165,8 +163,10 @@ test('a parameter without an error has the reason', async (t) => {
 test('a result of an earlier version, without a summary, has its tables', async (t) => {
   const result = makeResult({ models: ['coulomb'] });
   delete result.fits[0].summary;
+  result.recordings[0].fits[0].amplitude_rad = null;
   const page = await open(t, result, makeSeries({ models: ['coulomb'] }));
   assert.match(await page.locator('.banner').textContent(), /no summary/);
+  assert.doesNotMatch(await page.locator('main').innerText(), /NaN|undefined|\bnull\b/);
   assert.ok((await page.locator('#parameters tbody tr').count()) > 5);
 });
 
@@ -187,7 +187,7 @@ test('no number of a full report is NaN', async (t) => {
 test('a name that looks like HTML is shown as text', async (t) => {
   const name = 'a/<img src=x onerror=alert(1)></script><b>.csv';
   const result = makeResult({ path: name });
-  result.warnings.push({ code: 'odd', message: '<i>odd</i>' });
+  result.warnings.push(warning('odd', '<i>odd</i>'));
   const page = await open(t, result, makeSeries(), { command: { command: `fit_pendulum --data '${name}'` } });
   assert.equal(await page.locator('#provenance dd').first().textContent(), name);
   assert.equal(await page.locator('#report img, #report b').count(), 0);
@@ -196,9 +196,9 @@ test('a name that looks like HTML is shown as text', async (t) => {
 test('an undersampled swing is drawn together with its slow apparent swing', async (t) => {
   const options = { models: ['viscous'], samples: 30, rate: 1 };
   const result = makeResult(options);
-  result.warnings = [{ code: 'aliased', message: 'less than twice a swing' }];
-  result.data.sampling = { ...result.data.sampling, frequency_hz: 0.7604, apparent_frequency_hz: null };
-  const series = { ...makeSeries(options), peaks: [], extrema: [], motions: makeMotions(options) };
+  result.warnings = [warning('aliased', 'less than twice a swing')];
+  Object.assign(result.recordings[0].sampling, { frequency_hz: 0.7604, apparent_frequency_hz: null });
+  const series = makeSeries(options, { peaks: [], extrema: [], motions: makeMotions(options) });
   const page = await open(t, result, series);
   // The motion of the fixture swings at 1 / 1.315 s = 0.7605 Hz: |0.7605 - 1| = 0.2395 Hz.
   const words = await page.locator('#validation').textContent();
@@ -208,8 +208,9 @@ test('an undersampled swing is drawn together with its slow apparent swing', asy
 });
 
 test('closed forms alone, without a fit', async (t) => {
-  const result = { ...makeResult({ models: ['viscous'] }), fits: [], comparison: null };
-  const page = await open(t, result, { ...makeSeries({ models: [] }), profiles: null });
+  const result = makeResult({ models: ['viscous'] });
+  result.fits = result.recordings[0].fits = [];
+  const page = await open(t, result, makeSeries({ models: [] }, { profiles: null }));
   assert.match(await page.locator('.banner').textContent(), /Nothing was fitted/);
   assert.match(await page.locator('#closed-forms tr', { hasText: 'log_decrement' }).textContent(), /0\.0394 ± 0\.0005/); // 0.03 1.315
   assert.ok((await ink(page, '#envelope .plot')) > 3000);

@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results and series of one recording for the tests.
 
-import { fitOf } from './fixture_fit.mjs';
+import { fitOf, recordingFitOf } from './fixture_fit.mjs';
 import { kPeriod, kRate, kRelease, kSigma, kZero, motion, seeded } from './fixture_motion.mjs';
 
+/** A warning, by default about the whole result. */
+export const warning = (code, text, more = {}) => ({
+  code,
+  message: text,
+  text,
+  finding: text,
+  explanation: null,
+  advice: null,
+  flags: [],
+  assumed: null,
+  law: null,
+  recordings: [],
+  parameters: [],
+  ...more,
+});
+
 /** A warning about one law. */
-const ofLaw = (law, code, text) => ({ code, message: `${law}: ${text}`, text, law, recordings: [] });
+const ofLaw = (law, code, text) => warning(code, text, { message: `${law}: ${text}`, law });
 
 function comparisonOf(fits, recommended) {
   const prediction = (standardized) => ({ rms_rad: 0.003 * standardized, standardized, samples: 900 });
@@ -67,72 +83,76 @@ export function makeResult({
   const fits = models.map(fitOf);
   const end = (samples - 1) / rate;
   return {
-    schema_version: 2,
+    schema_version: 3,
     tool: { name: 'fit_pendulum', version: '0.1.0' },
-    data: {
-      path,
-      sha256: 'ab'.repeat(32),
-      samples,
-      used_samples: samples,
-      duration_s: end,
-      sample_rate_hz: rate,
-      resolution_rad: 0.0035,
-      resolution_source: 'file',
-      clock_scale: 1,
-      clock_scale_std_dev: 0,
-      window_s: [0, end],
-      window_reason: 'begins: held, then released; ends: the end of the recording',
-      releases: [[0, end]],
-      release: 1,
-      start: 'release',
-      sampling: {
-        rate_hz: rate,
-        jitter_s: 0,
-        gaps: 0,
-        longest_gap_s: 0,
-        frequency_hz: 1 / kPeriod,
-        apparent_frequency_hz: 1 / kPeriod,
-        expected_frequency_hz: null,
-        samples_per_period: rate * kPeriod,
-        nyquist_margin: (rate * kPeriod) / 2,
-        start_counts: 240,
-        end_counts: 100,
-        saturated_samples: 0,
-      },
-    },
     rig: { bob_mass: { value: 0.38, std_dev: 0.001 }, rod_mass: 0.095, rod_length: 0.43, gravity: 9.81 },
-    calibration: {
-      schema_version: 1,
-      input: 'counts',
-      angle_unit: 'deg',
-      coefficients: [-49.6077, 0.198544],
-      covariance: null,
-    },
-    fits,
-    closed_forms: {
-      model: models[0],
-      linear: {
-        damped_frequency: { estimate: (2 * Math.PI) / kPeriod, std_error: 0.001, unit: 'rad/s' },
-        log_decrement: { estimate: kRate * kPeriod, std_error: 0.0005, unit: '1' },
-        periods: 12,
+    recordings: [
+      {
+        path,
+        sha256: 'ab'.repeat(32),
+        samples,
+        used_samples: samples,
+        duration_s: end,
+        sample_rate_hz: rate,
+        resolution_rad: 0.0035,
+        resolution_source: 'file',
+        clock_scale: 1,
+        clock_scale_std_dev: 0,
+        sensor: null,
+        window_s: [0, end],
+        window_reason: 'begins: held, then released; ends: the end of the recording',
+        releases: [[0, end]],
+        release: 1,
+        start: 'release',
+        sampling: {
+          rate_hz: rate,
+          jitter_s: 0,
+          gaps: 0,
+          longest_gap_s: 0,
+          frequency_hz: 1 / kPeriod,
+          apparent_frequency_hz: 1 / kPeriod,
+          expected_frequency_hz: null,
+          samples_per_period: rate * kPeriod,
+          nyquist_margin: (rate * kPeriod) / 2,
+          start_counts: 240,
+          end_counts: 100,
+          saturated_samples: 0,
+        },
+        calibration: {
+          schema_version: 1,
+          input: 'counts',
+          angle_unit: 'deg',
+          coefficients: [-49.6077, 0.198544],
+          covariance: null,
+        },
+        closed_forms: {
+          model: models[0],
+          linear: {
+            damped_frequency: { estimate: (2 * Math.PI) / kPeriod, std_error: 0.001, unit: 'rad/s' },
+            log_decrement: { estimate: kRate * kPeriod, std_error: 0.0005, unit: '1' },
+            periods: 12,
+          },
+          decrement: null,
+          envelopes: [{ term: 'viscous', shape: 'exponential', chi_square: 40, dof: 39, p: 0.43 }],
+          envelope: 'exponential (viscous friction alone, p 0.43)',
+          turning_points: 20,
+          noise_rad: kSigma,
+        },
+        fits: models.map(recordingFitOf),
       },
-      decrement: null,
-      envelopes: [{ term: 'viscous', shape: 'exponential', chi_square: 40, dof: 39, p: 0.43 }],
-      envelope: 'exponential (viscous friction alone, p 0.43)',
-      turning_points: 20,
-      noise_rad: kSigma,
-    },
+    ],
+    fits,
     comparison: models.length > 1 ? comparisonOf(fits, models[1]) : null,
     warnings: [
       ...(models.length > 1 ? [ofLaw('viscous', 'lack_of_fit', 'the residuals are more than noise; try another law')] : []),
-      { code: 'weakly_identifiable', message: 'viscous is weakly identifiable; record for longer' },
+      warning('weakly_identifiable', 'viscous is weakly identifiable; record for longer'),
       ...(models.includes('drag') ? [ofLaw('drag', 'at_bound', 'at the bound 0: drag; a simpler law has smaller errors')] : []),
     ],
   };
 }
 
-/** The series of makeResult() with the same options. `band`: with standard errors of the fitted readings. */
-export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 2000, rate = 100, band = null } = {}) {
+/** The series of one recording of makeResult() with the same options. `band`: with standard errors of the fitted readings. */
+export function seriesOf({ models = ['viscous', 'coulomb', 'drag'], samples = 2000, rate = 100, band = null } = {}) {
   const random = seeded(1);
   const noise = () => kSigma * (random() + random() + random() + random() + random() + random() - 3) * Math.SQRT2;
   const round = (x) => Math.round(x * 1e7) / 1e7;
@@ -179,6 +199,9 @@ export function makeSeries({ models = ['viscous', 'coulomb', 'drag'], samples = 
   };
 }
 
+/** The series of makeResult() with the same options. `more`: other members of the recording's series. */
+export const makeSeries = (options, more = {}) => [{ ...seriesOf(options), ...more }];
+
 /** The motions of an undersampled makeSeries() with the same options: 60 points a period from the release on. */
 export function makeMotions({ models, samples, rate }) {
   const interval_s = kPeriod / 60;
@@ -191,45 +214,67 @@ export function makeMotions({ models, samples, rate }) {
   return Object.fromEntries(models.map((model) => [model, one]));
 }
 
-/** A fit that failed: it has only a reason. */
+const kEmpty = { names: [], matrix: [] };
+const kNothing = {
+  parameters: {},
+  covariance: kEmpty,
+  correlation: kEmpty,
+  systematic_covariance: kEmpty,
+  std_error_method: null,
+  identifiability: [],
+  statistics: null,
+};
+
+/** What remains of a fit that failed: a reason. */
+export const failed = (fit, reason, more = {}) => ({
+  ...fit,
+  ...kNothing,
+  status: 'failed',
+  reason,
+  equation: null,
+  summary: {
+    ...fit.summary,
+    verdict: `No result with ${fit.model} (failed): ${reason}.`,
+    level: 'bad',
+    parameters: [],
+    derived: [],
+    equation: '',
+    textbook: '',
+    remarks: '',
+    assumptions: ['times in s (--time_column t:ms)'],
+    warnings: [],
+    ...more,
+  },
+  derived: {},
+  interval_method: null,
+});
+
+/** What remains of it for a recording. */
+export const failedPart = (fit, reason) => ({
+  ...fit,
+  ...kNothing,
+  amplitude_rad: null,
+  noise: null,
+  closed_form: [],
+  constancy: null,
+  constancy_reason: 'there is no fit',
+  separate: `failed: ${reason}`,
+});
+
+/** The result of a fit that failed. */
 export function makeFailed() {
   const result = makeResult({ models: ['coulomb'] });
-  const empty = { names: [], matrix: [] };
-  Object.assign(result.fits[0], {
-    status: 'failed',
-    reason: 'the pendulum never moves',
-    summary: {
-      ...result.fits[0].summary,
-      verdict: 'No result with coulomb (failed): the pendulum never moves.',
-      level: 'bad',
-      parameters: [],
-      derived: [],
-      equation: '',
-      textbook: '',
-      remarks: '',
-      assumptions: ['times in s (--time_column t:ms)'],
-      warnings: [],
-    },
-    parameters: {},
-    derived: {},
-    covariance: empty,
-    correlation: empty,
-    noise: null,
-    statistics: null,
-    std_error_method: null,
-    interval_method: null,
-    identifiability: [],
-    closed_form: [],
-    constancy: null,
-    constancy_reason: 'there is no fit',
-  });
-  Object.assign(result, { closed_forms: null, reason: 'there are no turning points', warnings: [] });
-  Object.assign(result.data, {
+  const reason = 'the pendulum never moves';
+  const [recording] = result.recordings;
+  Object.assign(recording, {
     sampling: null,
     resolution_rad: null,
     resolution_source: null,
     start: null,
     window_reason: null,
+    closed_forms: null,
+    reason: 'there are no turning points',
+    fits: recording.fits.map((fit) => failedPart(fit, reason)),
   });
-  return result;
+  return { ...result, fits: result.fits.map((fit) => failed(fit, reason)), warnings: [] };
 }

@@ -56,43 +56,88 @@ function summaryOf(model) {
   };
 }
 
-/** The fit of the model with this name. */
-export function fitOf(model) {
-  const parameters = {
-    inertia: parameter(0.07899964917915511, 2.7734679124217884e-6, 'kg m^2', {
-      ...kRigError,
-      error_budget: { noise: 2.7734679124217884e-6, rig: 4.1e-5 },
-    }),
-    viscous: parameter(0.0030015526573362564, 9.688622251656585e-5, 'N m s/rad'),
-    ...(model === 'viscous' ? {} : { coulomb: parameter(0.0039898698406139015, 0.00011368461537974497, 'N m') }),
-    ...(model === 'drag'
-      ? {
-          drag: parameter(0, null, 'N m s^2/rad^2', {
-            at_bound: true,
-            interval95: [0, 0.001],
-            reason: 'at its bound 0',
-          }),
-        }
-      : {}),
-    release_angle: parameter(kAmplitude, 0.0002, 'rad'),
-    release_time: parameter(kRelease, 0.0001, 's'),
-    zero_angle: parameter(kZero, null, 'rad', { fixed: true, reason: 'held by --fix' }),
-  };
+/** What all recordings share. */
+const sharedParameters = (model) => ({
+  inertia: parameter(0.07899964917915511, 2.7734679124217884e-6, 'kg m^2', {
+    ...kRigError,
+    error_budget: { noise: 2.7734679124217884e-6, rig: 4.1e-5 },
+  }),
+  viscous: parameter(0.0030015526573362564, 9.688622251656585e-5, 'N m s/rad'),
+  ...(model === 'viscous' ? {} : { coulomb: parameter(0.0039898698406139015, 0.00011368461537974497, 'N m') }),
+  ...(model === 'drag'
+    ? {
+        drag: parameter(0, null, 'N m s^2/rad^2', {
+          at_bound: true,
+          interval95: [0, 0.001],
+          reason: 'at its bound 0',
+        }),
+      }
+    : {}),
+});
+
+/** Parts that are the same for the shared and for all parameters: the start of the recording has no correlations here. */
+function errorsOf(model) {
   const names = ['inertia', 'viscous', ...(model === 'viscous' ? [] : ['coulomb'])];
   const matrix = names.map((_row, i) => names.map((_column, j) => (i === j ? 1 : i + j === 3 ? -0.995 : 0.24)));
+  return {
+    covariance: { names, matrix },
+    correlation: { names, matrix },
+    systematic_covariance: { names: [], matrix: [] },
+    std_error_method: "covariance sigma^2 (J'J)^-1, residuals taken as independent",
+  };
+}
+
+const kStatistics = {
+  rms_residual_rad: kSigma,
+  log_likelihood: -2889,
+  aic: 5792.3,
+  aicc: 5792.4,
+  bic: 5831.6,
+  effective_samples: 2000,
+};
+
+/** The fit of the model with this name to one recording. */
+export function fitOf(model) {
+  const parameters = sharedParameters(model);
+  const errors = errorsOf(model);
   return {
     model,
     status: 'converged',
     reason: 'the estimates are within 0.1 standard errors of the minimum',
+    equation: "0.079 th'' + 0.003 th' + 1.803 sin th = 0",
     summary: summaryOf(model),
+    shared: Object.keys(parameters),
     parameters,
     derived: {
       gravity_over_inertia: { estimate: 22.83, std_error: 0.0008, interval95: [22.828, 22.832], unit: '1/s^2' },
       damping_ratio: { estimate: 0.004, std_error: 0.0001, interval95: null, unit: '1' },
     },
-    covariance: { names, matrix },
-    correlation: { names, matrix },
-    systematic_covariance: { names: [], matrix: [] },
+    ...errors,
+    interval_method: 'estimate ± 1.961 standard errors',
+    identifiability: errors.covariance.names.map((name) => ({
+      parameter: name,
+      verdict: name === 'viscous' ? 'weakly identifiable' : 'identifiable',
+      direction: [],
+      advice: name === 'viscous' ? 'record for longer' : null,
+    })),
+    statistics: kStatistics,
+    homogeneity: null,
+    solver: { iterations: 5, evaluations: 30, termination: 'Function tolerance reached.' },
+  };
+}
+
+/** The part of fitOf() that belongs to the recording. */
+export function recordingFitOf(model) {
+  return {
+    model,
+    amplitude_rad: 0.2,
+    parameters: {
+      release_angle: parameter(kAmplitude, 0.0002, 'rad'),
+      release_time: parameter(kRelease, 0.0001, 's'),
+      zero_angle: parameter(kZero, null, 'rad', { fixed: true, reason: 'held by --fix' }),
+    },
+    ...errorsOf(model),
+    identifiability: [],
     noise: {
       model: 'gaussian',
       reason: 'the noise is larger than the resolution, so readings are treated as continuous',
@@ -103,25 +148,7 @@ export function fitOf(model) {
       lag1_correlation: -0.03,
       correlation: 'white',
     },
-    std_error_method: "covariance sigma^2 (J'J)^-1, residuals taken as independent",
-    interval_method: 'estimate ± 1.961 standard errors',
-    identifiability: names.map((name) => ({
-      parameter: name,
-      verdict: name === 'viscous' ? 'weakly identifiable' : 'identifiable',
-      direction: [],
-      advice: name === 'viscous' ? 'record for longer' : null,
-    })),
-    statistics: {
-      rms_residual_rad: kSigma,
-      log_likelihood: -2889,
-      aic: 5792.3,
-      aicc: 5792.4,
-      bic: 5831.6,
-      durbin_watson: 2.07,
-      ljung_box_p: 0.68,
-      runs_p: 0.83,
-      effective_samples: 2000,
-    },
+    statistics: { ...kStatistics, durbin_watson: 2.07, ljung_box_p: 0.68, runs_p: 0.83 },
     closed_form: [
       {
         quantity: 'inertia_small_angle',
@@ -160,7 +187,6 @@ export function fitOf(model) {
         reason: null,
       },
     ],
-    solver: { iterations: 5, evaluations: 30, termination: 'Function tolerance reached.' },
     constancy: {
       verdict: 'inertia and friction are constants of the recording',
       constant: true,
@@ -196,5 +222,6 @@ export function fitOf(model) {
         ],
       },
     },
+    separate: 'converged',
   };
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results and series of several recordings that were fitted together, for the tests.
 
-import { makeResult, makeSeries } from './fixture.mjs';
-
-const kShared = ['inertia', 'viscous', 'coulomb', 'drag'];
+import { failed, failedPart, makeResult, seriesOf, warning } from './fixture.mjs';
 
 /** Estimates from each recording alone, near the joint estimate. `odd`: the last inertia is far from that estimate. */
 function agreementOf(name, { estimate, std_error: error, unit }, count, odd) {
@@ -55,66 +53,58 @@ function homogeneityOf(parameters, count, odd) {
 }
 
 /** The summary of a joint fit: only shared parameters, and whether the recordings agree. */
-function jointSummary(summary, count, odd) {
+function jointSummary({ summary, shared }, count, odd) {
   const own = verdictOf(count, odd);
   return {
     ...summary,
     agreement: `${own.slice(0, 1).toUpperCase()}${own.slice(1)}.`,
     ...(odd ? { level: 'caution', verdict: 'The errors below assume that the recordings agree: do not quote them.' } : {}),
-    parameters: summary.parameters.filter(({ name }) => kShared.includes(name)),
+    parameters: summary.parameters.filter(({ name }) => shared.includes(name)),
     warnings: ['recording 2 (folder/run2.csv): readings are missing in 1 place'],
   };
 }
 
 /** Makes a joint fit of `count` recordings from the fit of one. */
-function jointFit(fit, count, odd) {
-  const { noise, closed_form, constancy, statistics, parameters, ...rest } = fit;
-  const shared = Object.keys(parameters).filter((name) => kShared.includes(name));
-  const own = Object.fromEntries(shared.map((name) => [name, parameters[name]]));
+const jointFit = (fit, count, odd) => ({
+  ...fit,
+  summary: jointSummary(fit, count, odd),
+  statistics: { ...fit.statistics, effective_samples: 2000 * count },
+  homogeneity: homogeneityOf(fit.parameters, count, odd),
+});
+
+/** The part of recording k, counted from 0, made from that of one recording. */
+function partOf({ parameters, noise, ...rest }, k) {
+  const { release_angle: angle, release_time: time } = parameters;
   return {
     ...rest,
-    equation: "0.079 th'' + 0.003 th' + 1.803 sin th = 0",
-    shared,
-    summary: jointSummary(fit.summary, count, odd),
-    parameters: own,
-    statistics: { rms_residual_rad: 0.003, log_likelihood: -1, aic: 2, aicc: 2, bic: 3, effective_samples: 2000 * count },
-    homogeneity: homogeneityOf(own, count, odd),
-    runs: Array.from({ length: count }, (_unused, k) => ({
-      path: `folder/run${k + 1}.csv`,
-      release: 1,
-      amplitude_rad: 0.1 * (k + 1),
-      parameters: {
-        ...parameters,
-        release_angle: { ...parameters.release_angle, estimate: 0.4 + 0.01 * k },
-        release_time: { ...parameters.release_time, estimate: 1 + 0.5 * k },
-      },
-      covariance: fit.covariance,
-      correlation: fit.correlation,
-      systematic_covariance: fit.systematic_covariance,
-      noise: { ...noise, sigma_rad: 0.003 + 0.001 * k },
-      std_error_method: fit.std_error_method,
-      identifiability: fit.identifiability,
-      statistics,
-      closed_form,
-      constancy,
-      separate: k === 1 ? 'not_identifiable: coulomb is not determined' : 'converged',
-    })),
+    amplitude_rad: 0.1 * (k + 1),
+    parameters: {
+      ...parameters,
+      release_angle: { ...angle, estimate: 0.4 + 0.01 * k },
+      release_time: { ...time, estimate: 1 + 0.5 * k },
+    },
+    noise: { ...noise, sigma_rad: 0.003 + 0.001 * k },
+    separate: k === 1 ? 'not_identifiable: coulomb is not determined' : 'converged',
   };
 }
 
 /** The result of `count` recordings. `odd`: the last one disagrees. */
 export function makeJointResult({ models = ['viscous', 'coulomb', 'drag'], count = 3, odd = false } = {}) {
   const one = makeResult({ models });
-  const each = (make) => Array.from({ length: count }, (_unused, k) => make(k));
+  const [recording] = one.recordings;
   return {
     ...one,
-    data: each((k) => ({ ...one.data, path: `folder/run${k + 1}.csv`, sha256: `${k + 1}a`.repeat(32) })),
-    calibration: each((k) => (k === 0 ? null : one.calibration)),
-    closed_forms: each(() => one.closed_forms),
+    recordings: Array.from({ length: count }, (_unused, k) => ({
+      ...recording,
+      path: `folder/run${k + 1}.csv`,
+      sha256: `${k + 1}a`.repeat(32),
+      calibration: k === 0 ? null : recording.calibration,
+      fits: recording.fits.map((fit) => partOf(fit, k)),
+    })),
     fits: one.fits.map((fit) => jointFit(fit, count, odd)),
     warnings: [
-      ...(odd ? [{ code: 'recordings_disagree', message: verdictOf(count, odd) }] : []),
-      { code: 'gaps', message: 'recording 2 (folder/run2.csv): readings are missing in 1 place', recordings: [2] },
+      ...(odd ? [warning('recordings_disagree', verdictOf(count, odd))] : []),
+      warning('gaps', 'recording 2 (folder/run2.csv): readings are missing in 1 place', { recordings: [2] }),
     ],
   };
 }
@@ -122,7 +112,7 @@ export function makeJointResult({ models = ['viscous', 'coulomb', 'drag'], count
 /** The series of makeJointResult(). Each recording is released 0.5 s later than the previous one. */
 export function makeJointSeries({ models = ['viscous', 'coulomb', 'drag'], count = 3, samples = 2000 } = {}) {
   return Array.from({ length: count }, (_unused, k) => {
-    const series = makeSeries({ models, samples });
+    const series = seriesOf({ models, samples });
     const later = (t) => Math.round((t + 0.5 * k) * 1e7) / 1e7;
     return { ...series, time_s: series.time_s.map(later), peaks: series.peaks.map((peak) => ({ ...peak, time_s: later(peak.time_s) })) };
   });
@@ -131,53 +121,31 @@ export function makeJointSeries({ models = ['viscous', 'coulomb', 'drag'], count
 /** A joint fit that failed: only the fits of the single recordings remain. */
 export function makeJointFailed() {
   const result = makeJointResult({ models: ['coulomb'] });
-  const empty = { names: [], matrix: [] };
-  const nothing = { parameters: {}, covariance: empty, correlation: empty, systematic_covariance: empty };
-  const [fit] = result.fits;
-  Object.assign(fit, nothing, {
-    status: 'failed',
-    reason: 'recording 2: the pendulum never moves',
-    summary: {
-      ...fit.summary,
-      verdict: 'No result with coulomb (failed): recording 2: the pendulum never moves.',
-      level: 'bad',
-      agreement: 'Not tested: fewer than two recordings tell them.',
-      parameters: [],
-      derived: [],
-      equation: '',
-      textbook: '',
-      remarks: '',
-      assumptions: ['times in s (--time_column t:ms)'],
-    },
-    equation: null,
-    derived: {},
-    statistics: null,
-    std_error_method: null,
-    interval_method: null,
-    identifiability: [],
-    homogeneity: {
-      statistic: null,
-      dof: 0,
-      p: null,
-      reason: 'fewer than two recordings tell them',
-      agrees: null,
-      outliers: [],
-      verdict: 'not tested: fewer than two recordings tell them',
-      parameters: {},
-      amplitude_dependence: [],
-    },
-    runs: fit.runs.map((run) => ({
-      ...run,
-      ...nothing,
-      amplitude_rad: null,
-      noise: null,
-      statistics: null,
-      identifiability: [],
-      closed_form: [],
-      constancy: null,
-      constancy_reason: 'there is no fit',
-      separate: 'failed: the pendulum never moves',
+  const reason = 'the pendulum never moves';
+  const unknown = 'fewer than two recordings tell them';
+  const homogeneity = {
+    statistic: null,
+    dof: 0,
+    p: null,
+    reason: unknown,
+    agrees: null,
+    outliers: [],
+    verdict: `not tested: ${unknown}`,
+    parameters: {},
+    amplitude_dependence: [],
+  };
+  return {
+    ...result,
+    recordings: result.recordings.map((one) => ({
+      ...one,
+      calibration: null,
+      closed_forms: null,
+      fits: one.fits.map((fit) => failedPart(fit, reason)),
     })),
-  });
-  return { ...result, calibration: [null, null, null], closed_forms: [null, null, null], warnings: [] };
+    fits: result.fits.map((fit) => ({
+      ...failed(fit, `recording 2: ${reason}`, { agreement: `Not tested: ${unknown}.` }),
+      homogeneity,
+    })),
+    warnings: [],
+  };
 }

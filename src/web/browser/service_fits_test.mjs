@@ -59,7 +59,7 @@ test('a fit is renamed, and the list shows name, file, law, window and the total
   assert.match(await row.locator('th').textContent(), /^Heavy <bob>recorded\.csv$/);
   assert.equal(await row.locator('[data-label=Law]').textContent(), 'coulomb');
   const [from, to] = (await row.locator('[data-label=Window]').textContent()).match(/[\d.]+/g).map(Number);
-  assert.deepEqual([from, to], result.data.window_s);
+  assert.deepEqual([from, to], result.recordings[0].window_s);
   await row.getByRole('link').click();
   await page.getByRole('heading', { name: 'Heavy <bob>', level: 1 }).waitFor();
   await rename(page, '');
@@ -70,12 +70,14 @@ test('sliders change the simulated swing, and "Back to the fit" returns', async 
   const id = await service.fit('textbook_rig.csv', 'model=coulomb', 'textbook_rig.json');
   const page = await openView(t, service, `/fits/${id}`);
   await shownFit(page);
-  const { parameters, statistics } = (await service.json(`/v1/fits/${id}`)).fits[0];
+  const { fits, recordings } = await service.json(`/v1/fits/${id}`);
+  const [{ parameters, statistics }] = fits;
+  const count = Object.keys({ ...parameters, ...recordings[0].fits[0].parameters }).length;
   const rms = async () => Number(/^Rms residual (\S+)/.exec(await page.locator('.slider-rms').textContent())[1]);
   const ofFit = await rms();
   assert.ok(Math.abs(ofFit - kDegrees * statistics.rms_residual_rad) < 1e-3 * ofFit, String(ofFit));
   const slider = page.getByRole('slider', { name: /moment of inertia/ });
-  assert.equal(await page.locator('.sliders input').count(), Object.keys(parameters).length);
+  assert.equal(await page.locator('.sliders input').count(), count);
   const before = await slider.getAttribute('aria-valuetext');
   assert.match(before, /^0\.0\d+\skg\sm²$/);
   assert.ok(Math.abs(Number.parseFloat(before) / parameters.inertia.estimate - 1) < 1e-3);

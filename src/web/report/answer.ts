@@ -5,6 +5,7 @@ import { banner, warningList } from '../shared/banner';
 import { details, el, symbolElement, text, type Child } from '../shared/dom';
 import { sentence, typeset } from '../shared/prose';
 import type { Comparison, Fit, FitSummary, Result, SummaryQuantity } from '../shared/result_types';
+import { plusMinus } from '../shared/rounding';
 import { section } from '../shared/section';
 import { symbolOf, unitText, wordsOf } from '../shared/units';
 import { budgetBar, budgetLegend, sourcesOf } from './budget';
@@ -26,10 +27,10 @@ function withSymbols(words: string): HTMLElement {
 const kPhone = '(max-width: 560px)';
 
 /** Which law is recommended, and why; null if only one law was fitted. */
-export function recommendation(comparison: Comparison | null | undefined, shown: string | null): HTMLElement | null {
+export function recommendation(comparison: Comparison | null, shown: string | null): HTMLElement | null {
   if (!comparison) return null;
   const { recommended } = comparison;
-  const why = sentence(comparison.reason ?? '');
+  const why = sentence(comparison.reason);
   const words =
     recommended === null
       ? 'No law is recommended.'
@@ -48,11 +49,21 @@ function verdictBanner(summary: FitSummary, recommended: HTMLElement | null): HT
   return banner({ level, title: typeset(title), sentence: typeset(rest) }, recommended);
 }
 
-function answerRow(fit: Fit, quantity: SummaryQuantity, remark: string | null): HTMLElement {
+/** If the recordings scatter and no single one disagrees: the random-effects mean, whose error includes the scatter. */
+function remarkOf({ homogeneity, status }: Fit, name: string): string | null {
+  const scatter = homogeneity?.parameters[name]?.random_effects;
+  const scattered = status === 'converged' && homogeneity?.agrees === false && homogeneity.outliers.length === 0;
+  return scattered && scatter && scatter.mean !== null
+    ? `random effects: ${plusMinus(scatter.mean, scatter.std_error)}`
+    : null;
+}
+
+function answerRow(fit: Fit, quantity: SummaryQuantity): HTMLElement {
   const { name, unit, source } = quantity;
   const symbol = symbolOf(name, unit === '' ? '1' : unit);
   const parameter = fit.parameters[name];
   const bar = parameter ? budgetBar(parameter) : null;
+  const remark = remarkOf(fit, name);
   return el(
     'tr',
     { 'data-parameter': name },
@@ -67,12 +78,12 @@ function answerRow(fit: Fit, quantity: SummaryQuantity, remark: string | null): 
   );
 }
 
-/** The parameters with their total errors. `remark`: a further line for a parameter. */
-function answerTable(fit: Fit, summary: FitSummary, remark: (name: string) => string | null): HTMLElement {
+/** The parameters with their total errors. */
+function answerTable(fit: Fit, summary: FitSummary): HTMLElement {
   const sources = sourcesOf(fit);
   const systematic = sources.some(({ key }) => key !== 'noise');
   const head = ['Parameter', systematic ? 'Value ± total error' : 'Value ± standard error', 'Error from'];
-  const rows = summary.parameters.map((quantity) => answerRow(fit, quantity, remark(quantity.name)));
+  const rows = summary.parameters.map((quantity) => answerRow(fit, quantity));
   const caption = el('caption', { class: 'unseen' }, `Parameters of ${fit.model}`);
   const heads = el('tr', {}, ...head.map((words) => el('th', { scope: 'col' }, words)));
   const table = el('table', { class: 'answer-table' }, caption, el('thead', {}, heads), el('tbody', {}, ...rows));
@@ -93,7 +104,7 @@ function assumedText({ assumptions = [] }: FitSummary): HTMLElement | null {
 }
 
 /** Warnings of the law that is shown: in short, and with their explanations. */
-function warningPart(summary: FitSummary, result: Pick<Result, 'warnings'>, model: string): HTMLElement | null {
+function warningPart(summary: FitSummary, result: Result, model: string): HTMLElement | null {
   if (summary.warnings.length === 0) return null;
   const list = el('ul', { class: 'warnings' }, ...summary.warnings.map((words) => el('li', {}, sentence(words))));
   const count = summary.warnings.length;
@@ -109,15 +120,8 @@ export function answerSection(parts: Child[]): HTMLElement {
   return element;
 }
 
-export interface Answer {
-  fit: Fit;
-  result: Pick<Result, 'fits' | 'warnings' | 'comparison'>;
-  swing: HTMLElement | null;
-  remark?: (name: string) => string | null;
-}
-
 /** The first screen of a report. */
-export function answerPart({ fit, result, swing, remark = () => null }: Answer): Child[] {
+export function answerPart(fit: Fit, result: Result, swing: HTMLElement | null): Child[] {
   const { summary } = fit;
   const recommended = recommendation(result.comparison, fit.model);
   if (!summary) {
@@ -138,7 +142,7 @@ export function answerPart({ fit, result, swing, remark = () => null }: Answer):
   );
   const values =
     summary.parameters.length > 0
-      ? answerTable(fit, summary, remark)
+      ? answerTable(fit, summary)
       : text('There are no parameters to show.', 'absent');
   return [verdictBanner(summary, recommended), el('div', { class: 'answer' }, values, swing, more)];
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 
-import type { Result, Series } from '../shared/result_types';
+import type { Recording, Series } from '../shared/result_types';
 import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf } from './envelope';
 
 describe('amplitudes', () => {
@@ -22,9 +22,9 @@ describe('amplitudes', () => {
 
   test('the decay rate is the log decrement over the period', () => {
     const linear = { log_decrement: { estimate: 0.05 }, damped_frequency: { estimate: Math.PI } };
-    const result = { closed_forms: { linear }, data: { clock_scale: 1 } } as unknown as Result;
-    expect(decrementRate(result)).toBeCloseTo(0.025, 12);
-    expect(decrementRate({ ...result, closed_forms: null })).toBeNull();
+    const recording = { closed_forms: { linear }, clock_scale: 1 } as unknown as Recording;
+    expect(decrementRate(recording)).toBeCloseTo(0.025, 12);
+    expect(decrementRate({ ...recording, closed_forms: null })).toBeNull();
   });
 
   test('peaks are preferred to extrema, and the zero may drift', () => {

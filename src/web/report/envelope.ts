@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Amplitudes of the swing: turning points, and curves to compare them with. */
 
-import type { Result, Series } from '../shared/result_types';
+import type { Recording, Series } from '../shared/result_types';
 
 /** A turning point: time [s], amplitude and its standard error in the unit of the readings. */
 export interface Turn {
@@ -61,12 +61,12 @@ export function zeroOf(parameters: Record<string, { estimate: number | null }>, 
 }
 
 /** Decay rate of the amplitudes by the log decrement, δ ω_d / 2π, 1/s; null without a log decrement. */
-export function decrementRate(result: Result): number | null {
-  const linear = result.closed_forms?.linear;
+export function decrementRate({ closed_forms: forms, clock_scale: scale }: Recording): number | null {
+  const linear = forms?.linear;
   const decrement = linear?.log_decrement?.estimate;
   const frequency = linear?.damped_frequency?.estimate;
   if (typeof decrement !== 'number' || typeof frequency !== 'number') return null;
-  return (decrement * frequency * (result.data.clock_scale || 1)) / (2 * Math.PI);
+  return (decrement * frequency * (scale || 1)) / (2 * Math.PI);
 }
 
 /**

@@ -5,12 +5,14 @@ import '../shared/style.css';
 import 'uplot/dist/uPlot.min.css';
 
 import { embedded, start } from '../shared/embedded';
+import { fillPage } from '../shared/page';
 import type { Command, Result, Series } from '../shared/result_types';
-import type { JointResult } from './joint/joint_types';
-import { render } from './render';
+import { reportContent } from './render';
+import { makeReport } from './report';
 
 start('report', 'report', (root) => {
-  const result = embedded<Result | JointResult>('result');
+  const result = embedded<Result>('result');
   if (!result) throw new Error('There is no result in this file.');
-  render(result, embedded<Series | Series[]>('series'), embedded<Command>('command'), root);
+  const report = makeReport(result, embedded<Series[]>('series'), embedded<Command>('command'));
+  fillPage(root, reportContent(report));
 });

@@ -128,7 +128,7 @@ function budgetTable(fit: Fit): HTMLElement | null {
 }
 
 function derivedTable(fit: Fit): HTMLElement | null {
-  const rows = Object.entries(fit.derived ?? {});
+  const rows = Object.entries(fit.derived);
   if (rows.length === 0) return null;
   const systematic = rows.some(([, derived]) => derived.systematic_std_error !== undefined);
   const number = 'number' as const;
@@ -150,7 +150,7 @@ function derivedTable(fit: Fit): HTMLElement | null {
 
 /** Parameters that are not identifiable, and what to measure instead. */
 function advice(fit: Fit, heading: string): HTMLElement | null {
-  const open = (fit.identifiability ?? []).filter((known) => known.verdict !== 'identifiable');
+  const open = fit.identifiability.filter((known) => known.verdict !== 'identifiable');
   if (open.length === 0) return null;
   const list = el('ul');
   for (const known of open) {
@@ -194,6 +194,6 @@ function parameterPart(fit: Fit, adviceHeading = 'What the recording does not de
 
 /** All parameters, their errors by source, and derived quantities; null without a fit. */
 export function parameterSection(fit: Fit | null, adviceHeading?: string): HTMLElement | null {
-  if (!fit || Object.keys(fit.parameters ?? {}).length === 0) return null;
+  if (!fit || Object.keys(fit.parameters).length === 0) return null;
   return section('parameters', 'Parameters and their errors', parameterPart(fit, adviceHeading));
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Builds the report from the result, with or without the series. */
+/** Heading and sections of a report, with or without the series. */
 
 import { fileName } from '../shared/names';
-import { fillPage, type Content } from '../shared/page';
-import type { Command, Result, Series } from '../shared/result_types';
+import type { Content } from '../shared/page';
+import { inList } from '../shared/prose';
 import { significant } from '../shared/rounding';
-import { isJoint } from './joint/joint';
-import { jointContent } from './joint/joint_content';
-import type { JointResult } from './joint/joint_types';
+import { agreementSection } from './joint/agreement_section';
+import { oneRecordingPart } from './joint/one_recording';
+import { overlaySection } from './joint/overlay_section';
+import { recordingsSection } from './joint/recordings_section';
 import { parameterSection } from './parameters';
-import { makeReport, shownFit, type Report } from './report';
+import { isSeveral, recordingFile, shownFit, type Report } from './report';
 import { closedFormSection } from './sections/closed_form_section';
 import { comparisonSection } from './sections/comparison_section';
 import { constancySection } from './sections/constancy_section';
@@ -23,58 +24,74 @@ import { residualSection } from './sections/residual_section';
 import { validationSection } from './sections/validation_section';
 import { verdictSection } from './sections/verdict_section';
 
-const kSections: ((report: Report) => HTMLElement | null)[] = [
-  verdictSection,
-  fitSection,
-  (report) => parameterSection(shownFit(report)),
-  validationSection,
-  envelopeSection,
-  phaseSection,
-  residualSection,
-  correlationSection,
-  profileSection,
-  comparisonSection,
-  constancySection,
-  closedFormSection,
-  rigSection,
-  provenanceSection,
+type Sections = (HTMLElement | null)[];
+
+function sectionsOfOne(report: Report): Sections {
+  const [one] = report.recordings;
+  return [
+    fitSection(one),
+    parameterSection(shownFit(report)),
+    validationSection(one),
+    envelopeSection(one),
+    phaseSection(one),
+    residualSection(one),
+    correlationSection(report),
+    profileSection(report),
+    comparisonSection(report),
+    constancySection(one),
+    closedFormSection(one),
+  ];
+}
+
+const sectionsOfSeveral = (report: Report, changed: () => void): Sections => [
+  agreementSection(report),
+  parameterSection(shownFit(report), 'What the recordings do not determine'),
+  recordingsSection(report),
+  overlaySection(report),
+  oneRecordingPart(report, changed),
+  correlationSection(report),
+  profileSection(report),
+  comparisonSection(report),
 ];
 
-/** The report of one recording. `name` is its heading. */
-export function reportContent(
-  result: Result,
-  series: Series | null,
-  command: Command | null,
-  name = fileName(result.data.path),
-): Content {
-  const report = makeReport(result, series, command);
-  const { data, fits, comparison } = result;
+const kMostNames = 6;
+
+/** "a.csv, b.csv and 3 more" */
+function names({ recordings }: Report): string {
+  const all = recordings.map(recordingFile);
+  return all.length <= kMostNames
+    ? inList(all)
+    : inList([...all.slice(0, kMostNames - 1), `${all.length - kMostNames + 1} more`]);
+}
+
+/** `name`: of a single recording. */
+function titleOf(report: Report, name: string | undefined): Pick<Content, 'title' | 'heading' | 'facts'> {
+  const all = report.recordings.map(({ data }) => data);
+  if (isSeveral(report)) {
+    const title = `${all.length} recordings`;
+    const samples = all.reduce((sum, data) => sum + data.used_samples, 0);
+    return { title, heading: `${title}, fitted together`, facts: `${names(report)} · ${samples} samples` };
+  }
+  const [{ path, used_samples: used, samples, duration_s: duration, sample_rate_hz: rate }] = all;
+  const title = name ?? fileName(path);
+  const facts = `${used} of ${samples} samples · ${significant(duration, 4)} s · ${significant(rate, 4)} Hz`;
+  return { title, heading: title, facts };
+}
+
+/** The report. `name` is its heading, by default the name of the file. */
+export function reportContent(report: Report, name?: string): Content {
+  const { fits, comparison } = report.result;
+  const own = isSeveral(report) ? sectionsOfSeveral : sectionsOfOne;
   return {
     kind: 'Pendulum report',
-    title: name,
-    heading: name,
-    facts: `${data.used_samples} of ${data.samples} samples · ${significant(data.duration_s, 4)} s · ${significant(data.sample_rate_hz, 4)} Hz`,
+    ...titleOf(report, name),
     models: fits,
     recommended: comparison?.recommended,
     shown: report.shown,
     show: (index) => (report.shown = index),
-    sections: () => kSections.flatMap((make) => make(report) ?? []),
+    sections: (changed) => {
+      const made = [verdictSection(report), ...own(report, changed), rigSection(report), provenanceSection(report)];
+      return made.flatMap((part) => part ?? []);
+    },
   };
-}
-
-/**
- * Fills `root` with the report of one recording, or of a joint fit, which has one series for each recording. series and
- * command may be null; sections that need them then say that they are missing. Outside `root` only the title and the
- * theme of the page change.
- */
-export function render(
-  result: Result | JointResult,
-  series: Series | Series[] | null,
-  command: Command | null,
-  root: HTMLElement,
-): void {
-  const made = isJoint(result)
-    ? jointContent(result, Array.isArray(series) ? series : null, command)
-    : reportContent(result, Array.isArray(series) ? null : series, command);
-  fillPage(root, made);
 }

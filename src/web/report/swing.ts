@@ -4,7 +4,7 @@
 import { el } from '../shared/dom';
 import { swatch } from '../shared/marks';
 import { inDegrees, quantityOf, unitText } from '../shared/units';
-import { sharedView, type Report } from './report';
+import { sharedView, type OneRecording } from './report';
 import { bandWords, makeTraces } from './sections/fit_section';
 import { TimePlot } from './time_plot';
 
@@ -15,13 +15,13 @@ const kNarrowHeight = 190;
 export const swingHeight = (): number => (window.innerWidth < kNarrow ? kNarrowHeight : kHeight);
 
 /** Null without samples. It shows the same time range as the plots of section "fit". */
-export function swingFigure(report: Report): HTMLElement | null {
-  const { samples } = report;
+export function swingFigure(one: OneRecording): HTMLElement | null {
+  const { samples } = one;
   if (!samples) return null;
-  const traces = makeTraces(report, samples).fitted.filter((trace) => trace.shown);
+  const traces = makeTraces(one, samples).fitted.filter((trace) => trace.shown);
   const degrees = inDegrees(samples.unit);
   const names = traces.map((trace) => trace.name).join(' and ');
-  const plot = new TimePlot(traces, sharedView(report, samples), {
+  const plot = new TimePlot(traces, sharedView(one, samples), {
     name: 'swing',
     sentence: () => `The swing: ${names}, ${quantityOf(samples.unit)} over time.`,
     xLabel: 'time [s]',

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, test } from 'vitest';
 
-import type { Parameter } from '../shared/result_types';
+import { makeReport } from '../report/report';
+import type { Parameter, Result } from '../shared/result_types';
 import { commandOf } from './command';
 import { stem } from './download';
 import { isTable, numberFrom, pastedRows } from './forms/numbers';
@@ -266,18 +267,14 @@ describe('lists of fits', () => {
 const parameter = (estimate: number | null, std_error: number | null, unit = 's'): Parameter =>
   ({ estimate, std_error, interval95: null, unit }) as unknown as Parameter;
 
-const compared = (id: string, sha256: string | null, models: Record<string, Parameter>[]): Compared =>
-  ({
-    id,
-    name: id,
-    report: {
-      shown: 0,
-      result: {
-        data: { sha256 },
-        fits: models.map((parameters, i) => ({ model: `m${i}`, status: 'converged', parameters })),
-      },
-    },
-  }) as unknown as Compared;
+const compared = (id: string, sha256: string | null, models: Record<string, Parameter>[]): Compared => {
+  const own = { parameters: {}, identifiability: [] };
+  const result = {
+    recordings: [{ sha256, fits: models.map(() => own) }],
+    fits: models.map((parameters, i) => ({ model: `m${i}`, status: 'converged', parameters, identifiability: [] })),
+  } as unknown as Result;
+  return { id, name: id, created: '', report: makeReport(result, null, null) };
+};
 
 describe('comparisons', () => {
   test('differences are in combined standard errors', () => {

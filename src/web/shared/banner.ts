@@ -3,7 +3,7 @@
 
 import { el } from './dom';
 import { sentence } from './prose';
-import type { Result } from './result_types';
+import type { Warning } from './result_types';
 
 export type Level = 'good' | 'caution' | 'bad';
 
@@ -26,7 +26,9 @@ export function banner({ level, title, sentence: words }: Headline, more: HTMLEl
   );
 }
 
-export function warningList(list: Result['warnings']): HTMLElement {
+type Told = Pick<Warning, 'code' | 'message'>;
+
+export function warningList(list: Told[]): HTMLElement {
   const items = el('ul', { class: 'warnings' });
   for (const { code, message } of list) {
     items.append(el('li', {}, el('span', { class: 'code' }, code.replace(/_/g, ' ')), ' ', sentence(message)));
@@ -34,7 +36,7 @@ export function warningList(list: Result['warnings']): HTMLElement {
   return items;
 }
 
-export function warnings({ warnings: list }: Pick<Result, 'warnings'>): HTMLElement | null {
+export function warnings({ warnings: list }: { warnings: Told[] }): HTMLElement | null {
   if (list.length === 0) return el('p', { class: 'quiet' }, 'No warnings.');
   return el('div', {}, el('h3', {}, list.length === 1 ? 'Warning' : `Warnings (${list.length})`), warningList(list));
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The result JSON of fit_pendulum, schema_version 2 (result.schema.json). SI units; a missing number is null. */
+/** The result JSON of fit_pendulum, schema_version 3 (result.schema.json). SI units; a missing number is null. */
 
+import type { Homogeneity } from './homogeneity_types';
+
+export type { Homogeneity, SharedAgreement } from './homogeneity_types';
 export type { ModelSeries, MotionJson, PeakJson, ProfileCurve, Series } from './series_types';
 
 export type Num = number | null;
@@ -64,10 +67,13 @@ export interface Statistics extends Loose {
   aic: Num;
   aicc: Num;
   bic: Num;
+  effective_samples: Num;
+}
+
+export interface RecordingStatistics extends Statistics {
   durbin_watson: Num;
   ljung_box_p: Num;
   runs_p: Num;
-  effective_samples: Num;
 }
 
 export interface HalvesRow {
@@ -138,27 +144,47 @@ export interface FitSummary {
 
 export type Status = 'converged' | 'not_converged' | 'not_identifiable' | 'failed';
 
-export interface Fit {
-  model: string;
-  status: Status;
-  equation?: string | null;
-  reason: string;
-  /** Missing in results of earlier versions. */
-  summary?: FitSummary;
+/** Parameters with their errors, and how well the readings determine them. */
+interface Estimates {
   parameters: Record<string, Parameter>;
-  derived: Record<string, Derived>;
   covariance: NamedMatrix;
   correlation: NamedMatrix;
   systematic_covariance: NamedMatrix;
-  noise: Noise | null;
   std_error_method: string | null;
-  interval_method: string | null;
   identifiability: { parameter: string; verdict: string; direction: string[]; advice: string | null }[];
+}
+
+/** A law: what all recordings share. */
+export interface Fit extends Estimates {
+  model: string;
+  status: Status;
+  reason: string;
+  equation: string | null;
+  /** Names of the parameters that all recordings share: of one recording inertia and friction. */
+  shared: string[];
+  derived: Record<string, Derived>;
+  interval_method: string | null;
+  /** Over all recordings. */
   statistics: Statistics | null;
-  closed_form: ClosedFormRow[];
+  /** Null for one recording. */
+  homogeneity: Homogeneity | null;
   solver: { iterations: number; evaluations: number; termination: string };
-  constancy?: Constancy | null;
+  /** Missing in results of earlier versions. */
+  summary?: FitSummary;
+}
+
+/** The part of a law that belongs to one recording. Its matrices have the shared parameters, too. */
+export interface RecordingFit extends Estimates {
+  model: string;
+  /** Root mean square over the fitted motion. */
+  amplitude_rad: Num;
+  noise: Noise | null;
+  statistics: RecordingStatistics | null;
+  closed_form: ClosedFormRow[];
+  constancy: Constancy | null;
   constancy_reason?: string;
+  /** How the fit of this recording alone ended. */
+  separate: string;
 }
 
 export interface Prediction extends Loose {
@@ -220,7 +246,7 @@ export interface Sampling {
   saturated_samples: number;
 }
 
-export interface Data extends Loose {
+export interface Recording extends Loose {
   path: string | null;
   sha256: string | null;
   samples: number;
@@ -236,6 +262,12 @@ export interface Data extends Loose {
   release: number | null;
   start: 'release' | 'moving' | null;
   sampling: Sampling | null;
+  calibration: Loose | null;
+  closed_forms: ClosedForms | null;
+  /** In the order of the laws of the result. */
+  fits: RecordingFit[];
+  /** Why closed_forms is null. */
+  reason?: string;
 }
 
 export interface ClosedForms extends Loose {
@@ -247,28 +279,31 @@ export interface ClosedForms extends Loose {
   turning_points: number;
 }
 
-/** All but code and message are absent in results of older versions. */
 export interface Warning {
   code: string;
   message: string;
   /** The message without the law. */
-  text?: string;
-  law?: string | null;
-  /** Of a joint fit, from 1; empty: it is about the whole. */
-  recordings?: number[];
+  text: string;
+  finding: string;
+  explanation: string | null;
+  advice: string | null;
+  flags: string[];
+  /** As an assumption, in short. */
+  assumed: string | null;
+  law: string | null;
+  /** Of several recordings, from 1; empty: it is about the whole. */
+  recordings: number[];
+  parameters: string[];
 }
 
 export interface Result {
   schema_version: number;
   tool: { name: string; version: string };
-  data: Data;
   rig: Record<string, number | { value: number; std_dev?: number }> | null;
-  calibration: Loose | null;
+  recordings: Recording[];
   fits: Fit[];
-  closed_forms: ClosedForms | null;
-  comparison?: Comparison | null;
+  comparison: Comparison | null;
   warnings: Warning[];
-  reason?: string;
 }
 
 /** Only in the HTML page. */

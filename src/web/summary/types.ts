@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The summary of a batch of refitted runs, schema_version 2 (summary.schema.json). A missing number is null. */
 
-import type { Num, Result } from '../shared/result_types';
+import type { Num, Warning } from '../shared/result_types';
 
 export interface Summary {
   schema_version: number;
@@ -22,7 +22,7 @@ export interface Summary {
   recommendations: { model: string | null; runs: number }[];
   failures: Failure[];
   parameters: ParameterSummary[];
-  warnings: Result['warnings'];
+  warnings: Pick<Warning, 'code' | 'message'>[];
 }
 
 /** How many recordings were fitted. text: "198 of 200 recordings fitted; 1 missing, 1 refused". */

@@ -5,14 +5,14 @@ import { el, symbolElement, text } from '../../shared/dom';
 import { type ForestRow } from '../../shared/forest';
 import { clippedWords, forestPlot, forestSentence, savedForest } from '../../shared/forest_plot';
 import { capital, sentence } from '../../shared/prose';
+import type { Homogeneity, Parameter, SharedAgreement } from '../../shared/result_types';
 import { fixed, intervalText, plusMinus, probabilityText, significant } from '../../shared/rounding';
 import { absent, figure, section } from '../../shared/section';
 import { table, type Cell, type Column } from '../../shared/table';
 import { spacedUnit, symbolOf, unitText, wordsOf } from '../../shared/units';
-import { forestRows } from './forest_rows';
-import { shownJointFit, type JointReport } from './joint';
+import { shownFit, type Report } from '../report';
 import { disagreement } from './disagreement';
-import type { Homogeneity, JointFit, SharedAgreement } from './joint_types';
+import { forestRows } from './forest_rows';
 
 const number = 'number' as const;
 
@@ -52,9 +52,9 @@ function numbers(name: string, unit: string, rows: ForestRow[]): HTMLElement {
   return table(capital(caption), columns, rows.map(rowCells));
 }
 
-function parameterPart(fit: JointFit, name: string): HTMLElement {
-  const agreement = fit.homogeneity.parameters[name];
-  const rows = forestRows(fit, name);
+function parameterPart(homogeneity: Homogeneity, name: string, joint: Parameter | undefined): HTMLElement {
+  const agreement = homogeneity.parameters[name];
+  const rows = forestRows(homogeneity, name, joint);
   const told = forestSentence(wordsOf(name), unitText(agreement.unit), rows);
   const plot = forestPlot(told, rows);
   const words = [testText(agreement), scatterText(agreement), clippedWords(rows)].filter((part) => part !== '');
@@ -70,7 +70,7 @@ function parameterPart(fit: JointFit, name: string): HTMLElement {
 
 /** How parameters change with the amplitude of the recordings; null if this was not tested. */
 function amplitudeTable({ amplitude_dependence: list }: Homogeneity): HTMLElement | null {
-  if (!list || list.length === 0) return null;
+  if (list.length === 0) return null;
   const columns: Column[] = [
     { head: 'Parameter' },
     { head: 'Slope on amplitude²', kind: number },
@@ -101,19 +101,20 @@ const kMeaning =
   'The error of that mean includes the scatter between recordings. z is the difference between a recording and the ' +
   'others in standard errors.';
 
-export function agreementSection(report: JointReport): HTMLElement {
+export function agreementSection(report: Report): HTMLElement {
   const title = 'Do the recordings agree?';
-  const fit = shownJointFit(report);
-  if (!fit) return section('agreement', title, absent('Without a fit there is nothing to compare.'));
-  const names = Object.keys(fit.homogeneity.parameters ?? {});
+  const fit = shownFit(report);
+  const homogeneity = fit?.homogeneity;
+  if (!fit || !homogeneity) return section('agreement', title, absent('Without a fit there is nothing to compare.'));
+  const names = Object.keys(homogeneity.parameters);
   return section(
     'agreement',
     title,
-    summary(fit.homogeneity),
+    summary(homogeneity),
     names.length > 0
       ? text(kMeaning, 'quiet')
-      : absent(sentence(fit.homogeneity.reason ?? 'no parameter can be compared between the recordings')),
-    ...names.map((name) => parameterPart(fit, name)),
-    amplitudeTable(fit.homogeneity),
+      : absent(sentence(homogeneity.reason ?? 'no parameter can be compared between the recordings')),
+    ...names.map((name) => parameterPart(homogeneity, name, fit.parameters[name])),
+    amplitudeTable(homogeneity),
   );
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { inList } from '../../shared/prose';
-import type { Homogeneity } from './joint_types';
+import type { Homogeneity } from '../../shared/result_types';
 
 /** "Recording 3 disagrees with the others"; null if no single recording can be named. */
 export function disagreement({ outliers }: Homogeneity): string | null {

@@ -2,7 +2,7 @@
 /** The rows of the forest plot of a shared parameter. */
 
 import type { ForestRow } from '../../shared/forest';
-import type { JointFit, SharedAgreement } from './joint_types';
+import type { Homogeneity, Parameter, SharedAgreement } from '../../shared/result_types';
 
 const kTwoSided95 = 1.96;
 
@@ -25,11 +25,10 @@ function recordingRows(agreement: SharedAgreement, outliers: readonly number[]):
 }
 
 /** One row for each recording alone, then the joint estimate and the random-effects mean, if they exist. */
-export function forestRows(fit: JointFit, name: string): ForestRow[] {
-  const agreement = fit.homogeneity.parameters[name];
-  const joint = fit.parameters?.[name];
+export function forestRows({ parameters, outliers }: Homogeneity, name: string, joint: Parameter | undefined): ForestRow[] {
+  const agreement = parameters[name];
   const scatter = agreement.random_effects;
-  const rows = recordingRows(agreement, fit.homogeneity.outliers);
+  const rows = recordingRows(agreement, outliers);
   const common = { disagrees: false, z: null };
   if (joint && joint.estimate !== null)
     rows.push({ ...common, ...pick(joint), kind: 'joint', label: 'joint fit' });

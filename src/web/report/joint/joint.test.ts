@@ -3,11 +3,10 @@ import { describe, expect, test } from 'vitest';
 
 import { clipped, forestRange, placeOf, type ForestRow } from '../../shared/forest';
 import { clippedWords, forestSentence } from '../../shared/forest_plot';
-import type { Num, Parameter, Result, Series } from '../../shared/result_types';
-import { forestRows } from './forest_rows';
-import { isJoint, makeJointReport, ownNames, recordingFile, recordingView, showModel, wholeView } from './joint';
+import type { Homogeneity, Num, Parameter, Result, Series, SharedAgreement } from '../../shared/result_types';
+import { makeReport } from '../report';
 import { disagreement } from './disagreement';
-import type { Homogeneity, JointFit, JointResult, JointRun, SharedAgreement } from './joint_types';
+import { forestRows } from './forest_rows';
 import { beginning, elapsed, originWords, overlay } from './overlay';
 
 const parameter = (estimate: Num, error: Num = null): Parameter =>
@@ -43,99 +42,18 @@ const homogeneity = (more: Partial<Homogeneity> = {}): Homogeneity => ({
   ...more,
 });
 
-const run = (k: number): JointRun =>
-  ({
-    path: `f/run${k}.csv`,
-    release: 1,
-    parameters: { inertia: parameter(2, 0.1), release_time: parameter(0.5 + k, 0.01), zero_angle: parameter(0.1 * k) },
-    noise: { lag1_correlation: 0.1 * k },
-    separate: 'converged',
-  }) as unknown as JointRun;
-
-const jointFit = (more: Partial<JointFit> = {}): JointFit =>
-  ({
-    model: 'viscous',
-    status: 'converged',
-    reason: 'a small step',
-    shared: ['inertia'],
-    parameters: { inertia: parameter(2, 0.05) },
-    statistics: { aic: 7 },
-    homogeneity: homogeneity(),
-    runs: [run(0), run(1), run(2)],
-    ...more,
-  }) as unknown as JointFit;
-
-const joint = (fits: JointFit[] = [jointFit()], more: Partial<JointResult> = {}): JointResult =>
-  ({
-    data: [0, 1, 2].map((k) => ({ path: `f/run${k}.csv`, release: 1, clock_scale: 1 + k, window_s: [k, 9] })),
-    calibration: [null, { input: 'counts' }, null],
-    closed_forms: [null, null, null],
-    fits,
-    warnings: [],
-    ...more,
-  }) as unknown as JointResult;
-
-describe('views of a joint fit', () => {
-  test('the result of one recording is not joint', () => {
-    expect(isJoint(joint())).toBe(true);
-    expect(isJoint({ data: { path: 'a' } } as unknown as Result)).toBe(false);
-  });
-
-  test('a recording has its own data, parameters and warnings', () => {
-    const warnings = [
-      { message: 'x', recordings: [1] },
-      { message: 'they disagree', recordings: [] },
-      { message: 'z', recordings: [2] },
-      { message: 'u', recordings: [1, 2] },
-    ];
-    const result = joint([jointFit()], { warnings: warnings.map((warning) => ({ code: 'c', ...warning })) });
-    const view = recordingView(result, 1);
-    expect(view.data.path).toBe('f/run1.csv');
-    expect(view.calibration).toEqual({ input: 'counts' });
-    expect(view.fits[0].parameters.release_time.estimate).toBe(1.5);
-    expect(view.fits[0].noise?.lag1_correlation).toBe(0.1);
-    expect(view.warnings.map((warning) => warning.message)).toEqual(['z', 'u']);
-    expect(recordingView(result, 0).warnings.map((warning) => warning.message)).toEqual(['x', 'u']);
-  });
-
-  test('the view of all recordings has the shared parameters and all warnings', () => {
-    const view = wholeView(joint());
-    expect(Object.keys(view.fits[0].parameters)).toEqual(['inertia']);
-    expect([view.fits[0].noise, view.fits[0].closed_form]).toEqual([null, []]);
-  });
-
-  test('another model is shown in all views', () => {
-    const report = makeJointReport(joint([jointFit(), jointFit({ model: 'drag' })]), null, null);
-    showModel(report, 1);
-    expect([report.whole, ...report.recordings].map((view) => view.shown)).toEqual([1, 1, 1, 1]);
-  });
-
-  test('parameters that are not shared belong to each recording', () => {
-    expect(ownNames(jointFit())).toEqual(['release_time', 'zero_angle']);
-    expect(ownNames(jointFit({ runs: [{ parameters: {} } as unknown as JointRun] }))).toEqual([]);
-  });
-
-  test('the number of the free swing is shown for a file with several', () => {
-    const result = joint();
-    expect(recordingFile(result, 2)).toBe('run2.csv');
-    result.data[1].path = result.data[2].path;
-    result.data[1].release = 3;
-    expect(recordingFile(result, 1)).toBe('run2.csv, free swing 3');
-  });
-});
-
 test('recordings that disagree are named', () => {
   expect(disagreement(homogeneity({ outliers: [] }))).toBe(null);
   expect(disagreement(homogeneity({ outliers: [2] }))).toBe('Recording 2 disagrees with the others');
   expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
 });
 
-const rowsOf = (runs: [Num, Num][], more: Partial<JointFit> = {}): ForestRow[] =>
-  forestRows(jointFit({ homogeneity: homogeneity({ parameters: { inertia: agreement(runs) } }), ...more }), 'inertia');
+const rowsOf = (runs: [Num, Num][], joint?: Parameter, mean?: Num): ForestRow[] =>
+  forestRows(homogeneity({ parameters: { inertia: agreement(runs, mean) } }), 'inertia', joint);
 
 describe('the forest plot', () => {
   test('has each recording with ±1.96 errors, the joint estimate and the mean of random effects', () => {
-    const rows = rowsOf([[1.9, 0.1], [2, 0.1], [null, null]]);
+    const rows = rowsOf([[1.9, 0.1], [2, 0.1], [null, null]], parameter(2, 0.05));
     expect(rows.map((row) => row.label)).toEqual([
       'recording 1',
       'recording 2',
@@ -179,9 +97,8 @@ describe('the forest plot', () => {
   });
 
   test('there is no plot without estimates, and estimates without errors are points', () => {
-    const nothing = { parameters: {}, homogeneity: homogeneity({ parameters: { inertia: agreement([[null, null]], null) } }) };
-    expect(forestRange(rowsOf([], nothing))).toBeNull();
-    const points = rowsOf([[1, null], [3, null]], { parameters: {} });
+    expect(forestRange(rowsOf([[null, null]], undefined, null))).toBeNull();
+    const points = rowsOf([[1, null], [3, null]]);
     const range = forestRange(points)!;
     expect(range[0]).toBeLessThan(1);
     expect(placeOf(points[0], range)).toMatchObject({ cutLow: false, cutHigh: false });
@@ -189,6 +106,17 @@ describe('the forest plot', () => {
 });
 
 describe('recordings in one plot', () => {
+  const result = (): Result =>
+    ({
+      recordings: [0, 1, 2].map((k) => ({
+        clock_scale: 1 + k,
+        window_s: [k, 9],
+        fits: [{ parameters: { release_time: parameter(0.5 + k, 0.01) }, identifiability: [] }],
+      })),
+      fits: [{ model: 'viscous', status: 'converged', parameters: {}, identifiability: [] }],
+      warnings: [],
+    }) as unknown as Result;
+
   const series = (unit: string): Series =>
     ({
       time_s: [0, 1, 2],
@@ -198,26 +126,26 @@ describe('recordings in one plot', () => {
     }) as unknown as Series;
 
   test('times are true seconds since the release, or since the start of the window', () => {
-    const report = makeJointReport(joint(), null, null);
+    const report = makeReport(result(), null, null);
     expect([...elapsed(Float64Array.of(1.5, 2.5), report.recordings[1])]).toEqual([0, 2]); // 1 s of this clock is 2 s
     expect(originWords(report.recordings)).toBe('time since the release [s]');
-    delete report.recordings[2].result.fits[0].parameters.release_time;
+    delete report.recordings[2].fits[0].parameters.release_time;
     expect(beginning(report.recordings[2])).toEqual({ time: 2, released: false });
     expect(originWords(report.recordings)).toMatch(/release or first used sample/);
     expect(originWords(report.recordings.slice(2))).toBe('time since the first used sample [s]');
   });
 
   test('recordings with another unit are left out and listed', () => {
-    const { curves, unit, others } = overlay(makeJointReport(joint(), [series('rad'), series('V'), series('rad')], null));
+    const { curves, unit, others } = overlay(makeReport(result(), [series('rad'), series('V'), series('rad')], null));
     expect([curves.map((curve) => curve.k), unit, others]).toEqual([[0, 2], 'rad', [2]]);
     expect([...curves[0].measured.time]).toEqual([-0.5, 0.5, 1.5]);
     expect([...curves[0].residual!.values]).toEqual([0.1, 0.2, 0.3]);
     expect(curves[0].measured.mark.colour).not.toBe(curves[1].measured.mark.colour);
-    expect(overlay(makeJointReport(joint(), null, null)).curves).toEqual([]);
+    expect(overlay(makeReport(result(), null, null)).curves).toEqual([]);
   });
 
   test('fits of one recording keep the clock of its file', () => {
-    const report = makeJointReport(joint(), [series('rad'), series('rad'), series('rad')], null);
+    const report = makeReport(result(), [series('rad'), series('rad'), series('rad')], null);
     const { curves } = overlay({ ...report, oneClock: true }, 'fit');
     for (const curve of curves) expect([...curve.measured.time]).toEqual([0, 1, 2]);
   });

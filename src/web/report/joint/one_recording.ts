@@ -4,7 +4,7 @@
 import { choice, el, text } from '../../shared/dom';
 import { refill } from '../../shared/page';
 import { section } from '../../shared/section';
-import type { Report } from '../report';
+import { recordingFile, type OneRecording, type Report } from '../report';
 import { closedFormSection } from '../sections/closed_form_section';
 import { constancySection } from '../sections/constancy_section';
 import { envelopeSection } from '../sections/envelope_section';
@@ -12,9 +12,8 @@ import { fitSection } from '../sections/fit_section';
 import { phaseSection } from '../sections/phase_section';
 import { residualSection } from '../sections/residual_section';
 import { validationSection } from '../sections/validation_section';
-import { recordingFile, type JointReport } from './joint';
 
-const kSections: ((report: Report) => HTMLElement | null)[] = [
+const kSections: ((one: OneRecording) => HTMLElement | null)[] = [
   fitSection,
   validationSection,
   envelopeSection,
@@ -25,7 +24,7 @@ const kSections: ((report: Report) => HTMLElement | null)[] = [
 ];
 
 /** The sections of the recording that is shown. Their headings have its number. */
-function sectionsOf({ recordings, recording }: JointReport): HTMLElement[] {
+function sectionsOf({ recordings, recording }: Report): HTMLElement[] {
   const made = kSections.flatMap((make) => make(recordings[recording]) ?? []);
   for (const part of made) {
     part.querySelector('h2')?.append(el('span', { class: 'which' }, ` · recording ${recording + 1}`));
@@ -34,13 +33,13 @@ function sectionsOf({ recordings, recording }: JointReport): HTMLElement[] {
 }
 
 /** Radio buttons for the recordings, and the sections of the chosen one. `changed` is called after a choice. */
-export function oneRecordingPart(report: JointReport, changed: () => void): HTMLElement {
+export function oneRecordingPart(report: Report, changed: () => void): HTMLElement {
   const sections = el('div', {}, ...sectionsOf(report));
-  const options = report.result.data.map((_data, k) => ({ value: String(k), label: String(k + 1) }));
+  const options = report.recordings.map(({ number }, k) => ({ value: String(k), label: String(number) }));
   const name = el('p', { class: 'quiet', 'aria-live': 'polite' });
   const tell = (): void => {
-    const number = report.recording;
-    name.textContent = `Recording ${number + 1}: ${recordingFile(report.result, number)}.`;
+    const one = report.recordings[report.recording];
+    name.textContent = `Recording ${one.number}: ${recordingFile(one)}.`;
   };
   tell();
   const chooser = choice('Recording shown', options, String(report.recording), (value) => {

@@ -35,7 +35,7 @@ function viewOf(curves: Overlaid[], report: Overlayable): TimeView {
   const [from, to] = extent(curves.map((curve) => curve.measured.time)) ?? [0, 1];
   const least = 8 * Math.min(...curves.map((curve) => medianInterval(curve.measured.time)));
   const view = new TimeView(from, to, least);
-  const frequency = report.result.data[curves[0].k].sampling?.frequency_hz;
+  const frequency = report.recordings[curves[0].k].data.sampling?.frequency_hz;
   const [start, end] = sharedTimes(curves, report);
   if (frequency && (to - from) * frequency > kManySwings && start < end)
     view.set(Math.max(from, start - 1 / frequency), Math.min(to, start + kFirstSwings / frequency));

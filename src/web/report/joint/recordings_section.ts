@@ -4,21 +4,20 @@
 import { el, text } from '../../shared/dom';
 import { recordingMark, swatch } from '../../shared/marks';
 import { typeset } from '../../shared/prose';
-import type { Data, Loose } from '../../shared/result_types';
+import type { Loose, Recording, RecordingFit } from '../../shared/result_types';
 import { intervalText, significant } from '../../shared/rounding';
 import { section } from '../../shared/section';
 import { table, type Cell, type Column } from '../../shared/table';
 import { inDegrees, spacedUnit, withUnit } from '../../shared/units';
 import { noteOf, quantityName, valueCell } from '../parameters';
-import { ownNames, recordingFile, shownJointFit, type JointReport } from './joint';
-import type { JointFit, JointRun } from './joint_types';
+import { recordingFile, shownFit, type OneRecording, type Report } from '../report';
 
 const number = 'number' as const;
 
-/** "recording 3", with its colour in the plots, and whether it disagrees. */
-export function recordingName(k: number, outliers: readonly number[]): Cell {
-  const odd = outliers.includes(k + 1) && el('small', { class: 'no' }, 'disagrees');
-  return [swatch(recordingMark(k)), String(k + 1), odd];
+/** "3", with its colour in the plots, and whether it disagrees. */
+function recordingName({ number: which, report }: OneRecording): Cell {
+  const disagrees = shownFit(report)?.homogeneity?.outliers.includes(which);
+  return [swatch(recordingMark(which - 1)), String(which), disagrees && el('small', { class: 'no' }, 'disagrees')];
 }
 
 /** "0.0030 rad" for sigma_rad. */
@@ -27,34 +26,37 @@ function readingText(object: Loose | null | undefined, name: string): string {
   return found ? significant(found.value, 3) + spacedUnit(found.unit) : '–';
 }
 
-const startText = ({ start }: Data): string =>
+const startText = ({ start }: Recording): string =>
   start === 'release' ? 'held' : start === 'moving' ? 'in motion' : '–';
 
-function amplitudeText(run: JointRun | undefined): string {
-  const amplitude = run?.amplitude_rad ?? null;
+function amplitudeText(fit: RecordingFit | undefined): string {
+  const amplitude = fit?.amplitude_rad ?? null;
   const degrees = inDegrees('rad');
   return amplitude === null || !degrees ? '–' : significant(amplitude * degrees.factor, 3) + degrees.unit;
 }
 
-function recordingRow({ result }: JointReport, fit: JointFit | null, k: number): Cell[] {
-  const data = result.data[k];
-  const run = fit?.runs[k];
+/** The part of the law shown that belongs to the recording; undefined without a fit. */
+const ownFit = ({ data, report }: OneRecording): RecordingFit | undefined => data.fits[report.shown];
+
+function recordingRow(one: OneRecording): Cell[] {
+  const { data } = one;
+  const fit = ownFit(one);
   return [
-    recordingName(k, fit?.homogeneity.outliers ?? []),
-    recordingFile(result, k),
+    recordingName(one),
+    recordingFile(one),
     `${data.used_samples} of ${data.samples}`,
     `${significant(data.window_s[0], 4)} to ${significant(data.window_s[1], 4)}`,
     significant(data.sample_rate_hz, 4),
     startText(data),
-    amplitudeText(run),
-    readingText(run?.noise, 'sigma'),
-    readingText(run?.statistics, 'rms_residual'),
-    significant(run?.noise?.lag1_correlation, 2),
-    typeset((run?.separate ?? '–').replace(/_/g, ' ')),
+    amplitudeText(fit),
+    readingText(fit?.noise, 'sigma'),
+    readingText(fit?.statistics, 'rms_residual'),
+    significant(fit?.noise?.lag1_correlation, 2),
+    typeset((fit?.separate ?? '–').replace(/_/g, ' ')),
   ];
 }
 
-function recordingTable(report: JointReport, fit: JointFit | null): HTMLElement {
+function recordingTable({ recordings }: Report): HTMLElement {
   const columns: Column[] = [
     { head: 'Recording' },
     { head: 'File' },
@@ -68,11 +70,11 @@ function recordingTable(report: JointReport, fit: JointFit | null): HTMLElement 
     { head: 'Lag-1', kind: number },
     { head: 'Separate fit' },
   ];
-  return table('Recordings', columns, report.result.data.map((_data, k) => recordingRow(report, fit, k)));
+  return table('Recordings', columns, recordings.map(recordingRow));
 }
 
-function ownCell(run: JointRun, name: string): Cell {
-  const parameter = run.parameters?.[name];
+function ownCell(one: OneRecording, name: string): Cell {
+  const parameter = ownFit(one)?.parameters[name];
   if (!parameter) return '–';
   const { std_error: error, interval95: interval } = parameter;
   const note = noteOf(parameter);
@@ -85,28 +87,26 @@ function ownCell(run: JointRun, name: string): Cell {
 }
 
 /** Null if all parameters are shared, or without a fit. */
-function ownTable(fit: JointFit): HTMLElement | null {
-  const names = ownNames(fit);
+function ownTable({ recordings }: Report): HTMLElement | null {
+  const names = [...new Set(recordings.flatMap((one) => Object.keys(ownFit(one)?.parameters ?? {})))];
   if (names.length === 0) return null;
-  const { outliers } = fit.homogeneity;
   const columns: Column[] = [
     { head: 'Recording' },
     ...names.map((name) => ({ head: el('span', {}, ...quantityName(name)), kind: number })),
   ];
-  const rows = fit.runs.map((run, k): Cell[] => [
-    recordingName(k, outliers),
-    ...names.map((name) => ownCell(run, name)),
+  const rows = recordings.map((one): Cell[] => [
+    recordingName(one),
+    ...names.map((name) => ownCell(one, name)),
   ]);
   return table('Own parameters of each recording, from the joint fit', columns, rows);
 }
 
-export function recordingsSection(report: JointReport): HTMLElement {
-  const fit = shownJointFit(report);
+export function recordingsSection(report: Report): HTMLElement {
   return section(
     'recordings',
     'The recordings',
-    recordingTable(report, fit),
+    recordingTable(report),
     text('Amplitudes are root mean squares over the motion. Residuals and noise are those of the joint fit.', 'quiet'),
-    fit && ownTable(fit),
+    ownTable(report),
   );
 }

@@ -9,7 +9,7 @@ import { absent, section } from '../../shared/section';
 import { table, type Cell, type Column } from '../../shared/table';
 import { unitText } from '../../shared/units';
 import { quantityName, valueText } from '../parameters';
-import { shownFit, type Report } from '../report';
+import { shownFitOf, type OneRecording } from '../report';
 
 const kNames: Record<string, string> = {
   damping_ratio_log_decrement: 'damping ratio',
@@ -61,12 +61,12 @@ function alone(forms: ClosedForms | null): HTMLElement | null {
   return rows.length > 0 ? table('Closed forms', columns, rows) : null;
 }
 
-export function closedFormSection(report: Report): HTMLElement {
+export function closedFormSection(one: OneRecording): HTMLElement {
   const title = 'Checked against closed forms';
-  const checks = shownFit(report)?.closed_form ?? [];
+  const checks = shownFitOf(one)?.closed_form ?? [];
   if (checks.length === 0) {
-    const why = report.result.reason ?? 'there is no fit to compare with';
-    return section('closed-forms', 'Closed forms', absent(sentence(why)), alone(report.result.closed_forms));
+    const why = one.data.reason ?? 'there is no fit to compare with';
+    return section('closed-forms', 'Closed forms', absent(sentence(why)), alone(one.data.closed_forms));
   }
   const judged = checks.filter((check) => check.agrees !== null);
   const agreeing = judged.filter((check) => check.agrees).length;

@@ -4,13 +4,13 @@
 import { Chart, padded } from '../../shared/chart';
 import { append, el, text } from '../../shared/dom';
 import { sentence } from '../../shared/prose';
-import type { AmplitudeWindow, Constancy, Fit, Num } from '../../shared/result_types';
+import type { AmplitudeWindow, Constancy, Num } from '../../shared/result_types';
 import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { table, type Column } from '../../shared/table';
 import { inDegrees, spacedUnit, unitText, wordsOf } from '../../shared/units';
-import { shownFit, type Report } from '../report';
+import { shownFitOf, type OneRecording, type RecordedFit } from '../report';
 
 type Amplitude = NonNullable<Constancy['amplitude']>;
 
@@ -77,7 +77,7 @@ function windowChart(
 }
 
 /** Inertia and the fitted friction parameter against the amplitude. */
-function windowCharts(fit: Fit, { windows, trends }: Amplitude): HTMLElement {
+function windowCharts(fit: RecordedFit, { windows, trends }: Amplitude): HTMLElement {
   const friction = trends.find((trend) => trend.parameter !== 'inertia')?.parameter;
   const unitOf = (name: string): string =>
     fit.parameters[name]?.unit ?? trends.find((trend) => trend.parameter === name)?.unit ?? '1';
@@ -108,14 +108,14 @@ function trendTable({ trends }: Amplitude): HTMLElement | null {
   return table('Trends with amplitude', columns, rows);
 }
 
-function amplitudePart(fit: Fit, { amplitude }: Constancy): HTMLElement | null {
+function amplitudePart(fit: RecordedFit, { amplitude }: Constancy): HTMLElement | null {
   if (!amplitude || amplitude.windows.length === 0) return null;
   return el('div', {}, windowCharts(fit, amplitude), trendTable(amplitude));
 }
 
-export function constancySection(report: Report): HTMLElement | null {
-  const fit = shownFit(report);
-  if (!fit || (fit.constancy === undefined && fit.constancy_reason === undefined)) return null;
+export function constancySection(one: OneRecording): HTMLElement | null {
+  const fit = shownFitOf(one);
+  if (!fit) return null;
   const title = 'Constant over the recording?';
   const { constancy } = fit;
   if (!constancy)

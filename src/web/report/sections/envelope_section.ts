@@ -6,14 +6,14 @@ import { choice, details, el, text } from '../../shared/dom';
 import { kLinear, kMeasured, modelMark, swatch, type Mark } from '../../shared/marks';
 import type { Painter } from '../../shared/painter';
 import { sentence } from '../../shared/prose';
-import type { ClosedForms, Fit } from '../../shared/result_types';
+import type { ClosedForms } from '../../shared/result_types';
 import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
 import { quantityOf, unitText } from '../../shared/units';
 import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf, type Turn } from '../envelope';
-import { rankOf, shownFit, type Report } from '../report';
+import { rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 
 interface Curve {
   name: string;
@@ -22,15 +22,14 @@ interface Curve {
   amplitude: number[];
 }
 
-function curvesOf(report: Report, fit: Fit | null, turns: Turn[]): Curve[] {
-  const { samples, result } = report;
+function curvesOf({ report, data, samples }: OneRecording, fit: RecordedFit | null, turns: Turn[]): Curve[] {
   const curves: Curve[] = [];
-  const rate = decrementRate(result);
+  const rate = decrementRate(data);
   const times = turns.map((turn) => turn.time);
   if (rate !== null) {
     const [first, last] = [times[0], times[times.length - 1]];
     const even = Array.from({ length: 101 }, (_unused, i) => first + ((last - first) * i) / 100);
-    const periods = result.closed_forms?.linear?.periods as unknown;
+    const periods = data.closed_forms?.linear?.periods as unknown;
     const used = typeof periods === 'number' ? 2 * periods + 1 : undefined;
     curves.push({
       name: 'log decrement',
@@ -41,7 +40,7 @@ function curvesOf(report: Report, fit: Fit | null, turns: Turn[]): Curve[] {
   }
   const fitted = fit && samples?.models.get(fit.model)?.fitted;
   if (fit && samples && fitted) {
-    const own = curveTurns(samples.time, fitted, zeroOf(fit.parameters, result.data.window_s[0]));
+    const own = curveTurns(samples.time, fitted, zeroOf(fit.parameters, data.window_s[0]));
     const from = times[0] - 1e-9 - (times.length > 1 ? 0.3 * (times[1] - times[0]) : 0);
     const seen = own.filter((turn) => turn.time >= from);
     curves.push({
@@ -165,11 +164,11 @@ class EnvelopePlot {
   }
 }
 
-export function envelopeSection(report: Report): HTMLElement {
-  const fit = shownFit(report);
-  const { series, result } = report;
-  const forms = result.closed_forms;
-  const zero = zeroOf(fit?.parameters ?? forms?.decrement?.parameters ?? {}, result.data.window_s[0]);
+export function envelopeSection(one: OneRecording): HTMLElement {
+  const fit = shownFitOf(one);
+  const { series, data } = one;
+  const forms = data.closed_forms;
+  const zero = zeroOf(fit?.parameters ?? forms?.decrement?.parameters ?? {}, data.window_s[0]);
   const turns = series ? measuredTurns(series, zero).filter((turn) => Number.isFinite(turn.amplitude)) : [];
   const title = 'Amplitudes';
   if (!series) return section('envelope', title, absent('The samples are not part of this report.'), shapes(forms));
@@ -177,7 +176,7 @@ export function envelopeSection(report: Report): HTMLElement {
     const why = 'No turning points were found. The recording has too few samples in a period, or nothing swings.';
     return section('envelope', title, absent(why), shapes(forms));
   }
-  const plot = new EnvelopePlot(turns, curvesOf(report, fit, turns), series.unit);
+  const plot = new EnvelopePlot(turns, curvesOf(one, fit, turns), series.unit);
   return section(
     'envelope',
     title,

@@ -6,14 +6,13 @@ import { kMeasured, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
 import type { Painter } from '../../shared/painter';
 import { capital } from '../../shared/prose';
-import type { Fit } from '../../shared/result_types';
 import { fixed, significant } from '../../shared/rounding';
 import { extent, lowerBound, rootMeanSquare, type Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
 import type { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, unitText, withUnit } from '../../shared/units';
-import { rankOf, sharedView, shownFit, type Report } from '../report';
+import { rankOf, sharedView, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 import { TimePlot, type Trace } from '../time_plot';
 
 /** A unit for residuals, and its label. */
@@ -30,7 +29,7 @@ const axisLabel = (unit: string): string => `${quantityOf(unit)} [${unitText(inD
 const kFewPerPeriod = 12; // samples: with fewer, straight lines between them do not look like the motion
 
 /** The fitted readings of fit i: at the samples, or as a smooth curve where samples are few in a period. */
-export function fittedTrace(report: Report, samples: Samples, fit: Fit, i: number): Trace | null {
+export function fittedTrace({ report, data }: OneRecording, samples: Samples, fit: RecordedFit, i: number): Trace | null {
   const fitted = samples.models.get(fit.model)?.fitted;
   if (!fitted) return null;
   const trace: Trace = {
@@ -41,14 +40,14 @@ export function fittedTrace(report: Report, samples: Samples, fit: Fit, i: numbe
     shown: i === report.shown,
     errors: samples.models.get(fit.model)?.fittedError,
   };
-  const perPeriod = report.result.data.sampling?.samples_per_period ?? Infinity;
+  const perPeriod = data.sampling?.samples_per_period ?? Infinity;
   if (perPeriod === null || perPeriod >= kFewPerPeriod) return trace;
   const motion = samples.motions.get(fit.model);
   return motion ? { ...trace, time: motion.time, values: motion.reading, errors: null } : trace;
 }
 
-function residualUnits(report: Report, samples: Samples): ResidualUnit[] {
-  const fit = shownFit(report);
+function residualUnits(one: OneRecording, samples: Samples): ResidualUnit[] {
+  const fit = shownFitOf(one);
   const own = unitText(samples.unit);
   const units: ResidualUnit[] = [{ value: 'own', label: own, axis: `residual [${own}]`, factor: 1 }];
   const degrees = inDegrees(samples.unit);
@@ -56,7 +55,7 @@ function residualUnits(report: Report, samples: Samples): ResidualUnit[] {
     units.push({ value: 'degrees', label: degrees.unit, axis: `residual [${degrees.unit}]`, factor: degrees.factor });
   const sigma = withUnit(fit?.noise, 'sigma')?.value;
   if (sigma) units.push({ value: 'sigma', label: 'σ', axis: 'residual [σ]', factor: 1 / sigma });
-  const level = withUnit(report.result.data, 'resolution')?.value;
+  const level = withUnit(one.data, 'resolution')?.value;
   if (level) units.push({ value: 'counts', label: 'counts', axis: 'residual [counts]', factor: 1 / level });
   return units;
 }
@@ -109,18 +108,19 @@ export function bandWords(traces: Trace[]): string {
     : '';
 }
 
-export function makeTraces(report: Report, samples: Samples): { fitted: Trace[]; residual: Trace[] } {
+export function makeTraces(one: OneRecording, samples: Samples): { fitted: Trace[]; residual: Trace[] } {
   const fitted: Trace[] = [
     { name: 'measured', time: samples.time, values: samples.measured, mark: kMeasured, shown: true },
   ];
   const residual: Trace[] = [];
-  report.result.fits.forEach((fit, i) => {
-    const trace = fittedTrace(report, samples, fit, i);
+  const { result, shown } = one.report;
+  one.fits.forEach((fit, i) => {
+    const trace = fittedTrace(one, samples, fit, i);
     if (trace) fitted.push(trace);
     const values = samples.models.get(fit.model)?.residual;
     if (!values) return;
-    const mark = { ...modelMark(rankOf(report.result, i)), points: true };
-    residual.push({ name: fit.model, time: samples.time, values, mark, shown: i === report.shown });
+    const mark = { ...modelMark(rankOf(result, i)), points: true };
+    residual.push({ name: fit.model, time: samples.time, values, mark, shown: i === shown });
   });
   return { fitted, residual };
 }
@@ -146,13 +146,13 @@ class FitPlots {
   private readonly line = el('p', { class: 'readout', 'aria-hidden': 'true' }, '\u00a0');
 
   constructor(
-    report: Report,
+    one: OneRecording,
     private readonly samples: Samples,
   ) {
-    this.view = sharedView(report, samples);
-    this.sigma = withUnit(shownFit(report)?.noise, 'sigma')?.value ?? null;
-    this.traces = makeTraces(report, samples);
-    this.units = residualUnits(report, samples);
+    this.view = sharedView(one, samples);
+    this.sigma = withUnit(shownFitOf(one)?.noise, 'sigma')?.value ?? null;
+    this.traces = makeTraces(one, samples);
+    this.units = residualUnits(one, samples);
     this.unit = this.units[0];
     this.main = this.mainPlot();
     this.below = this.traces.residual.length > 0 ? this.residualPlot() : null;
@@ -255,15 +255,16 @@ class FitPlots {
   }
 }
 
-export function fitSection(report: Report): HTMLElement {
+export function fitSection(one: OneRecording): HTMLElement {
   const title = 'Measured and fitted';
-  if (!report.samples)
+  const { samples, fits } = one;
+  if (!samples)
     return section('fit', title, absent('The samples are not part of this report, so there is nothing to draw.'));
-  const onlyMeasured = report.result.fits.every((fit) => !report.samples?.models.get(fit.model)?.fitted);
+  const onlyMeasured = fits.every((fit) => !samples.models.get(fit.model)?.fitted);
   return section(
     'fit',
     title,
     onlyMeasured && text('There is no fitted motion to compare with.', 'absent'),
-    new FitPlots(report, report.samples).element(),
+    new FitPlots(one, samples).element(),
   );
 }

@@ -3,33 +3,33 @@
 
 import { Chart, padded } from '../../shared/chart';
 import { modelMark } from '../../shared/marks';
-import type { Fit } from '../../shared/result_types';
 import { significant } from '../../shared/rounding';
 import { extent, medianInterval } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { unitText } from '../../shared/units';
 import { zeroOf } from '../envelope';
 import { centralDifferences, thinned } from '../phase';
-import { isAliased, rankOf, shownFit, type Report } from '../report';
+import { isAliased, rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 
 const kMostPoints = 20_000;
 
 /** Angle and rate of the fitted motion. Where the series has no motion, the samples show it: their fitted values are used. */
-function portrait(report: Report, fit: Fit): { angle: Float64Array; rate: Float64Array } | null {
-  const { samples, result } = report;
+function portrait(one: OneRecording, fit: RecordedFit): { angle: Float64Array; rate: Float64Array } | null {
+  const { samples, data } = one;
   const fitted = samples?.models.get(fit.model)?.fitted;
   const motion = samples?.motions.get(fit.model);
   if (motion) return { angle: thinned(motion.angle, kMostPoints), rate: thinned(motion.rate, kMostPoints) };
-  if (!samples || !fitted || samples.unit === 'rad/s' || isAliased(report)) return null;
-  const zero = zeroOf(fit.parameters, result.data.window_s[0]);
+  if (!samples || !fitted || samples.unit === 'rad/s' || isAliased(one)) return null;
+  const zero = zeroOf(fit.parameters, data.window_s[0]);
   const angle = fitted.map((value, i) => value - zero(samples.time[i]));
   const rate = centralDifferences(samples.time, angle, 3 * medianInterval(samples.time));
   return { angle: thinned(angle, kMostPoints), rate: thinned(rate, kMostPoints) };
 }
 
-export function phaseSection(report: Report): HTMLElement {
-  const fit = shownFit(report);
-  const path = fit && report.samples ? portrait(report, fit) : null;
+export function phaseSection(one: OneRecording): HTMLElement {
+  const { report } = one;
+  const fit = shownFitOf(one);
+  const path = fit && one.samples ? portrait(one, fit) : null;
   const angles = path && extent([path.angle]);
   const rates = path && extent([path.rate]);
   if (!fit || !path || !angles || !rates) {

@@ -45,7 +45,7 @@ function profileChart(name: string, curve: ProfileCurve, parameter: Parameter | 
 /** Null if no profile was computed. */
 export function profileSection(report: Report): HTMLElement | null {
   const fit = shownFit(report);
-  const profiles = fit && report.series?.profiles?.[fit.model];
+  const profiles = fit && report.recordings[0].series?.profiles?.[fit.model];
   const entries = Object.entries(profiles ?? {}).filter(([, curve]) => curve.value.length > 1);
   if (!fit || entries.length === 0) return null;
   const grid = el('div', { class: 'pair' });

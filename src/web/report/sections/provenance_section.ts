@@ -3,14 +3,14 @@
 
 import { details, el, text } from '../../shared/dom';
 import { sentence, typeset } from '../../shared/prose';
-import type { Command, Data, Fit, Loose, Result, Sampling } from '../../shared/result_types';
+import type { Command, Loose, Recording, Result, Sampling } from '../../shared/result_types';
 import { plusMinus, significant } from '../../shared/rounding';
 import { absent, section } from '../../shared/section';
 import { facts, scrollBox, table, type Cell } from '../../shared/table';
 import { rigWords, spacedUnit, unitText, withUnit } from '../../shared/units';
-import { shownFit, type Report } from '../report';
+import { isSeveral, recordingFile, shownFit, shownFitOf, type OneRecording, type Report } from '../report';
 
-export function rigTable({ rig }: Pick<Result, 'rig'>): HTMLElement {
+function rigTable({ rig }: Result): HTMLElement {
   if (!rig) return text('No rig was given: torques and inertia are in units of the gravity torque G.');
   const rows = Object.entries(rig).map(([name, given]): Cell[] => {
     const [words, unit] = rigWords(name);
@@ -41,7 +41,7 @@ export function curveText(calibration: Loose): string | null {
   return `angle = ${terms.join(' + ').replace(/\+ −/g, '− ')}, in ${unit === 'deg' ? 'degrees' : 'rad'}, x in ${plain(input)}`;
 }
 
-export function calibrationPart({ calibration }: Pick<Result, 'calibration'>): HTMLElement {
+function calibrationPart({ calibration }: Recording): HTMLElement {
   if (!calibration) return text('No calibration was applied. The readings have the unit of the file.');
   const curve = curveText(calibration);
   const rest = Object.entries(calibration).filter(([, value]) => value !== null);
@@ -53,8 +53,15 @@ export function calibrationPart({ calibration }: Pick<Result, 'calibration'>): H
   );
 }
 
-export function rigSection({ result }: Report): HTMLElement {
-  return section('rig', 'Calibration and rig', calibrationPart(result), rigTable(result));
+const heading = (one: OneRecording): HTMLElement => el('h3', {}, `Recording ${one.number}: ${recordingFile(one)}`);
+
+/** A single entry if all recordings have the same calibration. */
+export function rigSection({ result, recordings }: Report): HTMLElement {
+  const [first, ...others] = recordings.map(({ data }) => JSON.stringify(data.calibration));
+  const parts = others.every((other) => other === first)
+    ? [calibrationPart(recordings[0].data)]
+    : recordings.flatMap((one) => [heading(one), calibrationPart(one.data)]);
+  return section('rig', 'Calibration and rig', ...parts, rigTable(result));
 }
 
 const kLeastJitter = 1e-6; // of an interval; less is rounding of the time stamps
@@ -74,26 +81,28 @@ export function samplingText(sampling: Sampling | null): string {
   return parts.join(', ');
 }
 
-function resolutionText(data: Data): string {
+function resolutionText(data: Recording): string {
   const resolution = withUnit(data, 'resolution');
   if (!resolution) return 'none';
   const sources: Record<string, string> = { given: 'given', file: 'from the file', found: 'found in the values' };
   return `${significant(resolution.value, 4)} ${unitText(resolution.unit)}, ${sources[data.resolution_source ?? ''] ?? 'of unknown source'}`;
 }
 
-function windowText({ window_s: [from, to], window_reason: why, used_samples: used, samples }: Data): string {
+function windowText({ window_s: [from, to], window_reason: why, used_samples: used, samples }: Recording): string {
   const reason = why ? `; ${typeset(why.replace('begins: ', 'begins ').replace('ends: ', 'ends '))}` : '';
   return `${significant(from, 6)} s to ${significant(to, 6)} s, ${used} of ${samples} samples${reason}`;
 }
 
-function clockText({ clock_scale: scale, clock_scale_std_dev: error }: Data): string {
+function clockText({ clock_scale: scale, clock_scale_std_dev: error }: Recording): string {
   return scale === 1 && !error
     ? 'true seconds'
     : `a second of the file’s clock is ${plusMinus(scale, error)} true seconds`;
 }
 
 /** Source of the samples of a recording. */
-export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
+function dataRows(one: OneRecording): [string, Cell][] {
+  const { data } = one;
+  const noise = shownFitOf(one)?.noise;
   return [
     ['file', data.path ?? 'not read from a file'],
     ['SHA-256', el('code', { class: 'hash' }, data.sha256 ?? 'unknown')],
@@ -102,17 +111,13 @@ export function dataRows(data: Data, fit: Fit | null): [string, Cell][] {
     ['resolution', resolutionText(data)],
     ['clock', clockText(data)],
     ['begins', data.start === 'release' ? 'held, then released' : data.start === 'moving' ? 'in motion' : '–'],
-    ['noise model', fit?.noise ? `${fit.noise.model}: ${typeset(fit.noise.reason)}` : '–'],
+    ['noise model', noise ? `${noise.model}: ${typeset(noise.reason)}` : '–'],
   ];
 }
 
-/** Program that made the report. */
-export const makingRows = ({ tool, schema_version: schema }: Pick<Result, 'tool' | 'schema_version'>): [string, Cell][] => [
-  ['made by', `${tool.name} ${tool.version}, result schema ${schema}`],
-];
-
 /** How the search for the parameters ended, for those who develop the program; null without a fit. */
-export function solverDetails(fit: Pick<Fit, 'solver' | 'reason'> | null): HTMLElement | null {
+function solverDetails(report: Report): HTMLElement | null {
+  const fit = shownFit(report);
   if (!fit) return null;
   const { iterations, evaluations, termination } = fit.solver;
   const rows: [string, Cell][] = [
@@ -123,17 +128,23 @@ export function solverDetails(fit: Pick<Fit, 'solver' | 'reason'> | null): HTMLE
   return details('Facts on the numerical search', () => facts(rows));
 }
 
-export function commandPart(command: Command | null): HTMLElement[] {
+function commandPart(command: Command | null): HTMLElement[] {
   const words = command?.command
     ? scrollBox('Command', el('pre', {}, el('code', {}, command.command)))
     : absent('The command is not part of this report.');
   return [el('h3', {}, 'Command'), words];
 }
 
-export const kProvenanceTitle = 'Data and program';
-
 export function provenanceSection(report: Report): HTMLElement {
-  const fit = shownFit(report);
-  const rows = [...dataRows(report.result.data, fit), ...makingRows(report.result)];
-  return section('provenance', kProvenanceTitle, facts(rows), ...commandPart(report.command), solverDetails(fit));
+  const { recordings, command, result } = report;
+  const { tool, schema_version: schema } = result;
+  const making: [string, Cell] = ['made by', `${tool.name} ${tool.version}, result schema ${schema}`];
+  const parts = isSeveral(report)
+    ? [
+        ...recordings.flatMap((one) => [heading(one), facts(dataRows(one))]),
+        el('h3', {}, 'The joint fit'),
+        facts([making]),
+      ]
+    : [facts([...dataRows(recordings[0]), making])];
+  return section('provenance', 'Data and program', ...parts, ...commandPart(command), solverDetails(report));
 }

@@ -3,14 +3,13 @@
 
 import { Chart, padded } from '../../shared/chart';
 import { details, el, text } from '../../shared/dom';
-import type { Fit } from '../../shared/result_types';
 import { probabilityText, significant } from '../../shared/rounding';
 import { absent, figure, section } from '../../shared/section';
 import { facts, table, type Cell } from '../../shared/table';
 import { inDegrees, unitText, withUnit } from '../../shared/units';
 import { autocorrelation } from '../autocorrelation';
 import { histogram, normalDensity, type Histogram } from '../histogram';
-import { shownFit, type Report } from '../report';
+import { shownFitOf, type OneRecording, type RecordedFit } from '../report';
 
 const kLags = 100;
 const kNormal95 = 1.96;
@@ -89,8 +88,7 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
 }
 
 /** Root mean square and tests of the residuals. */
-function numbers(fit: Fit): HTMLElement | null {
-  const { statistics, noise } = fit;
+function numbers({ statistics, noise }: RecordedFit): HTMLElement | null {
   if (!statistics || !noise) return null;
   const sized = (found: { value: number; unit: string } | null): Cell => {
     if (!found) return '–';
@@ -112,13 +110,14 @@ function numbers(fit: Fit): HTMLElement | null {
 
 export const kResidualsTitle = 'Are the residuals noise?';
 
-export function residualSection(report: Report): HTMLElement {
-  const fit = shownFit(report);
+export function residualSection(one: OneRecording): HTMLElement {
+  const fit = shownFitOf(one);
+  const { samples } = one;
   if (!fit) return section('residuals', kResidualsTitle, absent('Without a fit there are no residuals.'));
-  const residual = report.samples?.models.get(fit.model)?.residual;
+  const residual = samples?.models.get(fit.model)?.residual;
   const plots =
-    residual && report.samples
-      ? el('div', { class: 'pair' }, autocorrelationPart(residual), histogramPart(residual, report.samples.unit))
+    residual && samples
+      ? el('div', { class: 'pair' }, autocorrelationPart(residual), histogramPart(residual, samples.unit))
       : absent('The residuals are not part of this report.');
   return section('residuals', kResidualsTitle, numbers(fit) ?? text('There are no statistics of this fit.', 'absent'), plots);
 }

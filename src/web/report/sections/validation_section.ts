@@ -4,7 +4,6 @@
 import { el, text, toggle } from '../../shared/dom';
 import { kApparent, kLinear, kMeasured, kNonlinear, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
-import type { Fit, Sampling } from '../../shared/result_types';
 import { significant } from '../../shared/rounding';
 import { medianInterval, rootMeanSquare, type Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
@@ -13,17 +12,15 @@ import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, unitText } from '../../shared/units';
 import { apparentFrequency, apparentSwing } from '../aliasing';
 import { curveTurns, zeroOf } from '../envelope';
-import { isAliased, rankOf, shownFit, type Report } from '../report';
+import { isAliased, rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 import { TimePlot, type Trace } from '../time_plot';
 
 /** Time zero of the plot, s on the file's clock: the release, or the start of the window. */
-function origin(report: Report, fit: Fit): { time: number; words: string } {
+function origin({ data }: OneRecording, fit: RecordedFit): { time: number; words: string } {
   const release = fit.parameters.release_time?.estimate;
   if (typeof release === 'number') return { time: release, words: 'time since the release [s]' };
-  return { time: report.result.data.window_s[0], words: 'time since the start of the window [s]' };
+  return { time: data.window_s[0], words: 'time since the start of the window [s]' };
 }
-
-const sampling = (report: Report): Sampling | null => report.result.data.sampling ?? null;
 
 function difference(a: Float64Array, b: Float64Array): number {
   return rootMeanSquare(a.map((value, i) => value - b[i]));
@@ -43,7 +40,7 @@ function rmsTable(samples: Samples, curves: Trace[]): HTMLElement {
   );
 }
 
-function closedFormTraces(report: Report, samples: Samples, fit: Fit): Trace[] {
+function closedFormTraces({ report }: OneRecording, samples: Samples, fit: RecordedFit): Trace[] {
   const model = samples.models.get(fit.model);
   const candidates: [string, Float64Array | null | undefined, Trace['mark']][] = [
     ['linear closed form', model?.linear, kLinear],
@@ -61,11 +58,11 @@ interface Slow {
 }
 
 /** The fitted swing and the slower apparent one. Null if the motion is unknown. */
-function slowTraces(report: Report, samples: Samples, fit: Fit): Slow | null {
+function slowTraces({ report, data }: OneRecording, samples: Samples, fit: RecordedFit): Slow | null {
   const motion = samples.motions.get(fit.model);
-  const rate = sampling(report)?.rate_hz;
+  const rate = data.sampling?.rate_hz;
   if (!motion || !rate) return null;
-  const zero = zeroOf(fit.parameters, report.result.data.window_s[0]);
+  const zero = zeroOf(fit.parameters, data.window_s[0]);
   const about = motion.reading.map((value, i) => value - zero(motion.time[i]));
   const turns = curveTurns(motion.time, about, () => 0);
   if (turns.length < 3) return null;
@@ -105,17 +102,17 @@ const kManySwings = 30;
 const kFirstSwings = 12;
 
 /** Shows only the first swings if there are many, so that differences can be seen. A button shows all. */
-function firstView(time: Float64Array, report: Report): TimeView {
+function firstView(time: Float64Array, one: OneRecording): TimeView {
   const [from, to] = [time[0], time[time.length - 1]];
   const view = new TimeView(from, to, 8 * medianInterval(time));
-  const frequency = sampling(report)?.frequency_hz;
-  const many = isAliased(report) ? kFirstSwings + 2 : kManySwings;
+  const frequency = one.data.sampling?.frequency_hz;
+  const many = isAliased(one) ? kFirstSwings + 2 : kManySwings;
   if (frequency && (to - from) * frequency > many) view.set(Math.max(from, -1 / frequency), kFirstSwings / frequency);
   return view;
 }
 
-function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], sentence: string): HTMLElement {
-  const { time: start, words } = origin(report, fit);
+function overlay(one: OneRecording, samples: Samples, fit: RecordedFit, curves: Trace[], sentence: string): HTMLElement {
+  const { time: start, words } = origin(one, fit);
   const measured: Trace = {
     name: 'measured',
     time: samples.time,
@@ -124,7 +121,7 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
     shown: true,
   };
   const traces = moved([measured, ...curves], start);
-  const view = firstView(traces[0].time, report);
+  const view = firstView(traces[0].time, one);
   const degrees = inDegrees(samples.unit);
   const plot = new TimePlot(traces, view, {
     name: 'textbook',
@@ -145,15 +142,15 @@ function overlay(report: Report, samples: Samples, fit: Fit, curves: Trace[], se
   return figure(caption, keyboardBox('Measured and textbook motion', view, plot.chart.withButtons()), bar);
 }
 
-function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | null {
-  const slow = slowTraces(report, samples, fit);
+function slowPart(one: OneRecording, samples: Samples, fit: RecordedFit): HTMLElement | null {
+  const slow = slowTraces(one, samples, fit);
   if (!slow) return null;
   return el(
     'div',
     {},
     text(slow.words),
     overlay(
-      report,
+      one,
       samples,
       fit,
       slow.traces,
@@ -162,9 +159,9 @@ function slowPart(report: Report, samples: Samples, fit: Fit): HTMLElement | nul
   );
 }
 
-export function validationSection(report: Report): HTMLElement {
-  const fit = shownFit(report);
-  const { samples } = report;
+export function validationSection(one: OneRecording): HTMLElement {
+  const fit = shownFitOf(one);
+  const { samples } = one;
   const title = 'Against the textbook';
   if (!fit || !samples)
     return section(
@@ -172,13 +169,13 @@ export function validationSection(report: Report): HTMLElement {
       title,
       absent('Without a fit and its samples there is nothing to compare.'),
     );
-  if (isAliased(report)) {
-    const part = slowPart(report, samples, fit);
+  if (isAliased(one)) {
+    const part = slowPart(one, samples, fit);
     const why =
       'The recording has fewer than two samples in a period. The motion of this law between the samples cannot be drawn.';
     return section('validation', 'Sampled too slowly: true and apparent swing', part ?? absent(why));
   }
-  const curves = closedFormTraces(report, samples, fit);
+  const curves = closedFormTraces(one, samples, fit);
   if (curves.length < 2)
     return section('validation', title, absent('This recording has no closed forms to compare with.'));
   const sentence =
@@ -186,5 +183,5 @@ export function validationSection(report: Report): HTMLElement {
       'release',
       fit.parameters.release_time ? 'release' : 'start of the window',
     );
-  return section('validation', title, overlay(report, samples, fit, curves, sentence), rmsTable(samples, curves));
+  return section('validation', title, overlay(one, samples, fit, curves, sentence), rmsTable(samples, curves));
 }

@@ -3,10 +3,11 @@
 
 import { banner, warnings } from '../../shared/banner';
 import { answerPart, answerSection } from '../answer';
-import { shownFit, type Report } from '../report';
+import { jointSwing } from '../joint/overlay_section';
+import { isSeveral, shownFit, type Report } from '../report';
 import { swingFigure } from '../swing';
 
-export const kNoFit = {
+const kNoFit = {
   level: 'caution',
   title: 'Nothing was fitted',
   sentence: 'Only the formulas of the linear pendulum were asked for.',
@@ -14,9 +15,7 @@ export const kNoFit = {
 
 export function verdictSection(report: Report): HTMLElement {
   const fit = shownFit(report);
-  const swing = swingFigure(report);
-  const parts = fit
-    ? answerPart({ fit, result: report.result, swing })
-    : [banner(kNoFit), swing, warnings(report.result)];
-  return answerSection(parts);
+  const { result, recordings } = report;
+  const swing = isSeveral(report) ? jointSwing(report) : swingFigure(recordings[0]);
+  return answerSection(fit ? answerPart(fit, result, swing) : [banner(kNoFit), swing, warnings(result)]);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, test } from 'vitest';
 
-import type { Fit, Result } from '../../shared/result_types';
+import type { Fit, Recording } from '../../shared/result_types';
 import { FittedSwing } from './fitted_swing';
 
 const kTimes = Float64Array.from({ length: 400 }, (_time, k) => 0.01 * k);
@@ -13,8 +13,8 @@ function swingOf(sensor: Record<string, number>, unit: string): FittedSwing {
     Object.entries({ ...start, ...sensor }).map(([name, estimate]) => [name, { estimate }]),
   );
   const fit = { model: 'viscous', parameters, derived: { natural_frequency: { estimate: 5 } } };
-  const result = { data: { clock_scale: 1, window_s: [0, 4] } };
-  return FittedSwing.of(result as unknown as Result, fit as unknown as Fit, unit)!;
+  const recording = { clock_scale: 1, window_s: [0, 4] };
+  return FittedSwing.of(recording as unknown as Recording, fit as unknown as Fit, unit)!;
 }
 
 const rangeOf = (values: Float64Array): number => Math.max(...values) - Math.min(...values);

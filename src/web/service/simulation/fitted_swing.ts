@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The readings of a fitted pendulum for other values of its parameters. */
 
-import type { Fit, Result } from '../../shared/result_types';
+import type { Fit, Recording } from '../../shared/result_types';
 import { extent } from '../../shared/samples';
 import { isTorque, lawOf, type Law } from './laws';
 import { swing, type Motion, type Start } from './swing';
@@ -26,7 +26,7 @@ export class FittedSwing {
   ) {}
 
   /** null: the page does not know the law or the sensor, or an estimate is missing. */
-  static of(result: Result, fit: Fit, unit: string): FittedSwing | null {
+  static of({ clock_scale: clock, window_s: window }: Recording, fit: Fit, unit: string): FittedSwing | null {
     const law = lawOf(fit.model);
     const frequency = fit.derived.natural_frequency?.estimate;
     const estimates: Values = {};
@@ -36,7 +36,6 @@ export class FittedSwing {
       estimates[name] = estimate;
     }
     if (!law || !frequency || !['inertia', ...law.names].every((name) => name in estimates)) return null;
-    const { clock_scale: clock, window_s: window } = result.data;
     const isRate = unit === 'rad/s' || 'rate_scale' in estimates;
     return new FittedSwing(law, estimates, estimates.inertia * frequency ** 2, clock, window[0], isRate);
   }

@@ -72,7 +72,7 @@ export class AgainSection {
 
   /** The recording with its fitted window, or with the requested window if there is no fit. */
   private plotOf(recording: WholeRecording): WindowPlot {
-    const used = (this.result?.data.window_s ?? null) as Window | null;
+    const used = (this.result?.recordings[0].window_s ?? null) as Window | null;
     const { from, to } = this.request.options;
     const asked = (text: string | undefined, end: number): number => (text === undefined ? end : Number(text));
     const chosen: Window = used ?? [asked(from, recording.time_s[0] ?? 0), asked(to, recording.time_s.at(-1) ?? 1)];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Comparison of fits: their common parameters, and the differences in standard errors. */
 
-import { bestFit, type Report } from '../../report/report';
+import { bestFit, shownFit, type Report } from '../../report/report';
 import type { ForestRow } from '../../shared/forest';
 import { recordingMark } from '../../shared/marks';
 import { elided } from '../../shared/names';
-import type { Fit, Parameter } from '../../shared/result_types';
+import type { Fit, Parameter, Recording } from '../../shared/result_types';
 
-/** A fit to compare, with the model that is shown. */
+/** A fit of one recording to compare, with the model that is shown. */
 export interface Compared {
   id: string;
   name: string;
@@ -19,7 +19,9 @@ export interface Compared {
 export const kBest = '';
 const kLabel = 16; // characters of a name in a plot, at most
 
-export const fitOf = ({ report }: Compared): Fit | null => report.result.fits[report.shown] ?? null;
+export const fitOf = ({ report }: Compared): Fit | null => shownFit(report);
+
+export const recordingOf = ({ report }: Compared): Recording => report.result.recordings[0];
 
 /** Models that all fits have, in the order of the first fit. */
 export function commonModels(all: readonly Compared[]): string[] {
@@ -41,7 +43,7 @@ export const parameterNames = (all: readonly Compared[]): string[] => [
   ...new Set(all.flatMap((one) => Object.keys(fitOf(one)?.parameters ?? {}))),
 ];
 
-export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters?.[name] ?? null;
+export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters[name] ?? null;
 
 /**
  * (b - a) over its standard error, for independent recordings. Null if the units differ, a value is missing or neither
@@ -55,13 +57,13 @@ export function differenceInErrors(a: Parameter | null, b: Parameter | null): nu
 
 /** Whether two fits are of the same bytes. */
 export function shareRecording(all: readonly Compared[]): boolean {
-  const hashes = all.map(({ report }) => report.result.data.sha256);
+  const hashes = all.map((one) => recordingOf(one).sha256);
   return hashes.some((hash, i) => hash !== null && hashes.indexOf(hash) !== i);
 }
 
 /** Whether all fits are of the same bytes, with the same times. */
 export function areOneRecording(all: readonly Compared[]): boolean {
-  const [first, ...others] = all.map(({ report }) => report.result.data);
+  const [first, ...others] = all.map(recordingOf);
   const isAnother = (rate: number): boolean => Math.abs(rate / first.sample_rate_hz - 1) > 0.01; // parts differ by jitter
   return (
     first.sha256 !== null &&

@@ -26,6 +26,7 @@ import {
   kBest,
   parameterNames,
   parameterOf,
+  recordingOf,
   shareRecording,
   showModel,
   wholeRange,
@@ -48,7 +49,7 @@ function fitsTable(all: Compared[]): HTMLElement {
   ];
   const rows = all.map((one, k): Cell[] => {
     const fit = fitOf(one);
-    const [from, to] = one.report.result.data.window_s;
+    const [from, to] = recordingOf(one).window_s;
     return [
       named(k),
       el('a', { href: fitPath(one.id) }, el('bdi', {}, one.name)),
@@ -110,9 +111,8 @@ const kShared =
 
 function parts(all: Compared[]): HTMLElement[] {
   const bars = forests(all);
-  const reports = all.map(({ report }) => report);
-  const data = reports.map(({ result }) => result.data);
-  const overlaid = overlaySection({ recordings: reports, result: { data }, oneClock: areOneRecording(all) }, 'fit');
+  const recordings = all.map(({ report }) => report.recordings[0]);
+  const overlaid = overlaySection({ recordings, oneClock: areOneRecording(all) }, 'fit');
   return [
     section('fits', 'What is compared', fitsTable(all)),
     section(
@@ -140,7 +140,7 @@ async function compared(id: string, signal: AbortSignal): Promise<Compared> {
   const [request, result, series] = await Promise.all([
     askJson<FitRequest>(fitApi(id, 'request'), { signal }),
     askJson<Result>(fitApi(id), { signal }),
-    askJson<Series>(fitApi(id, 'series'), { signal }).catch(() => null),
+    askJson<Series[]>(fitApi(id, 'series'), { signal }).catch(() => null),
   ]);
   return { id, name: request.name, created: request.created, report: makeReport(result, series, null) };
 }

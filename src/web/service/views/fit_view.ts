@@ -2,7 +2,7 @@
 /** One fit: its report, and further actions. */
 
 import { reportContent } from '../../report/render';
-import { shownFit, makeReport } from '../../report/report';
+import { makeReport, shownFit, type Report } from '../../report/report';
 import { el, text } from '../../shared/dom';
 import { reportColumns } from '../../shared/page';
 import type { Result, Series } from '../../shared/result_types';
@@ -46,8 +46,8 @@ function factsOf(request: FitRequest, facts: string): HTMLElement {
 }
 
 /** Announcement for screen readers when a fit is shown. */
-function spoken(result: Result): string {
-  const fit = shownFit(makeReport(result, null, null));
+function spoken(report: Report): string {
+  const fit = shownFit(report);
   return fit ? `Fitted: ${fit.model}, ${fit.status.replace(/_/g, ' ')}.` : 'Done: closed forms only.';
 }
 
@@ -55,13 +55,14 @@ function showReport(
   place: Place,
   request: FitRequest,
   result: Result,
-  series: Series | null,
+  series: Series[] | null,
   again: HTMLElement,
 ): void {
   const problems = alertPlace();
-  const content = reportContent(result, series, { command: commandOf(request) }, request.name);
+  const report = makeReport(result, series, { command: commandOf(request) });
+  const content = reportContent(report, request.name);
   const { sections } = content;
-  const feel = slidersSection(result, series);
+  const feel = slidersSection(report.recordings[0]);
   const withAgain = (changed: () => void): HTMLElement[] => {
     const made = sections(changed);
     const next = made.findIndex((part) => part.id === 'fit') + 1;
@@ -74,7 +75,7 @@ function showReport(
     problems,
     columns,
   );
-  place.say(spoken(result));
+  place.say(spoken(report));
 }
 
 /** For a recording that could not be fitted: the reason, and a form to try again. */
@@ -103,7 +104,7 @@ export const fitView =
         showFailure(place, request, result, await againSection(place, request, null));
         return;
       }
-      const series = askJson<Series>(fitApi(id, 'series'), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
+      const series = askJson<Series[]>(fitApi(id, 'series'), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
       const again = againSection(place, request, result);
       showReport(place, request, result, await series, await again);
     } finally {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The measured swing, and the swing of the fitted law for parameters that the reader sets with sliders. */
 
-import { makeReport, shownFit } from '../../report/report';
+import { shownFitOf, type OneRecording } from '../../report/report';
 import { TimePlot, type Trace } from '../../report/time_plot';
 import { button, el, symbolElement, text } from '../../shared/dom';
 import { kMeasured, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
-import type { Fit, Result, Series } from '../../shared/result_types';
+import type { Fit } from '../../shared/result_types';
 import { significant } from '../../shared/rounding';
-import { toSamples, type Samples } from '../../shared/samples';
+import type { Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, spacedUnit, symbolOf, unitText, wordsOf } from '../../shared/units';
@@ -155,12 +155,12 @@ class SlidersSection {
 }
 
 /** The section for the shown law; null if there is no fit or no series. */
-export function slidersSection(result: Result, series: Series | null): HTMLElement | null {
-  const fit = shownFit(makeReport(result, null, null));
-  const samples = toSamples(series);
+export function slidersSection(one: OneRecording): HTMLElement | null {
+  const fit = shownFitOf(one);
+  const { samples } = one;
   const fitted = fit && samples?.models.get(fit.model)?.fitted;
   if (!fit || !samples || !fitted || fit.status === 'failed') return null;
-  const motion = FittedSwing.of(result, fit, samples.unit);
+  const motion = FittedSwing.of(one.data, fit, samples.unit);
   if (motion?.agreesWith(thinned(samples.time), thinned(fitted))) return new SlidersSection(fit, motion, samples).make();
   return section(
     'feel',
