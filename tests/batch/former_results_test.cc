@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A path or a message that equals a former key or code is not a name and stays unchanged.
-TEST(WithCurrentNames, RenamesKeysWarningCodesAndParametersOfVersion1) {
+TEST(ToCurrentResult, RenamesKeysWarningCodesAndParametersOfVersion1) {
   const std::string former = R"({
     "schema_version": 1,
     "data": {"sampling": {"seen_frequency_hz": 0.8}, "path": "why"},
@@ -37,12 +37,12 @@ TEST(WithCurrentNames, RenamesKeysWarningCodesAndParametersOfVersion1) {
       "runs": [{"separate": "converged"}],
       "warnings": [{"code": "larger_motion_outside", "message": "left_out"}]}],
     "comparison": {"rows": [{"is_compared": true}]}})";
-  EXPECT_EQ(Json::parse(WithCurrentNames(former)), Json::parse(current));
+  EXPECT_EQ(Json::parse(ToCurrentResult(former)), Json::parse(current));
 }
 
-TEST(WithCurrentNames, DoesNotChangeOtherTexts) {
+TEST(ToCurrentResult, DoesNotChangeOtherTexts) {
   for (const std::string text : {"", "{}", "[1]", "no JSON", R"({"schema_version": 2, "why": 1})"}) {
-    EXPECT_EQ(WithCurrentNames(text), text);
+    EXPECT_EQ(ToCurrentResult(text), text);
   }
 }
 

@@ -60,7 +60,7 @@ TEST(IdentifyBytes, EqualsTheFitOfTheFiles) {
   const auto from_files = IdentifyEach(options, *std::move(one));
   ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
   EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
-  EXPECT_EQ(from_bytes->used.time, from_files[0]->used.time);
+  EXPECT_EQ(from_bytes->recordings.front().used.time, from_files[0]->recordings.front().used.time);
 }
 
 TEST(IdentifyBytes, EqualsTheFitOfTheFilesWithACalibration) {

@@ -128,8 +128,8 @@ Result<Identification> FitFile(const std::filesystem::path& path, const FitOptio
   Result<SwingFit> fit = FitSwing(repaired, swings->found[static_cast<std::size_t>(release - 1)], options);
   if (!fit) return tl::unexpected(fit.error());
   Identification report;
-  report.data.samples = repaired.size();
-  SummarizeUsed(fit->used, fit->swing, report.data);
+  report.recordings.front().data.samples = repaired.size();
+  SummarizeUsed(fit->used, fit->swing, report.recordings.front().data);
   report.rig = options.rig;
   report.warnings = repaired.warnings;
   report.fits.push_back(std::move(fit->fit));

@@ -28,12 +28,13 @@ TEST(AddConclusions, DerivesTheFrequencyFromTheHalfPeriod) {
   FreeSwing swing;
   swing.half_period = 0.625;
   Identification report;
-  report.used = EvenSamples(1);
-  AddConclusions(swing, std::nullopt, nullptr, {}, report);
-  ASSERT_TRUE(report.sampling);
-  EXPECT_NEAR(report.sampling->rate_hz, 50, 1e-9);
-  EXPECT_DOUBLE_EQ(report.sampling->frequency_hz, 0.8);  // 1 / (2 · 0.625)
-  EXPECT_FALSE(report.sampling->expected_frequency_hz);
+  report.recordings.emplace_back();
+  report.recordings.front().used = EvenSamples(1);
+  AddConclusions(swing, std::nullopt, nullptr, {}, 0, report);
+  ASSERT_TRUE(report.recordings.front().sampling);
+  EXPECT_NEAR(report.recordings.front().sampling->rate_hz, 50, 1e-9);
+  EXPECT_DOUBLE_EQ(report.recordings.front().sampling->frequency_hz, 0.8);  // 1 / (2 · 0.625)
+  EXPECT_FALSE(report.recordings.front().sampling->expected_frequency_hz);
 }
 
 // sqrt(G / I_O) / 2π = sqrt(1.8 / 0.05) / 2π = 6 / 2π Hz in true seconds; 1.1 times as many cycles per second of the
@@ -42,19 +43,21 @@ TEST(AddConclusions, PredictsTheFrequencyFromTheRigOnTheFilesClock) {
   FreeSwing swing;
   swing.half_period = 0.625;
   Identification report;
+  report.recordings.emplace_back();
   report.rig = Rig{{1.8, 0}, RigValue{0.05, 0}, {}};
-  report.used = EvenSamples(1.1);
-  AddConclusions(swing, std::nullopt, nullptr, {}, report);
-  ASSERT_TRUE(report.sampling && report.sampling->expected_frequency_hz);
-  EXPECT_NEAR(*report.sampling->expected_frequency_hz, 1.1 * 6 / (2 * 3.14159265358979), 1e-12);
+  report.recordings.front().used = EvenSamples(1.1);
+  AddConclusions(swing, std::nullopt, nullptr, {}, 0, report);
+  ASSERT_TRUE(report.recordings.front().sampling && report.recordings.front().sampling->expected_frequency_hz);
+  EXPECT_NEAR(*report.recordings.front().sampling->expected_frequency_hz, 1.1 * 6 / (2 * 3.14159265358979), 1e-12);
 }
 
 TEST(AddConclusions, HasNoFrequencyWithoutTurningPoints) {
   Identification report;
-  report.used = EvenSamples(1);
-  AddConclusions(FreeSwing(), std::nullopt, nullptr, {}, report);
-  ASSERT_TRUE(report.sampling);
-  EXPECT_EQ(report.sampling->frequency_hz, 0);
+  report.recordings.emplace_back();
+  report.recordings.front().used = EvenSamples(1);
+  AddConclusions(FreeSwing(), std::nullopt, nullptr, {}, 0, report);
+  ASSERT_TRUE(report.recordings.front().sampling);
+  EXPECT_EQ(report.recordings.front().sampling->frequency_hz, 0);
 }
 
 /// A recording with dry friction fitted without it, with only these warnings of the fit and no suspicions.
@@ -63,7 +66,8 @@ Identification FittedWithoutDryFriction(const std::vector<Warning>& warnings) {
   run.fit.warnings = warnings;
   run.fit.suspicions.clear();
   Identification report;
-  report.used = std::move(run.recording);
+  report.recordings.emplace_back();
+  report.recordings.front().used = std::move(run.recording);
   report.fits.push_back(std::move(run.fit));
   return report;
 }
@@ -73,7 +77,7 @@ TEST(AddConclusions, WarnsIfClosedFormsDifferAndNothingElseSaysThatTheLawIsWrong
     Identification report = FittedWithoutDryFriction(known);
     const MotionModel model = report.fits[0].model;
     AddConclusions(
-        FreeSwing(), model, [](std::size_t) { return true; }, {}, report);
+        FreeSwing(), model, [](std::size_t) { return true; }, {}, 0, report);
     EXPECT_EQ(report.fits[0].HasWarning("closed_forms_differ"), known.empty());
   }
 }
@@ -81,10 +85,10 @@ TEST(AddConclusions, WarnsIfClosedFormsDifferAndNothingElseSaysThatTheLawIsWrong
 // Closed forms use the readings as recorded, and the fit corrected ones.
 TEST(AddConclusions, DoesNotWarnOfClosedFormsIfTheReadingsWereCorrected) {
   Identification report = FittedWithoutDryFriction({});
-  report.fits[0].correction = Eigen::VectorXd::Constant(report.used.size(), 1e-6);
+  report.fits[0].correction = Eigen::VectorXd::Constant(report.recordings.front().used.size(), 1e-6);
   const MotionModel model = report.fits[0].model;
   AddConclusions(
-      FreeSwing(), model, [](std::size_t) { return true; }, {}, report);
+      FreeSwing(), model, [](std::size_t) { return true; }, {}, 0, report);
   EXPECT_FALSE(report.fits[0].HasWarning("closed_forms_differ"));
 }
 

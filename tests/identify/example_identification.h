@@ -207,31 +207,33 @@ inline Comparison ExampleComparison() {
 /// A run with a rig whose values have errors, and one warning of the recording.
 inline Identification ExampleIdentification() {
   Identification report;
-  report.data.path = "swing.csv";
-  report.data.sha256 = std::string(64, 'a');
-  report.data.samples = 2000;
-  report.data.used_samples = 1801;
-  report.data.from = 1.5;
-  report.data.to = 19.5;
-  report.data.resolution = kRadFromDeg / 4;
-  report.data.resolution_source = "found";
-  report.data.sensor.kind = "potentiometer";
-  report.data.sensor.Of(SensorEffect::kGain) = {0.0078125, "calibration"};
-  report.data.sensor.Of(SensorEffect::kLag) = {0.001, "assumed for a potentiometer"};
-  report.data.begins = "held, then released";
-  report.data.ends = "the end of the recording";
-  report.data.releases = {{1.5, 19.5}};
-  report.data.release = 1;
+  IdentifiedRecording& recording = report.recordings.emplace_back();
+  recording.data.path = "swing.csv";
+  recording.data.sha256 = std::string(64, 'a');
+  recording.data.samples = 2000;
+  recording.data.used_samples = 1801;
+  recording.data.from = 1.5;
+  recording.data.to = 19.5;
+  recording.data.resolution = kRadFromDeg / 4;
+  recording.data.resolution_source = "found";
+  recording.data.sensor.kind = "potentiometer";
+  recording.data.sensor.Of(SensorEffect::kGain) = {0.0078125, "calibration"};
+  recording.data.sensor.Of(SensorEffect::kLag) = {0.001, "assumed for a potentiometer"};
+  recording.data.begins = "held, then released";
+  recording.data.ends = "the end of the recording";
+  recording.data.releases = {{1.5, 19.5}};
+  recording.data.release = 1;
   report.rig = Rig{{1.8, 0.01}, RigValue{0.076, 0.0005}, {}};
   report.rig->source = {{"gravity_torque", {{"value", 1.8}, {"std_dev", 0.01}}},
                         {"inertia", {{"value", 0.076}, {"std_dev", 0.0005}}}};
   report.fits = {ExampleFit()};
-  report.sampling = Sampling{100, 0.0002, 1, 0.5, 0.8, 125, 62.5, 194, 20, 12, 0.8, 0.775};
-  report.closed_forms = ExampleClosedForms();
-  report.closed_forms_model = "coulomb";
-  report.checks = {ExampleCheck()};
-  report.constancy = {ExampleConstant()};
-  report.warnings = {{"gaps", "there is a gap of 0.5 s after 7 s"}};
+  report.spans = {{{"inertia", "viscous", "coulomb"}, {0.25}, {"converged"}, {}, false}};
+  recording.sampling = Sampling{100, 0.0002, 1, 0.5, 0.8, 125, 62.5, 194, 20, 12, 0.8, 0.775};
+  recording.closed_forms = ExampleClosedForms();
+  recording.closed_forms_model = "coulomb";
+  recording.checks = {ExampleCheck()};
+  recording.constancy = {ExampleConstant()};
+  recording.warnings = {{"gaps", "there is a gap of 0.5 s after 7 s"}};
   return report;
 }
 
@@ -239,14 +241,16 @@ inline Identification ExampleIdentification() {
 inline Identification ExampleRateIdentification() {
   Identification report = ExampleIdentification();
   report.rig.reset();
-  report.sampling.reset();
-  report.closed_forms.reset();
-  report.no_closed_forms = "only 2 turning points can be located";
-  report.checks.clear();
-  report.constancy.clear();
-  report.data.unit = "rad/s";
-  report.data.resolution = 0;
-  report.data.resolution_source.clear();
+  report.unit = "rad/s";
+  IdentifiedRecording& recording = report.recordings.front();
+  recording.sampling.reset();
+  recording.closed_forms.reset();
+  recording.no_closed_forms = "only 2 turning points can be located";
+  recording.checks.clear();
+  recording.constancy.clear();
+  recording.data.unit = "rad/s";
+  recording.data.resolution = 0;
+  recording.data.resolution_source.clear();
   FitReport& fit = report.fits.front();
   fit.quantity = Quantity::kRate;
   fit.reading_unit = "rad/s";
@@ -284,8 +288,10 @@ inline Identification ExampleComparedIdentification() {
   drag.parameters[0].unit = "kg m^2";
   drag.parameters[0].estimate = 0.075;
   report.fits.push_back(drag);
-  report.checks.emplace_back();
-  report.constancy = {ExampleConstancy(), Constancy()};
+  report.spans.push_back({{"inertia", "viscous", "coulomb", "drag"}, {0.25}, {"not_converged"}, {}, false});
+  IdentifiedRecording& recording = report.recordings.front();
+  recording.checks.emplace_back();
+  recording.constancy = {ExampleConstancy(), Constancy()};
   report.comparison = ExampleComparison();
   return report;
 }

@@ -62,14 +62,17 @@ inline FitReport ExampleSharedFit() {
 /// The example's recording as run.csv, and a second recording "b c.csv", which begins in motion and has neither closed
 /// forms nor constancy.
 inline Identification ExampleJointIdentification() {
-  Identification report;
-  report.rig = ExampleIdentification().rig;
+  Identification report = ExampleIdentification();
+  IdentifiedRecording& first = report.recordings.front();
+  first.data.path = "run.csv";
+  first.fits = std::move(report.fits);
   report.fits = {ExampleSharedFit()};
-  report.joint = {
-      {{"inertia", "viscous", "coulomb"}, ExampleHomogeneity(), {"converged", "not_converged: too few iterations"}}};
-  report.runs = {ExampleIdentification(), ExampleIdentification()};
-  report.runs[0].data.path = "run.csv";
-  Identification& second = report.runs[1];
+  report.spans = {{{"inertia", "viscous", "coulomb"},
+                   {0.25, 0.125},
+                   {"converged", "not_converged: too few iterations"},
+                   ExampleHomogeneity(),
+                   false}};
+  IdentifiedRecording second = first;
   second.data.path = "b c.csv";
   second.data.used_samples = 901;
   second.data.from = 10.5;
@@ -85,6 +88,7 @@ inline Identification ExampleJointIdentification() {
   fit.covariance_names[2] = "initial_angle";
   fit.identifiability[3].parameter = "initial_angle";
   fit.warnings.clear();
+  report.recordings.push_back(std::move(second));
   return report;
 }
 
@@ -93,13 +97,13 @@ inline Identification ExampleComparedJointIdentification() {
   Identification report = ExampleJointIdentification();
   const FitReport drag = ExampleComparedIdentification().fits[1];
   report.fits.push_back(drag);
-  report.joint.push_back(report.joint.front());
-  report.joint.back().shared = {"inertia", "viscous", "coulomb", "drag"};
+  report.spans.push_back(report.spans.front());
+  report.spans.back().shared = {"inertia", "viscous", "coulomb", "drag"};
   report.comparison = ExampleComparison();
-  for (Identification& run : report.runs) {
-    run.fits.push_back(drag);
-    if (!run.checks.empty()) run.checks.emplace_back();
-    if (!run.constancy.empty()) run.constancy.emplace_back();
+  for (IdentifiedRecording& recording : report.recordings) {
+    recording.fits.push_back(drag);
+    if (!recording.checks.empty()) recording.checks.emplace_back();
+    if (!recording.constancy.empty()) recording.constancy.emplace_back();
   }
   return report;
 }
@@ -128,7 +132,7 @@ inline Identification ExampleFailedJointIdentification() {
     fit.statistics = {};
   };
   fail(report.fits.front());
-  for (Identification& run : report.runs) fail(run.fits.front());
+  for (IdentifiedRecording& recording : report.recordings) fail(recording.fits.front());
   return report;
 }
 

@@ -55,10 +55,10 @@ TEST(AllWarnings, ListEachWarningOnceAndStartWithTheData) {
 
 TEST(Identification, GivesTheCheckOfAFitIfThereIsOne) {
   Identification report = ExampleIdentification();
-  EXPECT_EQ(report.CheckOf(0), &report.checks[0]);
-  EXPECT_EQ(report.CheckOf(1), nullptr);
-  report.checks.clear();
-  EXPECT_EQ(report.CheckOf(0), nullptr);
+  EXPECT_EQ(report.recordings.front().CheckOf(0), &report.recordings.front().checks[0]);
+  EXPECT_EQ(report.recordings.front().CheckOf(1), nullptr);
+  report.recordings.front().checks.clear();
+  EXPECT_EQ(report.recordings.front().CheckOf(0), nullptr);
 }
 
 TEST(AllWarnings, AreTheWarningsOfTheRecordingIfThereIsNoFit) {
@@ -70,12 +70,12 @@ TEST(AllWarnings, AreTheWarningsOfTheRecordingIfThereIsNoFit) {
 TEST(AllWarnings, NameTheRecordingInAJointFit) {
   Identification report = ExampleJointIdentification();
   report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
-  report.runs[1].warnings = report.runs[0].warnings;
+  report.recordings[1].warnings = report.recordings[0].warnings;
   EXPECT_THAT(
       AllWarnings(report),
       ElementsAre(MessageIs("they do not agree"), MessageIs("each recording: there is a gap of 0.5 s after 7 s"),
                   MessageIs(StartsWith("recording 1 (run.csv): the residuals are not white"))));
-  report.runs[1].warnings[0].finding = "there is a gap of 0.7 s after 7 s";
+  report.recordings[1].warnings[0].finding = "there is a gap of 0.7 s after 7 s";
   EXPECT_THAT(
       AllWarnings(report),
       ElementsAre(MessageIs("they do not agree"), MessageIs("recording 1 (run.csv): there is a gap of 0.5 s after 7 s"),
@@ -87,17 +87,17 @@ TEST(RecordingLabel, IsNumberAndFile) {
   EXPECT_TRUE(report.is_joint());
   EXPECT_FALSE(ExampleIdentification().is_joint());
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv)");
-  report.runs[1].data.path.clear();
+  report.recordings[1].data.path.clear();
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2");
 }
 
 TEST(RecordingLabel, DistinguishesReleasesOfOneFile) {
   Identification report = ExampleJointIdentification();
-  report.runs[1].data.path = "run.csv";
-  report.runs[1].data.release = 3;
+  report.recordings[1].data.path = "run.csv";
+  report.recordings[1].data.release = 3;
   EXPECT_EQ(RecordingLabel(report, 0), "recording 1 (run.csv, free swing 1)");
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv, free swing 3)");
-  report.runs[1].data.release = 0;  // a window given by the user
+  report.recordings[1].data.release = 0;  // a window given by the user
   EXPECT_EQ(RecordingLabel(report, 1), "recording 2 (run.csv)");
 }
 
@@ -159,10 +159,25 @@ TEST(ExitCode, FollowsTheRecommendedFit) {
   EXPECT_EQ(ExitCode(run), 0);
 }
 
-TEST(Parts, AreTheRecordingsOfAJointFitOrTheSingleRecording) {
-  const Identification joint = ExampleJointIdentification(), single = ExampleIdentification();
-  EXPECT_THAT(joint.Parts(), ElementsAre(&joint.runs[0], &joint.runs[1]));
-  EXPECT_THAT(single.Parts(), ElementsAre(&single));
+TEST(Identification, HasTheFitOfARecordingWithAllItsParameters) {
+  const Identification single = ExampleIdentification(), joint = ExampleJointIdentification();
+  EXPECT_EQ(&single.FitOf(0, 0), &single.fits[0]);
+  EXPECT_EQ(&joint.FitOf(1, 0), &joint.recordings[1].fits[0]);
+  EXPECT_NE(joint.FitOf(1, 0).Find("initial_angle"), nullptr);
+  EXPECT_EQ(joint.fits[0].Find("initial_angle"), nullptr);
+}
+
+TEST(Identification, HasThePathOfItsOnlyRecording) {
+  EXPECT_EQ(ExampleIdentification().path(), "swing.csv");
+  EXPECT_EQ(ExampleJointIdentification().path(), "");
+}
+
+TEST(Identification, SharesTheMotionIfAllParametersOfThePendulumAreShared) {
+  Identification joint = ExampleJointIdentification();
+  EXPECT_TRUE(joint.SharesMotion(0));
+  joint.spans[0].shared.pop_back();
+  EXPECT_FALSE(joint.SharesMotion(0));
+  EXPECT_TRUE(ExampleIdentification().SharesMotion(0));
 }
 
 }  // namespace

@@ -44,12 +44,12 @@ TEST(IdentifyJointly, IdentifiesTheRigOfSeveralRecordings) {
   const ParameterEstimate* const inertia = report.fits[0].Find("inertia");
   ASSERT_TRUE(inertia != nullptr && inertia->std_error);
   EXPECT_NEAR(inertia->estimate, 0.079, 4 * *inertia->std_error);
-  ASSERT_EQ(report.runs.size(), 2);
-  EXPECT_EQ(report.runs[0].data.path, "datasets/runs_2.csv");
-  EXPECT_EQ(report.runs[1].data.samples, 1500);  // 15 s at 100 Hz
-  ASSERT_EQ(report.joint.size(), 1);
-  EXPECT_THAT(report.joint[0].alone, ElementsAre("converged", "converged"));
-  EXPECT_TRUE(report.joint[0].homogeneity.agrees()) << report.joint[0].homogeneity.verdict;
+  ASSERT_EQ(report.recordings.size(), 2);
+  EXPECT_EQ(report.recordings[0].data.path, "datasets/runs_2.csv");
+  EXPECT_EQ(report.recordings[1].data.samples, 1500);  // 15 s at 100 Hz
+  ASSERT_EQ(report.spans.size(), 1);
+  EXPECT_THAT(report.spans[0].separate, ElementsAre("converged", "converged"));
+  EXPECT_TRUE(report.spans[0].homogeneity->agrees()) << report.spans[0].homogeneity->verdict;
 }
 
 TEST(IdentifyJointly, RefusesARecordingThatIsNamedTwice) {

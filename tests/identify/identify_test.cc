@@ -133,13 +133,13 @@ TEST(IdentifyEach, AddsAllConclusionsToTheFit) {
   ASSERT_THAT(report.fits, SizeIs(1));
   const ParameterEstimate& inertia = *report.fits[0].Find("inertia");
   EXPECT_NEAR(inertia.estimate, 0.079, 4 * inertia.std_error.value());
-  EXPECT_THAT(report.checks, SizeIs(1));
-  EXPECT_THAT(report.constancy, SizeIs(1));
-  EXPECT_TRUE(report.closed_forms && report.sampling && report.rig);
+  EXPECT_THAT(report.recordings.front().checks, SizeIs(1));
+  EXPECT_THAT(report.recordings.front().constancy, SizeIs(1));
+  EXPECT_TRUE(report.recordings.front().closed_forms && report.recordings.front().sampling && report.rig);
   EXPECT_FALSE(report.comparison);
-  EXPECT_EQ(report.data.path, "datasets/textbook_rig.csv");
-  EXPECT_EQ(report.data.samples, 2000);  // 20 s at 100 Hz
-  EXPECT_EQ(runs[0]->used.size(), report.data.used_samples);
+  EXPECT_EQ(report.recordings.front().data.path, "datasets/textbook_rig.csv");
+  EXPECT_EQ(report.recordings.front().data.samples, 2000);  // 20 s at 100 Hz
+  EXPECT_EQ(runs[0]->recordings.front().used.size(), report.recordings.front().data.used_samples);
   EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 
@@ -151,7 +151,7 @@ TEST(IdentifyEach, ComparesSeveralModelsInTheOrderAskedFor) {
   EXPECT_EQ(report.fits[0].model.name, "coulomb");
   EXPECT_EQ(report.fits[1].model.name, "viscous");
   ASSERT_TRUE(report.comparison);
-  EXPECT_EQ(report.closed_forms_model, report.fits[report.MainFit()].model.name);
+  EXPECT_EQ(report.recordings.front().closed_forms_model, report.fits[report.MainFit()].model.name);
 }
 
 TEST(IdentifyEach, ChecksTheMainFitOrAllFitsOrNoFit) {
@@ -164,11 +164,11 @@ TEST(IdentifyEach, ChecksTheMainFitOrAllFitsOrNoFit) {
     const Identification& one = *runs[0];
     const auto is_tested = [](const Constancy& constancy) { return constancy.halves_p.has_value(); };
     const auto is_compared = [](const ClosedFormCheck& check) { return !check.rows.empty(); };
-    EXPECT_EQ(std::ranges::count_if(one.constancy, is_tested), tested);
-    EXPECT_EQ(std::ranges::count_if(one.checks, is_compared), compared);
-    EXPECT_EQ(one.closed_forms.has_value(), checks != Checks::kNone);
+    EXPECT_EQ(std::ranges::count_if(one.recordings.front().constancy, is_tested), tested);
+    EXPECT_EQ(std::ranges::count_if(one.recordings.front().checks, is_compared), compared);
+    EXPECT_EQ(one.recordings.front().closed_forms.has_value(), checks != Checks::kNone);
     if (checks == Checks::kStandard) {
-      EXPECT_TRUE(is_tested(one.constancy[one.MainFit()]));
+      EXPECT_TRUE(is_tested(one.recordings.front().constancy[one.MainFit()]));
     }
   }
 }
@@ -179,8 +179,8 @@ TEST(IdentifyEach, MakesClosedFormsWithoutAFit) {
   const auto runs = FitTextbook(options);
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
   EXPECT_THAT(runs[0]->fits, IsEmpty());
-  EXPECT_TRUE(runs[0]->closed_forms);
-  EXPECT_EQ(runs[0]->closed_forms_model, "viscous");
+  EXPECT_TRUE(runs[0]->recordings.front().closed_forms);
+  EXPECT_EQ(runs[0]->recordings.front().closed_forms_model, "viscous");
   EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 
@@ -192,7 +192,7 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   counts.unit = "counts";
   const auto runs = IdentifyEach(options, Must(PrepareRecording(counts, options, std::nullopt)));
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
-  EXPECT_EQ(runs[0]->closed_forms_model, "linear");
+  EXPECT_EQ(runs[0]->recordings.front().closed_forms_model, "linear");
   ASSERT_THAT(runs[0]->warnings, Not(IsEmpty()));
   EXPECT_EQ(runs[0]->warnings.back().code, "uncalibrated");
   EXPECT_THAT(MessageText(runs[0]->warnings.back()), StartsWith("the readings are in counts, not in a unit of angle"));
@@ -205,12 +205,12 @@ TEST(IdentifyEach, FitsEachChosenRelease) {
   ASSERT_THAT(runs, SizeIs(2));
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_TRUE(runs[i]) << runs[i].error().message;
-    EXPECT_EQ(runs[i]->data.release, i + 1);
-    EXPECT_EQ(runs[i]->data.path, "two.csv");
-    EXPECT_EQ(runs[i]->data.samples, 900 + 400 + 1000);
+    EXPECT_EQ(runs[i]->recordings.front().data.release, i + 1);
+    EXPECT_EQ(runs[i]->recordings.front().data.path, "two.csv");
+    EXPECT_EQ(runs[i]->recordings.front().data.samples, 900 + 400 + 1000);
     EXPECT_EQ(ExitCode(*runs[i]), 0);
   }
-  EXPECT_LT(runs[0]->data.to, runs[1]->data.from);
+  EXPECT_LT(runs[0]->recordings.front().data.to, runs[1]->recordings.front().data.from);
 }
 
 TEST(IdentifyEach, NamesTheFailedSwingAmongSeveral) {

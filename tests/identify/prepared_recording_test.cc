@@ -65,7 +65,7 @@ class PrepareFileTest : public testing::Test {
     if (!given.empty()) options.sensor = ParseSensorStatement(given, "x", "given by --sensor").value();
     auto prepared = PrepareFile(path_, options, std::nullopt);
     const auto result = IdentifyEach(options, *std::move(prepared));
-    const SensorErrors& sensor = result.front().value().data.sensor;
+    const SensorErrors& sensor = result.front().value().recordings.front().data.sensor;
     std::string summary = sensor.kind + ", gain: " + sensor.Of(SensorEffect::kGain).source;
     for (const Warning& warning : result.front()->warnings) summary += ", " + std::string(warning.code.text());
     return summary;
@@ -77,9 +77,9 @@ class PrepareFileTest : public testing::Test {
 TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
   const auto one = Read(R"(# rig: {"gravity_torque": {"value": 1.8, "std_dev": 0.01}})");
   ASSERT_TRUE(one) << one.error().message;
-  ASSERT_TRUE(one->known.rig);
-  EXPECT_EQ(one->known.rig->gravity_torque.value, 1.8);
-  EXPECT_EQ(one->known.rig->gravity_torque.std_dev, 0.01);
+  ASSERT_TRUE(one->rig);
+  EXPECT_EQ(one->rig->gravity_torque.value, 1.8);
+  EXPECT_EQ(one->rig->gravity_torque.std_dev, 0.01);
   EXPECT_EQ(one->samples, 1500);  // 15 s at 100 Hz (src/docs/examples.md)
   EXPECT_THAT(one->swings.chosen, ElementsAre(1));
   EXPECT_THAT(one->recording.warnings, IsEmpty());  // they are in `known`
@@ -88,7 +88,7 @@ TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
 TEST_F(PrepareFileTest, PrefersAGivenRig) {
   const auto one = Read(R"(# rig: {"gravity_torque": 1.8})", Rig{{2.5, 0}, {}, {}});
   ASSERT_TRUE(one) << one.error().message;
-  EXPECT_EQ(one->known.rig->gravity_torque.value, 2.5);
+  EXPECT_EQ(one->rig->gravity_torque.value, 2.5);
 }
 
 TEST_F(PrepareFileTest, NamesWrongRigMetadata) {
@@ -108,7 +108,7 @@ TEST_F(PrepareFileTest, DecidesTheSensor) {
 TEST_F(PrepareFileTest, HasNoRigWithoutADescription) {
   const auto one = Read("# a comment");
   ASSERT_TRUE(one) << one.error().message;
-  EXPECT_FALSE(one->known.rig);
+  EXPECT_FALSE(one->rig);
 }
 
 }  // namespace

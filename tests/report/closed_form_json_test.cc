@@ -13,15 +13,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json FormsOf(const Identification& report) { return ClosedFormsJson(report.recordings.front(), report.si_rig()); }
+
 TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
   Identification report = ExampleIdentification();
   report.rig->gravity_torque.value = 2;
-  const Json si = ClosedFormsJson(report);
+  const Json si = FormsOf(report);
   EXPECT_EQ(si["linear"]["inertia"].dump(), R"({"estimate":0.089,"std_error":0.00025,"unit":"kg m^2"})");
   EXPECT_EQ(si["linear"]["damping_ratio"].dump(), R"({"estimate":0.00425,"std_error":0.0004,"unit":"1"})");
   EXPECT_EQ(si["decrement"]["parameters"]["coulomb"].dump(), R"({"estimate":0.01,"std_error":0.001,"unit":"N m"})");
   report.rig.reset();
-  const Json relative = ClosedFormsJson(report);
+  const Json relative = FormsOf(report);
   EXPECT_EQ(relative["linear"]["inertia"].dump(), R"({"estimate":0.0445,"std_error":0.000125,"unit":"s^2"})");
   EXPECT_EQ(relative["decrement"]["parameters"]["coulomb"].dump(),
             R"({"estimate":0.005,"std_error":0.0005,"unit":"1"})");
@@ -30,17 +32,17 @@ TEST(ClosedFormsJson, UsesSiWithARigAndUnitsOfGravityWithout) {
 TEST(ClosedFormsJson, AlsoNamesTheModelIfThereIsNoFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  report.closed_forms->decrement.reset();
-  EXPECT_EQ(ClosedFormsJson(report)["model"], "coulomb");
+  report.recordings.front().closed_forms->decrement.reset();
+  EXPECT_EQ(FormsOf(report)["model"], "coulomb");
 }
 
 TEST(ClosedFormsJson, ExplainsAMissingPart) {
   Identification report = ExampleIdentification();
-  report.closed_forms->linear.reset();
-  report.closed_forms->decrement.reset();
-  report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
-  report.closed_forms->envelope.clear();
-  const Json json = ClosedFormsJson(report);
+  report.recordings.front().closed_forms->linear.reset();
+  report.recordings.front().closed_forms->decrement.reset();
+  report.recordings.front().closed_forms->no_decrement = "too few turning points for 4 unknowns";
+  report.recordings.front().closed_forms->envelope.clear();
+  const Json json = FormsOf(report);
   EXPECT_TRUE(json["linear"].is_null());
   EXPECT_TRUE(json["decrement"].is_null());
   EXPECT_TRUE(json["envelope"].is_null());
@@ -49,14 +51,14 @@ TEST(ClosedFormsJson, ExplainsAMissingPart) {
             "for 4 unknowns");
 }
 
-TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(ClosedFormsJson(ExampleRateIdentification()).is_null()); }
+TEST(ClosedFormsJson, IsNullWithoutClosedForms) { EXPECT_TRUE(FormsOf(ExampleRateIdentification()).is_null()); }
 
 TEST(ClosedFormsJson, NamesTheUnitOfTheNoise) {
   Identification report = ExampleIdentification();
-  report.data.unit = "rad/s";
-  EXPECT_EQ(ClosedFormsJson(report)["noise_rad_s"], 0.0035);
-  report.data.unit = "counts";
-  EXPECT_EQ(ClosedFormsJson(report)["noise_counts"], 0.0035);
+  report.recordings.front().data.unit = "rad/s";
+  EXPECT_EQ(FormsOf(report)["noise_rad_s"], 0.0035);
+  report.recordings.front().data.unit = "counts";
+  EXPECT_EQ(FormsOf(report)["noise_counts"], 0.0035);
 }
 
 TEST(CheckJson, HasARowForEachQuantity) {

@@ -17,13 +17,13 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-std::string ClosedFormText(const Identification& report) { return ToText(ClosedFormSections(report)); }
-std::string SamplingText(const Identification& report) { return ToText(SamplingSections(report)); }
+std::string ClosedFormText(const Identification& report) { return ToText(ClosedFormSections(report, 0)); }
+std::string SamplingText(const Identification& report) { return ToText(SamplingSections(report.recordings.front().sampling)); }
 
 /// The example with more turning points, each 0.65 s after the previous one.
 Identification ReportWithTurningPoints(int count) {
   Identification report = ExampleIdentification();
-  ClosedForms& forms = *report.closed_forms;
+  ClosedForms& forms = *report.recordings.front().closed_forms;
   for (int i = static_cast<int>(forms.table.points.size()); i < count; ++i) {
     forms.table.points.push_back(forms.table.points.back());
     forms.table.points.back().time += 0.65;
@@ -98,7 +98,7 @@ TEST(ClosedFormText, RoundsFitAndClosedFormAlikeAndExplainsDifferences) {
 
 TEST(ClosedFormText, HidesANonFiniteZ) {
   Identification report = ExampleIdentification();
-  report.checks[0].rows[0].z = std::numeric_limits<double>::infinity();
+  report.recordings.front().checks[0].rows[0].z = std::numeric_limits<double>::infinity();
   EXPECT_THAT(ClosedFormText(report), HasSubstr("0.08020 ± 0.00020  0.07900    -  NO\n"));
 }
 
@@ -106,7 +106,7 @@ TEST(ClosedFormText, NamesTheModelOfEachOfSeveralChecks) {
   Identification report = ExampleIdentification();
   report.fits.push_back(report.fits.front());
   report.fits.back().model = {"viscous", "viscous", Gravity::kSine};
-  report.checks.push_back(report.checks.front());
+  report.recordings.front().checks.push_back(report.recordings.front().checks.front());
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of coulomb]]\n"));
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of viscous]]\n"));
@@ -114,7 +114,7 @@ TEST(ClosedFormText, NamesTheModelOfEachOfSeveralChecks) {
 
 TEST(ClosedFormText, ChecksOnlyTheMainFitOfAComparison) {
   Identification report = ExampleComparedIdentification();
-  report.checks[1] = ExampleCheck();
+  report.recordings.front().checks[1] = ExampleCheck();
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("[[Closed forms against the fit of coulomb]]\n"));
   EXPECT_THAT(text, Not(HasSubstr("drag")));
@@ -145,7 +145,7 @@ TEST(ClosedFormText, OmitsTheMiddleOfManyTurningPoints) {
 TEST(ClosedFormText, ListsSixtyTurningPointsWithoutAFit) {
   Identification report = ReportWithTurningPoints(60);
   report.fits.clear();
-  report.checks.clear();
+  report.recordings.front().checks.clear();
   EXPECT_EQ(TurningPointLines(report).size(), 60);
   EXPECT_THAT(ClosedFormText(report), Not(HasSubstr("against the fit")));
   Identification longer = ReportWithTurningPoints(61);
@@ -158,9 +158,9 @@ TEST(ClosedFormText, ListsSixtyTurningPointsWithoutAFit) {
 
 TEST(ClosedFormText, UsesRateUnitsForARate) {
   Identification report = ExampleIdentification();
-  report.data.unit = "rad/s";
-  report.closed_forms->table.quantity = Quantity::kRate;
-  report.closed_forms->decrement->table.quantity = Quantity::kRate;
+  report.recordings.front().data.unit = "rad/s";
+  report.recordings.front().closed_forms->table.quantity = Quantity::kRate;
+  report.recordings.front().closed_forms->decrement->table.quantity = Quantity::kRate;
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    number   t [s]  rate [deg/s]  "));
   EXPECT_THAT(text, HasSubstr("    rate_bias       z       0.01000 ± 0.00010    rad/s\n"
@@ -169,7 +169,7 @@ TEST(ClosedFormText, UsesRateUnitsForARate) {
 
 TEST(ClosedFormText, ShowsCountsUnconverted) {
   Identification report = ExampleIdentification();
-  report.data.unit = "counts";
+  report.recordings.front().data.unit = "counts";
   const std::string text = ClosedFormText(report);
   EXPECT_THAT(text, HasSubstr("    number   t [s]  angle [counts]  "));
   EXPECT_THAT(text, HasSubstr("         1  2.5000          0.4000  "));
@@ -178,9 +178,9 @@ TEST(ClosedFormText, ShowsCountsUnconverted) {
 
 TEST(ClosedFormText, ReportsMissingParts) {
   Identification report = ExampleIdentification();
-  report.closed_forms->linear.reset();
-  report.closed_forms->decrement.reset();
-  report.closed_forms->no_decrement = "too few turning points for 4 unknowns";
+  report.recordings.front().closed_forms->linear.reset();
+  report.recordings.front().closed_forms->decrement.reset();
+  report.recordings.front().closed_forms->no_decrement = "too few turning points for 4 unknowns";
   EXPECT_THAT(ClosedFormText(report), StartsWith(R"([[Closed forms]]
     There is no log decrement, because no two successive turning points are a
     whole period apart.
@@ -206,8 +206,8 @@ TEST(SamplingText, DescribesTheSampling) {
 TEST(SamplingText, OmitsUnknownFacts) {
   Identification report;
   EXPECT_EQ(SamplingText(report), "");
-  report.sampling = Sampling();
-  report.sampling->rate_hz = 12.5;
+  report.recordings.front().sampling = Sampling();
+  report.recordings.front().sampling->rate_hz = 12.5;
   EXPECT_EQ(SamplingText(report), "[[Sampling]]\n    rate  12.5 Hz, even\n    gaps  none\n");
 }
 

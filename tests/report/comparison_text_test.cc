@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string ComparisonText(const Identification& report) { return ToText(ComparisonSections(report)); }
-std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report, 0)); }
+std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report.recordings.front().ConstancyOf(0))); }
 
 // Expected values: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
 TEST(ComparisonSections, StartWithTheRecommendation) {
@@ -66,7 +66,7 @@ TEST(ComparisonSections, ExplainMissingPredictions) {
 
 TEST(ComparisonSections, UseTheUnitOfTheReadings) {
   Identification report = ExampleComparedIdentification();
-  report.data.unit = "counts";
+  report.recordings.front().data.unit = "counts";
   EXPECT_THAT(ComparisonText(report), HasSubstr("rms [counts]"));
   EXPECT_THAT(ComparisonText(report), HasSubstr("  0.00349  "));
 }
@@ -91,9 +91,9 @@ TEST(ConstancySections, ShowTheWindowsOfATrend) {
 
 TEST(ConstancySections, ShowDifferingHalves) {
   Identification report = ExampleIdentification();
-  report.constancy[0].halves_p = 1e-6;
-  report.constancy[0].verdict = "viscous differs between the halves";
-  EXPECT_EQ(ToText(ConstancySections(report, 0), {.colour = true}),
+  report.recordings.front().constancy[0].halves_p = 1e-6;
+  report.recordings.front().constancy[0].verdict = "viscous differs between the halves";
+  EXPECT_EQ(ToText(ConstancySections(report.recordings.front().ConstancyOf(0)), {.colour = true}),
             "\x1B[1m[[Constancy]]\x1B[0m\n"
             "    \x1B[33mviscous differs between the halves.\x1B[0m\n"
             "    name     first half ± error    second half ± error   unit          z\n"
@@ -103,11 +103,11 @@ TEST(ConstancySections, ShowDifferingHalves) {
 
 TEST(ConstancySections, ReportMissingTests) {
   Identification report = ExampleIdentification();
-  report.constancy[0] = Constancy();
+  report.recordings.front().constancy[0] = Constancy();
   EXPECT_EQ(ConstancyText(report), "");
-  report.constancy[0].reason = "the recording is shorter than six periods";
+  report.recordings.front().constancy[0].reason = "the recording is shorter than six periods";
   EXPECT_EQ(ConstancyText(report), "[[Constancy]]\n    Not tested: the recording is shorter than six periods.\n");
-  report.constancy.clear();
+  report.recordings.front().constancy.clear();
   EXPECT_EQ(ConstancyText(report), "");
 }
 

@@ -40,10 +40,11 @@ TEST(ParameterSection, StartsWithTheReasonForAMissingResult) {
 
 // Numbers are rounded to the decimal of the estimate's error 0.00025. Degrees: 0.423 rad × 57.2958 × 1.01 = 24.4785.
 TEST(FitSections, ListSystematicErrorsAndClosedFormsSeparately) {
-  FitReport fit = ExampleFit();
-  fit.parameters[0].closed_form = 0.0795;
-  fit.parameters[3].closed_form = 1.01 * 0.423;
-  EXPECT_THAT(ToText(FitSections(fit, std::nullopt, nullptr)), HasSubstr(R"(
+  Identification report = ExampleIdentification();
+  report.recordings.front().checks.clear();
+  report.fits[0].parameters[0].closed_form = 0.0795;
+  report.fits[0].parameters[3].closed_form = 1.01 * 0.423;
+  EXPECT_THAT(ToText(FitSections(report, 0)), HasSubstr(R"(
     name           symbol  ± systematic  closed form  unit
     inertia        I_O     ± 0.0010          0.07950  kg m^2
     viscous        b

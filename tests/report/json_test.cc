@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/version.h"
-#include "tests/identify/example_identification.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::json_test {
 namespace {
@@ -56,44 +56,103 @@ TEST(ToJson, NamesTheLawOfAWarningThatHoldsForOneAlone) {
   EXPECT_EQ(warning["parameters"], Json::array({"drag"}));
 }
 
-TEST(ToJson, KeepsTheOrderOfKeys) {
-  const Json json = ToJson(ExampleIdentification());
-  EXPECT_THAT(Keys(json), ElementsAre("schema_version", "tool", "data", "rig", "calibration", "fits", "comparison",
-                                      "closed_forms", "warnings"));
-  EXPECT_THAT(Keys(json["fits"][0]),
-              ElementsAre("model", "status", "reason", "equation", "parameters", "derived", "covariance", "correlation",
-                          "noise", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
-                          "statistics", "closed_form", "constancy", "rig_verdict", "ambiguities", "suspicions",
-                          "solver", "summary"));
-  EXPECT_THAT(Keys(json["fits"][0]["parameters"]),
-              ElementsAre("inertia", "viscous", "coulomb", "release_angle", "zero_angle"));
-  EXPECT_EQ(json["tool"]["version"], kVersion);
+// tests/tools/result_schema_test.py checks the tool's output with the schema.
+TEST(ToJson, KeepsTheOrderOfKeysForOneRecordingAndForSeveral) {
+  for (const Identification& report : {ExampleIdentification(), ExampleJointIdentification()}) {
+    const Json json = ToJson(report);
+    EXPECT_THAT(Keys(json),
+                ElementsAre("schema_version", "tool", "rig", "recordings", "fits", "comparison", "warnings"));
+    EXPECT_EQ(json["tool"]["version"], kVersion);
+    EXPECT_THAT(Keys(json["recordings"][0]),
+                ElementsAre("path", "sha256", "samples", "used_samples", "duration_s", "sample_rate_hz",
+                            "resolution_rad", "resolution_source", "clock_scale", "clock_scale_std_dev", "sensor",
+                            "window_s", "window_reason", "releases", "release", "start", "sampling", "calibration",
+                            "closed_forms", "fits"));
+    EXPECT_THAT(Keys(json["recordings"][0]["fits"][0]),
+                ElementsAre("model", "amplitude_rad", "parameters", "covariance", "correlation",
+                            "systematic_covariance", "std_error_method", "identifiability", "noise", "statistics",
+                            "closed_form", "constancy", "suspicions", "separate"));
+    EXPECT_THAT(Keys(json["fits"][0]),
+                ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
+                            "correlation", "systematic_covariance", "std_error_method", "interval_method",
+                            "identifiability", "statistics", "homogeneity", "rig_verdict", "ambiguities", "solver",
+                            "summary"));
+  }
+}
+
+TEST(ToJson, SeparatesWhatIsSharedFromWhatARecordingHasForItself) {
+  for (const Identification& report : {ExampleIdentification(), ExampleJointIdentification()}) {
+    const Json json = ToJson(report);
+    const Json& fit = json["fits"][0];
+    const Json& own = json["recordings"][0]["fits"][0];
+    EXPECT_EQ(fit["shared"].dump(), R"(["inertia","viscous","coulomb"])");
+    EXPECT_THAT(Keys(fit["parameters"]), ElementsAre("inertia", "viscous", "coulomb"));
+    EXPECT_EQ(fit["correlation"].dump(), R"({"names":["inertia","viscous"],"matrix":[[1.0,0.5],[0.5,1.0]]})");
+    EXPECT_EQ(fit["identifiability"].size(), 3);
+    EXPECT_THAT(Keys(own["parameters"]), ElementsAre("release_angle", "zero_angle"));
+    EXPECT_EQ(own["covariance"]["names"].dump(), R"(["inertia","viscous","release_angle"])");
+    EXPECT_EQ(own["identifiability"].size(), 1);
+    EXPECT_EQ(own["amplitude_rad"], 0.25);
+    EXPECT_EQ(own["separate"], "converged");
+  }
+}
+
+TEST(ToJson, ListsTheRecordingsInTheirOrder) {
+  const Json recordings = ToJson(ExampleJointIdentification())["recordings"];
+  ASSERT_EQ(recordings.size(), 2);
+  EXPECT_EQ(recordings[0]["path"], "run.csv");
+  EXPECT_EQ(recordings[1]["path"], "b c.csv");
+  EXPECT_EQ(recordings[0]["start"], "release");
+  EXPECT_EQ(recordings[1]["start"], "moving");
+  EXPECT_TRUE(recordings[0]["calibration"].is_null());
+  EXPECT_EQ(recordings[1]["calibration"].dump(), R"({"schema_version":1})");
+  EXPECT_EQ(recordings[0]["closed_forms"]["turning_points"], 5);
+  EXPECT_EQ(recordings[0]["fits"][0]["closed_form"].size(), 3);
+  EXPECT_THAT(Keys(recordings[1]["fits"][0]["parameters"]), ElementsAre("initial_angle", "zero_angle"));
+  EXPECT_EQ(recordings[1]["fits"][0]["amplitude_rad"], 0.125);
+  EXPECT_EQ(recordings[1]["fits"][0]["closed_form"], Json::array());
+  EXPECT_EQ(recordings[1]["fits"][0]["separate"], "not_converged: too few iterations");
+}
+
+TEST(ToJson, HasHomogeneityForSeveralRecordingsOnly) {
+  EXPECT_TRUE(ToJson(ExampleIdentification())["fits"][0]["homogeneity"].is_null());
+  EXPECT_EQ(ToJson(ExampleJointIdentification())["fits"][0]["homogeneity"]["dof"], 2);
+}
+
+TEST(ToJson, HasNullForAnUnknownAmplitude) {
+  Identification report = ExampleIdentification();
+  report.spans[0].amplitudes[0] = kNan;
+  EXPECT_TRUE(ToJson(report)["recordings"][0]["fits"][0]["amplitude_rad"].is_null());
 }
 
 TEST(ToJson, WorksWithoutAFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  report.checks.clear();
+  report.spans.clear();
+  report.recordings.front().checks.clear();
   const Json json = ToJson(report);
   EXPECT_EQ(json["fits"], Json::array());
-  EXPECT_TRUE(json["data"]["start"].is_null());
-  EXPECT_EQ(json["closed_forms"]["turning_points"], 5);
+  EXPECT_EQ(json["recordings"][0]["fits"], Json::array());
+  EXPECT_TRUE(json["recordings"][0]["start"].is_null());
+  EXPECT_EQ(json["recordings"][0]["closed_forms"]["turning_points"], 5);
 }
 
 TEST(ToJson, ExplainsMissingClosedForms) {
-  const Json json = ToJson(ExampleRateIdentification());
-  EXPECT_TRUE(json["closed_forms"].is_null());
-  EXPECT_EQ(json["reason"], "only 2 turning points can be located");
-  EXPECT_EQ(json["fits"][0]["closed_form"], Json::array());
-  EXPECT_TRUE(json["data"]["sampling"].is_null());
-  EXPECT_FALSE(ToJson(ExampleIdentification()).contains("reason"));
+  const Json recording = ToJson(ExampleRateIdentification())["recordings"][0];
+  EXPECT_TRUE(recording["closed_forms"].is_null());
+  EXPECT_EQ(recording["reason"], "only 2 turning points can be located");
+  EXPECT_EQ(recording["fits"][0]["closed_form"], Json::array());
+  EXPECT_TRUE(recording["sampling"].is_null());
+  const Json recordings = ToJson(ExampleJointIdentification())["recordings"];
+  EXPECT_FALSE(recordings[0].contains("reason"));
+  EXPECT_EQ(recordings[1]["reason"], "only 2 turning points can be located");
 }
 
 TEST(ToJson, ExplainsAMissingConstancyTest) {
-  const Json fit = ToJson(ExampleRateIdentification())["fits"][0];
-  EXPECT_TRUE(fit["constancy"].is_null());
-  EXPECT_EQ(fit["constancy_reason"], "the fit is not_converged");
-  EXPECT_FALSE(ToJson(ExampleIdentification())["fits"][0].contains("constancy_reason"));
+  const Json own = ToJson(ExampleRateIdentification())["recordings"][0]["fits"][0];
+  EXPECT_TRUE(own["constancy"].is_null());
+  EXPECT_EQ(own["constancy_reason"], "the fit is not_converged");
+  EXPECT_EQ(ToJson(ExampleJointIdentification())["recordings"][1]["fits"][0]["constancy_reason"], "it was not tested");
 }
 
 TEST(ToJson, HasNoComparisonForOneFit) {
@@ -102,13 +161,14 @@ TEST(ToJson, HasNoComparisonForOneFit) {
 }
 
 TEST(ToJson, ExplainsAMissingStandardError) {
-  const Json parameters = ToJson(ExampleIdentification())["fits"][0]["parameters"];
+  const Json json = ToJson(ExampleIdentification());
+  const Json parameters = json["fits"][0]["parameters"], own = json["recordings"][0]["fits"][0]["parameters"];
   EXPECT_FALSE(parameters["inertia"].contains("reason"));
   EXPECT_TRUE(parameters["coulomb"]["std_error"].is_null());
   EXPECT_EQ(parameters["coulomb"]["reason"], "the estimate is at its lower bound 0");
   EXPECT_EQ(parameters["coulomb"]["interval95"], Json::array({0.0, 0.000125}));
-  EXPECT_EQ(parameters["zero_angle"]["fixed"], true);
-  EXPECT_TRUE(parameters["zero_angle"]["interval95"].is_null());
+  EXPECT_EQ(own["zero_angle"]["fixed"], true);
+  EXPECT_TRUE(own["zero_angle"]["interval95"].is_null());
 }
 
 TEST(ToJson, HasNoSystematicErrorWithoutAnUncertainRig) {
@@ -143,22 +203,22 @@ TEST(ToJson, NamesTheNoiseFamily) {
       {NoiseFamily::kEdges, "edges"},       {NoiseFamily::kAveraged, "averaged"}};
   for (const auto& [family, name] : named) {
     report.fits[0].noise.family = family;
-    EXPECT_EQ(ToJson(report)["fits"][0]["noise"]["model"], name);
+    EXPECT_EQ(ToJson(report)["recordings"][0]["fits"][0]["noise"]["model"], name);
   }
-  EXPECT_TRUE(ToJson(ExampleRateIdentification())["fits"][0]["noise"]["sigma_std_error"].is_null());
+  EXPECT_TRUE(ToJson(ExampleRateIdentification())["recordings"][0]["fits"][0]["noise"]["sigma_std_error"].is_null());
 }
 
 TEST(ToJson, ReportsTheSourceOfTheResolution) {
-  EXPECT_EQ(ToJson(ExampleIdentification())["data"]["resolution_source"], "found");
-  EXPECT_TRUE(ToJson(ExampleRateIdentification())["data"]["resolution_source"].is_null());
+  EXPECT_EQ(ToJson(ExampleIdentification())["recordings"][0]["resolution_source"], "found");
+  EXPECT_TRUE(ToJson(ExampleRateIdentification())["recordings"][0]["resolution_source"].is_null());
 }
 
 TEST(ToJson, UsesRateUnitsForARate) {
   const Json json = ToJson(ExampleRateIdentification());
   EXPECT_TRUE(json["rig"].is_null());
-  EXPECT_TRUE(json["data"].contains("resolution_rad_s"));
-  EXPECT_FALSE(json["data"].contains("resolution_rad"));
-  EXPECT_EQ(json["fits"][0]["noise"]["sigma_rad_s"], 0.0035);
+  EXPECT_TRUE(json["recordings"][0].contains("resolution_rad_s"));
+  EXPECT_FALSE(json["recordings"][0].contains("resolution_rad"));
+  EXPECT_EQ(json["recordings"][0]["fits"][0]["noise"]["sigma_rad_s"], 0.0035);
   EXPECT_EQ(json["fits"][0]["statistics"]["rms_residual_rad_s"], 0.00349);
   EXPECT_EQ(json["fits"][0]["parameters"]["inertia"]["unit"], "s^2");
 }
@@ -177,9 +237,10 @@ TEST(ToJson, GivesEstimatesWithoutErrorsWhenNotConverged) {
 TEST(ToJson, OmitsNoiseAndStatisticsOfAFailedFit) {
   Identification report = ExampleRateIdentification();
   report.fits[0].termination = Termination::kFailed;
-  const Json fit = ToJson(report)["fits"][0];
-  EXPECT_TRUE(fit["noise"].is_null());
-  EXPECT_TRUE(fit["statistics"].is_null());
+  const Json json = ToJson(report);
+  EXPECT_TRUE(json["fits"][0]["statistics"].is_null());
+  EXPECT_TRUE(json["recordings"][0]["fits"][0]["noise"].is_null());
+  EXPECT_TRUE(json["recordings"][0]["fits"][0]["statistics"].is_null());
 }
 
 TEST(ToJson, WritesNonFiniteNumbersAsNullWithAReason) {
@@ -208,19 +269,79 @@ TEST(ToJson, ReportsAMissingErrorOfADerivedQuantity) {
 
 TEST(ToJson, OmitsFileDataForARecordingInMemory) {
   Identification report = ExampleIdentification();
-  report.data.path.clear();
-  report.data.sha256.clear();
-  const Json data = ToJson(report)["data"];
-  EXPECT_TRUE(data["path"].is_null());
-  EXPECT_TRUE(data["sha256"].is_null());
+  report.recordings.front().data.path.clear();
+  report.recordings.front().data.sha256.clear();
+  const Json recording = ToJson(report)["recordings"][0];
+  EXPECT_TRUE(recording["path"].is_null());
+  EXPECT_TRUE(recording["sha256"].is_null());
 }
 
 TEST(ToJsonText, ReplacesInvalidUtf8) {
   Identification report = ExampleIdentification();
-  report.data.path = "w\xFCrfel.csv";
+  report.recordings.front().data.path = "w\xFCrfel.csv";
   const std::string text = ToJsonText(report);
   EXPECT_THAT(text, HasSubstr("w\xEF\xBF\xBDrfel.csv"));
   EXPECT_TRUE(Json::accept(text));
+}
+
+TEST(ToJson, NamesTheRecordingOfAJointFitsWarning) {
+  const Json warnings = ToJson(ExampleJointIdentification())["warnings"];
+  ASSERT_EQ(warnings.size(), 2);
+  EXPECT_EQ(warnings[0]["message"], "recording 1 (run.csv): there is a gap of 0.5 s after 7 s");
+  EXPECT_EQ(warnings[1]["code"], "lack_of_fit");
+  EXPECT_THAT(warnings[1]["message"].get<std::string>(), HasSubstr("recording 1 (run.csv): "));
+}
+
+// The page shows the warnings of each recording, and those of the whole.
+TEST(ToJson, SaysWhichRecordingsAWarningIsAbout) {
+  Identification report = ExampleJointIdentification();
+  report.fits[0].warnings = {{"recordings_disagree", "they do not agree"}};
+  report.recordings[1].warnings = report.recordings[0].warnings;
+  const Json warnings = ToJson(report)["warnings"];
+  ASSERT_EQ(warnings.size(), 3);
+  EXPECT_EQ(warnings[0]["recordings"], Json::array());
+  EXPECT_EQ(warnings[1]["code"], "gaps");
+  EXPECT_EQ(warnings[1]["recordings"], Json::array({1, 2}));
+  EXPECT_EQ(warnings[2]["code"], "lack_of_fit");
+  EXPECT_EQ(warnings[2]["recordings"], Json::array({1}));
+}
+
+TEST(ToJson, HasAnRmsOnlyIfTheReadingsHaveOneUnit) {
+  Identification report = ExampleJointIdentification();
+  EXPECT_EQ(ToJson(report)["fits"][0]["statistics"].dump(),
+            R"({"rms_residual_rad":0.00349,"log_likelihood":1234.5,"aic":-2457.0,"aicc":-2456.875,"bic":-2437.5,)"
+            R"("effective_samples":1200.25})");
+  report.unit = "sigma";  // readings of different units
+  EXPECT_THAT(Keys(ToJson(report)["fits"][0]["statistics"]),
+              ElementsAre("log_likelihood", "aic", "aicc", "bic", "effective_samples"));
+}
+
+TEST(ToJson, ComparesResidualsInSigmasIfUnitsDiffer) {
+  Identification report = ExampleComparedJointIdentification();
+  EXPECT_EQ(ToJson(report)["comparison"]["rows"][0]["rms_residual_rad"], 0.00349);
+  report.unit = "sigma";
+  const Json row = ToJson(report)["comparison"]["rows"][0];
+  EXPECT_EQ(row["rms_residual_sigma"], 0.00349);
+  EXPECT_EQ(row["cross_validation"]["rms_sigma"], 0.0035);
+}
+
+TEST(ToJson, WritesAnEquationIfAllParametersAreShared) {
+  Identification report = ExampleJointIdentification();
+  EXPECT_THAT(ToJson(report)["fits"][0]["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
+  report.spans[0].shared = {"inertia", "viscous"};
+  EXPECT_TRUE(ToJson(report)["fits"][0]["equation"].is_null());
+}
+
+TEST(ToJson, HasNoNumbersOfAFailedFit) {
+  const Json json = ToJson(ExampleFailedJointIdentification());
+  const Json& fit = json["fits"][0];
+  const Json& own = json["recordings"][1]["fits"][0];
+  EXPECT_EQ(fit["status"], "failed");
+  for (const char* key : {"equation", "statistics", "std_error_method", "interval_method"}) {
+    EXPECT_TRUE(fit[key].is_null()) << key;
+  }
+  for (const char* key : {"statistics", "noise"}) EXPECT_TRUE(own[key].is_null()) << key;
+  EXPECT_EQ(own["parameters"]["initial_angle"]["reason"], "the fit failed");
 }
 
 }  // namespace

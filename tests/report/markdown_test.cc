@@ -126,13 +126,13 @@ TEST(ToMarkdown, ShowsStripsVerbatimForAJointFit) {
 TEST(ToMarkdown, WorksWithoutAFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  report.checks.clear();
+  report.recordings.front().checks.clear();
   EXPECT_THAT(ToMarkdown(report), HasSubstr("Nothing was fitted: these are formulas of the linear pendulum"));
 }
 
 TEST(ToMarkdown, EscapesMarkupInAFileName) {
   Identification report = ExampleIdentification();
-  report.data.path = "a|<script>\n# [x](http://y)";
+  report.recordings.front().data.path = "a|<script>\n# [x](http://y)";
   const std::string text = ToMarkdown(report);
   EXPECT_THAT(text, StartsWith("# Pendulum: a\\|\\<script>?# [x\\](http://y)\n"));
   EXPECT_THAT(text, HasSubstr("| file | a\\|\\<script>?# [x\\](http://y) |\n"));

@@ -93,11 +93,11 @@ TEST(SummarizeFit, SaysThatTheRigDisagrees) {
 
 TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
   Identification identification = ExampleIdentification();
-  identification.constancy = {Constancy{}};
+  identification.recordings.front().constancy = {Constancy{}};
   EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("Constancy")));
-  identification.constancy[0].half_swings = 12;
+  identification.recordings.front().constancy[0].half_swings = 12;
   EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("Constancy")));
-  identification.constancy[0].half_swings = 9;
+  identification.recordings.front().constancy[0].half_swings = 9;
   EXPECT_THAT(SummarizeFit(identification, 0).remarks,
               HasSubstr("Constancy is not tested (9 half swings are too few): another recording may differ by more"));
   identification.fits[0].parameters[0].systematic.Add(ErrorSource::kFrictionLaw, 1e-3);
@@ -131,7 +131,7 @@ TEST(SummarizeFit, SaysWhetherTheLawDescribesTheReadings) {
   EXPECT_THAT(SummarizeFit(identification, 0).verdict, StartsWith("The law coulomb does not describe all readings"));
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
   identification.fits[0].warnings.clear();
-  identification.constancy.clear();
+  identification.recordings.front().constancy.clear();
   EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("autocorrelated noise of"));
   identification.fits[0].noise.autocorrelation = {};
   EXPECT_THAT(SummarizeFit(identification, 0).verdict,
@@ -190,10 +190,10 @@ TEST(SummarizeFit, NamesWeaklyIdentifiableParameters) {
 TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
   Identification identification = ExampleJointIdentification();
   identification.fits[0].warnings.clear();
-  Homogeneity& homogeneity = identification.joint[0].homogeneity;
+  Homogeneity& homogeneity = *identification.spans[0].homogeneity;
   homogeneity.p = 0.5;
   homogeneity.disagreeing.clear();
-  identification.joint[0].lacks_fit = false;
+  identification.spans[0].lacks_fit = false;
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
   homogeneity.p.reset();
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
@@ -206,8 +206,8 @@ TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
 TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
   Identification identification = ExampleJointIdentification();
   identification.fits[0].warnings.clear();
-  identification.joint[0].homogeneity.p = 0.5;
-  identification.joint[0].lacks_fit = true;
+  identification.spans[0].homogeneity->p = 0.5;
+  identification.spans[0].lacks_fit = true;
   EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all readings"));
 }
 
@@ -222,7 +222,7 @@ TEST(SummarizeFit, GivesResidualsInTheCommonUnit) {
 // 0.0802 / 0.079 is 1.52 % more.
 TEST(SummarizeFit, ComparesWithTheTextbook) {
   Identification identification = ExampleIdentification();
-  identification.checks[0].rows[0].cause = DifferenceCause::kAmplitude;
+  identification.recordings.front().checks[0].rows[0].cause = DifferenceCause::kAmplitude;
   const std::string text = SummarizeFit(identification, 0).textbook;
   EXPECT_THAT(text, HasSubstr("I_O 0.08020 (1.5 % more: it assumes small angles)"));
   EXPECT_THAT(text, HasSubstr("(agrees)"));
@@ -258,7 +258,7 @@ TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
 // The title is the path.
 TEST(SummarizeFit, OmitsThePathOfTheRecording) {
   Identification identification = ExampleIdentification();
-  identification.data.path = "run.csv";
+  identification.recordings.front().data.path = "run.csv";
   identification.fits[0].warnings.clear();
   identification.warnings = {
       {.code = "empty_cells", .finding = "rows were left out", .about = {.file = "run.csv"}},
@@ -275,10 +275,10 @@ TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
   identification.warnings = {
       {.code = "time_unit_assumed", .finding = "a sentence", .assumed = "times in s (--time_column t:ms)"},
       {.code = "gaps", .finding = "the recording has 3 gaps"}};
-  identification.data.sensor.kind = "encoder";
+  identification.recordings.front().data.sensor.kind = "encoder";
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s (--time_column t:ms)"));
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)), ElementsAre("the recording has 3 gaps"));
-  identification.data.sensor.is_kind_assumed = true;
+  identification.recordings.front().data.sensor.is_kind_assumed = true;
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions,
               ElementsAre("times in s (--time_column t:ms)", "an encoder (--sensor)"));
 }
@@ -286,13 +286,13 @@ TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
 // What was assumed of each recording is said once, with the recordings' names only if they differ.
 TEST(SummarizeFit, SaysACommonAssumptionOfSeveralRecordingsOnce) {
   Identification identification = ExampleJointIdentification();
-  for (Identification& run : identification.runs)
+  for (IdentifiedRecording& run : identification.recordings)
     run.warnings = {{.code = "time_unit_assumed",
                      .finding = "a sentence",
                      .assumed = "times in s",
                      .about = {.file = run.data.path}}};
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions, ElementsAre("times in s"));
-  identification.runs[1].warnings[0].assumed = "times in ms";
+  identification.recordings[1].warnings[0].assumed = "times in ms";
   EXPECT_THAT(SummarizeFit(identification, 0).assumptions,
               ElementsAre(AllOf(StartsWith("recording 1"), HasSubstr(": times in s")),
                           AllOf(StartsWith("recording 2"), HasSubstr(": times in ms"))));

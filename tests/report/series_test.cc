@@ -43,10 +43,10 @@ TextbookOverlay OverlayOfThreeSamples() {
 /// Three samples, their fit and its overlay, and the turning points of the example.
 Identification ReportOfThreeSamples() {
   Identification report = ExampleIdentification();
-  report.used = ThreeSamples();
+  report.recordings.front().used = ThreeSamples();
   report.fits = {FitOfThreeSamples()};
-  report.checks[0].overlay = OverlayOfThreeSamples();
-  report.sampling->gaps = 0;
+  report.recordings.front().checks[0].overlay = OverlayOfThreeSamples();
+  report.recordings.front().sampling->gaps = 0;
   return report;
 }
 
@@ -100,13 +100,13 @@ TEST(SeriesJson, HasSamplesAndModelsByName) {
 TEST(SeriesJson, HasProfilesByModelAndParameter) {
   Identification report = ReportOfThreeSamples();
   report.fits[0].profiles = {{"inertia", {0.5, 1, 1.5}, {4, 0, kNan}, 3.875}};
-  EXPECT_EQ(SeriesJson(report)["profiles"].dump(),
+  EXPECT_EQ(SeriesJson(report)[0]["profiles"].dump(),
             R"({"coulomb":{"inertia":{"value":[0.5,1.0,1.5],"statistic":[4.0,0.0,null],"threshold":3.875}}})");
 }
 
 // The standard errors are the roots of the variances 1e-6 s² and 4e-6 rad².
 TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
-  const Json peaks = SeriesJson(ReportOfThreeSamples())["peaks"];
+  const Json peaks = SeriesJson(ReportOfThreeSamples())[0]["peaks"];
   ASSERT_EQ(peaks.size(), 5);
   EXPECT_EQ(peaks[2].dump(),
             R"({"number":3,"time_s":3.8,"time_std_error":0.001,"angle_rad":0.39,"std_error":0.002,)"
@@ -117,17 +117,17 @@ TEST(SeriesJson, NumbersTheTurningPointsFromOne) {
 
 TEST(SeriesJson, NamesTheUnitOfARateOrOfCounts) {
   Identification report = ReportOfThreeSamples();
-  report.used.unit = "counts";
-  EXPECT_TRUE(SeriesJson(report)["peaks"][0].contains("angle_counts"));
-  report.used.unit = "rad/s";
-  report.used.quantity = report.closed_forms->table.quantity = Quantity::kRate;
-  EXPECT_TRUE(SeriesJson(report)["peaks"][0].contains("rate_rad_s"));
+  report.recordings.front().used.unit = "counts";
+  EXPECT_TRUE(SeriesJson(report)[0]["peaks"][0].contains("angle_counts"));
+  report.recordings.front().used.unit = "rad/s";
+  report.recordings.front().used.quantity = report.recordings.front().closed_forms->table.quantity = Quantity::kRate;
+  EXPECT_TRUE(SeriesJson(report)[0]["peaks"][0].contains("rate_rad_s"));
 }
 
 TEST(SeriesJson, IsNullForMissingParts) {
   Identification report = ReportOfThreeSamples();
-  report.closed_forms.reset();
-  report.checks.clear();
+  report.recordings.front().closed_forms.reset();
+  report.recordings.front().checks.clear();
   report.fits[0].fitted[1] = kNan;
   report.fits[0].residual.resize(0);
   const Json series = SeriesJson(report);
@@ -136,16 +136,16 @@ TEST(SeriesJson, IsNullForMissingParts) {
   EXPECT_EQ(series["models"]["coulomb"].dump(), R"({"fitted":[0.25,null,0.5],"fitted_std_error":null,"residual":null,)"
                                                 R"("linear_closed_form":null,"nonlinear_closed_form":null})");
   report.fits.clear();
-  EXPECT_EQ(SeriesJson(report)["models"], Json::object());
+  EXPECT_EQ(SeriesJson(report)[0]["models"], Json::object());
 }
 
 // cos(2π t / 1 s) over 0.2 to 3.8 s has turning points at every half second from 0.5 to 3.5 s, alternately -1 and 1. A
 // parabola through samples 0.01 s apart has an error of about (2π 0.01)³.
 TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
   Identification report;
-  report.used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
-  report.used.value = (2 * kPi * report.used.time.array()).cos();
-  const Json extrema = SeriesJson(report)["extrema"];
+  report.recordings.front().used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
+  report.recordings.front().used.value = (2 * kPi * report.recordings.front().used.time.array()).cos();
+  const Json extrema = SeriesJson(report)[0]["extrema"];
   ASSERT_EQ(extrema.size(), 7);
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_NEAR(extrema[i][0].get<double>(), 0.5 + 0.5 * static_cast<double>(i), 5e-4);
@@ -155,7 +155,7 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
 
 TEST(SeriesJson, HasSevenDigitsAndNoResidualsForThePage) {
   Identification report = ReportOfThreeSamples();
-  report.used.value[2] = -0.123456789012;
+  report.recordings.front().used.value[2] = -0.123456789012;
   const Json all = SeriesJson(report);
   const Json page = SeriesJson(report, SeriesDetail::kPage);
   EXPECT_EQ(all.at("measured").at(2), -0.123456789012);
@@ -187,17 +187,17 @@ std::array<double, 2> LinearMotion(double t) {
 /// 40 samples at 2 Hz from 0 s on, which is 2.5 samples a period, with LinearFit.
 Identification TwoSamplesASecond() {
   Identification run;
-  run.used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
-  run.used.value = Eigen::VectorXd::Zero(40);
+  run.recordings.front().used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
+  run.recordings.front().used.value = Eigen::VectorXd::Zero(40);
   run.fits = {LinearFit()};
-  run.sampling.emplace().samples_per_period = 2.5;
+  run.recordings.front().sampling.emplace().samples_per_period = 2.5;
   return run;
 }
 
 // 60 points a period of 2π 0.2 s from 1 to 19.5 s: 884 steps.
 TEST(SeriesJson, HasTheMotionIfAPeriodHasFewSamples) {
   const Identification run = TwoSamplesASecond();
-  const Json motion = SeriesJson(run)["motions"]["linear"];
+  const Json motion = SeriesJson(run)[0]["motions"]["linear"];
   EXPECT_THAT(Keys(motion), ElementsAre("start_s", "interval_s", "angle_unit", "angle", "rate", "reading"));
   EXPECT_EQ(motion["start_s"], 1);
   EXPECT_NEAR(motion["interval_s"].get<double>(), 18.5 / 884, 1e-12);
@@ -214,8 +214,8 @@ TEST(SeriesJson, HasTheMotionIfAPeriodHasFewSamples) {
 // The clock is 2 % slow: 18.5 s on this clock are 18.87 true seconds of motion.
 TEST(SeriesJson, HasTheMotionAtInstantsOfTheFilesClock) {
   Identification run = TwoSamplesASecond();
-  run.used.clock_scale = 1.02;
-  const Json motion = SeriesJson(run, SeriesDetail::kPage)["motions"]["linear"];
+  run.recordings.front().used.clock_scale = 1.02;
+  const Json motion = SeriesJson(run, SeriesDetail::kPage)[0]["motions"]["linear"];
   const double interval = motion["interval_s"];
   EXPECT_NEAR(interval * static_cast<double>(motion["angle"].size() - 1), 18.5, 1e-9);
   for (const std::size_t i : {0, 100, 800}) {
@@ -227,15 +227,15 @@ TEST(SeriesJson, HasTheMotionAtInstantsOfTheFilesClock) {
 
 TEST(SeriesJson, HasTheMotionIfReadingsAreMissingOrNotAngles) {
   Identification run = TwoSamplesASecond();
-  run.sampling->samples_per_period = 12;
-  EXPECT_TRUE(SeriesJson(run)["motions"].is_null());
-  run.sampling->gaps = 1;
-  EXPECT_FALSE(SeriesJson(run)["motions"].is_null());
-  run.sampling.reset();
-  EXPECT_TRUE(SeriesJson(run)["motions"].is_null());
-  run.used.quantity = run.fits[0].quantity = Quantity::kRate;
+  run.recordings.front().sampling->samples_per_period = 12;
+  EXPECT_TRUE(SeriesJson(run)[0]["motions"].is_null());
+  run.recordings.front().sampling->gaps = 1;
+  EXPECT_FALSE(SeriesJson(run)[0]["motions"].is_null());
+  run.recordings.front().sampling.reset();
+  EXPECT_TRUE(SeriesJson(run)[0]["motions"].is_null());
+  run.recordings.front().used.quantity = run.fits[0].quantity = Quantity::kRate;
   run.fits[0].parameters[4] = ExampleParameter(kRateBias, "rad/s", 0.2, 0);
-  const Json motion = SeriesJson(run)["motions"]["linear"];
+  const Json motion = SeriesJson(run)[0]["motions"]["linear"];
   EXPECT_NEAR(motion["reading"][200].get<double>(), motion["rate"][200].get<double>() + 0.2, 1e-7);
 }
 
@@ -247,7 +247,7 @@ TEST(SeriesJson, HasStandardErrorsOfTheFittedReadings) {
   fit.fitted = Eigen::VectorXd::Zero(40);
   fit.covariance_names = {"release_angle", "zero_angle"};
   fit.covariance = Eigen::Matrix2d({{1.6e-5, 6e-6}, {6e-6, 9e-6}});
-  const Json errors = SeriesJson(run)["models"]["linear"]["fitted_std_error"];
+  const Json errors = SeriesJson(run)[0]["models"]["linear"]["fitted_std_error"];
   ASSERT_EQ(errors.size(), 40);
   for (std::size_t i = 0; i < 40; ++i) {
     const double time = 0.5 * static_cast<double>(i);
@@ -263,8 +263,8 @@ TEST(SeriesJson, HasStandardErrorsForThePageOnlyIfTheyAreVisible) {
   run.fits[0].covariance_names = {"release_angle"};
   run.fits[0].covariance = Eigen::MatrixXd::Constant(1, 1, 1.6e-5);
   const auto errors = [&](double range) {
-    run.used.value[0] = range;
-    return SeriesJson(run, SeriesDetail::kPage)["models"]["linear"]["fitted_std_error"];
+    run.recordings.front().used.value[0] = range;
+    return SeriesJson(run, SeriesDetail::kPage)[0]["models"]["linear"]["fitted_std_error"];
   };
   EXPECT_EQ(errors(0.6).size(), 40);
   EXPECT_TRUE(errors(60).is_null());
@@ -273,13 +273,13 @@ TEST(SeriesJson, HasStandardErrorsForThePageOnlyIfTheyAreVisible) {
 TEST(SeriesJson, IsNullIfThereIsNoMotion) {
   Identification run = TwoSamplesASecond();
   run.fits[0].termination = Termination::kFailed;
-  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
+  EXPECT_TRUE(SeriesJson(run)[0]["motions"].at("linear").is_null());
   run.fits = {LinearFit()};
   run.fits[0].parameters[0].estimate = 0;  // without inertia no trajectory can be computed
-  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
+  EXPECT_TRUE(SeriesJson(run)[0]["motions"].at("linear").is_null());
   run.fits = {LinearFit()};
   run.fits[0].parameters[3].estimate = 19.5;  // released at the last sample
-  EXPECT_TRUE(SeriesJson(run)["motions"].at("linear").is_null());
+  EXPECT_TRUE(SeriesJson(run)[0]["motions"].at("linear").is_null());
 }
 
 TEST(ToSeriesJsonText, IsTheSeriesJsonOnOneLine) {
@@ -290,13 +290,15 @@ TEST(ToSeriesJsonText, IsTheSeriesJsonOnOneLine) {
 }
 
 TEST(SeriesJson, IsAnArrayOfRecordingsForAJointFit) {
+  const Identification one = ReportOfThreeSamples();
   Identification report = ExampleJointIdentification();
-  report.runs = {ReportOfThreeSamples(), ReportOfThreeSamples()};
-  report.runs[1].fits[0].fitted[0] = 0.75;
-  report.runs[1].used.time[2] = 0.25;
+  report.recordings = {one.recordings.front(), one.recordings.front()};
+  for (IdentifiedRecording& recording : report.recordings) recording.fits = one.fits;
+  report.recordings[1].fits[0].fitted[0] = 0.75;
+  report.recordings[1].used.time[2] = 0.25;
   const Json series = SeriesJson(report);
   ASSERT_EQ(series.size(), 2);
-  EXPECT_EQ(series[0], SeriesJson(report.runs[0]));
+  EXPECT_EQ(series[0], SeriesJson(one)[0]);
   EXPECT_EQ(series[1]["time_s"].dump(), "[0.0,0.1,0.25]");
   EXPECT_EQ(series[1]["models"]["coulomb"]["fitted"].dump(), "[0.75,0.0,0.5]");
   EXPECT_EQ(Json::parse(ToSeriesJsonText(report)), series);

@@ -17,11 +17,10 @@ FitReport SuspectedFit() {
 }
 
 TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
-  Identification identification;
-  identification.fits = {SuspectedFit()};
-  identification.used.sensor_errors.kind = "angle sensor";
-  identification.used.sensor_errors.Of(SensorEffect::kGain) = {0.01, "assumed for an angle sensor"};
-  const std::string text = ToText(SuspicionSections(identification, 0), TextStyle{});
+  SensorErrors sensor;
+  sensor.kind = "angle sensor";
+  sensor.Of(SensorEffect::kGain) = {0.01, "assumed for an angle sensor"};
+  const std::string text = ToText(SuspicionSections(SuspectedFit(), sensor), TextStyle{});
   for (const char* part : {"What the residuals suggest", "gain", "1.00 ± 0.10 %", "friction law", "--models all",
                            "assumed for an angle sensor"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
@@ -29,17 +28,14 @@ TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
 }
 
 TEST(SuspicionSections, SayIfNothingIsSignificant) {
-  Identification identification;
-  identification.fits = {SuspectedFit()};
-  identification.fits[0].suspicions.clear();
-  const std::string text = ToText(SuspicionSections(identification, 0), TextStyle{});
+  FitReport fit = SuspectedFit();
+  fit.suspicions.clear();
+  const std::string text = ToText(SuspicionSections(fit, {}), TextStyle{});
   EXPECT_NE(text.find("No cause outside the law is significant"), std::string::npos) << text;
 }
 
 TEST(SuspicionSections, AreEmptyWithoutAResult) {
-  Identification identification;
-  identification.fits = {FitReport()};
-  EXPECT_TRUE(SuspicionSections(identification, 0).empty());
+  EXPECT_TRUE(SuspicionSections(FitReport(), {}).empty());
 }
 
 TEST(SuspicionsJson, HasOneObjectForEachCause) {

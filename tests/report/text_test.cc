@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/identify/example_identification.h"
+#include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::text_test {
 namespace {
@@ -45,6 +45,7 @@ constexpr const char* kWholeFit = R"([[Data]]
     start   held at an angle, then released
     status  converged: the last step changed no parameter by more than 0.001
             standard errors
+    solver  7 iterations, 15 trajectories, accurate to 2e-10 rad
 [[Parameters]]
     name              value ± std error  unit       95 % interval
     inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]
@@ -83,7 +84,6 @@ constexpr const char* kWholeFit = R"([[Data]]
                        independent samples
     log-likelihood     1234.50
     AIC, AICc, BIC     -2457.00, -2456.88, -2437.50
-    solver             7 iterations, 15 trajectories, accurate to 2e-10 rad
 [[Equation of motion]]
     0.07900 th'' + 0.0030 th' + 0 sgn(th') + 1.800 sin th = 0
     th in rad from hanging straight down, torques in N m.
@@ -123,8 +123,8 @@ constexpr const char* kWholeFit = R"([[Data]]
 
 TEST(ToText, ShowsTheWholeFit) {
   Identification report = ExampleIdentification();
-  report.sampling.reset();
-  report.closed_forms.reset();
+  report.recordings.front().sampling.reset();
+  report.recordings.front().closed_forms.reset();
   EXPECT_EQ(AllSections(report), kWholeFit);
 }
 
@@ -170,9 +170,9 @@ TEST(ToText, NamesTheOpenInterval) {
 
 TEST(ToText, ReportsTheSourceOfTheResolution) {
   Identification report = ExampleIdentification();
-  report.data.resolution_source = "file";
+  report.recordings.front().data.resolution_source = "file";
   EXPECT_THAT(AllSections(report), HasSubstr("0.00436 rad (0.25 deg), from the file\n"));
-  report.data.resolution_source = "given";
+  report.recordings.front().data.resolution_source = "given";
   EXPECT_THAT(AllSections(report), HasSubstr("0.00436 rad (0.25 deg), as given\n"));
 }
 
@@ -226,7 +226,7 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
 TEST(ToText, ComparesTheInertiaWithTheRigFileIfThereIsNoCheck) {
   Identification report = ExampleIdentification();
   EXPECT_THAT(AllSections(report), Not(HasSubstr("The rig file")));
-  report.checks.clear();
+  report.recordings.front().checks.clear();
   EXPECT_THAT(OneLine(AllSections(report)),
               HasSubstr("The rig file gives I_O = 0.0760 ± 0.0005 kg m^2; the fitted I_O is 3.9 % larger. "));
   report.rig->inertia = RigValue{0.088, 0};
@@ -239,7 +239,7 @@ TEST(ToText, ComparesTheInertiaWithTheRigFileIfThereIsNoCheck) {
 TEST(ToText, WorksWithoutAFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  report.checks.clear();
+  report.recordings.front().checks.clear();
   const std::string text = AllSections(report);
   for (const char* section : {"[[Data]]", "[[Sampling]]", "[[Closed forms]]", "[[Turning points]]", "[[Warnings]]"}) {
     EXPECT_THAT(text, HasSubstr(section));
@@ -271,7 +271,7 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
 
 TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {
   Identification report = ExampleIdentification();
-  report.data.path = "a\x1B[2J\n[[Fit]].csv";
+  report.recordings.front().data.path = "a\x1B[2J\n[[Fit]].csv";
   EXPECT_THAT(AllSections(report), HasSubstr("    file        a?[2J?[[Fit]].csv\n"));
 }
 
@@ -302,14 +302,14 @@ Identification WideReport() {
                       .replace(150, 1, " ")
                       .replace(200, 1, " ")
                       .replace(250, 1, " ");
-  ClosedFormRow& row = report.checks[0].rows[0];
+  ClosedFormRow& row = report.recordings.front().checks[0].rows[0];
   row = {"damping_ratio_log_decrement", "", "N m s^2/rad^2", -0.0000123456, 1.2e-9, -1.234567e-5, 1e-11, -3123.4, false,
          "by the formula's friction"};
   report.comparison->rows[1].delta_bic = 123456.7;
   report.comparison->tests[0].null = "0.25 χ²(0), 0.5 χ²(1), 0.25 χ²(2)";
-  report.constancy[0].halves_p = 1e-5;
-  report.constancy[0].trends.push_back({"viscous", "N m s/rad", 1, 0.1, 2, 1e-4});
-  for (AmplitudeRow& window : report.constancy[0].windows) {
+  report.recordings.front().constancy[0].halves_p = 1e-5;
+  report.recordings.front().constancy[0].trends.push_back({"viscous", "N m s/rad", 1, 0.1, 2, 1e-4});
+  for (AmplitudeRow& window : report.recordings.front().constancy[0].windows) {
     window.friction = 0.0031234;
     window.friction_std_error = 0.0000123;
   }
@@ -327,7 +327,7 @@ TEST(ToText, FitsInEightyColumns) {
   report.comparison.reset();
   EXPECT_LE(WidestOf(AllSections(report)), 80) << AllSections(report);
   report.fits.clear();
-  report.checks.clear();
+  report.recordings.front().checks.clear();
   EXPECT_LE(WidestOf(AllSections(report)), 80);
 }
 
@@ -340,6 +340,127 @@ TEST(ToText, EndsWithTheSummary) {
   for (const Section& section : ReportSections(ExampleIdentification())) {
     EXPECT_THAT(text, HasSubstr("[[" + section.title + "]]"));
   }
+}
+
+// ---- Several recordings ---------------------------------------------------------------------------------------------
+
+std::vector<std::string> Titles(const Sections& sections) {
+  std::vector<std::string> titles;
+  for (const Section& section : sections) titles.push_back(section.title);
+  return titles;
+}
+
+/// The section with this title, as text.
+std::string TextOf(const Identification& report, const std::string& title) {
+  for (const Section& section : ReportSections(report)) {
+    if (section.title == title) return ToText(Sections{section});
+  }
+  return "";
+}
+
+TEST(ReportSections, AreInOrder) {
+  EXPECT_THAT(Titles(ReportSections(ExampleJointIdentification())),
+              ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?", "Each recording's own",
+                          "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
+                          "What one swing cannot tell"));
+  EXPECT_THAT(
+      Titles(ReportSections(ExampleComparedJointIdentification())),
+      ElementsAre("Recordings", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters", "Do the recordings agree?",
+                  "Each recording's own", "Derived quantities", "Correlations", "Noise and statistics",
+                  "Equation of motion", "What one swing cannot tell", "Parameters of drag"));
+}
+
+TEST(ReportSections, ShowNoMotionIfThePendulumsDiffer) {
+  Identification report = ExampleJointIdentification();
+  report.fits[0].termination = Termination::kNotConverged;
+  EXPECT_THAT(Titles(ReportSections(report)), ElementsAre("Recordings", "Fit", "Parameters", "Do the recordings agree?",
+                                                         "Correlations", "Noise and statistics"));
+}
+
+TEST(ReportSections, CountTheRecordingsThatShareParameters) {
+  const std::string text = TextOf(ExampleJointIdentification(), "Fit");
+  EXPECT_THAT(text, HasSubstr("    shared  inertia, viscous, coulomb, by 2 recordings; each recording has its\n"));
+  EXPECT_THAT(text, HasSubstr("    status  converged: the estimates are within 0.1 standard errors\n"));
+}
+
+TEST(ReportSections, ShowSeparateParametersOfEachRecording) {
+  EXPECT_EQ(TextOf(ExampleJointIdentification(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
+       name             value ± std error  unit  95 % interval
+    1  release_angle  0.42300 ± 0.00020    rad   [0.42260, 0.42340]
+       zero_angle        0.01 (fixed)      rad
+    2  initial_angle    0.250 ± 0.013      rad   [0.225, 0.275]
+       zero_angle        0.01 (fixed)      rad
+)");
+}
+
+TEST(ReportSections, ShowNoiseAndSeparateStatusPerRecording) {
+  const std::string text = TextOf(ExampleJointIdentification(), "Noise and statistics");
+  EXPECT_THAT(text, HasSubstr("    recording 1  "));
+  EXPECT_THAT(text, HasSubstr("lack of"));
+  EXPECT_THAT(text, HasSubstr("separate fit:"));
+  EXPECT_THAT(text, HasSubstr("not_converged: too few"));
+  EXPECT_THAT(text, HasSubstr("    all          log-likelihood 1234.50, AIC -2457.00, AICc -2456.88, BIC"));
+}
+
+TEST(ReportSections, ShowAnEquationOnlyIfAllParametersAreShared) {
+  Identification report = ExampleJointIdentification();
+  report.spans[0].shared = {"inertia"};
+  EXPECT_EQ(TextOf(report, "Equation of motion"), "");
+  EXPECT_THAT(TextOf(report, "Each recording's own"), HasSubstr("    1  viscous "));
+}
+
+TEST(ReportSections, ShowNoNumbersOfAFailedFit) {
+  const std::string text = ToText(ExampleFailedJointIdentification());
+  EXPECT_THAT(text, HasSubstr("status  failed: no joint motion can be computed"));
+  EXPECT_THAT(text, Not(HasSubstr("[[Noise and statistics]]")));
+  EXPECT_THAT(text, Not(HasSubstr("[[Equation of motion]]")));
+  EXPECT_THAT(text, Not(testing::ContainsRegex("[^a-z](nan|inf)[^a-z]")));
+}
+
+TEST(ToText, EndsAJointFitWithTheRecordingsWarnings) {
+  EXPECT_THAT(ToText(ExampleJointIdentification()),
+              HasSubstr("[[Warnings]]\n  - recording 1 (run.csv): there is a gap of 0.5 s after 7 s\n"));
+}
+
+// ESC [ 2 J clears a terminal. Labels of recordings occur in verdicts and in the status that repeats them.
+TEST(ToText, ReplacesTerminalControlCharactersOfAJointFit) {
+  Identification report = ExampleJointIdentification();
+  report.recordings[1].data.path = "a\x1B[2J\n.csv";
+  report.recordings[1].warnings = {{"gaps", "a gap"}};
+  report.spans[0].homogeneity->verdict = "recording 2 (" + report.recordings[1].data.path + ") disagrees with the others";
+  report.fits[0].reason = "not one pendulum; " + report.spans[0].homogeneity->verdict;
+  EXPECT_THAT(ToText(report), HasSubstr("    2  a?[2J?.csv\n"));
+  EXPECT_THAT(ToText(report), Not(HasSubstr("\x1B")));
+}
+
+/// The example with the longest possible names, units and numbers of fits.
+Identification WideJointReport() {
+  Identification report = ExampleComparedJointIdentification();
+  Homogeneity& homogeneity = *report.spans[0].homogeneity;
+  SharedParameter& wide = homogeneity.parameters[1];
+  wide.name = "stribeck_coulomb";
+  wide.unit = "N m s^2/rad^2";
+  wide.runs = {{-3.2345678e-7, 1.2e-13, -12345.6}, {3.2345678e-7, 1.2e-9, 12345.6}};
+  wide.scatter = {1.2345e-9, 3.2e-7, -4.1e-6, 4.1e-6, 4.5e-7, 2e-7, 1.4e-5};
+  for (int i = 0; i < 12; ++i) homogeneity.verdict += "; recording 2 (b c.csv) disagrees with the others";
+  homogeneity.parameters[0].runs[0] = {0.0789996123, 2.8e-9, -1e5};
+  for (IdentifiedRecording& run : report.recordings) {
+    run.fits[0].parameters[3] = ExampleParameter(kReleaseTime, "rad", -123.456789012, 1.2e-9);
+    run.fits[0].noise.why = "the residuals are 0.8 resolutions, " + std::string(60, 'x') + " and so on";
+    run.data.samples = run.data.used_samples = 12345678;
+    run.data.from = -12345.678;
+    run.data.to = 98765.4321;
+  }
+  report.spans[0].separate[0] = "not_converged: 100 iterations were not enough, " + std::string(50, 'x') + " and so on";
+  return report;
+}
+
+TEST(ReportSections, FitInEightyColumns) {
+  for (const Identification& report :
+       {ExampleJointIdentification(), ExampleComparedJointIdentification(), ExampleFailedJointIdentification()}) {
+    EXPECT_LE(WidestOf(ToText(report)), 80) << ToText(report);
+  }
+  EXPECT_LE(WidestOf(ToText(WideJointReport())), 80) << ToText(WideJointReport());
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ TEST(FitAll, AddsClosedFormsAndTheirCheckToAFit) {
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
   ASSERT_EQ(report.fits.size(), 1);
-  ASSERT_TRUE(report.closed_forms);
-  EXPECT_EQ(report.closed_forms_model, "coulomb");
-  ASSERT_EQ(report.checks.size(), 1);
-  EXPECT_FALSE(report.checks[0].rows.empty());
-  EXPECT_EQ(report.checks[0].overlay.linear.size(), report.used.size());
-  ASSERT_TRUE(report.sampling);
-  EXPECT_NEAR(report.sampling->rate_hz, 100, 1e-6);
+  ASSERT_TRUE(report.recordings.front().closed_forms);
+  EXPECT_EQ(report.recordings.front().closed_forms_model, "coulomb");
+  ASSERT_EQ(report.recordings.front().checks.size(), 1);
+  EXPECT_FALSE(report.recordings.front().checks[0].rows.empty());
+  EXPECT_EQ(report.recordings.front().checks[0].overlay.linear.size(), report.recordings.front().used.size());
+  ASSERT_TRUE(report.recordings.front().sampling);
+  EXPECT_NEAR(report.recordings.front().sampling->rate_hz, 100, 1e-6);
 }
 
 TEST(FitAll, SkipsFitsForClosedFormsOnly) {
@@ -54,10 +54,10 @@ TEST(FitAll, SkipsFitsForClosedFormsOnly) {
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
   EXPECT_TRUE(report.fits.empty());
-  EXPECT_TRUE(report.checks.empty());
-  EXPECT_EQ(report.data.used_samples, 2000);
-  ASSERT_TRUE(report.closed_forms && report.closed_forms->decrement);
-  const Estimate inertia = report.closed_forms->decrement->inertia;
+  EXPECT_TRUE(report.recordings.front().checks.empty());
+  EXPECT_EQ(report.recordings.front().data.used_samples, 2000);
+  ASSERT_TRUE(report.recordings.front().closed_forms && report.recordings.front().closed_forms->decrement);
+  const Estimate inertia = report.recordings.front().closed_forms->decrement->inertia;
   EXPECT_NEAR(1.8033 * inertia.value, 0.079, 4 * 1.8033 * inertia.std_error);
 }
 
@@ -67,9 +67,9 @@ TEST(FitAll, ComparesTheFrequencyWithThePredictionOfTheRig) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   const auto run = OnlyRun(options);
-  ASSERT_TRUE(run && run->sampling);
-  EXPECT_NEAR(run->sampling->expected_frequency_hz.value_or(0), 0.775, 0.001);
-  EXPECT_NEAR(run->sampling->frequency_hz, 0.755, 0.01);
+  ASSERT_TRUE(run && run->recordings.front().sampling);
+  EXPECT_NEAR(run->recordings.front().sampling->expected_frequency_hz.value_or(0), 0.775, 0.001);
+  EXPECT_NEAR(run->recordings.front().sampling->frequency_hz, 0.755, 0.01);
 }
 
 TEST(FitAll, ExplainsMissingClosedForms) {
@@ -109,22 +109,22 @@ TEST(FitAll, CombinesSeveralRecordingsInOneRun) {
   ASSERT_TRUE(run) << run.error().message;
   const Identification& report = *run;
   ASSERT_TRUE(report.is_joint());
-  ASSERT_EQ(report.runs.size(), 2);
-  EXPECT_GT(report.runs[1].used.size(), 0);
-  ASSERT_EQ(report.joint.size(), 1);
-  EXPECT_EQ(report.runs[0].data.path, "datasets/runs_1.csv");
-  EXPECT_EQ(report.runs[1].data.path, "datasets/runs_2.csv");
-  EXPECT_EQ(report.data.unit, "rad");
+  ASSERT_EQ(report.recordings.size(), 2);
+  EXPECT_GT(report.recordings[1].used.size(), 0);
+  ASSERT_EQ(report.spans.size(), 1);
+  EXPECT_EQ(report.recordings[0].data.path, "datasets/runs_1.csv");
+  EXPECT_EQ(report.recordings[1].data.path, "datasets/runs_2.csv");
+  EXPECT_EQ(report.unit, "rad");
   EXPECT_EQ(report.fits[0].termination, Termination::kConverged);
-  EXPECT_THAT(report.joint[0].shared, ElementsAre("inertia", "viscous", "coulomb"));
-  EXPECT_THAT(report.joint[0].alone, ElementsAre("converged", "converged"));
+  EXPECT_THAT(report.spans[0].shared, ElementsAre("inertia", "viscous", "coulomb"));
+  EXPECT_THAT(report.spans[0].separate, ElementsAre("converged", "converged"));
   const std::vector<std::pair<std::string, double>> truth = {
       {"inertia", 0.079}, {"viscous", 0.002}, {"coulomb", 0.004}};
   for (const auto& [name, value] : truth) {
     const ParameterEstimate* const estimate = report.fits[0].Find(name);
     ASSERT_NE(estimate, nullptr) << name;
     EXPECT_NEAR(estimate->estimate, value, 4 * estimate->std_error.value()) << name;
-    for (const Identification& own : report.runs) {
+    for (const IdentifiedRecording& own : report.recordings) {
       EXPECT_EQ(own.fits[0].Find(name)->estimate, estimate->estimate) << name;
       EXPECT_EQ(own.fits[0].Find(name)->std_error, estimate->std_error) << name;
     }
@@ -152,7 +152,7 @@ TEST(FitAll, AddsClosedFormsAndSamplingToEachRecording) {
   const auto run = OnlyRun(TwoRunsOptions());
   ASSERT_TRUE(run);
   for (std::size_t k = 0; k < 2; ++k) {
-    const Identification& own = run->runs[k];
+    const IdentifiedRecording& own = run->recordings[k];
     EXPECT_TRUE(own.closed_forms) << own.no_closed_forms;
     EXPECT_EQ(own.checks.size(), 1);
     EXPECT_EQ(own.constancy.size(), 1);

@@ -28,7 +28,7 @@ Recording ExampleSamples() {
 
 Identification SampledReport() {
   Identification report = ExampleIdentification();
-  report.used = ExampleSamples();
+  report.recordings.front().used = ExampleSamples();
   return report;
 }
 
@@ -37,15 +37,15 @@ TEST(ToHtml, ContainsResultSeriesAndCommand) {
   const std::string html = ToHtml(report, "fit_pendulum --data run.csv");
   EXPECT_THAT(html, StartsWith("<!doctype html>"));
   EXPECT_EQ(Embedded(html, "result"), ToJson(report));
-  EXPECT_EQ(Embedded(html, "series").at("time_s").size(), 8);
+  EXPECT_EQ(Embedded(html, "series").at(0).at("time_s").size(), 8);
   EXPECT_EQ(Embedded(html, "command").at("command"), "fit_pendulum --data run.csv");
   EXPECT_THAT(html, Not(HasSubstr("@RESULT@")));
 }
 
 TEST(ToHtml, ContainsEachRecordingOfAJointFit) {
   Identification report = ExampleJointIdentification();
-  for (Identification& run : report.runs) run.used = ExampleSamples();
-  report.runs[1].used.value[0] = 0.5;
+  for (IdentifiedRecording& recording : report.recordings) recording.used = ExampleSamples();
+  report.recordings[1].used.value[0] = 0.5;
   const std::string html = ToHtml(report, "");
   EXPECT_EQ(Embedded(html, "result"), ToJson(report));
   const Json series = Embedded(html, "series");
@@ -55,10 +55,10 @@ TEST(ToHtml, ContainsEachRecordingOfAJointFit) {
 
 TEST(ToHtml, EscapesScriptEndsInNames) {
   Identification report = SampledReport();
-  report.data.path = "</script><script>alert(1)</script>@SERIES@.csv";
+  report.recordings.front().data.path = "</script><script>alert(1)</script>@SERIES@.csv";
   const std::string html = ToHtml(report, "<!--");
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
-  EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.data.path);
+  EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.recordings.front().data.path);
   EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
 }
 

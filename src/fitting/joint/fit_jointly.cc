@@ -304,6 +304,7 @@ void AddWarnings(const JointState& state, JointFit& fit) {
     const Description& described = state.descriptions[k];
     fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
                                        described.quantile_residuals, described.correlated, fit.runs[k]);
+    fit.runs[k].suspicions = member.alone->suspicions;  // of the same readings
   }
 }
 
