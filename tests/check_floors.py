@@ -64,7 +64,7 @@ LIBRARY_FLOORS = {
 TEST_HEADERS = {"boost/": set(STANDS_ON), "ceres/jet.h": {"model", "trajectory"}, "nlohmann/": set(STANDS_ON)}
 
 # Folders of tests/ that may include everything.
-FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages", "simulator"}
+FREE_TEST_FOLDERS = {"benchmarks", "consumer", "firmware", "fuzz", "lint", "packages", "scripts", "simulator"}
 
 # Words that only the floors with a user interface may use.
 TALKING_FLOORS = {"tools"}

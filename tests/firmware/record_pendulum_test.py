@@ -110,7 +110,8 @@ class RecordPendulumTest(Recordings):
             with self.subTest(name):
                 done = tool("fit_pendulum", "--data", self.folder / f"{name}.csv", "--rig", RIG, "--json", "-")
                 self.assertEqual(done.returncode, 0, done.stderr)
-                parameters = json.loads(done.stdout)["fits"][0]["parameters"]
+                result = json.loads(done.stdout)
+                parameters = {**result["fits"][0]["parameters"], **result["recordings"][0]["fits"][0]["parameters"]}
                 self.assertGreater(parameters["inertia"]["systematic_std_error"], 0)  # from the clock
                 for parameter, true in TRUTH.items():
                     found = parameters[parameter]

@@ -16,7 +16,7 @@ COULOMB = (DATASETS / "coulomb.csv").read_bytes()
 
 
 class SameAsFitPendulum(Curl):
-    """The answer equals the command line's JSON byte for byte except for data.path, for every way to send a recording."""
+    """The answer equals the command line's JSON byte for byte except for the path, for every way to send a recording."""
 
     CASES = (
         ("coulomb.csv", None, None, {}),
@@ -264,14 +264,15 @@ class Listed(Curl):
         self.assertEqual(self.curl("/v1/fits").json()["fits"], [])
 
     def check_item(self, item, fit):
-        result = self.curl(f"/v1/fits/{fit}").json()["fits"][0]
+        whole = self.curl(f"/v1/fits/{fit}").json()
+        result, own = whole["fits"][0], whole["recordings"][0]["fits"][0]
         self.assertEqual((item["batch"], item["state"], item["exit_code"], item["reason"]), (None, "done", 0, ""))
         self.assertEqual([model["model"] for model in item["models"]], ["coulomb"])
         model = item["models"][0]
         self.assertEqual((model["status"], model["rms_residual"], model["residual_unit"]),
                          (result["status"], result["statistics"]["rms_residual_rad"], "rad"))
         for name, quantity in model["parameters"].items():
-            expected = {**result["derived"], **result["parameters"]}[name]
+            expected = {**result["derived"], **result["parameters"], **own["parameters"]}[name]
             self.assertLessEqual({"estimate", "std_error", "unit"}, set(quantity))
             self.assertEqual(quantity, {key: expected[key] for key in quantity}, name)
         self.assertLessEqual({"inertia", "viscous", "coulomb"}, set(model["parameters"]))

@@ -144,12 +144,12 @@ class Knowledge(Curl):
         by_name = {model["name"]: model for model in models}
         for model in models:
             self.assertEqual(set(model), {"name", "label", "about", "gravity", "equation", "nested_in", "parameters"})
-            result = json.loads(self.fitted("coulomb.csv", "--model", model["name"], "--rig", RIG, "--interval",
-                                            "covariance"))["fits"][0]
+            fit = json.loads(self.fitted("coulomb.csv", "--model", model["name"], "--rig", RIG, "--interval",
+                                         "covariance"))["fits"][0]
             for parameter in model["parameters"]:
                 self.assertEqual(set(parameter), {"name", "symbol", "unit", "lower", "upper"})
-                self.assertIn(parameter["name"], result["parameters"])
-                self.assertEqual(parameter["unit"], result["parameters"][parameter["name"]]["unit"])
+                self.assertIn(parameter["name"], fit["parameters"])
+                self.assertEqual(parameter["unit"], fit["parameters"][parameter["name"]]["unit"])
             self.assertLessEqual(set(model["nested_in"]), set(listed))
         self.assertIn("coulomb", by_name["viscous"]["nested_in"])  # with a dry friction of 0
         self.assertIn("drag", by_name["coulomb"]["nested_in"])

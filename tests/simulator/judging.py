@@ -117,9 +117,14 @@ def judge(parameter: dict, low: float, high: float) -> Judged | None:
     return Judged(deviation / total, abs(deviation) <= total_half, relative, deviation / unseen)
 
 
+def own_fit(result: dict) -> dict:
+    """The recording's part of the first fit; empty if there is no fit."""
+    return result["recordings"][0]["fits"][0] if result["fits"] else {}
+
+
 def significant_causes(result: dict) -> list[str]:
     """Names of the suspicions of the first fit. One that says that it is not significant does not count."""
-    suspicions = result["fits"][0].get("suspicions", []) if result["fits"] else []
+    suspicions = own_fit(result).get("suspicions", [])
     return sorted({each["name"] for each in suspicions if each.get("significant", True)})
 
 
@@ -131,7 +136,7 @@ def ambiguous_words(result: dict) -> list[str]:
 
 def is_constancy_tested(result: dict) -> bool:
     """Whether the first fit compares halves of the recording, or windows along it."""
-    constancy = result["fits"][0].get("constancy") if result["fits"] else None
+    constancy = own_fit(result).get("constancy")
     return bool(constancy) and (constancy["halves"]["p"] is not None or
                                 any(trend["p"] is not None for trend in constancy["amplitude"]["trends"]))
 
@@ -146,7 +151,8 @@ def judge_result(exit_code: int, result: dict, recording, parameters: tuple[str,
                       message=message)
     if exit_code != 0 or not result["fits"]:
         return outcome
-    fitted, begin = result["fits"][0]["parameters"], result["data"]["window_s"][0]
+    fitted = {**result["fits"][0]["parameters"], **own_fit(result)["parameters"]}
+    begin = result["recordings"][0]["window_s"][0]
     for name in (*parameters, *(name for name in optional if has_error(fitted.get(name)))):
         name = name if name in fitted else IN_MOTION.get(name, name)
         truth = recording.true_range(name, begin)

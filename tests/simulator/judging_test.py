@@ -20,11 +20,13 @@ from scenarios import ROWS, Row
 
 PARAMETER = {"estimate": 10.4, "std_error": 0.1, "interval95": [10.2, 10.6], "systematic_std_error": None, "unit": "s",
              "fixed": False, "at_bound": False}
-RESULT = {"fits": [{"parameters": {"inertia": PARAMETER, "initial_angle": {**PARAMETER, "estimate": 1.0}},
-                    "suspicions": [{"name": "gain", "size": 0.01, "significance": 8.0},
-                                   {"name": "lag", "size": 0.0, "significance": 0.3, "significant": False}],
+OWN_FIT = {"parameters": {"initial_angle": {**PARAMETER, "estimate": 1.0}},
+           "suspicions": [{"name": "gain", "size": 0.01, "significance": 8.0},
+                          {"name": "lag", "size": 0.0, "significance": 0.3, "significant": False}]}
+RESULT = {"recordings": [{"window_s": [2.5, 20.0], "fits": [OWN_FIT]}],
+          "fits": [{"parameters": {"inertia": PARAMETER},
                     "ambiguities": [{"cause": "a support that yields", "meaning": "more inertia", "experiment": "clamp it"}]}],
-          "data": {"window_s": [2.5, 20.0]}, "warnings": [{"code": "zero_drift", "message": "The zero drifts."}]}
+          "warnings": [{"code": "zero_drift", "message": "The zero drifts."}]}
 ROW = Row("gain_1", "sensor", "gain", "budgeted", lambda lab: None, frozenset({"gain"}),
           parameters=("inertia",))
 
@@ -87,7 +89,8 @@ class ResultTest(unittest.TestCase):
     def test_constancy_is_tested_if_halves_or_windows_are_compared(self):
         def tested(halves_p, trends):
             result = copy.deepcopy(RESULT)
-            result["fits"][0]["constancy"] = {"halves": {"p": halves_p}, "amplitude": {"trends": trends}}
+            own = result["recordings"][0]["fits"][0]
+            own["constancy"] = {"halves": {"p": halves_p}, "amplitude": {"trends": trends}}
             return judge_result(0, result, Truth(), ("inertia",)).is_constancy_tested
 
         self.assertFalse(judge_result(0, RESULT, Truth(), ("inertia",)).is_constancy_tested)
@@ -128,7 +131,8 @@ class SummaryTest(unittest.TestCase):
     def outcome(self, z, causes=(), exit_code=0, codes=(), parameter=None):
         parameter = {**PARAMETER, "estimate": 10 + 0.1 * z, "interval95": None, **(parameter or {})}
         result = copy.deepcopy(RESULT)
-        result["fits"][0] |= {"parameters": {"inertia": parameter}, "suspicions": [{"name": name} for name in causes]}
+        result["fits"][0]["parameters"] = {"inertia": parameter}
+        result["recordings"][0]["fits"] = [{"parameters": {}, "suspicions": [{"name": name} for name in causes]}]
         result["warnings"] = [{"code": code, "message": "A warning."} for code in codes]
         return judge_result(exit_code, result, Truth(), ("inertia",))
 

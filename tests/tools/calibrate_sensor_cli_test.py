@@ -110,12 +110,13 @@ class CalibrateSensorTest(unittest.TestCase):
                         tool="fit_pendulum")
         result = json.loads((self.folder / "fit.json").read_text())
         calibration = json.loads((self.folder / "cal.json").read_text())
-        self.assertEqual(result["calibration"], calibration)
-        parameters = result["fits"][0]["parameters"]
-        self.assertAlmostEqual(parameters["inertia"]["estimate"], 0.044, delta=1e-4)
-        self.assertAlmostEqual(parameters["initial_angle"]["estimate"], 0.4, delta=0.004)
+        (recording,) = result["recordings"]
+        self.assertEqual(recording["calibration"], calibration)
+        self.assertAlmostEqual(result["fits"][0]["parameters"]["inertia"]["estimate"], 0.044, delta=1e-4)
+        angle = recording["fits"][0]["parameters"]["initial_angle"]
+        self.assertAlmostEqual(angle["estimate"], 0.4, delta=0.004)
         # An angle of 0.4 rad has the relative error of the slope, 0.00299 / 0.1985 = 1.5 %.
-        self.assertAlmostEqual(parameters["initial_angle"]["systematic_std_error"], 0.4 * 0.01506, delta=1e-3)
+        self.assertAlmostEqual(angle["systematic_std_error"], 0.4 * 0.01506, delta=1e-3)
 
     def test_plot_is_svg_with_both_panels(self):
         self.check_done("--data", "table.csv", "--plot", "cal.svg")

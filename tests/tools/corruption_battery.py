@@ -40,6 +40,7 @@ import tempfile
 import hazards_of_motion  # noqa: F401, because the import registers hazards
 from hazards import HAZARDS
 from simulated_lab import Lab, Recording
+from swing import parameters_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODELS = ["viscous", "coulomb", "drag"]
@@ -129,9 +130,9 @@ def deviation(name: str, estimate: float, true: float, recording: Recording) -> 
 
 def release_to_compare(result: dict, recording: Recording) -> dict[str, float]:
     """The release that the fit refers to, if its window contains one."""
-    window = result["data"]["window_s"]
-    parameters = result["fits"][0]["parameters"]
-    if result["data"]["start"] != "release":
+    (read,) = result["recordings"]
+    window = read["window_s"]
+    if read["start"] != "release":
         return {}
     if recording.clock_turn:
         candidates = recording.releases
@@ -139,7 +140,7 @@ def release_to_compare(result: dict, recording: Recording) -> dict[str, float]:
         candidates = [release for release in recording.releases if window[0] <= release[0] <= window[1]]
     if not candidates:
         return {}
-    claimed = parameters["release_time"]["estimate"]
+    claimed = read["fits"][0]["parameters"]["release_time"]["estimate"]
     time, angle = min(candidates, key=lambda release: abs(release[0] - claimed))
     return {"release_angle": angle, "release_time": time}
 
@@ -148,7 +149,7 @@ def z_scores(result: dict, recording: Recording) -> dict[str, float]:
     """(Estimate - true value) / error for each parameter with an error bar; a parameter at a bound has none."""
     truth = {**recording.truth, **release_to_compare(result, recording)}
     scores = {}
-    for name, parameter in result["fits"][0]["parameters"].items():
+    for name, parameter in parameters_of(result).items():
         if name in truth and parameter["std_error"] is not None:
             error = math.hypot(parameter["std_error"], parameter["systematic_std_error"] or 0)
             scores[name] = deviation(name, parameter["estimate"], truth[name], recording) / error

@@ -10,6 +10,8 @@ import sys
 import tempfile
 import unittest
 
+import swing
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATASETS = ROOT / "datasets"
 RECORDINGS = ["coulomb", "textbook_rig", "to_rest"]
@@ -73,7 +75,7 @@ class DatasetsTest(unittest.TestCase):
     def check_fit(self, result, name, parameters):
         truth = json.loads((DATASETS / f"{name}_truth.json").read_text())
         for parameter in parameters:
-            found = result["fits"][0]["parameters"][parameter]
+            found = swing.parameters_of(result)[parameter]
             self.assertLess(abs(found["estimate"] - truth[parameter]), 4 * found["std_error"], parameter)
 
     def test_foreign_files_are_fitted(self):

@@ -199,10 +199,11 @@ class GoodRun(CliTest):
         _, result = self.fit("--rig", "rig.json")
         fit = result["fits"][0]
         self.assertEqual(fit["status"], "converged")
-        self.assertEqual(set(fit["parameters"]), set(swing.TRUTH))
-        for name, parameter in fit["parameters"].items():
+        parameters = swing.parameters_of(result)
+        self.assertEqual(set(parameters), set(swing.TRUTH))
+        for name, parameter in parameters.items():
             self.assertLess(abs(parameter["estimate"] - swing.TRUTH[name]), 4 * parameter["std_error"], name)
-        self.assertEqual(result["data"]["samples"], GOOD_DATA.count("\n") - 1)
+        self.assertEqual(result["recordings"][0]["samples"], GOOD_DATA.count("\n") - 1)
 
     def test_table_has_all_sections(self):
         table, _ = self.fit("--rig", "rig.json", "--details")
@@ -225,18 +226,21 @@ class GoodRun(CliTest):
 
     def test_window_and_fixed_parameter(self):
         _, result = self.fit("--from", "3", "--to", "9", "--fix", "zero_angle=0.01")
-        self.assertEqual(result["data"]["window_s"], [3, 9])
-        self.assertEqual(result["data"]["start"], "moving")
-        zero = result["fits"][0]["parameters"]["zero_angle"]
+        (recording,) = result["recordings"]
+        self.assertEqual(recording["window_s"], [3, 9])
+        self.assertEqual(recording["start"], "moving")
+        own = recording["fits"][0]["parameters"]
+        zero = own["zero_angle"]
         self.assertEqual((zero["estimate"], zero["std_error"], zero["fixed"]), (0.01, None, True))
-        self.assertIn("initial_angle", result["fits"][0]["parameters"])
+        self.assertIn("initial_angle", own)
 
     def test_everything_fixed(self):
         truth = ",".join(f"{name}={value}" for name, value in swing.TRUTH.items())
         _, result = self.fit("--rig", "rig.json", "--fix", truth)
-        fit = result["fits"][0]
-        self.assertEqual(fit["covariance"], {"names": [], "matrix": []})
-        self.assertAlmostEqual(fit["noise"]["sigma_rad"], 0.003, delta=3e-4)
+        own = result["recordings"][0]["fits"][0]
+        for part in (result["fits"][0], own):
+            self.assertEqual(part["covariance"], {"names": [], "matrix": []})
+        self.assertAlmostEqual(own["noise"]["sigma_rad"], 0.003, delta=3e-4)
 
     def test_residuals_are_measured_minus_fitted(self):
         self.fit("--residuals", "res.csv")
@@ -252,19 +256,21 @@ class GoodRun(CliTest):
 
     def test_result_compares_the_fit_with_closed_forms(self):
         _, result = self.fit("--rig", "rig.json")
-        rows = result["fits"][0]["closed_form"]
+        (recording,) = result["recordings"]
+        rows = recording["fits"][0]["closed_form"]
         self.assertTrue(rows)
         parameters = result["fits"][0]["parameters"]
         for row in rows:
             if row["quantity"].startswith("inertia"):
                 self.assertEqual((row["fit"], row["unit"]), (parameters["inertia"]["estimate"], "kg m^2"))
-        inertia = result["closed_forms"]["decrement"]["parameters"]["inertia"]
+        inertia = recording["closed_forms"]["decrement"]["parameters"]["inertia"]
         self.assertLess(abs(inertia["estimate"] - swing.TRUTH["inertia"]), 4 * inertia["std_error"])
 
     def test_series_has_samples_turning_points_and_models(self):
         _, result = self.fit("--series", "series.json")
-        series = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
-        samples = result["data"]["used_samples"]
+        (series,) = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
+        (recording,) = result["recordings"]
+        samples = recording["used_samples"]
         self.assertEqual((len(series["time_s"]), len(series["measured"]), series["unit"]), (samples, samples, "rad"))
         self.assertEqual({name: {key: len(values) for key, values in model.items()}
                           for name, model in series["models"].items()},
@@ -272,13 +278,13 @@ class GoodRun(CliTest):
                                                     "nonlinear_closed_form"), samples)})
         peaks = series["peaks"]
         self.assertEqual([peak["number"] for peak in peaks], list(range(1, len(peaks) + 1)))
-        self.assertEqual(len(peaks), result["closed_forms"]["turning_points"])
+        self.assertEqual(len(peaks), recording["closed_forms"]["turning_points"])
         self.assertGreaterEqual(len(series["extrema"]), len(peaks))
 
     def test_dash_writes_only_that_file_to_standard_output(self):
         run = self.run_tool("--data", "run.csv", "--json", "-")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(strict_json(run.stdout)["schema_version"], 2)
+        self.assertEqual(strict_json(run.stdout)["schema_version"], 3)
 
     def test_writes_only_the_requested_files(self):
         before = self.names()
@@ -289,9 +295,11 @@ class GoodRun(CliTest):
         self.write("gyro.csv", swing.rate_csv())
         run = self.run_tool("--data", "gyro.csv", "--from", "2", "--json", "-")
         self.assertEqual(run.returncode, 0, run.stderr)
-        fit = strict_json(run.stdout)["fits"][0]
-        self.assertIn("rms_residual_rad_s", fit["statistics"])
-        bias = fit["parameters"]["rate_bias"]
+        result = strict_json(run.stdout)
+        own = result["recordings"][0]["fits"][0]
+        for part in (result["fits"][0], own):
+            self.assertIn("rms_residual_rad_s", part["statistics"])
+        bias = own["parameters"]["rate_bias"]
         self.assertLess(abs(bias["estimate"] - 0.02), 4 * bias["std_error"])
 
     def test_every_model(self):
@@ -317,8 +325,9 @@ class ClosedFormsOnly(CliTest):
         run = self.run_tool("--data", data, "--closed_form_only", "--json", "-", *flags)
         self.assertEqual(run.returncode, 0, run.stderr)
         result = strict_json(run.stdout)
-        self.assertEqual(result["fits"], [])
-        return result["closed_forms"], run.stderr
+        (recording,) = result["recordings"]
+        self.assertEqual((result["fits"], recording["fits"]), ([], []))
+        return recording["closed_forms"], run.stderr
 
     def assert_near_truth(self, forms, **truth):
         for name, value in truth.items():
@@ -359,7 +368,7 @@ class ClosedFormsOnly(CliTest):
 
     def test_series_has_no_models(self):
         self.forms("run.csv", "--series", "series.json")
-        series = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
+        (series,) = strict_json((self.folder / "series.json").read_text(encoding="utf-8"))
         self.assertEqual(series["models"], {})
         self.assertTrue(series["peaks"])
 
@@ -410,7 +419,7 @@ class PeoplesHabits(CliTest):
         self.write("volts.csv", "time_s,pot_volts\n" + volts)
         self.write("table.csv", "pot_volts,angle_deg\n1,-81.1\n2,-27\n3,27.1\n4,81\n")
         result = self.fit("volts.csv", "--calibration", "table.csv")
-        self.assertAlmostEqual(result["calibration"]["coefficients"][1], 54.04, places=6)
+        self.assertAlmostEqual(result["recordings"][0]["calibration"]["coefficients"][1], 54.04, places=6)
         warning = next(each for each in result["warnings"] if each["code"] == "calibration_from_table")
         self.assertIn("a straight line through the 4 points of table.csv", warning["message"])
 

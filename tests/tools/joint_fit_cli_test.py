@@ -20,6 +20,7 @@ import swing
 TOOL = ""  # path of the binary, from the command line
 
 PHYSICAL = ("inertia", "viscous", "coulomb")
+OWN = ("release_angle", "release_time", "zero_angle")
 LOW = dict(swing.TRUTH, release_angle=0.25, release_time=1.4, zero_angle=-0.02)
 A = swing.angle_csv()
 B = swing.angle_csv(sigma=0.002, truth=LOW, seed=31)
@@ -58,6 +59,11 @@ class JointTest(unittest.TestCase):
         """The result of a converged joint fit."""
         return json.loads(self.fit("--data", data, "--rig", "rig.json", *flags, "--json", "-", stdin=stdin).stdout)
 
+    @staticmethod
+    def own_fits(result):
+        """The part of each recording in the only fit."""
+        return [own for recording in result["recordings"] for own in recording["fits"]]
+
     def assert_refused(self, code, sentence, *flags):
         """Checks that the tool exits with the code, prints the sentence, and writes no file."""
         before = self.names()
@@ -76,8 +82,7 @@ class JointFit(JointTest):
         result = self.joint()
         (fit,) = result["fits"]
         self.assertEqual(fit["status"], "converged")
-        self.assertEqual([data["path"] for data in result["data"]], ["a.csv", "b.csv"])
-        self.assertEqual([run["path"] for run in fit["runs"]], ["a.csv", "b.csv"])
+        self.assertEqual([recording["path"] for recording in result["recordings"]], ["a.csv", "b.csv"])
         self.assertEqual(fit["shared"], list(PHYSICAL))
         self.assertEqual(list(fit["parameters"]), list(PHYSICAL))
         self.assertIs(fit["homogeneity"]["agrees"], True)
@@ -85,16 +90,15 @@ class JointFit(JointTest):
             self.assert_near(fit["parameters"][name], swing.TRUTH[name])
 
     def test_each_recording_has_its_own_start_and_zero(self):
-        (fit,) = self.joint()["fits"]
-        for run, truth in zip(fit["runs"], (swing.TRUTH, LOW), strict=True):
-            for name in ("release_angle", "release_time", "zero_angle"):
-                self.assert_near(run["parameters"][name], truth[name])
-            for name in PHYSICAL:
-                self.assertEqual(run["parameters"][name], fit["parameters"][name])
+        for own, truth in zip(self.own_fits(self.joint()), (swing.TRUTH, LOW), strict=True):
+            self.assertEqual(list(own["parameters"]), list(OWN))
+            for name in OWN:
+                self.assert_near(own["parameters"][name], truth[name])
+            self.assertEqual(own["covariance"]["names"], [*PHYSICAL, *OWN])
 
     def test_recordings_stay_in_the_given_order(self):
         result = self.joint(data="b.csv,a.csv")
-        self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["b.csv", "a.csv"])
+        self.assertEqual([recording["path"] for recording in result["recordings"]], ["b.csv", "a.csv"])
         for name in PHYSICAL:
             first = self.joint()["fits"][0]["parameters"][name]
             other = result["fits"][0]["parameters"][name]
@@ -151,14 +155,14 @@ class JointFit(JointTest):
 
     def test_standard_input_can_be_one_recording(self):
         result = self.joint(data="-,b.csv", stdin=A)
-        self.assertEqual([run["path"] for run in result["fits"][0]["runs"]], ["standard input", "b.csv"])
+        self.assertEqual([recording["path"] for recording in result["recordings"]], ["standard input", "b.csv"])
         self.assertEqual(result["fits"][0]["parameters"], self.joint()["fits"][0]["parameters"])
 
     def test_file_names_with_blanks_and_non_ascii_letters(self):
         names = ("my run ①.csv", "Mañana_τ.csv")
         self.write(names[0], A)
         self.write(names[1], B)
-        self.assertEqual([data["path"] for data in self.joint(data=",".join(names))["data"]], list(names))
+        self.assertEqual([recording["path"] for recording in self.joint(data=",".join(names))["recordings"]], list(names))
         run = self.fit("--data", ",".join(names), "--residuals", "ré s.csv")
         for name in names:
             self.assertIn(name, run.stdout)
@@ -188,16 +192,18 @@ class JointFit(JointTest):
         self.assertEqual(run.returncode, 1, run.stderr)
         comparison = json.loads(self.read("fit.json"))["comparison"]
         self.assertEqual(comparison["recommended"], "coulomb")
-        k = [len(json.loads(self.fit("--data", name, "--model", "coulomb", "--json", "-").stdout)["fits"][0]["parameters"])
+        k = [len(swing.parameters_of(json.loads(self.fit("--data", name, "--model", "coulomb", "--json", "-").stdout)))
              for name in ("a.csv", "b.csv")]
         self.assertEqual(comparison["rows"][1]["parameters"], sum(k) + 2)  # all parameters of each recording, and both sigmas
 
     def test_angles_and_rates_are_fitted_together(self):
         self.write("gyro.csv", swing.rate_csv())
-        (fit,) = self.joint(data="a.csv,gyro.csv")["fits"]
+        result = self.joint(data="a.csv,gyro.csv")
+        (fit,) = result["fits"]
+        angle, rate = self.own_fits(result)
         self.assertEqual(fit["status"], "converged")
-        self.assertIn("zero_angle", fit["runs"][0]["parameters"])
-        self.assert_near(fit["runs"][1]["parameters"]["rate_bias"], 0.02)
+        self.assertIn("zero_angle", angle["parameters"])
+        self.assert_near(rate["parameters"]["rate_bias"], 0.02)
         for name in PHYSICAL:
             self.assert_near(fit["parameters"][name], swing.TRUTH[name])
 
@@ -205,8 +211,9 @@ class JointFit(JointTest):
         self.write("two.csv", swing.two_releases())
         result = self.joint("--release", "all", "--shared", "all", data="two.csv")
         (fit,) = result["fits"]
-        self.assertEqual([(run["path"], run["release"]) for run in fit["runs"]], [("two.csv", 1), ("two.csv", 2)])
-        starts = [run["parameters"]["release_time"]["estimate"] for run in fit["runs"]]
+        self.assertEqual([(recording["path"], recording["release"]) for recording in result["recordings"]],
+                         [("two.csv", 1), ("two.csv", 2)])
+        starts = [own["parameters"]["release_time"]["estimate"] for own in self.own_fits(result)]
         self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
         self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s of hold, one sample each
         self.assert_near(fit["parameters"]["inertia"], swing.TRUTH["inertia"])
@@ -214,30 +221,30 @@ class JointFit(JointTest):
 
 class SharedParameters(JointTest):
     def test_each_recording_has_its_own_unshared_parameters(self):
-        (fit,) = self.joint("--shared", "inertia")["fits"]
+        result = self.joint("--shared", "inertia")
+        (fit,) = result["fits"]
         self.assertEqual(list(fit["parameters"]), ["inertia"])
         self.assertIsNone(fit["equation"])
-        inertia, viscous = ([run["parameters"][name]["estimate"] for run in fit["runs"]]
-                            for name in ("inertia", "viscous"))
-        self.assertEqual(inertia[0], inertia[1])
-        self.assertNotEqual(viscous[0], viscous[1])
-        for run in fit["runs"]:
-            self.assert_near(run["parameters"]["viscous"], swing.TRUTH["viscous"])
+        first, second = (own["parameters"] for own in self.own_fits(result))
+        self.assertNotEqual(first["viscous"]["estimate"], second["viscous"]["estimate"])
+        for own in (first, second):
+            self.assertEqual(list(own), ["viscous", "coulomb", *OWN])
+            self.assert_near(own["viscous"], swing.TRUTH["viscous"])
 
     def test_recordings_with_different_friction_agree_if_it_is_not_shared(self):
         self.write("b.csv", swing.angle_csv(sigma=0.002, truth=dict(LOW, coulomb=0.006), seed=33))
         self.assertIs(self.joint()["fits"][0]["homogeneity"]["agrees"], False)
-        (fit,) = self.joint("--shared", "inertia")["fits"]
-        self.assertIs(fit["homogeneity"]["agrees"], True)
-        self.assert_near(fit["runs"][0]["parameters"]["coulomb"], 0.004)
-        self.assert_near(fit["runs"][1]["parameters"]["coulomb"], 0.006)
+        result = self.joint("--shared", "inertia")
+        self.assertIs(result["fits"][0]["homogeneity"]["agrees"], True)
+        first, second = self.own_fits(result)
+        self.assert_near(first["parameters"]["coulomb"], 0.004)
+        self.assert_near(second["parameters"]["coulomb"], 0.006)
 
     def test_a_shared_parameter_can_be_fixed(self):
         (fit,) = self.joint("--fix", "coulomb=0.004")["fits"]
         self.assertEqual(list(fit["homogeneity"]["parameters"]), ["inertia", "viscous"])
-        for parameters in (fit["parameters"], *(run["parameters"] for run in fit["runs"])):
-            self.assertEqual(parameters["coulomb"]["estimate"], 0.004)
-            self.assertIs(parameters["coulomb"]["fixed"], True)
+        self.assertEqual(fit["parameters"]["coulomb"]["estimate"], 0.004)
+        self.assertIs(fit["parameters"]["coulomb"]["fixed"], True)
         self.assert_near(fit["parameters"]["viscous"], swing.TRUTH["viscous"])
 
     def test_nothing_is_compared_if_all_parameters_are_fixed(self):

@@ -84,7 +84,7 @@ class ProposedCommandsTest(unittest.TestCase):
         return run, result, proposals
 
     def assert_true(self, result, proposals, truth):
-        parameters = result["fits"][0]["parameters"]
+        parameters = swing.parameters_of(result)
         for name, value in truth.items():
             found = parameters[name]
             error = found["total_std_error"] or max(abs(bound - found["estimate"]) for bound in found["interval95"]) / 2

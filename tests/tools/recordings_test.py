@@ -92,7 +92,8 @@ def inertia_of_run(result: dict) -> tuple[float, float]:
 def scatter_of_windows(result: dict) -> float:
     """rms difference between windows of the recording and the whole, over the combined errors; 0 without windows."""
     estimate, error = inertia_of(result)
-    windows = ((result["fits"][0]["constancy"] or {}).get("amplitude") or {}).get("windows", [])
+    constancy = result["recordings"][0]["fits"][0]["constancy"]
+    windows = ((constancy or {}).get("amplitude") or {}).get("windows", [])
     squares = [(w["inertia"] - estimate) ** 2 / (error**2 + w["inertia_std_error"] ** 2) for w in windows]
     return math.sqrt(sum(squares) / len(squares)) if squares else 0
 
@@ -134,7 +135,7 @@ class Recordings(unittest.TestCase):
         reference = REFERENCES[name]
         expected, rms = getattr(reference, model)
         found = fit(name, model)
-        start, end = found.result["data"]["window_s"]
+        start, end = found.result["recordings"][0]["window_s"]
         warnings = {warning["code"] for warning in found.result["warnings"]}
         self.assertEqual(found.exit_code, 0, name)
         self.assertAlmostEqual(found.gravity_over_inertia / expected, 1, delta=0.01, msg=name)

@@ -36,7 +36,7 @@ class SameAsFitPendulum(Lab):
         done = subprocess.run([TOOLS / "fit_pendulum", "--data", self.folder / path, "--model", "viscous,coulomb", "--json", "-",
                                *more], capture_output=True, text=True, timeout=TIMEOUT_S)
         result = exact(done.stdout)
-        result["data"]["path"] = path
+        result["recordings"][0]["path"] = path
         return result, done.returncode
 
     def test_results_equal_those_of_fit_pendulum(self):
@@ -63,15 +63,15 @@ class SameAsFitPendulum(Lab):
             run_row = stored["runs", run, None, None]
             result = json.loads(run_row["result"])
             if table == "runs":
-                self.assertEqual(row["data_sha256"], result["data"]["sha256"])
+                self.assertEqual(row["data_sha256"], result["recordings"][0]["sha256"])
                 self.assertEqual(row["recommended"], result["comparison"]["recommended"])
                 continue
-            fit = next(fit for fit in result["fits"] if fit["model"] == model)
+            fit, own = next(pair for pair in zip(result["fits"], result["recordings"][0]["fits"]) if pair[0]["model"] == model)
             if table == "fits":
                 self.assertEqual((row["status"], row["bic"], row["rms_residual"], row["residual_unit"]),
                                  (fit["status"], fit["statistics"]["bic"], fit["statistics"]["rms_residual_rad"], "rad"))
             else:
-                quantity = {**fit["parameters"], **fit["derived"]}[name]
+                quantity = {**fit["parameters"], **own["parameters"], **fit["derived"]}[name]
                 self.assertEqual((row["estimate"], row["std_error"], row["unit"]),
                                  (quantity["estimate"], quantity["std_error"], quantity["unit"]), name)
 
@@ -260,7 +260,7 @@ class HostileManifests(Lab):
         for name, code, columns, result in found:
             self.assertLess(code, 2, name)
             self.assertEqual(json.loads(columns), {"note": name})
-            self.assertEqual(json.loads(result)["data"]["path"], name)
+            self.assertEqual(json.loads(result)["recordings"][0]["path"], name)
         self.run_tool("export", "--store", "a.sqlite", "--out", "a.csv")
         with open(self.folder / "a.csv", newline="", encoding="utf-8") as file:
             self.assertEqual([row["note"] for row in csv.DictReader(file)], [name for name in names for _ in range(2)])

@@ -21,10 +21,12 @@ import swing
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "include/pendulum/report/result.schema.json").read_text(encoding="utf-8"))
 EXAMPLE = json.loads((ROOT / "tests/report/result_example.json").read_text(encoding="utf-8"))
-# Keys that came after the first results of schema version 2.
+# Keys that earlier results do not have, or that some results do not need.
 ADDED = ("summary", "total_std_error", "error_budget", "sensor", "rig_verdict", "ambiguities", "suspicions",
          "unseen_friction_std_error")
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
+RECORDING = ["recordings", 0]
+OWN_FIT = ["recordings", 0, "fits", 0]  # the part of the first recording in the first fit
 TOOL = ""  # path of the binary, from the command line
 
 
@@ -43,18 +45,17 @@ class Schema(unittest.TestCase):
         VALIDATOR.validate(EXAMPLE)
 
     def test_requires_every_key_and_no_other(self):
-        for path in ([], ["tool"], ["data"], ["fits", 0], ["fits", 0, "parameters", "viscous"], ["fits", 0, "noise"],
-                     ["fits", 0, "statistics"], ["fits", 0, "solver"], ["fits", 0, "covariance"],
-                     ["fits", 0, "systematic_covariance"], ["fits", 0, "identifiability", 0],
-                     ["fits", 0, "derived", "natural_frequency"], ["warnings", 0], ["data", "sampling"],
-                     ["fits", 0, "closed_form", 0], ["closed_forms"], ["closed_forms", "linear"],
-                     ["closed_forms", "linear", "inertia"], ["closed_forms", "decrement"],
-                     ["closed_forms", "envelopes", 0], ["comparison"], ["comparison", "rows", 0],
-                     ["comparison", "rows", 1], ["comparison", "rows", 0, "cross_validation"],
-                     ["comparison", "tests", 0], ["comparison", "tests", 1], ["fits", 0, "constancy"],
-                     ["fits", 0, "constancy", "halves"], ["fits", 0, "constancy", "halves", "rows", 0],
-                     ["fits", 0, "constancy", "amplitude"], ["fits", 0, "constancy", "amplitude", "windows", 0],
-                     ["fits", 0, "constancy", "amplitude", "trends", 0]):
+        forms, constancy = [*RECORDING, "closed_forms"], [*OWN_FIT, "constancy"]
+        for path in ([], ["tool"], RECORDING, ["fits", 0], ["fits", 0, "parameters", "viscous"], OWN_FIT,
+                     [*OWN_FIT, "noise"], [*OWN_FIT, "statistics"], [*OWN_FIT, "covariance"], ["fits", 0, "statistics"],
+                     ["fits", 0, "solver"], ["fits", 0, "covariance"], ["fits", 0, "systematic_covariance"],
+                     ["fits", 0, "identifiability", 0], ["fits", 0, "derived", "natural_frequency"], ["warnings", 0],
+                     [*RECORDING, "sampling"], [*OWN_FIT, "closed_form", 0], forms, [*forms, "linear"],
+                     [*forms, "linear", "inertia"], [*forms, "decrement"], [*forms, "envelopes", 0], ["comparison"],
+                     ["comparison", "rows", 0], ["comparison", "rows", 1], ["comparison", "rows", 0, "cross_validation"],
+                     ["comparison", "tests", 0], ["comparison", "tests", 1], constancy, [*constancy, "halves"],
+                     [*constancy, "halves", "rows", 0], [*constancy, "amplitude"], [*constancy, "amplitude", "windows", 0],
+                     [*constancy, "amplitude", "trends", 0]):
             part = EXAMPLE
             for step in path:
                 part = part[step]
@@ -75,12 +76,12 @@ class Schema(unittest.TestCase):
     def test_requires_a_reason_for_a_missing_standard_error(self):
         self.assert_refused(lambda result: result["fits"][0]["parameters"]["coulomb"].pop("reason"))
         self.assert_refused(lambda result: result["fits"][0]["derived"]["damping_ratio"].pop("reason"))
-        self.assert_refused(lambda result: result["fits"][0]["closed_form"][2].pop("reason"))
+        self.assert_refused(lambda result: self.at(result, OWN_FIT)["closed_form"][2].pop("reason"))
 
     def test_requires_a_reason_for_missing_constancy(self):
-        self.assert_refused(lambda result: result["fits"][1].pop("constancy_reason"))
-        self.assert_refused(lambda result: result["fits"][0].update(constancy_reason="too short"))
-        self.assert_refused(lambda result: result["fits"][0]["constancy"]["halves"].update(p=None))
+        self.assert_refused(lambda result: result["recordings"][0]["fits"][1].pop("constancy_reason"))
+        self.assert_refused(lambda result: self.at(result, OWN_FIT).update(constancy_reason="too short"))
+        self.assert_refused(lambda result: self.at(result, OWN_FIT)["constancy"]["halves"].update(p=None))
 
     def test_requires_a_reason_for_missing_predictions_and_tests(self):
         self.assert_refused(lambda result: result["comparison"]["rows"][0].update(forward_prediction=None))
@@ -101,22 +102,32 @@ class Schema(unittest.TestCase):
 
     def test_requires_a_reason_for_missing_closed_forms(self):
         for key in ("linear", "decrement"):
-            self.assert_refused(lambda result, key=key: result["closed_forms"].update({key: None}))
+            self.assert_refused(lambda result, key=key: result["recordings"][0]["closed_forms"].update({key: None}))
             result = copy.deepcopy(EXAMPLE)
-            result["closed_forms"].update({key: None, "reason": "too few turning points"})
+            result["recordings"][0]["closed_forms"].update({key: None, "reason": "too few turning points"})
             VALIDATOR.validate(result)
+        self.assert_refused(lambda result: result["recordings"][0].update(closed_forms=None))
 
     def test_holds_without_fits_and_without_closed_forms(self):
         result = copy.deepcopy(EXAMPLE)
-        result["fits"] = []
-        result["data"]["start"] = None
+        (recording,) = result["recordings"]
+        result["fits"], recording["fits"], recording["start"] = [], [], None
         VALIDATOR.validate(result)
-        result["closed_forms"] = None
-        result["reason"] = "only 2 turning points can be located"
+        recording.update(closed_forms=None, reason="only 2 turning points can be located")
         VALIDATOR.validate(result)
 
+    def test_requires_the_fits_in_the_recordings_too(self):
+        self.assert_refused(lambda result: result.update(fits=[]))
+        self.assert_refused(lambda result: result["recordings"][0].update(fits=[]))
+        self.assert_refused(lambda result: result["recordings"][0].update(start=None))
+
     def test_requires_one_unit_for_residuals(self):
-        self.assert_refused(lambda result: result["data"].update(resolution_rad_s=None))
+        self.assert_refused(lambda result: result["recordings"][0].update(resolution_rad_s=None))
+        for path in (["fits", 0], OWN_FIT):
+            self.assert_refused(lambda result, path=path: self.at(result, path)["statistics"].update(rms_residual_rad_s=0.1))
+            self.assert_refused(lambda result, path=path: self.at(result, path)["statistics"].pop("rms_residual_rad"))
+        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0], "rms_residual"))
+        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0]["cross_validation"], "rms"))
 
     def test_allows_only_four_outcomes(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="ok"))
@@ -124,22 +135,43 @@ class Schema(unittest.TestCase):
     def test_allows_only_five_kinds_of_noise(self):
         for model in ("gaussian", "quantized", "huber", "student", "edges"):
             result = copy.deepcopy(EXAMPLE)
-            result["fits"][0]["noise"]["model"] = model
+            self.at(result, OWN_FIT)["noise"]["model"] = model
             VALIDATOR.validate(result)
-        self.assert_refused(lambda result: result["fits"][0]["noise"].update(model="cauchy"))
+        self.assert_refused(lambda result: self.at(result, OWN_FIT)["noise"].update(model="cauchy"))
 
     def test_allows_only_three_verdicts(self):
         self.assert_refused(lambda result: result["fits"][0]["identifiability"][0].update(verdict="perhaps"))
 
     def test_requires_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
+        for key in ("noise", "statistics"):
+            self.assert_refused(lambda result, key=key: self.at(result, OWN_FIT).update({key: None}))
 
-    def test_requires_all_parts_for_one_or_all_for_several_recordings(self):
-        for key in ("data", "closed_forms", "calibration"):
-            self.assert_refused(lambda result, key=key: result.update({key: [result[key], result[key]]}))
-        self.assert_refused(lambda result: result["fits"][0].update(shared=["inertia"]))
-        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0], "rms_residual"))
-        self.assert_refused(lambda result: self.with_sigma(result["comparison"]["rows"][0]["cross_validation"], "rms"))
+    def test_holds_if_every_fit_or_one_of_two_failed(self):
+        result = copy.deepcopy(EXAMPLE)
+        self.assertEqual(len(result["fits"]), 2)
+        for fit, own in zip(result["fits"], result["recordings"][0]["fits"], strict=True):
+            fit.update(status="failed", equation=None, statistics=None)
+            own.update(noise=None, statistics=None)
+            VALIDATOR.validate(result)
+        own["noise"] = EXAMPLE["recordings"][0]["fits"][0]["noise"]
+        self.assertFalse(VALIDATOR.is_valid(result))
+
+    def test_allows_only_the_outcomes_of_a_separate_fit(self):
+        result = copy.deepcopy(EXAMPLE)
+        self.at(result, OWN_FIT)["separate"] = "not_converged: too few iterations"
+        VALIDATOR.validate(result)
+        for wrong in ("ok", "not_converged", "converged: so it is"):
+            self.assert_refused(lambda result, wrong=wrong: self.at(result, OWN_FIT).update(separate=wrong))
+
+    def test_requires_what_one_recording_always_shares(self):
+        self.assert_refused(lambda result: result["fits"][0]["parameters"].pop("inertia"))
+        self.assert_refused(lambda result: result["fits"][0]["shared"].remove("inertia"))
+
+    def test_compares_several_recordings_and_not_one(self):
+        self.assert_refused(lambda result: result.update(recordings=[]))
+        self.assert_refused(lambda result: result["recordings"].append(copy.deepcopy(result["recordings"][0])))
+        self.assert_refused(lambda result: result["fits"][0].update(homogeneity={}))
 
     @staticmethod
     def with_sigma(part, name):
@@ -216,16 +248,15 @@ class JointSchema(unittest.TestCase):
 
     def test_holds_for_the_result(self):
         VALIDATOR.validate(self.result)
-        self.assertEqual(len(self.result["data"]), 2)
+        self.assertEqual(len(self.result["recordings"]), 2)
 
     def test_requires_every_key_and_no_other(self):
-        homogeneity = ["fits", 1, "homogeneity"]
-        for path in ([], ["data", 1], ["fits", 1], ["fits", 1, "parameters", "viscous"], ["fits", 1, "statistics"],
+        homogeneity, own = ["fits", 1, "homogeneity"], ["recordings", 1, "fits", 1]
+        for path in ([], ["recordings", 1], ["fits", 1], ["fits", 1, "parameters", "viscous"], ["fits", 1, "statistics"],
                      ["fits", 1, "covariance"], ["fits", 1, "solver"], homogeneity,
                      [*homogeneity, "parameters", "inertia"], [*homogeneity, "parameters", "inertia", "random_effects"],
-                     [*homogeneity, "parameters", "inertia", "runs", 0], ["fits", 1, "runs", 1],
-                     ["fits", 1, "runs", 1, "parameters", "zero_angle"], ["fits", 1, "runs", 1, "noise"],
-                     ["fits", 1, "runs", 1, "statistics"], ["comparison", "rows", 0], ["closed_forms", 1]):
+                     [*homogeneity, "parameters", "inertia", "runs", 0], own, [*own, "parameters", "zero_angle"],
+                     [*own, "noise"], [*own, "statistics"], ["comparison", "rows", 0], ["recordings", 1, "closed_forms"]):
             for key in Schema.at(self.result, path):
                 with self.subTest(path=path, missing=key):
                     if key == "rms_residual_rad" and path == ["fits", 1, "statistics"]:  # only for readings of one unit
@@ -236,23 +267,22 @@ class JointSchema(unittest.TestCase):
             with self.subTest(path=path, unknown=True):
                 self.assert_refused(lambda result: Schema.at(result, path).update(unknown=1))
 
-    def test_requires_every_part_in_its_joint_form(self):
-        for key in ("data", "calibration", "closed_forms"):
-            self.assert_refused(lambda result, key=key: result.update({key: result[key][0]}))
-            self.assert_refused(lambda result, key=key: result[key].pop())
-        self.assert_refused(lambda result: result["fits"].append(copy.deepcopy(EXAMPLE["fits"][0])))
-        self.assert_refused(lambda result: result.update(fits=[]))
-        self.assert_refused(lambda result: result["fits"][0]["runs"].pop())
-        self.assert_refused(lambda result: result["data"][0].update(start=None))
+    def test_requires_what_only_several_recordings_have(self):
+        self.assert_refused(lambda result: result["recordings"].pop())
+        self.assert_refused(lambda result: result["fits"][0].update(homogeneity=None))
+        self.assert_refused(lambda result: result["recordings"][1].update(fits=[]))
+        self.assert_refused(lambda result: result["recordings"][1].update(start=None))
+
+        def without_fits(result):
+            for each in (result, *result["recordings"]):
+                each["fits"] = []
+
+        self.assert_refused(without_fits)
 
     def test_requires_a_reason_for_missing_closed_forms(self):
-        self.assert_refused(lambda result: result["closed_forms"].__setitem__(1, None))
-
-        def with_reason(result):
-            result["closed_forms"][1] = None
-            result["reason"] = "recording 2 (run_2.csv): only 2 turning points can be located"
-
-        self.assert_holds(with_reason)
+        self.assert_refused(lambda result: result["recordings"][1].update(closed_forms=None))
+        reason = "only 2 turning points can be located"
+        self.assert_holds(lambda result: result["recordings"][1].update(closed_forms=None, reason=reason))
 
     def test_requires_a_reason_for_a_missing_test(self):
         none = {"statistic": None, "p": None, "agrees": None, "parameters": {}, "amplitude_dependence": []}
@@ -268,12 +298,6 @@ class JointSchema(unittest.TestCase):
         self.assert_refused(lambda result: Schema.at(result, inertia).update(none))
         none["reason"] = "the recording on its own does not determine it"
         self.assert_holds(lambda result: Schema.at(result, inertia).update(none))
-
-    def test_allows_only_the_outcomes_of_a_separate_fit(self):
-        run = ["fits", 0, "runs", 0]
-        self.assert_holds(lambda result: Schema.at(result, run).update(separate="not_converged: too few iterations"))
-        for wrong in ("ok", "not_converged", "converged: so it is"):
-            self.assert_refused(lambda result, wrong=wrong: Schema.at(result, run).update(separate=wrong))
 
     def test_requires_no_statistics_of_a_failed_fit(self):
         self.assert_refused(lambda result: result["fits"][0].update(status="failed"))
@@ -324,8 +348,8 @@ class JointResults(unittest.TestCase):
         self.assertNotIn("fixed", result["fits"][0]["homogeneity"]["reason"])
 
     def test_trajectories_that_cannot_be_computed(self):
-        (fit,) = self.assert_valid([self.first, self.second], "--fix", "viscous=1e6", status="failed")["fits"]
-        self.assertIsNone(fit["runs"][0]["amplitude_rad"])
+        result = self.assert_valid([self.first, self.second], "--fix", "viscous=1e6", status="failed")
+        self.assertIsNone(result["recordings"][0]["fits"][0]["amplitude_rad"])
 
     def test_all_shared_parameters_fixed(self):
         self.assert_valid([self.first, self.second], "--fix", "inertia=0.0438,viscous=0.0017,coulomb=0.0022")
@@ -337,8 +361,8 @@ class JointResults(unittest.TestCase):
         self.assertIs(result["fits"][0]["parameters"]["viscous"]["at_bound"], True)
 
     def test_windows_too_short_for_constancy(self):
-        (fit,) = self.assert_valid([self.first, self.second], "--model", "drag", "--to", "4.5")["fits"]
-        self.assertIn("constancy_reason", fit["runs"][0])
+        result = self.assert_valid([self.first, self.second], "--model", "drag", "--to", "4.5")
+        self.assertIn("constancy_reason", result["recordings"][0]["fits"][0])
 
     def test_friction_that_the_recordings_do_not_determine(self):
         recordings = [swing.angle_csv(sigma=0.002, truth=dict(truth, coulomb=0.0), seed=seed)
@@ -347,8 +371,8 @@ class JointResults(unittest.TestCase):
         self.assertTrue(fit["reason"])  # the last digits decide which of the equally good points it reports
 
     def test_a_fixed_release_angle_that_is_wrong_for_one_recording(self):
-        (fit,) = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")["fits"]
-        self.assertIs(fit["runs"][1]["parameters"]["release_angle"]["fixed"], True)
+        result = self.assert_valid([self.first, self.second], "--fix", "release_angle=0.42", status="not_converged")
+        self.assertIs(result["recordings"][1]["fits"][0]["parameters"]["release_angle"]["fixed"], True)
 
     def test_profiles(self):
         self.assert_valid([self.first, self.second], "--interval", "profile", rig=swing.RIG)
@@ -357,7 +381,7 @@ class JointResults(unittest.TestCase):
         counts = [text.replace("angle_deg", "adc_counts") for text in (self.first, self.second)]
         calibration = '# calibration: {"schema_version": 1, "input": "counts", "angle_unit": "deg", "coefficients": [0, 1]}\n'
         result = self.assert_valid([calibration + counts[0], self.second])
-        self.assertEqual([calibration is None for calibration in result["calibration"]], [False, True])
+        self.assertEqual([recording["calibration"] is None for recording in result["recordings"]], [False, True])
         self.assert_valid(counts, "--model", "linear")
 
     def test_releases_of_one_recording(self):

@@ -39,7 +39,7 @@ class SensorTest(unittest.TestCase):
         run = self.run_tool(*flags, "--json", "fit.json", "--checks", "none")
         self.assertEqual(run.returncode, 0, run.stderr)
         result = json.loads((self.folder / "fit.json").read_text(encoding="utf-8"))
-        sensor = result["data"]["sensor"]
+        sensor = result["recordings"][0]["sensor"]
         self.assertEqual(list(sensor), ["kind", *EFFECTS])
         return sensor, [warning["code"] for warning in result["warnings"]]
 

@@ -46,6 +46,10 @@ class SeveralFits(unittest.TestCase):
     def read(self, name):
         return (self.folder / name).read_bytes()
 
+    def path_in(self, name):
+        """The path of the recording that a result describes."""
+        return json.loads(self.read(name))["recordings"][0]["path"]
+
     def names(self):
         return {path.name for path in self.folder.iterdir()}
 
@@ -77,7 +81,7 @@ class SeveralFits(unittest.TestCase):
         for number, name in ((1, "a"), (2, "b")):
             self.assertEqual(self.read(f"fit_00{number}.json"), self.read(f"{name}.json"))
             self.assertEqual(self.read(f"r_00{number}.csv"), self.read(f"{name}_residuals.csv"))
-            self.assertEqual(json.loads(self.read(f"fit_00{number}.json"))["data"]["path"], f"{name}.csv")
+            self.assertEqual(self.path_in(f"fit_00{number}.json"), f"{name}.csv")
             self.assertIn(f"{name}.csv", run.stdout)
 
     def test_recordings_between_commas(self):
@@ -98,8 +102,7 @@ class SeveralFits(unittest.TestCase):
         for number in (1, 2):
             self.fit("--data", "two.csv", "--release", str(number), "--json", "one.json")
             self.assertEqual(self.read(f"fit_00{number}.json"), self.read("one.json"))
-            parameters = json.loads(self.read("one.json"))["fits"][0]["parameters"]
-            starts.append(parameters["release_time"]["estimate"])
+            starts.append(swing.parameters_of(json.loads(self.read("one.json")))["release_time"]["estimate"])
         self.assertAlmostEqual(starts[0], 1.9, delta=0.02)
         self.assertAlmostEqual(starts[1], 13.9, delta=0.02)  # 10.00 s, 1.99 s by hand, 1.9 s of hold, one sample each
         self.assertNotIn("fit_003.json", self.names())
@@ -128,7 +131,7 @@ class SeveralFits(unittest.TestCase):
         self.assertEqual(run.stderr, f"fit_pendulum: {sentence}\n")
         for name in "ab":
             number = "001" if name == "a" else "003"
-            self.assertEqual(json.loads(self.read(f"fit_{number}.json"))["data"]["path"], f"{name}.csv")
+            self.assertEqual(self.path_in(f"fit_{number}.json"), f"{name}.csv")
             self.assertIn(f"r_{number}.csv", self.names())
             self.assertIn(f"{name}.csv", run.stdout)
         self.assertFalse(self.names() & {"fit_002.json", "r_002.csv", "fit.json"})
@@ -164,7 +167,7 @@ class SeveralFits(unittest.TestCase):
         self.write("flat.csv", FLAT)
         run = self.run_tool("--data", "flat.csv,two.csv,a.csv", *EACH, "--release", "all", "--json", "fit.json")
         self.assertEqual(run.returncode, 5, run.stderr)
-        written = {name: json.loads(self.read(name))["data"]["path"] for name in self.names() if "fit_" in name}
+        written = {name: self.path_in(name) for name in self.names() if "fit_" in name}
         self.assertEqual(written, {"fit_002.json": "two.csv", "fit_003.json": "two.csv", "fit_004.json": "a.csv"})
 
     def test_a_failed_release_does_not_affect_the_other(self):

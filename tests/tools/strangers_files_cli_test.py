@@ -117,7 +117,7 @@ class StrangersFilesTest(unittest.TestCase):
 
     def test_the_large_swings_are_kept_and_presliding_is_named(self):
         result = self.fit(Case("window/presliding_gyro.csv"))
-        begin, end = result["data"]["window_s"]
+        begin, end = result["recordings"][0]["window_s"]
         self.assertLess(begin, 0.5)
         self.assertLess(end, 7)
         self.assertIn("presliding", [warning["code"] for warning in result["warnings"]])

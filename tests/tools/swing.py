@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings for the tests of the tools, from an independent short integration of the equation of motion."""
+"""Recordings for the tests of the tools, from an independent short integration of the equation of motion; how they read a fit."""
 
 import math
 import random
@@ -8,6 +8,11 @@ TRUTH = {"inertia": 0.079, "viscous": 0.003, "coulomb": 0.004, "release_angle": 
          "zero_angle": 0.01}
 RIG = {"bob_mass": 0.380, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81}
 GRAVITY_TORQUE = (RIG["bob_mass"] + RIG["rod_mass"] / 2) * RIG["gravity"] * RIG["rod_length"]  # N m
+
+
+def parameters_of(result):
+    """All parameters of the first fit of a result, by name: the shared ones, then those of the first recording."""
+    return {**result["fits"][0]["parameters"], **result["recordings"][0]["fits"][0]["parameters"]}
 
 
 def _step(angle, rate, h, truth):
