@@ -122,7 +122,12 @@ LineFit Solve(const Line& line) {
 
 double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptions& options) {
   constexpr int kPlaces = 60;
-  if (fit.termination == Termination::kFailed) return std::numeric_limits<double>::quiet_NaN();
+  const auto is_angle = [](const ParameterEstimate& parameter) {
+    return parameter.info.name == kReleaseAngle.name || parameter.info.name == kInitialAngle.name;
+  };
+  const auto start = std::ranges::find_if(fit.parameters, is_angle);
+  const bool is_known = fit.termination != Termination::kFailed && start != fit.parameters.end();
+  if (!is_known || start->unit != "rad") return std::numeric_limits<double>::quiet_NaN();
   const Parts parts(used, fit, options);
   const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
   const double from = release == nullptr ? used.time[0] : release->estimate;

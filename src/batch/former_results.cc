@@ -72,11 +72,14 @@ Json Translated(const Json& value, std::string_view key) {
 
 using NameSet = std::set<std::string>;
 
+/// A member; null if there is none, as in results of the first versions.
+Json MemberOf(const Json& object, const char* key) { return object.value(key, Json(nullptr)); }
+
 /// The parameters that the recordings of a fit of version 2 share.
 NameSet SharedNames(const Json& fit) {
-  if (fit.contains("shared")) return fit["shared"].get<NameSet>();
+  if (fit.contains("shared")) return fit.at("shared").get<NameSet>();
   NameSet names;
-  const auto model = FindMotionModel(fit["model"].get<std::string>());
+  const auto model = FindMotionModel(fit.at("model").get<std::string>());
   if (!model) return names;
   for (const ParameterInfo& parameter : PhysicalParameters(*model)) names.emplace(parameter.name);
   return names;
@@ -85,13 +88,13 @@ NameSet SharedNames(const Json& fit) {
 /// Copies those of the members that there are.
 void CopyMembers(const Json& from, const std::vector<std::string>& keys, Json& to) {
   for (const std::string& key : keys) {
-    if (from.contains(key)) to[key] = from[key];
+    if (from.contains(key)) to[key] = from.at(key);
   }
 }
 
 Json Parameters(const Json& fit, const NameSet& shared, bool are_shared) {
   Json parameters = Json::object();
-  for (const auto& [name, parameter] : fit["parameters"].items()) {
+  for (const auto& [name, parameter] : fit.at("parameters").items()) {
     if (shared.contains(name) == are_shared) parameters[name] = parameter;
   }
   return parameters;
@@ -99,8 +102,8 @@ Json Parameters(const Json& fit, const NameSet& shared, bool are_shared) {
 
 Json Identifiabilities(const Json& fit, const NameSet& shared, bool are_shared) {
   Json rows = Json::array();
-  for (const Json& row : fit["identifiability"]) {
-    if (shared.contains(row["parameter"].get<std::string>()) == are_shared) rows.push_back(row);
+  for (const Json& row : MemberOf(fit, "identifiability")) {
+    if (shared.contains(row.at("parameter").get<std::string>()) == are_shared) rows.push_back(row);
   }
   return rows;
 }
@@ -109,14 +112,15 @@ Json Identifiabilities(const Json& fit, const NameSet& shared, bool are_shared) 
 Json SharedMatrix(const Json& matrix, const NameSet& shared) {
   Json names = Json::array(), rows = Json::array();
   std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < matrix["names"].size(); ++i) {
-    if (!shared.contains(matrix["names"][i].get<std::string>())) continue;
+  const Json all = matrix.is_object() ? matrix.at("names") : Json::array();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!shared.contains(all[i].get<std::string>())) continue;
     places.push_back(i);
-    names.push_back(matrix["names"][i]);
+    names.push_back(all[i]);
   }
   for (const std::size_t i : places) {
     rows.push_back(Json::array());
-    for (const std::size_t j : places) rows.back().push_back(matrix["matrix"][i][j]);
+    for (const std::size_t j : places) rows.back().push_back(matrix.at("matrix").at(i).at(j));
   }
   return {{"names", std::move(names)}, {"matrix", std::move(rows)}};
 }
@@ -134,15 +138,15 @@ Json SumStatistics(const Json& statistics) {
 /// The part of a fit for one recording; own: the recording's run in the fit, or the fit to the only recording.
 Json OwnPart(const Json& fit, const Json& own) {
   const NameSet shared = SharedNames(fit);
-  const std::string status = fit["status"].get<std::string>();
-  Json part = {{"model", fit["model"]},
-               {"amplitude_rad", own.value("amplitude_rad", Json(nullptr))},
+  const std::string status = fit.at("status").get<std::string>();
+  Json part = {{"model", fit.at("model")},
+               {"amplitude_rad", MemberOf(own, "amplitude_rad")},
                {"parameters", Parameters(own, shared, false)}};
   CopyMembers(own, {"covariance", "correlation", "systematic_covariance", "std_error_method"}, part);
   part["identifiability"] = Identifiabilities(own, shared, false);
   CopyMembers(own, {"noise", "statistics", "closed_form", "constancy", "constancy_reason", "suspicions"}, part);
   part["separate"] =
-      own.value("separate", status == "converged" ? status : status + ": " + fit["reason"].get<std::string>());
+      own.value("separate", status == "converged" ? status : status + ": " + fit.at("reason").get<std::string>());
   return part;
 }
 
@@ -157,52 +161,54 @@ Json SharedFit(const Json& fit) {
   current["parameters"] = parameters;
   CopyMembers(fit, {"derived"}, current);
   for (const char* key : {"covariance", "correlation", "systematic_covariance"}) {
-    current[key] = SharedMatrix(fit[key], shared);
+    current[key] = SharedMatrix(MemberOf(fit, key), shared);
   }
   CopyMembers(fit, {"std_error_method", "interval_method"}, current);
   current["identifiability"] = Identifiabilities(fit, shared, true);
-  current["statistics"] = SumStatistics(fit["statistics"]);
-  current["homogeneity"] = fit.value("homogeneity", Json(nullptr));
+  current["statistics"] = SumStatistics(MemberOf(fit, "statistics"));
+  current["homogeneity"] = MemberOf(fit, "homogeneity");
   CopyMembers(fit, {"rig_verdict", "ambiguities", "solver", "summary"}, current);
   return current;
 }
 
 /// A warning of an earlier version has a code and a message only.
 Json WithParts(const Json& warning) {
-  const Json& message = warning["message"];
-  Json whole = {{"code", warning["code"]}, {"message", message}, {"text", message},
-                {"finding", message},      {"explanation", nullptr}, {"advice", nullptr},
-                {"flags", Json::array()},  {"assumed", nullptr}, {"law", nullptr},
+  const Json& message = warning.at("message");
+  Json whole = {{"code", warning.at("code")},  {"message", message},         {"text", message},
+                {"finding", message},          {"explanation", nullptr},     {"advice", nullptr},
+                {"flags", Json::array()},      {"assumed", nullptr},         {"law", nullptr},
                 {"recordings", Json::array()}, {"parameters", Json::array()}};
   whole.update(warning);
   return whole;
 }
 
 Json ToVersion3(const Json& former) {
-  const bool are_several = former["data"].is_array();
+  const bool are_several = former.at("data").is_array();
   const auto each = [&](const char* key) {
-    const Json member = former.value(key, Json(nullptr));
+    const Json member = MemberOf(former, key);
     return are_several ? member : Json::array({member});
   };
   const Json data = each("data"), calibrations = each("calibration"), closed_forms = each("closed_forms");
+  const Json& former_fits = former.at("fits");
   Json recordings = Json::array(), fits = Json::array(), warnings = Json::array();
   for (std::size_t k = 0; k < data.size(); ++k) {
-    Json recording = data[k];
-    recording["calibration"] = calibrations[k];
-    recording["closed_forms"] = closed_forms[k];
+    Json recording = data.at(k);
+    recording["calibration"] = calibrations.at(k);
+    recording["closed_forms"] = closed_forms.at(k);
     recording["fits"] = Json::array();
-    for (const Json& fit : former["fits"]) recording["fits"].push_back(OwnPart(fit, are_several ? fit["runs"][k] : fit));
-    if (closed_forms[k].is_null() && former.contains("reason")) recording["reason"] = former["reason"];
+    for (const Json& fit : former_fits)
+      recording["fits"].push_back(OwnPart(fit, are_several ? fit.at("runs").at(k) : fit));
+    if (closed_forms.at(k).is_null() && former.contains("reason")) recording["reason"] = former.at("reason");
     recordings.push_back(std::move(recording));
   }
-  for (const Json& fit : former["fits"]) fits.push_back(SharedFit(fit));
-  for (const Json& warning : former["warnings"]) warnings.push_back(WithParts(warning));
+  for (const Json& fit : former_fits) fits.push_back(SharedFit(fit));
+  for (const Json& warning : MemberOf(former, "warnings")) warnings.push_back(WithParts(warning));
   return {{"schema_version", 3},
-          {"tool", former["tool"]},
-          {"rig", former["rig"]},
+          {"tool", MemberOf(former, "tool")},
+          {"rig", MemberOf(former, "rig")},
           {"recordings", std::move(recordings)},
           {"fits", std::move(fits)},
-          {"comparison", former.value("comparison", Json(nullptr))},
+          {"comparison", MemberOf(former, "comparison")},
           {"warnings", std::move(warnings)}};
 }
 

@@ -10,9 +10,9 @@ namespace pendulum {
 
 /// A newer outcome of a run that has a result.
 struct NewerOutcome {
-  bool has_result = false;      ///< The recording was fitted.
+  bool has_result = false;           ///< The recording was fitted.
   nlohmann::ordered_json recording;  ///< The recording of the result; null if it has none, or is damaged.
-  std::string reason;           ///< Why the recording could not be fitted.
+  std::string reason;                ///< Why the recording could not be fitted.
   int exit_code = 0;
   bool is_same_data = false;  ///< The recording has the bytes of the former one.
 };

@@ -142,7 +142,8 @@ inline FitRow Fit(const Json& recording, const Json& fit, const Json& own) {
   row.iterations = Get<std::int64_t>(fit["solver"], "iterations");
   row.evaluations = Get<std::int64_t>(fit["solver"], "evaluations");
   for (const Json* const part : {&fit, &own}) {
-    for (const auto& [name, json] : (*part)["parameters"].items()) row.quantities.push_back(Quantity(name, json, false));
+    for (const auto& [name, json] : (*part)["parameters"].items())
+      row.quantities.push_back(Quantity(name, json, false));
   }
   for (const auto& [name, json] : fit["derived"].items()) row.quantities.push_back(Quantity(name, json, true));
   return row;

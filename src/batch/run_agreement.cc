@@ -79,7 +79,8 @@ std::optional<double> HalfInterval(const Json& parameter) {
 /// own: the part of the fit for its recording.
 bool IsComparable(const Json& result, const Json& fit, const Json& own, const std::vector<std::string>& names) {
   const auto is_free = [](const Json& parameter) { return !parameter["at_bound"].get<bool>(); };
-  if (!std::ranges::all_of(fit["parameters"], is_free) || !std::ranges::all_of(own["parameters"], is_free)) return false;
+  if (!std::ranges::all_of(fit["parameters"], is_free) || !std::ranges::all_of(own["parameters"], is_free))
+    return false;
   for (const std::string& name : names) {
     if (!fit["parameters"][name]["std_error"].is_number()) return false;
   }

@@ -46,8 +46,8 @@ void AddChecks(const std::function<bool(std::size_t fit)>& is_checked, const std
     recording.checks.emplace_back();
     if (fit.termination == Termination::kFailed || !is_checked(m)) continue;
     const bool same = fit.model.name == recording.closed_forms_model;
-    const auto own = same ? Result<ClosedForms>(*recording.closed_forms)
-                          : EstimateClosedForms(recording.used, fit.model, stop);
+    const auto own =
+        same ? Result<ClosedForms>(*recording.closed_forms) : EstimateClosedForms(recording.used, fit.model, stop);
     if (!own) continue;
     recording.checks.back() = CheckClosedForms(recording.used, *own, fit, identification.si_rig(), stop);
     WarnOfUnexplained(recording.checks.back(), fit);

@@ -36,7 +36,8 @@ std::vector<Warning> WarningsOfRecordings(const Identification& identification, 
   std::vector<Warning> all;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     for (Warning warning : recordings[k]) {
-      const bool of_each = std::ranges::all_of(recordings, [&](const auto& of) { return ContainsWarning(of, warning); });
+      const bool of_each =
+          std::ranges::all_of(recordings, [&](const auto& of) { return ContainsWarning(of, warning); });
       warning.about.recording = of_each ? WarningSubject::kEachRecording : static_cast<int>(k) + 1;
       if (!of_each) warning.about.recording_name = RecordingLabel(identification, k);
       if (!warning.assumed.empty() &&

@@ -115,7 +115,8 @@ Json CovarianceJson(const FitReport& fit, const ShowsParameter& shows) {
 }
 
 Json CorrelationJson(const FitReport& fit, const ShowsParameter& shows) {
-  return MatrixJson(fit.covariance_names, shows, [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
+  return MatrixJson(fit.covariance_names, shows,
+                    [&](Eigen::Index i, Eigen::Index j) { return Correlation(fit, i, j); });
 }
 
 Json SystematicJson(const FitReport& fit, const ShowsParameter& shows) {

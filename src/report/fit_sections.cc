@@ -37,8 +37,8 @@ std::string TitleOf(const std::string& title, const FitReport& fit, bool is_one_
 /// The work of the solver. How accurate the trajectories are is a matter of each recording.
 std::string SolverText(const Identification& identification, std::size_t index) {
   const FitReport& fit = identification.fits[index];
-  std::string text = std::to_string(fit.solver.iterations) + " iterations, " +
-                     std::to_string(fit.solver.evaluations) + " trajectories";
+  std::string text = std::to_string(fit.solver.iterations) + " iterations, " + std::to_string(fit.solver.evaluations) +
+                     " trajectories";
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
     const FitReport& own = identification.FitOf(k, index);
     text += (k == 0 ? ", accurate to " : ", ") + NumberText(own.trace_error, 1) + " " + own.reading_unit;
@@ -314,8 +314,8 @@ Section SumSection(const FitStatistics& all) {
   return {"Noise and statistics: all recordings",
           "",
           {Facts{{"log-likelihood", FixedText(all.log_likelihood, 2)},
-                 {"AIC, AICc, BIC", FixedText(all.aic, 2) + ", " + FixedText(all.aicc, 2) + ", " +
-                                        FixedText(all.bic, 2)}}}};
+                 {"AIC, AICc, BIC",
+                  FixedText(all.aic, 2) + ", " + FixedText(all.aicc, 2) + ", " + FixedText(all.bic, 2)}}}};
 }
 
 /// What each of several recordings does not share.

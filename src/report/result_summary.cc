@@ -574,8 +574,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
     for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
   }
   const FitSpan& span = identification.spans[index];
-  const IdentifiedRecording* const only =
-      identification.is_joint() ? nullptr : &identification.recordings.front();
+  const IdentifiedRecording* const only = identification.is_joint() ? nullptr : &identification.recordings.front();
   const Constancy* const constancy = only == nullptr ? nullptr : only->ConstancyOf(index);
   const bool lacks_fit = fit.HasWarning("lack_of_fit") || span.lacks_fit;
   SetVerdict(fit, constancy, lacks_fit, identification.fits.size() > 1, summary);
@@ -615,8 +614,8 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
 ResultSummary SummarizeResult(const Identification& identification) {
   ResultSummary summary;
   summary.title = TitleOf(identification, "Recording");
-  summary.data = identification.is_joint() ? JointDataText(identification)
-                                           : DataText(identification.recordings.front().data);
+  summary.data =
+      identification.is_joint() ? JointDataText(identification) : DataText(identification.recordings.front().data);
   if (identification.comparison) SetComparison(identification, summary);
   summary.fit = identification.fits.empty() ? SummarizeClosedForms(identification)
                                             : SummarizeFit(identification, identification.MainFit());

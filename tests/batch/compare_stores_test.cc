@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "tests/batch/example_runs.h"
+#include "tests/batch/made_outcomes.h"
 
 namespace pendulum::compare_stores_test {
 namespace {
@@ -45,16 +46,14 @@ RunOutcome OutcomeOf(const Fit& fit) {
                           {"unit", fit.unit},         {"fixed", false},
                           {"at_bound", false}};
   const Json parameters = fit.estimate.is_null() ? Json::object() : Json{{"inertia", parameter}};
-  outcome.result["data"]["used_samples"] = 100;
-  outcome.result["fits"] = Json::array({{{"model", "coulomb"},
-                                         {"status", fit.status},
-                                         {"reason", "a reason"},
-                                         {"parameters", parameters},
-                                         {"derived", Json{{"natural_frequency", parameter}}},
-                                         {"noise", nullptr},
-                                         {"statistics", nullptr},
-                                         {"solver", Json::object()}}});
-  outcome.result["comparison"] = nullptr;
+  outcome.result = made_outcomes::ResultOf({{{"model", "coulomb"},
+                                             {"status", fit.status},
+                                             {"reason", "a reason"},
+                                             {"parameters", parameters},
+                                             {"derived", Json{{"natural_frequency", parameter}}},
+                                             {"noise", nullptr},
+                                             {"statistics", nullptr},
+                                             {"solver", Json::object()}}});
   return outcome;
 }
 
@@ -98,7 +97,9 @@ TEST_F(CompareStoresTest, FindsAResultIdenticalToItself) {
   for (int again = 0; again < 2; ++again) {
     const StoreComparison comparison = CompareStores(store, copy).value();
     std::int64_t parameters = 0;
-    for (const auto& fit : RefittedOutcome().result["fits"]) parameters += std::ssize(fit["parameters"]);
+    const auto& result = RefittedOutcome().result;
+    for (const auto& fit : result["fits"]) parameters += std::ssize(fit["parameters"]);
+    for (const auto& own : result["recordings"][0]["fits"]) parameters += std::ssize(own["parameters"]);
     EXPECT_EQ(comparison.identical, parameters);
     EXPECT_EQ(comparison.fits, 4);
     EXPECT_EQ(comparison.only_before + comparison.only_after + comparison.other_data + comparison.changed_status, 0);

@@ -161,6 +161,7 @@ TEST_F(ExportTest, SaysWhichFitsAreStale) {
   Store store = Make({EntryOf("a"), EntryOf("b"), EntryOf("c")});
   RunOutcome fewer = RefittedOutcome();
   fewer.result["fits"].erase(1);  // coulomb
+  fewer.result["recordings"][0]["fits"].erase(1);
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Put("a", fewer) && store.Put("b", RefittedOutcome()) &&
               store.Put("c", RefittedOutcome()));
   store.database().exec(
@@ -177,7 +178,10 @@ TEST_F(ExportTest, SaysWhichFitsAreStale) {
   ASSERT_EQ(lines.size(), 3);
   EXPECT_EQ(lines[0]["stale"], unlisted);  // position -1
   EXPECT_FALSE(lines[1].contains("stale"));
-  EXPECT_EQ(lines[1]["former_fits"], Json::array({RefittedOutcome().result["fits"][1]}));
+  const Json& former = RefittedOutcome().result;
+  Json coulomb = former["fits"][1];
+  coulomb["recordings"] = Json::array({former["recordings"][0]["fits"][1]});
+  EXPECT_EQ(lines[1]["former_fits"], Json::array({coulomb}));
   EXPECT_EQ(lines[2]["stale"], "it is gone");
   EXPECT_FALSE(lines[2].contains("former_fits"));
 }
@@ -215,16 +219,18 @@ TEST_F(ExportTest, WritesNumbersThatReadBackExactly) {
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   const auto rows = RowsOf(store);
   ASSERT_EQ(rows.size(), 2);
-  for (const Json& fit : RefittedOutcome().result["fits"]) {
+  const Json& result = RefittedOutcome().result;
+  for (std::size_t m = 0; m < result["fits"].size(); ++m) {
+    const Json &fit = result["fits"][m], &own = result["recordings"][0]["fits"][m];
     const auto found = std::ranges::find_if(rows, [&](const Row& row) { return fit["model"] == row.at("model"); });
     ASSERT_NE(found, rows.end());
     EXPECT_EQ(fit["status"], found->at("status"));
     EXPECT_EQ(fit["reason"], found->at("reason"));
-    ExpectNumber(found->at("aicc"), fit["statistics"]["aicc"], "aicc");
-    ExpectNumber(found->at("rms_residual"), fit["statistics"]["rms_residual_rad"], "rms_residual");
-    ExpectNumber(found->at("sigma"), fit["noise"]["sigma_rad"], "sigma");
-    for (const char* kind : {"parameters", "derived"}) {
-      for (const auto& [name, value] : fit[kind].items()) {
+    ExpectNumber(found->at("aicc"), own["statistics"]["aicc"], "aicc");
+    ExpectNumber(found->at("rms_residual"), own["statistics"]["rms_residual_rad"], "rms_residual");
+    ExpectNumber(found->at("sigma"), own["noise"]["sigma_rad"], "sigma");
+    for (const Json* const kind : {&fit["parameters"], &own["parameters"], &fit["derived"]}) {
+      for (const auto& [name, value] : kind->items()) {
         ExpectNumber(found->at(name), value["estimate"], name);
         ExpectNumber(found->at(name + "_std_error"), value["std_error"], name);
         EXPECT_EQ(value["unit"], found->at(name + "_unit"));

@@ -197,7 +197,7 @@ void MakeFirstVersion(const std::string& path) {
   database.exec("PRAGMA application_id = " + std::to_string(kStoreId) + "; PRAGMA user_version = 1");
   database.exec(
       "INSERT INTO runs(id, position, path, rig, calibration, models, columns, exit_code, result) "
-      "VALUES('old', 0, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":1,\"why\":\"x\"}');"
+      "VALUES('old', 0, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":1,\"data\":{\"why\":\"x\"},\"fits\":[]}');"
       "INSERT INTO fits(run, model, status, reason) VALUES(1, 'coulomb', 'converged', '');"
       "INSERT INTO quantities(run, model, name, derived, unit, fixed, at_bound) "
       "VALUES(1, 'coulomb', 'edge_lag', 0, 'rad', 0, 0)");
@@ -206,10 +206,12 @@ void MakeFirstVersion(const std::string& path) {
 TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   MakeFirstVersion(path_);
   Add("new");
-  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 6);
+  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 7);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM quantities WHERE name = 'hysteresis'"), 1);
-  EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE result = '{\"schema_version\":2,\"reason\":\"x\"}'"), 1);
+  EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE json_extract(result, '$.schema_version') = 3 AND "
+                          "json_extract(result, '$.recordings[0].reason') = 'x'"),
+            1);
   EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("new"));  // the old run was not requested from a service
   EXPECT_EQ(Store().Find("old").error().code, StatusCode::kNotFound);
   EXPECT_EQ(Store().DeleteFit("old").error().code, StatusCode::kNotFound);
@@ -222,7 +224,8 @@ TEST_F(FitStoreFileTest, UpdatesAStoreOfAServiceWithoutNames) {
     database.exec("PRAGMA application_id = " + std::to_string(kStoreId) + "; PRAGMA user_version = 3");
     database.exec(
         "INSERT INTO runs(id, position, path, rig, calibration, models, columns, exit_code, result) "
-        "VALUES('old', -1, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":2,\"data\":{\"window_s\":[1,2.5]}}');"
+        "VALUES('old', -1, 'old.csv', '', '', '', '{}', 0, '{\"schema_version\":2,\"data\":"
+        "{\"window_s\":[1,2.5]},\"fits\":[]}');"
         "INSERT INTO files(sha256, bytes) VALUES('x', 'time_s');"
         "INSERT INTO requests VALUES(1, NULL, '2026-11-23T21:40:05Z', '{}', 1, NULL, NULL)");
   }

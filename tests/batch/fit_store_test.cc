@@ -162,7 +162,7 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
 
 TEST_F(FitStoreTest, ListsTheWindowAndTheTotalError) {
   RunOutcome outcome = OutcomeOf({FitOf("coulomb", 0.5)});
-  outcome.result["data"]["window_s"] = {1.25, 46.5};
+  outcome.result["recordings"][0]["window_s"] = {1.25, 46.5};
   Add(OrderOf("a"), outcome);
   Add("without a window");
   SQLite::Database(path_, SQLite::OPEN_READWRITE)

@@ -18,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "batch/former_results.h"
 #include "batch/store_schema.h"
 #include "pendulum/batch/store.h"
 #include "pendulum/batch/summary.h"
@@ -129,7 +130,7 @@ class GoldenStoresTest : public testing::Test {
     std::vector<std::string> all;
     for (const char* query :
          {"SELECT run, id, position, path, rig, calibration, from_s, to_s, models, columns, exit_code, reason, "
-          "recommended, data_sha256, rig_sha256, calibration_sha256, options_sha256, version, result FROM runs "
+          "recommended, data_sha256, rig_sha256, calibration_sha256, options_sha256, version FROM runs "
           "WHERE id <> 'c' ORDER BY run",
           "SELECT run, model, status, reason, used_samples, rms_residual, sigma, aicc, runs_p, evaluations FROM fits "
           "ORDER BY run, model",
@@ -141,11 +142,20 @@ class GoldenStoresTest : public testing::Test {
     return all;
   }
 
+  static std::vector<std::string> ResultsOf(const fs::path& path) {
+    return Rows(path, "SELECT result FROM runs WHERE result IS NOT NULL ORDER BY run");
+  }
+
   /// Checks that a store of a former version has the present schema and the same content.
   void ExpectPresent(const fs::path& path, int former) const {
     EXPECT_EQ(Value(path, "PRAGMA user_version"), std::to_string(kVersions)) << former;
     EXPECT_EQ(Value(path, "PRAGMA integrity_check"), "ok") << former;
-    EXPECT_EQ(ContentOf(path), ContentOf(Make(std::max(former, kFirstReleased), "former.sqlite"))) << former;
+    const fs::path released = Make(std::max(former, kFirstReleased), "former.sqlite");
+    EXPECT_EQ(ContentOf(path), ContentOf(released)) << former;
+    std::vector<std::string> results = ResultsOf(released);
+    for (std::string& result : results) result = ToCurrentResult(result);
+    EXPECT_EQ(ResultsOf(path), results) << former;
+    EXPECT_THAT(results, testing::Each(testing::HasSubstr(R"("schema_version":3)"))) << former;
     EXPECT_EQ(Value(path, "SELECT law || status FROM results WHERE id = 'a'"), "coulombconverged") << former;
     if (former >= 2) {
       EXPECT_EQ(Value(path, "SELECT flags || name FROM requests"), "{}") << former;

@@ -38,12 +38,34 @@ inline Json FitOf(const std::string& model, double inertia, const std::string& s
           {"solver", {{"iterations", 3}, {"evaluations", 4}}}};
 }
 
+/// The result JSON of these fits, each with all its parameters and statistics, as result.schema.json divides them
+/// between the fit and its part for the recording.
+inline Json ResultOf(const std::vector<Json>& fits) {
+  Json recording = {{"used_samples", 100}, {"fits", Json::array()}};
+  Json shared = Json::array();
+  for (const Json& fit : fits) {
+    Json own = {{"model", fit.at("model")}, {"parameters", Json::object()}}, rest = fit;
+    for (const char* key : {"noise", "statistics"}) {
+      own[key] = fit.at(key);
+      rest.erase(key);
+    }
+    for (const char* name : {"release_angle", "zero_angle"}) {
+      if (!fit.at("parameters").contains(name)) continue;
+      own["parameters"][name] = fit.at("parameters").at(name);
+      rest["parameters"].erase(name);
+    }
+    recording["fits"].push_back(std::move(own));
+    shared.push_back(std::move(rest));
+  }
+  return {{"recordings", {std::move(recording)}}, {"fits", std::move(shared)}, {"comparison", nullptr}};
+}
+
 /// The result of a run with these fits.
 inline RunOutcome OutcomeOf(const std::vector<Json>& fits, const char* recommended = nullptr) {
   RunOutcome outcome;
   outcome.provenance.version = "1.2.3";
   outcome.provenance.cpu = "processor time";
-  outcome.result = {{"data", {{"used_samples", 100}}}, {"fits", fits}, {"comparison", nullptr}};
+  outcome.result = ResultOf(fits);
   if (recommended != nullptr) outcome.result["comparison"] = {{"recommended", recommended}};
   for (const Json& fit : fits) outcome.models.push_back(fit["model"]);
   return outcome;

@@ -51,8 +51,8 @@ inline std::string ResultAlone(const IdentifyOptions& options, const std::filesy
   const auto runs = IdentifyEach(options, *std::move(one));
   if (runs.size() != 1 || !runs.front()) return "not one run";
   nlohmann::ordered_json json = ToJson(*runs.front());
-  EXPECT_EQ(json["data"]["path"], file.string());
-  json["data"]["path"] = path;
+  EXPECT_EQ(json["recordings"][0]["path"], file.string());
+  json["recordings"][0]["path"] = path;
   return json.dump();
 }
 

@@ -387,19 +387,19 @@ TEST_F(RefitTest, ReplacesTheResultOfAnotherRecordingUnlessTheFormerOneIsGoneAnd
   folder_.Write("other.csv", RecordingText(7));
   folder_.Write("runs.csv", "path,id\nother.csv,a\n");
   EXPECT_EQ(RefitAll(coulomb_).stale, 0);
-  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "other.csv");
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.recordings[0].path') FROM runs"), "other.csv");
   const std::string text = folder_.Read("other.csv");  // a copy that has not ended
   folder_.Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() * 9 / 10) + 1));
   folder_.Write("runs.csv", "path,id\nshorter.csv,a\n");
   fs::rename(folder_ / "other.csv", folder_ / "elsewhere");
   EXPECT_EQ(RefitAll(coulomb_).stale, 1);
-  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "other.csv");
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.recordings[0].path') FROM runs"), "other.csv");
   EXPECT_THAT(ValueOf("SELECT stale FROM runs"), HasSubstr(" samples, fewer than the "));
   fs::rename(folder_ / "elsewhere", folder_ / "other.csv");  // another recording: both are there
   RefitOptions again = coulomb_;
   again.force = true;
   EXPECT_EQ(RefitAll(again).stale, 0);
-  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.data.path') FROM runs"), "shorter.csv");
+  EXPECT_EQ(ValueOf("SELECT json_extract(result, '$.recordings[0].path') FROM runs"), "shorter.csv");
 }
 
 TEST_F(RefitTest, ReplacesADamagedResult) {
@@ -488,8 +488,9 @@ TEST_F(RefitTest, RecognizesARenamedRecording) {
   fs::rename(folder_ / "0.csv", folder_ / "new.csv");
   folder_.Write("runs.csv", "path\nnew.csv\n1.csv\n");
   EXPECT_EQ(RefitAll(OptionsWith({"viscous", "coulomb"})).renamed, 1);
-  EXPECT_THAT(Rows(store_, "SELECT id, path, position, json_extract(result, '$.data.path') FROM runs ORDER BY id"),
-              ElementsAre("1.csv|1.csv|1|1.csv", "new.csv|new.csv|0|new.csv"));
+  EXPECT_THAT(
+      Rows(store_, "SELECT id, path, position, json_extract(result, '$.recordings[0].path') FROM runs ORDER BY id"),
+      ElementsAre("1.csv|1.csv|1|1.csv", "new.csv|new.csv|0|new.csv"));
   EXPECT_EQ(Rows(store_, estimates), before);
   folder_.Write("runs.csv", "path\nnew.csv\n1.csv\ncopy.csv\n");
   fs::copy(folder_ / "1.csv", folder_ / "copy.csv");

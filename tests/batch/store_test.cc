@@ -86,7 +86,7 @@ std::int64_t NumberOf(Store& store, const std::string& query) { return store.dat
 
 TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
-  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 6);
+  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 7);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
   EXPECT_THAT(TextsOf(store, "SELECT name FROM sqlite_schema WHERE sql LIKE '%--%' ORDER BY name"),
               ElementsAre("all_fits", "answers", "batches", "files", "fits", "meta", "options", "quantities",
@@ -201,7 +201,10 @@ TEST_F(StoreTest, StoresARowForEachQuantity) {
   Store store = Make({"a"});
   ASSERT_TRUE(store.Put("a", RefittedOutcome()));
   std::int64_t quantities = 0;
-  for (const auto& fit : RefittedOutcome().result["fits"]) {
+  const auto& result = RefittedOutcome().result;
+  std::vector<nlohmann::ordered_json> parts = result["fits"];
+  std::ranges::copy(result["recordings"][0]["fits"], std::back_inserter(parts));
+  for (auto& fit : parts) {
     for (const char* kind : {"parameters", "derived"}) {
       for (const auto& [name, value] : fit[kind].items()) {
         SQLite::Statement row(store.database(),
@@ -233,16 +236,18 @@ TEST_F(StoreTest, StoresEachFitAndTheResult) {
   const RunOutcome& outcome = RefittedOutcome();
   ASSERT_TRUE(store.Put("a", outcome));
   const auto& fit = outcome.result["fits"][1];
+  const auto& recording = outcome.result["recordings"][0];
+  const auto& own = recording["fits"][1];
   SQLite::Statement row(store.database(),
                         "SELECT status, residual_unit, rms_residual, sigma, aicc, used_samples, evaluations, "
                         "recommended FROM all_fits WHERE model = 'coulomb'");
   ASSERT_TRUE(row.executeStep());
   EXPECT_EQ(fit["status"], row.getColumn(0).getString());
   EXPECT_EQ(row.getColumn(1).getString(), "rad");
-  EXPECT_EQ(row.getColumn(2).getDouble(), fit["statistics"]["rms_residual_rad"].get<double>());
-  EXPECT_EQ(row.getColumn(3).getDouble(), fit["noise"]["sigma_rad"].get<double>());
-  EXPECT_EQ(row.getColumn(4).getDouble(), fit["statistics"]["aicc"].get<double>());
-  EXPECT_EQ(row.getColumn(5).getInt64(), outcome.result["data"]["used_samples"].get<std::int64_t>());
+  EXPECT_EQ(row.getColumn(2).getDouble(), own["statistics"]["rms_residual_rad"].get<double>());
+  EXPECT_EQ(row.getColumn(3).getDouble(), own["noise"]["sigma_rad"].get<double>());
+  EXPECT_EQ(row.getColumn(4).getDouble(), own["statistics"]["aicc"].get<double>());
+  EXPECT_EQ(row.getColumn(5).getInt64(), recording["used_samples"].get<std::int64_t>());
   EXPECT_EQ(row.getColumn(6).getInt64(), fit["solver"]["evaluations"].get<std::int64_t>());
   EXPECT_EQ(row.getColumn(7).getInt() == 1, outcome.result["comparison"]["recommended"] == "coulomb");
   EXPECT_THAT(TextsOf(store, "SELECT result FROM runs"), ElementsAre(outcome.result.dump()));
@@ -330,7 +335,7 @@ TEST_F(StoreTest, GivesPathsInResultsAsTheManifestDoes) {
                                      : ReadFile("datasets/runs_1.csv", "CSV", 1 << 20);
     };
     ASSERT_TRUE(Refit(source, store, options));
-    EXPECT_THAT(TextsOf(store, "SELECT json_extract(result, '$.data.path') FROM runs WHERE id = 'good'"),
+    EXPECT_THAT(TextsOf(store, "SELECT json_extract(result, '$.recordings[0].path') FROM runs WHERE id = 'good'"),
                 ElementsAre(file));
     EXPECT_THAT(TextsOf(store, "SELECT reason FROM runs WHERE id = 'bad'"), ElementsAre(StartsWith("bad_" + file)));
   }

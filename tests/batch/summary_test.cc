@@ -455,7 +455,7 @@ TEST_F(SummaryTest, AddsTheErrorsOfClocksThatDiffer) {
     fs::remove(folder_ / "store.sqlite");
     Store store = StoreOf(PlainManifest(2), [&](std::size_t i) {
       RunOutcome outcome = OutcomeOf({fits[i]});
-      outcome.result["data"]["clock_scale"] = i == 0 ? 1 : other_clock;
+      outcome.result["recordings"][0]["clock_scale"] = i == 0 ? 1 : other_clock;
       return outcome;
     });
     const Json summary = SummaryOf(store);

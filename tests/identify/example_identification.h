@@ -288,7 +288,11 @@ inline Identification ExampleComparedIdentification() {
   drag.parameters[0].unit = "kg m^2";
   drag.parameters[0].estimate = 0.075;
   report.fits.push_back(drag);
-  report.spans.push_back({{"inertia", "viscous", "coulomb", "drag"}, {0.25}, {"not_converged"}, {}, false});
+  report.spans.push_back({{"inertia", "viscous", "coulomb", "drag"},
+                          {0.25},
+                          {"not_converged: 100 iterations were not enough"},
+                          {},
+                          false});
   IdentifiedRecording& recording = report.recordings.front();
   recording.checks.emplace_back();
   recording.constancy = {ExampleConstancy(), Constancy()};

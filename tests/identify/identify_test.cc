@@ -193,9 +193,10 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   const auto runs = IdentifyEach(options, Must(PrepareRecording(counts, options, std::nullopt)));
   ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
   EXPECT_EQ(runs[0]->recordings.front().closed_forms_model, "linear");
-  ASSERT_THAT(runs[0]->warnings, Not(IsEmpty()));
-  EXPECT_EQ(runs[0]->warnings.back().code, "uncalibrated");
-  EXPECT_THAT(MessageText(runs[0]->warnings.back()), StartsWith("the readings are in counts, not in a unit of angle"));
+  ASSERT_THAT(runs[0]->recordings.front().warnings, Not(IsEmpty()));
+  EXPECT_EQ(runs[0]->recordings.front().warnings.back().code, "uncalibrated");
+  EXPECT_THAT(MessageText(runs[0]->recordings.front().warnings.back()),
+              StartsWith("the readings are in counts, not in a unit of angle"));
 }
 
 TEST(IdentifyEach, FitsEachChosenRelease) {

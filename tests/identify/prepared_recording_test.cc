@@ -67,7 +67,8 @@ class PrepareFileTest : public testing::Test {
     const auto result = IdentifyEach(options, *std::move(prepared));
     const SensorErrors& sensor = result.front().value().recordings.front().data.sensor;
     std::string summary = sensor.kind + ", gain: " + sensor.Of(SensorEffect::kGain).source;
-    for (const Warning& warning : result.front()->warnings) summary += ", " + std::string(warning.code.text());
+    for (const Warning& warning : result.front()->recordings.front().warnings)
+      summary += ", " + std::string(warning.code.text());
     return summary;
   }
 

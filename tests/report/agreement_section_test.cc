@@ -76,7 +76,7 @@ TEST(AgreementSection, HighlightsDisagreement) {
 
 TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
   Identification report = ExampleJointIdentification();
-  report.spans[0].homogeneity = {};
+  report.spans[0].homogeneity = Homogeneity();
   report.spans[0].homogeneity->verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(Agreement(report),
             "[[Do the recordings agree?]]\n    Verdict: not tested: all shared parameters are fixed.\n");

@@ -67,7 +67,7 @@ TEST(ComparisonJson, ExplainsAMissingPValue) {
 
 TEST(ComparisonJson, NamesTheUnitOfARate) {
   Identification report = ExampleComparedIdentification();
-  report.recordings.front().data.unit = "rad/s";
+  report.unit = "rad/s";
   const Json row = ComparisonJson(report)["rows"][0];
   EXPECT_TRUE(row.contains("rms_residual_rad_s"));
   EXPECT_TRUE(row["cross_validation"].contains("rms_rad_s"));

@@ -14,7 +14,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string ComparisonText(const Identification& report) { return ToText(ComparisonSections(report)); }
-std::string ConstancyText(const Identification& report) { return ToText(ConstancySections(report.recordings.front().ConstancyOf(0))); }
+std::string ConstancyText(const Identification& report) {
+  return ToText(ConstancySections(report.recordings.front().ConstancyOf(0)));
+}
 
 // Expected values: 0.00349 rad = 0.19996 deg, 0.0035 rad = 0.20054 deg, 0.004 rad = 0.22918 deg, 0.5 rad = 28.648 deg.
 TEST(ComparisonSections, StartWithTheRecommendation) {
@@ -66,7 +68,7 @@ TEST(ComparisonSections, ExplainMissingPredictions) {
 
 TEST(ComparisonSections, UseTheUnitOfTheReadings) {
   Identification report = ExampleComparedIdentification();
-  report.recordings.front().data.unit = "counts";
+  report.unit = "counts";
   EXPECT_THAT(ComparisonText(report), HasSubstr("rms [counts]"));
   EXPECT_THAT(ComparisonText(report), HasSubstr("  0.00349  "));
 }

@@ -63,20 +63,20 @@ TEST(ToJson, KeepsTheOrderOfKeysForOneRecordingAndForSeveral) {
     EXPECT_THAT(Keys(json),
                 ElementsAre("schema_version", "tool", "rig", "recordings", "fits", "comparison", "warnings"));
     EXPECT_EQ(json["tool"]["version"], kVersion);
-    EXPECT_THAT(Keys(json["recordings"][0]),
-                ElementsAre("path", "sha256", "samples", "used_samples", "duration_s", "sample_rate_hz",
-                            "resolution_rad", "resolution_source", "clock_scale", "clock_scale_std_dev", "sensor",
-                            "window_s", "window_reason", "releases", "release", "start", "sampling", "calibration",
-                            "closed_forms", "fits"));
+    EXPECT_THAT(
+        Keys(json["recordings"][0]),
+        ElementsAre("path", "sha256", "samples", "used_samples", "duration_s", "sample_rate_hz", "resolution_rad",
+                    "resolution_source", "clock_scale", "clock_scale_std_dev", "sensor", "window_s", "window_reason",
+                    "releases", "release", "start", "sampling", "calibration", "closed_forms", "fits"));
     EXPECT_THAT(Keys(json["recordings"][0]["fits"][0]),
                 ElementsAre("model", "amplitude_rad", "parameters", "covariance", "correlation",
                             "systematic_covariance", "std_error_method", "identifiability", "noise", "statistics",
                             "closed_form", "constancy", "suspicions", "separate"));
-    EXPECT_THAT(Keys(json["fits"][0]),
-                ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
-                            "correlation", "systematic_covariance", "std_error_method", "interval_method",
-                            "identifiability", "statistics", "homogeneity", "rig_verdict", "ambiguities", "solver",
-                            "summary"));
+    EXPECT_THAT(
+        Keys(json["fits"][0]),
+        ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
+                    "correlation", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
+                    "statistics", "homogeneity", "rig_verdict", "ambiguities", "solver", "summary"));
   }
 }
 

@@ -79,7 +79,8 @@ TEST(SummarizeFit, SaysWhyThereIsNoError) {
 TEST(SummarizeFit, SaysThatTheRigDisagrees) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {{"inertia_differs_from_rig", "the fitted inertia is 13 % larger than the rig's"}};
+  identification.recordings.front().warnings = {
+      {"inertia_differs_from_rig", "the fitted inertia is 13 % larger than the rig's"}};
   identification.rig = ParseRig(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.018},
                                     "inertia": {"value": 0.070, "std_dev": 0.0005}})",
                                 "rig")
@@ -233,7 +234,7 @@ TEST(SummarizeFit, ComparesWithTheTextbook) {
 TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
   Identification identification = ExampleComparedIdentification();
   for (FitReport& fit : identification.fits) fit.warnings.clear();
-  identification.warnings = {{"gaps", "the recording has 3 gaps", "the longest takes 2 s"}};
+  identification.recordings.front().warnings = {{"gaps", "the recording has 3 gaps", "the longest takes 2 s"}};
   identification.fits[0].warnings = {{"at_bound", "coulomb is at its bound 0"}};
   identification.fits[1].warnings = {{"lack_of_fit", "the residuals are not white"}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
@@ -246,11 +247,11 @@ TEST(SummarizeFit, OmitsWarningsOfOtherLaws) {
 TEST(SummarizeFit, KeepsTheFlagOfAWarning) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {{.code = "unit_questioned",
-                              .finding = "the unit is odd (its period; its size)",
-                              .explanation = "others are not",
-                              .advice = "or give --unit rad",
-                              .flags = {"unit"}}};
+  identification.recordings.front().warnings = {{.code = "unit_questioned",
+                                                 .finding = "the unit is odd (its period; its size)",
+                                                 .explanation = "others are not",
+                                                 .advice = "or give --unit rad",
+                                                 .flags = {"unit"}}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
               ElementsAre("the unit is odd (its period; its size). Or give --unit rad"));
 }
@@ -260,7 +261,7 @@ TEST(SummarizeFit, OmitsThePathOfTheRecording) {
   Identification identification = ExampleIdentification();
   identification.recordings.front().data.path = "run.csv";
   identification.fits[0].warnings.clear();
-  identification.warnings = {
+  identification.recordings.front().warnings = {
       {.code = "empty_cells", .finding = "rows were left out", .about = {.file = "run.csv"}},
       {.code = "time_wrapped", .finding = "the counter restarts", .about = {.file = "run.csv", .line = 118}}};
   EXPECT_THAT(Messages(SummarizeFit(identification, 0)),
@@ -272,7 +273,7 @@ TEST(SummarizeFit, OmitsThePathOfTheRecording) {
 TEST(SummarizeFit, ListsAssumptionsApartFromWarnings) {
   Identification identification = ExampleIdentification();
   identification.fits[0].warnings.clear();
-  identification.warnings = {
+  identification.recordings.front().warnings = {
       {.code = "time_unit_assumed", .finding = "a sentence", .assumed = "times in s (--time_column t:ms)"},
       {.code = "gaps", .finding = "the recording has 3 gaps"}};
   identification.recordings.front().data.sensor.kind = "encoder";

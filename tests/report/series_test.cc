@@ -84,7 +84,7 @@ TEST(ToResidualCsv, LeavesMissingFieldsEmpty) {
 }
 
 TEST(SeriesJson, HasSamplesAndModelsByName) {
-  const Json series = SeriesJson(ReportOfThreeSamples());
+  const Json series = SeriesJson(ReportOfThreeSamples())[0];
   EXPECT_THAT(Keys(series),
               ElementsAre("time_s", "measured", "unit", "extrema", "peaks", "profiles", "models", "motions"));
   EXPECT_EQ(series["time_s"].dump(), "[0.0,0.1,0.2]");
@@ -130,7 +130,7 @@ TEST(SeriesJson, IsNullForMissingParts) {
   report.recordings.front().checks.clear();
   report.fits[0].fitted[1] = kNan;
   report.fits[0].residual.resize(0);
-  const Json series = SeriesJson(report);
+  const Json series = SeriesJson(report)[0];
   EXPECT_EQ(series["extrema"], Json::array());
   EXPECT_EQ(series["peaks"], Json::array());
   EXPECT_EQ(series["models"]["coulomb"].dump(), R"({"fitted":[0.25,null,0.5],"fitted_std_error":null,"residual":null,)"
@@ -143,7 +143,7 @@ TEST(SeriesJson, IsNullForMissingParts) {
 // parabola through samples 0.01 s apart has an error of about (2π 0.01)³.
 TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
   Identification report;
-  report.recordings.front().used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
+  report.recordings.emplace_back().used.time = Eigen::VectorXd::LinSpaced(361, 0.2, 3.8);
   report.recordings.front().used.value = (2 * kPi * report.recordings.front().used.time.array()).cos();
   const Json extrema = SeriesJson(report)[0]["extrema"];
   ASSERT_EQ(extrema.size(), 7);
@@ -156,8 +156,8 @@ TEST(SeriesJson, ListsExtremaAsTimesAndReadings) {
 TEST(SeriesJson, HasSevenDigitsAndNoResidualsForThePage) {
   Identification report = ReportOfThreeSamples();
   report.recordings.front().used.value[2] = -0.123456789012;
-  const Json all = SeriesJson(report);
-  const Json page = SeriesJson(report, SeriesDetail::kPage);
+  const Json all = SeriesJson(report)[0];
+  const Json page = SeriesJson(report, SeriesDetail::kPage)[0];
   EXPECT_EQ(all.at("measured").at(2), -0.123456789012);
   EXPECT_EQ(page.at("measured").at(2), -0.1234568);
   for (const auto& [name, model] : page.at("models").items()) EXPECT_TRUE(model.at("residual").is_null()) << name;
@@ -187,7 +187,7 @@ std::array<double, 2> LinearMotion(double t) {
 /// 40 samples at 2 Hz from 0 s on, which is 2.5 samples a period, with LinearFit.
 Identification TwoSamplesASecond() {
   Identification run;
-  run.recordings.front().used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
+  run.recordings.emplace_back().used.time = Eigen::VectorXd::LinSpaced(40, 0, 19.5);
   run.recordings.front().used.value = Eigen::VectorXd::Zero(40);
   run.fits = {LinearFit()};
   run.recordings.front().sampling.emplace().samples_per_period = 2.5;

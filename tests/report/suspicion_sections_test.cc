@@ -34,9 +34,7 @@ TEST(SuspicionSections, SayIfNothingIsSignificant) {
   EXPECT_NE(text.find("No cause outside the law is significant"), std::string::npos) << text;
 }
 
-TEST(SuspicionSections, AreEmptyWithoutAResult) {
-  EXPECT_TRUE(SuspicionSections(FitReport(), {}).empty());
-}
+TEST(SuspicionSections, AreEmptyWithoutAResult) { EXPECT_TRUE(SuspicionSections(FitReport(), {}).empty()); }
 
 TEST(SuspicionsJson, HasOneObjectForEachCause) {
   const auto json = SuspicionsJson(SuspectedFit());

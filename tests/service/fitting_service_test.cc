@@ -49,7 +49,7 @@ Identification FitOf(const std::vector<std::string>& models, RunFiles files) {
 
 std::string ResultOf(const Identification& run) {
   Json json = ToJson(run);
-  json["data"]["path"] = nullptr;
+  json["recordings"][0]["path"] = nullptr;
   return json.dump(2) + "\n";
 }
 
@@ -235,7 +235,7 @@ TEST_F(FittingServiceTest, ReportsACalibrationTableAsTheCalibrationOfTheResult) 
            FormOf(PartOf("data", text, "run.csv") + PartOf("calibration", table, "table.csv")));
   ASSERT_EQ(response.status, 200) << response.body;
   const Json request = JsonAt(FieldOf(response, "Location") + "/request");
-  EXPECT_EQ(request["calibration"], Json::parse(response.body)["calibration"]);
+  EXPECT_EQ(request["calibration"], Json::parse(response.body)["recordings"][0]["calibration"]);
   EXPECT_FALSE(request["calibration"].is_null());
 }
 
@@ -356,8 +356,8 @@ TEST_F(FittingServiceTest, ListsItsFits) {
             result["fits"][0]["parameters"]["inertia"]["estimate"]);
   EXPECT_EQ(item["models"][0]["parameters"]["inertia"]["total_std_error"],
             result["fits"][0]["parameters"]["inertia"]["total_std_error"]);
-  EXPECT_EQ(item["window_s"], result["data"]["window_s"]);
-  EXPECT_EQ(item["models"][0]["rms_residual"], result["fits"][0]["statistics"]["rms_residual_rad"]);
+  EXPECT_EQ(item["window_s"], result["recordings"][0]["window_s"]);
+  EXPECT_EQ(item["models"][0]["rms_residual"], result["recordings"][0]["fits"][0]["statistics"]["rms_residual_rad"]);
   EXPECT_EQ(list["fits"][0]["recommended"], JsonAt(second)["comparison"]["recommended"]);
   EXPECT_THAT(IdsAt("/v1/fits?model=coulomb"), ElementsAre(IdOf(second)));
   EXPECT_THAT(IdsAt("/v1/fits?name=FIRST"), ElementsAre(IdOf(first)));

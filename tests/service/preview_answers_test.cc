@@ -62,7 +62,7 @@ TEST_F(PreviewTest, ShowsTheTableAndTheWindowOfAFit) {
   EXPECT_EQ(preview["problem"], nullptr);
   EXPECT_LE(preview["samples"]["time_s"].size(), 1000U);
   const HttpResponse fit = Post("/v1/fits?model=viscous", "text/csv", Recording());
-  const Json data = Json::parse(fit.body)["data"];
+  const Json data = Json::parse(fit.body)["recordings"][0];
   EXPECT_EQ(preview["samples"]["samples"], data["samples"]);
   EXPECT_EQ(preview["window"]["window_s"], data["window_s"]);
   EXPECT_EQ(preview["window"]["release"], 1);

@@ -58,7 +58,7 @@ TEST(ToHtml, EscapesScriptEndsInNames) {
   report.recordings.front().data.path = "</script><script>alert(1)</script>@SERIES@.csv";
   const std::string html = ToHtml(report, "<!--");
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
-  EXPECT_EQ(Embedded(html, "result").at("data").at("path"), report.recordings.front().data.path);
+  EXPECT_EQ(Embedded(html, "result").at("recordings").at(0).at("path"), report.recordings.front().data.path);
   EXPECT_EQ(Embedded(html, "command").at("command"), "<!--");
 }
 

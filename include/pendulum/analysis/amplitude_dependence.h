@@ -8,7 +8,8 @@
 
 namespace pendulum {
 
-/// Root mean square of the fitted angle after the release, rad; NaN if the motion cannot be computed.
+/// Root mean square of the fitted angle after the release, rad; NaN if the motion cannot be computed, or
+/// if it is in counts or volts.
 double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptions& options);
 
 /// Tests whether a linear dependence on amplitude² explains the differences of a parameter. One line is fitted to the
