@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <iostream>
+#include <optional>
+#include <utility>
 
 #include <pendulum/base/version.h>
-#include <pendulum/fitting/swing/choose_swings.h>
-#include <pendulum/fitting/swing/fit_swing.h>
+#include <pendulum/identify/identify.h>
 #include <pendulum/model/motion_model.h>
 #include <pendulum/report/text.h>
 #include <pendulum/trajectory/synthetic.h>
@@ -20,17 +21,19 @@ int main() {
   truth.release_angle = 0.5;
   truth.release_time = 1.0;
   truth.noise = 1e-3;
-  const auto recording = pendulum::SimulateRecording(truth);
+  auto recording = pendulum::SimulateRecording(truth);
   if (!recording) return 1;
 
-  const auto swings = pendulum::ChooseSwings(*recording, {});
-  if (!swings) return 1;
-  const auto result = pendulum::FitSwing(*recording, swings->found.front(), {});
-  if (!result || result->fit.termination != pendulum::Termination::kConverged) return 1;
-  pendulum::Identification report;
-  report.data.samples = recording->size();
-  pendulum::SummarizeUsed(result->used, result->swing, report.data);
-  report.fits = {result->fit};
-  std::cout << pendulum::ToText(report);
-  return std::abs(result->fit.Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;
+  pendulum::IdentifyOptions options;
+  options.models = {"coulomb"};
+  options.fit.model = "coulomb";
+  auto prepared = pendulum::PrepareRecording(*std::move(recording), options, std::nullopt);
+  if (!prepared) return 1;
+  const auto results = pendulum::IdentifyEach(options, *std::move(prepared));
+  if (!results.front()) return 1;
+  const pendulum::Identification& result = *results.front();
+  const pendulum::FitReport& fit = result.fits.front();
+  if (fit.termination != pendulum::Termination::kConverged) return 1;
+  std::cout << pendulum::ToText(result);
+  return std::abs(fit.Find("inertia")->estimate / 0.05 - 1.0) < 1e-3 ? 0 : 1;
 }

@@ -208,6 +208,7 @@ TEST(SamplingText, DescribesTheSampling) {
 
 TEST(SamplingText, OmitsUnknownFacts) {
   Identification report;
+  report.recordings.emplace_back();
   EXPECT_EQ(SamplingText(report), "");
   report.recordings.front().sampling = Sampling();
   report.recordings.front().sampling->rate_hz = 12.5;

@@ -464,7 +464,7 @@ Identification WideJointReport() {
   homogeneity.parameters[0].runs[0] = {0.0789996123, 2.8e-9, -1e5};
   for (IdentifiedRecording& run : report.recordings) {
     run.fits[0].parameters[3] = ExampleParameter(kReleaseTime, "rad", -123.456789012, 1.2e-9);
-    run.fits[0].noise.why = "the residuals are 0.8 resolutions, " + std::string(60, 'x') + " and so on";
+    run.fits[0].noise.why = "the residuals are 0.8 resolutions, " + std::string(50, 'x') + " and so on";
     run.data.samples = run.data.used_samples = 12345678;
     run.data.from = -12345.678;
     run.data.to = 98765.4321;

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of refit_pendulums as a process: refit_pendulums_cli_test.py PATH_OF_THE_TOOL."""
 
+import contextlib
 import csv
 import json
 import os
@@ -12,11 +13,20 @@ import shutil
 import signal
 import sqlite3
 import subprocess
+import sys
 import time
 import unittest
 
+import jsonschema
+
 from refit_lab import DATASETS, Lab, RIG, SIMULATED, TIMEOUT_S, TOOL, TOOLS, as_nobody, sound
 from sanitizers import is_sanitized, memory_limit
+
+sys.path.insert(0, str(DATASETS.parent / "scripts"))
+
+from result_schema_3 import with_schema_3  # noqa: E402, because the path comes first
+
+SCHEMA = DATASETS.parent / "include/pendulum/report/result.schema.json"
 
 # Number of runs, enough that some are in progress for seconds; and how often a tool is killed.
 MANY = 24 if is_sanitized(TOOL) else 120
@@ -432,6 +442,19 @@ class Reports(Lab):
         with sqlite3.connect(self.folder / "a.sqlite") as database:
             for error, total in database.execute("SELECT inertia_std_error, inertia_total_std_error FROM results"):
                 self.assertLessEqual(error, total)
+
+    # The map of compare_builds is written apart from the upgrade of a store.
+    def test_results_of_an_older_store_are_exported_in_the_present_schema(self):
+        golden = DATASETS.parent / "tests/batch/golden/store_6.sql"
+        with contextlib.closing(sqlite3.connect(self.folder / "old.sqlite")) as database:
+            database.executescript(golden.read_text(encoding="utf-8"))
+            former = [json.loads(text) for (text,) in database.execute("SELECT result FROM runs WHERE result IS NOT NULL")]
+        self.run_tool("export", "--store", "old.sqlite", "--out", "results.jsonl")
+        lines = [json.loads(line) for line in (self.folder / "results.jsonl").read_text().splitlines()]
+        results = [line["result"] for line in lines if line["result"] is not None]
+        self.assertEqual([result["schema_version"] for result in former], [2])
+        self.assertEqual(results, [with_schema_3(result) for result in former])
+        jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text())).validate(results[0])
 
     def test_comparison_reports_changed_values(self):
         manifest = self.manifest(self.simulate(3))
