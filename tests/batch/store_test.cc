@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
