@@ -129,8 +129,8 @@ Cells CheckCells(const ClosedFormRow& row) {
   return {row.quantity, value, numbers.Error(), fit, ZText(row.z), !row.agrees ? "-" : *row.agrees ? "yes" : kDiffers};
 }
 
-Section CheckSection(const ClosedFormCheck& check, const std::string& of) {
-  Section section{"Closed forms against the fit" + of};
+Section CheckSection(const ClosedFormCheck& check) {
+  Section section{"Closed forms against the fit"};
   Table table{{{"quantity"}, {"formula", true}, {"± error", false, 1}, {"fit", true}, {"z", true}, {"agrees"}}};
   table.caution = kDiffers;
   for (const ClosedFormRow& row : check.rows) table.rows.push_back(CheckCells(row));
@@ -221,7 +221,7 @@ Sections SamplingSections(const std::optional<Sampling>& known) {
   return {{"Sampling", "", {std::move(facts)}}};
 }
 
-Sections ClosedFormSections(const Identification& identification, std::size_t k) {
+Sections ClosedFormSections(const Identification& identification, std::size_t k, FitsInFull which) {
   const IdentifiedRecording& recording = identification.recordings[k];
   Section forms{"Closed forms"};
   if (!recording.closed_forms) {
@@ -233,10 +233,9 @@ Sections ClosedFormSections(const Identification& identification, std::size_t k)
   if (!recording.closed_forms->envelope.empty()) forms.Add(Facts{{"envelope", recording.closed_forms->envelope}});
   Sections sections = {std::move(forms)};
   for (std::size_t i = 0; i < recording.checks.size(); ++i) {
-    if (!identification.IsShownInFull(i)) continue;
-    const bool several = recording.checks.size() > 1;
-    sections.push_back(
-        CheckSection(recording.checks[i], several ? " of " + std::string(identification.fits[i].model.name) : ""));
+    if (which == FitsInFull::kMain && !identification.IsShownInFull(i)) continue;
+    sections.push_back(CheckSection(recording.checks[i]));
+    if (recording.checks.size() > 1) sections.back().law = identification.fits[i].model.name;
   }
   sections.push_back(TurningPointSection(recording, identification.fits.empty() ? kAlone : kBesideAFit));
   return sections;

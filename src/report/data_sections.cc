@@ -97,7 +97,7 @@ Sections DataSections(const Identification& identification) {
 
 Sections OfRecording(const Identification& identification, std::size_t k, Sections sections) {
   if (!identification.is_joint()) return sections;
-  for (Section& section : sections) section.title += ": recording " + std::to_string(k + 1);
+  for (Section& section : sections) section.recording = static_cast<int>(k) + 1;
   return sections;
 }
 

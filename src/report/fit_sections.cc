@@ -29,11 +29,6 @@ using Row = std::vector<std::string>;
 
 bool IsConverged(const FitReport& fit) { return fit.termination == Termination::kConverged; }
 
-/// The title, with the model's name if there are several.
-std::string TitleOf(const std::string& title, const FitReport& fit, bool is_one_of_several) {
-  return is_one_of_several ? title + " of " + std::string(fit.model.name) : title;
-}
-
 /// The work of the solver. How accurate the trajectories are is a matter of each recording.
 std::string SolverText(const Identification& identification, std::size_t index) {
   const FitReport& fit = identification.fits[index];
@@ -369,7 +364,8 @@ std::string WithUnbrokenTerms(const std::string& equation) {
 }
 
 Section ParameterSection(const FitReport& fit, bool is_one_of_several) {
-  Section section{TitleOf("Parameters", fit, is_one_of_several)};
+  Section section{"Parameters"};
+  if (is_one_of_several) section.law = fit.model.name;
   if (!IsConverged(fit)) {
     section.AddText(std::string(TerminationName(fit.termination)) + ": " + fit.reason + ".", Emphasis::kAlarm);
   }

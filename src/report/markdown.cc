@@ -148,7 +148,7 @@ std::string MarkdownText(std::string_view text) {
 std::string ToMarkdown(const Sections& sections) {
   std::string text;
   for (const Section& section : sections) {
-    text += "## " + MarkdownText(section.title) + "\n\n";
+    text += "## " + MarkdownText(FullTitle(section)) + "\n\n";
     if (!section.remark.empty()) text += "(" + MarkdownText(section.remark) + ")\n\n";
     for (const Block& block : section.blocks) text += std::visit(MarkdownRenderer(), block);
   }

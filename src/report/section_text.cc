@@ -26,7 +26,7 @@ class TextRenderer {
   explicit TextRenderer(TextStyle style) : style_(style) {}
 
   std::string Title(const Section& section) const {
-    const std::string title = Painted("[[" + section.title + "]]", kBold);
+    const std::string title = Painted("[[" + FullTitle(section) + "]]", kBold);
     return title + (section.remark.empty() ? "" : " (" + section.remark + ")") + "\n";
   }
 

@@ -33,17 +33,20 @@ Section WarningSection(const Identification& identification) {
 
 }  // namespace
 
-Sections ReportSections(const Identification& identification) {
+Sections ReportSections(const Identification& identification, FitsInFull which) {
   Sections sections = DataSections(identification);
   Append(ComparisonSections(identification), sections);
   for (std::size_t i = 0; i < identification.fits.size(); ++i) {
-    if (identification.IsShownInFull(i)) Append(FitSections(identification, i), sections);
+    if (which == FitsInFull::kMain && !identification.IsShownInFull(i)) continue;
+    Sections of_fit = FitSections(identification, i);
+    for (Section& section : of_fit) section.law = which == FitsInFull::kAll ? identification.fits[i].model.name : "";
+    Append(std::move(of_fit), sections);
   }
-  for (std::size_t i = 0; i < identification.fits.size(); ++i) {
+  for (std::size_t i = 0; i < identification.fits.size() && which == FitsInFull::kMain; ++i) {
     if (!identification.IsShownInFull(i)) sections.push_back(ParameterSection(identification.fits[i], true));
   }
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
-    Append(OfRecording(identification, k, ClosedFormSections(identification, k)), sections);
+    Append(OfRecording(identification, k, ClosedFormSections(identification, k, which)), sections);
   }
   if (!AllWarnings(identification).empty()) sections.push_back(WarningSection(identification));
   return sections;

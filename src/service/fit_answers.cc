@@ -17,6 +17,7 @@
 #include "pendulum/recording/calibration/calibration_source.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
+#include "pendulum/report/sections_json.h"
 #include "pendulum/report/series.h"
 #include "pendulum/service/fit_request.h"
 #include "pendulum/web/report_page.h"
@@ -246,6 +247,12 @@ HttpResponse GetSamples(ServiceState& state, const Call& call) {
 HttpResponse GetSeries(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string&) {
     return TextAnswer("application/json", ToSeriesJsonText(run));
+  });
+}
+
+HttpResponse GetSections(ServiceState& state, const Call& call) {
+  return WithFit(state, call, [](const Identification& run, const std::string& name) {
+    return TextAnswer("application/json", ToSectionsJsonText(NamedIdentification(run, name)));
   });
 }
 

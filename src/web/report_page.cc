@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/report/json.h"
+#include "pendulum/report/sections_json.h"
 #include "pendulum/report/series.h"
 #include "pendulum/web/page_parts.h"
 #include "web/report_page_template.h"
@@ -13,6 +14,7 @@ namespace pendulum {
 std::string ToHtml(const Identification& identification, const std::string& command) {
   using Json = nlohmann::ordered_json;
   return FillPage(ReportPageTemplate(), {{"@RESULT@", ToJson(identification)},
+                                         {"@SECTIONS@", SectionsJson(identification)},
                                          {"@SERIES@", SeriesJson(identification, SeriesDetail::kPage)},
                                          {"@COMMAND@", command.empty() ? Json(nullptr) : Json{{"command", command}}}});
 }

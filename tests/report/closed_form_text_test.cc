@@ -17,7 +17,9 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-std::string ClosedFormText(const Identification& report) { return ToText(ClosedFormSections(report, 0)); }
+std::string ClosedFormText(const Identification& report) {
+  return ToText(ClosedFormSections(report, 0, FitsInFull::kMain));
+}
 std::string SamplingText(const Identification& report) {
   return ToText(SamplingSections(report.recordings.front().sampling));
 }

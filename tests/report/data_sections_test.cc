@@ -19,14 +19,14 @@ using testing::HasSubstr;
 
 std::vector<std::string> Titles(const Sections& sections) {
   std::vector<std::string> titles;
-  for (const Section& section : sections) titles.push_back(section.title);
+  for (const Section& section : sections) titles.push_back(FullTitle(section));
   return titles;
 }
 
 /// The section with this title, as text.
 std::string TextOf(const Identification& report, const std::string& title) {
   for (const Section& section : DataSections(report)) {
-    if (section.title == title) return ToText(Sections{section});
+    if (FullTitle(section) == title) return ToText(Sections{section});
   }
   return "";
 }

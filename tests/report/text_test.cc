@@ -338,7 +338,7 @@ TEST(ToText, EndsWithTheSummary) {
   EXPECT_LT(text.find("[[Parameters]]"), text.find("[[Warnings]]"));
   EXPECT_LT(text.find("[[Warnings]]"), text.find("[[swing.csv]]"));
   for (const Section& section : ReportSections(ExampleIdentification())) {
-    EXPECT_THAT(text, HasSubstr("[[" + section.title + "]]"));
+    EXPECT_THAT(text, HasSubstr("[[" + FullTitle(section) + "]]"));
   }
 }
 
@@ -346,14 +346,14 @@ TEST(ToText, EndsWithTheSummary) {
 
 std::vector<std::string> Titles(const Sections& sections) {
   std::vector<std::string> titles;
-  for (const Section& section : sections) titles.push_back(section.title);
+  for (const Section& section : sections) titles.push_back(FullTitle(section));
   return titles;
 }
 
 /// The section with this title, as text.
 std::string TextOf(const Identification& report, const std::string& title) {
   for (const Section& section : ReportSections(report)) {
-    if (section.title == title) return ToText(Sections{section});
+    if (FullTitle(section) == title) return ToText(Sections{section});
   }
   return "";
 }

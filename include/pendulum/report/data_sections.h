@@ -11,7 +11,7 @@ namespace pendulum {
 /// The samples and the sampling of each recording; for several recordings a table of them first.
 Sections DataSections(const Identification& identification);
 
-/// The sections of recording k; if there are several recordings, their titles name it: "Sampling: recording 2".
+/// The sections with the number of recording k, if there are several recordings.
 Sections OfRecording(const Identification& identification, std::size_t k, Sections sections);
 
 }  // namespace pendulum

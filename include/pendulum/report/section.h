@@ -52,6 +52,8 @@ struct Section {
   std::string title;
   std::string remark = {};  ///< A short remark on the whole section; often empty.
   std::vector<Block> blocks = {};
+  std::string law = {};  ///< The law that it is about; empty: all, or the only one that is shown in full.
+  int recording = 0;     ///< The number (from 1) of the recording that it is about; 0: all, or the only one.
 
   /// Adds one of the kinds of Block.
   template <typename Kind>
@@ -67,5 +69,11 @@ struct Section {
 };
 
 using Sections = std::vector<Section>;
+
+/// Which fits of a comparison are shown in full.
+enum class FitsInFull { kMain, kAll };
+
+/// "Closed forms against the fit of drag: recording 2".
+std::string FullTitle(const Section& section);
 
 }  // namespace pendulum
