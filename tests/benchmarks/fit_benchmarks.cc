@@ -117,31 +117,25 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// Reads, repairs, selects the window and fits as fit_pendulum does, without closed forms, checks and constancy.
-Result<Identification> FitFile(const std::filesystem::path& path, const FitOptions& options) {
-  Result<Recording> recording = ReadRecording(path);
-  if (!recording) return tl::unexpected(recording.error());
-  const Recording repaired = RepairValues(*std::move(recording));
-  const Result<ChosenSwings> swings = ChooseSwings(repaired, {});
-  if (!swings) return tl::unexpected(swings.error());
-  const int release = swings->chosen.front();
-  Result<SwingFit> fit = FitSwing(repaired, swings->found[static_cast<std::size_t>(release - 1)], options);
-  if (!fit) return tl::unexpected(fit.error());
-  Identification report;
-  report.recordings.front().data.samples = repaired.size();
-  SummarizeUsed(fit->used, fit->swing, report.recordings.front().data);
-  report.rig = options.rig;
-  report.warnings = repaired.warnings;
-  report.fits.push_back(std::move(fit->fit));
-  return report;
+/// The result of fit_pendulum with these laws.
+Result<Identification> FitFile(const std::filesystem::path& path, const std::vector<std::string>& models,
+                               Checks checks) {
+  IdentifyOptions options;
+  options.models = models;
+  options.checks = checks;
+  options.fit = ReferenceOptions();
+  options.fit.model = models.front();
+  auto prepared = PrepareFile(path.string(), options, options.fit.rig);
+  if (!prepared) return tl::unexpected(prepared.error());
+  return std::move(IdentifyEach(options, *std::move(prepared)).front());
 }
 
+/// Reads, repairs, selects the window, fits and writes JSON, without closed forms, checks and constancy.
 void FileToJson(benchmark::State& state) {
   const TemporaryFile file(ReferenceCsv());
-  const FitOptions options = ReferenceOptions();
   Result<Identification> report;
   for (auto _ : state) {
-    report = FitFile(file.path(), options);
+    report = FitFile(file.path(), {ReferenceOptions().model}, Checks::kNone);
     if (!report) return state.SkipWithError(report.error().message.c_str());
     std::string json = ToJsonText(*report);
     benchmark::DoNotOptimize(json);
@@ -152,16 +146,10 @@ void FileToJson(benchmark::State& state) {
 /// The complete default result of fit_pendulum for a file, from reading to JSON.
 void FileToResult(benchmark::State& state, const std::vector<std::string>& models) {
   const TemporaryFile file(ReferenceCsv());
-  IdentifyOptions options;
-  options.models = models;
-  options.fit = ReferenceOptions();
-  options.fit.model = models.front();
   for (auto _ : state) {
-    auto prepared = PrepareFile(file.path().string(), options, options.fit.rig);
-    if (!prepared) return state.SkipWithError(prepared.error().message.c_str());
-    const auto runs = IdentifyEach(options, *std::move(prepared));
-    if (!runs.front()) return state.SkipWithError(runs.front().error().message.c_str());
-    std::string json = ToJsonText(*runs.front());
+    const auto report = FitFile(file.path(), models, Checks::kStandard);
+    if (!report) return state.SkipWithError(report.error().message.c_str());
+    std::string json = ToJsonText(*report);
     benchmark::DoNotOptimize(json);
   }
 }
@@ -169,7 +157,7 @@ void FileToResult(benchmark::State& state, const std::vector<std::string>& model
 /// Writes the report only.
 void WriteJson(benchmark::State& state) {
   const TemporaryFile file(ReferenceCsv());
-  const Identification report = Expect(FitFile(file.path(), ReferenceOptions()));
+  const Identification report = Expect(FitFile(file.path(), {ReferenceOptions().model}, Checks::kNone));
   std::size_t bytes = 0;
   for (auto _ : state) {
     std::string json = ToJsonText(report);

@@ -266,6 +266,9 @@ TEST_F(FittingServiceTest, GivesSeriesResidualsReportAndMarkdown) {
   const HttpResponse series = Get(location + "/series");
   EXPECT_EQ(series.status, 200);
   EXPECT_EQ(series.body, ToSeriesJsonText(run));
+  const Json sections = Json::parse(Get(location + "/sections").body);
+  EXPECT_EQ(sections[0]["id"], "data");
+  EXPECT_EQ(sections[0]["blocks"][0]["rows"][0]["text"], "my run.csv");
   const HttpResponse residuals = Get(location + "/residuals");
   EXPECT_THAT(FieldOf(residuals, "Content-Type"), StartsWith("text/csv"));
   EXPECT_EQ(residuals.body, ToResidualCsv(run, 0, 0));

@@ -41,7 +41,7 @@ class Headers(SecurityFields, Served):
         batch = self.server.post_parts("/v1/batches", parts)
         again = {"Idempotency_Key": "one"}
         answers = [fit, batch, *(self.server.get(target) for target in (
-            place, f"{place}/report", f"{place}/series", f"{place}/residuals", f"{place}/recording", f"{place}/markdown",
+            place, f"{place}/report", f"{place}/series", f"{place}/sections", f"{place}/residuals", f"{place}/recording", f"{place}/markdown",
                                                                         "/v1/fits",
             "/healthz", "/metrics", "/openapi.json", "/v1/models", "/none", "/v1/fits/none", "/v1/fits?x=1", "/app.js",
                                                                         "/app.css", *PAGES,

@@ -19,7 +19,7 @@ METHODS = {"get", "put", "post", "delete", "patch", "options", "trace"}
 ROUTES = {
     "/v1/fits": {"get", "post"}, "/v1/fits/{}": {"get", "patch", "delete"}, "/v1/fits/{}/request": {"get"},
           "/v1/fits/{}/recording": {"get"},
-    "/v1/fits/{}/samples": {"get"}, "/v1/fits/{}/series": {"get"}, "/v1/fits/{}/residuals": {"get"},
+    "/v1/fits/{}/samples": {"get"}, "/v1/fits/{}/series": {"get"}, "/v1/fits/{}/sections": {"get"}, "/v1/fits/{}/residuals": {"get"},
           "/v1/fits/{}/report": {"get"},
     "/v1/fits/{}/markdown": {"get"}, "/v1/fits/{}/refits": {"post"}, "/v1/batches": {"get", "post"},
           "/v1/batches/{}": {"get", "delete"},
@@ -152,7 +152,7 @@ class Answers(Served):
         self.check("get", fits, "/v1/fits?limit=100&model=coulomb&status=converged")
         self.check("get", fits, "/v1/fits?limit=none", status=400)
         self.check("get", fits, "/v1/fits", status=403, Host="evil.example")
-        for name in ("", "/request", "/recording", "/samples", "/series", "/residuals", "/report", "/markdown"):
+        for name in ("", "/request", "/recording", "/samples", "/series", "/sections", "/residuals", "/report", "/markdown"):
             self.check("get", fit + name, place + name)
             self.check("get", fit + name, "/v1/fits/none" + name, status=404)
             self.check("get", fit + name, place + name + "?x=1", status=400)
