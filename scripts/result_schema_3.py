@@ -6,7 +6,7 @@ import itertools
 # The first parameters of a recording's own, after inertia and the friction law.
 OWN = ("release_angle", "release_time", "initial_angle", "initial_rate", "zero_angle", "rate_bias")
 # What all recordings have together, of the statistics of one.
-TOGETHER = ("rms_residual", "log_likelihood", "aic", "aicc", "bic", "effective_samples", "reason")
+TOGETHER = ("rms_residual", "log_likelihood", "aic", "aicc", "bic", "effective_samples")
 
 
 def with_schema_3(result: dict) -> dict:

@@ -126,15 +126,15 @@ double MeanAmplitude(const Recording& used, const FitReport& fit, const FitOptio
     return parameter.info.name == kReleaseAngle.name || parameter.info.name == kInitialAngle.name;
   };
   const auto start = std::ranges::find_if(fit.parameters, is_angle);
-  const bool is_known = fit.termination != Termination::kFailed && start != fit.parameters.end();
-  if (!is_known || start->unit != "rad") return std::numeric_limits<double>::quiet_NaN();
+  const bool is_fitted = fit.termination != Termination::kFailed && start != fit.parameters.end();
+  if (!is_fitted || start->unit != "rad") return std::numeric_limits<double>::quiet_NaN();
   const Parts parts(used, fit, options);
   const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
   const double from = release == nullptr ? used.time[0] : release->estimate;
   const double to = used.time[used.size() - 1];
   double sum = 0;
   for (int i = 0; i < kPlaces; ++i) sum += std::pow(parts.Amplitude(from + (to - from) * (i + 0.5) / kPlaces), 2);
-  return std::sqrt(sum / kPlaces);
+  return sum > 0 ? std::sqrt(sum / kPlaces) : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Least squares of estimates and slopes with independent errors. The residuals may show that the errors are too small.

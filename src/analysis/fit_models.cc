@@ -94,7 +94,7 @@ class SharedFits {
     ShareNoise(richest_index);
   }
 
-  FittedModels Take() && { return std::move(result_); }
+  FittedRecording Take() && { return std::move(result_); }
 
  private:
   void Fit(std::size_t i, const FitReport& richest_fit) {
@@ -136,14 +136,14 @@ class SharedFits {
 
   FitOptions options_;
   const std::vector<std::string>& models_;
-  FittedModels result_;
+  FittedRecording result_;
   std::size_t done_ = 1;
 };
 
 /// For an undersampled swing: each model searches aliased frequencies itself. A model that chose another noise family
 /// than the model with the smallest residuals is fitted again with the family of that model.
-Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing, FitOptions options,
-                             const std::vector<std::string>& models) {
+Result<FittedRecording> FitEach(const Recording& recording, const FreeSwing& swing, FitOptions options,
+                                const std::vector<std::string>& models) {
   options.search.may_correct = options.search.may_correct && models.size() == 1;
   std::vector<Result<SwingFit>> fits;
   fits.reserve(models.size());
@@ -159,7 +159,7 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
   const FitReport like = (*best)->fit;
   FitOptions shared = options;
   shared.noise = OptionsLike(like, options).noise;
-  FittedModels fitted{(*best)->used, (*best)->swing, {}};
+  FittedRecording fitted{(*best)->used, (*best)->swing, {}};
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (fits[i] && fits[i]->fit.noise.family != like.noise.family) {
       fits[i] = FitSwing(recording, swing, ForModel(shared, models[i], models).options);
@@ -169,8 +169,8 @@ Result<FittedModels> FitEach(const Recording& recording, const FreeSwing& swing,
   return fitted;
 }
 
-Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,
-                               const std::vector<std::string>& models) {
+Result<FittedRecording> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,
+                                  const std::vector<std::string>& models) {
   const std::size_t richest_index = Richest(models);
   const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
   ReportFit(options, models, richest_index, 0);
@@ -178,7 +178,7 @@ Result<FittedModels> FitShared(Recording recording, const FreeSwing& swing, cons
   return SharedFits(std::move(richest_fit), richest_index, options, models).Take();
 }
 
-void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedModels& fitted) {
+void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedRecording& fitted) {
   for (FitReport& fit : fitted.fits) {
     const std::string model(fit.model.name);
     for (const std::string& name : ForModel(options, model, models).ignored) {
@@ -233,10 +233,10 @@ Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, con
   return CheckSwing(recording, swing, ForModel(options, models[Richest(models)], models).options);
 }
 
-Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
-                               const std::vector<std::string>& models) {
-  Result<FittedModels> fitted = swing.undersampled ? FitEach(recording, swing, options, models)
-                                                   : FitShared(std::move(recording), swing, options, models);
+Result<FittedRecording> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
+                                  const std::vector<std::string>& models) {
+  Result<FittedRecording> fitted = swing.undersampled ? FitEach(recording, swing, options, models)
+                                                      : FitShared(std::move(recording), swing, options, models);
   if (options.stop.stop_requested()) return FitStopped();
   if (!fitted) return fitted;
   if (models.size() > 1) WarnOfIgnored(options, models, *fitted);

@@ -159,14 +159,15 @@ void Warn(const std::string& changes, const std::string& when, FitReport& fit) {
 
 /// Root mean square of a parameter's changes in all recordings, weighted with 1 / std_error²; 0 if it is constant, or
 /// if it was not tested.
-double CommonChange(std::string_view name, const std::vector<ChangingRun>& runs) {
+double CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
   double squares = 0, weights = 0;
-  for (const ChangingRun& run : runs) {
-    const ParameterEstimate* const alone = run.alone.Find(name);
-    const bool is_tested = !run.constancy.windows.empty() || !run.constancy.halves.empty();
+  for (const RunAlone& run : runs) {
+    if (run.constancy == nullptr) continue;
+    const ParameterEstimate* const alone = run.fit.Find(name);
+    const bool is_tested = !run.constancy->windows.empty() || !run.constancy->halves.empty();
     if (alone == nullptr || !is_tested || !(alone->std_error.value_or(0) > 0)) continue;
     const double weight = 1 / (*alone->std_error * *alone->std_error);
-    const std::vector<Change> changes = Changes(run.constancy, run.alone);
+    const std::vector<Change> changes = Changes(*run.constancy, run.fit);
     const auto change = std::ranges::find(changes, name, &Change::name);
     weights += weight;
     if (change != changes.end()) squares += weight * change->std_dev * change->std_dev;
@@ -195,14 +196,15 @@ double BeyondChange(double law_error, const ParameterEstimate& parameter) {
 }
 
 /// Root mean square of this error of a parameter in all recordings, weighted with 1 / std_error².
-double CommonFrictionLawError(std::string_view name, const std::vector<ChangingRun>& runs) {
+double CommonFrictionLawError(std::string_view name, const std::vector<RunAlone>& runs) {
   double squares = 0, weights = 0;
-  for (const ChangingRun& run : runs) {
-    const ParameterEstimate* const alone = run.alone.Find(name);
+  for (const RunAlone& run : runs) {
+    if (run.constancy == nullptr) continue;
+    const ParameterEstimate* const alone = run.fit.Find(name);
     if (alone == nullptr || !(alone->std_error.value_or(0) > 0)) continue;
     const double weight = 1 / (*alone->std_error * *alone->std_error);
     weights += weight;
-    squares += weight * std::pow(FrictionLawError(run.constancy, *alone), 2);
+    squares += weight * std::pow(FrictionLawError(*run.constancy, *alone), 2);
   }
   return squares > 0 ? std::sqrt(squares / weights) : 0;
 }
@@ -220,7 +222,7 @@ void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
   Warn(text, "during a recording", fit);
 }
 
-void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector<SharedParameter>& between,
+void AddInconstancyError(const std::vector<RunAlone>& runs, const std::vector<SharedParameter>& between,
                          JointFit& joint) {
   std::string text;
   for (ParameterEstimate& shared : joint.whole.parameters) {
@@ -244,7 +246,7 @@ void AddFrictionLawError(const Constancy& constancy, FitReport& fit) {
   }
 }
 
-void AddFrictionLawError(const std::vector<ChangingRun>& runs, JointFit& joint) {
+void AddFrictionLawError(const std::vector<RunAlone>& runs, JointFit& joint) {
   for (ParameterEstimate& shared : joint.whole.parameters) {
     const double error = BeyondChange(CommonFrictionLawError(shared.info.name, runs), shared);
     if (!shared.std_error || !(error > 0)) continue;

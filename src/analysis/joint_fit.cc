@@ -11,46 +11,41 @@ namespace pendulum {
 namespace {
 
 /// Report of an impossible joint fit, with one run per recording.
-JointFit FailedFit(const std::vector<RunModels>& runs, std::size_t m, const std::string& reason) {
+JointFit FailedFit(const std::vector<FittedRecording>& recordings, std::size_t m, const std::string& reason) {
   JointFit fit;
-  fit.whole.model = runs.front().alone.fits[m].model;
+  fit.whole.model = recordings.front().fits[m].model;
   fit.whole.termination = Termination::kFailed;
   fit.whole.reason = reason;
-  for (const RunModels& run : runs) {
-    fit.runs.push_back(run.alone.fits[m]);
+  for (const FittedRecording& recording : recordings) {
+    fit.runs.push_back(recording.fits[m]);
     WithdrawErrors("the joint fit failed", fit.runs.back());
     fit.runs.back().termination = Termination::kFailed;
     fit.runs.back().reason = reason;
+    fit.runs.back().warnings.clear();  // they are about the separate fit
+    fit.runs.back().identifiability.clear();
+    fit.runs.back().std_error_method.clear();
+    fit.runs.back().interval_method.clear();
   }
   return fit;
 }
 
-JointFit FitModel(const std::vector<RunModels>& runs, std::size_t m, const FitOptions& options,
+JointFit FitModel(const std::vector<FittedRecording>& recordings, std::size_t m, const FitOptions& options,
                   const std::vector<std::string>& shared) {
   std::vector<JointRun> joint;
-  joint.reserve(runs.size());
-  for (const RunModels& run : runs) joint.push_back({run.alone.used, run.alone.fits[m], options});
+  joint.reserve(recordings.size());
+  for (const FittedRecording& recording : recordings) joint.push_back({recording.used, recording.fits[m], options});
   Result<JointFit> fit = FitJointly(joint, shared);
-  return fit ? *std::move(fit) : FailedFit(runs, m, fit.error().message);
+  return fit ? *std::move(fit) : FailedFit(recordings, m, fit.error().message);
 }
 
-Homogeneity CompareRuns(const std::vector<RunModels>& runs, std::size_t m, const FitOptions& options,
-                        const std::vector<std::string>& shared) {
+std::vector<RunAlone> FitsAlone(const std::vector<FittedRecording>& recordings, std::size_t m,
+                                const FitOptions& options) {
   std::vector<RunAlone> alone;
-  for (const RunModels& run : runs) {
-    const Constancy* const constancy = m < run.constancy.size() ? &run.constancy[m] : nullptr;
-    alone.push_back({run.label, run.alone.used, run.alone.fits[m], options, constancy});
+  for (const FittedRecording& recording : recordings) {
+    const Constancy* const constancy = m < recording.constancy.size() ? &recording.constancy[m] : nullptr;
+    alone.push_back({recording.label, recording.used, recording.fits[m], options, constancy});
   }
-  return TestHomogeneity(alone, shared);
-}
-
-void AddChanges(const std::vector<RunModels>& runs, std::size_t m, const Homogeneity& homogeneity, JointFit& fit) {
-  std::vector<ChangingRun> changing;
-  for (const RunModels& run : runs) {
-    if (m < run.constancy.size()) changing.push_back({run.alone.fits[m], run.constancy[m]});
-  }
-  AddInconstancyError(changing, homogeneity.parameters, fit);
-  AddFrictionLawError(changing, fit);
+  return alone;
 }
 
 /// If the recordings disagree, adds this to the reason of a fit that did not converge, and a warning otherwise. Both
@@ -68,22 +63,24 @@ void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
 
 }  // namespace
 
-bool JointModels::HaveOneUnit() const {
-  const std::string unit = runs.front().alone.used.value_unit();
-  return std::ranges::all_of(runs, [&](const RunModels& run) { return run.alone.used.value_unit() == unit; });
+bool FittedRecordings::HaveOneUnit() const {
+  const std::string unit = recordings.front().used.value_unit();
+  return std::ranges::all_of(recordings, [&](const auto& recording) { return recording.used.value_unit() == unit; });
 }
 
-JointModels FitTogether(std::vector<RunModels> runs, const FitOptions& options, const std::vector<std::string>& models,
-                        const std::vector<std::string>& shared) {
-  JointModels result{models, std::move(runs), {}, {}};
+FittedRecordings FitTogether(std::vector<FittedRecording> recordings, const FitOptions& options,
+                             const std::vector<std::string>& models, const std::vector<std::string>& shared) {
+  FittedRecordings result{models, std::move(recordings)};
   for (std::size_t m = 0; m < models.size(); ++m) {
     ReportProgress(options.progress, "fitting all recordings together with " + models[m], static_cast<int>(m),
                    static_cast<int>(models.size()));
     const FitOptions own = ForModel(options, models[m], models).options;
-    result.joint.push_back(FitModel(result.runs, m, own, shared));
-    result.homogeneity.push_back(CompareRuns(result.runs, m, own, shared));
-    SetVerdict(result.homogeneity.back(), result.joint.back().whole);
-    AddChanges(result.runs, m, result.homogeneity.back(), result.joint.back());
+    const std::vector<RunAlone> alone = FitsAlone(result.recordings, m, own);
+    JointFit& fit = result.joint.emplace_back(FitModel(result.recordings, m, own, shared));
+    const Homogeneity& homogeneity = result.homogeneity.emplace_back(TestHomogeneity(alone, shared));
+    SetVerdict(homogeneity, fit.whole);
+    AddInconstancyError(alone, homogeneity.parameters, fit);
+    AddFrictionLawError(alone, fit);
   }
   return result;
 }

@@ -11,6 +11,7 @@
 #include "pendulum/base/json.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/parameter.h"
+#include "pendulum/report/json_parts.h"
 
 namespace pendulum {
 namespace {
@@ -75,9 +76,8 @@ using NameSet = std::set<std::string>;
 /// A member; null if there is none, as in results of the first versions.
 Json MemberOf(const Json& object, const char* key) { return object.value(key, Json(nullptr)); }
 
-/// The parameters that the recordings of a fit of version 2 share.
+/// The parameters of the pendulum in a fit of version 2.
 NameSet SharedNames(const Json& fit) {
-  if (fit.contains("shared")) return fit.at("shared").get<NameSet>();
   NameSet names;
   const auto model = FindMotionModel(fit.at("model").get<std::string>());
   if (!model) return names;
@@ -130,23 +130,20 @@ Json SumStatistics(const Json& statistics) {
   if (!statistics.is_object()) return nullptr;
   Json sums = Json::object();
   for (const auto& [key, value] : statistics.items()) {
-    if (key != "durbin_watson" && key != "ljung_box_p" && key != "runs_p") sums[key] = value;
+    if (key != "durbin_watson" && key != "ljung_box_p" && key != "runs_p" && key != "reason") sums[key] = value;
   }
   return sums;
 }
 
-/// The part of a fit for one recording; own: the recording's run in the fit, or the fit to the only recording.
-Json OwnPart(const Json& fit, const Json& own) {
+/// The part of a fit for its recording.
+Json OwnPart(const Json& fit) {
   const NameSet shared = SharedNames(fit);
   const std::string status = fit.at("status").get<std::string>();
-  Json part = {{"model", fit.at("model")},
-               {"amplitude_rad", MemberOf(own, "amplitude_rad")},
-               {"parameters", Parameters(own, shared, false)}};
-  CopyMembers(own, {"covariance", "correlation", "systematic_covariance", "std_error_method"}, part);
-  part["identifiability"] = Identifiabilities(own, shared, false);
-  CopyMembers(own, {"noise", "statistics", "closed_form", "constancy", "constancy_reason", "suspicions"}, part);
-  part["separate"] =
-      own.value("separate", status == "converged" ? status : status + ": " + fit.at("reason").get<std::string>());
+  Json part = {{"model", fit.at("model")}, {"amplitude_rad", nullptr}, {"parameters", Parameters(fit, shared, false)}};
+  CopyMembers(fit, {"covariance", "correlation", "systematic_covariance", "std_error_method"}, part);
+  part["identifiability"] = Identifiabilities(fit, shared, false);
+  CopyMembers(fit, {"noise", "statistics", "closed_form", "constancy", "constancy_reason", "suspicions"}, part);
+  part["separate"] = status == "converged" ? status : status + ": " + fit.at("reason").get<std::string>();
   return part;
 }
 
@@ -157,7 +154,7 @@ Json SharedFit(const Json& fit) {
   const Json parameters = Parameters(fit, shared, true);
   Json names = Json::array();
   for (const auto& [name, parameter] : parameters.items()) names.push_back(name);
-  current["shared"] = fit.value("shared", std::move(names));
+  current["shared"] = std::move(names);
   current["parameters"] = parameters;
   CopyMembers(fit, {"derived"}, current);
   for (const char* key : {"covariance", "correlation", "systematic_covariance"}) {
@@ -166,7 +163,7 @@ Json SharedFit(const Json& fit) {
   CopyMembers(fit, {"std_error_method", "interval_method"}, current);
   current["identifiability"] = Identifiabilities(fit, shared, true);
   current["statistics"] = SumStatistics(MemberOf(fit, "statistics"));
-  current["homogeneity"] = MemberOf(fit, "homogeneity");
+  current["homogeneity"] = nullptr;
   CopyMembers(fit, {"rig_verdict", "ambiguities", "solver", "summary"}, current);
   return current;
 }
@@ -182,34 +179,34 @@ Json WithParts(const Json& warning) {
   return whole;
 }
 
+/// A store has results of one recording only.
 Json ToVersion3(const Json& former) {
-  const bool are_several = former.at("data").is_array();
-  const auto each = [&](const char* key) {
-    const Json member = MemberOf(former, key);
-    return are_several ? member : Json::array({member});
-  };
-  const Json data = each("data"), calibrations = each("calibration"), closed_forms = each("closed_forms");
-  const Json& former_fits = former.at("fits");
-  Json recordings = Json::array(), fits = Json::array(), warnings = Json::array();
-  for (std::size_t k = 0; k < data.size(); ++k) {
-    Json recording = data.at(k);
-    recording["calibration"] = calibrations.at(k);
-    recording["closed_forms"] = closed_forms.at(k);
-    recording["fits"] = Json::array();
-    for (const Json& fit : former_fits)
-      recording["fits"].push_back(OwnPart(fit, are_several ? fit.at("runs").at(k) : fit));
-    if (closed_forms.at(k).is_null() && former.contains("reason")) recording["reason"] = former.at("reason");
-    recordings.push_back(std::move(recording));
-  }
-  for (const Json& fit : former_fits) fits.push_back(SharedFit(fit));
-  for (const Json& warning : MemberOf(former, "warnings")) warnings.push_back(WithParts(warning));
+  Json recording = former.at("data");
+  const Json closed_forms = MemberOf(former, "closed_forms");
+  recording["calibration"] = MemberOf(former, "calibration");
+  recording["closed_forms"] = closed_forms;
+  recording["fits"] = ArrayOf(former.at("fits"), OwnPart);
+  if (closed_forms.is_null() && former.contains("reason")) recording["reason"] = former.at("reason");
   return {{"schema_version", 3},
           {"tool", MemberOf(former, "tool")},
           {"rig", MemberOf(former, "rig")},
-          {"recordings", std::move(recordings)},
-          {"fits", std::move(fits)},
+          {"recordings", Json::array({std::move(recording)})},
+          {"fits", ArrayOf(former.at("fits"), SharedFit)},
           {"comparison", MemberOf(former, "comparison")},
-          {"warnings", std::move(warnings)}};
+          {"warnings", ArrayOf(MemberOf(former, "warnings"), WithParts)}};
+}
+
+/// The unit of accelerations had another spelling in keys, "sigma_m_s^2", until shortly before version 3.
+Json WithCurrentUnits(const Json& value) {
+  if (value.is_array()) return ArrayOf(value, WithCurrentUnits);
+  if (!value.is_object()) return value;
+  constexpr std::string_view kFormer = "_m_s^2";
+  Json members = Json::object();
+  for (const auto& [key, member] : value.items()) {
+    const bool is_former = key.ends_with(kFormer);
+    members[is_former ? key.substr(0, key.size() - kFormer.size()) + "_m_s2" : key] = WithCurrentUnits(member);
+  }
+  return members;
 }
 
 /// `convert` of a JSON object; the text unchanged if it is none, or lacks members that every result has.
@@ -230,14 +227,16 @@ std::string ToCurrentResult(std::string_view result) {
   return Converted(result, [&](const Json& former) {
     const Json version = former.value("schema_version", Json());
     if (version != 1 && version != 2) return std::string(result);
-    return JsonText(ToVersion3(version == 1 ? Translated(former, "") : former));
+    return JsonText(ToVersion3(WithCurrentUnits(version == 1 ? Translated(former, "") : former)));
   });
 }
 
 std::string ToCurrentFit(std::string_view fit) {
   return Converted(fit, [&](const Json& former) {
-    Json current = SharedFit(former);
-    current["recordings"] = Json::array({OwnPart(former, former)});
+    if (former.contains("recordings")) return std::string(fit);
+    const Json renamed = WithCurrentUnits(former);
+    Json current = SharedFit(renamed);
+    current["recordings"] = Json::array({OwnPart(renamed)});
     return JsonText(current);
   });
 }

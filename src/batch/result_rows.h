@@ -70,9 +70,9 @@ inline std::pair<std::optional<double>, std::optional<std::string>> GetWithUnit(
   return {};
 }
 
-/// The clock and the calibration of a result, as text.
+/// The clock and the calibration of a result with a recording, as text.
 inline std::string SourcesOf(const Json& result) {
-  const Json recording = RecordingOf(result);
+  const Json& recording = *RecordingOf(result);
   return SourcesText(Get<double>(recording, "clock_scale").value_or(1),
                      Get<double>(recording, "clock_scale_std_dev").value_or(0),
                      recording.value("calibration", Json()).dump());
@@ -163,10 +163,10 @@ inline std::vector<FitRow> FitRows(const RunOutcome& outcome) {
     }
     return rows;
   }
-  const auto recording = RecordingOf(outcome.result);
+  const auto& recording = *RecordingOf(outcome.result);
   const auto& fits = outcome.result["fits"];
   for (std::size_t m = 0; m < fits.size(); ++m)
-    rows.push_back(result_rows::Fit(recording, fits[m], recording["fits"][m]));
+    rows.push_back(result_rows::Fit(recording, fits[m], recording.at("fits").at(m)));
   return rows;
 }
 

@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 
+#include "batch/kept_result.h"
 #include "batch/run_kinds.h"
 #include "pendulum/analysis/agreement.h"
 #include "pendulum/analysis/separate_estimates.h"
@@ -110,8 +111,11 @@ Member MemberOf(std::string id, const std::string& text, const std::string& mode
   const auto fit = std::ranges::find_if(result["fits"], [&](const Json& one) { return one["model"] == model; });
   if (fit == result["fits"].end() || !fit->contains("covariance")) return member;
   const std::vector<std::string> names = FreeNames(*fit);
-  const Json& own = result["recordings"][0]["fits"][static_cast<std::size_t>(fit - result["fits"].begin())];
-  if (names.empty() || !IsComparable(result, *fit, own, names)) return member;
+  const Json* const recording = RecordingOf(result);
+  const auto index = static_cast<std::size_t>(fit - result["fits"].begin());
+  if (names.empty() || recording == nullptr || index >= recording->at("fits").size() ||
+      !IsComparable(result, *fit, recording->at("fits").at(index), names))
+    return member;
   const auto covariance = MatrixOf((*fit)["covariance"], names);
   if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
   FitAloneResult alone{

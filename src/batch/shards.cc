@@ -181,8 +181,9 @@ SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, '')
   const auto is_gone = [](const std::string&) { return false; };  // a merge does not see the recordings
   while (both.executeStep()) {
     const std::string result = text(2);
-    const NewerOutcome newer{!result.empty(), RecordingOf(nlohmann::ordered_json::parse(result, nullptr, false)),
-                             text(3), both.getColumn(5).getInt(), both.getColumn(6).getInt() != 0};
+    const auto parsed = nlohmann::ordered_json::parse(result, nullptr, false);
+    const NewerOutcome newer{!result.empty(), RecordingOf(parsed), text(3), both.getColumn(5).getInt(),
+                             both.getColumn(6).getInt() != 0};
     const std::string why = WhyKept(text(1), both.getColumn(4).getInt(), newer, is_gone);
     if (why.empty()) continue;
     sqlite::Bind(keep, text(0), why).exec();

@@ -83,7 +83,7 @@ SELECT run, model, name, std_error, systematic_std_error FROM quantities
   SQLite::Statement sources(database, "UPDATE runs SET sources = ? WHERE run = ?");
   while (results.executeStep()) {
     const Json result = Json::parse(sqlite::Text(results, 1), nullptr, false);
-    if (RecordingOf(result).is_null()) continue;
+    if (RecordingOf(result) == nullptr) continue;
     sqlite::Bind(sources, result_rows::SourcesOf(result), results.getColumn(0).getInt64()).exec();
   }
   while (both.executeStep()) {

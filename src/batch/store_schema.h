@@ -112,7 +112,7 @@ ALTER TABLE fits ADD COLUMN json TEXT;   -- the fit as the former result had it;
 CREATE INDEX unlisted_by_data ON runs(data_sha256) WHERE position < 0;
 )sql",
                                                                      R"sql(
--- the results are converted to schema version 3 of the result JSON
+UPDATE fits SET residual_unit = 'm_s2' WHERE residual_unit = 'm_s^2';  -- and the results are converted to schema version 3
 )sql"};
 
 /// The first version whose quantities have total_std_error, and runs have sources.

@@ -60,6 +60,24 @@ void AddNamed(const std::vector<FitReport>& fits, std::vector<Warning>& all) {
   }
 }
 
+/// The warnings of the identification, of the only recording, of the fits, and of each of several recordings.
+/// add(fits, all) adds those of fits that are asked for.
+template <typename Add>
+std::vector<Warning> CollectWarnings(const Identification& identification, const Add& add) {
+  std::vector<Warning> all;
+  AddOnce(identification.warnings, all);
+  if (!identification.is_joint()) AddOnce(identification.recordings.front().warnings, all);
+  add(identification.fits, all);
+  if (!identification.is_joint()) return all;
+  const auto of_recording = [&](std::size_t k) {
+    std::vector<Warning> own = identification.recordings[k].warnings;
+    add(identification.recordings[k].own_fits, own);
+    return own;
+  };
+  AddOnce(WarningsOfRecordings(identification, of_recording), all);
+  return all;
+}
+
 }  // namespace
 
 void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& data) {
@@ -84,7 +102,7 @@ const std::optional<Rig>& Identification::si_rig() const {
 }
 
 bool Identification::SharesMotion(std::size_t m) const {
-  return spans[m].shared.size() == PhysicalParameters(fits[m].model).size();
+  return across[m].shared.size() == PhysicalParameters(fits[m].model).size();
 }
 
 std::size_t Identification::MainFit() const {
@@ -97,33 +115,13 @@ std::size_t Identification::MainFit() const {
 }
 
 std::vector<Warning> AllWarnings(const Identification& identification) {
-  std::vector<Warning> all;
-  AddOnce(identification.warnings, all);
-  if (!identification.is_joint()) AddOnce(identification.recordings.front().warnings, all);
-  AddNamed(identification.fits, all);
-  if (!identification.is_joint()) return all;
-  const auto of_recording = [&](std::size_t k) {
-    std::vector<Warning> own = identification.recordings[k].warnings;
-    AddNamed(identification.recordings[k].fits, own);
-    return own;
-  };
-  AddOnce(WarningsOfRecordings(identification, of_recording), all);
-  return all;
+  return CollectWarnings(identification, AddNamed);
 }
 
 std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit) {
-  std::vector<Warning> all;
-  AddOnce(identification.warnings, all);
-  if (!identification.is_joint()) AddOnce(identification.recordings.front().warnings, all);
-  AddOnce(identification.fits[fit].warnings, all);
-  if (!identification.is_joint()) return all;
-  const auto of_recording = [&](std::size_t k) {
-    std::vector<Warning> own = identification.recordings[k].warnings;
-    AddOnce(identification.FitOf(k, fit).warnings, own);
-    return own;
-  };
-  AddOnce(WarningsOfRecordings(identification, of_recording), all);
-  return all;
+  return CollectWarnings(identification, [&](const std::vector<FitReport>& fits, std::vector<Warning>& all) {
+    AddOnce(fits[fit].warnings, all);
+  });
 }
 
 bool IsOneOfSeveral(const Identification& identification, std::size_t k) {

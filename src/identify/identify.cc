@@ -16,7 +16,6 @@
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/inconstancy.h"
-#include "pendulum/analysis/joint_comparison.h"
 #include "pendulum/analysis/joint_fit.h"
 #include "pendulum/analysis/model_comparison.h"
 #include "pendulum/analysis/rig_verdict.h"
@@ -70,20 +69,20 @@ Swing TakeSwing(PreparedRecording& from, int release) {
 }
 
 /// The samples of a swing, without a fit.
-Result<FittedModels> SelectSwing(Recording recording, const FreeSwing& swing) {
+Result<FittedRecording> SelectSwing(Recording recording, const FreeSwing& swing) {
   ASSIGN_OR_RETURN(auto used, SelectWindow(std::move(recording), swing.from, swing.to));
   used.warnings.clear();
-  return FittedModels{std::move(used), swing, {}};
+  return FittedRecording{std::move(used), swing, {}};
 }
 
 /// Fits every model to one swing. The samples move into the result.
-Result<RunModels> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
+Result<FittedRecording> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
   if (options.fit.stop.stop_requested()) return FitStopped();
-  ASSIGN_OR_RETURN(auto models, options.closed_form_only
+  ASSIGN_OR_RETURN(auto fitted, options.closed_form_only
                                     ? SelectSwing(std::move(swing.recording), swing.found)
                                     : FitModels(std::move(swing.recording), swing.found, fit_options, options.models));
   if (options.fit.stop.stop_requested()) return FitStopped();
-  return RunModels{{}, std::move(models), {}};
+  return fitted;
 }
 
 /// Whether fit m is checked; `main` is the index of the main fit.
@@ -164,16 +163,17 @@ void QuestionUnit(const Recording& used, double half_period, const FitReport* fi
 
 /// Adds the samples, the fits' constancy and the conclusions to recording k. Closed forms have the friction of the
 /// model of the main fit.
-void CompleteRecording(const IdentifyOptions& options, RunModels run, std::size_t k, Identification& identification) {
+void CompleteRecording(const IdentifyOptions& options, FittedRecording fitted, std::size_t k,
+                       Identification& identification) {
   const std::size_t main = identification.MainFit();
   IdentifiedRecording& recording = identification.recordings[k];
   const FitReport* const fit = identification.fits.empty() ? nullptr : &identification.FitOf(k, main);
-  QuestionUnit(run.alone.used, run.alone.swing.half_period, fit, options.fit, recording);
-  SummarizeUsed(run.alone.used, run.alone.swing, recording.data);
-  recording.used = std::move(run.alone.used);
-  recording.constancy = std::move(run.constancy);
+  QuestionUnit(fitted.used, fitted.swing.half_period, fit, options.fit, recording);
+  SummarizeUsed(fitted.used, fitted.swing, recording.data);
+  recording.used = std::move(fitted.used);
+  recording.constancy = std::move(fitted.constancy);
   std::optional<MotionModel> model;
-  if (run.alone.swing.undersampled) {
+  if (fitted.swing.undersampled) {
     recording.no_closed_forms =
         "the samples are too far apart to show turning points: the swing that they show may be the alias of a faster "
         "one";
@@ -183,7 +183,7 @@ void CompleteRecording(const IdentifyOptions& options, RunModels run, std::size_
     model = fit == nullptr ? ClosedFormModel(options, recording) : fit->model;
   }
   const auto is_checked = [&](std::size_t m) { return IsChecked(options.checks, m, main); };
-  AddConclusions(run.alone.swing, model, is_checked, options.fit.stop, k, identification);
+  AddConclusions(fitted.swing, model, is_checked, options.fit.stop, k, identification);
 }
 
 // ---- The rig --------------------------------------------------------------------------------------------------------
@@ -330,16 +330,16 @@ std::vector<std::string> LabelsOf(const std::vector<Swing>& swings) {
 
 /// Fits each swing alone. Several swings are fitted at the same time, as recorded; whether they agree is judged with
 /// the constancy of each fit.
-Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, const FitOptions& fit_options,
-                                            std::vector<Swing>& swings) {
+Result<std::vector<FittedRecording>> FitEachAlone(const IdentifyOptions& options, const FitOptions& fit_options,
+                                                  std::vector<Swing>& swings) {
   if (swings.size() == 1) {
     ASSIGN_OR_RETURN(auto only, FitAlone(options, fit_options, swings.front()));
-    std::vector<RunModels> runs;
-    runs.push_back(std::move(only));
-    return runs;
+    std::vector<FittedRecording> recordings;
+    recordings.push_back(std::move(only));
+    return recordings;
   }
   const std::vector<std::string> labels = LabelsOf(swings);
-  std::vector<Result<RunModels>> fitted(swings.size());
+  std::vector<Result<FittedRecording>> fitted(swings.size());
   FitOptions each = fit_options;
   each.threads = 1;
   each.progress = nullptr;
@@ -352,46 +352,56 @@ Result<std::vector<RunModels>> FitEachAlone(const IdentifyOptions& options, cons
     fitted[k] = FitAlone(options, each, swings[k]);
     if (!fitted[k]) return;
     fitted[k]->label = labels[k];
-    for (const FitReport& fit : fitted[k]->alone.fits) {
+    for (const FitReport& fit : fitted[k]->fits) {
       const bool is_checked = options.checks != Checks::kNone;
-      fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->alone.used, fit, is_checked));
+      fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->used, fit, is_checked));
     }
     ReportProgress(fit_options.progress, "fitting each recording", ++done, count);
   });
-  std::vector<RunModels> runs;
+  std::vector<FittedRecording> recordings;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
     if (!fitted[k] && options.fit.stop.stop_requested()) return FitStopped();
     if (!fitted[k]) return ErrorOfRun(fitted[k].error(), swings[k].path, swings[k].release);
-    runs.push_back(*std::move(fitted[k]));
+    recordings.push_back(*std::move(fitted[k]));
   }
-  return runs;
+  return recordings;
 }
 
-/// How a separate fit ended.
-std::string EndingOf(const FitReport& fit) {
-  const std::string status(TerminationName(fit.termination));
-  return fit.termination == Termination::kConverged ? status : status + ": " + fit.reason;
+/// What the fits of law m to each recording alone say. Amplitudes, shared parameters and homogeneity are not set.
+AcrossRecordings SeparateFits(const std::vector<FittedRecording>& recordings, std::size_t m) {
+  AcrossRecordings across;
+  for (const FittedRecording& recording : recordings) {
+    const FitReport& fit = recording.fits[m];
+    const std::string status(TerminationName(fit.termination));
+    across.separate.push_back(fit.termination == Termination::kConverged ? status : status + ": " + fit.reason);
+    across.lacks_fit = across.lacks_fit || fit.HasWarning("lack_of_fit");
+  }
+  return across;
 }
 
-/// Makes the fits to the only recording those of the whole: compares them and tests whether they are constant.
-void UseOnly(const IdentifyOptions& options, const FitOptions& fit_options, RunModels& run, Identification& whole) {
-  if (run.alone.fits.size() > 1) {
+/// Adds the fits to one recording: compares them, and tests whether their parameters are constant.
+void AddFitsOfOne(const IdentifyOptions& options, const FitOptions& fit_options, FittedRecordings& fitted,
+                  Identification& identification) {
+  if (fitted.models.size() > 1) {
     ReportProgress(options.fit.progress, "comparing the laws");
-    whole.comparison = CompareModels(run.alone, fit_options);
+    identification.comparison = CompareModels(fitted, fit_options);
   }
-  whole.fits = std::move(run.alone.fits);
-  const std::size_t main = whole.MainFit();
-  for (std::size_t m = 0; m < whole.fits.size(); ++m) {
-    FitReport& fit = whole.fits[m];
+  FittedRecording& only = fitted.recordings.front();
+  for (std::size_t m = 0; m < only.fits.size(); ++m) {
+    const FitReport& fit = only.fits[m];
+    AcrossRecordings& across = identification.across.emplace_back(SeparateFits(fitted.recordings, m));
+    for (const ParameterInfo& parameter : PhysicalParameters(fit.model)) across.shared.emplace_back(parameter.name);
+    const FitOptions own = ForModel(fit_options, fitted.models[m], fitted.models).options;
+    across.amplitudes = {MeanAmplitude(only.used, fit, own)};
+  }
+  identification.fits = std::move(only.fits);
+  const std::size_t main = identification.MainFit();
+  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
     if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
-    run.constancy.push_back(TestFit(options, fit_options, run.alone.used, fit, is_checked));
-    AddInconstancyError(run.constancy.back(), fit);
-    AddFrictionLawError(run.constancy.back(), fit);
-    const FitOptions own = ForModel(fit_options, std::string(fit.model.name), options.models).options;
-    FitSpan span{{}, {MeanAmplitude(run.alone.used, fit, own)}, {EndingOf(fit)}, {}, fit.HasWarning("lack_of_fit")};
-    for (const ParameterInfo& parameter : PhysicalParameters(fit.model)) span.shared.emplace_back(parameter.name);
-    whole.spans.push_back(std::move(span));
+    only.constancy.push_back(TestFit(options, fit_options, only.used, identification.fits[m], is_checked));
+    AddInconstancyError(only.constancy.back(), identification.fits[m]);
+    AddFrictionLawError(only.constancy.back(), identification.fits[m]);
   }
 }
 
@@ -415,36 +425,28 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, IdentifiedRe
                                 .flags = why == nullptr ? std::vector<std::string>() : why->flags});
 }
 
-FitSpan SpanOf(const JointModels& joint, std::size_t m) {
-  FitSpan span{joint.joint[m].shared, joint.homogeneity[m].amplitudes, {}, joint.homogeneity[m], false};
-  for (const RunModels& run : joint.runs) {
-    const FitReport& fit = run.alone.fits[m];
-    span.separate.push_back(EndingOf(fit));
-    span.lacks_fit = span.lacks_fit || fit.HasWarning("lack_of_fit");
-  }
-  return span;
-}
-
 /// Fits every law to all recordings together, and compares the laws.
-void UseTogether(const IdentifyOptions& options, const FitOptions& fit_options, std::vector<RunModels>& runs,
-                 Identification& whole) {
-  JointModels joint = FitTogether(std::move(runs), fit_options, options.models, options.shared);
-  if (joint.models.size() > 1) {
+void AddFitsOfSeveral(const IdentifyOptions& options, const FitOptions& fit_options, FittedRecordings& fitted,
+                      Identification& identification) {
+  fitted = FitTogether(std::move(fitted.recordings), fit_options, options.models, options.shared);
+  if (fitted.models.size() > 1) {
     ReportProgress(fit_options.progress, "comparing the laws");
-    whole.comparison = CompareJointModels(joint, fit_options);
+    identification.comparison = CompareModels(fitted, fit_options);
   }
-  whole.unit = joint.HaveOneUnit() ? joint.runs.front().alone.used.value_unit() : "sigma";
-  for (std::size_t m = 0; m < joint.models.size(); ++m) {
-    whole.fits.push_back(joint.joint[m].whole);
-    whole.spans.push_back(SpanOf(joint, m));
+  if (!fitted.HaveOneUnit()) identification.unit = "sigma";
+  for (std::size_t m = 0; m < fitted.models.size(); ++m) {
+    identification.fits.push_back(fitted.joint[m].whole);
+    AcrossRecordings& across = identification.across.emplace_back(SeparateFits(fitted.recordings, m));
+    across.shared = fitted.joint[m].shared;
+    across.amplitudes = fitted.homogeneity[m].amplitudes;
+    across.homogeneity = fitted.homogeneity[m];
   }
-  const std::size_t main = whole.MainFit();
-  for (std::size_t k = 0; k < joint.runs.size(); ++k) {
-    IdentifiedRecording& recording = whole.recordings[k];
-    for (JointFit& fit : joint.joint) recording.fits.push_back(std::move(fit.runs[k]));
-    AddOwnWarnings(joint.runs[k].alone.fits[main], recording.fits[main], recording);
+  const std::size_t main = identification.MainFit();
+  for (std::size_t k = 0; k < fitted.recordings.size(); ++k) {
+    IdentifiedRecording& recording = identification.recordings[k];
+    for (JointFit& fit : fitted.joint) recording.own_fits.push_back(std::move(fit.runs[k]));
+    AddOwnWarnings(fitted.recordings[k].fits[main], recording.own_fits[main], recording);
   }
-  runs = std::move(joint.runs);
 }
 
 Result<Identification> Identify(const IdentifyOptions& asked, std::vector<Swing> swings) {
@@ -454,26 +456,29 @@ Result<Identification> Identify(const IdentifyOptions& asked, std::vector<Swing>
   if (is_joint) options.fit.may_be_spring = false;  // all recordings have the same models
   FitOptions fit_options = options.fit;
   fit_options.rig = rig;
-  ASSIGN_OR_RETURN(auto runs, FitEachAlone(options, fit_options, swings));
-  Identification whole;
-  whole.rig = rig;
-  whole.unit = runs.front().alone.used.value_unit();
-  for (Swing& swing : swings) whole.recordings.push_back(std::move(swing.known));
-  WarnOfSpring(asked, options, whole);
+  ASSIGN_OR_RETURN(auto each, FitEachAlone(options, fit_options, swings));
+  FittedRecordings fitted{options.models, std::move(each)};
+  Identification identification;
+  identification.rig = rig;
+  identification.unit = fitted.recordings.front().used.value_unit();
+  for (Swing& swing : swings) identification.recordings.push_back(std::move(swing.known));
+  WarnOfSpring(asked, options, identification);
   if (is_joint) {
-    UseTogether(options, fit_options, runs, whole);
-  } else {
-    UseOnly(options, fit_options, runs.front(), whole);
+    AddFitsOfSeveral(options, fit_options, fitted, identification);
+  } else if (!options.closed_form_only) {
+    AddFitsOfOne(options, fit_options, fitted, identification);
   }
+  std::vector<FittedRecording>& recordings = fitted.recordings;
   const bool is_undersampled =
-      std::ranges::any_of(runs, [](const RunModels& run) { return run.alone.swing.undersampled; });
-  RETURN_IF_ERROR(ApplyRig(is_undersampled, whole));
-  for (std::size_t k = 0; k < runs.size(); ++k) CompleteRecording(options, std::move(runs[k]), k, whole);
+      std::ranges::any_of(recordings, [](const FittedRecording& one) { return one.swing.undersampled; });
+  RETURN_IF_ERROR(ApplyRig(is_undersampled, identification));
+  for (std::size_t k = 0; k < recordings.size(); ++k)
+    CompleteRecording(options, std::move(recordings[k]), k, identification);
   if (options.fit.stop.stop_requested()) return FitStopped();
-  if (options.closed_form_only && !whole.recordings.front().closed_forms) {
-    return Error(StatusCode::kFailedPrecondition, whole.recordings.front().no_closed_forms);
-  }
-  return whole;
+  const IdentifiedRecording& first = identification.recordings.front();
+  if (options.closed_form_only && !first.closed_forms)
+    return Error(StatusCode::kFailedPrecondition, first.no_closed_forms);
+  return identification;
 }
 
 }  // namespace

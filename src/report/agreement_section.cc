@@ -107,7 +107,7 @@ std::string ScatterText(const SharedParameter& parameter) {
 }  // namespace
 
 Section AgreementSection(const Identification& identification, std::size_t fit) {
-  const Homogeneity& homogeneity = *identification.spans[fit].homogeneity;
+  const Homogeneity& homogeneity = *identification.across[fit].homogeneity;
   Section section{"Do the recordings agree?"};
   const bool agrees = homogeneity.agrees();
   section.AddText("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);

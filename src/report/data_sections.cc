@@ -66,7 +66,7 @@ Section RecordingSection(const Identification& identification) {
   Table files{{{""}, {"file"}}};
   Table table{{{""}, {"samples", true}, {"window"}, {"rate [Hz]", true}, {"starts"}, {"amplitude [deg]", true}}};
   const std::size_t main = identification.MainFit();
-  const std::vector<double>& amplitudes = identification.spans[main].amplitudes;
+  const std::vector<double>& amplitudes = identification.across[main].amplitudes;
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
     const DataSummary& data = identification.recordings[k].data;
     const bool again = IsOneOfSeveral(identification, k);

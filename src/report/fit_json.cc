@@ -77,8 +77,8 @@ Json SumJson(const std::string& unit, const FitStatistics& statistics) {
       .Done();
 }
 
-ShowsParameter Shared(const FitSpan& span) {
-  return [&span](std::string_view name) { return std::ranges::find(span.shared, name) != span.shared.end(); };
+ShowsParameter Shared(const AcrossRecordings& across) {
+  return [&across](std::string_view name) { return std::ranges::find(across.shared, name) != across.shared.end(); };
 }
 
 }  // namespace
@@ -179,8 +179,8 @@ nlohmann::ordered_json SolverJson(const SolverSummary& solver) {
 
 nlohmann::ordered_json FitJson(const Identification& identification, std::size_t m) {
   const FitReport& fit = identification.fits[m];
-  const FitSpan& span = identification.spans[m];
-  const ShowsParameter shows = Shared(span);
+  const AcrossRecordings& across = identification.across[m];
+  const ShowsParameter shows = Shared(across);
   const bool failed = fit.termination == Termination::kFailed;
   const bool has_equation = !failed && identification.SharesMotion(m);
   Json json;
@@ -188,7 +188,7 @@ nlohmann::ordered_json FitJson(const Identification& identification, std::size_t
   json["status"] = TerminationName(fit.termination);
   json["reason"] = fit.reason;
   json["equation"] = has_equation ? Json(FittedEquation(fit, identification.si_rig())) : Json(nullptr);
-  json["shared"] = span.shared;
+  json["shared"] = across.shared;
   json["parameters"] = ParametersJson(fit, shows);
   json["derived"] = DerivedJson(fit);
   json["covariance"] = CovarianceJson(fit, shows);
@@ -198,7 +198,7 @@ nlohmann::ordered_json FitJson(const Identification& identification, std::size_t
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit, shows);
   json["statistics"] = failed ? Json(nullptr) : SumJson(identification.unit, fit.statistics);
-  json["homogeneity"] = span.homogeneity ? HomogeneityJson(*span.homogeneity) : Json(nullptr);
+  json["homogeneity"] = across.homogeneity ? HomogeneityJson(*across.homogeneity) : Json(nullptr);
   AddAmbiguities(identification, m, json);
   json["solver"] = SolverJson(fit.solver);
   json["summary"] = FitSummaryJson(SummarizeFit(identification, m));
@@ -208,12 +208,12 @@ nlohmann::ordered_json FitJson(const Identification& identification, std::size_t
 nlohmann::ordered_json RecordingFitJson(const Identification& identification, std::size_t k, std::size_t m) {
   const FitReport& fit = identification.FitOf(k, m);
   const IdentifiedRecording& recording = identification.recordings[k];
-  const FitSpan& span = identification.spans[m];
-  const ShowsParameter is_own = std::not_fn(Shared(span));
+  const AcrossRecordings& across = identification.across[m];
+  const ShowsParameter is_own = std::not_fn(Shared(across));
   const bool failed = fit.termination == Termination::kFailed;
   Json json;
   json["model"] = fit.model.name;
-  json["amplitude_rad"] = NumberOrNull(span.amplitudes[k]);
+  json["amplitude_rad"] = NumberOrNull(across.amplitudes[k]);
   json["parameters"] = ParametersJson(fit, is_own);
   json["covariance"] = CovarianceJson(fit);
   json["correlation"] = CorrelationJson(fit);
@@ -226,7 +226,7 @@ nlohmann::ordered_json RecordingFitJson(const Identification& identification, st
   json["constancy"] = ConstancyJson(recording.ConstancyOf(m));
   if (json["constancy"].is_null()) json["constancy_reason"] = NoConstancyReason(fit, recording.ConstancyOf(m));
   if (fit.termination == Termination::kConverged) json["suspicions"] = SuspicionsJson(fit);
-  json["separate"] = span.separate[k];
+  json["separate"] = across.separate[k];
   return json;
 }
 

@@ -45,7 +45,7 @@ Section ModelSection(const Identification& identification, std::size_t index) {
   const FitReport& fit = identification.fits[index];
   Facts facts = {{"model", std::string(fit.model.name) + ":  " + WithUnbrokenTerms(SymbolicEquation(fit.model))}};
   if (identification.is_joint()) {
-    facts.push_back({"shared", NameList(identification.spans[index].shared) + ", by " +
+    facts.push_back({"shared", NameList(identification.across[index].shared) + ", by " +
                                    std::to_string(identification.recordings.size()) +
                                    " recordings; each recording has its own start, zero and noise"});
   } else {
@@ -300,7 +300,9 @@ Section StatisticsSection(const Identification& identification, std::size_t inde
       {"log-likelihood", FixedText(statistics.log_likelihood, 2)},
       {"AIC, AICc, BIC",
        FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)}};
-  if (identification.is_joint()) facts.push_back({"separate fit", identification.spans[index].separate[k]});
+  if (fit.HasWarning("lack_of_fit"))
+    facts.push_back({"lack of fit", "the residuals are more than noise", Emphasis::kCaution});
+  if (identification.is_joint()) facts.push_back({"separate fit", identification.across[index].separate[k]});
   return {"Noise and statistics", "", {std::move(facts)}};
 }
 
@@ -316,7 +318,7 @@ Section SumSection(const FitStatistics& all) {
 /// What each of several recordings does not share.
 Section OwnSection(const Identification& identification, std::size_t index) {
   Table table{{{""}, {"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
-  const std::vector<std::string>& shared = identification.spans[index].shared;
+  const std::vector<std::string>& shared = identification.across[index].shared;
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
     std::string number = std::to_string(k + 1);
     for (const ParameterEstimate& parameter : identification.FitOf(k, index).parameters) {
@@ -335,6 +337,9 @@ Sections OwnSections(const Identification& identification, std::size_t index, st
   Sections sections = ConstancySections(recording.ConstancyOf(index));
   std::ranges::move(SuspicionSections(identification.FitOf(k, index), recording.used.sensor_errors),
                     std::back_inserter(sections));
+  if (identification.is_joint()) {
+    for (Section& section : sections) section.remark = "of the fit of this recording alone";
+  }
   return OfRecording(identification, k, std::move(sections));
 }
 
@@ -379,7 +384,7 @@ Sections FitSections(const Identification& identification, std::size_t index) {
   const bool is_joint = identification.is_joint();
   const ClosedFormCheck* const check = is_joint ? nullptr : identification.recordings.front().CheckOf(index);
   Sections sections = {ModelSection(identification, index), AllOfParameters(fit, rig, check)};
-  if (const std::optional<Homogeneity>& homogeneity = identification.spans[index].homogeneity) {
+  if (const std::optional<Homogeneity>& homogeneity = identification.across[index].homogeneity) {
     if (IsConverged(fit) && !homogeneity->agrees()) {
       sections.back().AddText("The recordings do not agree, but these errors assume that they do: see below.",
                               Emphasis::kCaution);

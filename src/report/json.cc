@@ -40,10 +40,10 @@ Json SensorErrorsJson(const DataSummary& data) {
   return json;
 }
 
-/// How the motion begins; null without a fit.
+/// How the motion of the main fit begins; null without a fit.
 Json StartJson(const Identification& identification, std::size_t k) {
   if (identification.fits.empty()) return nullptr;
-  return identification.FitOf(k, 0).start == StartKind::kRelease ? "release" : "moving";
+  return identification.FitOf(k, identification.MainFit()).start == StartKind::kRelease ? "release" : "moving";
 }
 
 Json RecordingJson(const Identification& identification, std::size_t k) {

@@ -412,7 +412,7 @@ void CollectMisfits(const Identification& identification, std::size_t index, Fit
   }
   if (list.empty()) return;
   EraseWarnings("lack_of_fit", summary);
-  if (identification.spans[index].lacks_fit) return;  // the verdict says it
+  if (identification.across[index].lacks_fit) return;  // the verdict says it
   summary.warnings.insert(summary.warnings.begin(),
                           {.code = "lack_of_fit",
                            .finding = "the law does not describe " +
@@ -573,13 +573,13 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (!identification.is_joint()) {  // the ends of the window say it
     for (const std::string_view code : {"ends_trimmed", "presliding"}) EraseWarnings(code, summary);
   }
-  const FitSpan& span = identification.spans[index];
+  const AcrossRecordings& across = identification.across[index];
   const IdentifiedRecording* const only = identification.is_joint() ? nullptr : &identification.recordings.front();
   const Constancy* const constancy = only == nullptr ? nullptr : only->ConstancyOf(index);
-  const bool lacks_fit = fit.HasWarning("lack_of_fit") || span.lacks_fit;
+  const bool lacks_fit = fit.HasWarning("lack_of_fit") || across.lacks_fit;
   SetVerdict(fit, constancy, lacks_fit, identification.fits.size() > 1, summary);
-  if (span.homogeneity) {
-    SetAgreement(*span.homogeneity, summary);
+  if (across.homogeneity) {
+    SetAgreement(*across.homogeneity, summary);
     CollectMisfits(identification, index, summary);
   }
   if (fit.termination != Termination::kConverged) return summary;

@@ -212,5 +212,14 @@ TEST(MeanAmplitude, IsNaNWithoutAFit) {
   EXPECT_TRUE(std::isnan(MeanAmplitude(fits.RecordingOf(0), fits.Fit(0), fits.options())));
 }
 
+// 0.3 counts are no angle.
+TEST(MeanAmplitude, IsNaNForAMotionInCounts) {
+  FittedAlone fits({ReleasedRun("linear", 0.3, 1)}, RigOptions("linear"));
+  for (ParameterEstimate& parameter : fits.Fit(0).parameters) {
+    if (parameter.unit == "rad") parameter.unit = "counts";
+  }
+  EXPECT_TRUE(std::isnan(MeanAmplitude(fits.RecordingOf(0), fits.Fit(0), fits.options())));
+}
+
 }  // namespace
 }  // namespace pendulum::amplitude_dependence_test

@@ -22,13 +22,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-FittedModels FitAll(const Recording& recording, const std::vector<std::string>& models,
-                    const FitOptions& options = {}) {
+FittedRecording FitAll(const Recording& recording, const std::vector<std::string>& models,
+                       const FitOptions& options = {}) {
   return Must(FitModels(recording, Whole(recording), options, models));
 }
 
 TEST(FitModels, KeepsTheRequestedOrder) {
-  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"drag", "viscous", "coulomb"});
+  const FittedRecording fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"drag", "viscous", "coulomb"});
   ASSERT_THAT(fitted.fits, SizeIs(3));
   EXPECT_EQ(fitted.fits[0].model.name, "drag");
   EXPECT_EQ(fitted.fits[1].model.name, "viscous");
@@ -38,7 +38,7 @@ TEST(FitModels, KeepsTheRequestedOrder) {
 TEST(FitModels, GivesTheResultOfFitRecordingForOneModel) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const FitReport alone = Fit(recording, ModelOptions("coulomb"));
-  const FittedModels fitted = FitAll(recording, {"coulomb"});
+  const FittedRecording fitted = FitAll(recording, {"coulomb"});
   ASSERT_THAT(fitted.fits, SizeIs(1));
   EXPECT_EQ(fitted.fits[0].Find("inertia")->estimate, alone.Find("inertia")->estimate);
 }
@@ -52,12 +52,12 @@ TEST(FitModels, UsesTheNoiseFamilyOfTheSmallestResidualsForAllModels) {
   run.resolution = kCount;
   const Recording recording = Must(SimulateRecording(run));
   EXPECT_EQ(Fit(recording, ModelOptions("viscous")).noise.family, NoiseFamily::kGaussian);
-  const FittedModels fitted = FitAll(recording, {"viscous", "coulomb"});
+  const FittedRecording fitted = FitAll(recording, {"viscous", "coulomb"});
   for (const FitReport& fit : fitted.fits) EXPECT_EQ(fit.noise.family, NoiseFamily::kQuantized) << fit.model.name;
 }
 
 TEST(FitModels, UsesTheSameStartForAllModels) {
-  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb", "drag"});
+  const FittedRecording fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb", "drag"});
   for (const FitReport& fit : fitted.fits) {
     EXPECT_EQ(fit.start, StartKind::kRelease) << fit.model.name;
     EXPECT_EQ(fit.residual.size(), fitted.used.size()) << fit.model.name;
@@ -89,7 +89,7 @@ TEST(FitModels, FindsOneFrequencyForAnUndersampledSwing) {
   const ChosenSwings swings = Must(ChooseSwings(recording, {}, options.rig));
   const FreeSwing& swing = swings.found.at(static_cast<std::size_t>(swings.chosen.at(0) - 1));
   ASSERT_TRUE(swing.undersampled);
-  const FittedModels fitted = Must(FitModels(recording, swing, options, {"viscous", "coulomb", "drag"}));
+  const FittedRecording fitted = Must(FitModels(recording, swing, options, {"viscous", "coulomb", "drag"}));
   ASSERT_THAT(fitted.fits, SizeIs(3));
   const double truth = run.parameters[0] * kTextbookTorque;
   for (const FitReport& fit : fitted.fits) {
@@ -104,7 +104,7 @@ TEST(FitModels, FindsOneFrequencyForAnUndersampledSwing) {
 TEST(FitModels, IgnoresAndReportsParametersOfOtherModels) {
   FitOptions options;
   options.fixed = {{"coulomb", 0.002}};
-  const FittedModels fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
+  const FittedRecording fitted = FitAll(Must(SimulateRecording(NoisyRun())), {"viscous", "coulomb"}, options);
   const auto warns = [](const FitReport& fit) { return fit.HasWarning("ignored_parameter"); };
   EXPECT_TRUE(warns(fitted.fits[0]));
   EXPECT_FALSE(warns(fitted.fits[1]));

@@ -116,6 +116,12 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
 }
 
+RunAlone Alone(const FitReport& fit, const Constancy& constancy) {
+  static const Recording recording;
+  static const FitOptions options;
+  return {"", recording, fit, options, &constancy};
+}
+
 // Two recordings with standard errors of 1 and 2 have the weights 4 : 1. With a change of s in the first and none in
 // the second the mean square is 4/5 s².
 TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
@@ -133,7 +139,7 @@ TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
   const double change = std::hypot(0.03, 0.03);  // sum of squares over 2 - 1
   Constancy constant;
   constant.halves = {{"inertia", "s^2", inertia.estimate, inertia.estimate, 1e-6, 1e-6, 0}};
-  AddInconstancyError({{first, changing}, {second, constant}}, {}, joint);
+  AddInconstancyError({Alone(first, changing), Alone(second, constant)}, {}, joint);
   EXPECT_NEAR(SystematicError(joint.whole, "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_NEAR(SystematicError(joint.runs[1], "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_TRUE(joint.whole.HasWarning("not_constant"));
@@ -155,7 +161,7 @@ TEST(Inconstancy, OfShortRecordingsIsTheirScatter) {
     JointFit joint;
     joint.whole = alone;
     joint.runs = {alone, alone};
-    AddInconstancyError({{alone, untested}, {alone, untested}}, {Between(p, 0.002)}, joint);
+    AddInconstancyError({Alone(alone, untested), Alone(alone, untested)}, {Between(p, 0.002)}, joint);
     EXPECT_EQ(SystematicError(joint.whole, "inertia"), expected);
     EXPECT_EQ(SystematicError(joint.runs[0], "inertia"), expected);
     EXPECT_EQ(joint.whole.HasWarning("not_constant"), expected > 0);
@@ -309,7 +315,7 @@ TEST(FrictionLawError, OfRecordingsIsTheirWeightedRootMeanSquare) {
   joint.whole = first;
   joint.runs = {first, second};
   const Constancy constant;
-  AddFrictionLawError({{first, constant}, {second, constant}}, joint);
+  AddFrictionLawError({Alone(first, constant), Alone(second, constant)}, joint);
   const double expected = 3e-5 * std::sqrt(4.0 / 5);
   EXPECT_NEAR(joint.whole.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
   EXPECT_NEAR(joint.runs[1].parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);

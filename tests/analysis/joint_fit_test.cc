@@ -21,9 +21,9 @@ using testing::SizeIs;
 using testing::StartsWith;
 
 TEST(FitTogether, FitsEveryModelToAllRecordings) {
-  const JointModels joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 1)), kThreeLaws, PlainOptions());
+  const FittedRecordings joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 1)), kThreeLaws, PlainOptions());
   EXPECT_EQ(joint.models, kThreeLaws);
-  ASSERT_THAT(joint.runs, SizeIs(3));
+  ASSERT_THAT(joint.recordings, SizeIs(3));
   ASSERT_THAT(joint.joint, SizeIs(3));
   ASSERT_THAT(joint.homogeneity, SizeIs(3));
   EXPECT_THAT(joint.joint[0].shared, ElementsAre("inertia", "viscous"));
@@ -40,7 +40,7 @@ TEST(FitTogether, FitsEveryModelToAllRecordings) {
 // TextbookParameters (fit_support.h): the true values in units of the restoring torque G.
 TEST(FitTogether, RecoversTheTruthForTheTrueLaw) {
   const std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 4);
-  const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
+  const FittedRecordings joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
   for (const double deviation : Deviations(joint.joint[0].whole, runs[0].parameters)) {
     EXPECT_LT(std::abs(deviation), 4);
   }
@@ -53,7 +53,7 @@ TEST(FitTogether, RecoversTheTruthForTheTrueLaw) {
 
 // Shared parameters are equal in all recordings; the other parameters differ.
 TEST(FitTogether, HasTheSharedEstimatesInEveryRecording) {
-  const JointModels joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 7)), {"coulomb"}, PlainOptions());
+  const FittedRecordings joint = FitJointModels(Simulate(ShortRuns(3, "coulomb", 7)), {"coulomb"}, PlainOptions());
   const FitReport& whole = joint.joint[0].whole;
   for (std::size_t k = 0; k < 3; ++k) {
     for (const ParameterEstimate& shared : whole.parameters) {
@@ -69,7 +69,7 @@ TEST(FitTogether, HasTheSharedEstimatesInEveryRecording) {
 TEST(FitTogether, UsesOptionsOnlyForModelsThatHaveTheParameter) {
   FitOptions options = PlainOptions();
   options.fixed = {{"coulomb", 0.004 / kTextbookTorque}};
-  const JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, options);
+  const FittedRecordings joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, options);
   EXPECT_EQ(joint.joint[0].whole.termination, Termination::kConverged);
   EXPECT_TRUE(joint.joint[1].whole.Find("coulomb")->fixed);
   EXPECT_EQ(joint.homogeneity[1].dof, 2);  // inertia and viscous friction
@@ -80,7 +80,7 @@ TEST(FitTogether, UsesOptionsOnlyForModelsThatHaveTheParameter) {
 TEST(FitTogether, WarnsOfDisagreeingRecordings) {
   std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
   runs[2].parameters[0] *= 1.01;
-  const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
+  const FittedRecordings joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
   EXPECT_THAT(joint.homogeneity[0].disagreeing, ElementsAre(2));
   EXPECT_TRUE(joint.joint[0].whole.HasWarning("recordings_disagree"));
   EXPECT_THAT(joint.homogeneity[0].verdict, HasSubstr("recording 3 disagrees with the others: its inertia is 1"));
@@ -89,7 +89,7 @@ TEST(FitTogether, WarnsOfDisagreeingRecordings) {
 TEST(FitTogether, NamesTheRecordingThatPreventsConvergence) {
   std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
   runs[1].parameters[0] *= 2;
-  const JointModels joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
+  const FittedRecordings joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
   const FitReport& whole = joint.joint[0].whole;
   EXPECT_EQ(whole.termination, Termination::kNotConverged);
   EXPECT_THAT(whole.reason, StartsWith("these are not swings of one pendulum"));
@@ -104,7 +104,8 @@ TEST(FitTogether, NamesTheRecordingThatPreventsConvergence) {
 TEST(FitTogether, FailsForAModelWithoutSharedParameters) {
   const std::vector<std::string> models = {"coulomb", "drag"};
   const auto recordings = Simulate(ShortRuns(2, "drag", 1));
-  const JointModels joint = FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"drag"});
+  const FittedRecordings joint =
+      FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"drag"});
   const FitReport& failed = joint.joint[0].whole;
   EXPECT_EQ(failed.termination, Termination::kFailed);
   EXPECT_EQ(failed.reason, "model coulomb has none of the shared parameters");
@@ -120,10 +121,10 @@ TEST(FitTogether, FailsForAModelWithoutSharedParameters) {
 
 TEST(FitTogether, FailsIfASeparateFitFailed) {
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
-  std::vector<RunModels> runs = FitEach(recordings, {"coulomb"}, PlainOptions());
-  runs[1].alone.fits[0].termination = Termination::kFailed;
-  runs[1].alone.fits[0].reason = "made so";
-  const JointModels joint = FitTogether(std::move(runs), PlainOptions(), {"coulomb"}, PhysicalNames({"coulomb"}));
+  std::vector<FittedRecording> runs = FitEach(recordings, {"coulomb"}, PlainOptions());
+  runs[1].fits[0].termination = Termination::kFailed;
+  runs[1].fits[0].reason = "made so";
+  const FittedRecordings joint = FitTogether(std::move(runs), PlainOptions(), {"coulomb"}, PhysicalNames({"coulomb"}));
   EXPECT_EQ(joint.joint[0].whole.termination, Termination::kFailed);
   EXPECT_EQ(joint.joint[0].whole.reason, "recording 2 cannot be fitted separately: made so");
   EXPECT_FALSE(joint.homogeneity[0].p);

@@ -22,12 +22,13 @@ inline FitOptions PlainOptions() {
 }
 
 /// Fits every model to each recording alone.
-inline std::vector<RunModels> FitEach(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
-                                      const FitOptions& options) {
-  std::vector<RunModels> runs;
+inline std::vector<FittedRecording> FitEach(const std::vector<Recording>& recordings,
+                                            const std::vector<std::string>& models, const FitOptions& options) {
+  std::vector<FittedRecording> runs;
   for (const Recording& recording : recordings) {
     const std::string label = "recording " + std::to_string(runs.size() + 1);
-    runs.push_back({label, Must(FitModels(recording, Whole(recording), options, models)), {}});
+    runs.push_back(Must(FitModels(recording, Whole(recording), options, models)));
+    runs.back().label = label;
   }
   return runs;
 }
@@ -49,8 +50,8 @@ inline std::vector<SyntheticOptions> ShortRuns(int count, std::string_view model
 }
 
 /// Joint fits with all physical parameters shared.
-inline JointModels FitJointModels(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
-                                  const FitOptions& options) {
+inline FittedRecordings FitJointModels(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
+                                       const FitOptions& options) {
   return FitTogether(FitEach(recordings, models, options), options, models, PhysicalNames(models));
 }
 

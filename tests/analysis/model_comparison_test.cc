@@ -22,15 +22,15 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 struct Compared {
-  FittedModels fitted;
+  FittedRecording fitted;
   Comparison comparison;
 };
 
 Compared Compare(const Recording& recording, const std::vector<std::string>& models, const CompareOptions& how = {}) {
   FitOptions options;
   options.interval = IntervalMethod::kCovariance;
-  FittedModels fitted = Must(FitModels(recording, Whole(recording), options, models));
-  Comparison comparison = CompareModels(fitted, options, how);
+  FittedRecording fitted = Must(FitModels(recording, Whole(recording), options, models));
+  Comparison comparison = CompareModels(OnlyOne(fitted), options, how);
   return {std::move(fitted), std::move(comparison)};
 }
 
@@ -167,12 +167,12 @@ TEST(CompareModels, ComparesConvergedFitsOnly) {
   Compared made = Compare(GaussianRecording("coulomb"), {"viscous", "coulomb"}, kCriteriaOnly);
   made.fitted.fits[1].termination = Termination::kNotConverged;
   made.fitted.fits[1].reason = "made so";
-  const Comparison again = CompareModels(made.fitted, {}, kCriteriaOnly);
+  const Comparison again = CompareModels(OnlyOne(made.fitted), {}, kCriteriaOnly);
   EXPECT_EQ(again.recommended, "viscous");
   EXPECT_FALSE(again.rows[1].judged || again.rows[1].bic);
   EXPECT_THAT(again.rows[1].reason, HasSubstr("made so"));
   made.fitted.fits[0].termination = Termination::kFailed;
-  const Comparison none = CompareModels(made.fitted, {}, kCriteriaOnly);
+  const Comparison none = CompareModels(OnlyOne(made.fitted), {}, kCriteriaOnly);
   EXPECT_THAT(none.recommended, IsEmpty());
   EXPECT_EQ(none.likelihood, Likelihood::kNone);
 }

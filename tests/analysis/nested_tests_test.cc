@@ -21,8 +21,9 @@ using testing::IsEmpty;
 std::vector<NestedTest> TestsOf(const Recording& recording, const std::vector<std::string>& models) {
   FitOptions options;
   options.interval = IntervalMethod::kCovariance;
-  const FittedModels fitted = Must(FitModels(recording, Whole(recording), options, models));
-  return CompareModels(fitted, options, {.predict = false}).tests;
+  return CompareModels(OnlyOne(Must(FitModels(recording, Whole(recording), options, models))), options,
+                       {.predict = false})
+      .tests;
 }
 
 TEST(TestNested, UsesHalfAChiSquareForOneBoundedTerm) {

@@ -54,9 +54,10 @@ inline Recommendations CountRecommendations(SyntheticOptions run, int count, std
     FitOptions options;
     options.interval = IntervalMethod::kCovariance;
     const Recording recording = *SimulateRecording(own);
-    const auto fitted = FitModels(recording, Whole(recording), options, models);
+    auto fitted = FitModels(recording, Whole(recording), options, models);
     if (!fitted) return;
-    recommended[static_cast<std::size_t>(i)] = CompareModels(*fitted, options, {.predict = false}).recommended;
+    recommended[static_cast<std::size_t>(i)] =
+        CompareModels(OnlyOne(*std::move(fitted)), options, {.predict = false}).recommended;
   });
   Recommendations counts;
   for (const std::string& name : recommended) ++counts[name];

@@ -22,7 +22,7 @@ struct Case {
 };
 
 struct Compared {
-  FittedModels fitted;
+  FittedRecording fitted;
   Comparison comparison;
 };
 

@@ -81,34 +81,20 @@ TEST(ToCurrentResult, RenamesAndMovesWhatVersion1Had) {
   EXPECT_EQ(Json::parse(ToCurrentResult(former)).dump(1), Json::parse(current).dump(1));
 }
 
-TEST(ToCurrentResult, MovesWhatEachRecordingOfAJointFitHad) {
+// Its keys had the unit m_s^2 until shortly before version 3.
+TEST(ToCurrentResult, WritesTheUnitOfAccelerationsAsItIsNow) {
   const std::string former = R"({
-    "schema_version": 2, "data": [{"path": "a"}, {"path": "b"}], "calibration": [null, {"input": "counts"}],
-    "closed_forms": [{"model": "viscous"}, null], "reason": "recording 2 (b): too short",
-    "fits": [{"model": "viscous", "status": "not_converged", "reason": "too few", "shared": ["inertia"],
-              "parameters": {"inertia": {"estimate": 1}}, "homogeneity": {"p": 0.5},
-              "runs": [{"path": "a", "release": null, "amplitude_rad": 0.25, "separate": "converged",
-                        "parameters": {"inertia": {"estimate": 1}, "viscous": {"estimate": 2}}},
-                       {"path": "b", "release": null, "amplitude_rad": 0.5, "separate": "failed: too short",
-                        "parameters": {"inertia": {"estimate": 1}, "viscous": {"estimate": 3}}}]}],
-    "warnings": [{"code": "gaps", "message": "a", "text": "b", "recordings": [2]}]})";
+    "schema_version": 2, "data": {"resolution_m_s^2": 0.5},
+    "fits": [{"model": "viscous", "status": "failed", "reason": "a", "parameters": {},
+              "statistics": {"rms_residual_m_s^2": 0.25, "runs_p": null, "reason": "runs_p is not a finite number"}}],
+    "warnings": [{"code": "gaps", "message": "a", "text": "b"}]})";
   const Json current = Json::parse(ToCurrentResult(former));
-  EXPECT_EQ(current["schema_version"], 3);
-  ASSERT_EQ(current["recordings"].size(), 2);
-  const Json& second = current["recordings"][1];
-  EXPECT_EQ(second["path"], "b");
-  EXPECT_EQ(second["calibration"]["input"], "counts");
-  EXPECT_EQ(second["reason"], "recording 2 (b): too short");
-  EXPECT_FALSE(current["recordings"][0].contains("reason"));
-  EXPECT_EQ(second["fits"][0]["parameters"].dump(), R"({"viscous":{"estimate":3}})");
-  EXPECT_EQ(second["fits"][0]["amplitude_rad"], 0.5);
-  EXPECT_EQ(second["fits"][0]["separate"], "failed: too short");
-  EXPECT_FALSE(second["fits"][0].contains("path"));
-  EXPECT_EQ(current["fits"][0]["parameters"].dump(), R"({"inertia":{"estimate":1}})");
-  EXPECT_EQ(current["fits"][0]["homogeneity"]["p"], 0.5);
-  EXPECT_FALSE(current["fits"][0].contains("runs"));
+  const Json& recording = current["recordings"][0];
+  EXPECT_EQ(recording["resolution_m_s2"], 0.5);
+  EXPECT_EQ(recording["fits"][0]["statistics"]["rms_residual_m_s2"], 0.25);
+  EXPECT_EQ(recording["fits"][0]["separate"], "failed: a");
+  EXPECT_EQ(current["fits"][0]["statistics"].dump(), R"({"rms_residual_m_s2":0.25})");
   EXPECT_EQ(current["warnings"][0]["text"], "b");
-  EXPECT_EQ(current["warnings"][0]["recordings"].dump(), "[2]");
 }
 
 TEST(ToCurrentResult, DoesNotChangeOtherTexts) {
@@ -126,6 +112,7 @@ TEST(ToCurrentFit, GivesTheFitItsOwnPart) {
   ASSERT_EQ(fit["recordings"].size(), 1);
   EXPECT_EQ(fit["recordings"][0]["parameters"].dump(), R"({"zero_angle":{"estimate":3}})");
   EXPECT_EQ(ToCurrentFit("no JSON"), "no JSON");
+  EXPECT_EQ(ToCurrentFit(fit.dump()), fit.dump());  // it is current already
 }
 
 }  // namespace

@@ -435,7 +435,8 @@ TEST_F(RefitTest, KeepsFitsOfModelsNoLongerRequested) {
   const std::string quantities = "SELECT * FROM quantities WHERE model <> 'viscous'";
   const std::vector<std::string> before = Rows(store_, quantities);
   Json fit = Json::parse(ValueOf("SELECT json_extract(result, '$.fits[1]') FROM runs"));
-  fit["recordings"] = {Json::parse(ValueOf("SELECT json_extract(result, '$.recordings[0].fits[1]') FROM runs"))};
+  const std::string own = ValueOf("SELECT json_extract(result, '$.recordings[0].fits[1]') FROM runs");
+  fit["recordings"] = Json::array({Json::parse(own)});
   RefitAll(OptionsWith({"viscous"}));
   EXPECT_THAT(Rows(store_, "SELECT model, stale FROM fits ORDER BY model"),
               ElementsAre("coulomb|the last refit did not ask for this model",

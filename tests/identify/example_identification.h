@@ -227,7 +227,7 @@ inline Identification ExampleIdentification() {
   report.rig->source = {{"gravity_torque", {{"value", 1.8}, {"std_dev", 0.01}}},
                         {"inertia", {{"value", 0.076}, {"std_dev", 0.0005}}}};
   report.fits = {ExampleFit()};
-  report.spans = {{{"inertia", "viscous", "coulomb"}, {0.25}, {"converged"}, {}, false}};
+  report.across = {{{"inertia", "viscous", "coulomb"}, {0.25}, {"converged"}, {}, false}};
   recording.sampling = Sampling{100, 0.0002, 1, 0.5, 0.8, 125, 62.5, 194, 20, 12, 0.8, 0.775};
   recording.closed_forms = ExampleClosedForms();
   recording.closed_forms_model = "coulomb";
@@ -288,11 +288,11 @@ inline Identification ExampleComparedIdentification() {
   drag.parameters[0].unit = "kg m^2";
   drag.parameters[0].estimate = 0.075;
   report.fits.push_back(drag);
-  report.spans.push_back({{"inertia", "viscous", "coulomb", "drag"},
-                          {0.25},
-                          {"not_converged: 100 iterations were not enough"},
-                          {},
-                          false});
+  report.across.push_back({{"inertia", "viscous", "coulomb", "drag"},
+                           {0.25},
+                           {"not_converged: 100 iterations were not enough"},
+                           {},
+                           false});
   IdentifiedRecording& recording = report.recordings.front();
   recording.checks.emplace_back();
   recording.constancy = {ExampleConstancy(), Constancy()};

@@ -65,13 +65,13 @@ inline Identification ExampleJointIdentification() {
   Identification report = ExampleIdentification();
   IdentifiedRecording& first = report.recordings.front();
   first.data.path = "run.csv";
-  first.fits = std::move(report.fits);
+  first.own_fits = std::move(report.fits);
   report.fits = {ExampleSharedFit()};
-  report.spans = {{{"inertia", "viscous", "coulomb"},
-                   {0.25, 0.125},
-                   {"converged", "not_converged: too few iterations"},
-                   ExampleHomogeneity(),
-                   false}};
+  report.across = {{{"inertia", "viscous", "coulomb"},
+                    {0.25, 0.125},
+                    {"converged", "not_converged: too few iterations"},
+                    ExampleHomogeneity(),
+                    false}};
   IdentifiedRecording second = first;
   second.data.path = "b c.csv";
   second.data.used_samples = 901;
@@ -82,7 +82,7 @@ inline Identification ExampleJointIdentification() {
   second.no_closed_forms = "only 2 turning points can be located";
   second.checks.clear();
   second.constancy.clear();
-  FitReport& fit = second.fits.front();
+  FitReport& fit = second.own_fits.front();
   fit.start = StartKind::kMoving;
   fit.parameters[3] = ExampleParameter(kInitialAngle, "rad", 0.25, 0.0125);
   fit.covariance_names[2] = "initial_angle";
@@ -97,11 +97,11 @@ inline Identification ExampleComparedJointIdentification() {
   Identification report = ExampleJointIdentification();
   const FitReport drag = ExampleComparedIdentification().fits[1];
   report.fits.push_back(drag);
-  report.spans.push_back(report.spans.front());
-  report.spans.back().shared = {"inertia", "viscous", "coulomb", "drag"};
+  report.across.push_back(report.across.front());
+  report.across.back().shared = {"inertia", "viscous", "coulomb", "drag"};
   report.comparison = ExampleComparison();
   for (IdentifiedRecording& recording : report.recordings) {
-    recording.fits.push_back(drag);
+    recording.own_fits.push_back(drag);
     if (!recording.checks.empty()) recording.checks.emplace_back();
     if (!recording.constancy.empty()) recording.constancy.emplace_back();
   }
@@ -132,7 +132,7 @@ inline Identification ExampleFailedJointIdentification() {
     fit.statistics = {};
   };
   fail(report.fits.front());
-  for (IdentifiedRecording& recording : report.recordings) fail(recording.fits.front());
+  for (IdentifiedRecording& recording : report.recordings) fail(recording.own_fits.front());
   return report;
 }
 

@@ -162,7 +162,7 @@ TEST(ExitCode, FollowsTheRecommendedFit) {
 TEST(Identification, HasTheFitOfARecordingWithAllItsParameters) {
   const Identification single = ExampleIdentification(), joint = ExampleJointIdentification();
   EXPECT_EQ(&single.FitOf(0, 0), &single.fits[0]);
-  EXPECT_EQ(&joint.FitOf(1, 0), &joint.recordings[1].fits[0]);
+  EXPECT_EQ(&joint.FitOf(1, 0), &joint.recordings[1].own_fits[0]);
   EXPECT_NE(joint.FitOf(1, 0).Find("initial_angle"), nullptr);
   EXPECT_EQ(joint.fits[0].Find("initial_angle"), nullptr);
 }
@@ -175,7 +175,7 @@ TEST(Identification, HasThePathOfItsOnlyRecording) {
 TEST(Identification, SharesTheMotionIfAllParametersOfThePendulumAreShared) {
   Identification joint = ExampleJointIdentification();
   EXPECT_TRUE(joint.SharesMotion(0));
-  joint.spans[0].shared.pop_back();
+  joint.across[0].shared.pop_back();
   EXPECT_FALSE(joint.SharesMotion(0));
   EXPECT_TRUE(ExampleIdentification().SharesMotion(0));
 }

@@ -47,9 +47,9 @@ TEST(IdentifyJointly, IdentifiesTheRigOfSeveralRecordings) {
   ASSERT_EQ(report.recordings.size(), 2);
   EXPECT_EQ(report.recordings[0].data.path, "datasets/runs_2.csv");
   EXPECT_EQ(report.recordings[1].data.samples, 1500);  // 15 s at 100 Hz
-  ASSERT_EQ(report.spans.size(), 1);
-  EXPECT_THAT(report.spans[0].separate, ElementsAre("converged", "converged"));
-  EXPECT_TRUE(report.spans[0].homogeneity->agrees()) << report.spans[0].homogeneity->verdict;
+  ASSERT_EQ(report.across.size(), 1);
+  EXPECT_THAT(report.across[0].separate, ElementsAre("converged", "converged"));
+  EXPECT_TRUE(report.across[0].homogeneity->agrees()) << report.across[0].homogeneity->verdict;
 }
 
 TEST(IdentifyJointly, RefusesARecordingThatIsNamedTwice) {

@@ -140,6 +140,14 @@ TEST(IdentifyEach, AddsAllConclusionsToTheFit) {
   EXPECT_EQ(report.recordings.front().data.path, "datasets/textbook_rig.csv");
   EXPECT_EQ(report.recordings.front().data.samples, 2000);  // 20 s at 100 Hz
   EXPECT_EQ(runs[0]->recordings.front().used.size(), report.recordings.front().data.used_samples);
+  ASSERT_THAT(report.across, SizeIs(1));
+  EXPECT_THAT(report.across[0].shared, testing::ElementsAre("inertia", "viscous"));
+  EXPECT_THAT(report.across[0].separate, testing::ElementsAre("converged"));
+  EXPECT_FALSE(report.across[0].homogeneity);
+  ASSERT_THAT(report.across[0].amplitudes, SizeIs(1));  // less than that of the release, by friction and by the mean
+  const double released = std::abs(report.fits[0].Find("release_angle")->estimate);
+  EXPECT_GT(report.across[0].amplitudes[0], 0.5 * released);
+  EXPECT_LT(report.across[0].amplitudes[0], released);
   EXPECT_EQ(ExitCode(*runs[0]), 0);
 }
 

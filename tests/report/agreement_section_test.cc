@@ -46,7 +46,7 @@ TEST(AgreementSection, ReportsTheScatterBetweenRecordings) {
 TEST(AgreementSection, CountsDegreesOfFreedom) {
   Identification report = ExampleJointIdentification();
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 1 degree of freedom, "));
-  report.spans[0].homogeneity->parameters[0].dof = 2;
+  report.across[0].homogeneity->parameters[0].dof = 2;
   EXPECT_THAT(Agreement(report), HasSubstr(" 0.16, 2 degrees of freedom, "));
 }
 
@@ -69,22 +69,22 @@ TEST(AgreementSection, HighlightsDisagreement) {
   Identification report = ExampleJointIdentification();
   const std::string caution = "\x1B[33mVerdict: ";  // SGR 33 of ECMA-48: yellow
   EXPECT_THAT(Agreement(report, {.colour = true}), Not(HasSubstr(caution)));
-  report.spans[0].homogeneity->p = 1e-6;
-  report.spans[0].homogeneity->verdict = "the recordings do not agree on inertia, viscous";
+  report.across[0].homogeneity->p = 1e-6;
+  report.across[0].homogeneity->verdict = "the recordings do not agree on inertia, viscous";
   EXPECT_THAT(Agreement(report, {.colour = true}), HasSubstr(caution + "the recordings do not agree"));
 }
 
 TEST(AgreementSection, HasOnlyAVerdictWithoutATest) {
   Identification report = ExampleJointIdentification();
-  report.spans[0].homogeneity = Homogeneity();
-  report.spans[0].homogeneity->verdict = "not tested: all shared parameters are fixed";
+  report.across[0].homogeneity = Homogeneity();
+  report.across[0].homogeneity->verdict = "not tested: all shared parameters are fixed";
   EXPECT_EQ(Agreement(report),
             "[[Do the recordings agree?]]\n    Verdict: not tested: all shared parameters are fixed.\n");
 }
 
 TEST(AgreementSection, HasADashForAnUninformativeRecording) {
   Identification report = ExampleJointIdentification();
-  report.spans[0].homogeneity->parameters[0].runs[0] = {};
+  report.across[0].homogeneity->parameters[0].runs[0] = {};
   EXPECT_THAT(Agreement(report), testing::ContainsRegex("    1 separate +-\n    2 separate +0.0791"));
 }
 
@@ -99,8 +99,8 @@ TEST(AgreementSection, OmitsTheJointEstimateOfAFailedFit) {
 // The unit "1" of a dimensionless parameter, such as dry friction without a rig, is not printed.
 TEST(AgreementSection, HasNoUnitForADimensionlessNumber) {
   Identification report = ExampleJointIdentification();
-  report.spans[0].homogeneity->parameters[1].unit = "1";
-  report.spans[0].homogeneity->parameters[1].scatter.between = 0.00125;
+  report.across[0].homogeneity->parameters[1].unit = "1";
+  report.across[0].homogeneity->parameters[1].scatter.between = 0.00125;
   EXPECT_THAT(Agreement(report), Not(testing::ContainsRegex("0\\.0013[ \n]+1,")));
 }
 

@@ -67,7 +67,7 @@ TEST(DataSections, ShowADashForARecordingWithoutAFile) {
 // The amplitude of a recording whose separate fit failed.
 TEST(DataSections, ShowADashForAnUnknownAmplitude) {
   Identification report = ExampleJointIdentification();
-  report.spans[0].amplitudes[0] = std::numeric_limits<double>::quiet_NaN();
+  report.across[0].amplitudes[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(TextOf(report, "Recordings"), testing::ContainsRegex("    1 .* held +-\n"));
 }
 

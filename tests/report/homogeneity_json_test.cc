@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::Not;
 
-Json HomogeneityOf(const Identification& report) { return HomogeneityJson(*report.spans[0].homogeneity); }
+Json HomogeneityOf(const Identification& report) { return HomogeneityJson(*report.across[0].homogeneity); }
 
 // ExampleSharedInertia contains these numbers and their calculation.
 TEST(HomogeneityJson, ReportsSeparateEstimates) {
@@ -31,7 +31,7 @@ TEST(HomogeneityJson, ReportsSeparateEstimates) {
 
 TEST(HomogeneityJson, ReportsAnUninformativeRecording) {
   Identification report = ExampleJointIdentification();
-  std::vector<RunEstimate>& runs = report.spans[0].homogeneity->parameters[0].runs;
+  std::vector<RunEstimate>& runs = report.across[0].homogeneity->parameters[0].runs;
   runs[0] = {};
   runs[1].z.reset();
   const Json json = HomogeneityOf(report)["parameters"]["inertia"]["runs"];
@@ -46,15 +46,15 @@ TEST(HomogeneityJson, NumbersDisagreeingRecordingsFromOne) {
   Identification report = ExampleJointIdentification();
   EXPECT_EQ(HomogeneityOf(report)["agrees"], true);
   EXPECT_EQ(HomogeneityOf(report)["outliers"], Json::array());
-  report.spans[0].homogeneity->p = 0.0099;  // recordings disagree below 0.01
-  report.spans[0].homogeneity->disagreeing = {1};
+  report.across[0].homogeneity->p = 0.0099;  // recordings disagree below 0.01
+  report.across[0].homogeneity->disagreeing = {1};
   EXPECT_EQ(HomogeneityOf(report)["agrees"], false);
   EXPECT_EQ(HomogeneityOf(report)["outliers"].dump(), "[2]");
 }
 
 TEST(HomogeneityJson, HasNoStatisticWithoutATest) {
   Identification report = ExampleJointIdentification();
-  Homogeneity& homogeneity = *report.spans[0].homogeneity;
+  Homogeneity& homogeneity = *report.across[0].homogeneity;
   homogeneity = {};
   homogeneity.amplitudes = {0.25, 0.125};
   homogeneity.reason = "all shared parameters are fixed";
@@ -75,7 +75,7 @@ TEST(HomogeneityJson, ReportsAmplitudeDependence) {
 TEST(HomogeneityJson, ExplainsNonFiniteNumbers) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Identification report = ExampleJointIdentification();
-  Homogeneity& homogeneity = *report.spans[0].homogeneity;
+  Homogeneity& homogeneity = *report.across[0].homogeneity;
   homogeneity.amplitude_dependence[0].span = kNan;
   homogeneity.parameters[0].scatter.between = std::numeric_limits<double>::infinity();
   homogeneity.parameters[0].statistic = kNan;

@@ -121,14 +121,14 @@ TEST(ToJson, HasHomogeneityForSeveralRecordingsOnly) {
 
 TEST(ToJson, HasNullForAnUnknownAmplitude) {
   Identification report = ExampleIdentification();
-  report.spans[0].amplitudes[0] = kNan;
+  report.across[0].amplitudes[0] = kNan;
   EXPECT_TRUE(ToJson(report)["recordings"][0]["fits"][0]["amplitude_rad"].is_null());
 }
 
 TEST(ToJson, WorksWithoutAFit) {
   Identification report = ExampleIdentification();
   report.fits.clear();
-  report.spans.clear();
+  report.across.clear();
   report.recordings.front().checks.clear();
   const Json json = ToJson(report);
   EXPECT_EQ(json["fits"], Json::array());
@@ -328,7 +328,7 @@ TEST(ToJson, ComparesResidualsInSigmasIfUnitsDiffer) {
 TEST(ToJson, WritesAnEquationIfAllParametersAreShared) {
   Identification report = ExampleJointIdentification();
   EXPECT_THAT(ToJson(report)["fits"][0]["equation"].get<std::string>(), HasSubstr("0.07900 th''"));
-  report.spans[0].shared = {"inertia", "viscous"};
+  report.across[0].shared = {"inertia", "viscous"};
   EXPECT_TRUE(ToJson(report)["fits"][0]["equation"].is_null());
 }
 

@@ -89,7 +89,7 @@ TEST(SummarizeFit, SaysThatTheRigDisagrees) {
   EXPECT_THAT(summary.verdict,
               HasSubstr("The rig disagrees: the fitted inertia is 13 % larger than its own (z 9.3), by "));
   EXPECT_EQ(summary.emphasis, Emphasis::kCaution);
-  EXPECT_THAT(summary.warnings, IsEmpty());  // the verdict says it
+  for (const Warning& warning : summary.warnings) EXPECT_NE(warning.code, "inertia_differs_from_rig");
 }
 
 TEST(SummarizeFit, SaysThatAShortRecordingIsNotTestedForConstancy) {
@@ -191,10 +191,10 @@ TEST(SummarizeFit, NamesWeaklyIdentifiableParameters) {
 TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
   Identification identification = ExampleJointIdentification();
   identification.fits[0].warnings.clear();
-  Homogeneity& homogeneity = *identification.spans[0].homogeneity;
+  Homogeneity& homogeneity = *identification.across[0].homogeneity;
   homogeneity.p = 0.5;
   homogeneity.disagreeing.clear();
-  identification.spans[0].lacks_fit = false;
+  identification.across[0].lacks_fit = false;
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
   homogeneity.p.reset();
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
@@ -207,8 +207,8 @@ TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
 TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
   Identification identification = ExampleJointIdentification();
   identification.fits[0].warnings.clear();
-  identification.spans[0].homogeneity->p = 0.5;
-  identification.spans[0].lacks_fit = true;
+  identification.across[0].homogeneity->p = 0.5;
+  identification.across[0].lacks_fit = true;
   EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all readings"));
 }
 

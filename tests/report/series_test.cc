@@ -293,8 +293,8 @@ TEST(SeriesJson, IsAnArrayOfRecordingsForAJointFit) {
   const Identification one = ReportOfThreeSamples();
   Identification report = ExampleJointIdentification();
   report.recordings = {one.recordings.front(), one.recordings.front()};
-  for (IdentifiedRecording& recording : report.recordings) recording.fits = one.fits;
-  report.recordings[1].fits[0].fitted[0] = 0.75;
+  for (IdentifiedRecording& recording : report.recordings) recording.own_fits = one.fits;
+  report.recordings[1].own_fits[0].fitted[0] = 0.75;
   report.recordings[1].used.time[2] = 0.25;
   const Json series = SeriesJson(report);
   ASSERT_EQ(series.size(), 2);

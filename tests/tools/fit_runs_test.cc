@@ -111,13 +111,13 @@ TEST(FitAll, CombinesSeveralRecordingsInOneRun) {
   ASSERT_TRUE(report.is_joint());
   ASSERT_EQ(report.recordings.size(), 2);
   EXPECT_GT(report.recordings[1].used.size(), 0);
-  ASSERT_EQ(report.spans.size(), 1);
+  ASSERT_EQ(report.across.size(), 1);
   EXPECT_EQ(report.recordings[0].data.path, "datasets/runs_1.csv");
   EXPECT_EQ(report.recordings[1].data.path, "datasets/runs_2.csv");
   EXPECT_EQ(report.unit, "rad");
   EXPECT_EQ(report.fits[0].termination, Termination::kConverged);
-  EXPECT_THAT(report.spans[0].shared, ElementsAre("inertia", "viscous", "coulomb"));
-  EXPECT_THAT(report.spans[0].separate, ElementsAre("converged", "converged"));
+  EXPECT_THAT(report.across[0].shared, ElementsAre("inertia", "viscous", "coulomb"));
+  EXPECT_THAT(report.across[0].separate, ElementsAre("converged", "converged"));
   const std::vector<std::pair<std::string, double>> truth = {
       {"inertia", 0.079}, {"viscous", 0.002}, {"coulomb", 0.004}};
   for (const auto& [name, value] : truth) {
@@ -125,8 +125,8 @@ TEST(FitAll, CombinesSeveralRecordingsInOneRun) {
     ASSERT_NE(estimate, nullptr) << name;
     EXPECT_NEAR(estimate->estimate, value, 4 * estimate->std_error.value()) << name;
     for (const IdentifiedRecording& own : report.recordings) {
-      EXPECT_EQ(own.fits[0].Find(name)->estimate, estimate->estimate) << name;
-      EXPECT_EQ(own.fits[0].Find(name)->std_error, estimate->std_error) << name;
+      EXPECT_EQ(own.own_fits[0].Find(name)->estimate, estimate->estimate) << name;
+      EXPECT_EQ(own.own_fits[0].Find(name)->std_error, estimate->std_error) << name;
     }
   }
 }
@@ -159,7 +159,7 @@ TEST(FitAll, AddsClosedFormsAndSamplingToEachRecording) {
     ASSERT_TRUE(own.sampling);
     EXPECT_NEAR(own.sampling->rate_hz, 100, 1e-6);
     EXPECT_EQ(own.data.used_samples, own.used.size());
-    EXPECT_EQ(own.fits[0].residual.size(), own.used.size());
+    EXPECT_EQ(own.own_fits[0].residual.size(), own.used.size());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pendulum/analysis/constancy.h"
 #include "pendulum/base/status.h"
 #include "pendulum/closed_form/free_swing.h"
 #include "pendulum/fitting/fit/fit.h"
@@ -11,11 +12,13 @@
 
 namespace pendulum {
 
-/// One free swing and the fit of each model to it.
-struct FittedModels {
-  Recording used;               ///< The samples that all models were fitted to, without warnings.
-  FreeSwing swing;              ///< As in SwingFit.
-  std::vector<FitReport> fits;  ///< In the order of the requested models; at least one.
+/// One recording, and the fit of each model to it alone.
+struct FittedRecording {
+  Recording used;                         ///< The samples that all models were fitted to, without warnings.
+  FreeSwing swing;                        ///< As in SwingFit.
+  std::vector<FitReport> fits;            ///< In the order of the requested models; at least one.
+  std::string label = {};                 ///< Of several recordings, its name in sentences: "recording 2 (b.csv)".
+  std::vector<Constancy> constancy = {};  ///< Constancy of the fits, in their order; or empty.
 };
 
 /// `options` for one of several models. Options for parameters that only other models have are left out and listed.
@@ -38,7 +41,7 @@ Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, con
 /// start. All fits use the noise family chosen for the model with the smallest residuals, and the readings as recorded.
 /// With one model the result equals that of FitSwing, which may correct them. Errors as FitSwing; if the richest law
 /// can be fitted and another model cannot, its report is kFailed.
-Result<FittedModels> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
-                               const std::vector<std::string>& models);
+Result<FittedRecording> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
+                                  const std::vector<std::string>& models);
 
 }  // namespace pendulum

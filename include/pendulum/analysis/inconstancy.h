@@ -18,18 +18,12 @@ namespace pendulum {
 /// (MODEL.md section 9). It is added in quadrature to the systematic error in `fit`, with the warning not_constant.
 void AddInconstancyError(const Constancy& constancy, FitReport& fit);
 
-/// One of several recordings fitted together: its fit alone, and the test of this fit.
-struct ChangingRun {
-  const FitReport& alone;
-  const Constancy& constancy;
-};
-
 /// Adds this error to a joint fit, with the same warning. Recordings of one rig change in the same way, so their number
 /// does not reduce it: it is the root mean square of the recordings' errors, weighted with 1 / std_error² of their fits
 /// alone. Recordings that are too short for a test of their own do not count there and have the others' error. If the
 /// recordings differ by more than their errors (p < Homogeneity::kDisagree), the error is at least their standard
 /// deviation `between` (MODEL.md eq. (10.5)). between: the shared parameters of TestHomogeneity.
-void AddInconstancyError(const std::vector<ChangingRun>& runs, const std::vector<SharedParameter>& between,
+void AddInconstancyError(const std::vector<RunAlone>& runs, const std::vector<SharedParameter>& between,
                          JointFit& joint);
 
 /// Adds the error by friction that the law does not have (MODEL.md section 16): how far the estimates are off by
@@ -40,6 +34,6 @@ void AddFrictionLawError(const Constancy& constancy, FitReport& fit);
 
 /// Adds this error to a joint fit. Recordings of one rig have the same friction, so their number does not reduce it: it
 /// is the root mean square of the recordings' errors, weighted with 1 / std_error² of their fits alone.
-void AddFrictionLawError(const std::vector<ChangingRun>& runs, JointFit& joint);
+void AddFrictionLawError(const std::vector<RunAlone>& runs, JointFit& joint);
 
 }  // namespace pendulum

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pendulum/analysis/fit_models.h"
+#include "pendulum/analysis/joint_fit.h"
 #include "pendulum/analysis/prediction.h"
 #include "pendulum/fitting/fit/fit.h"
 
@@ -61,9 +61,16 @@ struct CompareOptions {
   bool predict = true;  ///< Cross-validation and forward prediction.
 };
 
-/// Compares fits of several models to the same samples. Recommends the simplest model that converged and is within
+/// Compares fits of several models to the same recordings. Recommends the simplest model that converged and is within
 /// kWithinBic of the smallest BIC (MODEL.md eq. (9.2)). `options` are those of FitModels.
-Comparison CompareModels(const FittedModels& fitted, const FitOptions& options, const CompareOptions& how = {});
+///
+/// Several recordings: compares the joint fits. If the recordings disagree under the law that describes each of them
+/// best, compares the fits to each recording alone, because then no law makes the joint fit right. Likelihoods are sums
+/// over the recordings. Autocorrelated residuals have a separate autocorrelation for each recording, and the shared
+/// parameters are the most likely ones for all recordings. Each recording is predicted from parts of itself. If units
+/// differ there is no common rms; the residuals of a recording are then divided by the least σ of any model for this
+/// recording.
+Comparison CompareModels(const FittedRecordings& fitted, const FitOptions& options, const CompareOptions& how = {});
 
 inline constexpr double kWithinBic = 2;
 

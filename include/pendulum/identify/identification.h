@@ -58,7 +58,7 @@ struct IdentifiedRecording {
   std::optional<ClosedForms> closed_forms;  ///< Closed forms of the used samples, with the friction of the first model.
   std::string closed_forms_model;           ///< The name of that model; empty if closed forms were not requested.
   std::string no_closed_forms;              ///< Why there are no closed forms.
-  std::vector<FitReport> fits;              ///< One of several recordings: its part of each fit. See FitOf.
+  std::vector<FitReport> own_fits;          ///< One of several recordings: its part of each fit. See FitOf.
   std::vector<ClosedFormCheck> checks;      ///< One per fit, in order; or empty.
   std::vector<Constancy> constancy;         ///< One per fit, in order; or empty.
   std::vector<Warning> warnings;            ///< Warnings of the recording; those of a fit are in its FitReport.
@@ -70,8 +70,8 @@ struct IdentifiedRecording {
   const Constancy* ConstancyOf(std::size_t fit) const { return fit < constancy.size() ? &constancy[fit] : nullptr; }
 };
 
-/// What one fit says of its K recordings.
-struct FitSpan {
+/// What one fit says across its K recordings.
+struct AcrossRecordings {
   std::vector<std::string> shared;         ///< Names of the parameters that all recordings share.
   std::vector<double> amplitudes;          ///< K, of each recording's motion, rms [rad]; NaN if unknown.
   std::vector<std::string> separate;       ///< K: how the fit of each recording alone ended: status, and reason.
@@ -87,13 +87,15 @@ struct Identification {
   /// The fits to all recordings, in the order of the requested models; empty: closed forms only. A fit to one recording
   /// has all parameters, a fit to several has those that they share.
   std::vector<FitReport> fits;
-  std::vector<FitSpan> spans;            ///< One per fit.
+  std::vector<AcrossRecordings> across;  ///< One per fit.
   std::optional<Comparison> comparison;  ///< Comparison of the fits, if several were requested.
-  std::vector<Warning> warnings;         ///< Warnings of the whole.
+  std::vector<Warning> warnings;         ///< Those that are not about one recording or one fit.
 
   /// Fit m of recording k, with all parameters of the recording.
-  const FitReport& FitOf(std::size_t k, std::size_t m) const { return is_joint() ? recordings[k].fits[m] : fits[m]; }
-  FitReport& FitOf(std::size_t k, std::size_t m) { return is_joint() ? recordings[k].fits[m] : fits[m]; }
+  const FitReport& FitOf(std::size_t k, std::size_t m) const {
+    return is_joint() ? recordings[k].own_fits[m] : fits[m];
+  }
+  FitReport& FitOf(std::size_t k, std::size_t m) { return is_joint() ? recordings[k].own_fits[m] : fits[m]; }
 
   /// The rig, if it gives the restoring torque that converts results to SI; otherwise torques are in units of G.
   const std::optional<Rig>& si_rig() const;
@@ -118,12 +120,12 @@ struct Identification {
 /// The exit code of a run: that of its main fit; 0 for closed forms alone.
 int ExitCode(const Identification& identification);
 
-/// The warnings of the recording, then those of the fits, without repetitions. With several fits a warning names its
-/// model; with several recordings it names its recording, or says that it applies to each.
+/// All warnings without repetitions: of the whole, of the only recording, of the fits, of each of several recordings.
+/// With several fits a warning names its model; with several recordings it names its recording, or says that it applies
+/// to each.
 std::vector<Warning> AllWarnings(const Identification& identification);
 
-/// The warnings that concern fit `fit`: those of the recording or the recordings, and of this fit alone. A warning of a
-/// single recording of a joint fit names it.
+/// The same with the warnings of fit `fit` alone. A warning of one of several recordings names it.
 std::vector<Warning> WarningsOfFit(const Identification& identification, std::size_t fit);
 
 /// Whether recording k (0-based) is one of several free swings of its file.

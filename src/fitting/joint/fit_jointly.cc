@@ -304,7 +304,8 @@ void AddWarnings(const JointState& state, JointFit& fit) {
     const Description& described = state.descriptions[k];
     fit.runs[k].warnings = FitWarnings(*member.recording, *member.problem, member.solution, described.trace,
                                        described.quantile_residuals, described.correlated, fit.runs[k]);
-    fit.runs[k].suspicions = member.alone->suspicions;  // of the same readings
+    fit.runs[k].suspicions =
+        member.alone->suspicions;  // of the same readings; the joint fit is not checked for effects
   }
 }
 

@@ -28,7 +28,7 @@ struct JointFit {
   /// residuals, or of the first recording if there is none. Start and samples are empty.
   FitReport whole;
   /// One report for each recording. Its parameters, errors and covariance come from the joint fit. Its noise, residuals
-  /// and diagnostics are those of this recording; its suspicions are those of the fit alone.
+  /// and diagnostics are those of this recording; its suspicions are those of its separate fit.
   std::vector<FitReport> runs;
   int parameters = 0;  ///< Number of unfixed parameters that are not at a bound 0, plus one σ for each recording.
 

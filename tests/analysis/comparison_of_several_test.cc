@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/analysis/joint_comparison.h"
-
 #include <cmath>
 #include <string>
 #include <vector>
@@ -8,10 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/analysis/model_comparison.h"
 #include "tests/analysis/joint_models.h"
 #include "tests/fitting/correlated_noise.h"
 
-namespace pendulum::joint_comparison_test {
+namespace pendulum::comparison_of_several_test {
 namespace {
 
 using testing::DoubleNear;
@@ -23,14 +22,14 @@ using testing::SizeIs;
 constexpr CompareOptions kCriteriaOnly = {.predict = false};
 
 struct Compared {
-  JointModels joint;
+  FittedRecordings joint;
   Comparison comparison;
 };
 
 Compared Compare(const std::vector<Recording>& recordings, const std::vector<std::string>& models,
                  const CompareOptions& how = kCriteriaOnly) {
-  JointModels joint = FitJointModels(recordings, models, PlainOptions());
-  Comparison comparison = CompareJointModels(joint, PlainOptions(), how);
+  FittedRecordings joint = FitJointModels(recordings, models, PlainOptions());
+  Comparison comparison = CompareModels(joint, PlainOptions(), how);
   return {std::move(joint), std::move(comparison)};
 }
 
@@ -45,7 +44,7 @@ double GaussianLogLikelihood(const Eigen::VectorXd& residual) {
 // The criteria of one recording (model_comparison_test.cc), with the log-likelihood summed over three recordings of
 // 1000 samples. Each recording has four parameters of its own: two of its start, its zero and its σ. Residuals are
 // white, so effective_samples is 3000.
-TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
+TEST(CompareModels, HasTheTextbooksCriteriaOfAllRecordings) {
   const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "coulomb", 1)), {"viscous", "coulomb"});
   ASSERT_EQ(comparison.likelihood, Likelihood::kIndependent);
   ASSERT_THAT(comparison.rows, SizeIs(2));
@@ -64,17 +63,17 @@ TEST(CompareJointModels, HasTheTextbooksCriteriaOfAllRecordings) {
 }
 
 // The same recording used twice has the same optimum and twice the log-likelihood.
-TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedRecording) {
+TEST(CompareModels, DoublesTheLogLikelihoodOfARepeatedRecording) {
   const Recording recording = Must(SimulateRecording(NoisyRun()));
   const auto [joint, comparison] = Compare({recording, recording}, kThreeLaws);
-  const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), kThreeLaws));
-  const Comparison alone = CompareModels(once, PlainOptions(), kCriteriaOnly);
+  const FittedRecording once = Must(FitModels(recording, Whole(recording), PlainOptions(), kThreeLaws));
+  const Comparison alone = CompareModels(OnlyOne(once), PlainOptions(), kCriteriaOnly);
   for (std::size_t m = 0; m < 3; ++m) {
     EXPECT_NEAR(*comparison.rows[m].log_likelihood, 2 * *alone.rows[m].log_likelihood, 0.02) << kThreeLaws[m];
   }
 }
 
-TEST(CompareJointModels, GivesARicherLawNoSmallerLikelihood) {
+TEST(CompareModels, GivesARicherLawNoSmallerLikelihood) {
   const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", 11)), kThreeLaws);
   EXPECT_GE(*comparison.rows[1].log_likelihood, *comparison.rows[0].log_likelihood - 1e-3);
   EXPECT_GE(*comparison.rows[2].log_likelihood, *comparison.rows[1].log_likelihood - 1e-3);
@@ -82,7 +81,7 @@ TEST(CompareJointModels, GivesARicherLawNoSmallerLikelihood) {
 
 // ---- Recommendation ------------------------------------------------------------------------------------------------
 
-TEST(CompareJointModels, RecommendsTheTrueLaw) {
+TEST(CompareModels, RecommendsTheTrueLaw) {
   for (const std::string& law : kThreeLaws) {
     SCOPED_TRACE(law);
     std::vector<SyntheticOptions> runs = ShortRuns(3, law, 21);
@@ -96,17 +95,17 @@ TEST(CompareJointModels, RecommendsTheTrueLaw) {
   }
 }
 
-TEST(CompareJointModels, RecommendsNothingIfNothingConverged) {
-  JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
+TEST(CompareModels, RecommendsNothingIfNothingConverged) {
+  FittedRecordings joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
   for (JointFit& fit : joint.joint) fit.whole.termination = Termination::kNotConverged;
-  const Comparison none = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  const Comparison none = CompareModels(joint, PlainOptions(), kCriteriaOnly);
   EXPECT_EQ(none.likelihood, Likelihood::kNone);
   EXPECT_THAT(none.recommended, IsEmpty());
   EXPECT_EQ(none.reason, "no model converged, so none is recommended");
 }
 
 // Without noise the residuals of all laws that contain the true one are rounding errors in each recording.
-TEST(CompareJointModels, RecommendsTheSimplestLawWithoutNoise) {
+TEST(CompareModels, RecommendsTheSimplestLawWithoutNoise) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 1);
   for (SyntheticOptions& run : runs) run.noise = run.resolution = 0;
   const auto [joint, comparison] = Compare(Simulate(runs), kThreeLaws);
@@ -114,11 +113,11 @@ TEST(CompareJointModels, RecommendsTheSimplestLawWithoutNoise) {
   EXPECT_EQ(comparison.recommended, "coulomb") << comparison.reason;
 }
 
-TEST(CompareJointModels, ComparesConvergedFitsOnly) {
-  JointModels joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
+TEST(CompareModels, ComparesConvergedFitsOnly) {
+  FittedRecordings joint = FitJointModels(Simulate(ShortRuns(2, "coulomb", 1)), {"viscous", "coulomb"}, PlainOptions());
   joint.joint[1].whole.termination = Termination::kNotConverged;
   joint.joint[1].whole.reason = "made so";
-  const Comparison comparison = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  const Comparison comparison = CompareModels(joint, PlainOptions(), kCriteriaOnly);
   EXPECT_EQ(comparison.recommended, "viscous");
   EXPECT_FALSE(comparison.rows[1].judged || comparison.rows[1].bic);
   EXPECT_THAT(comparison.rows[1].reason, HasSubstr("made so"));
@@ -127,7 +126,7 @@ TEST(CompareJointModels, ComparesConvergedFitsOnly) {
 // ---- Nested tests --------------------------------------------------------------------------------------------------
 
 // One term is added, for any number of recordings: half χ²(0), half χ²(1), with the tail erfc(√(x/2)) / 2.
-TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
+TEST(CompareModels, TestsASharedTermWithOneDegreeOfFreedom) {
   for (const std::uint64_t seed : {11, 21, 31}) {
     const auto [joint, comparison] = Compare(Simulate(ShortRuns(3, "viscous", seed)), {"viscous", "coulomb"});
     ASSERT_THAT(comparison.tests, SizeIs(1));
@@ -148,25 +147,25 @@ TEST(CompareJointModels, TestsASharedTermWithOneDegreeOfFreedom) {
 
 // Three recordings, each with too little information, determine the common term together. Statistics of independent
 // recordings of one rig add up, except for a part from their disagreement, with expectation 2 and rarely above 20.
-TEST(CompareJointModels, AddsTheInformationOfRecordingsOnATerm) {
+TEST(CompareModels, AddsTheInformationOfRecordingsOnATerm) {
   std::vector<SyntheticOptions> runs = ShortRuns(3, "coulomb", 41);
   for (SyntheticOptions& run : runs) run.noise = 0.006;
   const auto recordings = Simulate(runs);
   const auto [joint, comparison] = Compare(recordings, {"viscous", "coulomb"});
   double sum = 0;
-  for (const RunModels& run : joint.runs) {
-    sum += CompareModels(run.alone, PlainOptions(), kCriteriaOnly).tests.at(0).statistic;
+  for (const FittedRecording& run : joint.recordings) {
+    sum += CompareModels(OnlyOne(run), PlainOptions(), kCriteriaOnly).tests.at(0).statistic;
   }
   EXPECT_GT(comparison.tests.at(0).statistic, sum - 20);
   EXPECT_LT(comparison.tests.at(0).p.value_or(1), 1e-6);
 }
 
-TEST(CompareJointModels, GivesNoPValueForTermsThatAreNotShared) {
+TEST(CompareModels, GivesNoPValueForTermsThatAreNotShared) {
   const std::vector<std::string> models = {"viscous", "coulomb"};
   const auto recordings = Simulate(ShortRuns(2, "coulomb", 1));
-  const JointModels joint =
+  const FittedRecordings joint =
       FitTogether(FitEach(recordings, models, PlainOptions()), PlainOptions(), models, {"inertia", "viscous"});
-  const Comparison comparison = CompareJointModels(joint, PlainOptions(), kCriteriaOnly);
+  const Comparison comparison = CompareModels(joint, PlainOptions(), kCriteriaOnly);
   ASSERT_THAT(comparison.tests, SizeIs(1));
   EXPECT_FALSE(comparison.tests[0].p);
   EXPECT_EQ(comparison.tests[0].reason, "the added parameters are not shared: each recording has its own");
@@ -191,7 +190,7 @@ std::vector<Recording> AutocorrelatedRecordings(int count, std::uint64_t seed) {
 
 // The innovations of AR(1) noise with correlation 0.9 have sqrt(1 - 0.81) times its standard deviation. ln L of all N
 // samples together is larger by -N/2 ln 0.19. Each recording has a separate autocorrelation of one or more parameters.
-TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
+TEST(CompareModels, UsesTheAutocorrelationOfEachRecording) {
   const auto [joint, comparison] = Compare(AutocorrelatedRecordings(3, 5), kThreeLaws);
   EXPECT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   EXPECT_THAT(comparison.criterion, HasSubstr("autocorrelated residuals"));
@@ -205,11 +204,11 @@ TEST(CompareJointModels, UsesTheAutocorrelationOfEachRecording) {
 }
 
 // Two copies have the same autocorrelation and the same optimum: twice the log-likelihood.
-TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedCorrelatedRecording) {
+TEST(CompareModels, DoublesTheLogLikelihoodOfARepeatedCorrelatedRecording) {
   const Recording recording = AutocorrelatedRecordings(1, 9).front();
   const auto [joint, comparison] = Compare({recording, recording}, {"viscous", "coulomb"});
-  const FittedModels once = Must(FitModels(recording, Whole(recording), PlainOptions(), {"viscous", "coulomb"}));
-  const Comparison alone = CompareModels(once, PlainOptions(), kCriteriaOnly);
+  const FittedRecording once = Must(FitModels(recording, Whole(recording), PlainOptions(), {"viscous", "coulomb"}));
+  const Comparison alone = CompareModels(OnlyOne(once), PlainOptions(), kCriteriaOnly);
   ASSERT_EQ(alone.likelihood, Likelihood::kCorrelated);
   ASSERT_EQ(comparison.likelihood, Likelihood::kCorrelated);
   for (std::size_t m = 0; m < 2; ++m) {
@@ -219,14 +218,14 @@ TEST(CompareJointModels, DoublesTheLogLikelihoodOfARepeatedCorrelatedRecording) 
 
 // ---- Predictions and units -----------------------------------------------------------------------------------------
 
-TEST(CompareJointModels, PredictsEachRecordingFromItsOwnFit) {
+TEST(CompareModels, PredictsEachRecordingFromItsOwnFit) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 51);
   for (SyntheticOptions& run : runs) run.duration = 20;
   const auto [joint, comparison] = Compare(Simulate(runs), {"viscous", "coulomb"}, CompareOptions{});
   const Prediction& pooled = comparison.rows[1].forward;
   double squares = 0, samples = 0;
-  for (const RunModels& run : joint.runs) {
-    const Prediction own = PredictForward(run.alone.used, run.alone.fits[1], PlainOptions());
+  for (const FittedRecording& run : joint.recordings) {
+    const Prediction own = PredictForward(run.used, run.fits[1], PlainOptions());
     squares += static_cast<double>(own.samples) * own.rms * own.rms;
     samples += static_cast<double>(own.samples);
   }
@@ -238,7 +237,7 @@ TEST(CompareJointModels, PredictsEachRecordingFromItsOwnFit) {
 }
 
 // An angle and a rate have no common unit. The true law's residuals over their σ have an rms of 1.
-TEST(CompareJointModels, NormalizesResidualsOfDifferentUnits) {
+TEST(CompareModels, NormalizesResidualsOfDifferentUnits) {
   std::vector<SyntheticOptions> runs = ShortRuns(2, "coulomb", 61);
   runs[1].quantity = Quantity::kRate;
   runs[1].noise = 0.01;
@@ -250,4 +249,4 @@ TEST(CompareJointModels, NormalizesResidualsOfDifferentUnits) {
 }
 
 }  // namespace
-}  // namespace pendulum::joint_comparison_test
+}  // namespace pendulum::comparison_of_several_test
