@@ -13,6 +13,7 @@ def with_schema_3(result: dict) -> dict:
     """The result with one shape for one and for several recordings. The amplitude of a single one was not stored: it is null."""
     if result["schema_version"] != 2:
         return result
+    result = with_current_units(result)
     is_joint = isinstance(result["data"], list)
 
     def of_each(key: str) -> list:
@@ -66,12 +67,33 @@ def shared_fit(fit: dict, shared: list[str]) -> dict:
         "shared": shared,
         "parameters": {name: value for name, value in fit["parameters"].items() if name in shared},
         "identifiability": [row for row in fit["identifiability"] if row["parameter"] in shared],
-        "homogeneity": fit.get("homogeneity"),
+        "homogeneity": homogeneity_of(fit),
     }
     new |= {key: rows_of(fit[key], shared) for key in ["covariance", "correlation", "systematic_covariance"]}
     statistics = fit["statistics"]
     new["statistics"] = statistics and {key: value for key, value in statistics.items() if key.startswith(TOGETHER)}
     return {**new, **{key: fit[key] for key in ["rig_verdict", "ambiguities", "summary"] if key in fit}}
+
+
+def homogeneity_of(fit: dict) -> dict | None:
+    """Whether several recordings agree; the estimates of each had the key `runs`."""
+    homogeneity = fit.get("homogeneity")
+    if homogeneity is None:
+        return None
+    parameters = {
+        name: {"recordings" if key == "runs" else key: value for key, value in parameter.items()}
+        for name, parameter in homogeneity["parameters"].items()
+    }
+    return {**homogeneity, "parameters": parameters}
+
+
+def with_current_units(value: object) -> object:
+    """The unit of accelerations had another spelling in keys until shortly before version 3: sigma_m_s^2."""
+    if isinstance(value, list):
+        return [with_current_units(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {key.replace("_m_s^2", "_m_s2"): with_current_units(item) for key, item in value.items()}
 
 
 def rows_of(matrix: dict, names: list[str]) -> dict:

@@ -22,9 +22,9 @@ Json RandomEffectsJson(const RandomEffects& scatter) {
 }
 
 Json SharedParameterJson(const SharedParameter& parameter) {
-  Json runs = Json::array();
+  Json recordings = Json::array();
   for (const RunEstimate& run : parameter.runs) {
-    runs.push_back(NumberObject()
+    recordings.push_back(NumberObject()
                        .Set("estimate", run.value, "the recording on its own does not determine it")
                        .Set("std_error", run.std_error, "the recording on its own does not determine it")
                        .Set("z", run.z, "no other recording determines it")
@@ -38,7 +38,7 @@ Json SharedParameterJson(const SharedParameter& parameter) {
       .Set("mean", parameter.mean)
       .Set("std_error", parameter.std_error)
       .Set("random_effects", RandomEffectsJson(parameter.scatter))
-      .Set("runs", std::move(runs))
+      .Set("recordings", std::move(recordings))
       .Done();
 }
 

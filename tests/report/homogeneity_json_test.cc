@@ -26,7 +26,7 @@ TEST(HomogeneityJson, ReportsSeparateEstimates) {
       R"({"unit":"kg m^2","statistic":0.16,"dof":1,"p":0.6892,"mean":0.078972,"std_error":0.00024,)"
       R"("random_effects":{"mean":0.078972,"std_error":0.00024,"interval95":[0.0759,0.082],)"
       R"("between_std_dev":0.0,"between_interval95":[0.0,0.005]},)"
-      R"("runs":[{"estimate":0.0789,"std_error":0.0003,"z":-0.4},{"estimate":0.0791,"std_error":0.0004,"z":0.4}]})");
+      R"("recordings":[{"estimate":0.0789,"std_error":0.0003,"z":-0.4},{"estimate":0.0791,"std_error":0.0004,"z":0.4}]})");
 }
 
 TEST(HomogeneityJson, ReportsAnUninformativeRecording) {
@@ -34,7 +34,7 @@ TEST(HomogeneityJson, ReportsAnUninformativeRecording) {
   std::vector<RunEstimate>& runs = report.across[0].homogeneity->parameters[0].runs;
   runs[0] = {};
   runs[1].z.reset();
-  const Json json = HomogeneityOf(report)["parameters"]["inertia"]["runs"];
+  const Json json = HomogeneityOf(report)["parameters"]["inertia"]["recordings"];
   EXPECT_EQ(json[0].dump(),
             R"({"estimate":null,"std_error":null,"z":null,)"
             R"("reason":"the recording on its own does not determine it; no other recording determines it"})");

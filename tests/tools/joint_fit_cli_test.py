@@ -108,7 +108,7 @@ class JointFit(JointTest):
         homogeneity = self.joint()["fits"][0]["homogeneity"]
         for k, name in enumerate(("a.csv", "b.csv")):
             alone = self.joint(data=name)["fits"][0]["parameters"]["inertia"]
-            of_joint = homogeneity["parameters"]["inertia"]["runs"][k]
+            of_joint = homogeneity["parameters"]["inertia"]["recordings"][k]
             self.assertAlmostEqual(of_joint["estimate"] / alone["estimate"], 1, delta=1e-9)
 
     def test_outputs_of_each_recording_are_numbered(self):
