@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <csv.h>
 #include <nlohmann/json.hpp>
 
 #include "batch/run_kinds.h"
@@ -166,9 +165,9 @@ std::string CsvField(std::string_view text) {
   if (text.find_first_of("\",;\t\r\n") == std::string_view::npos && !text.starts_with(' ') && !text.ends_with(' ')) {
     return std::string(text);
   }
-  std::string field(2 * text.size() + 2, '\0');  // the size that csv_write requires
-  field.resize(csv_write(field.data(), field.size(), text.data(), text.size()));
-  return field;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
 }
 
 Result<void> ExportJsonLines(Store& store, const TextSink& take) {

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <csv.h>
 #include <nlohmann/json.hpp>
 
 #include "pendulum/base/file.h"
@@ -31,104 +30,105 @@ struct Row {
   std::size_t line = 0;
 };
 
-/// Rows of CSV text from libcsv, which gets one line at a time so that the line of a row is known.
+/// Rows of CSV text (RFC 4180), also with another separator: the first of comma, semicolon and tab outside quotes in
+/// the first line. Blanks around a field that is not in quotes do not belong to it.
 class CsvRows {
  public:
-  explicit CsvRows(InputFile file) : lines_(std::move(file)) {
-    csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
-    csv_set_blk_size(&parser_, kBlock);
-  }
-  CsvRows(CsvRows&&) = delete;
-  CsvRows(const CsvRows&) = delete;
-  CsvRows& operator=(CsvRows&&) = delete;
-  CsvRows& operator=(const CsvRows&) = delete;
-  ~CsvRows() { csv_free(&parser_); }
+  explicit CsvRows(InputFile file) : lines_(std::move(file)) {}
 
   const std::string& name() const { return lines_.name(); }
 
   /// Reads the next row that is not blank; false at the end.
   Result<bool> Next(Row& row) {
-    row_.fields.clear();
-    complete_ = false;
-    row_bytes_ = 0;
-    row_.line = lines_.number() + 1;
-    while (!complete_) {
+    row = {};
+    std::size_t bytes = 0;
+    while (true) {
       ASSIGN_OR_RETURN(const bool next, lines_.Next());
-      if (!next) return EndOrUnclosedQuote();
-      if (!has_delimiter_ && lines_.line().find_first_not_of(" \t") != std::string::npos)
-        ChooseDelimiter(lines_.line());
-      if (!Parse(lines_.line()) || !Parse("\n")) return QuoteInFieldError();
-      if (continues_after_end_) return CarriageReturnError();
-      if (row_bytes_ > kLongestRow) return TooLongError();
-      if (!complete_ && row_.fields.empty() && !in_quotes()) {
-        row_.line = lines_.number() + 1;
-        row_bytes_ = 0;
+      if (!next && place_ == Place::kInQuotes) {
+        return RowFault(row,
+                        "a field begins with a double quote that is never closed; close it, or double a quote that "
+                        "belongs to the text");
       }
+      if (!next) return false;
+      const bool is_first = place_ != Place::kInQuotes;
+      if (is_first && lines_.line().find_first_not_of(" \t") == std::string::npos) continue;
+      if (is_first) row.line = lines_.number();
+      if (separator_ == 0) ChooseSeparator(lines_.line());
+      bytes += lines_.line().size();
+      if (bytes > kLongestRow) {
+        return RowFault(row,
+                        "the row that begins here is longer than 16 MiB; check for a double quote that is not closed");
+      }
+      RETURN_IF_ERROR(AddLine(lines_.line(), row));
+      if (place_ != Place::kInQuotes) return true;
+      field_ += '\n';
     }
-    std::swap(row, row_);
-    return true;
   }
 
  private:
-  /// Chooses the first separator outside quotes.
-  void ChooseDelimiter(std::string_view header) {
+  /// Before a field, within one, within quotes, behind them.
+  enum class Place { kBefore, kInField, kInQuotes, kBehindQuotes };
+
+  void ChooseSeparator(std::string_view header) {
     bool quoted = false;
-    has_delimiter_ = true;
+    separator_ = ',';
     for (const char c : header) {
       if (c == '"') quoted = !quoted;
       if (quoted || (c != ',' && c != ';' && c != '\t')) continue;
-      csv_set_delim(&parser_, static_cast<unsigned char>(c));
+      separator_ = c;
       return;
     }
   }
 
-  bool Parse(std::string_view text) {
-    row_bytes_ += text.size();
-    for (const char c : text) {
-      if (c == '"') quotes_ += 1;
+  /// Adds the fields that end in the line; one in quotes may go on in the next.
+  Result<void> AddLine(std::string_view line, Row& row) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const char c = line[i];
+      if (place_ == Place::kInQuotes) {
+        if (c != '"') {
+          field_ += c;
+        } else if (i + 1 < line.size() && line[i + 1] == '"') {
+          field_ += line[++i];
+        } else {
+          place_ = Place::kBehindQuotes;
+        }
+      } else if (c == separator_) {
+        EndField(row);
+      } else if (c == '\r') {
+        return LineFault("there is a carriage return within the line; end lines with LF or CRLF");
+      } else if (c == '"' && place_ == Place::kBefore) {
+        place_ = Place::kInQuotes;
+      } else if (c == '"' || (place_ == Place::kBehindQuotes && c != ' ' && c != '\t')) {
+        return LineFault(
+            "there is a double quote inside a field; put the whole field in quotes and double its own quotes");
+      } else if (place_ == Place::kInField || (place_ == Place::kBefore && c != ' ' && c != '\t')) {
+        place_ = Place::kInField;
+        field_ += c;
+      }
     }
-    const auto take_field = [](void* field, std::size_t size, void* self) {
-      auto& rows = *static_cast<CsvRows*>(self);
-      rows.continues_after_end_ = rows.continues_after_end_ || rows.complete_;
-      rows.row_.fields.emplace_back(static_cast<const char*>(field), size);
-    };
-    const auto end_row = [](int, void* self) { static_cast<CsvRows*>(self)->complete_ = true; };
-    return csv_parse(&parser_, text.data(), text.size(), take_field, end_row, this) == text.size();
+    if (place_ != Place::kInQuotes) EndField(row);
+    return {};
   }
 
-  bool in_quotes() const { return quotes_ % 2 == 1; }
-
-  Result<bool> EndOrUnclosedQuote() {
-    if (!in_quotes()) return false;
-    return Fault(name() + ":" + std::to_string(row_.line),
-                 "a field begins with a double quote that is never closed; close it, or double a quote that belongs to "
-                 "the text");
+  void EndField(Row& row) {
+    if (place_ == Place::kInField) field_.erase(field_.find_last_not_of(" \t") + 1);
+    row.fields.push_back(std::exchange(field_, {}));
+    place_ = Place::kBefore;
   }
 
-  Result<bool> TooLongError() const {
-    return Fault(name() + ":" + std::to_string(row_.line),
-                 "the row that begins here is longer than 16 MiB; check for a double quote that is not closed");
+  Result<bool> RowFault(const Row& row, const std::string& why) const {
+    return Fault(name() + ":" + std::to_string(row.line), why);
   }
-
-  /// libcsv would accept a carriage return as a line end.
-  Result<bool> CarriageReturnError() const {
-    return Fault(name() + ":" + std::to_string(lines_.number()),
-                 "there is a carriage return within the line; end lines with LF or CRLF");
-  }
-
-  Result<bool> QuoteInFieldError() {
-    return Fault(name() + ":" + std::to_string(lines_.number()),
-                 "there is a double quote inside a field; put the whole field in quotes and double its own quotes");
+  Result<void> LineFault(const std::string& why) const {
+    return Fault(name() + ":" + std::to_string(lines_.number()), why);
   }
 
   static constexpr std::size_t kLongestRow = std::size_t{16} << 20;  // bytes
-  static constexpr std::size_t kBlock = std::size_t{1} << 16;        // bytes; 128, the default, copies a row 10^5 times
 
   LineReader lines_;
-  csv_parser parser_{};
-  Row row_;
-  std::size_t quotes_ = 0, row_bytes_ = 0;
-  bool complete_ = false, continues_after_end_ = false, has_delimiter_ = false;
+  char separator_ = 0;  // 0: not chosen yet
+  std::string field_;
+  Place place_ = Place::kBefore;
 };
 
 /// Columns with a meaning; other columns are kept as they are.

@@ -6,7 +6,6 @@
 # Boost, whose licence in Debian is one among those of thousands of unused files.
 set(pendulum_third_parties
   libceres-dev
-  libcsv-dev
   libeigen3-dev
   libexpat1-dev
   libexpected-dev
