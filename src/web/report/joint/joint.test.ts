@@ -5,7 +5,6 @@ import { clipped, forestRange, placeOf, type ForestRow } from '../../shared/fore
 import { clippedWords, forestSentence } from '../../shared/forest_plot';
 import type { Homogeneity, Num, Parameter, Result, Series, SharedAgreement } from '../../shared/result_types';
 import { makeReport } from '../report';
-import { disagreement } from './disagreement';
 import { forestRows } from './forest_rows';
 import { beginning, elapsed, originWords, overlay } from './overlay';
 
@@ -40,12 +39,6 @@ const homogeneity = (more: Partial<Homogeneity> = {}): Homogeneity => ({
   parameters: { inertia: agreement([[1.9, 0.1], [2, 0.1], [2.2, 0.2]]) },
   amplitude_dependence: [],
   ...more,
-});
-
-test('recordings that disagree are named', () => {
-  expect(disagreement(homogeneity({ outliers: [] }))).toBe(null);
-  expect(disagreement(homogeneity({ outliers: [2] }))).toBe('Recording 2 disagrees with the others');
-  expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
 });
 
 const rowsOf = (runs: [Num, Num][], joint?: Parameter, mean?: Num): ForestRow[] =>
