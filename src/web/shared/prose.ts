@@ -24,7 +24,7 @@ let worded = (words: string): string => words;
 /** From now on applies `change` to all sentences of the JSON: the page of the service has no command-line flags. */
 export const wordWith = (change: (words: string) => string): void => void (worded = change);
 
-/** Applies the change of wordWith(), and writes powers, minus signs and degrees as print does. */
+/** Applies the change of wordWith(), and writes powers and minus signs as print does. */
 export function typeset(words: string): string {
   return worded(words)
     .replace(
@@ -35,8 +35,7 @@ export function typeset(words: string): string {
     .replace(/\bsigma\^/g, 'σ^')
     .replace(/\bchi2\b/g, 'χ²')
     .replace(/\^(-?\d+)/g, (_all, power: string) => raised(power))
-    .replace(/(?<![\p{L}\d_.)\]⁻-])-(?=\d)/gu, '−')
-    .replace(/(^|[\d)[]) ?deg\b/g, '$1°');
+    .replace(/(?<![\p{L}\d_.)\]⁻-])-(?=\d)/gu, '−');
 }
 
 /** "θ″" for "th''": the angle in an equation. */
@@ -46,9 +45,10 @@ export const withTheta = (words: string): string =>
 // A symbol such as I_O/G, or a name of the JSON such as release_angle; not a part of a path, a flag or a quoted word.
 const kSymbol = /(?<![\p{L}\d_/"'.-])(\p{L}_\p{L}{1,3}(?:\/\p{L}(?:_\p{L})?)?|[a-z]+(?:_[a-z]+)+)(?![\p{L}\d_"'/-]|\.\p{L})/u;
 
-/** A text of the program with symbols in italics and names as code. */
+/** A text of the program with degrees and dashes as in print, symbols in italics and names as code. */
 export function prose(words: string): Child[] {
-  const parts = withTheta(typeset(words)).split(kSymbol);
+  const plain = typeset(words).replace(/^-$/, '–').replace(/(^|[\d)[]) ?deg\b/g, '$1°');
+  const parts = withTheta(plain).split(kSymbol);
   return parts.map((part, i) => (i % 2 === 0 ? part : /^.{1}_/u.test(part) ? symbolElement(part) : el('code', {}, part)));
 }
 

@@ -2,7 +2,7 @@
 /** The sections of a report as the program words them (report/sections_json.h): the page shows the same texts and digits. */
 
 import { el, symbolElement, type Child } from './dom';
-import { prose, typeset } from './prose';
+import { capital, prose, typeset } from './prose';
 import { facts, table, type Cell } from './table';
 import { wordsOf } from './units';
 
@@ -46,21 +46,24 @@ export interface RowLook {
 
 const emphasized = (emphasis: Emphasis): Record<string, string> => (emphasis === 'none' ? {} : { class: emphasis });
 
+/** Begins with a capital letter, unless it begins with a name or a short symbol. */
+const capitalized = (text: string): string => (/^(?!rms)[a-z]{2,}($|[ ,])/.test(text) ? capital(text) : text);
+
 const kNames = ['', 'name', 'quantity', 'parameter'];
 
 /** "release angle release_angle": a name of the JSON in words. Other texts as they are. */
 function nameCell(name: string): Child[] {
   const words = wordsOf(name);
-  if (words !== name) return [words, el('code', {}, name)];
+  if (words !== name) return [words, ' ', el('code', {}, name)];
   return /^[a-z_]+$/.test(name) ? [name.replace(/_/g, ' ')] : prose(name);
 }
 
-/** The columns that are shown, as [first, end) of those they join. A drawing in text is left out: the page has a plot. */
+/** The columns with content, as [first, end) of those they join. A drawing in text is none: the page has a plot. */
 function joinedColumns({ columns, rows }: TableBlock): [number, number][] {
   const starts = columns.flatMap(({ joins }, i) => (joins ? [] : [i]));
   return starts
     .map((from, k): [number, number] => [from, starts[k + 1] ?? columns.length])
-    .filter(([from]) => columns[from].header !== '' || rows.some((row) => /[^\s*<>|-]/.test(row[from])));
+    .filter(([from]) => rows.some((row) => row[from] !== '' && (columns[from].header !== '' || /[^\s*<>|-]/.test(row[from]))));
 }
 
 /** A row that only repeats values in another unit, such as degrees, is part of the row before. */
@@ -83,6 +86,7 @@ function tableElement(caption: string, block: TableBlock, look: RowLook): HTMLEl
     texts.slice(from, end).filter((text) => text !== '').join(' ');
   const content = (text: string, at: number): Child[] => {
     if (at === 0 && look.head) return look.head(text);
+    if (header(at) === 'unit' && text === '1') return [];
     if (text === block.caution) return [el('strong', { class: 'no' }, ...prose(text))];
     if (header(at) === 'symbol' && text !== '') return [symbolElement(text)];
     return at < 2 && kNames.includes(header(at)) ? nameCell(text) : prose(text);
@@ -90,10 +94,11 @@ function tableElement(caption: string, block: TableBlock, look: RowLook): HTMLEl
   const cell = (group: string[][], span: [number, number]): Cell => {
     const [first, ...others] = group.map((row) => joined(row, span));
     const more = others.filter((text) => text !== '').map((text) => el('small', {}, ...prose(text)));
-    return [...content(first, span[0]), ...more];
+    const told = content(first, span[0]);
+    return [told.length > 0 && first !== '' && el('span', {}, ...told), ...more];
   };
   const columns = spans.map((span) => ({
-    head: el('span', {}, ...prose(joined(block.columns.map((column) => column.header), span))),
+    head: el('span', {}, ...prose(capitalized(joined(block.columns.map((column) => column.header), span)))),
     kind: block.columns[span[0]].is_number ? ('number' as const) : ('text' as const),
   }));
   const marked = groups.flatMap(([[text]], i) => (look.marked?.(text) ? [i] : []));
@@ -109,7 +114,7 @@ function tableElement(caption: string, block: TableBlock, look: RowLook): HTMLEl
 
 /** `caption`: of a table, for screen readers. */
 export function blockElement(block: Block, caption: string, look: RowLook = {}): HTMLElement {
-  if (block.kind === 'words') return el('p', emphasized(block.emphasis), ...prose(block.text));
+  if (block.kind === 'words') return el('p', emphasized(block.emphasis), ...prose(capitalized(block.text)));
   if (block.kind === 'formula') return el('p', { class: 'equation' }, ...prose(block.text));
   if (block.kind === 'table') return tableElement(caption, block, look);
   if (block.kind === 'facts') {
@@ -117,13 +122,13 @@ export function blockElement(block: Block, caption: string, look: RowLook = {}):
     list.classList.add('lines');
     return list;
   }
-  const items = block.texts.map((text) => el('li', {}, ...prose(text)));
+  const items = block.texts.map((text) => el('li', {}, ...prose(capitalized(text))));
   return el('ul', block.emphasis === 'none' ? {} : { class: 'warnings' }, ...items);
 }
 
-/** Captions of the tables: each is different, so that screen readers can tell them apart. */
+/** Captions of the tables: each is different, also from the heading, so that screen readers can tell them apart. */
 export const captionOf = (section: ReportSection, k: number): string =>
-  k === 0 ? section.title : `${section.title}, part ${k + 1}`;
+  `${section.title}: table${k === 0 ? '' : ` ${k + 1}`}`;
 
 export const blockElements = (section: ReportSection, look: RowLook = {}): HTMLElement[] =>
   section.blocks

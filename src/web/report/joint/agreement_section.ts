@@ -3,6 +3,7 @@
 
 import { el, text } from '../../shared/dom';
 import { clippedWords, forestPlot, forestSentence, savedForest } from '../../shared/forest_plot';
+import { capital } from '../../shared/prose';
 import type { Homogeneity, Parameter } from '../../shared/result_types';
 import { absent, figure, section } from '../../shared/section';
 import { blockElement, captionOf, type Block } from '../../shared/sections';
@@ -38,7 +39,7 @@ export function agreementSection(report: Report): HTMLElement {
   const pair = (name: string, table: HTMLElement | null): HTMLElement => {
     open.delete(name);
     const both = el('div', { class: 'pair agree', 'data-forest': name }, plotOf(name), table);
-    return el('div', {}, el('h3', {}, wordsOf(name)), both);
+    return el('div', {}, el('h3', {}, capital(wordsOf(name))), both);
   };
   const parts = sectionsOf(report, 'agreement').flatMap((one) =>
     one.blocks.map((block, k) => {
