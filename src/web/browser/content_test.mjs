@@ -110,7 +110,7 @@ test('the 95 % band of the fitted curve and the noise of the residuals are drawn
 
 test('a pair of parameters has its confidence regions', async (t) => {
   const page = await open(t, makeResult(), makeSeries());
-  assert.match(await page.locator('#correlation').textContent(), /viscous, coulomb−0\.995/);
+  assert.match(await page.locator('#correlation').textContent(), /viscous friction, dry friction−0\.995/);
   const plot = page.locator('#correlation .plot[aria-label]'); // it is named when it is drawn
   assert.match(await plot.getAttribute('aria-label'), /^68 % and 95 % regions of viscous friction and dry friction/);
   await page.locator('#correlation label', { hasText: 'moment of inertia, dry friction' }).click();

@@ -47,15 +47,15 @@ export interface RowLook {
 const emphasized = (emphasis: Emphasis): Record<string, string> => (emphasis === 'none' ? {} : { class: emphasis });
 
 /** Begins with a capital letter, unless it begins with a name or a short symbol. */
-const capitalized = (text: string): string => (/^(?!rms)[a-z]{2,}($|[ ,])/.test(text) ? capital(text) : text);
+const capitalized = (text: string): string => (/^(?!rms|th )[a-z]{2,}($|[ ,])/.test(text) ? capital(text) : text);
 
 const kNames = ['', 'name', 'quantity', 'parameter'];
 
-/** "release angle release_angle": a name of the JSON in words. Other texts as they are. */
-function nameCell(name: string): Child[] {
-  const words = wordsOf(name);
-  if (words !== name) return [words, ' ', el('code', {}, name)];
-  return /^[a-z_]+$/.test(name) ? [name.replace(/_/g, ' ')] : prose(name);
+/** "release angle release_angle": a name of the JSON in words; also several names. Other texts as they are. */
+function nameCell(text: string): Child[] {
+  if (!/^[a-z_]+(, [a-z_]+)*$/.test(text)) return prose(text);
+  const words = text.split(', ').map((name) => wordsOf(name).replace(/_/g, ' ')).join(', ');
+  return wordsOf(text) === text ? [words] : [words, ' ', el('code', {}, text)];
 }
 
 /** The columns with content, as [first, end) of those they join. A drawing in text is none: the page has a plot. */
