@@ -31,10 +31,10 @@ const shownFit = ({ fits, comparison }) => fits.find((one) => one.model === comp
 const bottoms = (page, selector) =>
   page.locator(selector).evaluateAll((all) => all.map((element) => element.getBoundingClientRect().bottom));
 
-/** "(1.2 ± 0.3) × 10⁻⁶" for "(1.2 ± 0.3)e-06". */
+/** "(−1.2 ± 0.3) × 10⁻⁶" for "(-1.2 ± 0.3)e-06". */
 function typeset(text) {
   const raised = (power) => [...String(Number(power))].map((c) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
-  return text.replace(/([\d)])e([-+]\d+)/, (_all, end, power) => `${end} × 10${raised(power)}`);
+  return text.replace(/([\d)])e([-+]\d+)/, (_all, end, power) => `${end} × 10${raised(power)}`).replace(/^(\(?)-/, '$1−');
 }
 
 for (const name of Object.keys(kReports)) {

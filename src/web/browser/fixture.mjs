@@ -23,55 +23,8 @@ export const warning = (code, text, more = {}) => ({
 /** A warning about one law. */
 const ofLaw = (law, code, text) => warning(code, text, { message: `${law}: ${text}`, law });
 
-function comparisonOf(fits, recommended) {
-  const prediction = (standardized) => ({ rms_rad: 0.003 * standardized, standardized, samples: 900 });
-  const rows = fits.map((fit, i) => ({
-    model: fit.model,
-    is_compared: i > 0,
-    parameters: 5 + i,
-    rms_residual_rad: kSigma,
-    log_likelihood: -2889,
-    aic: 1,
-    aicc: 1,
-    bic: 1,
-    delta_bic: i === 0 ? null : 1.9 * (i - 1),
-    akaike_weight: i === 0 ? null : 0.5,
-    cross_validation: prediction(1.01),
-    forward_prediction: i === 0 ? null : prediction(1.02),
-    lag1_correlation: 0.01,
-    ljung_box_p: 0.4,
-    lack_of_fit: i === 0,
-    ...(i === 0 ? { reason: 'it leaves more than noise' } : {}),
-  }));
-  return {
-    recommended,
-    reason: `the simplest law whose residuals are noise`,
-    criterion: 'bic',
-    criterion_reason: 'residuals are independent',
-    likelihood: 'independent',
-    effective_samples: 2000,
-    rows,
-    tests: [
-      {
-        simpler: 'viscous',
-        richer: 'coulomb',
-        added: ['coulomb'],
-        statistic: 812.1,
-        null: 'half χ²(0), half χ²(1)',
-        p: 1e-150,
-      },
-      {
-        simpler: 'coulomb',
-        richer: 'drag',
-        added: ['drag'],
-        statistic: null,
-        null: 'none',
-        p: null,
-        reason: 'drag did not converge',
-      },
-    ],
-  };
-}
+/** What the page reads of a comparison: its table is a section. */
+const comparisonOf = (recommended) => ({ recommended, reason: 'the simplest law whose residuals are noise' });
 
 /** A result of these models with all optional parts. */
 export function makeResult({
@@ -95,28 +48,14 @@ export function makeResult({
         duration_s: end,
         sample_rate_hz: rate,
         resolution_rad: 0.0035,
-        resolution_source: 'file',
         clock_scale: 1,
-        clock_scale_std_dev: 0,
-        sensor: null,
         window_s: [0, end],
-        window_reason: 'begins: held, then released; ends: the end of the recording',
-        releases: [[0, end]],
         release: 1,
-        start: 'release',
         sampling: {
           rate_hz: rate,
-          jitter_s: 0,
-          gaps: 0,
-          longest_gap_s: 0,
           frequency_hz: 1 / kPeriod,
-          apparent_frequency_hz: 1 / kPeriod,
-          expected_frequency_hz: null,
           samples_per_period: rate * kPeriod,
           nyquist_margin: (rate * kPeriod) / 2,
-          start_counts: 240,
-          end_counts: 100,
-          saturated_samples: 0,
         },
         calibration: {
           schema_version: 1,
@@ -133,16 +72,12 @@ export function makeResult({
             periods: 12,
           },
           decrement: null,
-          envelopes: [{ term: 'viscous', shape: 'exponential', chi_square: 40, dof: 39, p: 0.43 }],
-          envelope: 'exponential (viscous friction alone, p 0.43)',
-          turning_points: 20,
-          noise_rad: kSigma,
         },
         fits: models.map(recordingFitOf),
       },
     ],
     fits,
-    comparison: models.length > 1 ? comparisonOf(fits, models[1]) : null,
+    comparison: models.length > 1 ? comparisonOf(models[1]) : null,
     warnings: [
       ...(models.length > 1 ? [ofLaw('viscous', 'lack_of_fit', 'the residuals are more than noise; try another law')] : []),
       warning('weakly_identifiable', 'viscous is weakly identifiable; record for longer'),
@@ -220,7 +155,6 @@ const kNothing = {
   covariance: kEmpty,
   correlation: kEmpty,
   systematic_covariance: kEmpty,
-  std_error_method: null,
   identifiability: [],
   statistics: null,
 };
@@ -231,7 +165,6 @@ export const failed = (fit, reason, more = {}) => ({
   ...kNothing,
   status: 'failed',
   reason,
-  equation: null,
   summary: {
     ...fit.summary,
     verdict: `No result with ${fit.model} (failed): ${reason}.`,
@@ -245,20 +178,15 @@ export const failed = (fit, reason, more = {}) => ({
     warnings: [],
     ...more,
   },
-  derived: {},
-  interval_method: null,
 });
 
 /** What remains of it for a recording. */
-export const failedPart = (fit, reason) => ({
+export const failedPart = (fit) => ({
   ...fit,
   ...kNothing,
   amplitude_rad: null,
   noise: null,
-  closed_form: [],
   constancy: null,
-  constancy_reason: 'there is no fit',
-  separate: `failed: ${reason}`,
 });
 
 /** The result of a fit that failed. */
@@ -269,12 +197,8 @@ export function makeFailed() {
   Object.assign(recording, {
     sampling: null,
     resolution_rad: null,
-    resolution_source: null,
-    start: null,
-    window_reason: null,
     closed_forms: null,
-    reason: 'there are no turning points',
-    fits: recording.fits.map((fit) => failedPart(fit, reason)),
+    fits: recording.fits.map((fit) => failedPart(fit)),
   });
   return { ...result, fits: result.fits.map((fit) => failed(fit, reason)), warnings: [] };
 }

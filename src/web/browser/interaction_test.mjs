@@ -97,9 +97,6 @@ test('amplitudes on a logarithmic axis', async (t) => {
   await page.locator('#envelope label', { hasText: 'logarithmic' }).click();
   await page.waitForSelector('#envelope .plot[aria-label*=logarithmic]');
   assert.ok((await ink(page, '#envelope .plot')) > 3000);
-  await page.locator('#envelope summary').click();
-  await page.waitForSelector('#envelope details tbody tr'); // made after the click, when the browser reports that it is open
-  assert.equal(await page.locator('#envelope details tbody tr').count(), makeSeries()[0].peaks.length);
 });
 
 test('a million samples are drawn and zoomed', { timeout: 600_000 }, async (t) => {

@@ -11,6 +11,8 @@ import { pathToFileURL } from 'node:url';
 
 import { chromium } from 'playwright-core';
 
+import { sectionsOf } from './fixture_sections.mjs';
+
 const built = (name) => fs.readFileSync(new URL(`../dist/${name}`, import.meta.url), 'utf8');
 export const template = built('report.html');
 export const summaryTemplate = built('summary.html');
@@ -47,8 +49,9 @@ function write(page, parts) {
 
 /** Opens a report with this content. */
 export function open(t, result, series, options = {}) {
-  const { command = { command: 'fit_pendulum --data run.csv' } } = options;
-  return openFile(t, write(template, { '@RESULT@': result, '@SERIES@': series, '@COMMAND@': command }), options);
+  const { command = { command: 'fit_pendulum --data run.csv' }, sections = sectionsOf(result) } = options;
+  const parts = { '@RESULT@': result, '@SECTIONS@': sections, '@SERIES@': series, '@COMMAND@': command };
+  return openFile(t, write(template, parts), options);
 }
 
 /** Opens the summary of a batch. */

@@ -53,6 +53,7 @@ test('a dropped file is fitted at once, and the numbers equal those of the API',
     ['viscous', 'coulomb', 'drag'],
   );
   assert.match(await page.locator('#verdict').textContent(), /Recommended law: coulomb/);
+  assert.equal(await page.locator('#comparison .marked th').first().textContent(), 'coulomb');
   assert.match(
     await page.locator('#provenance pre').textContent(),
     /^fit_pendulum --data coulomb\.csv --model viscous,coulomb,drag$/,

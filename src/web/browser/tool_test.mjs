@@ -101,8 +101,8 @@ async function assertJoint(t, ...files) {
       assert.ok(Math.abs(error - one.std_error) <= 0.15 * one.std_error, `${name}: ± ${error} is not ${one.std_error}`);
     }
   }
-  const agreement = await page.locator('.agreement').textContent();
-  assert.match(agreement, shown.homogeneity.agrees ? /^They agree/ : /disagree|do not agree/);
+  const agreement = await page.locator('#agreement > div > p').first().textContent();
+  assert.match(agreement, shown.homogeneity.agrees ? /^Verdict: the recordings agree/ : /disagree|do not agree/);
   assert.equal(await page.locator('#recordings table').first().locator('tbody tr').count(), files.length);
   const provenance = await page.locator('#provenance').textContent();
   for (const { sha256 } of result.recordings) assert.ok(provenance.includes(sha256), sha256);

@@ -3,13 +3,12 @@
 
 import { banner, warningList } from '../shared/banner';
 import { details, el, symbolElement, text, type Child } from '../shared/dom';
-import { sentence, typeset } from '../shared/prose';
+import { sentence, typeset, withTheta } from '../shared/prose';
 import type { Comparison, Fit, FitSummary, Result, SummaryQuantity } from '../shared/result_types';
 import { plusMinus } from '../shared/rounding';
 import { section } from '../shared/section';
 import { symbolOf, unitText, wordsOf } from '../shared/units';
 import { budgetBar, budgetLegend, sourcesOf } from './budget';
-import { equationText } from './equation';
 import { warningsOf } from './report';
 
 /** "0.0790 ± 0.0028 kg m²", the texts of the JSON. A line can break only before the unit. */
@@ -128,7 +127,7 @@ export function answerPart(fit: Fit, result: Result, swing: HTMLElement | null):
     const why = 'An earlier version of the program made this result, so it has no summary. Fit the recording again.';
     return [banner({ level: 'caution', title: `Fit of the law ${fit.model}`, sentence: why }, recommended), swing];
   }
-  const equation = summary.equation === '' ? null : equationText(summary.equation);
+  const equation = summary.equation === '' ? null : withTheta(typeset(summary.equation));
   const more = el(
     'div',
     { class: 'answer-more' },

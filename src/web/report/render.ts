@@ -9,9 +9,7 @@ import { agreementSection } from './joint/agreement_section';
 import { oneRecordingPart } from './joint/one_recording';
 import { overlaySection } from './joint/overlay_section';
 import { recordingsSection } from './joint/recordings_section';
-import { parameterSection } from './parameters';
-import { isSeveral, recordingFile, shownFit, type Report } from './report';
-import { closedFormSection } from './sections/closed_form_section';
+import { isSeveral, recordingFile, type Report } from './report';
 import { comparisonSection } from './sections/comparison_section';
 import { constancySection } from './sections/constancy_section';
 import { correlationSection } from './sections/correlation_section';
@@ -23,6 +21,7 @@ import { provenanceSection, rigSection } from './sections/provenance_section';
 import { residualSection } from './sections/residual_section';
 import { validationSection } from './sections/validation_section';
 import { verdictSection } from './sections/verdict_section';
+import { otherParts, parameterPart, toldPart } from './told';
 
 type Sections = (HTMLElement | null)[];
 
@@ -30,7 +29,7 @@ function sectionsOfOne(report: Report): Sections {
   const [one] = report.recordings;
   return [
     fitSection(one),
-    parameterSection(shownFit(report)),
+    parameterPart(report),
     validationSection(one),
     envelopeSection(one),
     phaseSection(one),
@@ -39,13 +38,14 @@ function sectionsOfOne(report: Report): Sections {
     profileSection(report),
     comparisonSection(report),
     constancySection(one),
-    closedFormSection(one),
+    toldPart(report, 'closed-forms', 'Closed forms'),
+    toldPart(report, 'data', 'Data'),
   ];
 }
 
 const sectionsOfSeveral = (report: Report, changed: () => void): Sections => [
   agreementSection(report),
-  parameterSection(shownFit(report), 'What the recordings do not determine'),
+  parameterPart(report),
   recordingsSection(report),
   overlaySection(report),
   oneRecordingPart(report, changed),
@@ -90,7 +90,14 @@ export function reportContent(report: Report, name?: string): Content {
     shown: report.shown,
     show: (index) => (report.shown = index),
     sections: (changed) => {
-      const made = [verdictSection(report), ...own(report, changed), rigSection(report), provenanceSection(report)];
+      const made = [
+        verdictSection(report),
+        ...own(report, changed),
+        toldPart(report, 'warnings', 'Warnings'),
+        ...otherParts(report),
+        rigSection(report),
+        provenanceSection(report),
+      ];
       return made.flatMap((part) => part ?? []);
     },
   };

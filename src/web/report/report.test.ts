@@ -2,7 +2,7 @@
 import { describe, expect, test } from 'vitest';
 
 import type { Result } from '../shared/result_types';
-import { bestFit, isAliased, makeReport, otherWarnings, recordingFile, shownFit, shownFitOf, warningsOf } from './report';
+import { bestFit, isAliased, makeReport, recordingFile, shownFit, shownFitOf, warningsOf } from './report';
 
 const result = {
   fits: [{ model: 'viscous' }, { model: 'coulomb' }, { model: 'drag' }],
@@ -16,12 +16,6 @@ const result = {
 test('a law has its own warnings and those of the recording', () => {
   expect(warningsOf(result, 'drag').map(({ message }) => message)).toEqual(['readings are missing', 'at the bound 0: drag']);
   expect(warningsOf(result, 'coulomb').map(({ code }) => code)).toEqual(['gaps']);
-});
-
-test('warnings of the other laws are with these laws', () => {
-  const others = otherWarnings(result, 'drag');
-  expect(others.map(({ model }) => model)).toEqual(['viscous']);
-  expect(others[0].warnings[0].message).toBe('the residuals');
 });
 
 test('the best fit is the recommended one, else the one with the smallest residuals that converged', () => {

@@ -5,6 +5,7 @@ import { mainFit } from '../shared/main_fit';
 import { fileName } from '../shared/names';
 import type { Command, Fit, Recording, RecordingFit, Result, Series } from '../shared/result_types';
 import { medianInterval, toSamples, type Samples } from '../shared/samples';
+import type { ReportSection } from '../shared/sections';
 import { TimeView } from '../shared/time_view';
 import { withUnit } from '../shared/units';
 
@@ -29,6 +30,8 @@ export interface Report {
   result: Result;
   recordings: OneRecording[];
   command: Command | null;
+  /** Words and tables of all laws and recordings; null if the program did not write them. */
+  told: ReportSection[] | null;
   /** Index of the law that is shown in detail; -1 without a fit. */
   shown: number;
   /** Index of the recording that is shown in detail. */
@@ -51,8 +54,13 @@ const recorded = (fit: Fit, own: RecordingFit): RecordedFit => ({
 });
 
 /** series: one for each recording, or null. */
-export function makeReport(result: Result, series: Series[] | null, command: Command | null): Report {
-  const report: Report = { result, recordings: [], command, shown: bestFit(result), recording: 0 };
+export function makeReport(
+  result: Result,
+  series: Series[] | null,
+  command: Command | null,
+  told: ReportSection[] | null = null,
+): Report {
+  const report: Report = { result, recordings: [], command, told, shown: bestFit(result), recording: 0 };
   report.recordings = result.recordings.map((data, k) => {
     const own = series?.[k] ?? null;
     const fits = result.fits.map((fit, i) => recorded(fit, data.fits[i]));
@@ -110,14 +118,3 @@ export const warningsOf = ({ warnings }: Pick<Result, 'warnings'>, model: string
   ...warnings.filter(({ law }) => law === null),
   ...warningsWith(model, warnings),
 ];
-
-/** Warnings of each other model that has any. */
-export function otherWarnings(
-  { fits, warnings }: Pick<Result, 'fits' | 'warnings'>,
-  model: string | null,
-): { model: string; warnings: Warnings }[] {
-  return fits
-    .filter((fit) => fit.model !== model)
-    .map((fit) => ({ model: fit.model, warnings: warningsWith(fit.model, warnings) }))
-    .filter((other) => other.warnings.length > 0);
-}

@@ -25,7 +25,7 @@ export function append(parent: Node, children: Child[]): void {
 /** A symbol such as "I_O/G" in italics, with the O as a subscript. */
 export function symbolElement(symbol: string): HTMLElement {
   const variable = el('var');
-  for (const [, base, low] of symbol.matchAll(/([^_]+?)(?:_(.))?(?=[^_]|$)/g)) {
+  for (const [, base, low] of symbol.matchAll(/([^_]+?)(?:_([^_/]+))?(?=[^_]|$)/g)) {
     append(variable, [base, low !== undefined && el('sub', {}, low)]);
   }
   return variable;

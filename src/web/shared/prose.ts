@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Typesets sentences of the JSON: "4.1e-26 kg m^2" becomes "4.1 × 10⁻²⁶ kg m²". */
+/** Typesets sentences of the JSON: "-4.1e-26 kg m^2" becomes "−4.1 × 10⁻²⁶ kg m²". */
+
+import { el, symbolElement, type Child } from './dom';
 
 const kSuperscript: Record<string, string> = {
   '-': '⁻',
@@ -22,7 +24,7 @@ let worded = (words: string): string => words;
 /** From now on applies `change` to all sentences of the JSON: the page of the service has no command-line flags. */
 export const wordWith = (change: (words: string) => string): void => void (worded = change);
 
-/** Applies the change of wordWith() and turns powers into superscripts. */
+/** Applies the change of wordWith(), and writes powers and minus signs as print does. */
 export function typeset(words: string): string {
   return worded(words)
     .replace(
@@ -32,7 +34,22 @@ export function typeset(words: string): string {
     )
     .replace(/\bsigma\^/g, 'σ^')
     .replace(/\bchi2\b/g, 'χ²')
-    .replace(/\^(-?\d+)/g, (_all, power: string) => raised(power));
+    .replace(/\^(-?\d+)/g, (_all, power: string) => raised(power))
+    .replace(/(?<![\p{L}\d_.)\]⁻-])-(?=\d)/gu, '−');
+}
+
+/** "θ″" for "th''": the angle in an equation. */
+export const withTheta = (words: string): string =>
+  words.replace(/\bth''/g, 'θ″').replace(/\bth'/g, 'θ′').replace(/\bth\b/g, 'θ').replace(/ - (?=[\d.\p{L}])/gu, ' − ');
+
+// A symbol such as I_O/G, or a name of the JSON such as release_angle; not a part of a path, a flag or a quoted word.
+const kSymbol = /(?<![\p{L}\d_/"'.-])(\p{L}_\p{L}{1,3}(?:\/\p{L}(?:_\p{L})?)?|[a-z]+(?:_[a-z]+)+)(?![\p{L}\d_"'/-]|\.\p{L})/u;
+
+/** A text of the program with degrees and dashes as in print, symbols in italics and names as code. */
+export function prose(words: string): Child[] {
+  const plain = typeset(words).replace(/^-$/, '–').replace(/(^|[\d)[]) ?deg\b/g, '$1°');
+  const parts = withTheta(plain).split(kSymbol);
+  return parts.map((part, i) => (i % 2 === 0 ? part : /^.{1}_/u.test(part) ? symbolElement(part) : el('code', {}, part)));
 }
 
 export const capital = (words: string): string => words.slice(0, 1).toUpperCase() + words.slice(1);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The result JSON of fit_pendulum, schema_version 3 (result.schema.json). SI units; a missing number is null. */
+/**
+ * What the page reads of the result JSON of fit_pendulum, schema_version 3 (result.schema.json). SI units; a missing
+ * number is null.
+ */
 
 import type { Homogeneity } from './homogeneity_types';
 
@@ -28,62 +31,11 @@ export interface Parameter {
 
 export interface Derived {
   estimate: Num;
-  std_error: Num;
-  interval95?: [Num, Num] | null;
-  unit: string;
-  systematic_std_error?: number;
-  reason?: string;
 }
 
 export interface NamedMatrix {
   names: string[];
   matrix: Num[][];
-}
-
-export interface ClosedFormRow {
-  quantity: string;
-  method: string;
-  closed_form: Num;
-  std_error: Num;
-  fit: Num;
-  fit_std_error: Num;
-  unit: string;
-  z: Num;
-  agrees: boolean | null;
-  reason: string | null;
-}
-
-export interface Noise extends Loose {
-  model: string;
-  reason: string;
-  sigma_std_error: Num;
-  saturated_samples: number;
-  lag1_correlation: Num;
-  correlation: string;
-}
-
-export interface Statistics extends Loose {
-  log_likelihood: Num;
-  aic: Num;
-  aicc: Num;
-  bic: Num;
-  effective_samples: Num;
-}
-
-export interface RecordingStatistics extends Statistics {
-  durbin_watson: Num;
-  ljung_box_p: Num;
-  runs_p: Num;
-}
-
-export interface HalvesRow {
-  parameter: string;
-  unit: string;
-  first: Num;
-  first_std_error: Num;
-  second: Num;
-  second_std_error: Num;
-  z: Num;
 }
 
 export interface AmplitudeWindow {
@@ -96,22 +48,8 @@ export interface AmplitudeWindow {
   friction_std_error: Num;
 }
 
-export interface Trend {
-  parameter: string;
-  unit: string;
-  slope: Num;
-  slope_std_error: Num;
-  /** Relative change during the recording. */
-  span: Num;
-  p: Num;
-}
-
 export interface Constancy {
-  verdict: string;
-  constant: boolean;
-  halves: { statistic: Num; dof: number; p: Num; rows: HalvesRow[] } | null;
-  amplitude: { windows: AmplitudeWindow[]; trends: Trend[] } | null;
-  reason?: string;
+  amplitude: { windows: AmplitudeWindow[]; trends: { parameter: string; unit: string }[] } | null;
 }
 
 /** A quantity as one quotes it: value and total error as texts, rounded together; empty if there is none. */
@@ -150,8 +88,7 @@ interface Estimates {
   covariance: NamedMatrix;
   correlation: NamedMatrix;
   systematic_covariance: NamedMatrix;
-  std_error_method: string | null;
-  identifiability: { parameter: string; verdict: string; direction: string[]; advice: string | null }[];
+  identifiability: { parameter: string; verdict: string }[];
 }
 
 /** A law: what all recordings share. */
@@ -159,16 +96,13 @@ export interface Fit extends Estimates {
   model: string;
   status: Status;
   reason: string;
-  equation: string | null;
   /** Names of the parameters that all recordings share: of one recording inertia and friction. */
   shared: string[];
   derived: Record<string, Derived>;
-  interval_method: string | null;
   /** Over all recordings. */
-  statistics: Statistics | null;
+  statistics: Loose | null;
   /** Null for one recording. */
   homogeneity: Homogeneity | null;
-  solver: { iterations: number; evaluations: number; termination: string };
   /** Missing in results of earlier versions. */
   summary?: FitSummary;
 }
@@ -176,74 +110,20 @@ export interface Fit extends Estimates {
 /** The part of a law that belongs to one recording. Its matrices have the shared parameters, too. */
 export interface RecordingFit extends Estimates {
   model: string;
-  /** Root mean square over the fitted motion. */
-  amplitude_rad: Num;
-  noise: Noise | null;
-  statistics: RecordingStatistics | null;
-  closed_form: ClosedFormRow[];
+  noise: Loose | null;
   constancy: Constancy | null;
-  constancy_reason?: string;
-  /** How the fit of this recording alone ended. */
-  separate: string;
-}
-
-export interface Prediction extends Loose {
-  standardized: Num;
-  samples: number;
-}
-
-export interface ComparisonRow extends Loose {
-  model: string;
-  is_compared: boolean;
-  parameters: number;
-  log_likelihood: Num;
-  aic: Num;
-  aicc: Num;
-  bic: Num;
-  delta_bic: Num;
-  akaike_weight: Num;
-  cross_validation: Prediction | null;
-  forward_prediction: Prediction | null;
-  lag1_correlation: Num;
-  ljung_box_p: Num;
-  lack_of_fit: boolean;
-  reason?: string;
-}
-
-export interface RatioTest {
-  simpler: string;
-  richer: string;
-  added: string[];
-  statistic: Num;
-  null: string | null;
-  p: Num;
-  reason?: string;
 }
 
 export interface Comparison {
   recommended: string | null;
   reason: string;
-  criterion: string | null;
-  criterion_reason: string;
-  likelihood: string;
-  effective_samples: Num;
-  rows: ComparisonRow[];
-  tests: RatioTest[];
 }
 
 export interface Sampling {
   rate_hz: number;
-  jitter_s: Num;
-  gaps: number;
-  longest_gap_s: number;
   frequency_hz: Num;
-  apparent_frequency_hz: Num;
-  expected_frequency_hz: Num;
   samples_per_period: Num;
   nyquist_margin: Num;
-  start_counts: Num;
-  end_counts: Num;
-  saturated_samples: number;
 }
 
 export interface Recording extends Loose {
@@ -253,30 +133,20 @@ export interface Recording extends Loose {
   used_samples: number;
   duration_s: number;
   sample_rate_hz: number;
-  resolution_source: string | null;
   clock_scale: number;
-  clock_scale_std_dev: number;
   window_s: [number, number];
-  window_reason: string | null;
   releases: [number, number][];
   release: number | null;
-  start: 'release' | 'moving' | null;
   sampling: Sampling | null;
   calibration: Loose | null;
   closed_forms: ClosedForms | null;
   /** In the order of the laws of the result. */
   fits: RecordingFit[];
-  /** Why closed_forms is null. */
-  reason?: string;
 }
 
-export interface ClosedForms extends Loose {
-  model: string;
+export interface ClosedForms {
   linear: (Record<string, Derived> & { periods: never }) | null;
-  decrement: { parameters: Record<string, Derived>; chi_square: Num; dof: number; p: Num } | null;
-  envelopes: { term: string; shape: string; chi_square: Num; dof: number; p: Num }[];
-  envelope: string | null;
-  turning_points: number;
+  decrement: { parameters: Record<string, Derived> } | null;
 }
 
 export interface Warning {

@@ -4,7 +4,6 @@ import { describe, expect, test } from 'vitest';
 import {
   errorText,
   fixed,
-  intervalText,
   plusMinus,
   probabilityText,
   significant,
@@ -55,7 +54,6 @@ describe('value ± error', () => {
   test('values are rounded to tens and hundreds', () => {
     expect(plusMinus(0, 74.5)).toBe('0 ± 70');
     expect(plusMinus(123456, 1200)).toBe('123500 ± 1200');
-    expect(intervalText([-946, 946], 74.5)).toBe('−950 to 950');
   });
 
   test('null is a dash, and without an error only the value is written', () => {
@@ -72,19 +70,6 @@ describe('value ± error', () => {
     expect(errorText(3.4e-8, 0.00111, 4.1e-6)).toBe('3.4 × 10⁻⁸');
     expect(errorText(null, 1, 1)).toBe('–');
   });
-});
-
-test('intervals have the decimals of the error, and missing ends a question mark', () => {
-  expect(intervalText([0.0789942, 0.0790051], 2.8e-6)).toBe('0.0789942 to 0.0790051');
-  expect(intervalText([0, null], 0.1)).toBe('0.00 to ?');
-  expect(intervalText([0, 0.00123], null)).toBe('0 to 0.00123');
-  expect(intervalText(null, 0.1)).toBe('–');
-});
-
-test('the ends of an interval share a power of ten', () => {
-  expect(intervalText([0, 9.6e-6], 4e-6)).toBe('(0.0 to 1.0) × 10⁻⁵');
-  expect(intervalText([8.1e-6, 1.02e-5], 5e-7)).toBe('(0.81 to 1.02) × 10⁻⁵');
-  expect(intervalText([null, 1.02e-5], 5e-7)).toBe('? to 1.02 × 10⁻⁵');
 });
 
 test('significant digits have no trailing zeros', () => {

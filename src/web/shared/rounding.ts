@@ -138,24 +138,6 @@ export function errorText(
   return rounded(roundError(error).error, shown);
 }
 
-/**
- * "0.0762 to 0.0818", "(0.8 to 1.2) × 10⁻⁵", with the last digit of the error and one power of ten; a missing end is "?".
- */
-export function intervalText(
-  interval: readonly (number | null)[] | null | undefined,
-  error: number | null | undefined,
-): string {
-  const ends = (interval ?? []).filter((end) => end !== null);
-  if (!interval || ends.length === 0) return '–';
-  if (error === null || error === undefined || !(error > 0))
-    return interval.map((end) => (end === null ? '?' : significant(end, 4))).join(' to ');
-  const { first, last } = roundError(error);
-  const rounding = roundingTo(Math.max(first, ...ends.map((end) => firstDigit(end, last))), last);
-  if (rounding.exponent === 0 || ends.length === 1)
-    return interval.map((end) => (end === null ? '?' : rounded(end, rounding))).join(' to ');
-  return `(${ends.map((end) => scaled(end, rounding)).join(' to ')}) × ${powerOfTen(rounding.exponent)}`;
-}
-
 /** A probability: "0.43", "2 × 10⁻⁹", "< 10⁻⁹⁹". */
 export function probabilityText(p: number | null | undefined): string {
   if (p === null || p === undefined) return '–';

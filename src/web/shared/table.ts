@@ -35,7 +35,9 @@ const kFewColumns = 2;
 export function table(caption: string, columns: Column[], rows: Cell[][], marked: number[] = []): HTMLElement {
   const head = el('tr', { role: 'row' });
   for (const column of columns) {
-    head.append(el('th', { scope: 'col', role: 'columnheader', ...(column.kind === 'number' ? { class: 'number' } : {}) }, column.head));
+    const kind: Record<string, string> = column.kind === 'number' ? { class: 'number' } : {};
+    const named = headText(column) !== '';
+    head.append(named ? el('th', { scope: 'col', role: 'columnheader', ...kind }, column.head) : el('td', { role: 'cell' }));
   }
   const body = el('tbody', { role: 'rowgroup' });
   rows.forEach((cells, i) => {
@@ -44,7 +46,7 @@ export function table(caption: string, columns: Column[], rows: Cell[][], marked
     body.append(element);
   });
   const kind: Record<string, string> = columns.length > kFewColumns ? { class: 'rows' } : {};
-  const heads = el('thead', { role: 'rowgroup' }, head);
+  const heads = columns.some((column) => headText(column) !== '') && el('thead', { role: 'rowgroup' }, head);
   return scrollBox(caption, el('table', { role: 'table', ...kind }, el('caption', {}, caption), heads, body));
 }
 

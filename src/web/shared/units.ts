@@ -67,27 +67,6 @@ const kSymbols: Record<string, string> = {
   pivot_x: 'x_P',
   pivot_y: 'y_P',
   hysteresis: 'h',
-  natural_frequency: 'ω_n',
-  damped_frequency: 'ω_d',
-  damping_ratio: 'ζ',
-  small_angle_period: 'P',
-  quality_factor: 'Q',
-  decay_time: 'τ',
-  gravity: 'g',
-  effective_length: 'l_eff',
-  inertia_per_mass: 'I_O/m',
-  gravity_torque: 'G',
-  stiffness: 'k',
-  center_of_mass: 'd',
-  viscous_si: 'b',
-  coulomb_si: 'τ_c',
-  drag_si: 'c',
-  stiction_si: 'τ_s',
-  log_decrement: 'δ',
-  gravity_over_inertia: 'G/I_O',
-  viscous_over_inertia: 'b/I_O',
-  coulomb_over_inertia: 'τ_c/I_O',
-  drag_over_inertia: 'c/I_O',
 };
 
 /** Units of ratios to the gravity torque G, which a fit without a rig file has. */
@@ -126,38 +105,6 @@ const kWords: Record<string, string> = {
   pivot_x: 'pivot, horizontally',
   pivot_y: 'pivot, vertically',
   hysteresis: 'hysteresis of the encoder',
-  natural_frequency: 'natural frequency',
-  small_angle_period: 'period of small swings',
-  damping_ratio: 'damping ratio',
-  quality_factor: 'quality factor',
-  decay_time: 'decay time to 1/e',
-  gravity: 'gravitational acceleration',
-  effective_length: 'effective length',
-  inertia_per_mass: 'moment of inertia per mass',
-  gravity_torque: 'gravity torque',
-  stiffness: 'stiffness',
-  center_of_mass: 'distance of the centre of mass',
-  viscous_si: 'viscous friction in SI units',
-  coulomb_si: 'dry friction in SI units',
-  drag_si: 'air drag in SI units',
-  stiction_si: 'static friction in SI units',
-  gravity_over_inertia: 'gravity torque over inertia',
-  viscous_over_inertia: 'viscous friction over inertia',
-  coulomb_over_inertia: 'dry friction over inertia',
-  drag_over_inertia: 'air drag over inertia',
-};
-
-const kRigWords: Record<string, [string, string]> = {
-  bob_mass: ['mass of the bob', 'kg'],
-  rod_mass: ['mass of the rod', 'kg'],
-  rod_length: ['length of the rod', 'm'],
-  gravity: ['gravity', 'm/s^2'],
-  gravity_torque: ['gravity torque', 'N m'],
-  mass: ['mass', 'kg'],
-  center_of_mass: ['distance of the centre of mass', 'm'],
-  stiffness: ['stiffness of the spring', 'N m/rad'],
-  length: ['length of the pendulum', 'm'],
-  inertia: ['moment of inertia as given', 'kg m^2'],
 };
 
 /** "I_O" for inertia, "I_O/G" if its unit is that of a ratio to G; null for an unknown name. */
@@ -169,9 +116,6 @@ export function symbolOf(name: string, unit = ''): string | null {
 
 /** "moment of inertia" for inertia; an unknown name is returned unchanged. */
 export const wordsOf = (name: string): string => kWords[name] ?? name;
-
-/** Name in words and unit of an entry of the rig file. */
-export const rigWords = (name: string): [string, string] => kRigWords[name] ?? [name, '1'];
 
 /** Name of the quantity that has this unit. */
 export const quantityOf = (unit: string): string => (unit === 'rad/s' ? 'rate' : unit === 'rad' ? 'angle' : 'reading');

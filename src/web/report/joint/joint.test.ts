@@ -5,7 +5,6 @@ import { clipped, forestRange, placeOf, type ForestRow } from '../../shared/fore
 import { clippedWords, forestSentence } from '../../shared/forest_plot';
 import type { Homogeneity, Num, Parameter, Result, Series, SharedAgreement } from '../../shared/result_types';
 import { makeReport } from '../report';
-import { disagreement } from './disagreement';
 import { forestRows } from './forest_rows';
 import { beginning, elapsed, originWords, overlay } from './overlay';
 
@@ -20,32 +19,16 @@ const parameter = (estimate: Num, error: Num = null): Parameter =>
 function agreement(runs: [Num, Num][], mean: Num = 2): SharedAgreement {
   return {
     unit: 's',
-    statistic: 3,
-    dof: runs.length - 1,
-    p: 0.2,
-    mean: 2,
-    std_error: 0.1,
-    random_effects: { mean, std_error: 0.2, interval95: [1.5, 2.5], between_std_dev: 0.1, between_interval95: [0, 1] },
+    random_effects: { mean, std_error: 0.2, interval95: [1.5, 2.5] },
     runs: runs.map(([estimate, std_error]) => ({ estimate, std_error, z: 0 })),
   };
 }
 
 const homogeneity = (more: Partial<Homogeneity> = {}): Homogeneity => ({
-  statistic: 3,
-  dof: 2,
-  p: 0.2,
   agrees: true,
   outliers: [],
-  verdict: 'the recordings agree on inertia',
   parameters: { inertia: agreement([[1.9, 0.1], [2, 0.1], [2.2, 0.2]]) },
-  amplitude_dependence: [],
   ...more,
-});
-
-test('recordings that disagree are named', () => {
-  expect(disagreement(homogeneity({ outliers: [] }))).toBe(null);
-  expect(disagreement(homogeneity({ outliers: [2] }))).toBe('Recording 2 disagrees with the others');
-  expect(disagreement(homogeneity({ outliers: [1, 3] }))).toBe('Recordings 1 and 3 disagree with the others');
 });
 
 const rowsOf = (runs: [Num, Num][], joint?: Parameter, mean?: Num): ForestRow[] =>

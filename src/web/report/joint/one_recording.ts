@@ -5,13 +5,13 @@ import { choice, el, text } from '../../shared/dom';
 import { refill } from '../../shared/page';
 import { section } from '../../shared/section';
 import { recordingFile, type OneRecording, type Report } from '../report';
-import { closedFormSection } from '../sections/closed_form_section';
 import { constancySection } from '../sections/constancy_section';
 import { envelopeSection } from '../sections/envelope_section';
 import { fitSection } from '../sections/fit_section';
 import { phaseSection } from '../sections/phase_section';
 import { residualSection } from '../sections/residual_section';
 import { validationSection } from '../sections/validation_section';
+import { toldPart } from '../told';
 
 const kSections: ((one: OneRecording) => HTMLElement | null)[] = [
   fitSection,
@@ -20,7 +20,8 @@ const kSections: ((one: OneRecording) => HTMLElement | null)[] = [
   phaseSection,
   residualSection,
   constancySection,
-  closedFormSection,
+  ({ report }) => toldPart(report, 'closed-forms', 'Closed forms'),
+  ({ report }) => toldPart(report, 'data', 'Data'),
 ];
 
 /** The sections of the recording that is shown. Their headings have its number. */

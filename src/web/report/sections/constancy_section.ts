@@ -2,45 +2,20 @@
 /** Whether inertia and friction stay constant during the recording. */
 
 import { Chart, padded } from '../../shared/chart';
-import { append, el, text } from '../../shared/dom';
+import { append, el } from '../../shared/dom';
 import { sentence } from '../../shared/prose';
 import type { AmplitudeWindow, Constancy, Num } from '../../shared/result_types';
-import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
+import { significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
-import { absent, figure, section } from '../../shared/section';
-import { table, type Column } from '../../shared/table';
-import { inDegrees, spacedUnit, unitText, wordsOf } from '../../shared/units';
+import { figure } from '../../shared/section';
+import { inDegrees, unitText, wordsOf } from '../../shared/units';
 import { shownFitOf, type OneRecording, type RecordedFit } from '../report';
+import { toldPart } from '../told';
 
 type Amplitude = NonNullable<Constancy['amplitude']>;
 
 /** Key of a parameter of a window, and key of its standard error. */
 type Value = (window: AmplitudeWindow) => [Num, Num];
-
-function halvesTable(constancy: Constancy): HTMLElement | null {
-  const { halves } = constancy;
-  if (!halves || halves.rows.length === 0) return null;
-  const number = 'number' as const;
-  const rows = halves.rows.map((row) => [
-    wordsOf(row.parameter),
-    plusMinus(row.first, row.first_std_error) + spacedUnit(row.unit),
-    plusMinus(row.second, row.second_std_error) + spacedUnit(row.unit),
-    row.z === null ? '–' : fixed(row.z, 1),
-  ]);
-  const columns = [
-    { head: 'Parameter' },
-    { head: 'First half', kind: number },
-    { head: 'Second half', kind: number },
-    { head: 'z', kind: number },
-  ];
-  const joint = `All together: χ² = ${significant(halves.statistic, 3)} with ${halves.dof} degrees of freedom, p = ${probabilityText(halves.p)}.`;
-  return el(
-    'div',
-    {},
-    table('Each half of the recording fitted by itself', columns, rows),
-    halves.p !== null && text(joint),
-  );
-}
 
 const kDegrees = inDegrees('rad')?.factor ?? 1; // in a radian
 
@@ -90,42 +65,9 @@ function windowCharts(fit: RecordedFit, { windows, trends }: Amplitude): HTMLEle
   return charts;
 }
 
-function trendTable({ trends }: Amplitude): HTMLElement | null {
-  if (trends.length === 0) return null;
-  const columns: Column[] = [
-    { head: 'Parameter' },
-    { head: 'Slope on amplitude²', kind: 'number' },
-    { head: 'Change over the windows', kind: 'number' },
-    { head: 'p', kind: 'number' },
-  ];
-  const rows = trends.map((trend) => [
-    wordsOf(trend.parameter),
-    plusMinus(trend.slope, trend.slope_std_error) +
-      spacedUnit(trend.unit === '1' ? '1/rad^2' : `${trend.unit} / rad^2`),
-    trend.span === null ? '–' : `${significant(100 * trend.span, 2)} %`,
-    probabilityText(trend.p),
-  ]);
-  return table('Trends with amplitude', columns, rows);
-}
-
-function amplitudePart(fit: RecordedFit, { amplitude }: Constancy): HTMLElement | null {
-  if (!amplitude || amplitude.windows.length === 0) return null;
-  return el('div', {}, windowCharts(fit, amplitude), trendTable(amplitude));
-}
-
 export function constancySection(one: OneRecording): HTMLElement | null {
   const fit = shownFitOf(one);
-  if (!fit) return null;
-  const title = 'Constant over the recording?';
-  const { constancy } = fit;
-  if (!constancy)
-    return section('constancy', title, absent(sentence(`not tested: ${fit.constancy_reason ?? 'no reason is given'}`)));
-  return section(
-    'constancy',
-    title,
-    el('p', { class: constancy.constant ? '' : 'note' }, el('strong', {}, sentence(constancy.verdict))),
-    constancy.reason && text(sentence(constancy.reason), 'quiet'),
-    halvesTable(constancy),
-    amplitudePart(fit, constancy),
-  );
+  const amplitude = fit?.constancy?.amplitude;
+  const charts = fit && amplitude && amplitude.windows.length > 0 ? [windowCharts(fit, amplitude)] : [];
+  return toldPart(one.report, 'constancy', 'Constancy', charts);
 }

@@ -2,18 +2,16 @@
 /** Decay of the amplitudes: turning points, the exponential of the log decrement, and the fitted motion. */
 
 import { Chart, padded, type Range } from '../../shared/chart';
-import { choice, details, el, text } from '../../shared/dom';
+import { choice, el } from '../../shared/dom';
 import { kLinear, kMeasured, modelMark, swatch, type Mark } from '../../shared/marks';
 import type { Painter } from '../../shared/painter';
-import { sentence } from '../../shared/prose';
-import type { ClosedForms } from '../../shared/result_types';
-import { fixed, plusMinus, probabilityText, significant } from '../../shared/rounding';
+import { significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
-import { table } from '../../shared/table';
 import { quantityOf, unitText } from '../../shared/units';
 import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf, type Turn } from '../envelope';
 import { rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
+import { told } from '../told';
 
 interface Curve {
   name: string;
@@ -59,37 +57,6 @@ function legend(curves: Curve[]): HTMLElement {
     box.append(el('li', {}, swatch(mark), name));
   }
   return box;
-}
-
-function peakTable(turns: Turn[], unit: string): HTMLElement {
-  return table(
-    'Turning points',
-    [{ head: 't [s]' }, { head: `amplitude [${unitText(unit)}]`, kind: 'number' }],
-    turns.map((turn) => [fixed(turn.time, 3), plusMinus(turn.amplitude, turn.error)]),
-  );
-}
-
-/** Which single friction term describes the amplitudes. */
-function shapes(forms: ClosedForms | null): HTMLElement | null {
-  if (!forms || forms.envelopes.length === 0) return null;
-  const rows = forms.envelopes.map((law) => [
-    law.term,
-    law.shape,
-    law.chi_square === null ? '–' : `${significant(law.chi_square, 4)} / ${law.dof}`,
-    probabilityText(law.p),
-  ]);
-  const columns = [
-    { head: 'Friction of one term' },
-    { head: 'Shape of the amplitudes' },
-    { head: 'χ² / degrees of freedom', kind: 'number' as const },
-    { head: 'p', kind: 'number' as const },
-  ];
-  return el(
-    'div',
-    {},
-    forms.envelope && text(sentence(`shape of the amplitudes: ${forms.envelope}`)),
-    table('One term of friction alone', columns, rows),
-  );
 }
 
 class EnvelopePlot {
@@ -171,17 +138,12 @@ export function envelopeSection(one: OneRecording): HTMLElement {
   const zero = zeroOf(fit?.parameters ?? forms?.decrement?.parameters ?? {}, data.window_s[0]);
   const turns = series ? measuredTurns(series, zero).filter((turn) => Number.isFinite(turn.amplitude)) : [];
   const title = 'Amplitudes';
-  if (!series) return section('envelope', title, absent('The samples are not part of this report.'), shapes(forms));
+  const words = told(one.report, 'envelope', title);
+  if (!series) return section('envelope', title, absent('The samples are not part of this report.'), ...words);
   if (turns.length < 2) {
     const why = 'No turning points were found. The recording has too few samples in a period, or nothing swings.';
-    return section('envelope', title, absent(why), shapes(forms));
+    return section('envelope', title, absent(why), ...words);
   }
   const plot = new EnvelopePlot(turns, curvesOf(one, fit, turns), series.unit);
-  return section(
-    'envelope',
-    title,
-    plot.element(),
-    details('Turning points as a table', () => peakTable(turns, series.unit)),
-    shapes(forms),
-  );
+  return section('envelope', title, plot.element(), ...words);
 }

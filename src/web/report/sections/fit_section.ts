@@ -241,7 +241,7 @@ class FitPlots {
     const many = this.samples.time.length > 2000 && 'If a column of pixels has many samples, its smallest and largest are drawn.';
     const band = bandWords(this.traces.fitted);
     const words = [
-      this.sigma !== null && `Band of the residuals: ±σ, the noise of a sample, σ = ${significant(this.sigma, 3)} ${unitText(this.samples.unit)}.`,
+      this.sigma !== null && 'Band of the residuals: ±σ, the noise of a sample.',
       band !== '' && `${capital(band)}.`,
       many,
     ].flatMap((part) => (part ? [` ${part}`] : []));

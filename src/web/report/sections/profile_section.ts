@@ -5,7 +5,7 @@ import { Chart, padded } from '../../shared/chart';
 import { details, el } from '../../shared/dom';
 import { modelMark } from '../../shared/marks';
 import type { Parameter, ProfileCurve } from '../../shared/result_types';
-import { intervalText, significant } from '../../shared/rounding';
+import { significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
@@ -16,8 +16,7 @@ function profileChart(name: string, curve: ProfileCurve, parameter: Parameter | 
   const unit = parameter ? unitText(parameter.unit) : '';
   const label = `${wordsOf(name)}${unit ? ` [${unit}]` : ''}`;
   const top = Math.min(Math.max(...curve.statistic), 3 * curve.threshold);
-  const ends = intervalText(parameter?.interval95, parameter?.std_error);
-  const sentence = `Profile of the ${wordsOf(name)}; 95 % interval ${ends} ${unit}.`;
+  const sentence = `Profile of the ${wordsOf(name)}.`;
   const chart = new Chart({
     name: `profile_${name}`,
     sentence: () => sentence,

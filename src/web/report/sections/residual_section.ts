@@ -2,14 +2,15 @@
 /** Whether the residuals are noise: autocorrelation, histogram and tests. */
 
 import { Chart, padded } from '../../shared/chart';
-import { details, el, text } from '../../shared/dom';
-import { probabilityText, significant } from '../../shared/rounding';
+import { details, el } from '../../shared/dom';
+import { significant } from '../../shared/rounding';
 import { absent, figure, section } from '../../shared/section';
-import { facts, table, type Cell } from '../../shared/table';
-import { inDegrees, unitText, withUnit } from '../../shared/units';
+import { table } from '../../shared/table';
+import { unitText } from '../../shared/units';
 import { autocorrelation } from '../autocorrelation';
 import { histogram, normalDensity, type Histogram } from '../histogram';
-import { shownFitOf, type OneRecording, type RecordedFit } from '../report';
+import { shownFitOf, type OneRecording } from '../report';
+import { told } from '../told';
 
 const kLags = 100;
 const kNormal95 = 1.96;
@@ -87,27 +88,6 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
   return el('div', {}, figure(`${sentence} (dashed).`, chart.withButtons()), details('Bars as a table', rows));
 }
 
-/** Root mean square and tests of the residuals. */
-function numbers({ statistics, noise }: RecordedFit): HTMLElement | null {
-  if (!statistics || !noise) return null;
-  const sized = (found: { value: number; unit: string } | null): Cell => {
-    if (!found) return '–';
-    const degrees = inDegrees(found.unit);
-    const other = degrees ? ` (${significant(found.value * degrees.factor, 3)}${degrees.unit})` : '';
-    return `${significant(found.value, 4)} ${unitText(found.unit)}${other}`;
-  };
-  return facts([
-    ['root mean square', sized(withUnit(statistics, 'rms_residual'))],
-    ['noise σ of a sample', sized(withUnit(noise, 'sigma'))],
-    ['correlation of neighbours', significant(noise.lag1_correlation, 3)],
-    ['autocorrelation', noise.correlation],
-    ['Durbin–Watson (2: none)', significant(statistics.durbin_watson, 4)],
-    ['Ljung–Box p', probabilityText(statistics.ljung_box_p)],
-    ['runs of signs p', probabilityText(statistics.runs_p)],
-    ['effective samples', significant(statistics.effective_samples, 5)],
-  ]);
-}
-
 export const kResidualsTitle = 'Are the residuals noise?';
 
 export function residualSection(one: OneRecording): HTMLElement {
@@ -119,5 +99,5 @@ export function residualSection(one: OneRecording): HTMLElement {
     residual && samples
       ? el('div', { class: 'pair' }, autocorrelationPart(residual), histogramPart(residual, samples.unit))
       : absent('The residuals are not part of this report.');
-  return section('residuals', kResidualsTitle, numbers(fit) ?? text('There are no statistics of this fit.', 'absent'), plots);
+  return section('residuals', kResidualsTitle, plots, ...told(one.report, 'residuals', kResidualsTitle));
 }

@@ -5,9 +5,8 @@ import { el, text, toggle } from '../../shared/dom';
 import { kApparent, kLinear, kMeasured, kNonlinear, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
 import { significant } from '../../shared/rounding';
-import { medianInterval, rootMeanSquare, type Samples } from '../../shared/samples';
+import { medianInterval, type Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
-import { table } from '../../shared/table';
 import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, unitText } from '../../shared/units';
 import { apparentFrequency, apparentSwing } from '../aliasing';
@@ -20,24 +19,6 @@ function origin({ data }: OneRecording, fit: RecordedFit): { time: number; words
   const release = fit.parameters.release_time?.estimate;
   if (typeof release === 'number') return { time: release, words: 'time since the release [s]' };
   return { time: data.window_s[0], words: 'time since the start of the window [s]' };
-}
-
-function difference(a: Float64Array, b: Float64Array): number {
-  return rootMeanSquare(a.map((value, i) => value - b[i]));
-}
-
-function rmsTable(samples: Samples, curves: Trace[]): HTMLElement {
-  const degrees = inDegrees(samples.unit);
-  const rows = curves.map((curve) => {
-    const rms = difference(samples.measured, curve.values);
-    const other = degrees ? ` (${significant(rms * degrees.factor, 3)}${degrees.unit})` : '';
-    return [[swatch(curve.mark), curve.name], `${significant(rms, 3)} ${unitText(samples.unit)}${other}`];
-  });
-  return table(
-    'How far each motion is from the readings',
-    [{ head: 'Motion' }, { head: 'Root mean square difference', kind: 'number' }],
-    rows,
-  );
 }
 
 function closedFormTraces({ report }: OneRecording, samples: Samples, fit: RecordedFit): Trace[] {
@@ -183,5 +164,5 @@ export function validationSection(one: OneRecording): HTMLElement {
       'release',
       fit.parameters.release_time ? 'release' : 'start of the window',
     );
-  return section('validation', title, overlay(one, samples, fit, curves, sentence), rmsTable(samples, curves));
+  return section('validation', title, overlay(one, samples, fit, curves, sentence));
 }

@@ -2,7 +2,6 @@
 /** The comparison of several fits. */
 
 import { overlaySection } from '../../report/joint/overlay_section';
-import { kCircumstances, quantityName, valueCell } from '../../report/parameters';
 import { makeReport } from '../../report/report';
 import { el, text } from '../../shared/dom';
 import { forestPlot, forestSentence } from '../../shared/forest_plot';
@@ -33,6 +32,7 @@ import {
   type Compared,
 } from './compare';
 import { localTime } from './fit_rows';
+import { kCircumstances, quantityName, valueCell } from './parameter_cells';
 
 const number = 'number' as const;
 

@@ -6,6 +6,7 @@ import { makeReport, shownFit, type Report } from '../../report/report';
 import { el, text } from '../../shared/dom';
 import { reportColumns } from '../../shared/page';
 import type { Result, Series } from '../../shared/result_types';
+import type { ReportSection } from '../../shared/sections';
 import { commandOf } from '../command';
 import { knownModels } from '../forms/model_form';
 import { freshResult } from '../forms/submit';
@@ -56,10 +57,11 @@ function showReport(
   request: FitRequest,
   result: Result,
   series: Series[] | null,
+  told: ReportSection[] | null,
   again: HTMLElement,
 ): void {
   const problems = alertPlace();
-  const report = makeReport(result, series, { command: commandOf(request) });
+  const report = makeReport(result, series, { command: commandOf(request) }, told);
   const content = reportContent(report, request.name);
   const { sections } = content;
   const feel = slidersSection(report.recordings[0]);
@@ -104,9 +106,11 @@ export const fitView =
         showFailure(place, request, result, await againSection(place, request, null));
         return;
       }
-      const series = askJson<Series[]>(fitApi(id, 'series'), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
+      const part = <T>(of: string): Promise<T | null> =>
+        askJson<T>(fitApi(id, of), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
+      const [series, told] = [part<Series[]>('series'), part<ReportSection[]>('sections')];
       const again = againSection(place, request, result);
-      showReport(place, request, result, await series, await again);
+      showReport(place, request, result, await series, await told, await again);
     } finally {
       waiting.remove();
     }
