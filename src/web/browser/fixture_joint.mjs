@@ -15,7 +15,7 @@ function agreementOf(name, { estimate, std_error: error, unit }, count, odd) {
       std_error: 2 * size,
       interval95: [estimate - 5 * size, estimate + 7 * size],
     },
-    runs: Array.from({ length: count }, (_unused, k) =>
+    recordings: Array.from({ length: count }, (_unused, k) =>
       known(k)
         ? { estimate: estimate + shift(k) * size, std_error: 2 * size, z: 0.5 * shift(k) }
         : { estimate: null, std_error: null, z: null, reason: 'the recording on its own does not determine it' },

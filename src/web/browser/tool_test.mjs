@@ -92,7 +92,7 @@ async function assertJoint(t, ...files) {
   assert.equal(await page.locator('[data-forest]').count(), shown.shared.length);
   // Values are rounded to the last digit of their error. A unit of that digit is at most 1 / 3.55 of the error.
   for (const name of shown.shared) {
-    const { runs } = shown.homogeneity.parameters[name];
+    const { recordings: runs } = shown.homogeneity.parameters[name];
     const told = [...runs, shown.parameters[name]].filter((one) => one.std_error !== null && one.estimate > 1e-4);
     for (const one of told) {
       const row = page.locator(`[data-forest=${name}] tbody tr`).nth(runs.includes(one) ? runs.indexOf(one) : runs.length);

@@ -19,7 +19,7 @@ export interface RandomEffects {
 export interface SharedAgreement {
   unit: string;
   random_effects: RandomEffects;
-  runs: RunEstimate[];
+  recordings: RunEstimate[];
 }
 
 export interface Homogeneity {

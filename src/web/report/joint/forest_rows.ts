@@ -10,7 +10,7 @@ type Estimate = Pick<ForestRow, 'estimate' | 'std_error' | 'interval95'>;
 const pick = ({ estimate, std_error, interval95 }: Estimate): Estimate => ({ estimate, std_error, interval95 });
 
 function recordingRows(agreement: SharedAgreement, outliers: readonly number[]): ForestRow[] {
-  return agreement.runs.map(({ estimate, std_error, z }, k) => {
+  return agreement.recordings.map(({ estimate, std_error, z }, k) => {
     const reach = estimate !== null && std_error !== null ? kTwoSided95 * std_error : null;
     return {
       kind: 'recording',

@@ -20,7 +20,7 @@ function agreement(runs: [Num, Num][], mean: Num = 2): SharedAgreement {
   return {
     unit: 's',
     random_effects: { mean, std_error: 0.2, interval95: [1.5, 2.5] },
-    runs: runs.map(([estimate, std_error]) => ({ estimate, std_error, z: 0 })),
+    recordings: runs.map(([estimate, std_error]) => ({ estimate, std_error, z: 0 })),
   };
 }
 
