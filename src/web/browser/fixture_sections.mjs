@@ -46,7 +46,7 @@ const aboutLaw = (several) => [
 const joint = (homogeneity) => [
   ['do-the-recordings-agree', 'Do the recordings agree?', [
     words(`Verdict: ${homogeneity.verdict}.`, homogeneity.agrees === false ? 'alarm' : 'none'),
-    ...Object.entries(homogeneity.parameters).map(([name, { unit, runs }]) =>
+    ...Object.entries(homogeneity.parameters).map(([name, { unit, recordings: runs }]) =>
       table([`${name} [${unit}]`, '+', '&', '+z', ''], runs.map(({ z }, k) => [`${k + 1} separate`, '0.079', '± 0.001', z === null ? '' : z.toFixed(1), ' --*--'])),
     ),
   ]],
