@@ -108,9 +108,11 @@ export const fitView =
       }
       const part = <T>(of: string): Promise<T | null> =>
         askJson<T>(fitApi(id, of), { signal, busy: 'Fitting again for the plots' }).catch(() => null);
-      const [series, told] = [part<Series[]>('series'), part<ReportSection[]>('sections')];
+      // One after the other: the service fits once for both.
+      const parts = part<Series[]>('series').then(async (series) => ({ series, told: await part<ReportSection[]>('sections') }));
       const again = againSection(place, request, result);
-      showReport(place, request, result, await series, await told, await again);
+      const { series, told } = await parts;
+      showReport(place, request, result, series, told, await again);
     } finally {
       waiting.remove();
     }
