@@ -152,6 +152,7 @@ struct Listed {
 
 constexpr Listed kBesideAFit = {10, 2};
 constexpr Listed kAlone = {58, 2};
+constexpr Listed kFolded = {998, 2};  // in the page, which folds the table
 
 std::vector<Column> TurningPointColumns(const TurningPointTable& table, const std::string& unit) {
   const std::string quantity = table.quantity == Quantity::kRate ? "rate" : "angle";
@@ -237,7 +238,8 @@ Sections ClosedFormSections(const Identification& identification, std::size_t k,
     sections.push_back(CheckSection(recording.checks[i]));
     if (recording.checks.size() > 1) sections.back().law = identification.fits[i].model.name;
   }
-  sections.push_back(TurningPointSection(recording, identification.fits.empty() ? kAlone : kBesideAFit));
+  const Listed& listed = which == FitsInFull::kAll ? kFolded : identification.fits.empty() ? kAlone : kBesideAFit;
+  sections.push_back(TurningPointSection(recording, listed));
   return sections;
 }
 
