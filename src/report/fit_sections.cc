@@ -331,15 +331,18 @@ Section OwnSection(const Identification& identification, std::size_t index) {
   return {"Each recording's own", "by the joint fit", {std::move(table)}};
 }
 
-/// What the fit says of recording k alone.
+/// What the fit says of recording k alone. Of several recordings it is the separate fit that is checked.
 Sections OwnSections(const Identification& identification, std::size_t index, std::size_t k) {
   const IdentifiedRecording& recording = identification.recordings[k];
+  const FitReport& fit = identification.FitOf(k, index);
   Sections sections = ConstancySections(recording.ConstancyOf(index));
-  std::ranges::move(SuspicionSections(identification.FitOf(k, index), recording.used.sensor_errors),
-                    std::back_inserter(sections));
-  if (identification.is_joint()) {
-    for (Section& section : sections) section.remark = "of the fit of this recording alone";
+  Sections suspicions = SuspicionSections(fit, recording.used.sensor_errors);
+  if (!suspicions.empty()) {  // the last ones are about the sensor
+    sections.push_back(std::move(suspicions.front()));
+    suspicions.erase(suspicions.begin());
   }
+  for (Section& section : sections) section.remark = identification.is_joint() ? "of the separate fit" : "";
+  std::ranges::move(suspicions, std::back_inserter(sections));
   return OfRecording(identification, k, std::move(sections));
 }
 

@@ -25,10 +25,10 @@ Json SharedParameterJson(const SharedParameter& parameter) {
   Json recordings = Json::array();
   for (const RunEstimate& run : parameter.runs) {
     recordings.push_back(NumberObject()
-                       .Set("estimate", run.value, "the recording on its own does not determine it")
-                       .Set("std_error", run.std_error, "the recording on its own does not determine it")
-                       .Set("z", run.z, "no other recording determines it")
-                       .Done());
+                             .Set("estimate", run.value, "the recording on its own does not determine it")
+                             .Set("std_error", run.std_error, "the recording on its own does not determine it")
+                             .Set("z", run.z, "no other recording determines it")
+                             .Done());
   }
   return NumberObject()
       .Set("unit", Json(parameter.unit))

@@ -389,10 +389,9 @@ TEST(ReportSections, AreThoseOfOneRecordingForEachOfSeveral) {
 
 TEST(ReportSections, SayWhatIsOfTheSeparateFitOfARecording) {
   const Identification report = ExampleJointIdentification();
-  EXPECT_THAT(TextOf(report, "Constancy: recording 1"), HasSubstr("(of the fit of this recording alone)"));
-  EXPECT_THAT(TextOf(report, "What the residuals suggest: recording 2"),
-              HasSubstr("(of the fit of this recording alone)"));
-  EXPECT_THAT(TextOf(ExampleIdentification(), "Constancy"), Not(HasSubstr("alone")));
+  EXPECT_THAT(TextOf(report, "Constancy: recording 1"), HasSubstr("(of the separate fit)"));
+  EXPECT_THAT(TextOf(report, "What the residuals suggest: recording 2"), HasSubstr("(of the separate fit)"));
+  EXPECT_THAT(TextOf(ExampleIdentification(), "Constancy"), Not(HasSubstr("separate")));
 }
 
 TEST(ReportSections, ShowNoMotionIfThePendulumsDiffer) {

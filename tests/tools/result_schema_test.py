@@ -255,7 +255,7 @@ class JointSchema(unittest.TestCase):
         for path in ([], ["recordings", 1], ["fits", 1], ["fits", 1, "parameters", "viscous"], ["fits", 1, "statistics"],
                      ["fits", 1, "covariance"], ["fits", 1, "solver"], homogeneity,
                      [*homogeneity, "parameters", "inertia"], [*homogeneity, "parameters", "inertia", "random_effects"],
-                     [*homogeneity, "parameters", "inertia", "runs", 0], own, [*own, "parameters", "zero_angle"],
+                     [*homogeneity, "parameters", "inertia", "recordings", 0], own, [*own, "parameters", "zero_angle"],
                      [*own, "noise"], [*own, "statistics"], ["comparison", "rows", 0], ["recordings", 1, "closed_forms"]):
             for key in Schema.at(self.result, path):
                 with self.subTest(path=path, missing=key):
@@ -293,7 +293,7 @@ class JointSchema(unittest.TestCase):
         self.assert_refused(lambda result: result["fits"][0]["homogeneity"].update(none, agrees=True))
 
     def test_requires_a_reason_for_an_undetermined_estimate(self):
-        inertia = ["fits", 0, "homogeneity", "parameters", "inertia", "runs", 0]
+        inertia = ["fits", 0, "homogeneity", "parameters", "inertia", "recordings", 0]
         none = {"estimate": None, "std_error": None, "z": None}
         self.assert_refused(lambda result: Schema.at(result, inertia).update(none))
         none["reason"] = "the recording on its own does not determine it"

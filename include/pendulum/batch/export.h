@@ -15,8 +15,8 @@ using TextSink = std::function<Result<void>(std::string_view)>;
 
 /// Writes the refitted runs in the manifest's order, one JSON object per line: {"id", "manifest": {the manifest's data
 /// of the run}, "stale": why statistics leave the run out, if they do, "former_fits": the fits of models that the last
-/// refit did not ask for, if there are any, each with its part for the recording in `recordings`, "result": the result JSON, or null and "error": {"exit_code", "message"}}.
-/// Only one run is in memory.
+/// refit did not ask for, if there are any, each with its part for the recording in `recordings`, "result": the result
+/// JSON, or null and "error": {"exit_code", "message"}}. Only one run is in memory.
 Result<void> ExportJsonLines(Store& store, const TextSink& take);
 
 /// Writes the fits of the refitted runs as CSV (RFC 4180), one row each: id, path, rig, calibration, the manifest's

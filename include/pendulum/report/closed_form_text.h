@@ -13,10 +13,9 @@ namespace pendulum {
 /// Describes the sampling of a recording; empty if it is unknown.
 Sections SamplingSections(const std::optional<Sampling>& sampling);
 
-/// The closed forms of recording k, the check of each fit against them (in a comparison of the main fit alone, if only
-/// that is asked for), and the table of turning points: up
-/// to 60 turning points if there is no fit, otherwise the first ten and the last two (kAll: up to 1000). Without closed
-/// forms the reason is shown; empty if there is no reason.
+/// The closed forms of recording k, the check of the fits against them (kMain: in a comparison, of the main fit alone),
+/// and the table of turning points: up to 60 if there is no fit, otherwise the first ten and the last two (kAll: up to
+/// 1000). Without closed forms the reason is shown; empty if there is no reason.
 Sections ClosedFormSections(const Identification& identification, std::size_t k, FitsInFull which);
 
 }  // namespace pendulum
