@@ -11,7 +11,7 @@
 namespace pendulum {
 
 /// Describes the sampling of a recording; empty if it is unknown.
-Sections SamplingSections(const std::optional<Sampling>& sampling);
+Sections SamplingSections(const std::optional<Sampling>& known);
 
 /// The closed forms of recording k, the check of the fits against them (kMain: in a comparison, of the main fit alone),
 /// and the table of turning points: up to 60 if there is no fit, otherwise the first ten and the last two (kAll: up to
