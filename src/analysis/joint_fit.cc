@@ -53,7 +53,7 @@ std::vector<RunAlone> FitsAlone(const std::vector<FittedRecording>& recordings, 
 void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
   if (homogeneity.agrees()) return;
   if (whole.termination != Termination::kConverged) {
-    whole.reason += "; the recordings do not agree";
+    whole.reason += "; under this law the recordings do not agree";
     return;
   }
   whole.warnings.push_back({.code = "recordings_disagree",

@@ -51,7 +51,8 @@ class CsvRows {
       }
       if (!next) return false;
       const bool is_first = place_ != Place::kInQuotes;
-      if (is_first && lines_.line().find_first_not_of(" \t") == std::string::npos) continue;
+      const char* const blanks = separator_ == '\t' ? " " : " \t";
+      if (is_first && lines_.line().find_first_not_of(blanks) == std::string::npos) continue;
       if (is_first) row.line = lines_.number();
       if (separator_ == 0) ChooseSeparator(lines_.line());
       bytes += lines_.line().size();

@@ -16,9 +16,10 @@
 namespace pendulum {
 namespace {
 
-constexpr const char* kWhatAloneIs =
+constexpr const char* kWhatSeparateMeans =
     "Separate: the estimate from each recording on its own, without bounds and priors; its errors are wider where few "
-    "of its samples are independent. Recordings disagree below p 0.01, which happens by chance to recordings of one "
+    "of its samples are independent. z: its difference from the mean of the others, in standard errors. Recordings "
+    "disagree below p 0.01, which happens by chance to recordings of one "
     "rig in 1 of 100 cases.";
 
 /// A line of characters from `low` to `high` that shows intervals.
@@ -104,6 +105,18 @@ std::string ScatterText(const SharedParameter& parameter) {
          (std::isfinite(scatter.between_upper95) ? NumberText(scatter.between_upper95, 2) : "?") + "].";
 }
 
+/// Whether parameters change with the amplitude of the recordings.
+void AddAmplitudes(const std::vector<AmplitudeDependence>& all, Section& section) {
+  if (all.empty()) return;
+  Table table{{{"by amplitude²"}, {"slope", true}, {"± error", false, 1}, {"unit"}, {"change", true}, {"p"}}};
+  for (const AmplitudeDependence& one : all) {
+    const QuantityNumbers slope(one.slope, one.slope_std_error);
+    table.rows.push_back({one.name, slope.Value(), slope.Error(), one.unit + " / rad^2",
+                          NumberText(100 * one.span, 2) + " %", ProbabilityText(one.p)});
+  }
+  section.Add(std::move(table));
+}
+
 }  // namespace
 
 Section AgreementSection(const Identification& identification, std::size_t fit) {
@@ -114,7 +127,8 @@ Section AgreementSection(const Identification& identification, std::size_t fit) 
   for (const SharedParameter& parameter : homogeneity.parameters) {
     section.Add(ForestTable(parameter, identification.fits[fit])).AddText(ScatterText(parameter));
   }
-  if (!homogeneity.parameters.empty()) section.AddText(kWhatAloneIs);
+  if (!homogeneity.parameters.empty()) section.AddText(kWhatSeparateMeans);
+  AddAmplitudes(homogeneity.amplitude_dependence, section);
   return section;
 }
 

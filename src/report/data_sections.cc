@@ -9,6 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
+#include "pendulum/model/rig.h"
 #include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/text_parts.h"
 
@@ -81,6 +82,20 @@ Section RecordingSection(const Identification& identification) {
   return section.AddText("Amplitudes are root mean squares over the motion.");
 }
 
+/// The rig as its user described it, in SI units.
+Section RigSection(const Rig& rig) {
+  Table table{{{"name"}, {"value", true}, {"± std dev", false, 1}, {"unit"}}};
+  for (const RigKey& key : RigKeys()) {
+    const auto found = rig.source.is_object() ? rig.source.find(key.name) : rig.source.end();
+    if (found == rig.source.end()) continue;
+    const bool is_number = found->is_number();
+    const QuantityNumbers numbers(is_number ? found->get<double>() : found->value("value", 0.0),
+                                  is_number ? 0.0 : found->value("std_dev", 0.0));
+    table.rows.push_back({std::string(key.name), numbers.Value(), numbers.Error(), std::string(key.unit)});
+  }
+  return {"Rig", "", {std::move(table)}};
+}
+
 }  // namespace
 
 Sections DataSections(const Identification& identification) {
@@ -92,6 +107,7 @@ Sections DataSections(const Identification& identification) {
     std::ranges::move(SamplingSections(recording.sampling), std::back_inserter(own));
     std::ranges::move(OfRecording(identification, k, std::move(own)), std::back_inserter(sections));
   }
+  if (identification.rig) sections.push_back(RigSection(*identification.rig));
   return sections;
 }
 

@@ -225,6 +225,7 @@ TEST_F(ReadManifestTest, RefusesARowOfAnotherLength) {
 
 TEST_F(ReadManifestTest, RefusesARowWithoutAPath) {
   EXPECT_EQ(FaultOf("id,path\n1,\n"), ":2: column path: it is empty; name a recording or delete the row");
+  EXPECT_EQ(FaultOf("id\tpath\n\t\n"), ":2: column path: it is empty; name a recording or delete the row");
 }
 
 TEST_F(ReadManifestTest, RefusesInvalidWindows) {

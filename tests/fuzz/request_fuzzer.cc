@@ -73,7 +73,8 @@ bool IsLine(std::string_view text) {
   return text.find_first_of(std::string_view("\r\n\0", 3)) == std::string_view::npos;
 }
 
-bool IsObject(const std::string& text) { return nlohmann::json::parse(text, nullptr, false).is_object(); }
+/// Whether a text is a JSON object or array.
+bool IsStructured(const std::string& text) { return nlohmann::json::parse(text, nullptr, false).is_structured(); }
 
 void CheckProblem(const HttpResponse& response) {
   Require(FieldOf(response, "Content-Type") == "application/problem+json");
@@ -94,7 +95,7 @@ void CheckAnswer(const HttpResponse& response) {
     Require(!field.name.empty() && IsLine(field.name) && IsLine(field.value));
   Require(FieldOf(response, "X-Content-Type-Options") == "nosniff");
   if (response.status >= 400) return CheckProblem(response);
-  if (FieldOf(response, "Content-Type") == "application/json") Require(IsObject(response.body));
+  if (FieldOf(response, "Content-Type") == "application/json") Require(IsStructured(response.body));
   if (!response.events) return;
   const EventText events = response.events();
   Require(events.text.empty() || events.text.ends_with("\n\n"));
@@ -140,7 +141,7 @@ void Check(std::string_view text) {
   if (location.starts_with("/v1/fits/")) {
     Require(again.status == 200 && again.body == response.body);
     for (const char* part : {"/request", "/recording", "/samples"}) Require(ask("GET", location + part).status == 200);
-    for (const char* part : {"/series", "/residuals", "/markdown"}) ask("GET", location + part);
+    for (const char* part : {"/series", "/sections", "/residuals", "/markdown"}) ask("GET", location + part);
   } else {
     ask("GET", location + "/events");
   }

@@ -32,10 +32,18 @@ std::string TextOf(const Identification& report, const std::string& title) {
 }
 
 TEST(DataSections, HaveATableOnlyForSeveralRecordings) {
-  EXPECT_THAT(Titles(DataSections(ExampleIdentification())), ElementsAre("Data", "Sampling"));
+  EXPECT_THAT(Titles(DataSections(ExampleIdentification())), ElementsAre("Data", "Sampling", "Rig"));
   EXPECT_THAT(Titles(DataSections(ExampleJointIdentification())),
               ElementsAre("Recordings", "Data: recording 1", "Sampling: recording 1", "Data: recording 2",
-                          "Sampling: recording 2"));
+                          "Sampling: recording 2", "Rig"));
+}
+
+TEST(DataSections, ShowTheRigWithItsUnits) {
+  EXPECT_EQ(TextOf(ExampleIdentification(), "Rig"), R"([[Rig]]
+    name             value ± std dev  unit
+    gravity_torque   1.800 ± 0.010    N m
+    inertia         0.0760 ± 0.0005   kg m^2
+)");
 }
 
 // 0.25 rad = 14.3 deg, 0.125 rad = 7.16 deg.

@@ -40,6 +40,10 @@ constexpr const char* kWholeFit = R"([[Data]]
     begins      held, then released
     ends        the end of the recording
     resolution  0.00436 rad (0.25 deg), found in the values
+[[Rig]]
+    name             value ± std dev  unit
+    gravity_torque   1.800 ± 0.010    N m
+    inertia         0.0760 ± 0.0005   kg m^2
 [[Fit]]
     model   coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0
     start   held at an angle, then released
@@ -64,6 +68,12 @@ constexpr const char* kWholeFit = R"([[Data]]
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
+    Standard errors and intervals above are of noise alone. The total error and
+    its parts:
+    ± by source    unit        total    noise    rig
+    inertia        kg m^2      0.001  0.00025  0.001
+    viscous        N m s/rad  0.0005   0.0005
+    release_angle  rad        0.0002   0.0002
     viscous is weakly identifiable (its effect can be compensated by coulomb):
     let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
@@ -135,8 +145,8 @@ TEST(ToText, ShowsClosedFormsAfterTheFit) {
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
-  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Fit", "Parameters", "Derived quantities", "Correlations",
-                                    "Noise and statistics", "Equation of motion", "Constancy",
+  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Rig", "Fit", "Parameters", "Derived quantities",
+                                    "Correlations", "Noise and statistics", "Equation of motion", "Constancy",
                                     "What the residuals suggest", "What one swing cannot tell", "Closed forms",
                                     "Closed forms against the fit", "Turning points", "Warnings"));
 }
@@ -264,7 +274,7 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
   EXPECT_THAT(sections,
-              ElementsAre("Data", "Sampling", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
+              ElementsAre("Data", "Sampling", "Rig", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
                           "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
                           "Constancy", "What the residuals suggest", "What one swing cannot tell", "Parameters of drag",
                           "Closed forms", "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
@@ -362,7 +372,7 @@ std::string TextOf(const Identification& report, const std::string& title) {
 TEST(ReportSections, AreInOrder) {
   EXPECT_THAT(Titles(ReportSections(ExampleComparedJointIdentification())),
               ElementsAre("Recordings", "Data: recording 1", "Sampling: recording 1", "Data: recording 2",
-                          "Sampling: recording 2", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
+                          "Sampling: recording 2", "Rig", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
                           "Do the recordings agree?", "Each recording's own", "Derived quantities", "Correlations",
                           "Noise and statistics: recording 1", "Noise and statistics: recording 2",
                           "Noise and statistics: all recordings", "Equation of motion", "Constancy: recording 1",
@@ -375,8 +385,13 @@ TEST(ReportSections, AreInOrder) {
 TEST(ReportSections, AreThoseOfOneRecordingForEachOfSeveral) {
   Identification report = ExampleJointIdentification();
   report.recordings[1] = report.recordings[0];  // which has closed forms and constancy
-  const std::vector<std::string> common = {"Fit",          "Parameters",         "Derived quantities",
-                                           "Correlations", "Equation of motion", "What one swing cannot tell",
+  const std::vector<std::string> common = {"Rig",
+                                           "Fit",
+                                           "Parameters",
+                                           "Derived quantities",
+                                           "Correlations",
+                                           "Equation of motion",
+                                           "What one swing cannot tell",
                                            "Warnings"};
   std::vector<std::string> expected;
   for (const std::string& title : Titles(ReportSections(ExampleIdentification()))) {
@@ -412,11 +427,15 @@ TEST(ReportSections, CountTheRecordingsThatShareParameters) {
 
 TEST(ReportSections, ShowSeparateParametersOfEachRecording) {
   EXPECT_EQ(TextOf(ExampleJointIdentification(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
-       name             value ± std error  unit  95 % interval
-    1  release_angle  0.42300 ± 0.00020    rad   [0.42260, 0.42340]
-       zero_angle        0.01 (fixed)      rad
-    2  initial_angle    0.250 ± 0.013      rad   [0.225, 0.275]
-       zero_angle        0.01 (fixed)      rad
+       name              value ± std error  unit  95 % interval
+    1  release_angle   0.42300 ± 0.00020    rad   [0.42260, 0.42340]
+                        24.236 ± 0.011      deg   [24.213, 24.259]
+       zero_angle         0.01 (fixed)      rad
+                      0.572958              deg
+    2  initial_angle     0.250 ± 0.013      rad   [0.225, 0.275]
+                          14.3 ± 0.7        deg   [12.9, 15.8]
+       zero_angle         0.01 (fixed)      rad
+                      0.572958              deg
 )");
 }
 

@@ -8,7 +8,7 @@
 
 namespace pendulum {
 
-/// The samples and the sampling of each recording; for several recordings a table of them first.
+/// The samples and the sampling of each recording; for several recordings a table of them first. Then the rig.
 Sections DataSections(const Identification& identification);
 
 /// The sections with the number of recording k, if there are several recordings.

@@ -19,6 +19,7 @@ const kParts = {
   constancy: ['constancy'],
   'closed-forms': ['closed-forms'],
   data: ['data', 'sampling'],
+  rig: ['rig'],
   provenance: ['fit'],
   warnings: ['warnings'],
 } as const;

@@ -67,12 +67,12 @@ function joinedColumns({ columns, rows }: TableBlock): [number, number][] {
 }
 
 /** A row that only repeats values in another unit, such as degrees, is part of the row before. */
-function groupedRows({ columns, rows }: TableBlock): string[][][] {
-  const first = Math.max(1, columns.findIndex((column) => column.is_number));
+function groupedRows({ rows }: TableBlock): string[][][] {
   const groups: string[][][] = [];
   for (const row of rows) {
     const before = groups[groups.length - 1];
-    if (before && row.slice(0, first).every((cell) => cell === '')) before.push(row);
+    const filled = row.findIndex((cell) => cell !== '');
+    if (before && filled > 0 && /^[±\d[-]/.test(row[filled])) before.push(row);
     else groups.push([before && row[0] === '' ? [before[0][0], ...row.slice(1)] : row]);
   }
   return groups;

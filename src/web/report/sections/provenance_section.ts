@@ -2,7 +2,7 @@
 /** Rig, calibration, source of the recording, and how the numbers were computed. */
 
 import { el, text } from '../../shared/dom';
-import type { Loose, Recording, Result } from '../../shared/result_types';
+import type { Loose, Recording } from '../../shared/result_types';
 import { significant } from '../../shared/rounding';
 import { absent, section } from '../../shared/section';
 import { facts, scrollBox, type Cell } from '../../shared/table';
@@ -20,14 +20,10 @@ function plain(value: unknown): string {
 const given = (values: Loose): HTMLElement =>
   facts(Object.entries(values).filter(([, value]) => value !== null).map(([name, value]) => [name.replace(/_/g, ' '), plain(value)]));
 
-function rigPart({ rig }: Result): HTMLElement {
-  if (!rig) return text('No rig was given: torques and inertia are in units of the gravity torque G.');
-  const values = Object.entries(rig).map(([name, entry]): [string, string] => {
-    const { value, std_dev: error } = typeof entry === 'number' ? { value: entry, std_dev: undefined } : entry;
-    return [name, error === undefined ? plain(value) : `${plain(value)} ± ${plain(error)}`];
-  });
-  return el('div', {}, el('h3', {}, 'The rig, as given, in SI units'), given(Object.fromEntries(values)));
-}
+const rigPart = (report: Report): HTMLElement[] =>
+  report.result.rig
+    ? told(report, 'rig', 'Calibration and rig')
+    : [text('No rig was given: torques and inertia are in units of the gravity torque G.')];
 
 /** "angle = −49.6077 + 0.198544 x deg, x in counts" */
 export function curveText(calibration: Loose): string | null {
@@ -47,12 +43,13 @@ function calibrationPart({ calibration }: Recording): HTMLElement {
 const heading = (one: OneRecording): HTMLElement => el('h3', {}, `Recording ${one.number}: ${recordingFile(one)}`);
 
 /** A single entry if all recordings have the same calibration. */
-export function rigSection({ result, recordings }: Report): HTMLElement {
+export function rigSection(report: Report): HTMLElement {
+  const { recordings } = report;
   const [first, ...others] = recordings.map(({ data }) => JSON.stringify(data.calibration));
   const parts = others.every((other) => other === first)
     ? [calibrationPart(recordings[0].data)]
     : recordings.flatMap((one) => [heading(one), calibrationPart(one.data)]);
-  return section('rig', 'Calibration and rig', ...parts, rigPart(result));
+  return section('rig', 'Calibration and rig', ...parts, ...rigPart(report));
 }
 
 /** Files with their hashes, the program and its command, and how the search for the parameters ended. */

@@ -158,7 +158,7 @@ export function validationSection(one: OneRecording): HTMLElement {
   }
   const curves = closedFormTraces(one, samples, fit);
   if (curves.length < 2)
-    return section('validation', title, absent('This recording has no closed forms to compare with.'));
+    return section('validation', title, absent('This law has not been compared with closed forms (--checks full).'));
   const sentence =
     'The plot shows the readings, the linear closed form, the nonlinear equation with the same textbook numbers, and the fit, from the release on.'.replace(
       'release',
