@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,9 +89,9 @@ Section RigSection(const Rig& rig) {
   for (const RigKey& key : RigKeys()) {
     const auto found = rig.source.is_object() ? rig.source.find(key.name) : rig.source.end();
     if (found == rig.source.end()) continue;
-    const bool is_number = found->is_number();
-    const QuantityNumbers numbers(is_number ? found->get<double>() : found->value("value", 0.0),
-                                  is_number ? 0.0 : found->value("std_dev", 0.0));
+    const double value = found->is_number() ? found->get<double>() : found->value("value", 0.0);
+    const double std_dev = found->is_number() ? 0 : found->value("std_dev", 0.0);
+    const QuantityNumbers numbers(value, std_dev > 0 ? std::optional(std_dev) : std::nullopt);
     table.rows.push_back({std::string(key.name), numbers.Value(), numbers.Error(), std::string(key.unit)});
   }
   return {"Rig", "", {std::move(table)}};
