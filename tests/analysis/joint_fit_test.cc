@@ -93,7 +93,7 @@ TEST(FitTogether, NamesTheRecordingThatPreventsConvergence) {
   const FitReport& whole = joint.joint[0].whole;
   EXPECT_EQ(whole.termination, Termination::kNotConverged);
   EXPECT_THAT(whole.reason, StartsWith("these are not swings of one pendulum"));
-  EXPECT_THAT(whole.reason, EndsWith("; the recordings do not agree"));  // the verdict says more, once
+  EXPECT_THAT(whole.reason, EndsWith("; under this law the recordings do not agree"));  // the verdict says more, once
   EXPECT_FALSE(whole.HasWarning("recordings_disagree"));
   EXPECT_THAT(joint.homogeneity[0].verdict, HasSubstr("recording 2 disagrees with the others: its inertia is 1"));
   EXPECT_THAT(joint.homogeneity[0].disagreeing, ElementsAre(1));
