@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Units, symbols and names of quantities as they are displayed. */
 
+import { el, symbolElement, type Child } from './dom';
 import type { Loose } from './result_types';
 
 const kSuperscript: Record<string, string> = { '-': '⁻', '0': '⁰', '1': '¹', '2': '²', '3': '³', '4': '⁴' };
@@ -116,6 +117,18 @@ export function symbolOf(name: string, unit = ''): string | null {
 
 /** "moment of inertia" for inertia; an unknown name is returned unchanged. */
 export const wordsOf = (name: string): string => kWords[name] ?? name;
+
+/** Name in words, symbol, and the name in flags and JSON. */
+export function quantityName(name: string, unit = ''): Child[] {
+  const symbol = symbolOf(name, unit);
+  const words = wordsOf(name);
+  return [
+    words,
+    symbol !== null && ' ',
+    symbol !== null && symbolElement(symbol),
+    words !== name && el('code', {}, name),
+  ];
+}
 
 /** Name of the quantity that has this unit. */
 export const quantityOf = (unit: string): string => (unit === 'rad/s' ? 'rate' : unit === 'rad' ? 'angle' : 'reading');

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Table of all parameters of the selected model, in which one can be selected. */
 
-import { el, symbolElement, text, type Child } from '../shared/dom';
+import { el, text, type Child } from '../shared/dom';
 import { probabilityText } from '../shared/rounding';
 import { absent, section } from '../shared/section';
 import { select } from '../shared/select';
 import { table, type Cell, type Column } from '../shared/table';
-import { symbolOf, wordsOf } from '../shared/units';
+import { quantityName, wordsOf } from '../shared/units';
 import type { ParameterSummary, Verdict } from './types';
 import { parametersOf, shownModel, shownParameter, type View } from './view';
 import { countText, ratioText, spreadText, valueTo } from './words';
@@ -28,23 +28,11 @@ function scatterCell({ repeatability }: ParameterSummary): Cell {
   ];
 }
 
-/** Name in words and symbol; below, the name in flags and JSON. */
-export function nameCell({ name, unit }: ParameterSummary): Child[] {
-  const symbol = symbolOf(name, unit);
-  const words = wordsOf(name);
-  return [
-    words,
-    symbol !== null && ' ',
-    symbol !== null && symbolElement(symbol),
-    words !== name && el('code', {}, name),
-  ];
-}
-
 function row(one: ParameterSummary): Cell[] {
   const { median, std_dev: spread, unit } = one;
   const error = one.median_repeat_error ?? one.median_std_error;
   return [
-    nameCell(one),
+    quantityName(one.name, unit),
     countText(one.runs),
     valueTo(median, error ?? spread, unit),
     spreadText(spread),

@@ -11,7 +11,7 @@ import { fixed, significant } from '../../shared/rounding';
 import { section } from '../../shared/section';
 import { select } from '../../shared/select';
 import { table, type Cell, type Column } from '../../shared/table';
-import { spacedUnit, unitText, wordsOf } from '../../shared/units';
+import { quantityName, spacedUnit, unitText, wordsOf } from '../../shared/units';
 import { fitApi, fitPath } from '../routes';
 import { askJson } from '../server/api';
 import type { View } from '../shell';
@@ -32,7 +32,7 @@ import {
   type Compared,
 } from './compare';
 import { localTime } from './fit_rows';
-import { kCircumstances, quantityName, valueCell } from './parameter_cells';
+import { kCircumstances, valueCell } from './parameter_cells';
 
 const number = 'number' as const;
 

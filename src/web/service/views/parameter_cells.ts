@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Cells of a table of parameters of several fits. */
 
-import { el, symbolElement, type Child } from '../../shared/dom';
+import { el } from '../../shared/dom';
 import type { Parameter } from '../../shared/result_types';
 import { plusMinus } from '../../shared/rounding';
 import type { Cell } from '../../shared/table';
-import { inDegrees, spacedUnit, symbolOf, wordsOf } from '../../shared/units';
+import { inDegrees, spacedUnit } from '../../shared/units';
 
 /** Parameters of the start and of the sensor. All others are properties of the pendulum. */
 export const kCircumstances = new Set([
@@ -26,18 +26,6 @@ export const kCircumstances = new Set([
   'pivot_y',
   'hysteresis',
 ]);
-
-/** Name in words, symbol, and the name in flags and JSON. */
-export function quantityName(name: string, unit = ''): Child[] {
-  const symbol = symbolOf(name, unit);
-  const words = wordsOf(name);
-  return [
-    words,
-    symbol !== null && ' ',
-    symbol !== null && symbolElement(symbol),
-    words !== name && el('code', {}, name),
-  ];
-}
 
 const scale = (x: number | null, factor: number): number | null => (x === null ? null : factor * x);
 
