@@ -137,6 +137,14 @@ TEST(ToJson, WorksWithoutAFit) {
   EXPECT_EQ(json["recordings"][0]["closed_forms"]["turning_points"], 5);
 }
 
+TEST(ToJson, HasNullForTheReleaseOfAGivenWindow) {
+  Identification report = ExampleIdentification();
+  report.recordings.front().data.release = 2;
+  EXPECT_EQ(ToJson(report)["recordings"][0]["release"], 2);
+  report.recordings.front().data.release = 0;
+  EXPECT_TRUE(ToJson(report)["recordings"][0]["release"].is_null());
+}
+
 TEST(ToJson, ExplainsMissingClosedForms) {
   const Json recording = ToJson(ExampleRateIdentification())["recordings"][0];
   EXPECT_TRUE(recording["closed_forms"].is_null());
@@ -341,6 +349,7 @@ TEST(ToJson, HasNoNumbersOfAFailedFit) {
     EXPECT_TRUE(fit[key].is_null()) << key;
   }
   for (const char* key : {"statistics", "noise"}) EXPECT_TRUE(own[key].is_null()) << key;
+  EXPECT_EQ(fit["parameters"]["inertia"]["reason"], "the fit failed");
   EXPECT_EQ(own["parameters"]["initial_angle"]["reason"], "the fit failed");
 }
 

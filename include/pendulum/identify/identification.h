@@ -55,7 +55,7 @@ struct IdentifiedRecording {
   DataSummary data;
   nlohmann::ordered_json calibration;       ///< Converts counts or volts to angles, as given by the user; null: none.
   std::optional<Sampling> sampling;         ///< Sampling of the used samples.
-  std::optional<ClosedForms> closed_forms;  ///< Closed forms of the used samples, with the friction of the first model.
+  std::optional<ClosedForms> closed_forms;  ///< Closed forms of the used samples, with the friction of the main fit.
   std::string closed_forms_model;           ///< The name of that model; empty if closed forms were not requested.
   std::string no_closed_forms;              ///< Why there are no closed forms.
   std::vector<FitReport> own_fits;          ///< One of several recordings: its part of each fit. See FitOf.
