@@ -37,7 +37,7 @@ STANDS_ON = {
 # own room and those listed before it.
 ROOMS = {
     "recording": ["", "readers/columns", "readers/text", "readers/process", "readers/mat", "readers/containers", "readers", "calibration"],
-    "fitting": ["likelihood", "start", "residuals", "solve", "effects", "uncertainty", "fit", "swing", "joint"],
+    "fitting": ["likelihood", "start", "residuals", "solve", "effects", "uncertainty", "fit", "swing"],
 }
 
 # The only floors that may include a library's headers. Libraries not listed are free.
@@ -264,7 +264,7 @@ BAD_TREE = {
     "tests/fitting/flag.h": ("#include <gflags/gflags.h>\n", "gflags belongs to tools"),
     "include/pendulum/fitting/solve/down.h": ('#include "pendulum/fitting/likelihood/cost.h"\n', None),
     "include/pendulum/fitting/solve/up.h": ('#include "pendulum/fitting/fit/fit.h"\n', "room solve is below fit"),
-    "src/fitting/start/up.h": ('#include "fitting/joint/private.h"\n', "room start is below joint"),
+    "src/fitting/start/up.h": ('#include "fitting/swing/private.h"\n', "room start is below swing"),
     "src/recording/room.h": ('#include "recording/readers/text/csv.h"\n', "room  is below readers/text"),
     "include/pendulum/fitting/attic/x.h": ('#include "pendulum/fitting/fit/fit.h"\n', "has no such room"),
     "include/pendulum/base/cout.h": ("auto& s = std::cout;\n", "a stream of the process has no place"),

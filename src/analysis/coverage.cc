@@ -12,7 +12,7 @@
 #include "pendulum/base/parallel.h"
 #include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/fit.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
 
 namespace pendulum {

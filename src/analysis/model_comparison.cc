@@ -12,7 +12,7 @@
 #include "pendulum/analysis/comparison_parts.h"
 #include "pendulum/analysis/nested_tests.h"
 #include "pendulum/analysis/recommendation.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "pendulum/fitting/residuals/bounded_least_squares.h"
 
 namespace pendulum {

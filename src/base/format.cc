@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstddef>
 
 namespace pendulum {
 namespace {
@@ -74,6 +75,15 @@ std::string ShellWord(const std::string& word) {
     quoted.replace(at, 1, "'\\''");
   }
   return "'" + quoted + "'";
+}
+
+std::string ListWithAnd(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
+    list += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return list + (names.size() > kShown ? ", ..." : "");
 }
 
 }  // namespace pendulum

@@ -18,7 +18,7 @@
 #include "pendulum/analysis/coverage_scenarios.h"
 #include "pendulum/analysis/homogeneity.h"
 #include "pendulum/base/parallel.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::homogeneity_errors_test {

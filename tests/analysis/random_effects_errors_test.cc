@@ -14,7 +14,7 @@
 #include "pendulum/analysis/homogeneity.h"
 #include "pendulum/analysis/random_effects.h"
 #include "pendulum/base/parallel.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::random_effects_errors_test {

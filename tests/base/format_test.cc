@@ -67,5 +67,13 @@ TEST(NameList, JoinsNamesForASentence) {
   EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}, {"viscous"}, {"zero_angle"}}), "inertia, viscous, zero_angle");
 }
 
+TEST(ListWithAnd, NamesTheFirstEight) {
+  EXPECT_EQ(ListWithAnd({}), "");
+  EXPECT_EQ(ListWithAnd({"inertia"}), "inertia");
+  EXPECT_EQ(ListWithAnd({"inertia", "viscous"}), "inertia and viscous");
+  EXPECT_EQ(ListWithAnd({"1", "2", "3", "4", "5", "6", "7", "8"}), "1, 2, 3, 4, 5, 6, 7 and 8");
+  EXPECT_EQ(ListWithAnd({"1", "2", "3", "4", "5", "6", "7", "8", "9"}), "1, 2, 3, 4, 5, 6, 7, 8, ...");
+}
+
 }  // namespace
 }  // namespace pendulum::format_test

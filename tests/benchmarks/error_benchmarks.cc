@@ -20,23 +20,26 @@ namespace {
 
 /// The reference run after its fit and before it is judged. The cost refers to the problem.
 struct SolvedRun {
+  Recording recording = ReferenceRecording();
+  FitOptions options;
   std::unique_ptr<FitProblem> problem;
   std::unique_ptr<TrajectoryCost> cost;
   Solution solution;
+
+  SolvedFit Fit() { return SolvedFitOf({recording, options, *problem, *cost, solution}); }
 };
 
 SolvedRun SolveReferenceRun() {
-  FitOptions options;
-  options.rig = ReferenceRig();
   SolvedRun run;
-  run.problem = std::make_unique<FitProblem>(Expect(MakeFitProblem(ReferenceRecording(), options)));
+  run.options.rig = ReferenceRig();
+  run.problem = std::make_unique<FitProblem>(Expect(MakeFitProblem(run.recording, run.options)));
   const FitProblem& problem = *run.problem;
   run.cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
-  run.cost->set_tolerance(TraceTolerance(options.search.max_trace_error, problem.start.amplitude));
+  run.cost->set_tolerance(TraceTolerance(run.options.search.max_trace_error, problem.start.amplitude));
   run.cost->set_noise(problem.noise);
   run.solution = Search(
       *run.cost, problem.data, [&](const auto& fixed) { return FirstGuess(problem, fixed); }, problem.solve);
-  MaximizeLikelihood(*run.cost, problem, options, run.solution);
+  MaximizeLikelihood(*run.cost, problem, run.options, run.solution);
   return run;
 }
 
@@ -48,7 +51,7 @@ void FindCovariance(benchmark::State& state) {
     last = std::nextafter(last, 1.0);  // the cost caches the sums of the last point
     const std::optional<Optimum> optimum = Linearize(run.problem->solve, *run.cost, run.solution);
     if (!optimum || !optimum->inverse.identifiable) return state.SkipWithError("not identifiable");
-    Errors errors = ComputeErrors(*run.problem, *run.cost, run.solution, *optimum, {});
+    Errors errors = ComputeErrors(run.Fit(), *optimum);
     benchmark::DoNotOptimize(errors.covariance.data());
   }
   state.counters["samples"] = kSamples;
@@ -56,13 +59,14 @@ void FindCovariance(benchmark::State& state) {
 
 /// Profile-likelihood intervals of all free parameters.
 void FindProfiles(benchmark::State& state) {
-  const SolvedRun run = SolveReferenceRun();
+  SolvedRun run = SolveReferenceRun();
+  const SolvedFit fit = run.Fit();
   const std::optional<Optimum> optimum = Linearize(run.problem->solve, *run.cost, run.solution);
   if (!optimum) return state.SkipWithError("no trajectory");
   const int before = run.cost->traces();
   for (auto _ : state) {
     for (const int k : optimum->free) {
-      const ProfileInterval interval = ProfileParameter(*run.cost, *run.problem, run.solution, *optimum, {}, k);
+      const ProfileInterval interval = ProfileParameter(fit, *optimum, k);
       if (!interval.lower || !interval.upper) return state.SkipWithError(std::string(Sentence(interval.open)).c_str());
     }
   }

@@ -9,7 +9,7 @@
 #include "pendulum/analysis/coverage_scenarios.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/median.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "pendulum/trajectory/synthetic.h"
 #include "pendulum_benchmarks.h"
 #include "reference_run.h"

@@ -49,7 +49,8 @@ struct Fitted {
   Eigen::VectorXd residuals;    ///< N x 1, quantile residuals.
 
   double At(int i) const { return solution.parameters[static_cast<std::size_t>(i)]; }
-  Errors StandardErrors() const { return ComputeErrors(*problem, *cost, solution, optimum, correlation); }
+  FittedRun Run() { return {recording, options, *problem, *cost, solution, {}, correlation}; }
+  Errors StandardErrors() { return ComputeErrors(SolvedFitOf(Run()), optimum); }
 };
 
 /// Fits like FitRecording, from Search to the maximum likelihood. If `with_autocorrelation`, estimates the residuals'

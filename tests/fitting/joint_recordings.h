@@ -11,8 +11,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "pendulum/fitting/joint/fit_jointly.h"
-#include "pendulum/fitting/joint/joint_problem.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
+#include "pendulum/fitting/fit/joint_problem.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {

@@ -7,7 +7,7 @@
 #include "pendulum/analysis/constancy.h"
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/analysis/homogeneity.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 
 namespace pendulum {
 

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pendulum {
 
@@ -45,5 +46,8 @@ std::string NameList(const Range& items) {
   }
   return list;
 }
+
+/// "A, B and C"; only the first eight if there are more.
+std::string ListWithAnd(const std::vector<std::string>& names);
 
 }  // namespace pendulum

@@ -164,7 +164,7 @@ void CorrectForSuspicions(const Recording& recording, const FitOptions& options,
     const FitOptions like = OptionsLike(report, options);
     Result<Attempt> attempt = MakeAttempt(corrected, like);
     if (!attempt || !attempt->solution.usable) break;
-    FitReport better = MakeFitReport(corrected, like, *attempt->problem, *attempt->cost, attempt->solution, next);
+    FitReport better = MakeFitReport({corrected, like, *attempt->problem, *attempt->cost, attempt->solution}, next);
     const bool is_better = better.termination == Termination::kConverged &&
                            better.effects.pull.cols() == report.effects.pull.cols() &&
                            better.statistics.rms_residual <= report.statistics.rms_residual;
@@ -215,7 +215,7 @@ Result<FitReport> FitWithRescues(const Recording& recording, const FitOptions& o
     const AlternativeMinimum minimum = MinimumOf(attempt);
     // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
     const bool has_base = !HasLeastReference(attempt, options);
-    report = MakeFitReport(recording, options, *attempt.problem, *attempt.cost, std::move(attempt.solution));
+    report = MakeFitReport({recording, options, *attempt.problem, *attempt.cost, attempt.solution});
     const double effective_share =
         report->statistics.effective_samples / static_cast<double>(attempt.problem->data.time.size());
     const bool is_correctable = has_base && report->effects.correction.readings.size() > 0;

@@ -52,13 +52,14 @@ void SetReadingUnit(const Recording& recording, const SensorModel& sensor, Param
 }
 
 /// Value, unit and flags of parameter i, without its errors.
-ParameterEstimate MakeEstimate(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                               const Solution& solution, std::size_t i) {
+ParameterEstimate MakeEstimate(const FittedRun& run, std::size_t i) {
+  const Recording& recording = run.recording;
+  const FitProblem& problem = run.problem;
   ParameterEstimate parameter;
   parameter.info = problem.infos[i];
-  parameter.unit = SiRig(options) ? parameter.info.unit : parameter.info.relative_unit;
+  parameter.unit = SiRig(run.options) ? parameter.info.unit : parameter.info.relative_unit;
   SetReadingUnit(recording, problem.data.sensor, parameter);
-  parameter.estimate = problem.Reported(i, solution.parameters[i]);
+  parameter.estimate = problem.Reported(i, run.solution.parameters[i]);
   parameter.fixed = problem.solve.fixed[i];
   const auto is_one_of = [&](auto... infos) { return ((parameter.info.name == infos.name) || ...); };
   const bool is_seen = recording.is_calibrated() || problem.data.sensor.kind == SensorKind::kDirect;
@@ -87,24 +88,25 @@ NoiseEstimate DescribeNoise(const FitProblem& problem, const Solution& solution,
 
 }  // namespace
 
-FitReport InitializeReport(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                           const Solution& solution) {
+FitReport InitializeReport(const FittedRun& run) {
   FitReport report;
-  report.model = problem.model;
-  report.start = problem.start.start;
-  report.start_values = problem.start;
-  report.quantity = recording.quantity;
-  report.sensor = problem.data.sensor;
-  report.reading_unit = recording.value_unit();
-  report.solver = {solution.iterations, cost.traces(), solution.message, {}};
+  report.model = run.problem.model;
+  report.start = run.problem.start.start;
+  report.start_values = run.problem.start;
+  report.quantity = run.recording.quantity;
+  report.sensor = run.problem.data.sensor;
+  report.reading_unit = run.recording.value_unit();
+  report.solver = {run.solution.iterations, run.cost.traces(), run.solution.message, {}};
   return report;
 }
 
-Description Describe(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                     const Solution& solution, int free_parameters) {
+Description Describe(const FittedRun& run, int free_parameters) {
+  const Recording& recording = run.recording;
+  const FitProblem& problem = run.problem;
+  const Solution& solution = run.solution;
   Description described;
   FitReport& report = described.report;
-  report = InitializeReport(recording, problem, cost, solution);
+  report = InitializeReport(run);
   const Eigen::VectorXd& z = described.quantile_residuals =
       QuantileResiduals(solution.noise, recording.value, solution.readings);
   report.fitted = solution.readings;
@@ -113,7 +115,7 @@ Description Describe(const Recording& recording, const FitProblem& problem, cons
   report.statistics = ComputeStatistics(report.residual, z, solution.log_likelihood, free_parameters);
   report.statistics.rms_residual = problem.RmsResidual(report.fitted);
   report.noise = DescribeNoise(problem, solution, z);
-  described.trace = cost.Trace(solution.parameters);
+  described.trace = run.cost.Trace(solution.parameters);
   described.correlated =
       !IsRounding(recording, report) &&
       (AreAutocorrelated(z, PeriodLags(problem)) ||
@@ -122,11 +124,10 @@ Description Describe(const Recording& recording, const FitProblem& problem, cons
   return described;
 }
 
-void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                   const Optimum& optimum, const Solution& solution, FitReport& report) {
+void SetParameters(const FittedRun& run, const Optimum& optimum, FitReport& report) {
   report.parameters.clear();
-  for (int i = 0; i < static_cast<int>(problem.infos.size()); ++i) {
-    ParameterEstimate parameter = MakeEstimate(recording, options, problem, solution, static_cast<std::size_t>(i));
+  for (int i = 0; i < static_cast<int>(run.problem.infos.size()); ++i) {
+    ParameterEstimate parameter = MakeEstimate(run, static_cast<std::size_t>(i));
     parameter.at_bound = std::ranges::find(optimum.at_bound, i) != optimum.at_bound.end();
     if (parameter.fixed) {
       parameter.reason = "fixed";
@@ -174,33 +175,36 @@ void SetSystematicErrors(const FitProblem& problem, const std::vector<Systematic
   report.systematic_covariance = (units.asDiagonal() * sum * units.asDiagonal())(concerned, concerned);
 }
 
-void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors,
-                const std::vector<SystematicCovariance>& covariances, const Solution& solution, FitReport& report) {
+void SetDerived(const FittedRun& run, const Optimum& optimum, const Errors& errors,
+                const std::vector<SystematicCovariance>& covariances, FitReport& report) {
+  const FitProblem& problem = run.problem;
+  const std::vector<double>& parameters = run.solution.parameters;
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   covariance(optimum.free, optimum.free) = errors.covariance;
-  report.derived = DerivedQuantities(problem.infos, solution.parameters, &covariance, optimum.at_bound);
+  report.derived = DerivedQuantities(problem.infos, parameters, &covariance, optimum.at_bound);
   std::vector<IntervalEnds> intervals;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {
     const ParameterEstimate& parameter = report.parameters[i];
     const auto internal = [&](const std::optional<double>& end) {
-      if (parameter.fixed) return std::optional(solution.parameters[i]);
+      if (parameter.fixed) return std::optional(parameters[i]);
       return end ? std::optional(problem.Internal(i, *end)) : std::nullopt;
     };
     intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
   }
-  SetDerivedIntervals(problem.infos, solution.parameters, intervals, report.derived);
+  SetDerivedIntervals(problem.infos, parameters, intervals, report.derived);
   for (const SystematicCovariance& of : covariances) {
-    AddSystematicErrors(problem.infos, solution.parameters, of.kind, of.of_ratios, report.derived);
+    AddSystematicErrors(problem.infos, parameters, of.kind, of.of_ratios, report.derived);
   }
 }
 
-Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                                  const Optimum& optimum, const Eigen::VectorXd& z, bool correlated) {
-  if (optimum.free.empty() || !(correlated || MayBeCorrelated(z))) return {};
-  const Eigen::MatrixXd jacobian = FreeJacobian(cost, solution, optimum);
+Autocorrelation AutocorrelationOf(const FittedRun& run, const Optimum& optimum, const Description& described) {
+  const Eigen::VectorXd& z = described.quantile_residuals;
+  if (optimum.free.empty() || !(described.correlated || MayBeCorrelated(z))) return {};
+  const Eigen::MatrixXd jacobian = FreeJacobian(run.cost, run.solution, optimum);
   if (jacobian.rows() == 0) return {};
-  return EstimateAutocorrelation(solution.noise, problem.data.times(), z, jacobian, problem.data.stop);
+  const TrajectoryData& data = run.problem.data;
+  return EstimateAutocorrelation(run.solution.noise, data.times(), z, jacobian, data.stop);
 }
 
 }  // namespace pendulum

@@ -316,18 +316,18 @@ Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
 }  // namespace
 
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
-                                 const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
-                                 const FitReport& report) {
+                                 const Description& described) {
+  const FitReport& report = described.report;
   std::vector<Warning> warnings;
   WarnOfSaturation(problem, warnings);
-  if (correlated) WarnOfCorrelation(recording, report, quantile_residuals, warnings);
-  if (correlated) WarnOfDrift(recording, problem, report, warnings);
+  if (described.correlated) WarnOfCorrelation(recording, report, described.quantile_residuals, warnings);
+  if (described.correlated) WarnOfDrift(recording, problem, report, warnings);
   WarnOfQuietSensor(recording, report, warnings);
   WarnOfTraceAccuracy(report, warnings);
   if (report.termination != Termination::kConverged) return warnings;
   WarnOfPriors(problem, solution, report, warnings);
   WarnOfBounds(report, warnings);
-  WarnOfStop(problem, solution, trace, report, warnings);
+  WarnOfStop(problem, solution, described.trace, report, warnings);
   return warnings;
 }
 

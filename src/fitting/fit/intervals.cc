@@ -10,7 +10,6 @@
 #include "pendulum/fitting/uncertainty/bootstrap.h"
 #include "pendulum/fitting/uncertainty/posterior.h"
 #include "pendulum/fitting/uncertainty/profile.h"
-#include "pendulum/fitting/uncertainty/standard_errors.h"
 
 namespace pendulum {
 namespace {
@@ -48,51 +47,38 @@ ProfileCurve ReportedCurve(const FitProblem& problem, int parameter, const Profi
   return curve;
 }
 
-void SetProfileIntervals(const FittedModel& fitted, FitReport& report) {
-  std::vector<int> parameters = UnfixedParameters(fitted.optimum);
-  std::ranges::sort(parameters);
-  for (const int i : parameters) {
-    SetProfileInterval(
-        fitted.problem, i,
-        ProfileParameter(fitted.cost, fitted.problem, fitted.solution, fitted.optimum, fitted.correlation, i), report);
+/// Sets one parameter's interval and curve.
+void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileInterval& interval, FitReport& report) {
+  const auto k = static_cast<std::size_t>(parameter);
+  report.parameters[k].open_interval = interval.open;
+  if (interval.lower == problem.solve.lower[k] && interval.upper == problem.solve.upper[k]) {
+    report.parameters[k].open_interval = OpenInterval::kNothingExcluded;
+    SetInterval(problem, parameter, std::nullopt, std::nullopt, report);
+  } else {
+    SetInterval(problem, parameter, interval.lower, interval.upper, report);
   }
-  report.interval_method = "profile likelihood";
-}
-
-void SetBootstrapIntervals(const FittedModel& fitted, FitReport& report) {
-  const Bootstrap bootstrap =
-      RunBootstrap(fitted.problem, fitted.options, fitted.solution, fitted.quantile_residuals, fitted.correlation);
-  constexpr int kMinRefits = kBootstrapFits * 9 / 10;
-  for (const int i : UnfixedParameters(fitted.optimum)) {
-    if (bootstrap.estimates.rows() < kMinRefits) {
-      report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kFailedResamples;
-      continue;
-    }
-    SetInterval(fitted.problem, i, bootstrap.Quantile(i, 0.025), bootstrap.Quantile(i, 0.975), report);
-  }
-  report.interval_method = "quantiles of " + std::to_string(bootstrap.estimates.rows()) + " bootstrap fits, seed " +
-                           std::to_string(fitted.options.seed);
+  if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(problem, parameter, interval));
 }
 
 /// The linearized fit over the free parameters of `optimum`.
-LinearizedFit LinearizeFit(const FittedModel& fitted, const Optimum& optimum) {
-  const FitProblem& problem = fitted.problem;
+LinearizedFit LinearizeFit(const FittedRun& run, const Optimum& optimum) {
+  const FitProblem& problem = run.problem;
   const std::vector<int>& free = optimum.free;
   const auto size = static_cast<Index>(free.size());
   LinearizedFit linear;
   linear.value = problem.data.values();
-  linear.readings = fitted.solution.readings;
-  linear.jacobian = FreeJacobian(fitted.cost, fitted.solution, optimum);
-  linear.noise = fitted.solution.noise;
+  linear.readings = run.solution.readings;
+  linear.jacobian = FreeJacobian(run.cost, run.solution, optimum);
+  linear.noise = run.solution.noise;
   linear.lower.resize(size);
   linear.upper.resize(size);
   linear.prior_mean = linear.prior_weight = Eigen::VectorXd::Zero(size);
   for (Index row = 0; row < size; ++row) {
     const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(row)]);
-    const double at = fitted.solution.parameters[i];
+    const double at = run.solution.parameters[i];
     linear.lower[row] = problem.solve.lower[i] - at;
     linear.upper[row] = problem.solve.upper[i] - at;
-    for (const PriorTerm& prior : fitted.cost.priors()) {
+    for (const PriorTerm& prior : run.cost.priors()) {
       if (static_cast<std::size_t>(prior.parameter) != i) continue;
       linear.prior_mean[row] = prior.mean - at;
       linear.prior_weight[row] = prior.weight;
@@ -115,16 +101,15 @@ std::vector<std::string> MostCorrelatedParameters(const FitProblem& problem, con
 
 /// Whether the noise is so small that the likelihood is not parabolic: only the few samples near the edges of levels
 /// carry information.
-bool HasLittleNoise(const FittedModel& fitted) {
+bool HasLittleNoise(const FittedRun& run) {
   constexpr double kFewAtEdges = 500;
   constexpr double kMostReadings = 4000;  // in means: more take too long, and their likelihood is nearly parabolic
   constexpr double kAtSmallest = 1.05;
-  const NoiseModel& noise = fitted.solution.noise;
+  const NoiseModel& noise = run.solution.noise;
   const bool averaged = noise.family == NoiseFamily::kAveraged;
   if (noise.family != NoiseFamily::kQuantized && !averaged) return false;
   const double levels = noise.sigma / (averaged ? noise.averaging.count : noise.resolution);
-  const auto samples = static_cast<double>(fitted.problem.data.time.size());
-  const double readings = samples * (averaged ? noise.averaging.readings : 1);
+  const double readings = run.samples() * (averaged ? noise.averaging.readings : 1);
   if (averaged && readings > kMostReadings) return false;
   return levels < kAtSmallest * kSmallestSigma || (levels < kSmallSigma && readings * levels < kFewAtEdges);
 }
@@ -154,25 +139,25 @@ IntervalEnds ShortestInterval(const LinearizedFit& linear, const Posterior& post
 }
 
 /// Sets the estimates of the free parameters to the means of the posterior.
-void UsePosteriorMeans(const LinearizedFit& linear, const Posterior& posterior, const FittedModel& fitted,
+void UsePosteriorMeans(const LinearizedFit& linear, const Posterior& posterior, const FittedRun& run,
                        const std::vector<int>& free, FitReport& report) {
   const bool cut_off = ReachesBound(linear, posterior);
   for (std::size_t row = 0; row < free.size(); ++row) {
     const auto i = static_cast<std::size_t>(free[row]);
-    const double at = fitted.solution.parameters[i];
+    const double at = run.solution.parameters[i];
     const auto k = static_cast<Index>(row);
     const IntervalEnds ends =
         cut_off ? ShortestInterval(linear, posterior, k) : IntervalEnds{posterior.lower95[k], posterior.upper95[k]};
-    SetInterval(fitted.problem, free[row], at + *ends.lower, at + *ends.upper, report);
-    fitted.solution.parameters[i] = at + posterior.mean[k];
-    report.parameters[i].estimate = fitted.problem.Reported(i, fitted.solution.parameters[i]);
+    SetInterval(run.problem, free[row], at + *ends.lower, at + *ends.upper, report);
+    run.solution.parameters[i] = at + posterior.mean[k];
+    report.parameters[i].estimate = run.problem.Reported(i, run.solution.parameters[i]);
     report.parameters[i].at_bound = false;
     report.parameters[i].reason.clear();
   }
-  if (!fitted.cost.Readings(fitted.solution.parameters, &fitted.solution.readings, nullptr)) return;
-  report.fitted = fitted.solution.readings;
-  report.residual = fitted.problem.data.values() - report.fitted;
-  report.statistics.rms_residual = fitted.problem.RmsResidual(report.fitted);
+  if (!run.cost.Readings(run.solution.parameters, &run.solution.readings, nullptr)) return;
+  report.fitted = run.solution.readings;
+  report.residual = run.problem.data.values() - report.fitted;
+  report.statistics.rms_residual = run.problem.RmsResidual(report.fitted);
 }
 
 /// The optimum in which the parameters at bounds are free, as the posterior requires.
@@ -187,32 +172,35 @@ Optimum WithoutBounds(const Optimum& optimum) {
 
 }  // namespace
 
-bool IsNearBound(const SolveOptions& solve, const Optimum& optimum, const std::vector<double>& parameters,
-                 const Eigen::MatrixXd& covariance) {
+bool NeedsProfiles(const SolvedFit& fit, const Optimum& optimum, const Errors& errors) {
   constexpr double kNear = 3;  // standard errors
+  const IntervalMethod method = fit.runs.front().options.interval;
+  if (method != IntervalMethod::kAuto) return method == IntervalMethod::kProfile;
   for (std::size_t row = 0; row < optimum.free.size(); ++row) {
     const auto i = static_cast<std::size_t>(optimum.free[row]);
-    const double reach = kNear * std::sqrt(covariance(static_cast<Index>(row), static_cast<Index>(row)));
-    if (parameters[i] - reach < solve.lower[i] || parameters[i] + reach > solve.upper[i]) return true;
+    const auto k = static_cast<Index>(row);
+    const double reach = kNear * std::sqrt(errors.covariance(k, k));
+    const double at = fit.solution.parameters[i];
+    if (at - reach < fit.solve.lower[i] || at + reach > fit.solve.upper[i]) return true;
   }
   return !optimum.at_bound.empty();
 }
 
-void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution, const Optimum& optimum,
-                            const Errors& errors, FitReport& report) {
+void SetCovarianceIntervals(const FittedRun& run, const Optimum& optimum, const Errors& errors, FitReport& report) {
+  const FitProblem& problem = run.problem;
   const SolveOptions& solve = problem.solve;
   for (std::size_t row = 0; row < optimum.free.size(); ++row) {
     const auto i = static_cast<std::size_t>(optimum.free[row]);
     const auto k = static_cast<Index>(row);
     const double length = errors.t95[k] * std::sqrt(errors.covariance(k, k));
-    const double at = solution.parameters[i];
+    const double at = run.solution.parameters[i];
     const double lowest = i == 0 ? 0.0 : solve.lower[i];  // inertia is positive
     SetInterval(problem, optimum.free[row], std::max(at - length, lowest), std::min(at + length, solve.upper[i]),
                 report);
   }
   for (const int i : optimum.at_bound) {
     report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kAtBound;
-    const double at = solution.parameters[static_cast<std::size_t>(i)];
+    const double at = run.solution.parameters[static_cast<std::size_t>(i)];
     const bool low = BoundSide(solve, static_cast<std::size_t>(i), at) < 0;
     SetInterval(problem, i, low ? std::optional(at) : std::nullopt, low ? std::nullopt : std::optional(at), report);
   }
@@ -222,52 +210,59 @@ void SetCovarianceIntervals(const FitProblem& problem, const Solution& solution,
   report.interval_method = "estimate ± " + (least == most ? least : least + " to " + most) + " standard errors";
 }
 
-void SetProfileInterval(const FitProblem& problem, int parameter, const ProfileInterval& interval, FitReport& report) {
-  const auto k = static_cast<std::size_t>(parameter);
-  report.parameters[k].open_interval = interval.open;
-  if (interval.lower == problem.solve.lower[k] && interval.upper == problem.solve.upper[k]) {
-    report.parameters[k].open_interval = OpenInterval::kNothingExcluded;
-    SetInterval(problem, parameter, std::nullopt, std::nullopt, report);
-  } else {
-    SetInterval(problem, parameter, interval.lower, interval.upper, report);
-  }
-  if (!interval.points.empty()) report.profiles.push_back(ReportedCurve(problem, parameter, interval));
-}
-
-std::optional<Optimum> UsePosterior(const FittedModel& fitted, Errors& errors, FitReport& report) {
+std::optional<Optimum> UsePosterior(const FittedRun& run, const Optimum& smooth, Errors& errors, FitReport& report) {
   constexpr std::size_t kMaxSamples = 200'000;  // beyond this, the matrices of the draws need too much memory
-  const bool is_auto = fitted.options.interval == IntervalMethod::kAuto;
-  const bool is_autocorrelated = fitted.correlation.kind != Autocorrelation::Kind::kWhite;
-  if (!is_auto || is_autocorrelated || !HasLittleNoise(fitted) || fitted.problem.data.time.size() > kMaxSamples)
+  const bool is_auto = run.options.interval == IntervalMethod::kAuto;
+  const bool is_autocorrelated = run.correlation.kind != Autocorrelation::Kind::kWhite;
+  if (!is_auto || is_autocorrelated || !HasLittleNoise(run) || run.problem.data.time.size() > kMaxSamples)
     return std::nullopt;
-  Optimum optimum = WithoutBounds(fitted.optimum);
+  Optimum optimum = WithoutBounds(smooth);
   if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
-  const LinearizedFit linear = LinearizeFit(fitted, optimum);
-  const Result<Posterior> posterior = SamplePosterior(linear, fitted.options.seed, fitted.options.stop);
+  const LinearizedFit linear = LinearizeFit(run, optimum);
+  const Result<Posterior> posterior = SamplePosterior(linear, run.options.seed, run.options.stop);
   if (!posterior) return std::nullopt;
-  UsePosteriorMeans(linear, *posterior, fitted, optimum.free, report);
+  UsePosteriorMeans(linear, *posterior, run, optimum.free, report);
   errors.covariance = posterior->covariance;
   errors.t95 = Eigen::VectorXd::Constant(posterior->covariance.rows(), kNormal95);
   errors.runs[0].sigma = posterior->sigma_std_dev;
   errors.runs[0].method =
       "posterior of the quantized likelihood, sampled around the solution: mean and standard deviation";
-  fitted.solution.noise.sigma = posterior->sigma;
+  run.solution.noise.sigma = posterior->sigma;
   report.interval_method = kPosteriorIntervals;
   return optimum;
 }
 
-void SetIntervals(const FittedModel& fitted, const Errors& errors, FitReport& report) {
-  switch (fitted.options.interval) {
-    case IntervalMethod::kBootstrap: return SetBootstrapIntervals(fitted, report);
-    case IntervalMethod::kProfile: return SetProfileIntervals(fitted, report);
-    case IntervalMethod::kNone:
-    case IntervalMethod::kCovariance: break;
-    case IntervalMethod::kAuto:
-      if (IsNearBound(fitted.problem.solve, fitted.optimum, fitted.solution.parameters, errors.covariance)) {
-        return SetProfileIntervals(fitted, report);
-      }
+void SetProfileIntervals(const SolvedFit& fit, const Optimum& optimum, const std::vector<FitReport*>& reports) {
+  for (int i = 0; i < static_cast<int>(fit.shared); ++i) {
+    if (fit.solve.fixed[static_cast<std::size_t>(i)]) continue;
+    const ProfileInterval interval = ProfileParameter(fit, optimum, i);
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+      const std::vector<int>& at = fit.runs[k].at;
+      const auto own = std::ranges::find(at, i) - at.begin();
+      SetProfileInterval(fit.runs[k].problem, static_cast<int>(own), interval, *reports[k]);
+    }
   }
-  SetCovarianceIntervals(fitted.problem, fitted.solution, fitted.optimum, errors, report);
+  for (FitReport* const report : reports) {
+    const bool is_of_all = report->parameters.size() == fit.shared;
+    report->interval_method =
+        is_of_all ? "profile likelihood"
+                  : "profile likelihood of the shared parameters; for the other parameters: " + report->interval_method;
+  }
+}
+
+void SetBootstrapIntervals(const FittedRun& run, const Optimum& optimum, const Eigen::VectorXd& quantile_residuals,
+                           FitReport& report) {
+  const Bootstrap bootstrap = RunBootstrap(run.problem, run.options, run.solution, quantile_residuals, run.correlation);
+  constexpr int kMinRefits = kBootstrapFits * 9 / 10;
+  for (const int i : UnfixedParameters(optimum)) {
+    if (bootstrap.estimates.rows() < kMinRefits) {
+      report.parameters[static_cast<std::size_t>(i)].open_interval = OpenInterval::kFailedResamples;
+      continue;
+    }
+    SetInterval(run.problem, i, bootstrap.Quantile(i, 0.025), bootstrap.Quantile(i, 0.975), report);
+  }
+  report.interval_method = "quantiles of " + std::to_string(bootstrap.estimates.rows()) + " bootstrap fits, seed " +
+                           std::to_string(run.options.seed);
 }
 
 namespace {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pendulum/fitting/residuals/autocorrelation.h"
-#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 
 namespace pendulum {
@@ -18,19 +16,17 @@ using Eigen::Index;
 /// the variance of the likelihood at fixed σ. It accounts for the estimate of σ and for autocorrelated residuals.
 class Profile {
  public:
-  Profile(LeastSquares& cost, const SolveOptions& options, const Solution& solution, Optimum optimum,
-          const ErrorsOf& errors_of, double samples, int k)
-      : cost_(cost), options_(options), solution_(solution), optimum_(std::move(optimum)), samples_(samples), k_(k) {
+  Profile(const SolvedFit& fit, Optimum optimum, int k) : fit_(fit), optimum_(std::move(optimum)), k_(k) {
     if (std::ranges::find(optimum_.free, k) == optimum_.free.end()) {
       optimum_.free.push_back(k);
       optimum_.inverse = InvertInformation(optimum_.information, optimum_.free);
     }
     if (!optimum_.inverse.identifiable) return;
     const Index row = std::ranges::find(optimum_.free, k) - optimum_.free.begin();
-    const Errors errors = errors_of(optimum_);
+    const Errors errors = ComputeErrors(fit_, optimum_);
     const double naive = optimum_.inverse.matrix(row, row);
     length_ = errors.t95[row] * std::sqrt(errors.covariance(row, row));
-    last_trace_ = cost.traces() + Budget();
+    last_trace_ = fit_.cost.traces() + Budget();
     threshold_ = length_ * length_ / naive;
     t95_ = errors.t95[row];
     points_.push_back({At(), 0});
@@ -42,14 +38,14 @@ class Profile {
   /// Distance to the end of the interval on a side (-1 or 1). Returns std::nullopt if there is no end.
   std::optional<double> FindReach(double side) {
     const auto index = static_cast<std::size_t>(k_);
-    const double bound = side < 0 ? options_.lower[index] : options_.upper[index];
+    const double bound = side < 0 ? fit_.solve.lower[index] : fit_.solve.upper[index];
     const double farthest = std::min(std::abs(bound - At()), kFarthest * length_);
     if (farthest == 0) return 0;
     return Find(side, farthest);
   }
 
   /// Whether the budget of trajectories is used up, so the ends are unknown.
-  bool is_exhausted() const { return cost_.traces() >= last_trace_; }
+  bool is_exhausted() const { return fit_.cost.traces() >= last_trace_; }
 
   /// Whether the profile fell below the optimum: it then belongs to another local minimum.
   bool found_lower() const { return found_lower_; }
@@ -58,7 +54,7 @@ class Profile {
   /// ends from the estimate are `down` and `up`. Points of the search far beyond the ends are removed.
   std::vector<ProfilePoint> SpreadPoints(double down, double up) {
     constexpr double kFarBeyond = 4;  // in thresholds
-    last_trace_ = cost_.traces() + Budget();
+    last_trace_ = fit_.cost.traces() + Budget();
     SpreadOver(-down);
     SpreadOver(up);
     std::erase_if(points_, [&](const ProfilePoint& p) { return p.statistic > kFarBeyond * threshold(); });
@@ -75,7 +71,7 @@ class Profile {
 
   double threshold() const { return t95_ * t95_; }
 
-  double At() const { return solution_.parameters[static_cast<std::size_t>(k_)]; }
+  double At() const { return fit_.solution.parameters[static_cast<std::size_t>(k_)]; }
 
  private:
   static constexpr double kFarthest = 100;  // in units of length_
@@ -84,26 +80,26 @@ class Profile {
   /// Budget of trajectories for one parameter. A well-behaved profile needs some tens for each recording.
   int Budget() const {
     constexpr double kSamples = 2e6;
-    const double runs = cost_.runs();
-    return static_cast<int>(runs * std::clamp(kSamples * runs / samples_, 100.0, 400.0));
+    const double runs = fit_.cost.runs();
+    return static_cast<int>(runs * std::clamp(kSamples * runs / fit_.samples(), 100.0, 400.0));
   }
 
   /// Square root of the rise relative to the threshold. It is 1 at the end of the interval and grows with the distance.
   double SquareRootOfRiseAt(double distance, double side) {
-    SolveOptions options = options_;
+    SolveOptions options = fit_.solve;
     options.fixed[static_cast<std::size_t>(k_)] = true;
     options.max_traces = last_trace_;
-    std::vector<double> start = solution_.parameters;
+    std::vector<double> start = fit_.solution.parameters;
     for (std::size_t j = 0; j < optimum_.free.size(); ++j) {
       const auto i = static_cast<std::size_t>(optimum_.free[j]);
       const double moved = start[i] + side * distance * direction_[static_cast<Index>(j)];
       start[i] = std::clamp(moved, options.lower[i], options.upper[i]);
     }
     start[static_cast<std::size_t>(k_)] = At() + side * distance;
-    const Solution other = Solve(cost_, start, options);
+    const Solution other = Solve(fit_.cost, start, options);
     if (!other.usable) return kUnbounded;
-    found_lower_ = found_lower_ || other.sum < solution_.sum - kNegligible * threshold_;
-    const double root = std::sqrt(std::max(other.sum - solution_.sum, 0.0) / threshold_);
+    found_lower_ = found_lower_ || other.sum < fit_.solution.sum - kNegligible * threshold_;
+    const double root = std::sqrt(std::max(other.sum - fit_.solution.sum, 0.0) / threshold_);
     points_.push_back({start[static_cast<std::size_t>(k_)], root * root * threshold()});
     return root;
   }
@@ -156,11 +152,8 @@ class Profile {
     return inside + std::clamp(share, 0.05, 0.95) * (outside - inside);
   }
 
-  LeastSquares& cost_;
-  const SolveOptions& options_;
-  const Solution& solution_;
+  const SolvedFit& fit_;
   Optimum optimum_;
-  double samples_;
   int k_;
   bool found_lower_ = false;
   int last_trace_ = 0;
@@ -173,17 +166,16 @@ class Profile {
 
 }  // namespace
 
-ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
-                                 const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k) {
+ProfileInterval ProfileParameter(const SolvedFit& fit, const Optimum& optimum, int k) {
   const auto index = static_cast<std::size_t>(k);
-  Profile profile(cost, options, solution, optimum, errors_of, samples, k);
+  Profile profile(fit, optimum, k);
   ProfileInterval interval;
   if (!profile.is_defined()) {
     interval.open = OpenInterval::kNotDetermined;
     return interval;
   }
-  const double lower = options.lower[index];
-  const double upper = options.upper[index];
+  const double lower = fit.solve.lower[index];
+  const double upper = fit.solve.upper[index];
   const std::optional<double> down = profile.FindReach(-1);
   const std::optional<double> up = profile.FindReach(1);
   if (down || std::isfinite(lower)) interval.lower = down ? profile.At() - *down : lower;
@@ -206,15 +198,6 @@ ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options
   if (profile.is_exhausted() || profile.found_lower()) interval.points.clear();
   interval.threshold = profile.threshold();
   return interval;
-}
-
-ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
-                                 const Optimum& optimum, const Autocorrelation& correlation, int k) {
-  const auto errors_of = [&](const Optimum& freed) {
-    return ComputeErrors(problem, cost, solution, freed, correlation);
-  };
-  return ProfileParameter(cost, problem.solve, solution, optimum, errors_of,
-                          static_cast<double>(problem.data.time.size()), k);
 }
 
 }  // namespace pendulum

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 
 /// Information of the priors over the free parameters.
-Eigen::MatrixXd PriorInformation(std::span<const PriorTerm> priors, const std::vector<int>& free) {
+Eigen::MatrixXd PriorInformation(const std::vector<PriorTerm>& priors, const std::vector<int>& free) {
   const auto size = static_cast<Index>(free.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
   for (const PriorTerm& prior : priors) {
@@ -104,28 +104,16 @@ struct Part {
   double samples = 0;                // N
 };
 
-/// The free parameters of a recording; `rows` receives their indices among all free parameters.
-std::vector<Index> FreeColumns(const FittedRun& run, const Optimum& optimum, std::vector<Index>& rows) {
-  std::vector<Index> columns;
-  for (std::size_t j = 0; j < run.at.size(); ++j) {
-    const auto place = std::ranges::find(optimum.free, run.at[j]);
-    if (place == optimum.free.end()) continue;
-    rows.push_back(place - optimum.free.begin());
-    columns.push_back(static_cast<Index>(j));
-  }
-  return columns;
-}
-
 /// Sets a part without information. The trajectory at the optimum was computed before, so this happens only after a
 /// stop.
-void SetNoInformation(const std::vector<Index>& columns, Part& part) {
+void SetNoInformation(const std::vector<int>& columns, Part& part) {
   const auto size = static_cast<Index>(columns.size());
   part.bread = part.meat = Eigen::MatrixXd::Zero(size, size);
   part.mixed = Eigen::VectorXd::Zero(size);
 }
 
 /// Takes the information from the sums, which the cost has cached.
-void SetFromSums(const FittedRun& run, const std::vector<Index>& columns, Part& part) {
+void SetFromSums(const FittedRun& run, const std::vector<int>& columns, Part& part) {
   Eigen::MatrixXd sums, priors;
   if (!run.cost.Sums(run.solution.parameters, &sums)) {
     SetNoInformation(columns, part);
@@ -154,8 +142,9 @@ Eigen::MatrixXd AtLeast(const Eigen::MatrixXd& bread, const Eigen::MatrixXd& mea
 
 Part PartOf(const FittedRun& run, const Optimum& optimum) {
   Part part;
-  part.samples = static_cast<double>(run.problem.data.time.size());
-  const std::vector<Index> columns = FreeColumns(run, optimum, part.rows);
+  part.samples = run.samples();
+  const std::vector<int> columns = OwnIndices(run.at, optimum.free);
+  part.rows = RowsAmong(run.at, optimum.free, columns);
   if (IsWhiteGaussian(run)) {
     SetFromSums(run, columns, part);
     return part;
@@ -219,14 +208,13 @@ std::optional<double> SigmaError(const FittedRun& run, const Part& part, const E
 }
 
 NoiseErrors NoiseErrorsOf(const FittedRun& run) {
-  const auto samples = static_cast<double>(run.problem.data.time.size());
-  return {std::nullopt, std::max(samples / std::max(run.correlation.VarianceInflation(), 1.0), 1.0),
+  return {std::nullopt, std::max(run.samples() / std::max(run.correlation.VarianceInflation(), 1.0), 1.0),
           MethodOf(run.solution.noise, run.correlation)};
 }
 
 /// The sandwich of the information and the scores' covariance of all recordings. Each recording's scores are scaled up
 /// for the degrees of freedom that its share of the parameters takes from σ and from the autocorrelation.
-void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& parts, const Eigen::MatrixXd& prior,
+void SetCovariance(const std::vector<FittedRun>& runs, const std::vector<Part>& parts, const Eigen::MatrixXd& prior,
                    Errors& errors) {
   Eigen::MatrixXd information = prior;
   for (const Part& part : parts) information(part.rows, part.rows) += part.bread;
@@ -246,13 +234,13 @@ void SetCovariance(std::span<const FittedRun> runs, const std::vector<Part>& par
 
 }  // namespace
 
-Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum) {
+Errors ComputeErrors(const SolvedFit& fit, const Optimum& optimum) {
+  const std::vector<FittedRun>& runs = fit.runs;
   Errors errors;
   Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Index>(optimum.free.size()));  // per parameter
   for (const FittedRun& run : runs) {
-    std::vector<Index> rows;
-    FreeColumns(run, optimum, rows);
-    samples(rows).array() += static_cast<double>(run.problem.data.time.size());
+    const std::vector<Index> rows = RowsAmong(run.at, optimum.free, OwnIndices(run.at, optimum.free));
+    samples(rows).array() += run.samples();
     errors.runs.push_back(NoiseErrorsOf(run));
   }
   errors.covariance = optimum.inverse.matrix;
@@ -261,17 +249,16 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
     std::vector<Part> parts;
     parts.reserve(runs.size());
     for (const FittedRun& run : runs) parts.push_back(PartOf(run, optimum));
-    SetCovariance(runs, parts, PriorInformation(priors, optimum.free), errors);
+    SetCovariance(runs, parts, PriorInformation(fit.priors, optimum.free), errors);
   }
   const bool sound =
       errors.covariance.allFinite() && (errors.covariance.size() == 0 || errors.covariance.diagonal().minCoeff() > 0);
   if (!sound) errors.covariance = optimum.inverse.matrix;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     NoiseErrors& own = errors.runs[k];
-    const auto count = static_cast<double>(runs[k].problem.data.time.size());
     const double free = static_cast<double>(optimum.free.size()) / static_cast<double>(runs.size());
     const NoiseModel& noise = runs[k].solution.noise;
-    if (noise.IsUncensoredGaussian()) own.sigma = noise.sigma / std::sqrt(2 * std::max(count - free, 1.0));
+    if (noise.IsUncensoredGaussian()) own.sigma = noise.sigma / std::sqrt(2 * std::max(runs[k].samples() - free, 1.0));
     if (own.sigma) *own.sigma *= std::sqrt(runs[k].correlation.SquaredInflation());
     // Alternating autocorrelation can make the variance in a direction negative.
     if (!sound)
@@ -282,12 +269,10 @@ Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm>
   return errors;
 }
 
-Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                     const Optimum& optimum, const Autocorrelation& correlation) {
-  FittedRun run{problem, cost, solution, correlation, {}};
-  run.at.resize(problem.infos.size());
-  std::iota(run.at.begin(), run.at.end(), 0);
-  return ComputeErrors({&run, 1}, cost.priors(), optimum);
+Errors OwnErrors(const SolvedFit& fit, std::size_t k, const Optimum& own, const Optimum& optimum,
+                 const Errors& errors) {
+  const std::vector<Index> rows = RowsAmong(fit.runs[k].at, optimum.free, own.free);
+  return {errors.covariance(rows, rows), errors.t95(rows), {errors.runs[k]}};
 }
 
 }  // namespace pendulum

@@ -18,6 +18,16 @@ namespace {
 
 using Eigen::Index;
 
+/// A source of systematic error, and its effect on a fit of P parameters.
+struct SystematicSource {
+  ErrorSource kind;
+  std::string identity;        // Recordings with the same identity share the source and its error.
+  Eigen::VectorXd powers;      // P, for a common factor (C = 1): its power in each parameter; otherwise empty.
+  Eigen::MatrixXd pull;        // P x C, derivatives of the P scores with respect to the source's C numbers.
+  Eigen::MatrixXd covariance;  // C x C, of these numbers; for a common factor, relative.
+  std::size_t count = 1;       // number of recordings that share it
+};
+
 /// The power of the clock's scale in a parameter's estimate, if the readings do not depend on a clock.
 int PowerOfTime(const ParameterInfo& info) {
   const auto is_one_of = [&](auto... infos) { return ((info.name == infos.name) || ...); };
@@ -27,13 +37,14 @@ int PowerOfTime(const ParameterInfo& info) {
 }
 
 /// Derivatives of the scores (P) with respect to the calibration's K coefficients: Σ w ∇m ∂value/∂c.
-Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitProblem& problem,
-                                    const TrajectoryCost& cost, const Solution& solution) {
+Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FittedRun& run) {
+  const FitProblem& problem = run.problem;
+  const Solution& solution = run.solution;
   const auto size = static_cast<Index>(calibration.coefficients.size());
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(static_cast<Index>(problem.infos.size()), size);
   Eigen::VectorXd readings;
   Eigen::MatrixXd jacobian;
-  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
+  if (!run.cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
   double input = 0;
   for (Index i = 0; i < readings.size(); ++i) {
     const double value = problem.data.value[static_cast<std::size_t>(i)];
@@ -47,7 +58,9 @@ Eigen::MatrixXd ScoresByCalibration(const Calibration& calibration, const FitPro
 /// Derivatives of the scores (P) with respect to the relative scale of the clock, for readings that are rates or
 /// accelerations: -Σ w ∇m dm/dε, with the times and a release time multiplied by 1 + ε. The sensor has its own clock,
 /// so the estimates are no powers of the scale.
-Eigen::VectorXd ScoresByClock(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution) {
+Eigen::VectorXd ScoresByClock(const FittedRun& run) {
+  const FitProblem& problem = run.problem;
+  const Solution& solution = run.solution;
   constexpr double kStep = 1e-5;
   const auto size = static_cast<Index>(problem.infos.size());
   const auto readings_at = [&](double scale, Eigen::VectorXd* readings) {
@@ -62,7 +75,7 @@ Eigen::VectorXd ScoresByClock(const FitProblem& problem, const TrajectoryCost& c
   Eigen::VectorXd readings, later, earlier;
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
-  if (!cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
+  if (!run.cost.Readings(solution.parameters, &readings, &jacobian)) return pull;
   if (!readings_at(1 + kStep, &later) || !readings_at(1 - kStep, &earlier)) return pull;
   for (Index i = 0; i < readings.size(); ++i) {
     const double value = problem.data.value[static_cast<std::size_t>(i)];
@@ -74,30 +87,30 @@ Eigen::VectorXd ScoresByClock(const FitProblem& problem, const TrajectoryCost& c
 
 /// Derivative of the scores with respect to ε if parameter i is multiplied by 1 + n_i ε: A n p, where A is the
 /// information of the samples alone.
-Eigen::VectorXd ScoresByScale(const Eigen::VectorXd& powers, const TrajectoryCost& cost, const Solution& solution) {
+Eigen::VectorXd ScoresByScale(const Eigen::VectorXd& powers, const FittedRun& run) {
   const Index size = powers.size();
+  const std::vector<double>& parameters = run.solution.parameters;
   Eigen::MatrixXd sums;
-  if (!cost.Sums(solution.parameters, &sums)) return Eigen::VectorXd::Zero(size);
+  if (!run.cost.Sums(parameters, &sums)) return Eigen::VectorXd::Zero(size);
   Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(size + 1, size + 1);
-  AddPriors(cost.priors(), solution.parameters, &priors);
-  const Eigen::Map<const Eigen::VectorXd> p(solution.parameters.data(), size);
+  AddPriors(run.cost.priors(), parameters, &priors);
+  const Eigen::Map<const Eigen::VectorXd> p(parameters.data(), size);
   return (sums - priors).topLeftCorner(size, size) * powers.cwiseProduct(p);
 }
 
 /// Change of the estimates with a scale factor common to all recordings: n_i p_i if all parameters are free. A value
 /// that is fixed or has a prior in reported units does not scale, and it changes the other estimates as well.
-Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SourceContext& context) {
-  const auto size = static_cast<Index>(context.parameters.size());
-  const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
-  const Optimum& optimum = context.optimum;
+Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SolvedFit& fit, const Optimum& optimum) {
+  const auto size = static_cast<Index>(fit.solution.parameters.size());
+  const Eigen::Map<const Eigen::VectorXd> p(fit.solution.parameters.data(), size);
   const Eigen::VectorXd scaled = powers.cwiseProduct(p);
   Eigen::VectorXd follows = Eigen::VectorXd::Zero(size);
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
   for (Index i = 0; i < size; ++i) {
-    if (!context.fixed[static_cast<std::size_t>(i)]) continue;
+    if (!fit.solve.fixed[static_cast<std::size_t>(i)]) continue;
     pull -= optimum.information.col(i) * scaled[i];
   }
-  for (const PriorTerm& prior : context.priors) {
+  for (const PriorTerm& prior : fit.priors) {
     const int k = prior.parameter;
     pull[k] += prior.weight * prior.weight * powers[k] * (2 * (p[k] - prior.mean) + prior.mean);
   }
@@ -120,29 +133,26 @@ std::optional<SystematicSource> SensorSource(const SensorErrors& sensor, const E
                           effects.second_moment(budget, budget)};
 }
 
-}  // namespace
-
 /// The rig's gravity torque is a common factor of inertia and friction. The clock's scale enters with the power of time
 /// in each parameter. The calibration's coefficients change every reading.
-std::vector<SystematicSource> SystematicSources(const Recording& recording, const FitOptions& options,
-                                                const FitProblem& problem, const TrajectoryCost& cost,
-                                                const Solution& solution, const EffectCheck& effects) {
-  const auto size = static_cast<Index>(problem.infos.size());
+std::vector<SystematicSource> SourcesOfRun(const FittedRun& run, const EffectCheck& effects) {
+  const Recording& recording = run.recording;
+  const auto size = static_cast<Index>(run.problem.infos.size());
   Eigen::VectorXd gravity = Eigen::VectorXd::Zero(size);
   Eigen::VectorXd time(size);
   for (Index i = 0; i < size; ++i) {
-    const ParameterInfo& info = problem.infos[static_cast<std::size_t>(i)];
+    const ParameterInfo& info = run.problem.infos[static_cast<std::size_t>(i)];
     time[i] = PowerOfTime(info);
-    if (SiRig(options) && info.scales_with_gravity()) gravity[i] = 1;
+    if (SiRig(run.options) && info.scales_with_gravity()) gravity[i] = 1;
   }
   std::vector<SystematicSource> sources;
   const auto add_scale = [&](ErrorSource kind, const std::string& identity, const Eigen::VectorXd& powers,
                              double relative) {
     if (!(relative > 0)) return;
-    sources.push_back({kind, identity, powers, ScoresByScale(powers, cost, solution),
-                       Eigen::MatrixXd::Constant(1, 1, relative * relative)});
+    sources.push_back(
+        {kind, identity, powers, ScoresByScale(powers, run), Eigen::MatrixXd::Constant(1, 1, relative * relative)});
   };
-  if (const Rig* rig = SiRig(options)) {
+  if (const Rig* rig = SiRig(run.options)) {
     add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
   }
   const SensorErrors& sensor = recording.sensor_errors;
@@ -156,7 +166,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
     sources.push_back({ErrorSource::kClock,
                        clock,
                        {},
-                       ScoresByClock(problem, cost, solution),
+                       ScoresByClock(run),
                        Eigen::MatrixXd::Constant(1, 1, clock_error * clock_error)});
   }
   const std::optional<Calibration>& calibration = recording.calibration;
@@ -164,7 +174,7 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
     sources.push_back({ErrorSource::kCalibration,
                        "calibration " + calibration->source.dump(),
                        {},
-                       ScoresByCalibration(*calibration, problem, cost, solution),
+                       ScoresByCalibration(*calibration, run),
                        calibration->covariance});
   }
   if (std::optional<SystematicSource> of_sensor = SensorSource(sensor, effects)) {
@@ -173,23 +183,64 @@ std::vector<SystematicSource> SystematicSources(const Recording& recording, cons
   return sources;
 }
 
-SystematicCovariance CovarianceOfSource(const SystematicSource& source, bool of_all, const SourceContext& context) {
-  const auto size = static_cast<Index>(context.parameters.size());
-  const Optimum& optimum = context.optimum;
+/// Adds a recording's powers to those of the common source. If recordings disagree on a power, or if the estimates of
+/// one are no powers, the powers are removed and only the pulls are used.
+void MergePowers(const SolvedFit& fit, const FittedRun& run, const Eigen::VectorXd& own, SystematicSource& common) {
+  Eigen::VectorXd& powers = common.powers;
+  if (own.size() == 0) powers.resize(0);
+  if (powers.size() == 0) return;
+  for (std::size_t i = 0; i < run.at.size(); ++i) {
+    const double power = own[static_cast<Index>(i)];
+    const bool is_shared = static_cast<std::size_t>(run.at[i]) < fit.shared;
+    if (common.count > 1 && is_shared && powers[run.at[i]] != power) {
+      powers.resize(0);
+      return;
+    }
+    powers[run.at[i]] = power;
+  }
+}
+
+/// The sources of all recordings. Those with the same identity are one source.
+std::vector<SystematicSource> SourcesOf(const SolvedFit& fit, const std::vector<const EffectCheck*>& effects) {
+  const auto size = static_cast<Index>(fit.solution.parameters.size());
+  std::vector<SystematicSource> sources;
+  for (std::size_t k = 0; k < fit.runs.size(); ++k) {
+    const FittedRun& run = fit.runs[k];
+    for (const SystematicSource& own : SourcesOfRun(run, *effects[k])) {
+      auto common = std::ranges::find(sources, own.identity, &SystematicSource::identity);
+      if (common == sources.end()) {
+        common = sources.insert(sources.end(), own);
+        common->powers = Eigen::VectorXd::Zero(own.powers.size() > 0 ? size : 0);
+        common->pull = Eigen::MatrixXd::Zero(size, own.pull.cols());
+      } else {
+        ++common->count;
+      }
+      MergePowers(fit, run, own.powers, *common);
+      common->pull(run.at, Eigen::all) += own.pull;
+    }
+  }
+  return sources;
+}
+
+/// The covariance that a source causes. The inverse information of the optimum gives the change of the estimates.
+SystematicCovariance CovarianceOfSource(const SystematicSource& source, const SolvedFit& fit, const Optimum& optimum) {
+  const auto size = static_cast<Index>(fit.solution.parameters.size());
+  const bool of_all = source.count == fit.runs.size();
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(size, source.pull.cols());
   if (of_all && source.powers.size() > 0) {
-    moved = EstimatesByScale(source.powers, context);
+    moved = EstimatesByScale(source.powers, fit, optimum);
   } else if (!optimum.free.empty()) {
     moved(optimum.free, Eigen::all) = optimum.inverse.matrix * source.pull(optimum.free, Eigen::all);
   }
   Eigen::MatrixXd ratios = moved;
   if (source.kind == ErrorSource::kRig) {
-    const Eigen::Map<const Eigen::VectorXd> p(context.parameters.data(), size);
+    const Eigen::Map<const Eigen::VectorXd> p(fit.solution.parameters.data(), size);
     ratios.col(0) -= source.powers.cwiseProduct(p);
   }
   return {source.kind, moved * source.covariance * moved.transpose(), ratios * source.covariance * ratios.transpose()};
 }
 
+/// Adds a covariance to that of its kind.
 void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& covariances) {
   const auto known = std::ranges::find(covariances, more.kind, &SystematicCovariance::kind);
   if (known == covariances.end()) {
@@ -200,15 +251,15 @@ void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& cov
   known->of_ratios += more.of_ratios;
 }
 
-std::vector<SystematicCovariance> SystematicCovariances(const Recording& recording, const FitOptions& options,
-                                                        const FitProblem& problem, const TrajectoryCost& cost,
-                                                        const Solution& solution, const Optimum& optimum,
-                                                        const EffectCheck& effects) {
+}  // namespace
+
+std::vector<SystematicCovariance> SystematicCovariances(const SolvedFit& fit,
+                                                        const std::vector<const EffectCheck*>& effects,
+                                                        const Optimum& optimum) {
   std::vector<SystematicCovariance> covariances;
   if (!optimum.inverse.identifiable) return covariances;
-  const SourceContext context{solution.parameters, problem.solve.fixed, cost.priors(), optimum};
-  for (const SystematicSource& source : SystematicSources(recording, options, problem, cost, solution, effects)) {
-    AddOfKind(CovarianceOfSource(source, true, context), covariances);
+  for (const SystematicSource& source : SourcesOf(fit, effects)) {
+    AddOfKind(CovarianceOfSource(source, fit, optimum), covariances);
   }
   return covariances;
 }

@@ -144,7 +144,7 @@ tl::unexpected<Status> NoMember(const Folder& folder) {
   if (members.empty()) {
     return Fault(folder.name, "this " + folder.kind + " contains no recording; give another file");
   }
-  return Fault(folder.name, "none of its " + folder.member + "s " + ListOf(members) +
+  return Fault(folder.name, "none of its " + folder.member + "s " + ListWithAnd(members) +
                                 " has a column of times and one of an angle or a rate; choose with --value_column " +
                                 FlagExample(folder) + ", or name another recording");
 }
@@ -271,7 +271,7 @@ Result<Recording> ReadOnlyReadable(const Folder& folder, const ReadOptions& opti
   if (readable.size() == 1) return only;
   std::vector<std::string> names;
   for (const std::size_t i : readable) names.push_back(Quoted(folder.paths[i]));
-  return WithTry(Fault(folder.name, "its " + folder.member + "s " + ListOf(names) + " could " +
+  return WithTry(Fault(folder.name, "its " + folder.member + "s " + ListWithAnd(names) + " could " +
                                         (names.size() == 2 ? "both" : "all") +
                                         " be the recording; choose one with --value_column " + FlagExample(folder)),
                  {FlagOf(folder.paths[readable.front()])});

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::alternative_minima_test {

@@ -17,9 +17,8 @@ namespace {
 
 using testing::ElementsAre;
 
-Description DescriptionOf(const Fitted& fitted) {
-  return Describe(fitted.recording, *fitted.problem, *fitted.cost, fitted.solution,
-                  static_cast<int>(fitted.optimum.free.size()));
+Description DescriptionOf(Fitted& fitted) {
+  return Describe(fitted.Run(), static_cast<int>(fitted.optimum.free.size()));
 }
 
 Fitted FitShortSwing() { return FitWithInternals(Must(SimulateRecording(ShortSwing())), ModelOptions("coulomb")); }
@@ -27,7 +26,7 @@ Fitted FitShortSwing() { return FitWithInternals(Must(SimulateRecording(ShortSwi
 // ---- Describe ------------------------------------------------------------------------------------------------------
 
 TEST(Describe, HasResidualsAndTheirStatistics) {
-  const Fitted fitted = FitShortSwing();
+  Fitted fitted = FitShortSwing();
   const FitReport report = DescriptionOf(fitted).report;
   ASSERT_EQ(report.fitted.size(), 400);  // 8 s at 50 Hz
   EXPECT_EQ(report.residual, fitted.recording.value - report.fitted);
@@ -41,7 +40,7 @@ TEST(Describe, HasResidualsAndTheirStatistics) {
 }
 
 TEST(Describe, ReportsModelAndStart) {
-  const Fitted fitted = FitShortSwing();
+  Fitted fitted = FitShortSwing();
   const FitReport report = DescriptionOf(fitted).report;
   EXPECT_EQ(report.model.name, "coulomb");
   EXPECT_EQ(report.start, StartKind::kRelease);
@@ -51,11 +50,13 @@ TEST(Describe, ReportsModelAndStart) {
 }
 
 TEST(Describe, DetectsAutocorrelatedResiduals) {
-  EXPECT_FALSE(DescriptionOf(FitShortSwing()).correlated);
+  Fitted white = FitShortSwing();
+  EXPECT_FALSE(DescriptionOf(white).correlated);
   SyntheticOptions silent = ShortSwing();
   silent.noise = 0;
-  const Recording autocorrelated = WithNoise(Must(SimulateRecording(silent)), 1, AutocorrelatedNoise(0.8, 0.002));
-  EXPECT_TRUE(DescriptionOf(FitWithInternals(autocorrelated, ModelOptions("coulomb"))).correlated);
+  Fitted autocorrelated = FitWithInternals(
+      WithNoise(Must(SimulateRecording(silent)), 1, AutocorrelatedNoise(0.8, 0.002)), ModelOptions("coulomb"));
+  EXPECT_TRUE(DescriptionOf(autocorrelated).correlated);
 }
 
 // ---- SetParameters -------------------------------------------------------------------------------------------------
@@ -74,7 +75,8 @@ std::vector<ParameterEstimate> ParametersOf(Termination termination, const std::
   optimum.at_bound = {2};
   FitReport report;
   report.termination = termination;
-  SetParameters(recording, options, problem, optimum, solution, report);
+  const auto cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
+  SetParameters({recording, options, problem, *cost, solution}, optimum, report);
   return report.parameters;
 }
 

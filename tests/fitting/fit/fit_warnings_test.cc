@@ -109,7 +109,7 @@ TEST(FitWarnings, ReportATrajectoryTooInaccurateForTheNoise) {
   for (const double share : {0.001, 0.1}) {
     report.trace_error = share * report.noise.sigma;
     const std::vector<Warning> warnings =
-        FitWarnings(recording, problem, Solution{}, TraceSummary{}, report.residual, false, report);
+        FitWarnings(recording, problem, Solution{}, {report, report.residual, {}, false});
     ASSERT_EQ(warnings.size(), share > 0.01 ? 1 : 0);
     for (const Warning& warning : warnings) EXPECT_EQ(warning.code, "trajectory_accuracy");
   }
@@ -136,8 +136,7 @@ TEST(FitWarnings, ReportAReleaseAtAnEndOfTheHold) {
   report.parameters[1].estimate = 0;
   Solution solution;
   solution.parameters = Truth(NoisyRun());
-  const std::vector<Warning> warnings =
-      FitWarnings(recording, problem, solution, TraceSummary{}, report.residual, false, report);
+  const std::vector<Warning> warnings = FitWarnings(recording, problem, solution, {report, report.residual, {}, false});
   ASSERT_EQ(warnings.size(), 2);
   EXPECT_THAT(MessageText(warnings[0]), HasSubstr("release_time is at an end of the hold"));
   EXPECT_THAT(MessageText(warnings[1]), HasSubstr("viscous is at its bound 0;"));
@@ -163,7 +162,7 @@ TEST(FitWarnings, ReportAnotherMinimumAndAStopOnAKink) {
   trace.smallest_reversal_margin = 2 * error;
   const auto codes = [&] {
     std::vector<std::string> found;
-    for (const Warning& w : FitWarnings(recording, problem, solution, trace, report.residual, false, report))
+    for (const Warning& w : FitWarnings(recording, problem, solution, {report, report.residual, trace, false}))
       found.emplace_back(w.code.text());
     return found;
   };

@@ -40,7 +40,7 @@ FitReport ReportAt(const SyntheticOptions& run, const std::vector<double>& param
   }
   MaximizeLikelihood(*cost, problem, options, solution);  // Gaussian noise: finds sigma, changes no parameter
   EXPECT_EQ(solution.parameters, parameters);
-  return MakeFitReport(recording, options, problem, *cost, solution);
+  return MakeFitReport({recording, options, problem, *cost, solution});
 }
 
 void ExpectNoErrors(const FitReport& report) {
@@ -177,7 +177,7 @@ FitReport ReportOfBlindCost(const Eigen::MatrixXd& seen) {
   Solution solution = Solve(*cost, problem.first_guess, problem.solve);
   MaximizeLikelihood(*cost, problem, options, solution);
   BlindCost blind(*cost, seen);
-  return MakeFitReport(recording, options, problem, blind, solution);
+  return MakeFitReport({recording, options, problem, blind, solution});
 }
 
 TEST(MakeFitReport, NamesAnUndeterminedCombination) {

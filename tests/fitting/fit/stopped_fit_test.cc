@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
-#include "pendulum/fitting/joint/fit_jointly.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 #include "pendulum/fitting/residuals/arma_likelihood.h"
 #include "pendulum/fitting/residuals/estimate_autocorrelation.h"
@@ -108,7 +108,7 @@ struct HandmadeFit {
     const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
     Solution solution = Search(cost, problem.data, guess, problem.solve);
     MaximizeLikelihood(cost, problem, options, solution);
-    report = MakeFitReport(recording, options, problem, cost, std::move(solution));
+    report = MakeFitReport({recording, options, problem, cost, solution});
     is_stopped = stop.stop_requested();
     evaluations_requested = cost.evaluations();
   }

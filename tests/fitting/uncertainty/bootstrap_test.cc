@@ -85,7 +85,7 @@ Bootstrap Bootstrapped(const Fitted& fitted, std::uint64_t seed, int threads) {
 }
 
 TEST(Bootstrap, DoesNotDependOnTheNumberOfThreads) {
-  const Fitted fitted = SmallFit();
+  Fitted fitted = SmallFit();
   const Bootstrap one = Bootstrapped(fitted, 1, 1);
   const Bootstrap three = Bootstrapped(fitted, 1, 3);
   EXPECT_EQ(one.failed, 0);
@@ -94,7 +94,7 @@ TEST(Bootstrap, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Bootstrap, DiffersFromSeedToSeed) {
-  const Fitted fitted = SmallFit();
+  Fitted fitted = SmallFit();
   const Bootstrap one = Bootstrapped(fitted, 1, 2);
   for (const std::uint64_t seed : {std::uint64_t{2}, (std::uint64_t{1} << 32U) + 1}) {
     const Bootstrap other = Bootstrapped(fitted, seed, 2);
@@ -103,7 +103,7 @@ TEST(Bootstrap, DiffersFromSeedToSeed) {
 }
 
 TEST(Bootstrap, HasEstimatesThatScatterAboutTheFitByTheStandardErrors) {
-  const Fitted fitted = SmallFit();
+  Fitted fitted = SmallFit();
   const Bootstrap bootstrap = Bootstrapped(fitted, 1, 2);
   const Errors errors = fitted.StandardErrors();
   for (int i = 0; i < 5; ++i) {

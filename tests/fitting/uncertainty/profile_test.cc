@@ -105,7 +105,7 @@ ProfileInterval ProfileOfLine(const Line& line, const SlopeMap& map, double star
   solution.noise = noise;
   EXPECT_TRUE(cost.Readings(solution.parameters, &solution.readings, nullptr));
   const Optimum optimum = Linearize(problem.solve, cost, solution).value();
-  return ProfileParameter(cost, problem, solution, optimum, {}, 0);
+  return ProfileParameter(SolvedFitOf({Recording(), FitOptions(), problem, cost, solution}), optimum, 0);
 }
 
 const SlopeMap kNone = {[](double p) { return p; }, [](double) { return 1.0; }, [](double s) { return s; }};

@@ -94,7 +94,7 @@ TEST(ComputeErrors, MatchTheNumericInformationOnLevels) {
     SCOPED_TRACE(noise);
     FitOptions options = ModelOptions("coulomb");
     options.noise = NoiseFamily::kQuantized;
-    const Fitted fitted = FitWithInternals(ShortSwingInCounts(noise, 3), options);
+    Fitted fitted = FitWithInternals(ShortSwingInCounts(noise, 3), options);
     fitted.cost->set_tolerance(1e-15);
     const Errors errors = fitted.StandardErrors();
     ExpectInverse(errors, fitted, Linearized(fitted), 1e-3);

@@ -3,17 +3,17 @@
 
 #include <Eigen/Core>
 
-#include "pendulum/fitting/fit/fit.h"
+#include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/solved_fit.h"
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 #include "pendulum/fitting/uncertainty/systematic.h"
 
 namespace pendulum {
 
 /// Sets model, start, units and solver: the parts of a report that do not depend on the result.
-FitReport InitializeReport(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                           const Solution& solution);
+FitReport InitializeReport(const FittedRun& run);
 
 /// Largest share of the variance that a converged fit may leave unexplained. For correlated residuals, the limit lies
 /// between the worst fits of real recordings (0.1) and recordings without a free swing (0.2 and more). Uncorrelated
@@ -29,17 +29,14 @@ struct Description {
 };
 
 /// `free_parameters`: number of parameters estimated from these readings.
-Description Describe(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
-                     const Solution& solution, int free_parameters);
+Description Describe(const FittedRun& run, int free_parameters);
 
-/// The autocorrelation of the residuals. It is estimated only if the residuals may be autocorrelated. `z` contains the
-/// N quantile residuals.
-Autocorrelation AutocorrelationOf(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                                  const Optimum& optimum, const Eigen::VectorXd& z, bool correlated);
+/// The autocorrelation of the residuals. It is estimated only if the residuals may be autocorrelated. optimum: of this
+/// recording.
+Autocorrelation AutocorrelationOf(const FittedRun& run, const Optimum& optimum, const Description& described);
 
-/// Sets estimates, units and flags, without errors.
-void SetParameters(const Recording& recording, const FitOptions& options, const FitProblem& problem,
-                   const Optimum& optimum, const Solution& solution, FitReport& report);
+/// Sets estimates, units and flags, without errors. optimum: of this recording.
+void SetParameters(const FittedRun& run, const Optimum& optimum, FitReport& report);
 
 /// Sets covariance and errors of the free parameters of `optimum`, in the units of the report.
 void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Errors& errors, FitReport& report);
@@ -48,8 +45,8 @@ void SetCovariance(const FitProblem& problem, const Optimum& optimum, const Erro
 void SetSystematicErrors(const FitProblem& problem, const std::vector<SystematicCovariance>& covariances,
                          FitReport& report);
 
-/// Sets natural frequency, damping and so on, with their errors.
-void SetDerived(const FitProblem& problem, const Optimum& optimum, const Errors& errors,
-                const std::vector<SystematicCovariance>& covariances, const Solution& solution, FitReport& report);
+/// Sets natural frequency, damping and so on, with their errors. optimum, errors, covariances: of this recording.
+void SetDerived(const FittedRun& run, const Optimum& optimum, const Errors& errors,
+                const std::vector<SystematicCovariance>& covariances, FitReport& report);
 
 }  // namespace pendulum

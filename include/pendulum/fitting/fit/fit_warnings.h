@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pendulum/base/warning.h"
+#include "pendulum/fitting/fit/fit_description.h"
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 
@@ -24,11 +25,9 @@ namespace pendulum {
 /// another_minimum: another number of half swings explains the data nearly as well
 /// uncertain_stop: the data hardly determine the time of the stop
 ///
-/// report: complete except for its warnings. trace: at the solution. quantile_residuals: N. correlated: whether the
-/// residuals are autocorrelated.
+/// described.report: complete except for its warnings.
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
-                                 const TraceSummary& trace, const Eigen::VectorXd& quantile_residuals, bool correlated,
-                                 const FitReport& report);
+                                 const Description& described);
 
 /// Adds a warning for each suspicion of the report, with the code "suspected_" and the name of the cause: how large it
 /// seems to be, whether the estimates allow for it, and what to measure or which flag to set. is_correctable: whether

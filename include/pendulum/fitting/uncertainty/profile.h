@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
-#include "pendulum/fitting/residuals/autocorrelation.h"
-#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/solved_fit.h"
 #include "pendulum/fitting/uncertainty/open_interval.h"
-#include "pendulum/fitting/uncertainty/standard_errors.h"
 
 namespace pendulum {
 
@@ -30,18 +27,10 @@ struct ProfileInterval {
   double threshold = 0;              ///< Value of the statistic at the ends: Student's t².
 };
 
-/// Computes the errors of a fit with the free parameters of the given optimum.
-using ErrorsOf = std::function<Errors(const Optimum&)>;
-
 /// The 95 % profile-likelihood interval of parameter k, which is free or at its bound (D. J. Venzon and S. H.
 /// Moolgavkar, Applied Statistics 37:87, 1988). It accounts for autocorrelated residuals (R. E. Chandler and S. Bate,
 /// Biometrika 94:167, 2007). An end beyond a bound is set to the bound. The points are spread evenly over the interval,
-/// at least four on each side of nonzero length. samples: their number in all recordings. Cost: about ten solves.
-ProfileInterval ProfileParameter(LeastSquares& cost, const SolveOptions& options, const Solution& solution,
-                                 const Optimum& optimum, const ErrorsOf& errors_of, double samples, int k);
-
-/// The same for one recording.
-ProfileInterval ProfileParameter(TrajectoryCost& cost, const FitProblem& problem, const Solution& solution,
-                                 const Optimum& optimum, const Autocorrelation& correlation, int k);
+/// at least four on each side of nonzero length. Cost: about ten solves.
+ProfileInterval ProfileParameter(const SolvedFit& fit, const Optimum& optimum, int k);
 
 }  // namespace pendulum

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "pendulum/fitting/residuals/autocorrelation.h"
-#include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
+#include "pendulum/fitting/solve/solved_fit.h"
 
 namespace pendulum {
-
-/// One recording of a fit to one or several recordings.
-struct FittedRun {
-  const FitProblem& problem;
-  const TrajectoryCost& cost;
-  const Solution& solution;            ///< Its P parameters and its noise.
-  const Autocorrelation& correlation;  ///< Of its residuals.
-  std::vector<int> at;                 ///< P: indices of its parameters among all parameters of the fit.
-};
 
 /// Error estimates of one recording's noise.
 struct NoiseErrors {
@@ -40,10 +30,9 @@ struct Errors {
 /// The covariance of the free parameters: the inverse of the observed information of parameters and log σ. For a robust
 /// family or autocorrelated residuals it is a sandwich of that inverse (MODEL.md eq. (5.1), (7.3), (7.7), (7.8)). For
 /// several recordings both matrices are summed (eq. (10.2)).
-Errors ComputeErrors(std::span<const FittedRun> runs, std::span<const PriorTerm> priors, const Optimum& optimum);
+Errors ComputeErrors(const SolvedFit& fit, const Optimum& optimum);
 
-/// The same for one recording.
-Errors ComputeErrors(const FitProblem& problem, const TrajectoryCost& cost, const Solution& solution,
-                     const Optimum& optimum, const Autocorrelation& correlation);
+/// The part of recording k. own: OwnOptimum of that recording.
+Errors OwnErrors(const SolvedFit& fit, std::size_t k, const Optimum& own, const Optimum& optimum, const Errors& errors);
 
 }  // namespace pendulum

@@ -61,7 +61,7 @@ Result<JointRows*> JointTable::Choose(const Line& line, const std::string& joint
   if (!joint.empty()) {
     return line.Fault(line.text.data(),
                       "--value_column is " + Quoted(joint) + ", which is neither a column nor one of " +
-                          ListOf(NamesOf(all, "")) + "; give one of these",
+                          ListWithAnd(NamesOf(all, "")) + "; give one of these",
                       StatusCode::kInvalidArgument);
   }
   if (all.size() == 1) return all.front();

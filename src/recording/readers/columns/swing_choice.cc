@@ -13,7 +13,6 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/try.h"
-#include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/unit_guess.h"
 #include "recording/swing_signature.h"
@@ -119,7 +118,7 @@ bool AskForRun(Choice& choice, const Columns& candidates) {
   for (const std::size_t i : candidates) runs.insert(TimeBefore(times, i));
   if (runs.size() < 2) return false;
   choice.AskForColumn("the file holds " + std::to_string(runs.size()) +
-                          " runs beside each other: " + ListOf(choice.NamesOf(candidates)),
+                          " runs beside each other: " + ListWithAnd(choice.NamesOf(candidates)),
                       candidates.front());
   return true;
 }
@@ -212,7 +211,7 @@ std::string FlagOf(const Choice& choice, const Point& point) {
 /// Asks which of several columns that swing, and whose names say nothing, is the quantity; `best` carries the most.
 void AskWhichSwing(Choice& choice, const Columns& columns, std::size_t best, const std::optional<Point>& point) {
   const std::string sentence =
-      "several columns swing, and their names do not say which is an angle: " + ListOf(choice.NamesOf(columns));
+      "several columns swing, and their names do not say which is an angle: " + ListWithAnd(choice.NamesOf(columns));
   const std::string gravity(HasStatedUnit(choice) ? "" : GravityUnitOf(choice, columns));
   if (gravity.empty()) return choice.AskForColumn(sentence, columns.front());
   const std::string column = "--value_column " + choice.FlagValueOf(best);
@@ -226,7 +225,7 @@ void AskWhichSwing(Choice& choice, const Columns& columns, std::size_t best, con
 /// Asks whether two columns a_x and a_y are accelerations or the coordinates of a point.
 void AskWhetherPoint(Choice& choice, const Point& point) {
   const std::string horizontal = choice.FlagValueOf(point.horizontal);
-  choice.Ask("columns " + ListOf(choice.NamesOf({point.horizontal, point.vertical})) +
+  choice.Ask("columns " + ListWithAnd(choice.NamesOf({point.horizontal, point.vertical})) +
                  " lie on a circle, as the coordinates of a point do and accelerations do not: choose the point with " +
                  FlagOf(choice, point) + ", or give the unit of the accelerations with --value_column " + horizontal +
                  " --unit (g, m_s2, mg)",
@@ -235,7 +234,7 @@ void AskWhetherPoint(Choice& choice, const Point& point) {
 
 /// Takes two columns whose names say nothing for the coordinates of a point if that is clear; asks otherwise.
 std::optional<std::size_t> ChoosePoint(Choice& choice, const Point& point) {
-  const std::string both = "columns " + ListOf(choice.NamesOf({point.horizontal, point.vertical}));
+  const std::string both = "columns " + ListWithAnd(choice.NamesOf({point.horizontal, point.vertical}));
   const std::string one = "--value_column " + ShellWord(choice.FlagValueOf(point.horizontal));
   if (!point.is_clear) {
     choice.Ask(both + " may be the coordinates of a point: choose both with " + FlagOf(choice, point) +
@@ -271,7 +270,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     choice.Assume(
         {.code = "value_column_assumed",
          .finding = "column " + name + " was used",
-         .explanation = ListOf(choice.NamesOf(copies)) + (copies.size() == 1 ? " shows" : " show") + " the same",
+         .explanation = ListWithAnd(choice.NamesOf(copies)) + (copies.size() == 1 ? " shows" : " show") + " the same",
          .advice = "--value_column chooses another",
          .flags = {"value_column"},
          .assumed = "value column " + name + " (--value_column)"});
@@ -314,7 +313,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
     const std::string name = choice.NameOf(columns[best]);
     choice.Assume({.code = "value_column_assumed",
                    .finding = "column " + name + " carries " + Percent(share) + " of the swing and was used, not " +
-                              ListOf(others),
+                              ListWithAnd(others),
                    .advice = std::string("--value_column chooses another") +
                              (is_rotation ? ", or 'combined' for a sensor that is mounted askew" : ""),
                    .flags = {"value_column"},
@@ -324,7 +323,7 @@ std::optional<std::size_t> ChooseByShare(Choice& choice, const Columns& candidat
   // Whether one axis is enough follows from the unit, which will be asked for.
   if (IsAxisOfThree(choice, columns[best]) && !HasStatedUnit(choice)) return columns[best];
   others.insert(others.begin(), choice.NameOf(columns[best]) + " " + Percent(share));
-  choice.AskForColumn("no single column carries the swing: " + ListOf(others), columns[best]);
+  choice.AskForColumn("no single column carries the swing: " + ListWithAnd(others), columns[best]);
   return std::nullopt;
 }
 
@@ -361,12 +360,12 @@ Result<std::optional<std::size_t>> ChooseBySwing(Choice& choice, const Columns& 
   }
   if (numeric.size() > kMostCompared) {
     choice.AskForColumn(
-        std::to_string(numeric.size()) + " columns could all be the quantity: " + ListOf(choice.NamesOf(numeric)),
+        std::to_string(numeric.size()) + " columns could all be the quantity: " + ListWithAnd(choice.NamesOf(numeric)),
         numeric.front());
     return std::nullopt;
   }
   if (period > 0) return ChooseByShare(choice, numeric, period);
-  choice.AskForColumn("columns " + ListOf(choice.NamesOf(numeric)) + " could " +
+  choice.AskForColumn("columns " + ListWithAnd(choice.NamesOf(numeric)) + " could " +
                           (numeric.size() == 2 ? "both" : "all") +
                           " be the quantity, and none of them shows a swing by itself",
                       numeric.front());

@@ -44,7 +44,7 @@ Result<std::optional<std::string>> ChooseRun(const Line& line, const std::vector
                                            : "columns of " + std::to_string(runs.size()) +
                                                  " runs could be the quantity; choose one with --value_column, of the "
                                                  "first run " +
-                                                 ListOf(names);
+                                                 ListWithAnd(names);
   return WithTry(line.Fault(columns[candidates[1]].at, sentence),
                  {"--value_column " + columns[candidates.front()].written});
 }

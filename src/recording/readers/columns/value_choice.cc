@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
+#include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/base/try.h"
-#include "recording/readers/columns/name_list.h"
 #include "recording/readers/columns/point_choice.h"
 #include "recording/readers/columns/swing_choice.h"
 #include "recording/readers/columns/unit_guess.h"
@@ -69,7 +69,7 @@ void WarnOfOthers(Choice& choice, std::size_t chosen, std::span<const Columns> c
   }
   if (names.empty()) return;
   choice.Assume({.code = "value_column_assumed",
-                 .finding = "column " + choice.NameOf(chosen) + " was used, not " + ListOf(names),
+                 .finding = "column " + choice.NameOf(chosen) + " was used, not " + ListWithAnd(names),
                  .advice = "--value_column chooses another",
                  .flags = {"value_column"},
                  .assumed = "value column " + choice.NameOf(chosen) + " (--value_column)"});
@@ -192,7 +192,7 @@ Result<const Unit*> ValueUnit(Choice& choice, std::size_t index) {
   if (meaning.unit != nullptr) return meaning.unit;
   if (choice.vertical) {
     choice.Assume({.code = "value_unit_assumed",
-                   .finding = "columns " + ListOf(choice.NamesOf({index, *choice.vertical})) +
+                   .finding = "columns " + ListWithAnd(choice.NamesOf({index, *choice.vertical})) +
                               " do not give their unit and were assumed to be in px, which changes no angle",
                    .advice = "--unit says otherwise",
                    .flags = {"unit"}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/joint_cost.h"
+#include "pendulum/fitting/likelihood/joint_cost.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pendulum/fitting/joint/joint_problem.h"
+#include "pendulum/fitting/fit/joint_problem.h"
 
 namespace pendulum {
 

@@ -3,17 +3,20 @@
 
 #include <vector>
 
-#include "pendulum/fitting/joint/joint_problem.h"
+#include <Eigen/Core>
+
+#include "pendulum/fitting/fit/joint_problem.h"
 #include "pendulum/fitting/solve/optimum.h"
-#include "pendulum/fitting/uncertainty/systematic.h"
 
 namespace pendulum {
 
-/// The covariances that errors of rig, clocks and calibrations cause, P x P in units of the restoring torque G, one for
-/// each kind of source that has an error. A source shared by several recordings affects all of them together. Empty if
-/// the optimum is not identifiable.
-std::vector<SystematicCovariance> JointSystematicCovariances(const JointProblem& joint, const Solution& solution,
-                                                             const Optimum& optimum);
+/// The joint optimum within the bounds and its information (P x P), if each member's log-likelihood is a parabola
+/// around its own fit.
+struct CombinedParabolas {
+  std::vector<double> parameters;
+  Eigen::MatrixXd information;
+};
+CombinedParabolas CombineParabolas(const JointProblem& joint);
 
 /// Whether at least one of the separate fits uses a posterior, and all of them have errors.
 bool HasPosteriors(const JointProblem& joint);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/joint_problem.h"
+#include "pendulum/fitting/fit/joint_problem.h"
 
 #include <string>
 #include <vector>
@@ -17,13 +17,14 @@ using testing::UnorderedElementsAre;
 
 TEST(MakeJointProblem, PlacesSharedParametersOnceAndFirst) {
   const TwoRuns runs;
-  const JointProblem joint = runs.Problem({"coulomb", "viscous", "inertia"});
+  JointProblem joint = runs.Problem({"coulomb", "viscous", "inertia"});
   EXPECT_EQ(joint.shared, kPhysical);  // in the model's order
   ASSERT_EQ(joint.members.size(), 2);
   EXPECT_THAT(joint.members[0].at, ElementsAre(0, 1, 2, 3, 4, 5));
   EXPECT_THAT(joint.members[1].at, ElementsAre(0, 1, 2, 6, 7, 8));
   EXPECT_EQ(joint.solve.fixed.size(), 9);
-  EXPECT_EQ(joint.samples(), 2000);  // 10 s at 100 Hz, twice
+  Solution solution;
+  EXPECT_EQ(joint.SolvedAt(solution).samples(), 2000);  // 10 s at 100 Hz, twice
 }
 
 TEST(MakeJointProblem, KeepsUnsharedParametersPerRecording) {
@@ -59,11 +60,13 @@ TEST(MakeJointProblem, RefusesASingleRecordingAndAFitWithoutSharedParameters) {
 
 TEST(JointProblem, NamesTheRecordingOfAnUnsharedParameter) {
   const TwoRuns runs;
-  const JointProblem joint = runs.Problem();
-  EXPECT_EQ(joint.NameOf(0), "inertia");
-  EXPECT_EQ(joint.NameOf(3), "release_angle of recording 1");
-  EXPECT_EQ(joint.NameOf(8), "zero_angle of recording 2");
-  EXPECT_THAT(joint.members[1].OwnIndices({2, 4, 7}), ElementsAre(2, 4));
+  JointProblem joint = runs.Problem();
+  Solution solution;
+  const SolvedFit fit = joint.SolvedAt(solution);
+  EXPECT_EQ(fit.NameOf(0), "inertia");
+  EXPECT_EQ(fit.NameOf(3), "release_angle of recording 1");
+  EXPECT_EQ(fit.NameOf(8), "zero_angle of recording 2");
+  EXPECT_THAT(OwnIndices(fit.runs[1].at, {2, 4, 7}), ElementsAre(2, 4));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/joint_problem.h"
+#include "pendulum/fitting/fit/joint_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,6 @@
 
 namespace pendulum {
 namespace {
-
-using Eigen::Index;
 
 std::string NumberOf(std::size_t k) { return "recording " + std::to_string(k + 1); }
 
@@ -159,27 +157,13 @@ void Assemble(JointProblem& joint) {
 
 }  // namespace
 
-std::vector<int> JointMember::OwnIndices(const std::vector<int>& of_all) const {
-  std::vector<int> own;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    if (std::ranges::find(of_all, at[i]) != of_all.end()) own.push_back(static_cast<int>(i));
+SolvedFit JointProblem::SolvedAt(Solution& solution) {
+  SolvedFit fit{{}, shared.size(), *cost, solve, cost->priors(), solution};
+  for (JointMember& member : members) {
+    fit.runs.push_back(
+        {*member.recording, member.options, *member.problem, *member.cost, member.solution, member.at, {}});
   }
-  return own;
-}
-
-std::vector<Eigen::Index> JointMember::RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const {
-  std::vector<Index> rows;
-  rows.reserve(own.size());
-  for (const int i : own) {
-    rows.push_back(std::ranges::find(of_all, at[static_cast<std::size_t>(i)]) - of_all.begin());
-  }
-  return rows;
-}
-
-double JointProblem::samples() const {
-  double samples = 0;
-  for (const JointMember& member : members) samples += member.samples();
-  return samples;
+  return fit;
 }
 
 void JointProblem::Distribute(const std::vector<double>& parameters) {
@@ -194,17 +178,6 @@ std::vector<double> JointProblem::SeparateParameters() const {
     }
   }
   return all;
-}
-
-std::string JointProblem::NameOf(int parameter) const {
-  if (IsShared(parameter)) return shared[static_cast<std::size_t>(parameter)];
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    const auto own = std::ranges::find(members[k].at, parameter);
-    if (own == members[k].at.end()) continue;
-    const auto i = static_cast<std::size_t>(own - members[k].at.begin());
-    return std::string(members[k].problem->infos[i].name) + " of " + NumberOf(k);
-  }
-  return "";
 }
 
 Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std::vector<std::string>& shared) {

@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "pendulum/fitting/joint/fit_jointly.h"
-#include "pendulum/fitting/joint/joint_cost.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
+#include "pendulum/fitting/likelihood/joint_cost.h"
 #include "pendulum/fitting/solve/fit_problem.h"
+#include "pendulum/fitting/solve/solved_fit.h"
 
 namespace pendulum {
 
@@ -28,12 +27,6 @@ struct JointMember {
   std::vector<int> at;                   // P_k, indices of its parameters among all P
 
   double samples() const { return static_cast<double>(problem->data.time.size()); }
-
-  /// Selects its own parameters from a list of indices among all P; returns indices among its own.
-  std::vector<int> OwnIndices(const std::vector<int>& of_all) const;
-
-  /// Positions of its own parameters in a list of indices among all P, which must contain them.
-  std::vector<Eigen::Index> RowsAmong(const std::vector<int>& of_all, const std::vector<int>& own) const;
 };
 
 /// Several recordings with P parameters in total: first the shared parameters, then the own parameters of each
@@ -44,7 +37,8 @@ struct JointProblem {
   std::unique_ptr<JointCost> cost;
   SolveOptions solve;
 
-  double samples() const;
+  /// The fit at a solution of all parameters; `solution` and this problem must outlive it.
+  SolvedFit SolvedAt(Solution& solution);
 
   /// Copies the parameters into the members' solutions.
   void Distribute(const std::vector<double>& parameters);
@@ -53,9 +47,6 @@ struct JointProblem {
   std::vector<double> SeparateParameters() const;
 
   bool IsShared(int parameter) const { return 0 <= parameter && parameter < static_cast<int>(shared.size()); }
-
-  /// "inertia", "release_angle of recording 2".
-  std::string NameOf(int parameter) const;
 };
 
 /// Builds a problem ready for the solver. Each member starts at the estimates of its own fit. Returns the same errors

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/joint_parabolas.h"
+#include "pendulum/fitting/fit/joint_parabolas.h"
 
 #include <cmath>
 #include <cstddef>

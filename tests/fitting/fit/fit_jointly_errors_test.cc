@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of joint fits beyond the covariance: profiles, systematic errors of rig and clock, posteriors.
-#include "pendulum/fitting/joint/joint_errors.h"
-
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -11,9 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "tests/fitting/joint_recordings.h"
 
-namespace pendulum::joint_errors_test {
+namespace pendulum::fit_jointly_errors_test {
 namespace {
 
 using testing::DoubleNear;
@@ -231,4 +230,4 @@ TEST(JointPosterior, CountsAPriorOnASharedParameterOnce) {
 }
 
 }  // namespace
-}  // namespace pendulum::joint_errors_test
+}  // namespace pendulum::fit_jointly_errors_test

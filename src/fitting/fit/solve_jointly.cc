@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/solve_jointly.h"
+#include "pendulum/fitting/fit/solve_jointly.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "pendulum/fitting/joint/joint_parabolas.h"
+#include "pendulum/fitting/fit/joint_parabolas.h"
 #include "pendulum/fitting/solve/maximum_likelihood.h"
 #include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/solve/search.h"
@@ -25,8 +25,8 @@ using Eigen::Index;
 double ShareOf(const JointMember& member, const Optimum& optimum) {
   Eigen::MatrixXd sums;
   if (!member.cost->Sums(member.solution.parameters, &sums)) return 0;
-  const std::vector<int> own = member.OwnIndices(optimum.free);
-  const std::vector<Index> rows = member.RowsAmong(optimum.free, own);
+  const std::vector<int> own = OwnIndices(member.at, optimum.free);
+  const std::vector<Index> rows = RowsAmong(member.at, optimum.free, own);
   return optimum.inverse.matrix(rows, rows).cwiseProduct(sums(own, own)).sum();
 }
 
@@ -118,6 +118,7 @@ Solution SolveJointly(JointProblem& joint) {
     solution = Continue(*joint.cost, solution, joint.solve);
     SolveAlternately(joint, solution);
   }
+  if (solution.usable) solution.usable = joint.cost->SumOfSquares(solution.parameters, &solution.sum);
   for (JointMember& member : joint.members) {
     member.solution.usable = solution.usable;
     member.solution.iterations = solution.iterations;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/solve_jointly.h"
+#include "pendulum/fitting/fit/solve_jointly.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the joint cost with the stacked residuals of all recordings.
-#include "pendulum/fitting/joint/joint_cost.h"
+#include "pendulum/fitting/likelihood/joint_cost.h"
 
 #include <cmath>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/fit_jointly.h"
+#include "pendulum/fitting/fit/fit_jointly.h"
 
 #include <cmath>
 #include <cstdint>
@@ -352,7 +352,7 @@ TEST(FitJointly, DoesNotConvergeForRigsOfDifferentInertia) {
   const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(heavy))};
   const JointFit fit = FitAllJointly(recordings, RigOptions());
   EXPECT_EQ(fit.whole.termination, Termination::kNotConverged);
-  EXPECT_THAT(fit.whole.reason, StartsWith("these are not swings of one pendulum with one inertia, viscous, "
+  EXPECT_THAT(fit.whole.reason, StartsWith("these are not swings of one pendulum with one inertia, viscous and "
                                            "coulomb: the best joint trajectories leave "));
   EXPECT_THAT(fit.whole.reason, HasSubstr(" of the variance of recording "));
   for (const FitReport& run : fit.runs) EXPECT_EQ(run.termination, Termination::kNotConverged);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/fitting/joint/joint_parabolas.h"
+#include "pendulum/fitting/fit/joint_parabolas.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
+#include "pendulum/fitting/fit/intervals.h"
 #include "pendulum/fitting/likelihood/least_squares.h"
 #include "pendulum/fitting/solve/covariance.h"
 
@@ -92,6 +94,34 @@ CombinedParabolas CombineParabolas(const JointProblem& joint) {
     if (std::isfinite(moved)) parameters[i] = std::clamp(moved, joint.solve.lower[i], joint.solve.upper[i]);
   }
   return {parameters, sums.topLeftCorner(size, size)};
+}
+
+bool HasPosteriors(const JointProblem& joint) {
+  const auto is_posterior = [](const JointMember& m) { return m.alone->interval_method == kPosteriorIntervals; };
+  const auto has_errors = [](const JointMember& m) { return !m.alone->covariance_names.empty(); };
+  return std::ranges::any_of(joint.members, is_posterior) && std::ranges::all_of(joint.members, has_errors);
+}
+
+bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known) {
+  Optimum optimum = known;
+  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
+  std::ranges::sort(optimum.free);
+  optimum.at_bound.clear();
+  CombinedParabolas combined = CombineParabolas(joint);
+  optimum.inverse = InvertInformation(combined.information, optimum.free);
+  double sum = 0;
+  if (!optimum.inverse.identifiable || !joint.cost->SumOfSquares(combined.parameters, &sum)) return false;
+  optimum.information = std::move(combined.information);
+  optimum.gradient.setZero();
+  known = std::move(optimum);
+  solution.parameters = std::move(combined.parameters);
+  joint.Distribute(solution.parameters);
+  for (JointMember& member : joint.members) {
+    member.solution.noise.sigma = member.alone->noise.sigma;
+    member.cost->Readings(member.solution.parameters, &member.solution.readings,
+                          nullptr);  // computed before, so it fails only after a stop
+  }
+  return true;
 }
 
 }  // namespace pendulum
