@@ -169,15 +169,6 @@ Result<FittedRecording> FitEach(const Recording& recording, const FreeSwing& swi
   return fitted;
 }
 
-Result<FittedRecording> FitShared(Recording recording, const FreeSwing& swing, const FitOptions& options,
-                                  const std::vector<std::string>& models) {
-  const std::size_t richest_index = Richest(models);
-  const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
-  ReportFit(options, models, richest_index, 0);
-  ASSIGN_OR_RETURN(SwingFit richest_fit, FitSwing(std::move(recording), swing, richest_options));
-  return SharedFits(std::move(richest_fit), richest_index, options, models).Take();
-}
-
 void WarnOfIgnored(const FitOptions& options, const std::vector<std::string>& models, FittedRecording& fitted) {
   for (FitReport& fit : fitted.fits) {
     const std::string model(fit.model.name);
@@ -235,8 +226,16 @@ Result<void> CheckModels(const Recording& recording, const FreeSwing& swing, con
 
 Result<FittedRecording> FitModels(Recording recording, const FreeSwing& swing, const FitOptions& options,
                                   const std::vector<std::string>& models) {
-  Result<FittedRecording> fitted = swing.undersampled ? FitEach(recording, swing, options, models)
-                                                      : FitShared(std::move(recording), swing, options, models);
+  Result<FittedRecording> fitted;
+  if (swing.undersampled) {
+    fitted = FitEach(recording, swing, options, models);
+  } else {
+    const std::size_t richest_index = Richest(models);
+    ReportFit(options, models, richest_index, 0);
+    const FitOptions richest_options = ForModel(options, models[richest_index], models).options;
+    ASSIGN_OR_RETURN(SwingFit richest_fit, FitSwing(std::move(recording), swing, richest_options));
+    fitted = SharedFits(std::move(richest_fit), richest_index, options, models).Take();
+  }
   if (options.stop.stop_requested()) return FitStopped();
   if (!fitted) return fitted;
   if (models.size() > 1) WarnOfIgnored(options, models, *fitted);

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -109,7 +113,7 @@ void AddSystematic(ParameterEstimate& parameter, ErrorSource source, double std_
   AddToDerived(parameter, source, std_dev, fit);
 }
 
-/// How much a parameter changes during a recording.
+/// How much a parameter changes during a recording, or between recordings.
 struct Change {
   std::string_view name;
   double std_dev = 0;  // of its parts about the estimate, beyond their errors
@@ -144,35 +148,50 @@ std::vector<Change> Changes(const Constancy& constancy, const FitReport& fit) {
   return changes;
 }
 
-std::string ChangeText(const ParameterEstimate& parameter, double std_dev) {
-  return std::string(parameter.info.name) + " by " + NumberText(std_dev, 2) +
-         (parameter.unit == "1" ? "" : " " + parameter.unit);
+/// "coulomb by 0.0012 N m between windows".
+std::string ChangeText(const ParameterEstimate& parameter, const Change& change) {
+  return std::string(parameter.info.name) + " by " + NumberText(change.std_dev, 2) +
+         (parameter.unit == "1" ? "" : " " + parameter.unit) + " between " + std::string(change.parts);
 }
 
-void Warn(const std::string& changes, const std::string& when, FitReport& fit) {
-  if (changes.empty()) return;
-  fit.warnings.push_back({.code = "not_constant",
-                          .finding = "parameters change " + when + " by more than their errors: " + changes,
-                          .explanation = "another run may differ by about as much; the systematic errors include this, "
-                                         "standard errors and intervals do not"});
-}
+/// A change or an error of one parameter in one recording: its standard deviation, or std::nullopt if it is not known.
+using StdDevIn = std::function<std::optional<double>(const RunAlone& run, const ParameterEstimate& parameter)>;
 
-/// Root mean square of a parameter's changes in all recordings, weighted with 1 / std_error²; 0 if it is constant, or
-/// if it was not tested.
-double CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
-  double squares = 0, weights = 0;
+/// Root mean square of a parameter's standard deviations in all recordings where they are known, weighted with 1 /
+/// std_error², or equally if no recording determines the parameter.
+double CommonStdDev(std::string_view name, const std::vector<RunAlone>& runs, const StdDevIn& std_dev_in) {
+  std::vector<double> std_devs, weights;
   for (const RunAlone& run : runs) {
-    if (run.constancy == nullptr) continue;
-    const ParameterEstimate* const alone = run.fit.Find(name);
-    const bool is_tested = !run.constancy->windows.empty() || !run.constancy->halves.empty();
-    if (alone == nullptr || !is_tested || !(alone->std_error.value_or(0) > 0)) continue;
-    const double weight = 1 / (*alone->std_error * *alone->std_error);
-    const std::vector<Change> changes = Changes(*run.constancy, run.fit);
-    const auto change = std::ranges::find(changes, name, &Change::name);
-    weights += weight;
-    if (change != changes.end()) squares += weight * change->std_dev * change->std_dev;
+    const ParameterEstimate* const parameter = run.fit.Find(name);
+    const std::optional<double> own = parameter == nullptr ? std::nullopt : std_dev_in(run, *parameter);
+    if (!own) continue;
+    const double error = parameter->std_error.value_or(0);
+    std_devs.push_back(*own);
+    weights.push_back(error > 0 ? 1 / (error * error) : 0);
   }
-  return squares > 0 ? std::sqrt(squares / weights) : 0;
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double equal = 1 / static_cast<double>(weights.size());
+  double square = 0;
+  for (std::size_t k = 0; k < std_devs.size(); ++k) {
+    square += (sum > 0 ? weights[k] / sum : equal) * std_devs[k] * std_devs[k];
+  }
+  return std::sqrt(square);
+}
+
+/// How much a parameter changes within all recordings that were tested.
+Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
+  Change common{name, 0, ""};
+  common.std_dev =
+      CommonStdDev(name, runs, [&](const RunAlone& run, const ParameterEstimate&) -> std::optional<double> {
+        const Constancy* const constancy = run.constancy;
+        if (constancy == nullptr || (constancy->windows.empty() && constancy->halves.empty())) return std::nullopt;
+        const std::vector<Change> changes = Changes(*constancy, run.fit);
+        const auto change = std::ranges::find(changes, name, &Change::name);
+        if (change == changes.end()) return 0;
+        if (common.parts.empty()) common.parts = change->parts;
+        return change->std_dev;
+      });
+  return common;
 }
 
 /// Standard deviation of a parameter between recordings beyond their errors, if that is significant. Short recordings
@@ -195,65 +214,45 @@ double BeyondChange(double law_error, const ParameterEstimate& parameter) {
   return law_error > change ? std::sqrt(law_error * law_error - change * change) : 0;
 }
 
-/// Root mean square of this error of a parameter in all recordings, weighted with 1 / std_error².
 double CommonFrictionLawError(std::string_view name, const std::vector<RunAlone>& runs) {
-  double squares = 0, weights = 0;
-  for (const RunAlone& run : runs) {
-    if (run.constancy == nullptr) continue;
-    const ParameterEstimate* const alone = run.fit.Find(name);
-    if (alone == nullptr || !(alone->std_error.value_or(0) > 0)) continue;
-    const double weight = 1 / (*alone->std_error * *alone->std_error);
-    weights += weight;
-    squares += weight * std::pow(FrictionLawError(*run.constancy, *alone), 2);
-  }
-  return squares > 0 ? std::sqrt(squares / weights) : 0;
+  return CommonStdDev(name, runs, [](const RunAlone& run, const ParameterEstimate& own) -> std::optional<double> {
+    if (run.constancy == nullptr) return std::nullopt;
+    return FrictionLawError(*run.constancy, own);
+  });
+}
+
+/// Adds a systematic error to a parameter of the fit to all recordings and of the parts of several recordings.
+void AddToAll(std::string_view name, ErrorSource source, double std_dev, FitReport& whole, std::span<FitReport> parts) {
+  AddSystematic(*std::ranges::find(whole.parameters, name, NameOf), source, std_dev, whole);
+  for (FitReport& part : parts) AddSystematic(*std::ranges::find(part.parameters, name, NameOf), source, std_dev, part);
 }
 
 }  // namespace
 
-void AddInconstancyError(const Constancy& constancy, FitReport& fit) {
-  std::string text;
-  for (const Change& change : Changes(constancy, fit)) {
-    const auto parameter = std::ranges::find(fit.parameters, change.name, NameOf);
-    AddSystematic(*parameter, ErrorSource::kInconstancy, change.std_dev, fit);
-    text +=
-        (text.empty() ? "" : ", ") + ChangeText(*parameter, change.std_dev) + " between " + std::string(change.parts);
-  }
-  Warn(text, "during a recording", fit);
-}
-
 void AddInconstancyError(const std::vector<RunAlone>& runs, const std::vector<SharedParameter>& between,
-                         JointFit& joint) {
+                         FitReport& whole, std::span<FitReport> parts) {
   std::string text;
-  for (ParameterEstimate& shared : joint.whole.parameters) {
-    const double change =
-        shared.std_error ? std::max(CommonChange(shared.info.name, runs), ChangeBetweenRuns(shared.info.name, between))
-                         : 0;
-    if (!(change > 0)) continue;
-    AddSystematic(shared, ErrorSource::kInconstancy, change, joint.whole);
-    for (FitReport& run : joint.runs)
-      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), ErrorSource::kInconstancy, change,
-                    run);
-    text += (text.empty() ? "" : ", ") + ChangeText(shared, change);
+  for (const ParameterEstimate& parameter : whole.parameters) {
+    if (runs.size() > 1 && !parameter.std_error) continue;
+    Change change = CommonChange(parameter.info.name, runs);
+    const double between_runs = ChangeBetweenRuns(parameter.info.name, between);
+    if (between_runs > change.std_dev) change = {parameter.info.name, between_runs, "recordings"};
+    if (!(change.std_dev > 0)) continue;
+    AddToAll(change.name, ErrorSource::kInconstancy, change.std_dev, whole, parts);
+    text += (text.empty() ? "" : ", ") + ChangeText(parameter, change);
   }
-  Warn(text, "during or between recordings", joint.whole);
+  if (text.empty()) return;
+  whole.warnings.push_back({.code = "not_constant",
+                            .finding = "parameters change by more than their errors: " + text,
+                            .explanation = "another run may differ by about as much; the systematic errors include "
+                                           "this, standard errors and intervals do not"});
 }
 
-void AddFrictionLawError(const Constancy& constancy, FitReport& fit) {
-  for (ParameterEstimate& parameter : fit.parameters) {
-    const double error = BeyondChange(FrictionLawError(constancy, parameter), parameter);
-    if (parameter.std_error && error > 0) AddSystematic(parameter, ErrorSource::kFrictionLaw, error, fit);
-  }
-}
-
-void AddFrictionLawError(const std::vector<RunAlone>& runs, JointFit& joint) {
-  for (ParameterEstimate& shared : joint.whole.parameters) {
-    const double error = BeyondChange(CommonFrictionLawError(shared.info.name, runs), shared);
-    if (!shared.std_error || !(error > 0)) continue;
-    AddSystematic(shared, ErrorSource::kFrictionLaw, error, joint.whole);
-    for (FitReport& run : joint.runs)
-      AddSystematic(*std::ranges::find(run.parameters, shared.info.name, NameOf), ErrorSource::kFrictionLaw, error,
-                    run);
+void AddFrictionLawError(const std::vector<RunAlone>& runs, FitReport& whole, std::span<FitReport> parts) {
+  for (const ParameterEstimate& parameter : whole.parameters) {
+    if (!parameter.std_error) continue;
+    const double error = BeyondChange(CommonFrictionLawError(parameter.info.name, runs), parameter);
+    if (error > 0) AddToAll(parameter.info.name, ErrorSource::kFrictionLaw, error, whole, parts);
   }
 }
 

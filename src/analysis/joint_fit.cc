@@ -79,8 +79,8 @@ FittedRecordings FitTogether(std::vector<FittedRecording> recordings, const FitO
     JointFit& fit = result.joint.emplace_back(FitModel(result.recordings, m, own, shared));
     const Homogeneity& homogeneity = result.homogeneity.emplace_back(TestHomogeneity(alone, shared));
     SetVerdict(homogeneity, fit.whole);
-    AddInconstancyError(alone, homogeneity.parameters, fit);
-    AddFrictionLawError(alone, fit);
+    AddInconstancyError(alone, homogeneity.parameters, fit.whole, fit.runs);
+    AddFrictionLawError(alone, fit.whole, fit.runs);
   }
   return result;
 }

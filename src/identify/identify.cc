@@ -399,9 +399,11 @@ void AddFitsOfOne(const IdentifyOptions& options, const FitOptions& fit_options,
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
     if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
-    only.constancy.push_back(TestFit(options, fit_options, only.used, identification.fits[m], is_checked));
-    AddInconstancyError(only.constancy.back(), identification.fits[m]);
-    AddFrictionLawError(only.constancy.back(), identification.fits[m]);
+    FitReport& fit = identification.fits[m];
+    only.constancy.push_back(TestFit(options, fit_options, only.used, fit, is_checked));
+    const std::vector<RunAlone> alone = {{only.label, only.used, fit, fit_options, &only.constancy.back()}};
+    AddInconstancyError(alone, {}, fit);
+    AddFrictionLawError(alone, fit);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pendulum/analysis/homogeneity.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum {
@@ -33,6 +34,13 @@ inline FitOfRun FitTo(const SyntheticOptions& run, std::string_view model, const
   FitOptions options = ModelOptions(model);
   options.rig = rig;
   return FitTo(Must(SimulateRecording(run)), options);
+}
+
+/// The fit of a recording alone with its constancy, without its samples.
+inline RunAlone Alone(const FitReport& fit, const Constancy& constancy) {
+  static const Recording recording;
+  static const FitOptions options;
+  return {"", recording, fit, options, &constancy};
 }
 
 }  // namespace pendulum

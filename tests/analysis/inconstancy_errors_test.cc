@@ -62,7 +62,7 @@ class SimulatedWindows {
 };
 
 double AddedError(const Constancy& constancy, FitReport& fit) {
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   return fit.parameters[0].systematic.Of(ErrorSource::kInconstancy);
 }
 

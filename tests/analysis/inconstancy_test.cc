@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/fit/fit_jointly.h"
 #include "tests/analysis/fitted_run.h"
 
 namespace pendulum::inconstancy_test {
@@ -21,6 +22,8 @@ using testing::Gt;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Lt;
+
+const Constancy kUntested;
 
 SyntheticOptions NoisyTextbookRun(std::string_view model) {
   SyntheticOptions run = TextbookRun(model);
@@ -38,7 +41,8 @@ FitOptions WithLinearGravity(const std::optional<Rig>& rig) {
 /// The fit with the inconstancy error added.
 FitOfRun FitWithInconstancy(const SyntheticOptions& simulated, const FitOptions& options) {
   FitOfRun run = FitTo(Must(SimulateRecording(simulated)), options);
-  AddInconstancyError(TestConstancy(run.recording, run.fit, options), run.fit);
+  const Constancy constancy = TestConstancy(run.recording, run.fit, options);
+  AddInconstancyError({Alone(run.fit, constancy)}, {}, run.fit);
   return run;
 }
 
@@ -65,7 +69,7 @@ TEST(Inconstancy, IsTheScatterOfWindowsAboutTheWholeFit) {
     sum_of_squares += std::pow(inertia - whole.estimate, 2);
   }
   const double expected = std::sqrt(sum_of_squares / static_cast<double>(constancy.windows.size() - 1));
-  AddInconstancyError(constancy, run.fit);
+  AddInconstancyError({Alone(run.fit, constancy)}, {}, run.fit);
   EXPECT_THAT(SystematicError(run.fit, "inertia"), AllOf(Gt(0.9 * expected), Lt(1.1 * expected)));
   EXPECT_THAT(expected, Gt(5 * *whole.std_error));  // so that the scatter is significant
   EXPECT_EQ(run.fit.Find("inertia")->std_error, whole.std_error);
@@ -106,7 +110,7 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
                        {10, 15, 0.2, 0.080, 1e-5, 0.003, 1e-5}};
   constancy.trends = {{"inertia", "kg m^2", -0.002 / 0.12, 1e-4, 0.025, 1e-9}, {"viscous", "N m s", 0, 0.1, 0, 1}};
   const double whole = fit.Find("inertia")->estimate;
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   // Three values with the same error of 1e-5.
   const double expected =
       (std::pow(0.078 - whole, 2) + std::pow(0.079 - whole, 2) + std::pow(0.080 - whole, 2)) / 2 - 1e-10;
@@ -114,12 +118,6 @@ TEST(Inconstancy, AddsInQuadratureToTheRigsError) {
   EXPECT_EQ(fit.systematic_names, names);
   EXPECT_NEAR(fit.systematic_covariance(0, 0) - before(0, 0), expected, 1e-12);
   EXPECT_EQ(fit.systematic_covariance(0, 1), before(0, 1));
-}
-
-RunAlone Alone(const FitReport& fit, const Constancy& constancy) {
-  static const Recording recording;
-  static const FitOptions options;
-  return {"", recording, fit, options, &constancy};
 }
 
 // Two recordings with standard errors of 1 and 2 have the weights 4 : 1. With a change of s in the first and none in
@@ -139,7 +137,7 @@ TEST(Inconstancy, OfRecordingsIsTheirWeightedRootMeanSquare) {
   const double change = std::hypot(0.03, 0.03);  // sum of squares over 2 - 1
   Constancy constant;
   constant.halves = {{"inertia", "s^2", inertia.estimate, inertia.estimate, 1e-6, 1e-6, 0}};
-  AddInconstancyError({Alone(first, changing), Alone(second, constant)}, {}, joint);
+  AddInconstancyError({Alone(first, changing), Alone(second, constant)}, {}, joint.whole, joint.runs);
   EXPECT_NEAR(SystematicError(joint.whole, "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_NEAR(SystematicError(joint.runs[1], "inertia"), change * std::sqrt(4.0 / 5), 1e-8);
   EXPECT_TRUE(joint.whole.HasWarning("not_constant"));
@@ -161,7 +159,7 @@ TEST(Inconstancy, OfShortRecordingsIsTheirScatter) {
     JointFit joint;
     joint.whole = alone;
     joint.runs = {alone, alone};
-    AddInconstancyError({Alone(alone, untested), Alone(alone, untested)}, {Between(p, 0.002)}, joint);
+    AddInconstancyError({Alone(alone, untested), Alone(alone, untested)}, {Between(p, 0.002)}, joint.whole, joint.runs);
     EXPECT_EQ(SystematicError(joint.whole, "inertia"), expected);
     EXPECT_EQ(SystematicError(joint.runs[0], "inertia"), expected);
     EXPECT_EQ(joint.whole.HasWarning("not_constant"), expected > 0);
@@ -177,7 +175,7 @@ TEST(Inconstancy, DoesNotCountFrictionBelowZero) {
                        {5, 10, 0.3, 0.0438, 1e-5, friction, 1e-6},
                        {10, 15, 0.2, 0.0438, 1e-5, -0.01, 1e-6}};
   constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1}};
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   EXPECT_NEAR(SystematicError(fit, "coulomb"), friction / std::sqrt(2.0), 1e-3 * friction);
 }
 
@@ -187,7 +185,7 @@ TEST(Inconstancy, UsesTheHalvesIfThereAreNoWindows) {
   // Friction differs by two standard errors, which may be chance.
   constancy.halves = {{"inertia", "s^2", 0.044, 0.046, 1e-6, 1e-6, 1414}, {"viscous", "s", 0.001, 0.03, 0.01, 0.01, 2}};
   const double whole = fit.Find("inertia")->estimate;
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), std::hypot(0.044 - whole, 0.046 - whole), 1e-8);
   EXPECT_THAT(fit.systematic_names, ElementsAre("inertia"));
   EXPECT_THAT(MessageText(fit.warnings.back()), HasSubstr("s^2 between halves; another run"));
@@ -205,7 +203,7 @@ TEST(Inconstancy, CountsHalvesThatDifferWhereWindowsDoNot) {
   const double first = whole * (1 - 79e-6), second = whole * (1 + 79e-6);
   constancy.halves = {{"inertia", "s^2", first, second, 1e-6 * whole, 1e-6 * whole, 112}};
   constancy.halves_p = 1e-18;
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   const double expected = std::hypot(79e-6 * whole, 79e-6 * whole);  // sum of squares over 2 - 1, less 1e-6 each
   EXPECT_NEAR(SystematicError(fit, "inertia"), expected, 1e-3 * expected);
   EXPECT_TRUE(fit.HasWarning("not_constant"));
@@ -219,7 +217,7 @@ TEST(Inconstancy, CountsHalvesThatDifferOnlyTogether) {
   constancy.halves = {{"viscous", "s", 0.0010, 0.0014, 0.0002, 0.0002, 1.4},
                       {"coulomb", "1", 0.0020, 0.0024, 0.0003, 0.0003, 0.9}};
   constancy.halves_p = 1e-9;
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   EXPECT_THAT(SystematicError(fit, "viscous"), Ge(0.0002 * (1 - 1e-9)));  // half the difference
   EXPECT_TRUE(fit.HasWarning("not_constant"));
 }
@@ -235,7 +233,7 @@ TEST(Inconstancy, IsAtLeastTheTrend) {
                        {10, 15, 0.2, whole + 1e-5, 1e-4, 0.003, 1e-4}};
   const double range = 0.4 * 0.4 - 0.2 * 0.2;
   constancy.trends = {{"inertia", "s^2", -2e-5 / range, 1e-7, -2e-5 / whole, 1e-12}, {"viscous", "s", 0, 1, 0, 1}};
-  AddInconstancyError(constancy, fit);
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   EXPECT_NEAR(SystematicError(fit, "inertia"), 2e-5 / std::sqrt(12.0), 1e-9);
   EXPECT_TRUE(fit.HasWarning("not_constant"));
 }
@@ -252,8 +250,8 @@ TEST(Inconstancy, NeedsNoTrend) {
   constancy.halves = {{"inertia", "s^2", 0.0438, 0.0438, 1e-5, 1e-5, 0},
                       {"viscous", "s", 0.001, 0.003, 0.0001, 0.0001, 14},
                       {"coulomb", "1", 0.00225, 0.00225, 1e-5, 1e-5, 0}};
-  AddInconstancyError(constancy, fit);
-  EXPECT_THAT(fit.systematic_names, ElementsAre("coulomb", "viscous"));
+  AddInconstancyError({Alone(fit, constancy)}, {}, fit);
+  EXPECT_THAT(fit.systematic_names, ElementsAre("viscous", "coulomb"));
   // The error of coulomb is the scatter of the windows (the middle one differs by 1e-4); the error of viscous is the
   // scatter of the halves.
   EXPECT_THAT(SystematicError(fit, "coulomb"), AllOf(Gt(5e-5), Lt(2e-4)));
@@ -282,7 +280,7 @@ TEST(FrictionLawError, ContainsWhatIsOnlySuggestedInAShortRecording) {
     FitReport fit = FitWithOtherFriction();
     Constancy constancy;
     constancy.half_swings = half_swings;
-    AddFrictionLawError(constancy, fit);
+    AddFrictionLawError({Alone(fit, constancy)}, fit);
     EXPECT_DOUBLE_EQ(fit.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected);
     EXPECT_DOUBLE_EQ(fit.systematic_covariance(0, 0), expected * expected);
   }
@@ -293,7 +291,7 @@ TEST(FrictionLawError, IsWhatExceedsTheChangeDuringTheRecording) {
   for (const auto& [change, expected] : {std::pair(0.0, 3e-5), std::pair(1.8e-5, 2.4e-5), std::pair(6e-5, 0.0)}) {
     FitReport fit = FitWithOtherFriction();
     fit.parameters[0].systematic.Add(ErrorSource::kInconstancy, change);
-    AddFrictionLawError({}, fit);
+    AddFrictionLawError({Alone(fit, kUntested)}, fit);
     EXPECT_NEAR(fit.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
   }
 }
@@ -301,7 +299,7 @@ TEST(FrictionLawError, IsWhatExceedsTheChangeDuringTheRecording) {
 TEST(FrictionLawError, NeedsAStandardError) {
   FitReport fit = FitWithOtherFriction();
   fit.parameters[0].std_error.reset();
-  AddFrictionLawError({}, fit);
+  AddFrictionLawError({Alone(fit, kUntested)}, fit);
   EXPECT_FALSE(fit.parameters[0].systematic.Total());
 }
 
@@ -315,7 +313,7 @@ TEST(FrictionLawError, OfRecordingsIsTheirWeightedRootMeanSquare) {
   joint.whole = first;
   joint.runs = {first, second};
   const Constancy constant;
-  AddFrictionLawError({Alone(first, constant), Alone(second, constant)}, joint);
+  AddFrictionLawError({Alone(first, constant), Alone(second, constant)}, joint.whole, joint.runs);
   const double expected = 3e-5 * std::sqrt(4.0 / 5);
   EXPECT_NEAR(joint.whole.parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);
   EXPECT_NEAR(joint.runs[1].parameters[0].systematic.Of(ErrorSource::kFrictionLaw), expected, 1e-12);

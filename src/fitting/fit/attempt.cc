@@ -36,16 +36,23 @@ void UnwrapOffset(const FitProblem& problem, Solution& solution) {
   solution.parameters[angle] += turn * turns;
 }
 
-/// Solves at the tolerance expected to suffice and measures the error of the trajectory at the solution. While the
-/// error is too large, solves again at a finer tolerance.
-Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options) {
+/// Solves a problem that is ready, at the tolerance expected to suffice, and measures the error of the trajectory at
+/// the solution. While the error is too large, solves again at a finer tolerance.
+Attempt SolveProblem(std::unique_ptr<FitProblem> ready, const FitOptions& options) {
+  Attempt attempt;
+  attempt.problem = std::move(ready);
+  const FitProblem& problem = *attempt.problem;
+  attempt.cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
+  TrajectoryCost& cost = *attempt.cost;
+  Solution& solution = attempt.solution;
   const double max_error = MaxTraceError(problem, options);
   double tolerance = TraceTolerance(max_error, problem.start.amplitude);
+  cost.set_threads(options.threads);
   cost.set_tolerance(tolerance);
-  const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
   cost.set_priors(problem.priors);
   cost.set_noise(problem.noise);
-  Solution solution = Search(cost, problem.data, guess, problem.solve);
+  const auto guess = [&](const std::vector<bool>& fixed) { return FirstGuess(problem, fixed); };
+  solution = Search(cost, problem.data, guess, problem.solve);
   UnwrapOffset(problem, solution);
   MaximizeLikelihood(cost, problem, options, solution);
   EscapeDiscontinuities(cost, problem, options, solution);
@@ -56,16 +63,6 @@ Solution SolveToAccuracy(TrajectoryCost& cost, const FitProblem& problem, const 
     cost.set_tolerance(tolerance);
     solution = Continue(cost, solution, problem.solve);
   }
-  return solution;
-}
-
-/// Solves a problem that is ready.
-Attempt SolveProblem(std::unique_ptr<FitProblem> problem, const FitOptions& options) {
-  Attempt attempt;
-  attempt.problem = std::move(problem);
-  attempt.cost = MakeTrajectoryCost(attempt.problem->model, attempt.problem->start.start, attempt.problem->data);
-  attempt.cost->set_threads(options.threads);
-  attempt.solution = SolveToAccuracy(*attempt.cost, *attempt.problem, options);
   return attempt;
 }
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "fitting/fit/attempt.h"
-#include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/alternative_minima.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
@@ -195,6 +194,22 @@ void CheckProfilesForBetterMinimum(const FitProblem& problem, FitReport& report)
       "point, which causes many local minima; give known values with --prior, such as radius=r:std_dev";
 }
 
+/// The report of an attempt: with corrected readings if the residuals suggest that, and judged by its alternatives.
+FitReport ReportAttempt(const Recording& recording, const FitOptions& options, Attempt& attempt) {
+  const AlternativeMinimum minimum = MinimumOf(attempt);
+  // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
+  const bool has_base = !HasLeastReference(attempt, options);
+  FitReport report = MakeFitReport({recording, options, *attempt.problem, *attempt.cost, attempt.solution});
+  const double effective_share =
+      report.statistics.effective_samples / static_cast<double>(attempt.problem->data.time.size());
+  const bool is_correctable = has_base && report.effects.correction.readings.size() > 0;
+  if (is_correctable && options.search.may_correct) CorrectForSuspicions(recording, options, report);
+  WarnOfSuspicions(is_correctable && !options.search.may_correct, report);
+  CheckAlternativeMinima(*attempt.problem, attempt.alternatives, minimum, effective_share, report);
+  CheckProfilesForBetterMinimum(*attempt.problem, report);
+  return report;
+}
+
 /// A sentence if the reported estimates violate the order that the law requires (OrderViolation); otherwise empty.
 /// Means of a posterior may violate the order although the most likely values do not.
 std::string OrderViolationOf(const FitProblem& problem, const FitReport& report) {
@@ -205,24 +220,19 @@ std::string OrderViolationOf(const FitProblem& problem, const FitReport& report)
   return estimates.empty() ? "" : OrderViolation(problem, estimates);
 }
 
-/// Returns a report that may be incomplete if a stop is requested during the fit.
-Result<FitReport> FitWithRescues(const Recording& recording, const FitOptions& options) {
-  ASSIGN_OR_RETURN(Attempt attempt, MakeAttempt(recording, options));
+}  // namespace
+
+Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
+  if (options.stop.stop_requested()) return FitStopped();
+  Result<Attempt> solved = MakeAttempt(recording, options);
+  if (options.stop.stop_requested()) return FitStopped();
+  if (!solved) return tl::unexpected(solved.error());
+  Attempt& attempt = *solved;
   std::vector<AttemptRecord> records = ApplyRescues(recording, options, attempt);
   std::string violation = OrderViolation(*attempt.problem, attempt.solution.parameters);
   Result<FitReport> report = FitReport();
   if (violation.empty()) {
-    const AlternativeMinimum minimum = MinimumOf(attempt);
-    // A law at the edge of its range, as dahl where the pendulum stands still, is no base for a correction.
-    const bool has_base = !HasLeastReference(attempt, options);
-    report = MakeFitReport({recording, options, *attempt.problem, *attempt.cost, attempt.solution});
-    const double effective_share =
-        report->statistics.effective_samples / static_cast<double>(attempt.problem->data.time.size());
-    const bool is_correctable = has_base && report->effects.correction.readings.size() > 0;
-    if (is_correctable && options.search.may_correct) CorrectForSuspicions(recording, options, *report);
-    WarnOfSuspicions(is_correctable && !options.search.may_correct, *report);
-    CheckAlternativeMinima(*attempt.problem, attempt.alternatives, minimum, effective_share, *report);
-    CheckProfilesForBetterMinimum(*attempt.problem, *report);
+    report = ReportAttempt(recording, options, attempt);
     violation = OrderViolationOf(*attempt.problem, *report);
   }
   if (!violation.empty()) {
@@ -230,14 +240,6 @@ Result<FitReport> FitWithRescues(const Recording& recording, const FitOptions& o
     records.push_back({"simpler_law", true});
   }
   if (report) report->solver.attempts.insert(report->solver.attempts.begin(), records.begin(), records.end());
-  return report;
-}
-
-}  // namespace
-
-Result<FitReport> FitRecording(const Recording& recording, const FitOptions& options) {
-  if (options.stop.stop_requested()) return FitStopped();
-  Result<FitReport> report = FitWithRescues(recording, options);
   if (options.stop.stop_requested()) return FitStopped();
   return report;
 }
