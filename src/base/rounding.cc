@@ -133,4 +133,16 @@ std::string FixedText(double x, int decimals) {
   return {buffer.data(), end};
 }
 
+std::pair<std::string, std::string> SpanTexts(double from, double to) {
+  const Rounding rounding = SignificantRounding(to - from, kDigitsWithoutError);
+  const int decimals = std::max(0, rounding.decimals - rounding.exponent);
+  const auto text = [&](double end) {
+    std::string number = FixedText(end, decimals);
+    if (decimals > 0) number.erase(number.find_last_not_of('0') + 1);
+    if (number.ends_with('.')) number.pop_back();
+    return number;
+  };
+  return {text(from), text(to)};
+}
+
 }  // namespace pendulum

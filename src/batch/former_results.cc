@@ -19,16 +19,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Names = std::pair<std::string_view, std::string_view>;  // a name in version 1, and in version 2
 
-constexpr std::array kKeys = {Names{"alone", "separate"},
-                              Names{"disagreeing", "outliers"},
-                              Names{"judged", "is_compared"},
-                              Names{"rest_p", "p_of_remainder"},
-                              Names{"seen_frequency_hz", "apparent_frequency_hz"},
+constexpr std::array kKeys = {Names{"judged", "is_compared"}, Names{"seen_frequency_hz", "apparent_frequency_hz"},
                               Names{"why", "reason"}};
 
 constexpr std::array kWarningCodes = {Names{"disturbed", "ends_trimmed"},
                                       Names{"left_out", "larger_motion_outside"},
-                                      Names{"not_alone", "separate_fit_not_converged"},
                                       Names{"once_a_cycle", "samples_near_period"},
                                       Names{"quiet_sensor", "noise_below_resolution"},
                                       Names{"rig_frequency", "frequency_differs_from_rig"},

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "model/rig_entry.h"
+#include "pendulum/model/rig_values.h"
 
 namespace pendulum {
 namespace {

@@ -11,6 +11,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/model/rig_units.h"
+#include "pendulum/model/rig_values.h"
 
 namespace pendulum {
 namespace {

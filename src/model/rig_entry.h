@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys and values of a rig as its user writes them. A value is a number or {"value", "std_dev"}, checked by ParseRig.
+// Keys of a rig as its user writes them.
 #pragma once
 
 #include <string>
@@ -19,14 +19,6 @@ inline bool IsGivenByFlags(std::string_view rig_name) { return rig_name == kRigO
 /// A key as the user of the rig writes it: "bob_mass" in a file, --bob_mass on the command line.
 inline std::string KeyText(const RigKey& key, std::string_view rig_name) {
   return IsGivenByFlags(rig_name) ? "--" + std::string(key.flag) : Quoted(key.name);
-}
-
-inline double ValueOfEntry(const nlohmann::ordered_json& entry) {
-  return entry.is_object() ? entry.at("value").get<double>() : entry.get<double>();
-}
-
-inline double StdDevOfEntry(const nlohmann::ordered_json& entry) {
-  return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0;
 }
 
 }  // namespace pendulum

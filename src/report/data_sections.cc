@@ -11,19 +11,24 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
 #include "pendulum/model/rig.h"
+#include "pendulum/model/rig_values.h"
 #include "pendulum/report/closed_form_text.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
 
+std::string WindowText(double from, double to) {
+  const auto [begin, end] = SpanTexts(from, to);
+  return begin + " s to " + end + " s";
+}
+
 /// The free swings of the recording; the fitted one is marked.
 std::string ReleasesText(const DataSummary& data) {
   std::string text;
   for (std::size_t i = 0; i < data.releases.size(); ++i) {
-    const auto [from, to] = data.releases[i];
-    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + ": " + NumberText(from, 4) + " s to " + NumberText(to, 4) +
-            " s" + (static_cast<int>(i) + 1 == data.release ? " (this one)" : "");
+    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + ": " + WindowText(data.releases[i][0], data.releases[i][1]) +
+            (static_cast<int>(i) + 1 == data.release ? " (this one)" : "");
   }
   return text;
 }
@@ -37,8 +42,8 @@ Section DataSection(const DataSummary& data) {
   Facts facts;
   if (!data.path.empty()) facts.push_back({"file", Printable(data.path)});
   facts.push_back({"samples", std::to_string(data.used_samples) + " used of " + std::to_string(data.samples)});
-  facts.push_back({"window", NumberText(data.from, kTextDigits) + " s to " + NumberText(data.to, kTextDigits) + " s, " +
-                                 NumberText(data.sample_rate(), kTextDigits) + " Hz on average"});
+  facts.push_back({"window", WindowText(data.from, data.to) + ", " + NumberText(data.sample_rate(), kTextDigits) +
+                                 " Hz on average"});
   if (!data.begins.empty()) {
     facts.push_back({"begins", data.begins});
     facts.push_back({"ends", data.ends});
@@ -54,10 +59,6 @@ Section DataSection(const DataSummary& data) {
 }
 
 // ---- Several recordings ---------------------------------------------------------------------------------------------
-
-std::string WindowText(const DataSummary& data) {
-  return NumberText(data.from, 4) + " to " + NumberText(data.to, 4) + " s";
-}
 
 std::string FileText(const DataSummary& data, bool several_releases) {
   const std::string path = data.path.empty() ? "-" : Printable(data.path);
@@ -76,7 +77,8 @@ Section RecordingSection(const Identification& identification) {
     const bool held = identification.FitOf(k, main).start == StartKind::kRelease;
     files.rows.push_back({number, FileText(data, again)});
     table.rows.push_back({number, std::to_string(data.used_samples) + " of " + std::to_string(data.samples),
-                          WindowText(data), NumberText(data.sample_rate(), 4), held ? "held" : "in motion",
+                          WindowText(data.from, data.to), NumberText(data.sample_rate(), 4),
+                          held ? "held" : "in motion",
                           std::isfinite(amplitudes[k]) ? NumberText(amplitudes[k] * Degrees("rad")->factor, 3) : "-"});
   }
   Section section{"Recordings", "", {std::move(files), std::move(table)}};
@@ -89,9 +91,8 @@ Section RigSection(const Rig& rig) {
   for (const RigKey& key : RigKeys()) {
     const auto found = rig.source.is_object() ? rig.source.find(key.name) : rig.source.end();
     if (found == rig.source.end()) continue;
-    const double value = found->is_number() ? found->get<double>() : found->value("value", 0.0);
-    const double std_dev = found->is_number() ? 0 : found->value("std_dev", 0.0);
-    const QuantityNumbers numbers(value, std_dev > 0 ? std::optional(std_dev) : std::nullopt);
+    const double std_dev = StdDevOfEntry(*found);
+    const QuantityNumbers numbers(ValueOfEntry(*found), std_dev > 0 ? std::optional(std_dev) : std::nullopt);
     table.rows.push_back({std::string(key.name), numbers.Value(), numbers.Error(), std::string(key.unit)});
   }
   return {"Rig", "", {std::move(table)}};

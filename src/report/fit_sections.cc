@@ -365,13 +365,9 @@ Sections OwnSections(const Identification& identification, std::size_t index, st
   const IdentifiedRecording& recording = identification.recordings[k];
   const FitReport& fit = identification.FitOf(k, index);
   Sections sections = ConstancySections(recording.ConstancyOf(index));
-  Sections suspicions = SuspicionSections(fit, recording.used.sensor_errors);
-  if (!suspicions.empty()) {  // the last ones are about the sensor
-    sections.push_back(std::move(suspicions.front()));
-    suspicions.erase(suspicions.begin());
-  }
+  std::ranges::move(SuspicionSections(fit), std::back_inserter(sections));
   for (Section& section : sections) section.remark = identification.is_joint() ? "of the separate fit" : "";
-  std::ranges::move(suspicions, std::back_inserter(sections));
+  std::ranges::move(SensorSections(fit, recording.used.sensor_errors), std::back_inserter(sections));
   return OfRecording(identification, k, std::move(sections));
 }
 

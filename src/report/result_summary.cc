@@ -250,20 +250,6 @@ std::string RemarksText(const FitReport& fit) {
 
 // ---- Sentences ------------------------------------------------------------------------------------------------------
 
-/// "50490.1" and "50510.1": as many decimals as the duration needs for four digits, however large the times are.
-std::pair<std::string, std::string> WindowTexts(double from, double to) {
-  constexpr int kDigits = 4;
-  const Rounding rounding = SignificantRounding(to - from, kDigits);
-  const int decimals = std::max(0, rounding.decimals - rounding.exponent);
-  const auto text = [&](double time) {
-    std::string number = FixedText(time, decimals);
-    if (decimals > 0) number.erase(number.find_last_not_of('0') + 1);
-    if (number.ends_with('.')) number.pop_back();
-    return number;
-  };
-  return {text(from), text(to)};
-}
-
 std::string SamplesText(Eigen::Index used, Eigen::Index all) {
   return used == all ? "all " + std::to_string(all) + " samples"
                      : std::to_string(used) + " of " + std::to_string(all) + " samples";
@@ -276,7 +262,7 @@ std::string DataText(const DataSummary& data) {
   if (data.releases.size() > 1 && data.release > 0) {
     text += " (free swing " + std::to_string(data.release) + " of " + std::to_string(data.releases.size()) + ")";
   }
-  const auto [from, to] = WindowTexts(data.from, data.to);
+  const auto [from, to] = SpanTexts(data.from, data.to);
   const auto end = [](const std::string& time, const std::string& why) {
     return time + " s" + (why.empty() ? "" : " (" + why + ")");
   };

@@ -58,11 +58,14 @@ Section SensorSection(const SensorErrors& sensor, const std::string& reading_uni
 
 }  // namespace
 
-Sections SuspicionSections(const FitReport& fit, const SensorErrors& sensor) {
+Sections SuspicionSections(const FitReport& fit) {
   if (fit.termination != Termination::kConverged) return {};
-  Sections sections = {SuggestedSection(fit)};
-  if (!sensor.kind.empty()) sections.push_back(SensorSection(sensor, fit.reading_unit));
-  return sections;
+  return {SuggestedSection(fit)};
+}
+
+Sections SensorSections(const FitReport& fit, const SensorErrors& sensor) {
+  if (fit.termination != Termination::kConverged || sensor.kind.empty()) return {};
+  return {SensorSection(sensor, fit.reading_unit)};
 }
 
 nlohmann::ordered_json SuspicionsJson(const FitReport& fit) {

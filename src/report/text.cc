@@ -25,10 +25,11 @@ void Append(Sections more, Sections& sections) {
 
 constexpr const char* kWarningTitle = "Warnings";
 
-Section WarningSection(const Identification& identification) {
+Sections WarningSections(const Identification& identification) {
   Items items{{}, Emphasis::kCaution};
   for (const Warning& warning : AllWarnings(identification)) items.texts.push_back(Printable(MessageText(warning)));
-  return {kWarningTitle, "", {std::move(items)}};
+  if (items.texts.empty()) return {};
+  return {{kWarningTitle, "", {std::move(items)}}};
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ Sections ReportSections(const Identification& identification, FitsInFull which) 
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
     Append(OfRecording(identification, k, ClosedFormSections(identification, k, which)), sections);
   }
-  if (!AllWarnings(identification).empty()) sections.push_back(WarningSection(identification));
+  Append(WarningSections(identification), sections);
   return sections;
 }
 

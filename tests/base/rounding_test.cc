@@ -92,5 +92,17 @@ TEST(SignificantDigits, CountsFromTheFirstNonzeroDigit) {
 
 TEST(FixedText, MatchesPrintf) { EXPECT_EQ(FixedText(-1.005e300, 0).substr(0, 5), "-1005"); }
 
+TEST(SpanTexts, HaveTheDecimalsThatTheLengthNeeds) {
+  const auto texts = [](double from, double to) {
+    const auto [first, last] = SpanTexts(from, to);
+    return first + " " + last;
+  };
+  EXPECT_EQ(texts(0, 19.99), "0 19.99");
+  EXPECT_EQ(texts(50490.123, 50510.123), "50490.12 50510.12");  // 20.00 s
+  EXPECT_EQ(texts(1712345678.5, 1712345690.25), "1712345678.5 1712345690.25");
+  EXPECT_EQ(texts(-1.5, 36000), "-2 36000");
+  EXPECT_EQ(texts(0.001, 0.00525), "0.001 0.00525");
+}
+
 }  // namespace
 }  // namespace pendulum::rounding_test

@@ -52,9 +52,9 @@ TEST(DataSections, NumberTheRecordings) {
        file
     1  run.csv
     2  b c.csv
-            samples  window          rate [Hz]  starts     amplitude [deg]
-    1  1801 of 2000  1.5 to 19.5 s         100  held                  14.3
-    2   901 of 2000  10.5 to 19.5 s        100  in motion             7.16
+            samples  window            rate [Hz]  starts     amplitude [deg]
+    1  1801 of 2000  1.5 s to 19.5 s         100  held                  14.3
+    2   901 of 2000  10.5 s to 19.5 s        100  in motion             7.16
     Amplitudes are root mean squares over the motion.
 )");
 }

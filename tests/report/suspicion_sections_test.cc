@@ -20,7 +20,8 @@ TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
   SensorErrors sensor;
   sensor.kind = "angle sensor";
   sensor.Of(SensorEffect::kGain) = {0.01, "assumed for an angle sensor"};
-  const std::string text = ToText(SuspicionSections(SuspectedFit(), sensor), TextStyle{});
+  const std::string text = ToText(SuspicionSections(SuspectedFit()), TextStyle{}) +
+                           ToText(SensorSections(SuspectedFit(), sensor), TextStyle{});
   for (const char* part : {"What the residuals suggest", "gain", "1.00 ± 0.10 %", "friction law", "--models all",
                            "assumed for an angle sensor"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
@@ -30,11 +31,18 @@ TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
 TEST(SuspicionSections, SayIfNothingIsSignificant) {
   FitReport fit = SuspectedFit();
   fit.suspicions.clear();
-  const std::string text = ToText(SuspicionSections(fit, {}), TextStyle{});
+  const std::string text = ToText(SuspicionSections(fit), TextStyle{});
   EXPECT_NE(text.find("No cause outside the law is significant"), std::string::npos) << text;
 }
 
-TEST(SuspicionSections, AreEmptyWithoutAResult) { EXPECT_TRUE(SuspicionSections(FitReport(), {}).empty()); }
+TEST(SuspicionSections, AreEmptyWithoutAResult) { EXPECT_TRUE(SuspicionSections(FitReport()).empty()); }
+
+TEST(SensorSections, AreEmptyWithoutAResultOrAKnownSensor) {
+  SensorErrors sensor;
+  EXPECT_TRUE(SensorSections(SuspectedFit(), sensor).empty());
+  sensor.kind = "encoder";
+  EXPECT_TRUE(SensorSections(FitReport(), sensor).empty());
+}
 
 TEST(SuspicionsJson, HasOneObjectForEachCause) {
   const auto json = SuspicionsJson(SuspectedFit());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 namespace pendulum {
 
@@ -40,5 +41,9 @@ std::string RoundedText(double x, const Rounding& rounding);
 
 /// x with `decimals` decimals, as with printf's %f.
 std::string FixedText(double x, int decimals);
+
+/// "50490.1" and "50510.1": the ends of a span, from < to, with as many decimals as its length needs for four digits,
+/// however large the ends are.
+std::pair<std::string, std::string> SpanTexts(double from, double to);
 
 }  // namespace pendulum

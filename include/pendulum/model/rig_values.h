@@ -16,6 +16,15 @@ namespace pendulum {
 /// The name of a rig that is given by values alone, for messages.
 inline constexpr std::string_view kRigOfValuesName = "the rig given by flags";
 
+/// The value and the standard deviation of an entry of Rig::source: a number or {"value", "std_dev"}, checked by
+/// ParseRig. The standard deviation is 0 if none is given.
+inline double ValueOfEntry(const nlohmann::ordered_json& entry) {
+  return entry.is_object() ? entry.at("value").get<double>() : entry.get<double>();
+}
+inline double StdDevOfEntry(const nlohmann::ordered_json& entry) {
+  return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0;
+}
+
 /// As ParseRig, with `values`, an object with keys of the rig, in the place of those of the text. A rig that needs g
 /// and has none gets the mean at sea level, with its variation from the equator to the poles as error; the warning
 /// gravity_assumed is added to `warnings`.

@@ -18,6 +18,7 @@
 #include "fitting/swing/steady_hold.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/try.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/lost_counts.h"
@@ -349,10 +350,11 @@ void AddWarnings(const FitOptions& options, SwingState& state) {
   FitReport& fit = state.result.fit;
   if (state.hold) WarnOfHold(*state.hold, state.result.used, fit);
   if (state.was_trimmed) {
+    const auto [from, to] = SpanTexts(state.result.swing.from, state.result.swing.to);
     fit.warnings.push_back(
         {.code = "ends_trimmed",
-         .finding = "disturbed ends were left out, because they do not fit the rest: the window is now " +
-                    NumberText(state.result.swing.from, 4) + " s to " + NumberText(state.result.swing.to, 4) + " s",
+         .finding = "disturbed ends were left out, because they do not fit the rest: the window is now " + from +
+                    " s to " + to + " s",
          .advice = "choose another one with --from and --to",
          .flags = {"from", "to"}});
   }

@@ -21,7 +21,7 @@ namespace pendulum {
 /// then not parabolic. Returns an optimum whose free parameters match `errors`; parameters at a bound are free in it.
 /// Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
 /// kAuto.
-std::optional<Optimum> UsePosterior(const FittedRun& run, const Optimum& optimum, Errors& errors, FitReport& report);
+std::optional<Optimum> UsePosterior(const FittedRun& run, const Optimum& smooth, Errors& errors, FitReport& report);
 
 /// Whether the options ask for profiles, or a parameter is at a bound or within three standard errors of one. Its
 /// interval is then not symmetric.
