@@ -64,6 +64,7 @@ void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
   if (said == richest_fit.warnings.end() || fit.termination == Termination::kFailed) return;
   fit.termination = Termination::kNotConverged;
   fit.reason = MessageText(*said);
+  fit.reason_code = said->code;
   WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 

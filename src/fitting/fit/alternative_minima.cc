@@ -91,14 +91,12 @@ void CheckAlternativeMinima(const FitProblem& problem, std::span<const Alternati
   if (nearest == nullptr) return;
   const std::vector<std::size_t> different = DifferingParameters(problem, *nearest, report);
   const std::string_view deciding = problem.infos[DecidingParameter(problem, different)].name;
-  report.termination = Termination::kNotIdentifiable;
-  report.warnings.push_back({.code = "ambiguous_sensor",
-                             .finding = "with " + DescribeDifferences(problem, *nearest, report, different) +
-                                        " the fit is nearly as good (-2 log L is " +
-                                        NumberText(std::max(behind(*nearest), 0.0), 2) + " higher" +
-                                        (effective_share < 1 ? ", by the effective samples" : "") + ")",
-                             .advice = MeasurementFor(deciding)});
-  report.reason = MessageText(report.warnings.back());
+  Warning ambiguous{.code = "ambiguous_sensor",
+                    .finding = "with " + DescribeDifferences(problem, *nearest, report, different) +
+                               " the fit is nearly as good (-2 log L is " +
+                               NumberText(std::max(behind(*nearest), 0.0), 2) + " higher" +
+                               (effective_share < 1 ? ", by the effective samples" : "") + ")",
+                    .advice = MeasurementFor(deciding)};
   for (Identifiability& known : report.identifiability) {
     if (std::ranges::none_of(different, [&](std::size_t i) { return problem.infos[i].name == known.parameter; }))
       continue;
@@ -106,7 +104,7 @@ void CheckAlternativeMinima(const FitProblem& problem, std::span<const Alternati
     known.direction = {known.parameter};
     known.advice = MeasurementFor(known.parameter);
   }
-  WithdrawErrors("the fit is " + std::string(TerminationName(report.termination)), report);
+  Reject(Termination::kNotIdentifiable, std::move(ambiguous), "the fit is not_identifiable", report);
 }
 
 }  // namespace pendulum

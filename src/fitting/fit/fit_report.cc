@@ -28,10 +28,15 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
 bool FitReport::HasWarning(WarningCode code) const { return pendulum::HasWarning(warnings, code); }
 
 const Warning* FitReport::ReasonWarning() const {
-  if (termination == Termination::kConverged) return nullptr;
-  const auto says_it = [&](const Warning& warning) { return reason.starts_with(MessageText(warning)); };
-  const auto found = std::ranges::find_if(warnings, says_it);
-  return found == warnings.end() ? nullptr : &*found;
+  return reason_code ? FindWarning(warnings, *reason_code) : nullptr;
+}
+
+void Reject(Termination termination, Warning why, std::string_view without_errors, FitReport& fit) {
+  fit.termination = termination;
+  fit.reason = MessageText(why);
+  fit.reason_code = why.code;
+  fit.warnings.push_back(std::move(why));
+  WithdrawErrors(without_errors, fit);
 }
 
 void WithdrawErrors(std::string_view why, FitReport& fit) {

@@ -271,18 +271,6 @@ std::optional<OffsetJumps> FindOffsetJumps(const Recording& recording, const Fit
   return jumps;
 }
 
-namespace {
-
-/// If the zero of the sensor jumps and the readings are not corrected, the standard errors of the fit are not valid.
-void RejectForOffsetJumps(const Warning& why, FitReport& fit) {
-  fit.termination = Termination::kNotConverged;
-  fit.reason = MessageText(why);
-  fit.warnings.push_back(why);
-  WithdrawErrors("the zero jumps", fit);
-}
-
-}  // namespace
-
 void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit, FitReport& fit) {
   // For events, a misfit cannot hide a jump: a lasting offset between two edges is a step of the zero.
   const bool can_detect =
@@ -296,7 +284,7 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
                             .flags = {"report"}});
   }
   if (!jumps) return;
-  if (!jumps->AreCorrected()) return RejectForOffsetJumps(jumps->warning, fit);
+  if (!jumps->AreCorrected()) return Reject(Termination::kNotConverged, jumps->warning, "the zero jumps", fit);
   fit.warnings.push_back(jumps->warning);
 }
 

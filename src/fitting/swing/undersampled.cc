@@ -209,16 +209,17 @@ void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, co
                     const std::optional<Rejection>& rejection, FitReport& fit) {
   const double rate = SampleRateOf(used);
   const bool mirrors = CanAliasWithinRange(allowed.range.low / kTurn, allowed.range.high / kTurn, rate);
-  if (rejection && rejection->ambiguity) fit.warnings.push_back(*rejection->ambiguity);
   if (!rejection && mirrors) {
     fit.warnings.push_back(AssumptionOf(aliases, allowed, rate, fit.model.gravity.is_linear()));
   }
   // A start from a scan is not a closed-form estimate.
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!rejection) return;
+  const std::string without_errors = "the fit is " + std::string(TerminationName(rejection->termination));
+  if (rejection->ambiguity) return Reject(rejection->termination, *rejection->ambiguity, without_errors, fit);
   fit.termination = rejection->termination;
   fit.reason = rejection->why;
-  WithdrawErrors("the fit is " + std::string(TerminationName(fit.termination)), fit);
+  WithdrawErrors(without_errors, fit);
 }
 
 /// Warns about the sampling, with the frequency that the rig predicts or that a converged fit found.

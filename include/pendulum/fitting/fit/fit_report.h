@@ -107,7 +107,8 @@ struct SolverSummary {
 struct FitReport {
   MotionModel model;
   Termination termination = Termination::kFailed;
-  std::string reason;  ///< A sentence, for every termination.
+  std::string reason;                      ///< A sentence, for every termination.
+  std::optional<WarningCode> reason_code;  ///< Of the warning that says why the fit is not converged, if one does.
   StartKind start = StartKind::kMoving;
   Quantity quantity = Quantity::kAngle;
   SensorModel sensor;
@@ -138,9 +139,13 @@ struct FitReport {
 
   bool HasWarning(WarningCode code) const;
 
-  /// The warning that says why the fit did not converge; nullptr if its reason is none of the warnings.
+  /// The warning with `reason_code`; nullptr if the reason is none of the warnings.
   const Warning* ReasonWarning() const;
 };
+
+/// Ends a fit for the reason that a warning gives, and adds the warning. `without_errors` is the reason of each
+/// parameter.
+void Reject(Termination termination, Warning why, std::string_view without_errors, FitReport& fit);
 
 /// Removes the errors, intervals and covariance from a report in which they are not valid. Each parameter that is not
 /// fixed gets the reason `why`.
