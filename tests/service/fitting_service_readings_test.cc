@@ -210,6 +210,8 @@ TEST_F(FittingServiceReadingsTest, AreAnsweredWhileAllFitThreadsAreBusy) {
   EXPECT_EQ(held.held, options.fit_threads);  // still busy
   held.gate.count_down();
   for (RawClient& fit : fits) EXPECT_EQ(fit.Read().status, 200);
+  fits.clear();
+  client.Close();
   (*server)->Stop();
   thread.join();
 }
