@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/analysis/readings_at.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +12,17 @@
 
 namespace pendulum {
 namespace {
+
+/// Index of the parameter of that name.
+Result<std::size_t> FindParameter(const FitReport& fit, const std::string& name) {
+  if (const ParameterEstimate* const found = fit.Find(name)) {
+    return static_cast<std::size_t>(found - fit.parameters.data());
+  }
+  std::vector<ParameterInfo> infos;
+  for (const ParameterEstimate& parameter : fit.parameters) infos.push_back(parameter.info);
+  return Error(StatusCode::kInvalidArgument, "this fit of model " + std::string(fit.model.name) +
+                                                 " has no parameter '" + name + "'; it has " + NameList(infos));
+}
 
 /// The least and the greatest permitted value of a parameter, in the unit of the report.
 std::pair<double, double> RangeOf(const ParameterEstimate& parameter, const Recording& used) {
@@ -40,23 +49,16 @@ Result<void> CheckValue(const ParameterEstimate& parameter, double value, const 
 
 Result<Eigen::VectorXd> ReadingsAt(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig,
                                    const ParameterValues& values) {
-  const std::string model(fit.model.name);
   if (fit.termination == Termination::kFailed) {
-    return Error(StatusCode::kFailedPrecondition, "the fit of model " + model + " has no estimates: " + fit.reason);
+    return Error(StatusCode::kFailedPrecondition,
+                 "the fit of model " + std::string(fit.model.name) + " has no estimates: " + fit.reason);
   }
   std::vector<double> all;
   for (const ParameterEstimate& parameter : fit.parameters) all.push_back(parameter.estimate);
   for (const auto& [name, value] : values) {
-    const auto found = std::ranges::find(fit.parameters, std::string_view(name),
-                                         [](const ParameterEstimate& parameter) { return parameter.info.name; });
-    if (found == fit.parameters.end()) {
-      std::vector<ParameterInfo> infos;
-      for (const ParameterEstimate& parameter : fit.parameters) infos.push_back(parameter.info);
-      return Error(StatusCode::kInvalidArgument,
-                   "this fit of model " + model + " has no parameter '" + name + "'; it has " + NameList(infos));
-    }
-    RETURN_IF_ERROR(CheckValue(*found, value, used));
-    all[static_cast<std::size_t>(found - fit.parameters.begin())] = value;
+    ASSIGN_OR_RETURN(const std::size_t i, FindParameter(fit, name));
+    RETURN_IF_ERROR(CheckValue(fit.parameters[i], value, used));
+    all[i] = value;
   }
   const FittedMotion motion = FittedMotion(used, fit, rig).WithValues(all);
   std::optional<Eigen::VectorXd> readings = motion.Readings(motion.instants());
