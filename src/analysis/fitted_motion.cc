@@ -25,8 +25,8 @@ FittedMotion::FittedMotion(const Recording& used, const FitReport& fit, const st
     reported_.push_back(is_release                             ? 1 / used.clock_scale
                         : parameter.info.scales_with_gravity() ? gravity_torque
                                                                : 1.0);
-    const double from = is_release ? used.time[0] : 0.0;
-    parameters_.push_back((parameter.estimate - from) / reported_.back());
+    offset_.push_back(is_release ? used.time[0] : 0.0);
+    parameters_.push_back((parameter.estimate - offset_.back()) / reported_.back());
   }
 }
 
@@ -44,6 +44,12 @@ FittedMotion FittedMotion::WithoutDrift() const {
   return motion;
 }
 
+FittedMotion FittedMotion::WithValues(const std::vector<double>& values) const {
+  FittedMotion motion = *this;
+  for (std::size_t i = 0; i < values.size(); ++i) motion.parameters_[i] = (values[i] - offset_[i]) / reported_[i];
+  return motion;
+}
+
 FittedMotion FittedMotion::WithViscous(double inertia, double viscous) const {
   FittedMotion motion = *this;
   const auto friction_end = static_cast<std::ptrdiff_t>(PhysicalParameters(model_).size());
@@ -51,6 +57,7 @@ FittedMotion FittedMotion::WithViscous(double inertia, double viscous) const {
   motion.parameters_.assign({inertia, viscous});
   motion.parameters_.insert(motion.parameters_.end(), parameters_.begin() + friction_end, parameters_.end());
   motion.reported_.assign(motion.parameters_.size(), 1.0);
+  motion.offset_.assign(motion.parameters_.size(), 0.0);
   return motion;
 }
 

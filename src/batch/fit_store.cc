@@ -275,6 +275,14 @@ Result<void> FitStore::DeleteWaiting(const std::string& batch) {
   });
 }
 
+Result<void> FitStore::CheckFit(const std::string& id) {
+  return state_->Read([&](SQLite::Database& database) -> Result<void> {
+    SQLite::Statement find(database, "SELECT 1 FROM runs WHERE id = ?");
+    if (!sqlite::Bind(find, id).executeStep()) return Unknown("fit", id);
+    return {};
+  });
+}
+
 Result<KeptFit> FitStore::Find(const std::string& id) {
   return state_->Read([&](SQLite::Database& database) -> Result<KeptFit> {
     SQLite::Statement row(database, std::string(kListedColumns) + "WHERE runs.id = ?");

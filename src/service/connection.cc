@@ -181,7 +181,7 @@ void Connection::Dispatch() {
   is_http11_ = parser_->head().is_http11;
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
-  WorkQueue& queue = lane == Lane::kFit ? serving_.fits : serving_.quick;
+  WorkQueue& queue = lane == Lane::kFit ? serving_.fits : lane == Lane::kReadings ? serving_.readings : serving_.quick;
   const bool is_queued = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
     auto response = std::make_shared<HttpResponse>(self->Handle(offered));
     asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });

@@ -32,7 +32,7 @@ struct Serving {
   std::function<void(const Answered&)> answered;
   asio::io_context& io;
   ByteBudget& budget;
-  WorkQueue &quick, &fits;
+  WorkQueue &quick, &fits, &readings;
   std::function<void(const std::shared_ptr<Connection>&)> closed;  ///< Called when a connection is over.
   std::atomic<bool> is_stopping = false;
   std::atomic<std::size_t> streams = 0;

@@ -22,6 +22,7 @@
 #include "pendulum/service/fit_request.h"
 #include "pendulum/web/report_page.h"
 #include "service/answers.h"
+#include "service/readings_request.h"
 #include "service/repeated_request.h"
 #include "service/samples_json.h"
 
@@ -93,6 +94,18 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   const auto run = state.fitter.FitOf(call.id, *options, std::move(kept->order.files), call.http.client_gone);
   if (run) return make(**run, kept->fit.ShownName());
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
+}
+
+/// The answer for a fit that is not remembered: none exists, or it must be made again by another request.
+HttpResponse NotRemembered(ServiceState& state, const std::string& id) {
+  const auto kept = state.store->Find(id);
+  if (!kept) return ProblemAnswer(kept.error());
+  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  return ProblemResponse({ProblemKind::kConflict,
+                          "the service does not hold this fit in memory; ask for /v1/fits/" + id +
+                              "/series, which fits again, and then repeat this request (recordings of more than " +
+                              std::to_string(Fitter::kMaxRemembered) + " samples are never held)",
+                          {}});
 }
 
 /// The identification with the name of its recording as path.
@@ -248,6 +261,17 @@ HttpResponse GetSeries(ServiceState& state, const Call& call) {
   return WithFit(state, call, [](const Identification& run, const std::string&) {
     return TextAnswer("application/json", ToSeriesJsonText(run));
   });
+}
+
+HttpResponse PostReadings(ServiceState& state, const Call& call) {
+  const auto request = ParseReadingsRequest(call.http);
+  if (!request) return ProblemResponse(request.error());
+  const auto run = state.fitter.Find(call.id);
+  if (!run) return NotRemembered(state, call.id);
+  if (const auto exists = state.store->CheckFit(call.id); !exists) return ProblemAnswer(exists.error());
+  const auto readings = ReadingsJson(*run, *request);
+  if (!readings) return ProblemAnswer(readings.error());
+  return TextAnswer("application/json", JsonText(*readings) + "\n");
 }
 
 HttpResponse GetSections(ServiceState& state, const Call& call) {

@@ -16,6 +16,7 @@ HttpResponse GetFitRequest(ServiceState& state, const Call& call);
 HttpResponse GetRecording(ServiceState& state, const Call& call);
 HttpResponse GetSamples(ServiceState& state, const Call& call);
 HttpResponse GetSeries(ServiceState& state, const Call& call);
+HttpResponse PostReadings(ServiceState& state, const Call& call);
 HttpResponse GetSections(ServiceState& state, const Call& call);
 HttpResponse GetResiduals(ServiceState& state, const Call& call);
 HttpResponse GetReport(ServiceState& state, const Call& call);

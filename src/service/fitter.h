@@ -37,7 +37,10 @@ class Fitter {
   Result<std::shared_ptr<const Identification>> FitOf(const std::string& id, const IdentifyOptions& options,
                                                       RunFiles files, const std::stop_token& unwanted = {});
 
-  /// Remembers the fit of a run.
+  /// The remembered fit of a run; nullptr if there is none.
+  std::shared_ptr<const Identification> Find(const std::string& id);
+
+  /// Remembers the fit of a run, unless it has more than kMaxRemembered samples.
   void Remember(const std::string& id, std::shared_ptr<const Identification> run);
 
   /// Stops current and future fits.
@@ -45,10 +48,10 @@ class Fitter {
 
   std::chrono::milliseconds limit() const { return limit_.limit(); }
 
- private:
-  /// A fit needs about a kilobyte per sample if several models are compared.
-  static constexpr Eigen::Index kMaxRemembered = 100'000;  // samples
+  /// Samples of all remembered fits. A fit needs about a kilobyte per sample if several models are compared.
+  static constexpr Eigen::Index kMaxRemembered = 100'000;
 
+ private:
   struct Remembered {
     std::string id;
     std::shared_ptr<const Identification> run;
@@ -56,7 +59,6 @@ class Fitter {
   };
 
   void FitInto(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted, FinishedRun& fitted);
-  std::shared_ptr<const Identification> Find(const std::string& id);
 
   TimeLimit limit_;
   std::mutex mutex_;                  // for the members below

@@ -24,6 +24,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/v1/fits/{id}/recording", Lane::kQuick, kHolders, QueryKind::kNone, GetRecording},
     Route{"GET", "/v1/fits/{id}/samples", Lane::kFit, kHolders, QueryKind::kNone, GetSamples},
     Route{"GET", "/v1/fits/{id}/series", Lane::kFit, kHolders, QueryKind::kNone, GetSeries},
+    Route{"POST", "/v1/fits/{id}/readings", Lane::kReadings, kHolders, QueryKind::kNone, PostReadings},
     Route{"GET", "/v1/fits/{id}/sections", Lane::kFit, kHolders, QueryKind::kNone, GetSections},
     Route{"GET", "/v1/fits/{id}/residuals", Lane::kFit, kHolders, QueryKind::kNone, GetResiduals},
     Route{"GET", "/v1/fits/{id}/report", Lane::kFit, kHolders, QueryKind::kNone, GetReport},

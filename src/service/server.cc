@@ -49,7 +49,10 @@ struct Server::State {
         work(io.get_executor()),
         quick(ThreadsOf(options.quick_threads), options.max_queue),
         fits(ThreadsOf(options.fit_threads), options.max_queue),
-        serving{options, handler, std::move(answered), io, budget, quick, fits, [this](const auto& c) { Forget(c); }} {}
+        readings(ThreadsOf(options.readings_threads), options.max_queue),
+        serving{options, handler,  std::move(answered),
+                io,      budget,   quick,
+                fits,    readings, [this](const auto& c) { Forget(c); }} {}
 
   Result<void> Bind();
   void Accept();
@@ -59,6 +62,7 @@ struct Server::State {
   void BeginStop();
   void EndStop();
   void DropAll();
+  void CloseLanes();
 
   // The order matters: each member is destroyed before the members to which it refers.
   const ServerOptions options;
@@ -71,7 +75,7 @@ struct Server::State {
   std::atomic<std::size_t> open = 0;
   std::atomic<std::uint64_t> accepted = 0;
   std::uint16_t port = 0;
-  wire::WorkQueue quick, fits;
+  wire::WorkQueue quick, fits, readings;
   wire::Serving serving;
 };
 
@@ -162,6 +166,10 @@ void Server::State::DropAll() {
   io.stop();
 }
 
+void Server::State::CloseLanes() {
+  for (wire::WorkQueue* const lane : {&quick, &fits, &readings}) lane->Close();
+}
+
 Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, HttpHandler& handler,
                                                std::function<void(const Answered&)> answered) {
   try {
@@ -176,10 +184,7 @@ Result<std::unique_ptr<Server>> Server::Listen(const ServerOptions& options, Htt
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-Server::~Server() {
-  state_->quick.Close();
-  state_->fits.Close();
-}
+Server::~Server() { state_->CloseLanes(); }
 
 std::uint16_t Server::port() const { return state_->port; }
 
@@ -193,8 +198,7 @@ void Server::Run() {
       continue;
     }
   }
-  state_->quick.Close();
-  state_->fits.Close();
+  state_->CloseLanes();
 }
 
 void Server::Stop() {
@@ -207,8 +211,8 @@ bool Server::is_stopping() const { return state_->serving.is_stopping; }
 ServerCounts Server::Count() const {
   const State& state = *state_;
   return {.connections = state.open,
-          .waiting = state.quick.waiting() + state.fits.waiting(),
-          .running = state.quick.running() + state.fits.running(),
+          .waiting = state.quick.waiting() + state.fits.waiting() + state.readings.waiting(),
+          .running = state.quick.running() + state.fits.running() + state.readings.running(),
           .streams = state.serving.streams,
           .buffered = state.budget.taken(),
           .accepted = state.accepted,

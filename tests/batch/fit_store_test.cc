@@ -113,6 +113,8 @@ TEST_F(FitStoreTest, StoresNoFileThatWasNotSent) {
 
 TEST_F(FitStoreTest, ReportsUnknownIds) {
   Add("a");
+  EXPECT_TRUE(Store().CheckFit("a"));
+  ExpectUnknown(Store().CheckFit("b"), "fit b");
   ExpectUnknown(Store().Find("b"), "fit b");
   ExpectUnknown(Store().Find("%"), "fit %");
   ExpectUnknown(Store().Put("b", OutcomeOf({})), "fit b");

@@ -141,6 +141,10 @@ void Check(std::string_view text) {
   if (location.starts_with("/v1/fits/")) {
     Require(again.status == 200 && again.body == response.body);
     for (const char* part : {"/request", "/recording", "/samples"}) Require(ask("GET", location + part).status == 200);
+    CheckAnswer(asked.Handle({"POST",
+                              location + "/readings",
+                              {{"Host", "localhost"}, {"Content-Type", "application/json"}},
+                              R"({"parameters": {"inertia": 0.1}})"}));
     for (const char* part : {"/series", "/sections", "/residuals", "/markdown"}) ask("GET", location + part);
   } else {
     ask("GET", location + "/events");

@@ -138,6 +138,7 @@ TEST_F(FittingServiceRefusalsTest, QueuesCalculationsInTheirOwnLane) {
   for (const char* target : {"/v1/fits/a/series", "/v1/fits/a/report", "/v1/fits/a/samples"}) {
     EXPECT_EQ(lane("GET", target), Lane::kFit) << target;
   }
+  EXPECT_EQ(lane("POST", "/v1/fits/a/readings"), Lane::kReadings);
   for (const char* target : {"/v1/fits", "/v1/fits/a", "/healthz", "/metrics", "/", "/none", "//"}) {
     EXPECT_EQ(lane("GET", target), Lane::kQuick) << target;
   }

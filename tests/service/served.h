@@ -22,10 +22,11 @@
 namespace pendulum {
 
 /// Answers with the request itself. Some paths have a special behavior: /fit uses the lane of fits and waits for
-/// `gate`, /refused is refused by its head, /throw throws.
+/// `gate`, /readings uses the lane of readings, /refused is refused by its head, /throw throws.
 class EchoHandler : public HttpHandler {
  public:
   Lane LaneOf(const HttpRequest& request) const override {
+    if (request.target.starts_with("/readings")) return Lane::kReadings;
     return request.target.starts_with("/fit") ? Lane::kFit : Lane::kQuick;
   }
 

@@ -119,6 +119,7 @@ TEST_F(ServerLimitsTest, RefusesOnlyRequestsForAFullLane) {
   EXPECT_EQ(answer.status, 429);
   EXPECT_EQ(answer["retry-after"], "1");
   EXPECT_EQ(client.Ask(Get("/quick")).body, "GET /quick\n") << "on the same connection";
+  EXPECT_EQ(client.Ask(Get("/readings")).body, "GET /readings\n");
   handler_.gate.count_down();
   for (RawClient& fit : fits) EXPECT_EQ(fit.Read().status, 200);
   EXPECT_EQ(client.Ask(Get("/fit")).status, 200);

@@ -50,6 +50,7 @@ class Headers(SecurityFields, Served):
                     self.server.raw(b"nonsense\r\n\r\n"),
                     self.server.post_csv("/v1/fits", b"x" * 1500000),
                     self.server.ask("POST", "/v1/fits", b"<a/>", Content_Type="text/xml"),
+                    self.server.ask("POST", f"{place}/readings", b'{"parameters": {}}', Content_Type="application/json"),
                     self.server.post_csv("/v1/fits?model=no", SHORT), self.server.post_csv("/v1/fits", SHORT, **again),
                     self.server.post_csv("/v1/fits", SHORT, **again), self.server.ask("DELETE", place),
                     self.server.ask("HEAD", "/"),

@@ -19,7 +19,7 @@ METHODS = {"get", "put", "post", "delete", "patch", "options", "trace"}
 ROUTES = {
     "/v1/fits": {"get", "post"}, "/v1/fits/{}": {"get", "patch", "delete"}, "/v1/fits/{}/request": {"get"},
           "/v1/fits/{}/recording": {"get"},
-    "/v1/fits/{}/samples": {"get"}, "/v1/fits/{}/series": {"get"}, "/v1/fits/{}/sections": {"get"}, "/v1/fits/{}/residuals": {"get"},
+    "/v1/fits/{}/samples": {"get"}, "/v1/fits/{}/series": {"get"}, "/v1/fits/{}/readings": {"post"}, "/v1/fits/{}/sections": {"get"}, "/v1/fits/{}/residuals": {"get"},
           "/v1/fits/{}/report": {"get"},
     "/v1/fits/{}/markdown": {"get"}, "/v1/fits/{}/refits": {"post"}, "/v1/batches": {"get", "post"},
           "/v1/batches/{}": {"get", "delete"},
@@ -156,6 +156,11 @@ class Answers(Served):
             self.check("get", fit + name, place + name)
             self.check("get", fit + name, "/v1/fits/none" + name, status=404)
             self.check("get", fit + name, place + name + "?x=1", status=400)
+        readings = f"{fit}/readings"
+        for body, status in (({"parameters": {"inertia": 0.05}, "model": "viscous"}, 200), ({"parameters": {"mass": 1}}, 400)):
+            self.post(readings, f"{place}/readings", json.dumps(body), "application/json", status)
+        self.post(readings, "/v1/fits/none/readings", json.dumps({"parameters": {}}), "application/json", 404)
+        self.post(readings, f"{place}/readings", SHORT, "text/csv", 415)
         self.check("post", f"{fit}/refits", f"{place}/refits?model=linear")
         self.post(f"{fit}/refits", f"{place}/refits", json.dumps({"rig": json.loads(RIG.read_text())}), "application/json")
         self.check("post", f"{fit}/refits", "/v1/fits/none/refits", status=404)

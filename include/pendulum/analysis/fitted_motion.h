@@ -37,6 +37,9 @@ class FittedMotion {
   /// The same motion with the zero fixed at its initial value.
   FittedMotion WithoutDrift() const;
 
+  /// The same fit with other parameters: P values in the order and the units of its report.
+  FittedMotion WithValues(const std::vector<double>& values) const;
+
   /// The same start and zero with only viscous friction: inertia [s^2] and viscous [s], in units of the restoring
   /// torque G.
   FittedMotion WithViscous(double inertia, double viscous) const;
@@ -60,7 +63,8 @@ class FittedMotion {
   SensorModel sensor_;
   ZeroMotion zero_motion_ = ZeroMotion::kNone;
   std::vector<double> parameters_;  // P, units of the restoring torque G, times from the first sample
-  std::vector<double> reported_;    // P: the report's unit per unit of parameters_.
+  // P: reported value = reported_ · parameter + offset_.
+  std::vector<double> reported_, offset_;
   Eigen::VectorXd instants_;
   std::vector<double> against_;  // N, only for edges that lag: factor of the lag at the recording's instants.
   std::stop_token stop_;

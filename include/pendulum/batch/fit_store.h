@@ -126,6 +126,9 @@ class FitStore {
   Result<void> DeleteBatch(const std::string& id);
   Result<void> DeleteWaiting(const std::string& batch);
 
+  /// Errors only: kNotFound if there is no run with this id.
+  Result<void> CheckFit(const std::string& id);
+
   Result<KeptFit> Find(const std::string& id);
   Result<std::vector<ListedFit>> List(const FitFilter& filter);
   Result<ListedBatch> FindBatch(const std::string& id);

@@ -46,8 +46,9 @@ struct HttpResponse {
   NextEvents events;  ///< If set, a stream of events instead of a body.
 };
 
-/// Queue of a request: kQuick for requests that are answered at once, kFit for requests that calculate.
-enum class Lane { kQuick, kFit };
+/// Queue of a request: kQuick for requests that are answered at once, kFit for requests that calculate, kReadings for
+/// curves that follow a slider: they take milliseconds and wait for no fit.
+enum class Lane { kQuick, kFit, kReadings };
 
 /// Answers requests; called from any number of threads at a time.
 class HttpHandler {

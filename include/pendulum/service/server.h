@@ -19,6 +19,7 @@ struct ServerOptions {
   std::uint16_t port = 8080;          ///< 0: any free port.
   int fit_threads = 0;                ///< Requests of Lane::kFit at a time; 0: one per core.
   int quick_threads = 2;
+  int readings_threads = 1;                     ///< Requests of Lane::kReadings at a time.
   std::size_t max_queue = 64;                   ///< Waiting requests per lane; one more gets 429.
   std::chrono::milliseconds wait_time{30'000};  ///< Longest time in a queue; then the request gets 408.
   /// Limit for open connections. One more replaces the connection that has waited longest for a complete request head,

@@ -91,6 +91,24 @@ test('sliders change the simulated swing, and "Back to the fit" returns', async 
   assert.equal(await slider.getAttribute('aria-valuetext'), before);
 });
 
+test('a problem with the readings is shown beside the sliders, which stay usable', async (t) => {
+  const id = await service.fit('textbook_rig.csv', 'model=coulomb', 'textbook_rig.json');
+  const page = await openView(t, service, `/fits/${id}`, { refused: ['400 (Bad Request)'] });
+  await shownFit(page);
+  const detail = 'inertia is too small';
+  const body = JSON.stringify({ title: 'The request is wrong', detail, status: 400, code: 'bad_request' });
+  await page.route('**/readings', (route) => route.fulfill({ status: 400, contentType: 'application/problem+json', body }));
+  const slider = page.getByRole('slider', { name: /moment of inertia/ });
+  await slider.focus();
+  await page.keyboard.press('ArrowRight');
+  await page.getByText(detail).waitFor();
+  assert.match(await page.locator('.slider-rms').textContent(), /^Rms residual –,/);
+  await page.unroute('**/readings');
+  await page.keyboard.press('ArrowRight');
+  await page.getByText(detail).waitFor({ state: 'hidden' });
+  assert.match(await page.locator('.slider-rms').textContent(), /^Rms residual \d/);
+});
+
 test('a drag zooms the plot of the window, and only its handles move the window', async (t) => {
   const page = await openView(t, service, `/fits/${await service.fit('coulomb.csv', 'model=coulomb')}`);
   await shownFit(page);

@@ -64,7 +64,7 @@ function showReport(
   const report = makeReport(result, series, { command: commandOf(request) }, told);
   const content = reportContent(report, request.name);
   const { sections } = content;
-  const feel = slidersSection(report.recordings[0]);
+  const feel = slidersSection(report.recordings[0], request.id, place.signal);
   const withAgain = (changed: () => void): HTMLElement[] => {
     const made = sections(changed);
     const next = made.findIndex((part) => part.id === 'fit') + 1;

@@ -8,15 +8,17 @@ import { kMeasured, modelMark, swatch } from '../../shared/marks';
 import { keyboardBox, navigationButtons } from '../../shared/navigation';
 import type { Fit } from '../../shared/result_types';
 import { significant } from '../../shared/rounding';
-import type { Samples } from '../../shared/samples';
-import { absent, figure, section } from '../../shared/section';
+import { rootMeanSquare, type Samples } from '../../shared/samples';
+import { figure, section } from '../../shared/section';
 import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, spacedUnit, symbolOf, unitText, wordsOf } from '../../shared/units';
-import { FittedSwing, rmsOf, type Values } from '../simulation/fitted_swing';
-import { sliderNames, sliderRange } from './slider_ranges';
+import { forNewest } from '../newest';
+import { problemOf } from '../server/problem';
+import { readingsOf } from '../server/readings';
+import { scalesOf, sliderNames, sliderRange, type Scales } from './slider_ranges';
 
 const kSteps = 400; // of a slider
-const kMostSamples = 4000; // that a simulation computes
+const kMostSamples = 4000; // of a curve, as of the service
 const kDigits = 4;
 
 /** "0.0790 kg m²", "28.6 °". */
@@ -32,30 +34,34 @@ const thinned = (values: Float64Array): Float64Array => {
 };
 
 class SlidersSection {
-  private readonly time: Float64Array;
-  private readonly measured: Float64Array;
-  private readonly values: Values;
-  private readonly best: number;
+  private readonly estimates: Record<string, number> = {};
+  private readonly values: Record<string, number>;
+  /** The curve of the fit, and its residual. */
+  private readonly best: { time: Float64Array; values: Float64Array; rms: number };
   private readonly simulated: Trace;
+  private simulatedRms: number;
   private readonly plot: TimePlot;
   private readonly view: TimeView;
   private readonly rms = el('output', { class: 'slider-rms' });
+  private readonly problem = el('p', { class: 'alarm', role: 'status' });
   private readonly resets: (() => void)[] = [];
-  private isWaiting = false;
+  private readonly ask = forNewest((changed: Record<string, number>) => this.follow(changed));
 
   constructor(
+    private readonly of: { id: string; recording: number; signal: AbortSignal },
     private readonly fit: Fit,
-    private readonly motion: FittedSwing,
+    private readonly scales: Scales,
     private readonly samples: Samples,
+    fitted: Float64Array,
   ) {
-    this.time = thinned(samples.time);
-    this.measured = thinned(samples.measured);
-    this.values = { ...motion.estimates };
-    const values = this.readings();
-    this.best = rmsOf(this.measured, values);
-    this.simulated = { name: 'simulated', time: this.time, values, mark: modelMark(0), shown: true };
+    for (const [name, { estimate }] of Object.entries(fit.parameters)) this.estimates[name] = estimate ?? NaN;
+    this.values = { ...this.estimates };
+    const [time, values, measuredThere] = [samples.time, fitted, samples.measured].map(thinned);
+    this.best = { time, values, rms: rootMeanSquare(measuredThere.map((value, i) => value - values[i])) };
+    this.simulatedRms = this.best.rms;
+    this.simulated = { name: 'simulated', time, values, mark: modelMark(0), shown: true };
     const measured = { name: 'measured', time: samples.time, values: samples.measured, mark: kMeasured, shown: true };
-    const [first, last] = [this.time[0], this.time[this.time.length - 1]];
+    const [first, last] = scales.window;
     this.view = new TimeView(first, last, 1e-3 * (last - first));
     const { unit } = samples;
     const degrees = inDegrees(unit);
@@ -70,13 +76,9 @@ class SlidersSection {
     this.tell();
   }
 
-  private readings(): Float64Array {
-    return this.motion.readings(this.values, this.time) ?? this.time.map(() => NaN);
-  }
-
   private rmsWords(): string {
     const words = (value: number): string => (Number.isNaN(value) ? '–' : valueWords(value, this.samples.unit));
-    return `rms residual ${words(rmsOf(this.measured, this.simulated.values))}, with the fit ${words(this.best)}`;
+    return `rms residual ${words(this.simulatedRms)}, with the fit ${words(this.best.rms)}`;
   }
 
   private tell(): void {
@@ -84,22 +86,38 @@ class SlidersSection {
     this.rms.textContent = words[0].toUpperCase() + words.slice(1);
   }
 
-  /** Simulates at the next frame, once for several changes. */
+  private show({ time, values, rms }: { time: Float64Array; values: Float64Array; rms: number }, problem = ''): void {
+    Object.assign(this.simulated, { time, values });
+    this.simulatedRms = rms;
+    this.problem.textContent = problem;
+    this.tell();
+    this.plot.chart.update();
+  }
+
+  /** Shows the curve for the parameters that differ from the fit, or why there is none. */
+  private async follow(changed: Record<string, number>): Promise<void> {
+    if (Object.keys(changed).length === 0) return this.show(this.best);
+    const { id, recording, signal } = this.of;
+    try {
+      const answer = await readingsOf(id, { parameters: changed, model: this.fit.model, recording }, signal);
+      const [time, values] = [answer.time_s, answer.value].map((numbers) => Float64Array.from(numbers));
+      this.show({ time, values, rms: answer.rms_residual });
+    } catch (error) {
+      if (signal.aborted) return;
+      const { time } = this.best;
+      this.show({ time, values: time.map(() => NaN), rms: NaN }, problemOf(error).detail);
+    }
+  }
+
   private changed(): void {
-    if (this.isWaiting) return;
-    this.isWaiting = true;
-    requestAnimationFrame(() => {
-      this.isWaiting = false;
-      this.simulated.values = this.readings();
-      this.tell();
-      this.plot.chart.update();
-    });
+    const moved = Object.entries(this.values).filter(([name, value]) => value !== this.estimates[name]);
+    void this.ask(Object.fromEntries(moved));
   }
 
   private slider(name: string): HTMLElement {
     const { unit } = this.fit.parameters[name];
-    const estimate = this.motion.estimates[name];
-    const { least, most } = sliderRange(name, estimate, this.motion.scales(this.time));
+    const estimate = this.estimates[name];
+    const { least, most } = sliderRange(name, estimate, this.scales);
     const id = `slider-${name}`;
     const symbol = symbolOf(name, unit);
     const input = el('input', { type: 'range', id, min: '0', max: String(kSteps), step: '1', 'data-slider': name });
@@ -144,27 +162,23 @@ class SlidersSection {
       'Feel the parameters',
       text('Move a slider and watch what the parameter does. The fit itself does not change.', 'quiet'),
       figure(
-        'Drag to zoom; a double click shows all. The curve is computed in this page from the equation of the fit.',
+        'Drag to zoom; a double click shows all. The service computes the curve from the equation of the fit.',
         box,
         el('div', { class: 'bar' }, legend, navigationButtons(this.view)),
       ),
       el('div', { class: 'actions' }, reset, this.rms),
+      this.problem,
       sliders,
     );
   }
 }
 
-/** The section for the shown law; null if there is no fit or no series. */
-export function slidersSection(one: OneRecording): HTMLElement | null {
+/** The section for the shown law of a recording of fit `id`; null if there are no estimates or no series. */
+export function slidersSection(one: OneRecording, id: string, signal: AbortSignal): HTMLElement | null {
   const fit = shownFitOf(one);
   const { samples } = one;
   const fitted = fit && samples?.models.get(fit.model)?.fitted;
   if (!fit || !samples || !fitted || fit.status === 'failed') return null;
-  const motion = FittedSwing.of(one.data, fit, samples.unit);
-  if (motion?.agreesWith(thinned(samples.time), thinned(fitted))) return new SlidersSection(fit, motion, samples).make();
-  return section(
-    'feel',
-    'Feel the parameters',
-    absent('This fit has a sensor, a law or a correction of the readings that the page cannot simulate.'),
-  );
+  const scales = scalesOf(fit, samples);
+  return scales && new SlidersSection({ id, recording: one.number - 1, signal }, fit, scales, samples, fitted).make();
 }
