@@ -17,7 +17,7 @@ function pastedFile(event: ClipboardEvent): File | null {
 
 /** Calls `take` with chosen files, and with files dropped or pasted on the page while the view is shown. */
 export function dropZone(words: string, hint: string, take: (files: File[]) => void, signal: AbortSignal): DropZone {
-  const input = el('input', { type: 'file', multiple: '', hidden: '', accept: '.csv,.txt,.tsv,.dat,.log,.zip,.mat,.xlsx,.xls,.ods,.json,.npz,.npy,.phyphox,text/*' });
+  const input = el('input', { type: 'file', multiple: '', hidden: '', accept: '.csv,.txt,.tsv,.dat,.log,.lvm,.mot,.zip,.mat,.xlsx,.xls,.ods,.fods,.json,.npz,.npy,.phyphox,text/*' });
   const zone = el(
     'button',
     { type: 'button', class: 'drop' },
